@@ -1,0 +1,1 @@
+"""How a scene runs: one typed straight-line program, and three engines that execute it."""

@@ -1,0 +1,74 @@
+"""Choose an engine for a program. All three keep one contract and give the same bits."""
+
+import numpy as np
+
+from ..errors import EngineMissingError, ProgramError
+from .interpreter import Interpreter
+
+ENGINES = ("auto", "llvm", "interpreter", "vm")
+
+
+class Run(tuple):
+    """``outputs`` of shape (ticks // every, outputs, lanes) and ``states`` of shape (states, lanes), both float64."""
+
+    outputs = property(lambda self: self[0])
+    states = property(lambda self: self[1])
+
+
+class Engine:
+    """A program ready to run; ``engine.run(...)`` may be called again and again, from several threads at once."""
+
+    def __init__(self, program, kernel):
+        self.program, self._kernel = program, kernel
+        self.name = kernel.name
+
+    def run(self, ticks, inputs=None, parameters=None, states=None, every=1):
+        """Run for a number of ticks.
+
+        Parameters
+        ----------
+        ticks : int
+        inputs : array of shape (ticks, inputs), or None where the program has none
+            One row per tick, the same for every lane.
+        parameters : array of shape (parameters,) or (parameters, lanes), optional
+            The program's own values by default.
+        states : array of shape (states, lanes), optional
+            Where an earlier run ended. Without it, init makes them from the first row of inputs.
+        every : int
+            Keep the outputs of every so many ticks (the last of each group).
+
+        Returns
+        -------
+        Run
+        """
+        program = self.program
+        parameters = np.array(program.values if parameters is None else parameters, float, ndmin=1)
+        if parameters.ndim == 1:
+            parameters = parameters[:, None]
+        unbound = [c.name for c, row in zip(program.parameters, parameters, strict=True) if np.isnan(row).any()]
+        if unbound:
+            raise ProgramError(f"{program.name}: no value for {', '.join(unbound)}; bind it: scene({unbound[0]}=...)")
+        inputs = np.zeros((ticks, 0)) if inputs is None else np.asarray(inputs, float).reshape(ticks, -1)
+        if inputs.shape[1] != len(program.inputs):
+            raise ProgramError(f"{program.name}: needs {len(program.inputs)} inputs a tick, was given {inputs.shape[1]}")
+        return Run(self._kernel.run(int(ticks), inputs, np.ascontiguousarray(parameters), states, int(every)))
+
+
+def load(program, engine="auto"):
+    """Return the program ready to run on an engine of this machine.
+
+    Parameters
+    ----------
+    program : Program
+    engine : {"auto", "llvm", "interpreter", "vm"}
+        "auto" is llvm where llvmlite is installed, else the interpreter. "vm" is the firmware's C machine built for this
+        computer; it takes float32 programs.
+    """
+    if engine not in ENGINES:
+        raise ProgramError(f"engine = {engine!r}; needs one of {', '.join(ENGINES)}")
+    kernels = {"interpreter": Interpreter}
+    if engine == "auto":
+        engine = "interpreter"
+    if engine not in kernels:
+        raise EngineMissingError(engine)
+    return Engine(program, kernels[engine](program))

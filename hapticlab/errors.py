@@ -1,0 +1,60 @@
+"""The exception tree. Every message says what was given, what is needed, and what to do.
+
+::
+
+    HapticlabError
+    +-- SceneError            what the student wrote cannot be felt
+    |   +-- UnitsError        two terms of an equation have different units
+    |   +-- SignalError       a sample that does not exist yet, or never will
+    |   +-- ParameterError    a value is missing, unknown, not finite or out of its range
+    |   +-- MassError         the equations do not determine every acceleration
+    +-- ProgramError          a program is damaged, or asks for what no engine has
+    |   +-- ProgramLimitError a program is past a limit of the engine or board
+    +-- PaddleError           a device, simulated or real, was asked for what it cannot do
+    +-- AnalysisError         a record or a model does not allow the question asked of it
+    +-- EngineMissingError    an engine cannot run on this machine
+"""
+
+
+class HapticlabError(Exception):
+    """Base of everything hapticlab raises on purpose."""
+
+
+class SceneError(HapticlabError, ValueError):
+    """A scene cannot be felt as it is written."""
+
+
+class UnitsError(SceneError):
+    """Two terms of an equation have different units."""
+
+
+class SignalError(SceneError):
+    """A sample that does not exist yet (x(n+1)) or never will (x(n-1/2))."""
+
+
+class ParameterError(SceneError):
+    """A parameter's value is missing, unknown, not finite or out of its range."""
+
+
+class MassError(SceneError):
+    """The equations of motion do not determine every acceleration."""
+
+
+class ProgramError(HapticlabError, ValueError):
+    """A program is damaged, or asks for an operation no engine has."""
+
+
+class ProgramLimitError(ProgramError):
+    """A program is larger than an engine or a board can hold."""
+
+
+class PaddleError(HapticlabError, ValueError):
+    """A paddle, simulated or real, was asked for what it cannot do."""
+
+
+class AnalysisError(HapticlabError, ValueError):
+    """A record or a model does not allow the question asked of it."""
+
+
+class EngineMissingError(HapticlabError, ImportError):
+    """An engine cannot run on this machine."""
