@@ -1,0 +1,90 @@
+"""Telemetry and PaddleProfile: immutable, saved and read back without loss, and clear about what is missing."""
+
+import copy
+import csv
+import dataclasses
+import pickle
+
+import numpy as np
+import pytest
+
+from hapticlab.errors import AnalysisError
+from hapticlab.records import PaddleProfile, Telemetry
+
+
+def make_log(**changes):
+    t = np.arange(5) * 1e-3
+    given = dict(
+        t=t, x=np.sqrt(t) / 3, v=np.cos(t), F=-np.sin(t), T=1e-3, delay=2.5e-4, channels={"z": t**2, "x_true": t / 7},
+        units={"z": "m"}, paddle="toy", scene="wall", parameters={"k": 150.0}, fault="tick 3: F was nan",
+        saturated=[0, 0, 1, 0, 0],
+    )  # fmt: skip
+    return Telemetry(**{**given, **changes})
+
+
+def test_arrays_are_read_only_copies():
+    x = np.zeros(5)
+    log = make_log(x=x)
+    x[0] = 9
+    assert log.x[0] == 0
+    with pytest.raises(ValueError, match="read-only"):
+        log.z[0] = 1
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        log.T = 1
+
+
+def test_saved_and_loaded_is_the_same(tmp_path):
+    log = make_log()
+    path = log.save(tmp_path / "run")
+    assert path.name == "run.npz"
+    back = Telemetry.load(path)
+    for name in (*log.columns, "saturated", "gap", "overrun"):
+        assert np.array_equal(getattr(back, name), getattr(log, name)), name
+    for name in ("T", "delay", "units", "paddle", "scene", "parameters", "fault", "columns"):
+        assert getattr(back, name) == getattr(log, name), name
+
+
+def test_load_refuses_other_files(tmp_path):
+    np.savez(tmp_path / "other.npz", a=np.zeros(3))
+    with pytest.raises(AnalysisError, match="not a telemetry file.*log.save"):
+        Telemetry.load(tmp_path / "other.npz")
+    np.savez(tmp_path / "code.npz", about=np.array([{}], object))
+    with pytest.raises(AnalysisError, match="not a telemetry file"):
+        Telemetry.load(tmp_path / "code.npz")
+
+
+def test_csv_has_units_and_every_digit(tmp_path):
+    log = make_log()
+    with open(log.to_csv(tmp_path / "run.csv"), newline="") as file:
+        header, *rows = csv.reader(file)
+    assert header == ["t [s]", "x [m]", "v [m/s]", "F [N]", "z [m]", "x_true [m]", "saturated"]
+    table = np.array(rows, float)
+    assert np.array_equal(table[:, 1], log.x) and np.array_equal(table[:, 5], log.x_true)
+    assert table[:, 6].tolist() == [0, 0, 1, 0, 0]
+
+
+def test_missing_channel_says_what_was_recorded():
+    with pytest.raises(AttributeError, match=r"'y' was not recorded; this log has t, x, v, F, z, x_true\. Watch it"):
+        _ = make_log().y
+    assert "z" in dir(make_log()) and not hasattr(make_log(), "w")
+
+
+def test_copies_and_pickles():
+    for twin in (copy.deepcopy(make_log()), pickle.loads(pickle.dumps(make_log()))):
+        assert np.array_equal(twin.z, make_log().z)
+
+
+def test_wrong_length_is_refused():
+    with pytest.raises(AnalysisError, match=r"z has shape \(3,\); needs one value a sample: \(5,\)"):
+        make_log(channels={"z": np.zeros(3)})
+
+
+def test_repr_is_short_and_names_the_fault():
+    text = repr(make_log())
+    assert len(text) < 150 and "5 samples" in text and "F was nan" in text
+
+
+def test_profile_says_what_it_is():
+    nominal = PaddleProfile("toy", m=0.05, b=0.1, counts_per_metre=1e5, coulomb=0.2, force_max=3, source="a sketch")
+    assert "10 um per count (floor)" in str(nominal) and "nominal, not measured" in str(nominal)
+    assert "measured; source: lab" in str(dataclasses.replace(nominal, nominal=False, source="lab"))
