@@ -4,6 +4,7 @@ import numpy as np
 
 from ..errors import EngineMissingError, ProgramError
 from .interpreter import Interpreter
+from .llvm import Llvm, llvmlite_is_installed
 
 ENGINES = ("auto", "llvm", "interpreter", "vm")
 
@@ -66,9 +67,9 @@ def load(program, engine="auto"):
     """
     if engine not in ENGINES:
         raise ProgramError(f"engine = {engine!r}; needs one of {', '.join(ENGINES)}")
-    kernels = {"interpreter": Interpreter}
+    kernels = {"interpreter": Interpreter, "llvm": Llvm}
     if engine == "auto":
-        engine = "interpreter"
+        engine = "llvm" if llvmlite_is_installed() else "interpreter"
     if engine not in kernels:
         raise EngineMissingError(engine)
     return Engine(program, kernels[engine](program))

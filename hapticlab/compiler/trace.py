@@ -64,7 +64,7 @@ class Builder:
     def block(self, outputs=(), states=()):
         """Return the finished block: only what its results need, in order."""
         wanted = [v.id for v in (*outputs, *states)]
-        keep = _reachable(self.instructions, wanted)
+        keep = reachable(self.instructions, wanted)
         new = {old: position for position, old in enumerate(keep)}
         kept = (self.instructions[k] for k in keep)
         renumbered = (Instruction(i.op, tuple(new[a] for a in i.args), i.type, i.value, i.index) for i in kept)
@@ -89,7 +89,8 @@ class Builder:
         return {"B": "bool", "I": "i32"}[result]
 
 
-def _reachable(instructions, wanted):
+def reachable(instructions, wanted):
+    """Return, in order, the positions that the wanted ones need."""
     seen, stack = set(), list(wanted)
     while stack:
         k = stack.pop()

@@ -1,0 +1,85 @@
+"""Machine code for this computer: the only module that opens llvmlite."""
+
+import ctypes
+import threading
+from importlib.util import find_spec
+
+import numpy as np
+
+from ..errors import EngineMissingError
+from .elementary import expand
+from .llvm_emit import emit
+
+#: lanes stepped together
+WIDTH = 16
+
+
+class Llvm:
+    """Run a program as machine code. See :func:`hapticlab.compiler.engine.load` for the contract.
+
+    Scalar and lanes code are compiled when first asked for. The call releases the GIL.
+    """
+
+    name = "llvm"
+
+    def __init__(self, program):
+        open_llvmlite()
+        self.program = expand(program.verify())
+        self._compiled = {}
+        self._lock = threading.Lock()
+
+    def run(self, ticks, inputs, parameters, states=None, every=1):
+        lanes = parameters.shape[1]
+        width = 1 if lanes == 1 else WIDTH
+        stride = -(-lanes // width) * width
+        outputs = np.empty((ticks // every, len(self.program.outputs), stride))
+        carried = np.empty((len(self.program.states), stride))
+        if states is not None:
+            carried[:, :lanes] = states
+            carried[:, lanes:] = carried[:, lanes - 1 : lanes]
+        if stride > lanes:  # the last lane again and again: no number that the program was not given
+            parameters = np.pad(parameters, ((0, 0), (0, stride - lanes)), "edge")
+        arrays = np.ascontiguousarray(inputs), np.ascontiguousarray(parameters), carried, outputs
+        run = self._function(width)
+        run(ticks, every, 0, stride, stride, states is not None, *(a.ctypes.data for a in arrays))
+        return outputs[..., :lanes], carried[:, :lanes]
+
+    def _function(self, width):
+        with self._lock:
+            if width not in self._compiled:
+                self._compiled[width] = _compile(emit(self.program, width))
+            return self._compiled[width][1]
+
+
+def llvmlite_is_installed():
+    """Tell whether llvmlite can be imported, without importing it."""
+    return find_spec("llvmlite") is not None
+
+
+def open_llvmlite():
+    """Return llvmlite's binding, ready for this machine, or raise EngineMissingError."""
+    try:
+        from llvmlite import binding
+    except ImportError as missing:
+        raise EngineMissingError(
+            'engine = "llvm" needs llvmlite, which is not installed: pip install llvmlite, or use engine="interpreter"'
+        ) from missing
+    if binding.llvm_version_info[0] < 20:  # newer ones do this by themselves
+        binding.initialize()
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    return binding
+
+
+def _compile(text):
+    """Return the keeper of the machine code and the function in it; the function lives as long as the keeper."""
+    binding = open_llvmlite()
+    target = binding.Target.from_default_triple()
+    machine = target.create_target_machine(
+        cpu=binding.get_host_cpu_name(), features=binding.get_host_cpu_features().flatten(), opt=2, jit=True
+    )
+    module = binding.parse_assembly(text)
+    keeper = binding.create_mcjit_compiler(module, machine)
+    keeper.finalize_object()
+    prototype = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 6, *[ctypes.c_void_p] * 4)
+    return keeper, prototype(keeper.get_function_address("run"))
