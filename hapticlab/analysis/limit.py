@@ -1,0 +1,77 @@
+"""A stiffness limit that always says which limit it is."""
+
+import math
+from dataclasses import dataclass
+
+from ..errors import AnalysisError
+from ..scene.taps import TAPS
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The largest stiffness, and what it promises.
+
+    Attributes
+    ----------
+    K : float
+        Stiffness [N/m]; ``float(limit)`` is the same number.
+    frequency : float or None
+        Where the limit is reached [Hz]; None where no single frequency decides.
+    kind : str
+        Which limit this is: passivity with any hand, or stability of one plant.
+    reason : str
+        What decides it, or why it is zero.
+    assumptions : tuple of str
+        What the number leaves out.
+
+    Examples
+    --------
+    >>> print(Limit(K=200.0, frequency=None, kind="passivity", reason="every frequency alike"))
+    200 N/m: passivity; every frequency alike
+    """
+
+    K: float
+    frequency: float | None
+    kind: str
+    reason: str
+    assumptions: tuple[str, ...] = ()
+
+    def __float__(self):
+        return float(self.K)
+
+    def __str__(self):
+        at = "" if self.frequency is None else f" at {self.frequency:.4g} Hz"
+        notes = "".join(f"\n  {a}" for a in self.assumptions)
+        return f"{self.K:.6g} N/m{at}: {self.kind}; {self.reason}{notes}"
+
+    def __repr__(self):
+        at = "None" if self.frequency is None else f"{self.frequency:.6g}"
+        return f"Limit(K={self.K:.9g} N/m, frequency={at} Hz, kind={self.kind!r}, reason={self.reason!r})"
+
+
+def check_law(law):
+    """Refuse a law that has no name in the chapter."""
+    if law not in TAPS:
+        raise AnalysisError(f"law = {law!r}; needs one of {', '.join(TAPS)}")
+
+
+def check_number(name, value, unit, need, allowed):
+    """Return the value as a float, or say what it has to be."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not (math.isfinite(number) and allowed(number)):
+        raise AnalysisError(f"{name} = {value} {unit}; {need}")
+    return number
+
+
+def whole_and_fraction(delay, T):
+    """Split a delay [s] into whole periods and a fraction of one; 1e-9 of a period is rounding, not delay."""
+    periods = delay / T
+    if periods > 200:
+        raise AnalysisError(f"delay = {delay:g} s is {periods:.0f} periods of T = {T:g} s; needs at most 200 periods")
+    nearest = round(periods)
+    if abs(periods - nearest) < 1e-9:
+        return nearest, 0.0
+    return math.floor(periods), periods - math.floor(periods)

@@ -1,0 +1,190 @@
+"""Passivity of a rendered wall in the hands of any passive user, with delay and virtual damping; exact, no grid.
+
+Colgate and Schenkel (1997): a force ``H(z) x`` held over each period is made passive by the device's damping b where
+``b > (T/2) Re{(1 - 1/z) H} / (1 - cos wT)`` at every w. For ``H = z^-k`` the fraction is Dirichlet's kernel
+``D_k = 1 + 2 cos wT + ... + 2 cos kwT``, a polynomial in u = cos wT, so the worst frequency is a root of a derivative.
+
+A delay of d + f periods, 0 < f < 1, changes the force f*T after each sample. Let the hand split its motion over a
+period into D1 before and D2 after the change; the cheapest split of ``(b/T)(D1^2/f + D2^2/(1-f)) + F[n-1] D1 + F[n] D2``
+leaves the condition used below,
+
+    b - R(u) - T^2 f (1-f) |H|^2 / (4b) >= 0    for all u in [-1, 1],
+
+with R Colgate's expression for the averaged law ``((1-f) + f/z) H``. It is linear or concave in K at each u, so cutting
+at the worst u of one K gives the next K, and that sequence falls to the limit faster than linearly.
+"""
+
+import math
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from ..scene.taps import LEAD, TAPS
+from .limit import Limit, check_law, check_number, whole_and_fraction
+
+KIND = "passivity: any passive hand, sufficient"
+NO_VELOCITY = "its exact velocity jumps at the samples: a hand that moves only there draws energy at any stiffness"
+
+
+def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh"):
+    """Largest stiffness that a passive hand of any kind cannot set chattering, Eq. (23.10) and its general form.
+
+    Necessary and sufficient where the spring always acts. For the unilateral wall sufficient with law "zoh" and no delay;
+    with a memory of past samples, in the law or in the delay, it says nothing about the switching at the boundary.
+
+    Parameters
+    ----------
+    b : float
+        Viscous damping of the device [N s/m], > 0.
+    T : float
+        Sampling period [s], > 0.
+    B : float
+        Virtual damper of either sign [N s/m]: its force is ``B*(x[n] - x[n-1])/T``, beside the law, not through it.
+    delay : float
+        Computational delay [s], whole and fractional periods alike, >= 0.
+    law : {"zoh", "half_sample", "backward_difference", "ellis"}
+        Eqs. (23.1), (23.3), (23.5), (23.7).
+
+    Returns
+    -------
+    Limit
+        K = 0 with the reason where no stiffness is passive.
+
+    Raises
+    ------
+    AnalysisError
+        For a value that is not finite or out of range, and for an unknown law.
+
+    Examples
+    --------
+    >>> float(passivity_limit(b=0.1, T=1e-3))
+    200.0
+    >>> round(float(passivity_limit(b=0.1, T=1e-3, B=0.05)), 9)
+    100.0
+    >>> passivity_limit(b=0.1, T=1e-3, law="half_sample").K
+    0.0
+    """
+    b = check_number("b", b, "N s/m", "passivity needs b > 0: the device's damping pays for the hold", lambda v: v > 0)
+    whole, fraction = _checked(T, B, delay, law)
+    notes = ("device damping b alone: no encoder, no Coulomb friction", _unilateral(law, delay))
+    if LEAD[law]:
+        return Limit(0.0, None, KIND, f"law {law}: {NO_VELOCITY}", notes)
+    beta = B / b
+    _, margin = _worst(_law_taps(0.0, beta, law), whole, fraction, 1.0)
+    if margin < 0:
+        return Limit(0.0, None, KIND, f"B = {B:g} N s/m alone is active: it needs more than b = {b:g} N s/m", notes)
+    kappa, u = _falling_cuts(lambda k: _law_taps(k, beta, law), whole, fraction)
+    frequency = None if u is None else math.acos(u) / (2 * math.pi * T)
+    place = "all frequencies alike" if u is None else f"worst at {math.acos(u) / math.pi:.4g} of the Nyquist frequency"
+    return Limit(float(kappa * b / T), frequency, KIND, f"b = {b:g} N s/m is spent, {place}", notes)
+
+
+def required_damping(*, K, T, B=0.0, delay=0.0, law="zoh"):
+    """Least device damping b [N s/m] that makes a wall passive: Eq. (23.10) read as a design directive.
+
+    Parameters
+    ----------
+    K : float
+        Stiffness [N/m], >= 0. The other arguments are those of :func:`passivity_limit`.
+
+    Returns
+    -------
+    float
+        ``inf`` for law "half_sample", which no damping makes passive.
+
+    Examples
+    --------
+    >>> round(required_damping(K=200, T=1e-3, B=0.05), 12)
+    0.15
+    """
+    K = check_number("K", K, "N/m", "a wall needs K >= 0. A negative spring feeds energy to the user.", lambda v: v >= 0)
+    whole, fraction = _checked(T, B, delay, law)
+    if LEAD[law] and K:
+        return math.inf
+    taps = _law_taps(K * T, B, law)
+    if not taps.any():
+        return 0.0
+    b = 1e-9 * abs(taps).sum()  # below every answer but zero
+    for _ in range(60):  # rising cuts: the u that is worst at this b, then the b that u asks for
+        u, margin = _worst(taps, whole, fraction, b)
+        linear, square = (chebyshev.chebval(0.0 if u is None else u, c) for c in _parts(taps, whole, fraction))
+        asked = float(linear + math.sqrt(linear**2 + square)) / 2
+        if margin >= 0 or asked <= b:
+            break
+        b = asked
+    return b
+
+
+def _checked(T, B, delay, law):
+    check_law(law)
+    T = check_number("T", T, "s", "a sampling period needs T > 0", lambda v: v > 0)
+    check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
+    delay = check_number("delay", delay, "s", "needs delay >= 0: a force cannot come before its sample", lambda v: v >= 0)
+    return whole_and_fraction(delay, T)
+
+
+def _unilateral(law, delay):
+    if law == "zoh" and not delay:
+        return "sufficient for the unilateral wall too"
+    return "the spring always acts: the switching of a unilateral wall is not covered"
+
+
+def _law_taps(K, B, law):
+    """Weights of H on past samples; with K and B in units of one force, so that K stands for K*T."""
+    taps = np.zeros(4)
+    taps[: len(TAPS[law])] = K * np.array(TAPS[law])
+    taps[:2] += (B, -B)
+    return taps
+
+
+def _parts(taps, whole, fraction):
+    """Chebyshev coefficients of R(u) and of f(1-f)|H|^2, where the condition reads b - R - f(1-f)|H|^2/(4b) >= 0."""
+    averaged = np.convolve(np.r_[np.zeros(whole), taps], [1 - fraction, fraction])
+    tail = np.cumsum(averaged[::-1])[::-1]  # T_j appears twice in every D_k with k >= j
+    linear = np.r_[tail[0] / 2, tail[1:]]
+    lags = np.correlate(taps, taps, "full")[len(taps) - 1 :]
+    square = fraction * (1 - fraction) * np.r_[lags[0], 2 * lags[1:]]
+    return linear, square
+
+
+def _worst(taps, whole, fraction, b):
+    """Return u in [-1, 1] of the least margin and that margin; u is None where the margin is flat."""
+    linear, square = _parts(taps, whole, fraction)
+    margin = chebyshev.chebsub([b], chebyshev.chebadd(linear, square / (4 * b)))
+    size = abs(margin).max()
+    while len(margin) > 1 and abs(margin[-1]) <= 1e-15 * size:  # a tap of zero is no degree
+        margin = margin[:-1]
+    if len(margin) == 1:
+        return None, margin[0]
+    stationary = chebyshev.chebroots(chebyshev.chebder(margin)) if len(margin) > 2 else []
+    u = np.clip(np.r_[-1.0, 1.0, np.real(stationary)], -1, 1)  # every u is a true condition, so extra ones do no harm
+    margins = chebyshev.chebval(u, margin)
+    return u[np.argmin(margins)], margins.min()
+
+
+def _falling_cuts(taps_of, whole, fraction):
+    """Return the largest K*T/b and the u that sets it, with b = 1."""
+    kappa, at = 8.0, None  # above every limit: at most 4 with the delay under half a period, at most 4 beyond
+    intercept, slope = taps_of(0.0), taps_of(1.0) - taps_of(0.0)
+    for _ in range(60):
+        u, margin = _worst(taps_of(kappa), whole, fraction, 1.0)
+        if margin >= -1e-15:
+            break
+        at = u
+        kappa_next = _root(intercept, slope, whole, fraction, 0.0 if u is None else u)
+        if kappa_next >= kappa:
+            break
+        kappa = kappa_next
+    return kappa, at
+
+
+def _root(intercept, slope, whole, fraction, u):
+    """Return the positive K at which the margin 1 - R - f(1-f)|H|^2/4, a quadratic in K, is zero at u."""
+    margins = []
+    for k in (0.0, 1.0, -1.0):
+        linear, square = _parts(intercept + k * slope, whole, fraction)
+        margins.append(1 - chebyshev.chebval(u, linear) - chebyshev.chebval(u, square) / 4)
+    c, one, minus = margins
+    a, half = min((one + minus) / 2 - c, 0.0), (one - minus) / 4
+    denominator = math.sqrt(half**2 - a * c) - half
+    return max(c / denominator, 0.0) if denominator > 0 else math.inf
