@@ -1,0 +1,62 @@
+"""How a program sees the handle: the samples it remembers, its velocity, and its motion between two samples."""
+
+from ..scene.symbols import v, x
+from .ir import Channel
+
+HOLDS = ("zoh", "foh", "soh")
+VELOCITIES = ("backward_difference", "measured")
+
+
+class Handle:
+    """The handle's samples x(n-k) and v(n-k), and x(t), v(t) between them.
+
+    Past samples become states when asked for. ``velocity`` says where v(n) comes from:
+
+    ``"backward_difference"``
+        (x(n) - x(n-1))/T, zero at the first sample. What a board can know.
+    ``"measured"``
+        An input of its own: the exact velocity of a simulated paddle without an encoder.
+
+    ``hold`` says how an equation of motion sees the handle at ``tau`` after sample n:
+
+    ``"zoh"``
+        x(n), v(n): the sample held.
+    ``"foh"``
+        x(n) + v(n) tau, v(n): the line through the sample with that velocity.
+    ``"soh"``
+        The parabola: with measured velocities the acceleration is (v(n) - v(n-1))/T; with backward differences it runs
+        through x(n), x(n-1) and x(n-2), so that its slope at n is v(n) + a T/2.
+    """
+
+    def __init__(self, tracing, velocity, hold):
+        self.tracing, self.velocity, self.hold = tracing, velocity, hold
+        self.T = tracing.T
+
+    def sample(self, signal, lag=0):
+        """Return x(n - lag) or v(n - lag)."""
+        tracing = self.tracing
+        if lag:
+            # history starts at the first measured sample, and with it an estimated velocity at rest
+            channel = Channel(f"{signal.__name__}(n-{lag})", signal.unit, tracing.real)
+            return tracing.state((signal, lag), channel, self.first(signal), lambda: self.sample(signal, lag - 1))
+        if signal is x or self.velocity == "measured":
+            return tracing.input(tracing.tick, signal)
+        return (self.sample(x) - self.sample(x, 1)) * (1 / self.T)
+
+    def first(self, signal):
+        """Return x or v at the first sample, in the init block."""
+        if signal is x or self.velocity == "measured":
+            return self.tracing.input(self.tracing.init, signal)
+        return self.tracing.init.const(0.0)
+
+    def motion(self, tau):
+        """Return (x, v) of the handle at tau [s] after the sample, as ``hold`` sees them."""
+        position, velocity = self.sample(x), self.sample(v)
+        if self.hold == "zoh":
+            return position, velocity
+        if self.hold == "foh":
+            return position + velocity * tau, velocity
+        acceleration = (velocity - self.sample(v, 1)) * (1 / self.T)
+        if self.velocity == "backward_difference":
+            velocity = velocity + acceleration * (self.T / 2)
+        return position + (velocity + acceleration * (tau / 2)) * tau, velocity + acceleration * tau

@@ -1,0 +1,261 @@
+"""Lower a scene to a program: the sample is taken, the force computed from it, then the equations of motion advance."""
+
+import math
+
+import sympy as sp
+
+from ..errors import ParameterError, ProgramError, SceneError
+from ..scene.symbols import Parameter, T, delay, lag_of, n, t, v, x
+from ..scene.units import unit_of
+from .expressions import Translator
+from .handle import HOLDS, VELOCITIES, Handle
+from .ir import Channel
+from .methods import METHODS
+from .solve import solve
+from .trace import cast
+from .tracing import Tracing
+
+REAL_OF = {"float32": "f32", "float64": "f64"}
+
+
+def compile(
+    scene,
+    method="rk4",
+    *,
+    T,
+    substeps=1,
+    hold="soh",
+    dtype="float32",
+    velocity="backward_difference",
+    live=None,
+):
+    """Compile a scene to the program that runs at the sample rate.
+
+    At sample n the force is computed from x(n) and the present states; then the equations of motion advance by T in
+    ``substeps`` steps of an explicit method.
+
+    Parameters
+    ----------
+    scene : Scene
+    method : {"euler", "semi_implicit_euler", "verlet", "heun", "rk4"}
+    T : float
+        Sampling period [s], > 0.
+    substeps : int
+        Steps per period, >= 1.
+    hold : {"zoh", "foh", "soh"}
+        How an equation of motion sees x(t) and v(t) between samples (see :class:`~hapticlab.compiler.handle.Handle`).
+        It sets the accuracy more than the method does: a held sample ("zoh") costs RK4 ten percent of the force.
+    dtype : {"float32", "float64"}
+        float32 is what a board runs.
+    velocity : {"backward_difference", "measured"}
+        Where v(n) comes from; "measured" asks the paddle for it.
+    live : sequence of str, optional
+        Parameters that stay settable while running, all by default; the others become constants.
+
+    Returns
+    -------
+    Program
+        ``len(program)`` is its number of instructions per tick; printing it lists them.
+
+    Raises
+    ------
+    ProgramError, ParameterError, SceneError
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k, x_o = hl.parameters("k x_o", units="N/m m")
+    >>> wall = hl.Scene(force=hl.when(hl.x(hl.n) >= x_o, k * (hl.x(hl.n) - x_o)))
+    >>> len(hl.compile(wall, T=1e-3))
+    4
+    """
+    _check("method", method, METHODS)
+    _check("hold", hold, HOLDS)
+    _check("dtype", dtype, REAL_OF)
+    _check("velocity", velocity, VELOCITIES)
+    if not (isinstance(T, (int, float)) and math.isfinite(T) and T > 0):
+        raise ParameterError(f"T = {T} s; a sampling period needs T > 0, such as T=1e-3")
+    if not (isinstance(substeps, int) and substeps >= 1):
+        raise ProgramError(f"substeps = {substeps!r}; needs a whole number >= 1")
+    try:
+        return _Lowering(scene, METHODS[method], float(T), substeps, hold, dtype, velocity, live).program()
+    except RecursionError:
+        raise ProgramError(
+            f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals or watch less"
+        ) from None
+
+
+def _check(name, given, known):
+    if given not in known:
+        raise ProgramError(f"{name} = {given!r}; needs one of {', '.join(known)}")
+
+
+class _Lowering:
+    """One scene on its way to a program."""
+
+    def __init__(self, scene, method, T, substeps, hold, dtype, velocity, live):
+        self.scene, self.form = scene, scene.explicit()
+        self.method, self.substeps = method, substeps
+        self.facts = {"method": method.name, "substeps": substeps, "hold": hold, "velocity": velocity, "dtype": dtype}
+        if not self.form.coordinates:
+            self.facts = {"velocity": velocity, "dtype": dtype}
+        parameters = tuple(scene.parameters.values())
+        self.tracing = Tracing(REAL_OF[dtype], T, parameters)
+        self.handle = Handle(self.tracing, velocity, hold)
+        self.folded = _folded(scene, live)
+        self.at_start = Translator(self.tracing.init, self._leaf_at_start)
+        self.at_sample = Translator(self.tracing.tick, self._leaf_at_sample)
+        self.resolving = []
+
+    def program(self):
+        """Trace the tick in the order it runs."""
+        real = self.tracing.real
+        outputs = [(Channel("F", "N", real), self._real(self.at_sample(self.form.force)))]
+        units = self.scene.watch_units
+        for name, expr in self.form.watch.items():
+            outputs.append((Channel(name, units[name], real), self._real(self.at_sample(expr))))
+        self._advance()
+        return self.tracing.finish(self.scene.name, outputs, self.scene.values, self.facts)
+
+    def _real(self, value):
+        if value.type == "bool":
+            raise SceneError(f"{self.scene.name}: a condition is not a number; write hl.when(condition, 1, 0)")
+        return cast(value, self.tracing.real)
+
+    # what the leaves of an expression stand for, at the first sample, at sample n, and inside a step
+
+    def _common(self, builder, symbol):
+        """Return a parameter, T, or None."""
+        if symbol == T:
+            return builder.const(self.tracing.T)
+        if isinstance(symbol, Parameter):
+            if symbol.name in self.folded:
+                return builder.const(self.folded[symbol.name])
+            return self.tracing.parameter(builder, self.tracing.parameters.index(symbol))
+        return None
+
+    def _leaf_at_start(self, leaf):
+        common = self._common(self.tracing.init, leaf)
+        if common is not None:
+            return common
+        kind = type(leaf)
+        if leaf in (n, t):
+            return self.tracing.init.const(0.0)
+        if kind in (x, v):
+            return self.handle.first(kind)
+        if isinstance(leaf, delay):
+            return self.at_start(leaf.args[0])
+        if isinstance(leaf, sp.Derivative):
+            return self.at_start(type(leaf.expr).rate)
+        if kind.role == "signal" and lag_of(leaf) == 0:
+            return self._resolve(leaf, self.at_start)
+        return self.at_start(kind.initial)
+
+    def _leaf_at_sample(self, leaf):
+        common = self._common(self.tracing.tick, leaf)
+        if common is not None:
+            return common
+        tracing, kind = self.tracing, type(leaf)
+        if leaf in (n, t):
+            count = self._tick_count()
+            return count if leaf == n else count * tracing.T
+        if kind in (x, v):
+            return self.handle.sample(kind, lag_of(leaf) or 0)
+        if isinstance(leaf, delay):
+            argument = leaf.args[0]
+            channel = Channel(str(leaf), unit_of(argument), tracing.real)
+            return tracing.state(leaf, channel, self.at_start(argument), lambda: self.at_sample(argument))
+        if isinstance(leaf, sp.Derivative) or kind.role == "coordinate":
+            return self._coordinate_state(leaf)
+        lag = lag_of(leaf)
+        if lag == 0:
+            return self._resolve(leaf, self.at_sample)
+        channel = Channel(str(leaf), kind.unit, tracing.real)
+        return tracing.state(leaf, channel, self.at_start(kind.initial), lambda: self.at_sample(leaf.func(n - lag + 1)))
+
+    def _resolve(self, sample, translate):
+        """Return y(n) by its difference equation; refuse one that needs itself."""
+        if sample not in self.form.updates:
+            raise SceneError(f"{sample} has no equation; add sp.Eq({sample}, ...) to eom")
+        if sample in self.resolving:
+            loop = " -> ".join(map(str, [*self.resolving, sample]))
+            raise SceneError(f"{loop}: a sample cannot depend on itself; use {type(sample).__name__}(n-1) on one side")
+        self.resolving.append(sample)
+        value = translate(self.form.updates[sample])
+        self.resolving.pop()
+        return value
+
+    def _tick_count(self):
+        # time is counted in whole ticks: a float32 sum of periods is seconds wrong after minutes
+        tracing = self.tracing
+        count = tracing.state("tick", Channel("tick", "1", "i32"), tracing.init.const(0, "i32"))
+        tracing.set_next("tick", tracing.tick.emit("iadd", count, tracing.tick.const(1, "i32")))
+        return tracing.tick.emit("itof", count, type=tracing.real)
+
+    def _coordinate_state(self, leaf):
+        """Return q or q' as it is at the sample."""
+        q, order = (leaf.expr, leaf.derivative_count) if isinstance(leaf, sp.Derivative) else (leaf, 0)
+        if order >= self.form.orders[self.form.coordinates.index(q)]:
+            raise SceneError(
+                f"{leaf} is what the equations of motion solve for; the force and what is watched may use "
+                f"{type(q).__name__} and lower derivatives"
+            )
+        kind = type(q)
+        name, unit = (kind.__name__, kind.unit) if order == 0 else (f"d{kind.__name__}/dt", _rate_unit(kind.unit))
+        start = self.at_start(kind.initial if order == 0 else kind.rate)
+        return self.tracing.state(leaf, Channel(name, unit, self.tracing.real), start)
+
+    # one period of the equations of motion
+
+    def _advance(self):
+        form = self.form
+        second = [q for q, order in zip(form.coordinates, form.orders, strict=True) if order == 2]
+        first = [q for q, order in zip(form.coordinates, form.orders, strict=True) if order == 1]
+        names = [*second, *(q.diff(t) for q in second), *first]
+        if not names:
+            return
+        groups = (second, names[len(second) : 2 * len(second)], first)
+        state = tuple([self._coordinate_state(q) for q in group] for group in groups)
+        h = self.tracing.T / self.substeps
+        for step in range(self.substeps):
+            state = self.method.step(lambda tau, *at: self._rates(names, tau, *at), step * h, state, h)
+        for name, value in zip(names, [value for group in state for value in group], strict=True):
+            self.tracing.set_next(name, value)
+
+    def _rates(self, names, tau, q, w, s):
+        """Return the accelerations and first-order rates at tau after the sample."""
+        held = dict(zip(names, [*q, *w, *s], strict=True))
+        handle = dict(zip((x(t), v(t)), self.handle.motion(tau), strict=True))
+
+        def leaf(expr):
+            if expr in held:
+                return held[expr]
+            if expr in handle:
+                return handle[expr]
+            return self.at_sample(expr) + tau if expr == t else self.at_sample(expr)
+
+        translate = Translator(self.tracing.tick, leaf)
+        M = [[translate(m) for m in row] for row in self.form.M]
+        solution = solve(M, [translate(f) for f in self.form.f])
+        by_order = {2: [], 1: []}
+        for rate, order in zip(solution, self.form.orders, strict=True):
+            by_order[order].append(rate)
+        return by_order[2], by_order[1]
+
+
+def _rate_unit(unit):
+    return "1/s" if unit == "1" else f"{unit}/s"
+
+
+def _folded(scene, live):
+    """Return the values of parameters that become constants."""
+    if live is None:
+        return {}
+    strangers = set(live) - set(scene.parameters)
+    if strangers:
+        raise ParameterError(f"live: {', '.join(sorted(strangers))} is not a parameter; {', '.join(scene.parameters)} are")
+    fixed = set(scene.parameters) - set(live)
+    unbound = sorted(fixed - set(scene.values))
+    if unbound:
+        raise ParameterError(f"{', '.join(unbound)} is not live, so it needs a value: scene({unbound[0]}=...)")
+    return {name: scene.values[name] for name in fixed}

@@ -1,0 +1,96 @@
+"""A program being written: its two builders, its inputs and its states, pruned to what the outputs can see."""
+
+from dataclasses import replace
+
+from ..scene.symbols import v, x
+from .ir import Block, Channel, Program
+from .trace import Builder
+
+
+class Tracing:
+    """Collects the init and tick blocks of one program."""
+
+    def __init__(self, real, T, parameters):
+        self.real, self.T = real, T
+        self.init, self.tick = Builder(real), Builder(real)
+        self.parameters = parameters  # tuple of scene parameters, in order
+        self._states = {}  # key -> [channel, first value, next value]
+        self._waiting = []  # (key, callable) of next values not traced yet
+
+    def input(self, builder, signal):
+        """Return the input x or v in one of the two builders."""
+        return builder.leaf("input", (x, v).index(signal), self.real)
+
+    def parameter(self, builder, index):
+        """Return a live parameter in one of the two builders."""
+        return builder.leaf("param", index, self.real)
+
+    def state(self, key, channel, first, next=None):
+        """Return the present value of a state, made on first use; ``next`` is a callable, or is set later."""
+        if key not in self._states:
+            self._states[key] = [channel, first, None]
+            if next is not None:
+                self._waiting.append((key, next))
+        return self.tick.leaf("state", list(self._states).index(key), self._states[key][0].type)
+
+    def set_next(self, key, value):
+        """Give a state the value it has at the next tick."""
+        self._states[key][2] = value
+
+    def finish(self, name, outputs, values, facts):
+        """Return the program that computes ``outputs``: a list of (Channel, Value).
+
+        States, inputs and parameters the outputs cannot see are dropped; the program's notes name the states.
+        """
+        while self._waiting:
+            key, next = self._waiting.pop()
+            self._states[key][2] = next()
+        states = list(self._states.values())
+        alive = self._observed([value for _, value in outputs])
+        dropped = [channel.name for k, (channel, _, _) in enumerate(states) if k not in alive]
+        alive = sorted(alive)
+        tick = self.tick.block([value for _, value in outputs], [states[k][2] for k in alive])
+        init = self.init.block((), [states[k][1] for k in alive])
+        live = {i.index for block in (init, tick) for i in block.instructions if i.op == "param"}
+        kept = [k for k in range(len(self.parameters)) if k in live]
+        order = {"state": {k: new for new, k in enumerate(alive)}, "param": {k: new for new, k in enumerate(kept)}}
+        uses_v = any(i.op == "input" and i.index == 1 for block in (init, tick) for i in block.instructions)
+        inputs = (Channel("x", "m", self.real), Channel("v", "m/s", self.real))[: 1 + uses_v]
+        named = [self.parameters[k] for k in kept]
+        notes = (f"left out, because no output can see it: {', '.join(dropped)}",) if dropped else ()
+        return Program(
+            name=name,
+            inputs=inputs,
+            parameters=tuple(Channel(p.name, p.unit, self.real) for p in named),
+            states=tuple(states[k][0] for k in alive),
+            outputs=tuple(channel for channel, _ in outputs),
+            init=_renumbered(init, order),
+            tick=_renumbered(tick, order),
+            T=self.T,
+            values=tuple(values.get(p.name, float("nan")) for p in named),
+            facts=facts,
+            notes=notes,
+        ).verify()
+
+    def _observed(self, outputs):
+        """Return the numbers of the states the outputs depend on, now or at any later tick."""
+        nexts = [next for _, _, next in self._states.values()]
+        alive, frontier, seen = set(), [o.id for o in outputs], set()
+        while frontier:
+            k = frontier.pop()
+            if k in seen:
+                continue
+            seen.add(k)
+            i = self.tick.instructions[k]
+            frontier.extend(i.args)
+            if i.op == "state" and i.index not in alive:
+                alive.add(i.index)
+                frontier.append(nexts[i.index].id)
+        return alive
+
+
+def _renumbered(block, order):
+    def moved(i):
+        return replace(i, index=order[i.op][i.index]) if i.op in order else i
+
+    return Block(tuple(moved(i) for i in block.instructions), block.outputs, block.states)

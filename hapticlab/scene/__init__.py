@@ -1,0 +1,1 @@
+"""What is felt: signals, parameters and coordinates with units, scenes, and the chapter's laws."""

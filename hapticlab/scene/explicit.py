@@ -1,0 +1,168 @@
+"""Equations of motion in explicit form: M(q, p) a = f(q, q', x, v, t; p), never inverted in symbols.
+
+``a`` holds the highest derivative of each coordinate (second order, or first). M and f are read off the student's
+equations; the compiler emits the solution as an unrolled LDL^T.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from ..errors import MassError, SceneError
+from .symbols import Parameter, T, t
+
+
+@dataclass(frozen=True)
+class ExplicitForm:
+    """``M a = f`` with the difference equations and the outputs beside it.
+
+    Attributes
+    ----------
+    coordinates : tuple of sympy expressions, shape (N,)
+    orders : tuple of int, shape (N,)
+        2 where the equation holds q'', 1 where it holds q' only.
+    M : tuple of tuples of sympy expressions, shape (N, N)
+    f : tuple of sympy expressions, shape (N,)
+    updates : dict y(n) -> expression
+    force : sympy expression [N]
+    watch : dict name -> expression
+    """
+
+    coordinates: tuple
+    orders: tuple
+    M: tuple
+    f: tuple
+    updates: dict
+    force: sp.Expr
+    watch: dict
+
+    def __str__(self):
+        lines = [f"F = {self.force}"]
+        for row, right in zip(self.M, self.f, strict=True):
+            terms = [f"({m})*{a}" for m, a in zip(row, self.unknowns, strict=True) if m != 0]
+            lines.append(f"{' + '.join(terms)} = {right}")
+        return "\n".join(lines + [f"{y} = {expr}" for y, expr in self.updates.items()])
+
+    @property
+    def unknowns(self):
+        """The highest derivative of each coordinate."""
+        return tuple(q.diff(t, order) for q, order in zip(self.coordinates, self.orders, strict=True))
+
+
+def explicit_form(scene):
+    """Return the scene's :class:`ExplicitForm`.
+
+    Raises
+    ------
+    MassError
+        A coordinate has no equation, the equations outnumber the coordinates, or they are dependent (singular mass).
+    SceneError
+        A highest derivative enters nonlinearly.
+    """
+    updates = {e.lhs: e.rhs for e in scene.eom if getattr(type(e.lhs), "role", None) == "signal"}
+    equations = [e for e in scene.eom if e.lhs not in updates]
+    coordinates = scene.coordinates
+    orders = tuple(_order(q, equations) for q in coordinates)
+    if len(equations) != len(coordinates):
+        named = ", ".join(type(q).__name__ for q in coordinates) or "none"
+        raise MassError(
+            f"{len(equations)} equations of motion for {len(coordinates)} coordinates ({named}); give one for each"
+        )
+    unknowns = tuple(q.diff(t, order) for q, order in zip(coordinates, orders, strict=True))
+    rows = [_affine(e.lhs - e.rhs, unknowns, e) for e in equations]
+    M = [tuple(coefficients.get(a, sp.S.Zero) for a in unknowns) for coefficients, _ in rows]
+    M, f = _in_order(M, [-rest for _, rest in rows], coordinates)
+    form = ExplicitForm(coordinates, orders, tuple(M), tuple(f), updates, scene.force, dict(scene.watch))
+    _check_mass(form, scene.values)
+    return form
+
+
+def _order(q, equations):
+    sides = [side for e in equations for side in e.args]
+    counts = [d.derivative_count for side in sides for d in side.atoms(sp.Derivative) if d.expr == q]
+    name = type(q).__name__
+    if not counts:
+        raise MassError(
+            f"no equation determines {name}: none holds its rate or acceleration; "
+            f"add an equation of motion with {name}.diff(t, 2), or define {name} as an expression"
+        )
+    if max(counts) > 2:
+        raise MassError(f"{name} appears with derivative {max(counts)}; equations of motion go up to the second")
+    return max(counts)
+
+
+def _affine(expr, unknowns, equation):
+    """Split into ({unknown: coefficient}, rest), by walking sums and products only: no expansion, no swell."""
+    if expr in unknowns:
+        return {expr: sp.S.One}, sp.S.Zero
+    if not expr.has(*unknowns):
+        return {}, expr
+    if isinstance(expr, sp.Add):
+        total, rest = {}, []
+        for part in expr.args:
+            coefficients, remainder = _affine(part, unknowns, equation)
+            rest.append(remainder)
+            for a, c in coefficients.items():
+                total.setdefault(a, []).append(c)
+        return {a: sp.Add(*cs) for a, cs in total.items()}, sp.Add(*rest)
+    holding = [a for a in expr.args if a.has(*unknowns)]
+    if isinstance(expr, sp.Mul) and len(holding) == 1:
+        others = sp.Mul(*(a for a in expr.args if a is not holding[0]))
+        coefficients, rest = _affine(holding[0], unknowns, equation)
+        return {a: c * others for a, c in coefficients.items()}, rest * others
+    raise SceneError(
+        f"{equation.lhs} = {equation.rhs}: the accelerations must enter linearly, but {expr} does not; "
+        "solve that term for the acceleration, or move it out of functions, powers and cases"
+    )
+
+
+def _in_order(M, f, coordinates):
+    """Put each equation on the row of a coordinate it determines, so that pivots lie on the diagonal.
+
+    The rows are kept where the student's order already does. Otherwise: a maximum matching of equations to unknowns.
+    """
+    N = len(coordinates)
+    if all(M[k][k] != 0 for k in range(N)):
+        return M, f
+    row_of = [None] * N
+
+    def place(row, tried):
+        for column in range(N):
+            if M[row][column] != 0 and column not in tried:
+                tried.add(column)
+                if row_of[column] is None or place(row_of[column], tried):
+                    row_of[column] = row
+                    return True
+        return False
+
+    if not all(place(row, set()) for row in range(N)):
+        missing = next((type(q).__name__ for q, row in zip(coordinates, row_of, strict=True) if row is None), "?")
+        raise MassError(
+            f"singular mass: no equation is left to determine {missing}; each coordinate needs an equation of its own"
+        )
+    return [M[row] for row in row_of], [f[row] for row in row_of]
+
+
+def _check_mass(form, values):
+    """Refuse a mass matrix that is singular at three generic configurations, naming the direction without mass."""
+    if not form.coordinates:
+        return
+    symbols = sorted({s for row in form.M for m in row for s in m.free_symbols | m.atoms(sp.Function, sp.Derivative)}, key=str)
+    generator = np.random.default_rng(23)
+    worst = None
+    for _ in range(3):
+        at = {s: sp.Float(generator.uniform(0.5, 1.5)) for s in symbols}
+        at |= {s: sp.Float(values[s.name]) for s in symbols if isinstance(s, Parameter) and s.name in values}
+        at[T] = sp.Float(1e-3)
+        M = np.array([[complex(m.xreplace(at)).real for m in row] for row in form.M], float)
+        scale = np.sqrt(np.abs(M).max(axis=1, keepdims=True) * np.abs(M).max(axis=0, keepdims=True))
+        singular = np.linalg.svd(M / np.where(scale > 0, scale, 1))
+        if singular.S[-1] > 1e-10 * singular.S[0]:
+            return
+        worst = singular.Vh[-1]
+    names = [type(q).__name__ for q, c in zip(form.coordinates, worst, strict=True) if abs(c) > 1e-6]
+    raise MassError(
+        f"singular mass: the equations do not determine the accelerations of {' and '.join(names)} "
+        "(a massless direction, or an equation that repeats another); give each its own mass or equation"
+    )
