@@ -1,0 +1,1 @@
+"""Where a scene runs: paddles, simulated and real, behind one contract."""

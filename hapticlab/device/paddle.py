@@ -1,0 +1,90 @@
+"""The contract of a paddle: a scene runs on it for a while, and what happened comes back."""
+
+import math
+from abc import ABC, abstractmethod
+
+import numpy as np
+
+from ..compiler.ir import Program
+from ..errors import PaddleError, ParameterError
+
+
+class Paddle(ABC):
+    """A one-axis haptic device, simulated or real.
+
+    A paddle samples its handle every T seconds, runs the scene's program on the sample, and applies the force until the
+    next force is ready. One line changes between a simulated paddle and a board.
+
+    Attributes
+    ----------
+    T : float
+        Sampling period [s].
+    velocity : {"measured", "backward_difference"}
+        Where v(n) comes from; "measured" is exact and exists in simulation only.
+    """
+
+    T: float
+
+    @property
+    @abstractmethod
+    def velocity(self):
+        """Say where v(n) comes from."""
+
+    @abstractmethod
+    def run(self, scene, *, duration, **options):
+        """Run a scene or a program for a duration [s] and return its Telemetry."""
+
+    @abstractmethod
+    def __str__(self):
+        """Say what the paddle is and where its constants come from."""
+
+    def ticks(self, duration):
+        """Return the number of samples in a duration [s]."""
+        if not (isinstance(duration, (int, float, np.number)) and math.isfinite(duration) and duration > 0):
+            raise PaddleError(f"duration = {duration!r} s; needs a finite duration > 0 s.")
+        ticks = round(duration / self.T)
+        if ticks < 1:
+            raise PaddleError(f"duration = {duration:g} s is shorter than one period T = {self.T:g} s; needs at least T.")
+        return ticks
+
+    def program(self, scene, **options):
+        """Return the program of a scene for this paddle: T and the velocity's source are the paddle's.
+
+        Raises
+        ------
+        ParameterError
+            Naming the parameters that have no value yet.
+        """
+        if isinstance(scene, Program):
+            if options:
+                raise PaddleError(f"{', '.join(options)}: a program is compiled already; give compile options with a scene.")
+            program = scene
+        else:
+            raise PaddleError(f"{scene!r} is not a program; compile it first.")
+        missing = [c for c, value in zip(program.parameters, program.values, strict=True) if math.isnan(value)]
+        if missing:
+            wanted = ", ".join(f"{c.name} [{c.unit}]" for c in missing)
+            cure = ", ".join(f"{c.name}=..." for c in missing)
+            raise ParameterError(f"{program.name}: no value for {wanted}; bind them before the run: scene({cure})")
+        return self.accept(program)
+
+    def accept(self, program):
+        """Return the program if this paddle can run it, else raise PaddleError."""
+        name = program.name
+        if not math.isclose(program.T, self.T, rel_tol=1e-9):
+            raise PaddleError(
+                f"{name} was compiled for T = {program.T:g} s; this paddle samples every {self.T:g} s. "
+                f"Compile with T={self.T:g} or run the scene itself."
+            )
+        wanted = [c.name for c in program.inputs]
+        unknown = sorted(set(wanted) - {"x", "v"})
+        if unknown:
+            raise PaddleError(f"{name} wants the input {unknown[0]}; a paddle gives x [m] and v [m/s] only.")
+        if "v" in wanted and self.velocity != "measured":
+            raise PaddleError(
+                f"{name} wants a measured v; this paddle has only its {self.velocity.replace('_', ' ')}. "
+                "Compile with velocity='backward_difference'."
+            )
+        if not program.outputs or program.outputs[0].name != "F":
+            raise PaddleError(f"{name} has no force: the first output of a paddle's program is F [N].")
+        return program

@@ -1,0 +1,211 @@
+"""The handle with the hand on it, between samples: exact for a force that is held.
+
+M x'' = push - F - b x' - coulomb sign(x') - k_h (x - intent) - b_h (x' - intent'),   M = m + m_h
+
+Without Coulomb friction this is linear, and advances by the matrix exponential. One Euler step a period would put the
+chatter boundary at half its true stiffness or beyond any. The coefficients are parameters of the program, so that one
+program serves every mass, damping and period, and lanes may sweep them.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compiler.ir import Channel
+from . import friction
+
+#: entry of the transition -> its unit; u is a force, d the rate of a force
+PHI = {
+    "xx": "1", "xv": "s", "xu": "m/N", "xd": "m s/N", "vx": "1/s", "vv": "1", "vu": "m/(N s)", "vd": "m/N",
+}  # fmt: skip
+#: a remainder of delay/T this close to a whole sample is rounding
+WHOLE = 1e-9
+
+
+def transition(M, b, k, h):
+    """Return the exact map over h seconds of M x'' = u + d t - b x' - k x, as {entry: coefficient}.
+
+    Parameters
+    ----------
+    M, b, k, h : float
+        Mass [kg] > 0, damping [N s/m], stiffness [N/m], duration [s] >= 0.
+
+    Returns
+    -------
+    dict of str to float
+        x(h) = xx x + xv v + xu u + xd d and v(h) = vx x + vv v + vu u + vd d.
+
+    Examples
+    --------
+    >>> from hapticlab.device.plant import transition
+    >>> phi = transition(M=0.05, b=0.0, k=0.0, h=1e-3)
+    >>> round(phi["xu"] * 1e6, 9), round(phi["vu"], 9)      # h**2/2M and h/M
+    (10.0, 0.02)
+    """
+    from scipy.linalg import expm
+
+    # In time over h, with v h, u h^2/M and d h^3/M as coordinates, every entry is of order one and so keeps its relative
+    # accuracy; in SI units h^3/6M would drown beside 1.
+    A = np.array([[0, 1, 0, 0], [-k * h * h / M, -b * h / M, 1, 0], [0, 0, 0, 1], [0, 0, 0, 0]])
+    E = expm(A)
+    scale = {"x": 1.0, "v": h, "u": h * h / M, "d": h**3 / M}
+    row = {"x": (0, 1.0), "v": (1, 1 / h if h else 0.0)}
+    column = {name: position for position, name in enumerate("xvud")}
+    return {e: float(E[row[e[0]][0], column[e[1]]] * scale[e[1]] * row[e[0]][1]) for e in PHI}
+
+
+@dataclass(frozen=True)
+class Plant:
+    """Which terms the plant has. Paddles of equal Plant share a linked program and differ in parameter values only.
+
+    Attributes
+    ----------
+    whole : int
+        Whole samples of delay.
+    split : bool
+        A fraction of a sample of delay is left: the force changes inside the period.
+    push, spring, drag, ramp : bool
+        The hand pushes or leans on a resting intent, has k, has b with a moving intent, has a moving intent.
+    coulomb : bool
+    pieces, terms : int
+        With Coulomb friction: pieces a period part is cut into, terms of the Taylor polynomial in each.
+    """
+
+    whole: int = 0
+    split: bool = False
+    push: bool = False
+    spring: bool = False
+    drag: bool = False
+    ramp: bool = False
+    coulomb: bool = False
+    pieces: int = 1
+    terms: int = 0
+
+    @property
+    def parts(self):
+        """Name the parts of a period, before and after the force changes."""
+        return ("_before", "_after") if self.split else ("",)
+
+    def channels(self):
+        """Return the plant's parameters, in the order of :func:`values`."""
+        leans = self.spring and self.ramp
+        common = [("push", "N", self.push), ("k", "N/m", leans), ("b_hand", "N s/m", self.drag)]
+        common.append(("offset", "s", leans and self.split))
+        named = [(name, unit) for name, unit, there in common if there]
+        for part in self.parts:
+            named += [(f"{name}{part}", unit) for name, unit in self._entries()]
+        return tuple(Channel(f"plant.{name}", unit, "f64") for name, unit in named)
+
+    def _entries(self):
+        if self.coulomb:
+            spring = [("kappa", "1"), ("kappa_h", "1/s")] if self.spring else []
+            return [("h", "s"), ("gain", "s/kg"), ("beta", "1"), *spring, ("coulomb", "m/s")]
+        drop = (() if self.spring else ("xx", "vx", "xd", "vd")) + (() if self.ramp else ("xd", "vd"))
+        return [(f"phi_{e}", unit) for e, unit in PHI.items() if e not in drop]
+
+    def step(self, p, x, v, F_before, F_after, intent=0.0, rate=0.0):
+        """Advance one period; the force changes from F_before to F_after where the plant is split.
+
+        Parameters
+        ----------
+        p : dict of str to float, array or Value
+            The plant's parameters by name.
+        x, v, F_before, F_after, intent, rate : float, array or Value
+            Position [m], velocity [m/s], forces on the environment [N], intent [m] and its rate [m/s] at the sample.
+
+        Returns
+        -------
+        x_switch, x, v
+            Position where the force changes, then position and velocity at the next sample.
+        """
+        x_switch = x
+        for part, F in zip(self.parts, (F_before, F_after) if self.split else (F_after,), strict=True):
+            x_switch = x
+            u = p["plant.push"] - F if self.push else -F
+            d = None
+            if self.drag:
+                u = u + p["plant.b_hand"] * rate
+            if self.spring and self.ramp:
+                ahead = intent + p["plant.offset"] * rate if part == "_after" else intent
+                u, d = u + p["plant.k"] * ahead, p["plant.k"] * rate
+            x, v = (self._slide if self.coulomb else self._glide)(p, part, x, v, u, d)
+        return x_switch, x, v
+
+    def _glide(self, p, part, x, v, u, d):
+        phi = {e: p.get(f"plant.phi_{e}{part}") for e in PHI}
+        moved = x * phi["xx"] if self.spring else x
+        x_next = moved + (phi["xv"] * v + phi["xu"] * u)
+        v_next = phi["vv"] * v + phi["vu"] * u
+        if self.spring:
+            v_next = v_next + phi["vx"] * x
+        if d is not None:
+            x_next, v_next = x_next + phi["xd"] * d, v_next + phi["vd"] * d
+        return x_next, v_next
+
+    def _slide(self, p, part, x, v, u, d):
+        names = ("h", "gain", "beta", "kappa", "kappa_h", "coulomb")
+        piece = friction.Piece(*(p.get(f"plant.{name}{part}") for name in names), self.terms)
+        for _ in range(self.pieces):
+            x, v = friction.slide(piece, x, v, u, d)
+            u = u if d is None else u + d * piece.h
+        return x, v
+
+
+def plant_of(paddle):
+    """Return the Plant of a simulated paddle: only what it has."""
+    hand = paddle.hand
+    whole, fraction = delay_parts(paddle)
+    leaning = hand is not None and not hand.moves and hand.intent is not None and hand.k * hand.intent != 0
+    pieces, terms = friction.resolution(max(part_lengths(paddle)), *dynamics(paddle)) if paddle.coulomb else (1, 0)
+    return Plant(
+        whole=whole,
+        split=fraction > 0,
+        push=hand is not None and (hand.push != 0 or leaning),
+        spring=hand is not None and hand.k > 0,
+        drag=hand is not None and hand.moves and hand.b > 0,
+        ramp=hand is not None and hand.moves,
+        coulomb=paddle.coulomb > 0,
+        pieces=pieces,
+        terms=terms,
+    )
+
+
+def dynamics(paddle):
+    """Return mass [kg], damping [N s/m] and stiffness [N/m] of handle and hand together."""
+    hand = paddle.hand
+    return (paddle.m, paddle.b, 0.0) if hand is None else (paddle.m + hand.m, paddle.b + hand.b, hand.k)
+
+
+def delay_parts(paddle):
+    """Return the whole samples of the delay and the fraction of a sample that is left."""
+    samples = paddle.delay / paddle.T
+    whole = math.floor(samples + WHOLE)
+    fraction = samples - whole
+    return whole, (fraction if fraction > WHOLE else 0.0)
+
+
+def part_lengths(paddle):
+    """Return how long each part of a period lasts [s]."""
+    fraction = delay_parts(paddle)[1]
+    return (fraction * paddle.T, (1 - fraction) * paddle.T) if fraction else (paddle.T,)
+
+
+def values(paddle):
+    """Return the values of ``plant_of(paddle).channels()``."""
+    plant, hand = plant_of(paddle), paddle.hand
+    M, b, k = dynamics(paddle)
+    found = {}
+    if hand is not None:
+        resting = 0.0 if hand.moves or hand.intent is None else hand.k * hand.intent
+        found = {"plant.push": hand.push + resting, "plant.k": hand.k, "plant.b_hand": hand.b}
+        found["plant.offset"] = part_lengths(paddle)[0]
+    for part, length in zip(plant.parts, part_lengths(paddle), strict=True):
+        if plant.coulomb:
+            h = length / plant.pieces
+            scaled = {"h": h, "gain": h / M, "beta": b * h / M, "kappa": k * h * h / M, "kappa_h": k * h / M}
+            entries = {**scaled, "coulomb": paddle.coulomb * h / M}
+        else:
+            entries = {f"phi_{e}": c for e, c in transition(M, b, k, length).items()}
+        found.update({f"plant.{name}{part}": c for name, c in entries.items()})
+    return tuple(found[c.name] for c in plant.channels())

@@ -1,0 +1,243 @@
+"""A paddle in virtual time: handle, hand, encoder, delay, friction and motor limit around a scene's program."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ..compiler.engine import load
+from ..errors import PaddleError
+from ..records import PaddleProfile, Telemetry
+from .hand import Hand, require
+from .link import link
+from .paddle import Paddle
+from .plant import delay_parts, plant_of, values
+from .profiles import profile as named_profile
+
+__all__ = ["SimulatedPaddle", "link"]
+
+#: ticks between two looks at the progress bar, where an engine is slow enough to need one
+CHUNK = 250
+_POSITIVE = {"m": "kg", "T": "s"}
+_NOT_NEGATIVE = {
+    "b": ("N s/m", "A negative damper feeds energy to the user."),
+    "delay": ("s", "A force cannot be felt before it is computed."),
+    "coulomb": ("N", "Friction opposes motion."),
+    "noise": ("m", "It is a standard deviation."),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class SimulatedPaddle(Paddle):
+    """The sampled-data handle of Fig. 23.6: M x'' = push - F - b x' - coulomb sign(x') - k_h (x - intent) - ...
+
+    Exact between samples for any m, b, T: matrix exponential without Coulomb friction; with it, stops, sticking and
+    break-away are located inside the sample. Only what is given is compiled in; ``print(paddle)`` says what that is.
+
+    Parameters
+    ----------
+    m : float
+        Mass at the handle [kg], m > 0.
+    b : float
+        Viscous damping at the handle [N s/m], b >= 0.
+    T : float
+        Sampling period [s], T > 0.
+    delay : float
+        Computational delay [s], delay >= 0, any fraction of T: the force computed from sample n is felt from n T + delay.
+    counts_per_metre : float, optional
+        Encoder counts per metre [1/m]. The scene then sees counts/counts_per_metre, in its own precision, and v by
+        backward difference. Without encoder and noise it sees x, and v exactly.
+    rounding : {"floor", "nearest"}
+        How a position becomes a count: floor(x c), or floor(x c + 1/2).
+    coulomb : float
+        Coulomb friction, static and kinetic alike [N], coulomb >= 0.
+    force_max : float, optional
+        The motor saturates at this magnitude [N].
+    hand : Hand, optional
+    seed : int
+        Of the sensor noise; the same seed gives the same run.
+    noise : float
+        Standard deviation of white Gaussian noise on the sensed position [m], added before the encoder.
+    profile : PaddleProfile, optional
+        Where the constants come from; see :meth:`from_profile`.
+
+    Raises
+    ------
+    PaddleError
+        For every value out of its range.
+
+    Examples
+    --------
+    >>> from hapticlab.device.hand import Hand
+    >>> from hapticlab.device.simulated import SimulatedPaddle
+    >>> print(SimulatedPaddle(m=0.05, b=0.1, T=1e-3, delay=1.5e-3, hand=Hand(push=2)))
+    simulated paddle: m = 0.05 kg, b = 0.1 N s/m, T = 0.001 s
+      delay      0.0015 s = 1 whole sample + 0.5
+      hand       push = 2 N
+      between samples: matrix exponential; v measured
+      not in it: encoder, noise, Coulomb friction, force limit
+    """
+
+    m: float
+    b: float
+    T: float
+    delay: float = 0.0
+    counts_per_metre: float | None = None
+    rounding: str = "floor"
+    coulomb: float = 0.0
+    force_max: float | None = None
+    hand: Hand | None = None
+    seed: int = 0
+    noise: float = 0.0
+    profile: PaddleProfile | None = None
+
+    def __post_init__(self):
+        for name, unit in _POSITIVE.items():
+            require(name, getattr(self, name), unit, "a paddle", above=0)
+        for name, (unit, reason) in _NOT_NEGATIVE.items():
+            require(name, getattr(self, name), unit, "a paddle", reason, low=0)
+        for name, unit in (("counts_per_metre", "1/m"), ("force_max", "N")):
+            if getattr(self, name) is not None:
+                require(name, getattr(self, name), unit, "a paddle", "None leaves it out.", above=0)
+        if self.rounding not in ("floor", "nearest"):
+            raise PaddleError(f"rounding = {self.rounding!r}; an encoder needs 'floor' or 'nearest'.")
+        if self.hand is not None and not isinstance(self.hand, Hand):
+            raise PaddleError(f"hand = {self.hand!r}; needs a Hand, as in hand=hl.Hand(push=2.0).")
+        if not isinstance(self.seed, (int, np.integer)) or self.seed < 0:
+            raise PaddleError(f"seed = {self.seed!r}; needs a whole number >= 0.")
+
+    @classmethod
+    def from_profile(cls, profile, **changes):
+        """Return a paddle with the constants of a profile or of its name, some changed: ``from_profile("eth", T=5e-4)``."""
+        profile = named_profile(profile) if isinstance(profile, str) else profile
+        names = {f.name for f in fields(cls)} & {f.name for f in fields(PaddleProfile)}
+        unknown = sorted(set(changes) - {f.name for f in fields(cls)})
+        if unknown:
+            raise PaddleError(f"{unknown[0]} is not an argument of SimulatedPaddle; it has {', '.join(sorted(names))}, ...")
+        return cls(**{**{name: getattr(profile, name) for name in names}, "profile": profile, **changes})
+
+    @property
+    def velocity(self):
+        return "measured" if self.counts_per_metre is None and self.noise == 0 else "backward_difference"
+
+    @property
+    def plant(self):
+        """Which terms the plant has. Paddles that agree in :attr:`structure` share one linked program."""
+        return plant_of(self)
+
+    @property
+    def structure(self):
+        """What decides the linked program, as against its parameter values; compare with ==."""
+        encoder = self.rounding if self.counts_per_metre is not None else None
+        return self.plant, encoder, self.noise > 0, self.force_max is not None
+
+    def plant_values(self, x=0.0, v=0.0):
+        """Return the values of the linked program's parameters after the scene's, for a start at x [m] with v [m/s]."""
+        require("x", x, "m", "a start")
+        require("v", v, "m/s", "a start")
+        sensor = () if self.velocity == "measured" else (1 / self.T,)
+        encoder = () if self.counts_per_metre is None else (self.counts_per_metre, 1 / self.counts_per_metre)
+        limit = () if self.force_max is None else (self.force_max,)
+        return tuple(float(a) for a in (*values(self), *sensor, *encoder, *limit, x, v))
+
+    def inputs(self, ticks):
+        """Return the linked program's inputs, shape (ticks, inputs): intent [m], its rate [m/s], noise [m]."""
+        columns = []
+        if self.plant.ramp:
+            intent = self.hand.samples(ticks, self.T)
+            columns += [intent[:-1]] if self.plant.spring else []
+            columns.append(np.diff(intent) / self.T)
+        if self.noise:
+            columns.append(self.noise * np.random.default_rng(self.seed).standard_normal(ticks))
+        return np.column_stack(columns) if columns else np.zeros((ticks, 0))
+
+    def run(self, scene, *, duration, x=0.0, v=0.0, engine="auto", progress=True, **options):
+        """Run a scene in virtual time.
+
+        Parameters
+        ----------
+        scene : Scene or Program
+        duration : float
+            [s]; rounded to whole samples.
+        x, v : float
+            Position [m] and velocity [m/s] at the first sample.
+        engine : {"auto", "llvm", "interpreter"}
+        progress : bool
+            Show a bar when the run lasts longer than two seconds.
+        **options
+            Of hapticlab.compile: method, substeps, hold, dtype.
+
+        Returns
+        -------
+        Telemetry
+
+        Raises
+        ------
+        PaddleError, ParameterError
+        """
+        ticks = self.ticks(duration)
+        program = self.program(scene, **options)
+        linked = link(program, self)
+        loaded = load(linked, engine)
+        parameters = (*program.values, *self.plant_values(x, v))
+        chunk = CHUNK if loaded.name == "interpreter" else ticks
+        outputs = _run_in_chunks(loaded, self.inputs(ticks), parameters, chunk, progress)
+        return self._telemetry(program, linked, outputs)
+
+    def _telemetry(self, program, linked, outputs):
+        columns = {c.name: outputs[:, j] for j, c in enumerate(linked.outputs)}
+        units = {c.name: c.unit for c in linked.outputs}
+        x, v, F, code = columns.pop("x"), columns.pop("v"), columns.pop("F"), columns.pop("fault")
+        fault = None
+        if code.any():
+            first = int(np.argmax(code > 0))
+            names = ["the force F", *(f"the state {c.name}" for c in program.states)]
+            fault = (
+                f"tick {first} (t = {first * self.T:g} s): {names[int(code[first]) - 1]} of {program.name} was not finite; "
+                "the motor is off from there on"
+            )
+            columns.setdefault("F_applied", np.where(code > 0, 0.0, F))
+        limited = np.abs(F) >= self.force_max if self.force_max is not None else None
+        return Telemetry(
+            t=np.arange(len(x)) * self.T, x=x, v=v, F=F, T=self.T, delay=self.delay, channels=columns,
+            units={name: units[name] for name in columns if name in units}, paddle=str(self), scene=program.name,
+            parameters={c.name: a for c, a in zip(program.parameters, program.values, strict=True)},
+            fault=fault, saturated=limited,
+        )  # fmt: skip
+
+    def __str__(self):
+        whole, fraction = delay_parts(self)
+        samples = f"{whole} whole sample{'s' * (whole != 1)}" + (f" + {fraction:g}" if fraction else "")
+        counts = self.counts_per_metre
+        plant = self.plant
+        between = f"friction located, {plant.pieces} piece(s), {plant.terms} Taylor terms"
+        rows = {
+            "delay": self.delay and f"{self.delay:g} s = {samples}",
+            "encoder": counts and f"{1e6 / counts:g} um per count, {self.rounding}",
+            "noise": self.noise and f"{self.noise:g} m standard deviation, seed {self.seed}",
+            "Coulomb friction": self.coulomb and f"{self.coulomb:g} N",
+            "force limit": self.force_max and f"{self.force_max:g} N",
+            "hand": self.hand,
+        }
+        lines = [f"simulated paddle: m = {self.m:g} kg, b = {self.b:g} N s/m, T = {self.T:g} s"]
+        lines += [f"  {name:<10} {text}" for name, text in rows.items() if text]
+        source = self.velocity.replace("_", " ")
+        lines.append(f"  between samples: {between if plant.coulomb else 'matrix exponential'}; v {source}")
+        absent = [name for name, text in rows.items() if not text]
+        lines += [f"  not in it: {', '.join(absent)}"] if absent else []
+        if self.profile is not None:
+            lines.append(f"  from {self.profile}")
+        return "\n".join(lines)
+
+
+def _run_in_chunks(loaded, inputs, parameters, chunk, progress):
+    """Run, with a bar that appears only after two seconds; return outputs of shape (ticks, outputs)."""
+    from tqdm import tqdm
+
+    ticks, states, done = len(inputs), None, []
+    with tqdm(total=ticks, delay=2, disable=not progress, unit="tick", leave=False) as bar:
+        for start in range(0, ticks, chunk):
+            rows = inputs[start : start + chunk]
+            outputs, states = loaded.run(len(rows), rows, parameters, states)
+            done.append(outputs[:, :, 0])
+            bar.update(len(rows))
+    return np.concatenate(done)
