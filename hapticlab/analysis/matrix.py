@@ -1,0 +1,30 @@
+"""Exact motion of a linear plant under a held force; the only place of the analysis where scipy opens."""
+
+import numpy as np
+
+
+def held(A, duration):
+    """Return Phi = e^(A h) and Psi, the integral of e^(A s) over 0 <= s <= h, with Phi = I + A Psi.
+
+    Parameters
+    ----------
+    A : array of shape (n, n)
+        In units of time in which A h is of order one, so that no entry is lost beside another.
+    duration : float
+        h, in that unit.
+
+    Returns
+    -------
+    Phi, Psi : array of shape (n, n)
+
+    Examples
+    --------
+    >>> Phi, Psi = held(np.array([[0.0, 1.0], [0.0, 0.0]]), 2.0)
+    >>> Psi.tolist()
+    [[2.0, 2.0], [0.0, 2.0]]
+    """
+    from scipy.linalg import expm
+
+    n = len(A)
+    both = expm(np.block([[A * duration, np.eye(n) * duration], [np.zeros((n, 2 * n))]]))
+    return both[:n, :n], both[:n, n:]
