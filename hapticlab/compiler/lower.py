@@ -163,7 +163,7 @@ class _Lowering:
             return self.handle.sample(kind, lag_of(leaf) or 0)
         if isinstance(leaf, delay):
             argument = leaf.args[0]
-            channel = Channel(str(leaf), unit_of(argument), tracing.real)
+            channel = Channel(_short(leaf), unit_of(argument), tracing.real)
             return tracing.state(leaf, channel, self.at_start(argument), lambda: self.at_sample(argument))
         if isinstance(leaf, sp.Derivative) or kind.role == "coordinate":
             return self._coordinate_state(leaf)
@@ -241,6 +241,12 @@ class _Lowering:
         for rate, order in zip(solution, self.form.orders, strict=True):
             by_order[order].append(rate)
         return by_order[2], by_order[1]
+
+
+def _short(expr):
+    """Return an expression as a name that fits a line of the listing."""
+    text = str(expr)
+    return text if len(text) <= 24 else f"{text[:20]}..."
 
 
 def _rate_unit(unit):

@@ -61,10 +61,10 @@ def wall(law="zoh", unilateral="gate", clamp=False):
         depth = x(n - lag) - x_o
         return sp.Max(depth, 0) if unilateral == "clip" else depth
 
-    spring = k * sp.Add(*(c * p(lag) for lag, c in enumerate(TAPS[law])))
+    spring = k * sp.Add(*(sp.Rational(c) * p(lag) for lag, c in enumerate(TAPS[law])))
     if LEAD[law]:
         inside = when(x(n) >= x_o, v(n)) if unilateral == "clip" else v(n)
-        spring = k * (p(0) + LEAD[law] * T * inside)
+        spring = k * (p(0) + sp.Rational(LEAD[law]) * T * inside)
     force = spring + B * (p(0) - p(1)) / T
     if unilateral == "gate":
         force = when(x(n) >= x_o, force)
@@ -94,7 +94,8 @@ def force_filter(scene):
     'filtered zoh wall'
     """
     F = scene.force
-    filtered = 2 * F - 1.5 * delay(F) + 0.5 * delay(delay(F))
+    # 2*F is kept whole: SymPy would multiply it out, and F would be computed twice
+    filtered = sp.Mul(2, F, evaluate=False) - sp.Rational(3, 2) * delay(F) + delay(delay(F)) / 2
     return Scene(filtered, scene.eom, scene.watch, scene.values, f"filtered {scene.name}")
 
 

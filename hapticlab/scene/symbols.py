@@ -224,10 +224,19 @@ class x(_HandleSignal):
 
 
 class delay(sp.Function):
-    """The value an expression had one sample ago; at the first sample, its present value."""
+    """The value an expression had one sample ago; at the first sample, its present value.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k = hl.parameters("k", units="N/m")
+    >>> hl.delay(k * hl.x(hl.n))
+    delay(k*x(n))
+    """
 
     nargs = 1
     is_real = True
+    keeps_unit = True
 
 
 def when(condition, value, otherwise=0):

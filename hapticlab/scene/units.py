@@ -132,6 +132,8 @@ def dimension_of(expr, where):
     rule = next((rule for kinds, rule in _RULES if isinstance(expr, kinds)), None)
     if rule is not None:
         return rule(expr, where)
+    if getattr(type(expr), "keeps_unit", False):
+        return dimension_of(expr.args[0], where)
     if expr.is_Function:
         return _pure(expr, where)
     raise UnitsError(f"{where}: {expr} has no unit; declare it: {expr} = hl.parameters('{expr}', units='...')")
