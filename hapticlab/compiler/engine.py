@@ -4,7 +4,7 @@ import numpy as np
 
 from ..errors import EngineMissingError, ProgramError
 from .interpreter import Interpreter
-from .llvm import Llvm, llvmlite_is_installed
+from .llvm import Llvm, llvmlite_is_ready
 
 ENGINES = ("auto", "llvm", "interpreter", "vm")
 
@@ -43,16 +43,29 @@ class Engine:
         Run
         """
         program = self.program
+        if ticks < 1 or every < 1:
+            raise ProgramError(f"ticks = {ticks}, every = {every}; a run needs at least one tick, kept every one or more")
         parameters = np.array(program.values if parameters is None else parameters, float, ndmin=1)
         if parameters.ndim == 1:
             parameters = parameters[:, None]
+        lanes = parameters.shape[1]
+        parameters = self._shaped("parameters", parameters, (len(program.parameters), lanes))
         unbound = [c.name for c, row in zip(program.parameters, parameters, strict=True) if np.isnan(row).any()]
         if unbound:
             raise ProgramError(f"{program.name}: no value for {', '.join(unbound)}; bind it: scene({unbound[0]}=...)")
-        inputs = np.zeros((ticks, 0)) if inputs is None else np.asarray(inputs, float).reshape(ticks, -1)
-        if inputs.shape[1] != len(program.inputs):
-            raise ProgramError(f"{program.name}: needs {len(program.inputs)} inputs a tick, was given {inputs.shape[1]}")
-        return Run(self._kernel.run(int(ticks), inputs, np.ascontiguousarray(parameters), states, int(every)))
+        inputs = np.zeros((ticks, 0)) if inputs is None else np.asarray(inputs, float)
+        if inputs.ndim == 1:
+            inputs = inputs[:, None]
+        inputs = self._shaped("inputs", inputs, (ticks, len(program.inputs)))
+        if states is not None:
+            states = self._shaped("states", states, (len(program.states), lanes))
+        return Run(self._kernel.run(int(ticks), inputs, parameters, states, int(every)))
+
+    def _shaped(self, what, array, needed):
+        array = np.ascontiguousarray(array, float)
+        if array.shape != needed:
+            raise ProgramError(f"{self.program.name}: {what} of shape {array.shape}; needs {needed}")
+        return array
 
 
 def load(program, engine="auto"):
@@ -69,7 +82,7 @@ def load(program, engine="auto"):
         raise ProgramError(f"engine = {engine!r}; needs one of {', '.join(ENGINES)}")
     kernels = {"interpreter": Interpreter, "llvm": Llvm}
     if engine == "auto":
-        engine = "llvm" if llvmlite_is_installed() else "interpreter"
+        engine = "llvm" if llvmlite_is_ready() else "interpreter"
     if engine not in kernels:
         raise EngineMissingError(engine)
     return Engine(program, kernels[engine](program))

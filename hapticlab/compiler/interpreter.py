@@ -23,9 +23,9 @@ class Interpreter:
 
     def run(self, ticks, inputs, parameters, states=None, every=1):
         program = self.program
-        parameters = _typed(parameters, program.parameters)
-        outputs = np.empty((ticks // every, len(program.outputs), parameters.lanes))
         with np.errstate(all="ignore"):
+            parameters = _typed(parameters, program.parameters)
+            outputs = np.empty((ticks // every, len(program.outputs), parameters.lanes))
             for tick in range(ticks):
                 sample = _typed(inputs[tick][:, None], program.inputs)
                 if states is None:

@@ -2,7 +2,6 @@
 
 import ctypes
 import threading
-from importlib.util import find_spec
 
 import numpy as np
 
@@ -15,7 +14,7 @@ WIDTH = 16
 
 
 class Llvm:
-    """Run a program as machine code. See :func:`hapticlab.compiler.engine.load` for the contract.
+    """Run a program as machine code. See :meth:`hapticlab.compiler.engine.Engine.run` for the contract.
 
     Scalar and lanes code are compiled when first asked for. The call releases the GIL.
     """
@@ -23,7 +22,7 @@ class Llvm:
     name = "llvm"
 
     def __init__(self, program):
-        open_llvmlite()
+        _open_llvmlite()
         self.program = expand(program.verify())
         self._compiled = {}
         self._lock = threading.Lock()
@@ -39,7 +38,7 @@ class Llvm:
             carried[:, lanes:] = carried[:, lanes - 1 : lanes]
         if stride > lanes:  # the last lane again and again: no number that the program was not given
             parameters = np.pad(parameters, ((0, 0), (0, stride - lanes)), "edge")
-        arrays = np.ascontiguousarray(inputs), np.ascontiguousarray(parameters), carried, outputs
+        arrays = inputs, parameters, carried, outputs
         run = self._function(width)
         run(ticks, every, 0, stride, stride, states is not None, *(a.ctypes.data for a in arrays))
         return outputs[..., :lanes], carried[:, :lanes]
@@ -51,18 +50,21 @@ class Llvm:
             return self._compiled[width][1]
 
 
-def llvmlite_is_installed():
-    """Tell whether llvmlite can be imported, without importing it."""
-    return find_spec("llvmlite") is not None
+def llvmlite_is_ready():
+    """Tell whether this machine has a working llvmlite."""
+    try:
+        _open_llvmlite()
+    except EngineMissingError:
+        return False
+    return True
 
 
-def open_llvmlite():
-    """Return llvmlite's binding, ready for this machine, or raise EngineMissingError."""
+def _open_llvmlite():
     try:
         from llvmlite import binding
-    except ImportError as missing:
+    except (ImportError, OSError) as missing:  # OSError: installed, but its library does not load here
         raise EngineMissingError(
-            'engine = "llvm" needs llvmlite, which is not installed: pip install llvmlite, or use engine="interpreter"'
+            'engine = "llvm" needs llvmlite, which does not import here: pip install llvmlite, or use engine="interpreter"'
         ) from missing
     if binding.llvm_version_info[0] < 20:  # newer ones do this by themselves
         binding.initialize()
@@ -71,14 +73,22 @@ def open_llvmlite():
     return binding
 
 
+def _context(binding):
+    """Return a context of our own, so that programs compile in several threads at once."""
+    if binding.llvm_version_info[0] >= 20:
+        return binding.create_context()
+    # llvmlite 0.44 reads the pointers of our text only in a context that was told so when it was made
+    return binding.context.ContextRef(binding.ffi.lib.LLVMPY_ContextCreate(True))
+
+
 def _compile(text):
     """Return the keeper of the machine code and the function in it; the function lives as long as the keeper."""
-    binding = open_llvmlite()
+    binding = _open_llvmlite()
     target = binding.Target.from_default_triple()
     machine = target.create_target_machine(
         cpu=binding.get_host_cpu_name(), features=binding.get_host_cpu_features().flatten(), opt=2, jit=True
     )
-    module = binding.parse_assembly(text)
+    module = binding.parse_assembly(text, _context(binding))
     keeper = binding.create_mcjit_compiler(module, machine)
     keeper.finalize_object()
     prototype = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 6, *[ctypes.c_void_p] * 4)

@@ -233,7 +233,8 @@ def emit(program, lanes=1):
     begun, init = w.block(program.init, "i", {"param": "%p", "input": "%y"})
     names, lines = w.block(program.tick, "t", {"param": "%p", "input": "%x", "state": "%s"})
     begun, after = ([n[k] for k in b.states] for n, b in ((begun, program.init), (names, program.tick)))
-    hoisted, stepped = _needs_parameters_alone(program.tick), set(reachable(program.tick.instructions, program.tick.states))
+    hoisted = _needs_parameters_alone(program.tick)
+    stepped = set(reachable(program.tick.instructions, program.tick.states)) - hoisted
     phi = "{0}{1} = phi {2} [ {3}, {4} ], [ {5}, {6} ]".format
     types = [w.types[c.type] for c in program.states]
     parts = {
@@ -245,8 +246,8 @@ def emit(program, lanes=1):
         "start": [phi("%b", k, t, begun[k], "%init", f"%r{k}", "%resume") for k, t in enumerate(types)],
         "states": [phi("%s", k, t, f"%b{k}", "%start", after[k], "%next") for k, t in enumerate(types)],
         "sample": w.load_sample("%x", program.inputs, "%row"),
-        "tick": [line for k, line in lines.items() if k in stepped - hoisted],
-        "kept": [line for k, line in lines.items() if k not in stepped | hoisted],
+        "tick": [line for k, line in lines.items() if k in stepped],
+        "kept": [line for k, line in lines.items() if k not in stepped and k not in hoisted],
         "outputs": w.store_lanes("%o", program.outputs, [names[k] for k in program.tick.outputs], "%out"),
         "save": w.store_lanes("%e", program.states, after, "%states"),
     }
