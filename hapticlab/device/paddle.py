@@ -6,7 +6,9 @@ from abc import ABC, abstractmethod
 import numpy as np
 
 from ..compiler.ir import Program
+from ..compiler.lower import compile
 from ..errors import PaddleError, ParameterError
+from ..scene.scene import Scene
 
 
 class Paddle(ABC):
@@ -55,12 +57,14 @@ class Paddle(ABC):
         ParameterError
             Naming the parameters that have no value yet.
         """
+        if not isinstance(scene, (Scene, Program)):
+            raise PaddleError(f"{scene!r} is no scene; a paddle runs a Scene or a compiled Program.")
         if isinstance(scene, Program):
             if options:
                 raise PaddleError(f"{', '.join(options)}: a program is compiled already; give compile options with a scene.")
             program = scene
         else:
-            raise PaddleError(f"{scene!r} is not a program; compile it first.")
+            program = compile(scene, T=self.T, velocity=self.velocity, **options)
         missing = [c for c, value in zip(program.parameters, program.values, strict=True) if math.isnan(value)]
         if missing:
             wanted = ", ".join(f"{c.name} [{c.unit}]" for c in missing)
