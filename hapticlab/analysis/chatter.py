@@ -1,0 +1,137 @@
+"""Chatter: is there a sustained oscillation, how large, how fast, and has it settled."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import AnalysisError
+
+#: amplitudes of the last two quarters within this ratio count as one sustained oscillation
+LOCK = 0.01
+#: fewer cycles in a quarter of the record than this do not tell an oscillation from a motion
+CYCLES = 3
+
+
+@dataclass(frozen=True)
+class Chatter:
+    """What the last half of a record shows.
+
+    Attributes
+    ----------
+    state : {"none", "chatter", "growing", "decaying"}
+        "chatter" is a sustained limit cycle: the last two quarters agree within 1 %. Just inside a stability limit a
+        decay can take 1e5 samples, so look at ``growth`` too.
+    amplitude : float
+        Half the peak-to-peak of the handle's oscillation over the last half [m]; 0 where there is none.
+    frequency : float or None
+        [Hz], from interpolated zero crossings; its error is below one sampling period in half the record.
+    contacts_per_second : float
+        How often the force goes from zero to nonzero [1/s], over the last half.
+    growth : float
+        Logarithm of the amplitude's ratio between the last two quarters, per second [1/s].
+    locked : bool
+        True for a sustained oscillation alone.
+    dither : bool
+        The sensed position takes two neighbouring values and no other: one encoder count.
+    rest : float
+        Mean position over the last quarter [m].
+    """
+
+    state: str
+    amplitude: float
+    frequency: float | None
+    contacts_per_second: float
+    growth: float
+    locked: bool
+    dither: bool
+    rest: float
+
+    def __str__(self):
+        if self.state == "none":
+            return f"none: the handle rests at {1e3 * self.rest:.4g} mm, with no oscillation in the last half"
+        place = f"{1e3 * self.amplitude:.4g} mm at {self.frequency:.4g} Hz, {self.contacts_per_second:.4g} contacts/s"
+        if self.dither:
+            place += "; the sensed position moves by one encoder count only: dither of the encoder"
+        if self.locked:
+            return f"chatter: {place}; sustained (growth {self.growth:+.2g} 1/s)"
+        return f"{self.state}: {place}; not locked (growth {self.growth:+.3g} 1/s): run longer for its final amplitude"
+
+
+def chatter(log):
+    """Find chatter, Section 23.4: sustained oscillation, often with repeated contact with the wall.
+
+    Looks at the last half of a record, at the handle itself where an encoder or noise hid it (``x_true``). An oscillation
+    is at least three cycles in a quarter of the record and larger than a nanometre, a millionth of the travel, and single
+    precision.
+
+    Parameters
+    ----------
+    log : Telemetry
+        Uses t [s], x [m], F [N] and, where recorded, x_true [m]; at least 32 samples.
+
+    Returns
+    -------
+    Chatter
+
+    Raises
+    ------
+    AnalysisError
+        For a record that is too short or not finite.
+
+    Examples
+    --------
+    >>> from hapticlab.records import Telemetry
+    >>> t = np.arange(2000) * 1e-3
+    >>> x = 1e-3 * np.sin(2 * np.pi * 20 * t)
+    >>> found = chatter(Telemetry(t=t, x=x, v=0 * t, F=np.maximum(100 * x, 0), T=1e-3))
+    >>> found.state, round(found.frequency, 2), round(found.contacts_per_second)
+    ('chatter', 20.0, 20)
+    """
+    t, x, F = (np.asarray(a, float) for a in (log.t, log.channels.get("x_true", log.x), log.F))
+    if len(t) < 32:
+        raise AnalysisError(f"the record has {len(t)} samples; chatter needs at least 32: run longer")
+    if not (np.isfinite(x).all() and np.isfinite(F).all()):
+        raise AnalysisError(f"the record holds values that are not finite; fault: {log.fault or 'none recorded'}")
+    half, quarter = len(t) // 2, len(t) // 4
+    y, _ = _around_trend(x[-half:])
+    earlier, later = (_strength(x[len(x) - end : len(x) - end + quarter]) for end in (2 * quarter, quarter))
+    contacts = np.count_nonzero((F[-half:][1:] != 0) & (F[-half:][:-1] == 0)) / (half * log.T)
+    rest = float(x[-quarter:].mean())
+    least = max(1e-9, 1e-6 * np.ptp(x), 4 * np.finfo(np.float32).eps * abs(x).max())
+    crossings = _upward_crossings(y) * log.T
+    if later < least or len(crossings) <= 2 * CYCLES:
+        return Chatter("none", 0.0, None, float(contacts), 0.0, False, False, rest)
+    frequency = (len(crossings) - 1) / (crossings[-1] - crossings[0])
+    ratio = math.log(later / max(earlier, least * 1e-3))
+    locked = abs(ratio) < LOCK
+    state = "chatter" if locked else "growing" if ratio > 0 else "decaying"
+    growth = ratio / (quarter * log.T)
+    dither = len(np.unique(log.x[-half:])) == 2
+    return Chatter(state, float(np.ptp(y) / 2), float(frequency), float(contacts), growth, locked, dither, rest)
+
+
+def _around_trend(x):
+    """Return x less its straight line, and the weights of the fit: a drift is no oscillation.
+
+    The line is fitted under a Hann window, which makes whole cycles unnecessary.
+    """
+    n = np.linspace(-1, 1, len(x))
+    window = np.hanning(len(x) + 2)[1:-1]
+    window /= window.sum()
+    x = x - window @ x
+    return x - n * ((window * n) @ x) / ((window * n) @ n), window
+
+
+def _strength(x):
+    """Return the amplitude of the sinusoid of equal energy."""
+    y, window = _around_trend(x)
+    return math.sqrt(2 * (window @ y**2))
+
+
+def _upward_crossings(y):
+    """Return where y rises through zero, in samples; swings below a quarter of its rms do not count."""
+    swing = np.flatnonzero(abs(y) > 0.25 * math.sqrt(np.mean(y**2)))
+    turns = np.flatnonzero((y[swing[:-1]] < 0) & (y[swing[1:]] > 0))
+    before, after = swing[turns], swing[turns + 1]
+    return before + (after - before) * y[before] / (y[before] - y[after])

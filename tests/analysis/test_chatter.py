@@ -1,0 +1,96 @@
+"""Chatter against oscillations whose amplitude, frequency and growth are known beforehand."""
+
+import math
+
+import numpy as np
+import pytest
+
+from hapticlab.analysis.chatter import chatter
+from hapticlab.errors import AnalysisError
+from hapticlab.records import Telemetry
+
+T = 1e-3
+
+
+def record(x, F=None, **channels):
+    F = np.maximum(150 * x, 0) if F is None else F
+    return Telemetry(t=np.arange(len(x)) * T, x=x, v=0 * x, F=F, T=T, channels=channels)
+
+
+def oscillation(f=37.3, seconds=4.0, amplitude=0.8e-3, growth=0.0, at=0.0, phase=0.4):
+    t = np.arange(round(seconds / T)) * T
+    return at + amplitude * np.exp(growth * t) * np.sin(2 * np.pi * f * t + phase)
+
+
+@pytest.mark.parametrize("f", [3.7, 37.3, 121.0, 333.3])
+def test_a_sustained_sinusoid(f):
+    found = chatter(record(oscillation(f=f)))
+    assert found.state == "chatter" and found.locked and not found.dither
+    assert found.frequency == pytest.approx(f, rel=T / 2.0)  # the error stated: one period T in half the record
+    # between samples the peak is missed by at most 1 - cos(pi f T), when one cycle has few samples
+    assert 0.8e-3 * math.cos(math.pi * f * T) <= found.amplitude <= 0.8e-3 * 1.001
+    assert found.contacts_per_second == pytest.approx(f, abs=0.51)  # a whole number of contacts in two seconds
+    assert abs(found.growth) < 1e-2
+
+
+@pytest.mark.parametrize("growth, state", [(0.9, "growing"), (-0.9, "decaying"), (0.02, "growing"), (-0.02, "decaying")])
+def test_growth_is_measured(growth, state):
+    found = chatter(record(oscillation(growth=growth)))
+    assert found.state == state and not found.locked
+    assert found.growth == pytest.approx(growth, rel=2e-3)
+    assert "not locked" in str(found) and "run longer" in str(found)
+
+
+def test_a_saturating_oscillation_has_locked_only_in_a_long_record():
+    t = np.arange(8000) * T
+    x = 1e-3 * np.tanh(1e-2 * np.exp(1.5 * t)) * np.sin(2 * np.pi * 25 * t)
+    assert chatter(record(x[:3000])).state == "growing"
+    settled = chatter(record(x))
+    assert settled.state == "chatter"
+    assert settled.amplitude == pytest.approx(1e-3, rel=2e-3)
+
+
+def test_rest_and_drift_are_not_chatter():
+    t = np.arange(4000) * T
+    rest = chatter(record(0.012 * (1 - np.exp(-30 * t))))
+    assert rest.state == "none" and rest.amplitude == 0 and rest.frequency is None
+    assert str(rest).startswith("none: the handle rests at 12 mm")
+    assert chatter(record(0.5 * t)).state == "none"  # it flew away
+    assert chatter(record(oscillation(f=0.5, seconds=4.0))).state == "none"  # one cycle is a motion
+    assert chatter(record(oscillation(growth=-12.0))).state == "none"  # decayed to less than a nanometre
+
+
+def test_drift_does_not_spoil_the_oscillation():
+    t = np.arange(4000) * T
+    found = chatter(record(oscillation() + 0.01 * t))
+    assert found.state == "chatter"
+    assert found.amplitude == pytest.approx(0.8e-3, rel=1e-2)
+    assert found.frequency == pytest.approx(37.3, rel=5e-4)
+
+
+def test_encoder_dither_is_named():
+    count = 50e-6
+    true = oscillation(f=20.0, amplitude=0.1e-6, at=0.01)
+    sensed = np.floor(true / count) * count
+    assert len(np.unique(sensed)) == 2
+    found = chatter(record(sensed, x_true=true))
+    assert found.dither and "dither of the encoder" in str(found)
+    assert found.amplitude == pytest.approx(0.1e-6, rel=2e-3)  # the handle's own motion, not the count
+    coarse = oscillation(amplitude=20 * count)
+    assert not chatter(record(np.floor(coarse / count) * count, x_true=coarse)).dither
+
+
+def test_contacts_are_counted_from_the_force():
+    x = oscillation(f=10.0)
+    F = np.where(np.arange(len(x)) % 50 < 20, 1.0, 0.0)
+    assert chatter(record(x, F=F)).contacts_per_second == pytest.approx(20.0, abs=0.51)
+    assert chatter(record(x, F=np.ones(len(x)))).contacts_per_second == 0
+
+
+def test_short_and_broken_records_are_refused():
+    with pytest.raises(AnalysisError, match="10 samples; chatter needs at least 32"):
+        chatter(record(np.zeros(10)))
+    x = oscillation()
+    x[100] = np.nan
+    with pytest.raises(AnalysisError, match="not finite"):
+        chatter(record(x))
