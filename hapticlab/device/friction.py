@@ -17,14 +17,14 @@ NEWTON_STEPS = 6
 
 
 class Piece(NamedTuple):
-    """A stretch of time and the coefficients in it: velocities and accelerations are per piece, in m/s."""
+    """A stretch of time and the coefficients in it."""
 
     h: Any  #: duration [s]
-    gain: Any  #: h/M [s/kg]
+    gain: Any  #: h/M [s/kg], a force's change of velocity
     beta: Any  #: b h/M
     kappa: Any  #: k h^2/M, or None without a spring
-    kappa_h: Any  #: k h/M [1/s], or None
-    coulomb: Any  #: coulomb h/M [m/s]
+    k: Any  #: [N/m], or None
+    coulomb: Any  #: [N]
     terms: int
 
 
@@ -46,52 +46,51 @@ def slide(piece, x, v, u, d=None):
     -------
     x, v : position [m] and velocity [m/s] at its end; v is exactly zero where the handle is stuck.
     """
-    ramp = None if d is None else piece.gain * piece.h * d
-    begun = 0.0
+    d = None if d is None else d * piece.h
+    begun = 0.0  # of the piece; times are in pieces from here on
     # A constant force allows one stop in a piece, a ramp two.
-    for searching in (True, False) if ramp is None else (True, True, False):
-        net = piece.gain * u - piece.beta * v
-        if ramp is not None:
-            net = net + ramp * begun
-        if piece.kappa_h is not None:
-            net = net - piece.kappa_h * x
+    for searching in (True, False) if d is None else (True, True, False):
+        net = u if d is None else u + d * begun
+        if piece.k is not None:
+            net = net - piece.k * x
         stuck = equal(v, 0.0) & (abs(net) <= piece.coulomb)
-        wait = _wait(stuck, net, ramp, piece.coulomb, 1.0 - begun)
-        if ramp is not None:
-            net = net + ramp * wait
+        wait = _wait(stuck, net, d, piece.coulomb, 1.0 - begun)
+        if d is not None:
+            net = net + d * wait
+        heading = select(equal(v, 0.0), net if d is None else select(stuck, d, net), v)
+        slipping = net - select(heading < 0.0, -piece.coulomb, piece.coulomb)
+        series = _velocity_series(piece, v, slipping, d)
         begun = begun + wait
-        heading = select(equal(v, 0.0), net if ramp is None else select(stuck, ramp, net), v)
-        sign = select(heading < 0.0, -1.0, 1.0)
-        series = _velocity_series(piece, v, net - sign * piece.coulomb, ramp)
-        rest = 1.0 - begun
-        slips = _first_zero([sign * c for c in series], rest, ramp is not None) if searching else (rest, None)
-        lasting, stopped = slips
+        lasting = rest = 1.0 - begun
+        if searching:
+            speed = [select(heading < 0.0, -c, c) for c in series]
+            lasting, stopped = _first_zero(speed, rest, turns=d is not None)
         x = x + piece.h * (lasting * _at([c / (j + 1) for j, c in enumerate(series)], lasting))
         v = _at(series, lasting)
-        v = v if stopped is None else select(stopped, 0.0, v)
+        v = select(stopped, 0.0, v) if searching else v
         begun = begun + lasting
     return x, v
 
 
-def _wait(stuck, net, ramp, coulomb, rest):
+def _wait(stuck, net, d, coulomb, rest):
     """Return how long the handle stays stuck, at most rest."""
-    if ramp is None:
+    if d is None:
         return select(stuck, rest, 0.0)
-    still = equal(ramp, 0.0)
-    limit = select(ramp < 0.0, -coulomb, coulomb)
-    until = (limit - net) / select(still, 1.0, ramp)
+    still = equal(d, 0.0)
+    limit = select(d < 0.0, -coulomb, coulomb)
+    until = (limit - net) / select(still, 1.0, d)
     return select(stuck, select(still, rest, minimum(maximum(until, 0.0), rest)), 0.0)
 
 
-def _velocity_series(piece, v, a, ramp):
+def _velocity_series(piece, v, force, d):
     """Return the Taylor coefficients of v: v^(j+1) = -(b/M) v^(j) - (k/M) v^(j-1), in time over the piece."""
-    derivatives = [v, a]
+    derivatives = [v, piece.gain * force - piece.beta * v]
     for j in range(1, piece.terms):
         following = -piece.beta * derivatives[-1]
         if piece.kappa is not None:
             following = following - piece.kappa * derivatives[-2]
-        if j == 1 and ramp is not None:
-            following = following + ramp
+        if j == 1 and d is not None:
+            following = following + piece.gain * d
         derivatives.append(following)
     return [value * (1 / math.factorial(j)) for j, value in enumerate(derivatives)]
 

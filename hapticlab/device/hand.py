@@ -58,12 +58,13 @@ class Hand:
 
     def __post_init__(self):
         for name, reason in _REASONS.items():
-            require(name, getattr(self, name), UNITS[name], "a hand", reason, low=0)
-        require("push", self.push, "N", "a hand")
+            number = require(name, getattr(self, name), UNITS[name], "a hand", reason, low=0)
+            object.__setattr__(self, name, number)
+        object.__setattr__(self, "push", require("push", self.push, "N", "a hand"))
         if self.intent is None:
             return
         if not self.moves:
-            require("intent", self.intent, "m", "a hand")
+            object.__setattr__(self, "intent", require("intent", self.intent, "m", "a hand"))
         if self.k == 0 and self.b == 0:
             raise PaddleError(
                 "intent without k or b: an intended place acts through the hand's spring or damper. "
@@ -100,7 +101,7 @@ class Hand:
 
 
 def require(name, value, unit, owner, reason="", low=-math.inf, above=None):
-    """Raise PaddleError, in words, unless value is a finite number >= low (and > above)."""
+    """Return value as a float, or raise PaddleError, in words, unless it is finite and >= low (and > above)."""
     unit = f" {unit}" if unit else ""
     bound = f"{name} > {above:g}" if above is not None else f"{name} >= {low:g}" if low > -math.inf else f"a finite {name}"
     try:
@@ -110,3 +111,4 @@ def require(name, value, unit, owner, reason="", low=-math.inf, above=None):
     if not math.isfinite(number) or number < low or (above is not None and number <= above):
         reason = reason if math.isfinite(number) else "It must be finite."
         raise PaddleError(f"{name} = {number:g}{unit}; {owner} needs {bound}. {reason}".rstrip())
+    return number

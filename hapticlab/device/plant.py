@@ -90,8 +90,13 @@ class Plant:
     def channels(self):
         """Return the plant's parameters, in the order of :func:`values`."""
         leans = self.spring and self.ramp
-        common = [("push", "N", self.push), ("k", "N/m", leans), ("b_hand", "N s/m", self.drag)]
-        common.append(("offset", "s", leans and self.split))
+        common = (
+            ("push", "N", self.push),
+            ("k", "N/m", leans or self.spring and self.coulomb),
+            ("b_hand", "N s/m", self.drag),
+            ("offset", "s", leans and self.split),
+            ("coulomb", "N", self.coulomb),
+        )
         named = [(name, unit) for name, unit, there in common if there]
         for part in self.parts:
             named += [(f"{name}{part}", unit) for name, unit in self._entries()]
@@ -99,8 +104,7 @@ class Plant:
 
     def _entries(self):
         if self.coulomb:
-            spring = [("kappa", "1"), ("kappa_h", "1/s")] if self.spring else []
-            return [("h", "s"), ("gain", "s/kg"), ("beta", "1"), *spring, ("coulomb", "m/s")]
+            return [("h", "s"), ("gain", "s/kg"), ("beta", "1")] + [("kappa", "1")] * self.spring
         drop = (() if self.spring else ("xx", "vx", "xd", "vd")) + (() if self.ramp else ("xd", "vd"))
         return [(f"phi_{e}", unit) for e, unit in PHI.items() if e not in drop]
 
@@ -144,8 +148,8 @@ class Plant:
         return x_next, v_next
 
     def _slide(self, p, part, x, v, u, d):
-        names = ("h", "gain", "beta", "kappa", "kappa_h", "coulomb")
-        piece = friction.Piece(*(p.get(f"plant.{name}{part}") for name in names), self.terms)
+        of_part = (p.get(f"plant.{name}{part}") for name in ("h", "gain", "beta", "kappa"))
+        piece = friction.Piece(*of_part, p["plant.k"] if self.spring else None, p["plant.coulomb"], self.terms)
         for _ in range(self.pieces):
             x, v = friction.slide(piece, x, v, u, d)
             u = u if d is None else u + d * piece.h
@@ -195,16 +199,15 @@ def values(paddle):
     """Return the values of ``plant_of(paddle).channels()``."""
     plant, hand = plant_of(paddle), paddle.hand
     M, b, k = dynamics(paddle)
-    found = {}
+    found = {"plant.coulomb": paddle.coulomb}
     if hand is not None:
         resting = 0.0 if hand.moves or hand.intent is None else hand.k * hand.intent
-        found = {"plant.push": hand.push + resting, "plant.k": hand.k, "plant.b_hand": hand.b}
+        found |= {"plant.push": hand.push + resting, "plant.k": hand.k, "plant.b_hand": hand.b}
         found["plant.offset"] = part_lengths(paddle)[0]
     for part, length in zip(plant.parts, part_lengths(paddle), strict=True):
         if plant.coulomb:
             h = length / plant.pieces
-            scaled = {"h": h, "gain": h / M, "beta": b * h / M, "kappa": k * h * h / M, "kappa_h": k * h / M}
-            entries = {**scaled, "coulomb": paddle.coulomb * h / M}
+            entries = {"h": h, "gain": h / M, "beta": b * h / M, "kappa": k * h * h / M}
         else:
             entries = {f"phi_{e}": c for e, c in transition(M, b, k, length).items()}
         found.update({f"plant.{name}{part}": c for name, c in entries.items()})

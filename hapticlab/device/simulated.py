@@ -92,18 +92,21 @@ class SimulatedPaddle(Paddle):
 
     def __post_init__(self):
         for name, unit in _POSITIVE.items():
-            require(name, getattr(self, name), unit, "a paddle", above=0)
+            self._take(name, unit, above=0)
         for name, (unit, reason) in _NOT_NEGATIVE.items():
-            require(name, getattr(self, name), unit, "a paddle", reason, low=0)
+            self._take(name, unit, reason, low=0)
         for name, unit in (("counts_per_metre", "1/m"), ("force_max", "N")):
             if getattr(self, name) is not None:
-                require(name, getattr(self, name), unit, "a paddle", "None leaves it out.", above=0)
+                self._take(name, unit, "None leaves it out.", above=0)
         if self.rounding not in ("floor", "nearest"):
             raise PaddleError(f"rounding = {self.rounding!r}; an encoder needs 'floor' or 'nearest'.")
         if self.hand is not None and not isinstance(self.hand, Hand):
             raise PaddleError(f"hand = {self.hand!r}; needs a Hand, as in hand=hl.Hand(push=2.0).")
         if not isinstance(self.seed, (int, np.integer)) or self.seed < 0:
             raise PaddleError(f"seed = {self.seed!r}; needs a whole number >= 0.")
+
+    def _take(self, name, unit, reason="", **bounds):
+        object.__setattr__(self, name, require(name, getattr(self, name), unit, "a paddle", reason, **bounds))
 
     @classmethod
     def from_profile(cls, profile, **changes):
@@ -132,12 +135,11 @@ class SimulatedPaddle(Paddle):
 
     def plant_values(self, x=0.0, v=0.0):
         """Return the values of the linked program's parameters after the scene's, for a start at x [m] with v [m/s]."""
-        require("x", x, "m", "a start")
-        require("v", v, "m/s", "a start")
+        start = require("x", x, "m", "a start"), require("v", v, "m/s", "a start")
         sensor = () if self.velocity == "measured" else (1 / self.T,)
         encoder = () if self.counts_per_metre is None else (self.counts_per_metre, 1 / self.counts_per_metre)
         limit = () if self.force_max is None else (self.force_max,)
-        return tuple(float(a) for a in (*values(self), *sensor, *encoder, *limit, x, v))
+        return tuple(float(a) for a in (*values(self), *sensor, *encoder, *limit, *start))
 
     def inputs(self, ticks):
         """Return the linked program's inputs, shape (ticks, inputs): intent [m], its rate [m/s], noise [m]."""

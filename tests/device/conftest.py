@@ -1,0 +1,51 @@
+"""Scenes and programs the device tests run."""
+
+import numpy as np
+import pytest
+
+from hapticlab.compiler.ir import Block, Channel, Program
+from hapticlab.compiler.lower import compile
+from hapticlab.compiler.trace import Builder, equal, select
+from hapticlab.scene.scene import Scene
+from hapticlab.scene.symbols import n, parameters, x
+
+
+@pytest.fixture
+def spring():
+    """F = K x(n), on both sides: no switching, so everything is linear."""
+
+    def make(K, T=1e-3, dtype="float64", velocity="measured"):
+        (k,) = np.atleast_1d(parameters("k", units="N/m"))
+        return compile(Scene(force=k * x(n), name="spring")(k=K), T=T, dtype=dtype, velocity=velocity)
+
+    return make
+
+
+@pytest.fixture
+def constant_force():
+    """F = a constant, whatever the handle does."""
+
+    def make(F, T=1e-3):
+        builder = Builder("f64")
+        tick = builder.block([builder.const(F)])
+        return Program("constant", (Channel("x", "m", "f64"),), (), (), (Channel("F", "N", "f64"),), Block(), tick, T)
+
+    return make
+
+
+@pytest.fixture
+def breaks_at():
+    """F = 1 N, but not a number at one tick (or its counter infinite, with state=True)."""
+
+    def make(when, bad=float("nan"), T=1e-3, state=False):
+        first = Builder("f64")
+        init = first.block(states=[first.const(0.0)])
+        builder = Builder("f64")
+        count = builder.leaf("state", 0, "f64")
+        broken = select(equal(count, float(when)), bad, 1.0)
+        following = select(equal(count, float(when)), bad, count + 1.0) if state else count + 1.0
+        tick = builder.block([builder.const(1.0) if state else broken], [following])
+        channels = (Channel("x", "m", "f64"),), (), (Channel("count", "1", "f64"),), (Channel("F", "N", "f64"),)
+        return Program("breaks", *channels, init, tick, T)
+
+    return make
