@@ -81,7 +81,8 @@ def compile(
         return _Lowering(scene, METHODS[method], float(T), substeps, hold, dtype, velocity, live).program()
     except RecursionError:
         raise ProgramError(
-            f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals or watch less"
+            f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals, "
+            "y = hl.signal(...), with an equation for each"
         ) from None
 
 

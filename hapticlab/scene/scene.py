@@ -49,6 +49,15 @@ class Scene:
     name: str = "scene"
 
     def __post_init__(self):
+        try:
+            self._check()
+        except RecursionError:
+            raise SceneError(
+                f"{self.name}: an expression is nested too deeply to check; name its parts as signals, "
+                "y = hl.signal(...), with an equation for each"
+            ) from None
+
+    def _check(self):
         eom = (self.eom,) if isinstance(self.eom, sp.Eq) else tuple(self.eom)
         for equation in eom:
             if not isinstance(equation, sp.Eq):
@@ -103,8 +112,8 @@ class Scene:
 
     def _check_units(self):
         agree_with(self.force, "N", "force")
-        for equation in self.eom:
-            agree(equation.args, f"equation {sp.sstr(equation.lhs)} = {sp.sstr(equation.rhs)}")
+        for number, equation in enumerate(self.eom, 1):
+            agree(equation.args, f"equation of motion {number}")
         for name, expr in self.watch.items():
             agree([expr], f"watch {name}")
         for q in _applied(self._expressions(), "coordinate", "signal"):
