@@ -19,6 +19,7 @@ STYLES = [
     {"color": "#7a4a9c", "linestyle": (0, (5, 1, 1, 1, 1, 1))},
     {"color": "#8a8a8a", "linestyle": (0, (8, 3))},
 ]
+LIMIT_DASHES = [(0, (1, 1)), (0, (6, 2)), (0, (4, 1, 1, 1))]
 HOUSE = {
     "font.size": 11, "axes.grid": True, "grid.alpha": 0.35, "axes.spines.top": False, "axes.spines.right": False,
     "lines.linewidth": 1.6, "legend.frameon": False, "savefig.dpi": 150,
@@ -71,7 +72,8 @@ def plot(log, *names):
         rows = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
         for axes, name in zip(rows, names, strict=True):
             scale, label = _label(name, log.units.get(name, "1"))
-            axes.plot(log.t, scale * np.asarray(getattr(log, name)), **STYLES[0])
+            thin = {"linewidth": 0.6} if len(log.t) > 5000 else {}  # thousands of cycles would be a black bar
+            axes.plot(log.t, scale * np.asarray(getattr(log, name)), **STYLES[0], **thin)
             axes.set_ylabel(label)
         rows[-1].set_xlabel("time t [s]")
         if log.fault:
@@ -85,8 +87,9 @@ def plot_sweep(result, *, limits=None):
     Parameters
     ----------
     result : Sweep
-    limits : Limit, sequence of Limit, or dict of str to Limit, optional
-        Stiffness limits, drawn across the axis whose unit is N/m and labelled with what they are.
+    limits : Limit, sequence of Limit, or dict of str to Limit or to a sequence of Limit, optional
+        Stiffness limits, drawn across the axis whose unit is N/m and labelled with what they are. On a map a sequence under
+        one name is a curve: a limit for each value of the other axis.
 
     Returns
     -------
@@ -131,8 +134,8 @@ def _lines(axes, result):
 
 def _map(figure, axes, result):
     """Draw a grey-safe map with contours; the first axis runs to the right."""
-    (across, up), scale_label = result.axes, _label(result.metric, result.unit)
-    scale, label = scale_label
+    across, up = result.axes
+    scale, label = _label(result.metric, result.unit)
     (x_scale, x_label), (y_scale, y_label) = (_label(name, result.units.get(name, "1")) for name in (across, up))
     x, y = x_scale * result.axes[across], y_scale * result.axes[up]
     values = np.ma.masked_invalid(scale * result.values.T)
@@ -147,16 +150,29 @@ def _map(figure, axes, result):
 
 
 def _draw_limits(axes, result, shown, limits):
+    """Draw stiffness limits as dashes of their own, dark on lines and white on a map."""
     if not limits:
         return
     stiff = [name for name in shown if name and result.units.get(name) == "N/m"]
     if not stiff:
         raise AnalysisError("limits are stiffnesses; needs an axis in N/m, such as k")
-    draw = axes.axvline if stiff[0] == shown[0] else axes.axhline
+    on_map, upright = shown[1] is not None, stiff[0] == shown[0]
     for number, (text, limit) in enumerate(limits.items()):
-        style = {**STYLES[(number + 1) % len(STYLES)], "linewidth": 2.2}
-        draw(float(limit), label=f"{text}: {float(limit):.4g} N/m", **style)
-    axes.legend()
+        style = {"color": "white" if on_map else "#4d4d4d", "linestyle": LIMIT_DASHES[number % 3], "linewidth": 2.2}
+        if np.ndim(limit):
+            other = shown[1] if upright else shown[0]
+            K, along = [float(one) for one in limit], _curve_axis(result, other, len(limit))
+            axes.plot(*((K, along) if upright else (along, K)), label=text, **style)
+        else:
+            (axes.axvline if upright else axes.axhline)(float(limit), label=f"{text}: {float(limit):.4g} N/m", **style)
+    frame = {"frameon": True, "facecolor": "#555555", "labelcolor": "white", "framealpha": 1} if on_map else {}
+    axes.legend(**frame)
+
+
+def _curve_axis(result, name, length):
+    if name is None or len(result.axes[name]) != length:
+        raise AnalysisError(f"a curve of {length} limits; needs a map and a limit for each value of its other axis")
+    return _label(name, result.units.get(name, "1"))[0] * result.axes[name]
 
 
 def _as_dict(limits):

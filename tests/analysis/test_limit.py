@@ -1,0 +1,26 @@
+"""A limit converts to its number and prints with its units and its kind."""
+
+import pytest
+
+from hapticlab.analysis.limit import Limit, whole_and_fraction
+from hapticlab.errors import AnalysisError
+
+
+def test_number_words_and_units():
+    limit = Limit(K=123.4, frequency=55.5, kind="exact linear stability", reason="a pole", assumptions=("no encoder",))
+    assert float(limit) == 123.4
+    assert str(limit) == "123.4 N/m at 55.5 Hz: exact linear stability; a pole\n  no encoder"
+    assert repr(limit) == "Limit(K=123.4 N/m, frequency=55.5 Hz, kind='exact linear stability', reason='a pole')"
+    with pytest.raises(AttributeError):
+        limit.K = 5
+
+
+@pytest.mark.parametrize("T", [1e-3, 1 / 3e3, 0.7e-3])
+def test_delays_split_without_rounding_noise(T):
+    assert whole_and_fraction(0.0, T) == (0, 0.0)
+    assert whole_and_fraction(3 * T, T) == (3, 0.0)
+    assert whole_and_fraction(sum([T] * 10), T) == (10, 0.0)
+    whole, fraction = whole_and_fraction(2.25 * T, T)
+    assert whole == 2 and fraction == pytest.approx(0.25, abs=1e-12)
+    with pytest.raises(AnalysisError, match="at most 200 periods"):
+        whole_and_fraction(201 * T, T)
