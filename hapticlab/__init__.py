@@ -10,7 +10,9 @@
 from .analysis.chatter import chatter
 from .analysis.energy import energy
 from .analysis.passivity import passivity_limit
+from .analysis.plots import plot
 from .analysis.stability import stability_limit
+from .analysis.sweep import sweep
 from .compiler.lower import compile
 from .device.hand import Hand
 from .device.paddle import Paddle
@@ -64,10 +66,12 @@ __all__ = [
     "n",
     "parameters",
     "passivity_limit",
+    "plot",
     "predicted_sample",
     "profile",
     "signal",
     "stability_limit",
+    "sweep",
     "t",
     "v",
     "virtual_coupler",

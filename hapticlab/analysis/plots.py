@@ -67,8 +67,8 @@ def plot(log, *names):
     if missing:
         recorded = ", ".join(log.columns)
         raise AnalysisError(f"{missing[0]} was not recorded; this log has {recorded}. Watch it: hl.Scene(..., watch=[...])")
-    with _house():
-        figure = _figure(height=1.2 + 1.7 * len(names))
+    with house_style():
+        figure = new_figure(height=1.2 + 1.7 * len(names))
         rows = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
         for axes, name in zip(rows, names, strict=True):
             scale, label = _label(name, log.units.get(name, "1"))
@@ -102,8 +102,8 @@ def plot_sweep(result, *, limits=None):
     """
     if len(result.axes) not in (1, 2):
         raise AnalysisError(f"the sweep has {len(result.axes)} axes; a plot shows 1 or 2: sweep fewer, or fix some values")
-    with _house():
-        figure = _figure(height=4.2)
+    with house_style():
+        figure = new_figure(height=4.2)
         axes = figure.subplots()
         shown = _lines(axes, result) if _short_axis(result) is not None else _map(figure, axes, result)
         _draw_limits(axes, result, shown, _as_dict(limits))
@@ -204,13 +204,15 @@ def _label(name, unit):
     return scale, f"{NAMES.get(name, name)} [{shown}]"
 
 
-def _house():
+def house_style():
+    """Return the context in which a figure of this package is drawn."""
     from matplotlib import rc_context
 
     return rc_context(HOUSE)
 
 
-def _figure(*, height):
+def new_figure(*, height, width=7.2):
+    """Return an empty figure, height and width in inches."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -222,6 +224,6 @@ def _figure(*, height):
             self.savefig(buffer, format="png", dpi=110)
             return buffer.getvalue()
 
-    figure = HouseFigure(figsize=(7.2, height), layout="constrained")
+    figure = HouseFigure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
