@@ -144,8 +144,8 @@ class _Grid:
     def __init__(self, scene, paddle, axes, fixed):
         self.scene, self.axes = scene, axes
         self.shape = tuple(len(a) for a in axes.values())
-        self.index = dict(zip(axes, np.indices(self.shape).reshape(len(axes), -1), strict=True))
         self.points = int(np.prod(self.shape))
+        self.index = dict(zip(axes, np.indices(self.shape).reshape(len(axes), self.points), strict=True))
         paddle = replace(paddle, **{name: a for name, a in fixed.items() if name in PADDLE_AXES})
         start = {name: fixed.get(name, 0.0) for name in START_AXES}
         changed = [name for name in axes if name in PADDLE_AXES or name in START_AXES]

@@ -1,0 +1,140 @@
+"""A sweep's points against the same points run alone and measured from their stored traces."""
+
+import math
+
+import numpy as np
+import pytest
+
+from hapticlab.analysis.chatter import chatter
+from hapticlab.analysis.energy import energy
+from hapticlab.analysis.sweep import sweep
+from hapticlab.device.hand import Hand
+from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.errors import AnalysisError, PaddleError, ParameterError
+from hapticlab.scene.laws import wall
+from hapticlab.scene.scene import Scene
+from hapticlab.scene.symbols import n, parameters, x
+
+PUSHED = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=Hand(push=2.0))
+#: encoder, friction, noise, saturation, and a force that changes inside the periods
+FULL = SimulatedPaddle(
+    m=0.05, b=0.1, T=1e-3, delay=1.3e-3, counts_per_metre=2e4, coulomb=0.05, force_max=8.0, noise=1e-5, seed=4,
+    hand=Hand(m=0.01, b=0.3, k=40.0, push=1.5),
+)  # fmt: skip
+K = np.array([60.0, 150.0, 420.0, 1300.0])
+
+
+def traces(paddle, metric, k, duration=2.0, **start):
+    """Measure a stored trace in whole-array arithmetic, apart from the compiled measures."""
+    log = paddle.run(wall()(k=k, x_o=0.002), duration=duration, progress=False, **start)
+    true = log.channels.get("x_true", log.x)
+    quarter = len(true) // 4
+    before, after = np.ptp(true[-2 * quarter : -quarter]), np.ptp(true[-quarter:])
+    half = log.F[-2 * quarter :]
+    return {
+        "growth": lambda: math.log(after / before) / (quarter * log.T) if after else -math.inf,
+        "contacts": lambda: np.count_nonzero((half[1:] != 0) & (half[:-1] == 0)) / (2 * quarter * log.T),
+        "energy": lambda: energy(log).extracted,
+        "peak_force": lambda: abs(log.F).max(),
+        "chatter": lambda: after / 2,
+    }[metric]()
+
+
+@pytest.mark.parametrize("paddle", [PUSHED, FULL], ids=["plain", "full"])
+@pytest.mark.parametrize("metric", ["growth", "contacts", "energy", "peak_force"])
+def test_metrics_match_the_stored_traces(paddle, metric):
+    swept = sweep(wall()(x_o=0.002), paddle, duration=2.0, metric=metric, progress=False, k=K)
+    expected = [traces(paddle, metric, k) for k in K]
+    # without an encoder a trace holds x in single precision; the measure sees it in double
+    np.testing.assert_allclose(swept.values, expected, rtol=2e-4 if metric == "growth" else 1e-5, atol=1e-7)
+
+
+def test_chatter_is_the_sustained_amplitude():
+    swept = sweep(wall()(x_o=0.002), PUSHED, duration=20.0, progress=False, k=K)
+    logs = [PUSHED.run(wall()(k=k, x_o=0.002), duration=20.0, progress=False) for k in K]
+    found = [chatter(log) for log in logs]
+    assert [c.state for c in found] == ["none", "none", "chatter", "chatter"] or found[1].state == "decaying"
+    assert (swept.values[:2] == 0).all()  # 200 N/m is where Eq. (23.10) ends
+    np.testing.assert_allclose(swept.values[2:], [c.amplitude for c in found[2:]], rtol=2e-2)
+    np.testing.assert_allclose(swept.values[2:], [traces(PUSHED, "chatter", k, 20.0) for k in K[2:]], rtol=1e-6)
+
+
+def test_motion_within_one_count_is_no_chatter():
+    coarse = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, counts_per_metre=500.0, hand=Hand(push=0.05))
+    swings = sweep(wall(), coarse, duration=4.0, metric="growth", progress=False, k=[20.0, 60.0]).values
+    assert np.isfinite(swings).all()  # the handle does move
+    amplitudes = sweep(wall(), coarse, duration=4.0, progress=False, k=[20.0, 60.0]).values
+    assert ((amplitudes == 0) | (amplitudes > 0.5 / 500)).all()
+
+
+@pytest.mark.parametrize("paddle", [PUSHED, FULL], ids=["plain", "full"])
+def test_every_point_is_what_it_is_alone_bit_for_bit(paddle):
+    axes = {"k": K, "T": np.array([5e-4, 1e-3]), "b": np.array([0.07, 0.2, 0.9])}
+    for metric in ("chatter", "energy"):
+        swept = sweep(wall()(x_o=0.002), paddle, duration=0.6, metric=metric, progress=False, **axes)
+        assert list(swept.axes) == ["k", "T", "b"] and swept.values.shape == (4, 2, 3)
+        for i, j, h in ((0, 0, 0), (3, 1, 2), (2, 0, 1), (1, 1, 0)):
+            alone = {"k": K[i], "T": axes["T"][j], "b": axes["b"][h]}
+            one = sweep(wall()(x_o=0.002), paddle, duration=0.6, metric=metric, progress=False, **alone)
+            assert one.values.shape == () and one.values == swept.values[i, j, h]
+
+
+def test_axes_keep_the_order_given():
+    ab = sweep(wall(), PUSHED, duration=0.2, metric="peak_force", progress=False, T=[1e-3, 2e-3], k=K)
+    ba = sweep(wall(), PUSHED, duration=0.2, metric="peak_force", progress=False, k=K, T=[1e-3, 2e-3])
+    assert list(ab.axes) == ["T", "k"] and ab.values.shape == (2, 4)
+    np.testing.assert_array_equal(ab.values, ba.values.T)
+    assert ab.units == {"T": "s", "k": "N/m"} and ab.unit == "N"
+
+
+def test_the_engines_agree():
+    ways = [
+        sweep(wall(), FULL, duration=0.1, metric=metric, engine=engine, progress=False, k=K, delay=[0.0, 4e-4]).values
+        for engine in ("auto", "interpreter")
+        for metric in ("energy", "peak_force")
+    ]
+    np.testing.assert_array_equal(ways[0], ways[2])
+    np.testing.assert_array_equal(ways[1], ways[3])
+
+
+def test_more_lanes_and_ticks_than_one_call_takes():
+    k = np.linspace(20, 2000, 2100)
+    many = sweep(wall(), PUSHED, duration=2.5, metric="peak_force", progress=False, k=k).values
+    few = sweep(wall(), PUSHED, duration=2.5, metric="peak_force", progress=False, k=k[[0, 2047, 2048, 2099]]).values
+    np.testing.assert_array_equal(many[[0, 2047, 2048, 2099]], few)
+
+
+def test_the_start_is_an_axis_too():
+    free = SimulatedPaddle(m=0.05, b=0.0, T=1e-3)
+    bounce = sweep(wall(), free, duration=0.5, metric="peak_force", progress=False, x=-1e-3, v=[0.1, 0.2], k=200.0)
+    # one bounce of a free mass: the force peaks at v sqrt(k m), and the held force sets it off by a few percent
+    np.testing.assert_allclose(bounce.values, np.array([0.1, 0.2]) * math.sqrt(200 * 0.05), rtol=0.05)
+    assert "x = -0.001" in bounce.about
+
+
+def test_a_force_that_overflows_gives_nan():
+    blown = sweep(wall(unilateral=None), SimulatedPaddle(m=0.05, b=0.1, T=1e-3), duration=1.0, progress=False, x=1e-3, k=[10.0, 1e7])
+    assert np.isfinite(blown.values[0]) and np.isnan(blown.values[1])
+
+
+def test_bad_sweeps_are_refused():
+    scene = wall()
+    with pytest.raises(AnalysisError, match="kk: nothing has that name.*parameters: .*k.*paddle's: T, m, b.*start: x, v"):
+        sweep(scene, PUSHED, kk=[1.0])
+    with pytest.raises(AnalysisError, match="metric = 'noise'; needs one of chatter, growth"):
+        sweep(scene, PUSHED, metric="noise", k=[1.0])
+    with pytest.raises(AnalysisError, match=r"k = \[1.0, nan\]; an axis needs one or more finite numbers \[N/m\]"):
+        sweep(scene, PUSHED, k=[1.0, math.nan])
+    with pytest.raises(AnalysisError, match="an axis needs one or more"):
+        sweep(scene, PUSHED, k=[])
+    with pytest.raises(AnalysisError, match="no scene"):
+        sweep("wall", PUSHED, k=[1.0])
+    with pytest.raises(ParameterError, match="k"):
+        sweep(scene, PUSHED, k=[-50.0, 10.0])
+    with pytest.raises(PaddleError, match="m = -1"):
+        sweep(scene, PUSHED, k=10.0, m=[-1.0, 0.1])
+    with pytest.raises(ParameterError, match="no value for k"):
+        sweep(scene, PUSHED, b=[0.1])
+    m = parameters("m", units="N/m")
+    with pytest.raises(AnalysisError, match="m is a parameter of the scene and of the paddle; rename the scene's"):
+        sweep(Scene(force=m * x(n)), PUSHED, m=[1.0])
