@@ -1,0 +1,210 @@
+"""The demonstration: where a virtual wall begins to chatter, and a student's own equation of motion, on one paddle."""
+
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from .analysis.limit import Limit
+from .analysis.passivity import passivity_limit
+from .analysis.plots import STYLES, house_style, new_figure
+from .analysis.stability import stability_limit
+from .analysis.sweep import Sweep, sweep
+from .compiler.engine import load
+from .device.hand import Hand
+from .device.profiles import profile
+from .device.simulated import SimulatedPaddle
+from .scene.laws import wall
+from .scenefile import SceneFile, describe, load_scene, report_of, run_scene
+
+EXAMPLE = Path(__file__).with_name("examples") / "mass_on_coupler.py"
+PUSH = 2.0
+#: illustrative hands, measured on nobody: one that only pushes, one that also holds (mass, damping, stiffness of a pinch)
+HANDS = {
+    "push alone": Hand(push=PUSH),
+    "holding fingers": Hand(m=0.02, b=1.0, k=200.0, push=PUSH),
+}
+
+
+@dataclass(frozen=True)
+class Felt:
+    """One hand at the wall: its exact limit, and what simulation shows over the grid of stiffnesses."""
+
+    hand: str
+    paddle: SimulatedPaddle
+    limit: Limit
+    grid: Sweep
+
+    @property
+    def onset(self):
+        """The grid stiffnesses [N/m] between which chatter begins; None where the grid does not hold the beginning."""
+        k, chatters = self.grid.axes["k"], self.grid.values > 0
+        first = int(np.argmax(chatters))
+        return (float(k[first - 1]), float(k[first])) if chatters.any() and first > 0 else None
+
+    @property
+    def agrees(self):
+        """True where the exact limit lies within one grid step of the simulated beginning."""
+        step = self.grid.axes["k"][1] / self.grid.axes["k"][0]
+        return self.onset is not None and bool(self.onset[0] / step <= self.limit.K <= self.onset[1] * step)
+
+
+@dataclass(frozen=True)
+class Study:
+    """Everything the demonstration computed."""
+
+    passive: Limit
+    felt: tuple[Felt, ...]
+    walls: dict[float, tuple]
+    own: SceneFile
+    own_run: tuple
+    seconds: float
+
+
+def study(*, quick=False, progress=True):
+    """Run the demonstration; quick takes fewer stiffnesses and shorter runs."""
+    start = time.perf_counter()
+    points, duration = (60, 8.0) if quick else (160, 40.0)
+    constants = profile("eth")
+    passive = passivity_limit(b=constants.b, T=constants.T)
+    paddles = {name: SimulatedPaddle.from_profile(constants, hand=hand) for name, hand in HANDS.items()}
+    limits = {name: stability_limit(paddle) for name, paddle in paddles.items()}
+    stiffnesses = np.geomspace(passive.K / 2, 2 * max(limit.K for limit in limits.values()), points)
+    felt = tuple(
+        Felt(name, paddle, limits[name], sweep(wall(), paddle, duration=duration, k=stiffnesses, progress=progress))
+        for name, paddle in paddles.items()
+    )
+    pushed = paddles["push alone"]
+    files = {k: SceneFile(wall()(k=k), pushed, min(duration, 20.0)) for k in (passive.K / 2, 2 * passive.K)}
+    walls = {k: run_scene(file, progress=progress) for k, file in files.items()}
+    own = load_scene(EXAMPLE)
+    return Study(passive, felt, walls, own, run_scene(own, progress=progress), time.perf_counter() - start)
+
+
+def report(found):
+    """Return the study's numbers as a dictionary, each name ending in its unit."""
+    constants = found.felt[0].paddle.profile
+    grid = found.felt[0].grid
+    below = sum(np.count_nonzero(f.grid.values[grid.axes["k"] < found.passive.K]) for f in found.felt)
+    return {
+        "paddle": {
+            "name": constants.name, "m_kg": constants.m, "b_N_s_per_m": constants.b, "T_s": constants.T,
+            "nominal": constants.nominal, "source": constants.source,
+        },
+        "passivity": {"K_N_per_m": found.passive.K, "equation": "23.10", "kind": found.passive.kind},
+        "hands": [
+            {
+                "hand": f.hand,
+                "values": str(f.paddle.hand),
+                "stability_K_N_per_m": f.limit.K,
+                "stability_frequency_Hz": f.limit.frequency,
+                "kind": f.limit.kind,
+                "chatter_begins_between_N_per_m": f.onset,
+                "within_one_grid_step": f.agrees,
+            }
+            for f in found.felt
+        ],
+        "chatters_below_passivity_limit": bool(below),
+        "sweep": {"points": len(grid.axes["k"]), "duration_s": grid.duration},
+        "walls": [report_of(*run) for run in found.walls.values()],
+        "own_scene": report_of(*found.own_run),
+        "engine": load(found.own_run[0]).name,
+        "elapsed_s": round(found.seconds, 3),
+    }  # fmt: skip
+
+
+def words(facts):
+    """Return a report in words."""
+    paddle, own = facts["paddle"], facts["own_scene"]
+    standing = "nominal: published constants, not measured on this device" if paddle["nominal"] else "measured"
+    lines = [
+        f"paddle   {paddle['name']}: m = {paddle['m_kg']:g} kg, b = {paddle['b_N_s_per_m']:g} N s/m, T = {paddle['T_s']:g} s, "
+        "simulated",
+        f"         {standing}",
+        "",
+        "1. The chapter's wall, F = k x(n) where x(n) >= 0, Eq. (23.1): where does it chatter?",
+        f"  passivity, Eq. (23.10), k < 2 b/T: {facts['passivity']['K_N_per_m']:.4g} N/m, sufficient for any passive hand",
+    ]
+    for hand in facts["hands"]:
+        lines += _hand_words(hand)
+    below = "chatter was seen below" if facts["chatters_below_passivity_limit"] else "no simulated wall chattered below"
+    swept = facts["sweep"]
+    lines += [f"  {below} the passivity limit ({swept['points']} stiffnesses, {swept['duration_s']:g} s each, both hands)", ""]
+    for run in facts["walls"]:
+        lines += [f"  k = {run['parameters']['k']:.4g} N/m, push alone: {run['chatter']['words']}"]
+        lines += [f"    {run['energy']['words']}"]
+    lines += ["", "2. A student's own equation of motion (examples/mass_on_coupler.py)"]
+    lines += ["  " + line for line in describe(own).splitlines()]
+    return "\n".join([*lines, "", f"computed in {facts['elapsed_s']:.2f} s (engine: {facts['engine']})"])
+
+
+def _hand_words(hand):
+    onset = hand["chatter_begins_between_N_per_m"]
+    seen = f"chatter begins between {onset[0]:.4g} and {onset[1]:.4g} N/m" if onset else "chatter does not begin in the grid"
+    verdict = "within one grid step of the exact limit" if hand["within_one_grid_step"] else "NOT where the exact limit is"
+    return [
+        f"  {hand['hand']} ({hand['values']})",
+        f"    exact linear limit of this hand and paddle: {hand['stability_K_N_per_m']:.6g} N/m at "
+        f"{hand['stability_frequency_Hz']:.4g} Hz",
+        f"    simulated: {seen}; {verdict}",
+    ]
+
+
+def draw(found):
+    """Return the study's figure: chatter over stiffness with both limits, two walls in time, the student's scene."""
+    with house_style():
+        figure = new_figure(height=8.0, width=10.5)
+        top, left, right = figure.subplot_mosaic([["onset", "onset"], ["walls", "own"]]).values()
+        _draw_onset(top, found)
+        _draw_walls(left, found)
+        _draw_own(right, found)
+    return figure
+
+
+def _draw_onset(axes, found):
+    grid, K = found.felt[0].grid, found.passive.K
+    axes.axvline(K, color="black", linestyle=":", linewidth=4, label=f"Eq. (23.10), any passive hand: {K:.4g} N/m")
+    for f, style in zip(found.felt, (STYLES[1], STYLES[2]), strict=True):
+        amplitude = np.where(f.grid.values > 0, 1e3 * f.grid.values, np.nan)
+        axes.axvline(f.limit.K, color=style["color"], linestyle="--", label=f"exact limit, {f.hand}: {f.limit.K:.4g} N/m")
+        axes.plot(grid.axes["k"], amplitude, marker=".", color=style["color"], label=f"simulated chatter, {f.hand}")
+    axes.set(xscale="log", yscale="log", xlim=(grid.axes["k"][0], grid.axes["k"][-1]))
+    axes.set(xlabel="wall stiffness k [N/m]", ylabel=f"amplitude [mm] after {grid.duration:g} s")
+    axes.set_title("Where the wall of Eq. (23.1) begins to chatter (no point: no chatter)")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.22, 0.02), fontsize="small")
+
+
+def _draw_walls(axes, found):
+    for (k, (_, log)), style in zip(found.walls.items(), (STYLES[0], STYLES[1]), strict=True):
+        axes.plot(log.t, 1e3 * log.x, color=style["color"], linewidth=0.8, label=f"k = {k:.4g} N/m")
+    axes.axhline(0, color="grey", linewidth=1.5, label="boundary; the wall is above")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.35 * (high - low))
+    axes.set(xlabel="time t [s]", ylabel="handle position x [mm]", title="The wall under a push alone")
+    axes.legend(loc="upper right", fontsize="small")
+
+
+def _draw_own(axes, found):
+    _, log = found.own_run
+    for name, label, style in (("x", "handle x", STYLES[0]), ("z", "mass z", STYLES[1])):
+        axes.plot(log.t, 1e3 * getattr(log, name), label=label, **style)
+    stop = 1e3 * log.parameters["z_o"]
+    axes.axhline(stop, color="grey", linewidth=1.5, label=f"the mass meets its wall, {stop:.3g} mm")
+    axes.set(xlabel="time t [s]", ylabel="position [mm]", title="A mass on a coupler, from its equation of motion")
+    axes.set_xlim(0, min(1.0, log.t[-1]))
+    axes.legend(loc="lower right", fontsize="small")
+
+
+def write(found, folder):
+    """Write figure and telemetry; return name -> path."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    figure = folder / "demo.png"
+    draw(found).savefig(figure)
+    stiff = max(found.walls)
+    return {
+        "figure": figure,
+        "wall_telemetry": found.walls[stiff][1].to_csv(folder / "wall.csv"),
+        "own_scene_telemetry": found.own_run[1].to_csv(folder / "mass_on_coupler.csv"),
+    }
