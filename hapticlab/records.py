@@ -175,7 +175,7 @@ class Telemetry:
                 channels = {name: file[f"channel.{name}"] for name in about.pop("order")}
                 arrays = {name: file[name] for name in ("t", "x", "v", "F", *FLAGS)}
         except (KeyError, ValueError) as problem:
-            raise AnalysisError(f"{path} is not a telemetry file ({problem}); needs one written by log.save()") from None
+            raise AnalysisError(f"{path} is not a telemetry file ({problem}); needs one of log.save()") from None
         return cls(**arrays, **about, channels=channels)
 
     def to_csv(self, path):

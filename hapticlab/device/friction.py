@@ -1,18 +1,19 @@
 """Coulomb friction located inside the period: slip, stop, stick, break away, reverse; nothing is smeared.
 
-Over a piece h with b h/M and k h^2/M small, a slipping handle obeys v'' = -(b/M) v' - (k/M) v. Its velocity is a Taylor
-polynomial to machine accuracy, and its acceleration changes sign at most once: so it stops where the polynomial has its
-first zero, found by a fixed number of safeguarded Newton steps. A stuck handle waits until the net force, linear in time,
-leaves [-coulomb, coulomb]. All of it is straight-line arithmetic; unneeded phases last no time.
+Over a piece h with b h/M and k h^2/M small, a slipping handle obeys v'' = -(b/M) v' - (k/M) v. Its velocity is a
+Taylor polynomial to machine accuracy, and its acceleration changes sign at most once: so it stops where the polynomial
+has its first zero, found by a fixed number of safeguarded Newton steps. A stuck handle waits until the net force, linear
+in time, leaves [-coulomb, coulomb]. All of it is straight-line arithmetic; unneeded phases last no time.
 """
 
 import math
 from typing import Any, NamedTuple
 
-from ..compiler.trace import equal, maximum, minimum, select
+from ..compiler.trace import equal, maximum, minimum, select, sqrt
 
 #: number of terms -> growth rate of the derivatives, per piece, for which the first neglected term is below 1e-17
 TERMS = {8: 0.028, 12: 0.2, 20: 1.0}
+#: from the zero of the parabola: over 6000 random pieces the worst error is 2e-7, 4e-13, 1e-15 after 4, 5, 6
 NEWTON_STEPS = 6
 
 
@@ -31,8 +32,8 @@ class Piece(NamedTuple):
 def resolution(length, M, b, k):
     """Return how many pieces to cut a stretch [s] into, and how many Taylor terms each needs.
 
-    The derivatives of v grow by at most g h from one to the next, where g solves g^2 = (b/M) g + k/M; h is chosen so that
-    g h <= 1, which also leaves room for one zero of a homogeneous solution only.
+    The derivatives of v grow by at most g h from one to the next, where g solves g^2 = (b/M) g + k/M; h is chosen so
+    that g h <= 1, which also leaves room for one zero of a homogeneous solution only.
     """
     g = (b / M + math.sqrt((b / M) ** 2 + 4 * k / M)) / 2
     pieces = max(1, math.ceil(g * length))
@@ -103,16 +104,22 @@ def _first_zero(series, rest, turns):
         rate = [j * c for j, c in enumerate(series)][1:]
         dips = (rate[0] < 0.0) & (_at(rate, rest) > 0.0)
         end = select(dips, _zero([-c for c in rate], rest, rest * 0.5), rest)
-    last = _at(series, end)
-    stopped = last <= 0.0
-    chord = end * series[0] / select(stopped, series[0] - last + 1e-300, 1.0)
-    guess = select(series[0] > 0.0, chord, end) if turns else chord
-    return select(stopped, _zero(series, end, guess), rest), stopped
+    stopped = _at(series, end) <= 0.0
+    return select(stopped, _zero(series, end, _zero_of_parabola(*series[:3])), rest), stopped
+
+
+def _zero_of_parabola(c, b, a):
+    """Return the first positive zero of c + b t + a t^2, c >= 0; its vertex if it has none, -1 if it only rises."""
+    root = sqrt(maximum(b * b - 4.0 * (a * c), 0.0))
+    rising = b > 0.0
+    over, under = select(rising, b + root, 2.0 * c), select(rising, -2.0 * a, root - b)
+    return select(under > 0.0, over / select(under > 0.0, under, 1.0), -1.0)
 
 
 def _zero(series, end, guess):
     """Return where a polynomial that is positive at 0 and not at end is zero: Newton, bisecting where that leaves."""
-    low, high, at = 0.0, end, guess
+    low, high = 0.0, end
+    at = select((0.0 <= guess) & (guess <= end), guess, end * 0.5)
     rate = [j * c for j, c in enumerate(series)][1:]
     for _ in range(NEWTON_STEPS):
         value, slope = _at(series, at), _at(rate, at)

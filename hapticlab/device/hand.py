@@ -102,12 +102,13 @@ class Hand:
 
 def require(name, value, unit, owner, reason="", low=-math.inf, above=None):
     """Return value as a float, or raise PaddleError, in words, unless it is finite and >= low (and > above)."""
-    unit = f" {unit}" if unit else ""
-    bound = f"{name} > {above:g}" if above is not None else f"{name} >= {low:g}" if low > -math.inf else f"a finite {name}"
+    unit = f" {unit}"
+    bound = f"{name} >= {low:g}" if low > -math.inf else f"a finite {name}"
+    bound = bound if above is None else f"{name} > {above:g}"
     try:
         number = float(value)
     except (TypeError, ValueError):
-        raise PaddleError(f"{name} = {value!r}; {owner} needs {bound}, a number{' in' + unit if unit else ''}.") from None
+        raise PaddleError(f"{name} = {value!r}; {owner} needs {bound}, a number in{unit}.") from None
     if not math.isfinite(number) or number < low or (above is not None and number <= above):
         reason = reason if math.isfinite(number) else "It must be finite."
         raise PaddleError(f"{name} = {number:g}{unit}; {owner} needs {bound}. {reason}".rstrip())

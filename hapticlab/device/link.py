@@ -6,8 +6,9 @@ precision; everything around it is f64.
 
 from dataclasses import replace
 
-from ..compiler.ir import Block, Channel, Instruction, Program
+from ..compiler.ir import Channel, Program
 from ..compiler.trace import Builder, cast, equal, floor, select
+from .unused import drop_unused_states
 
 #: largest finite numbers: |a| <= LARGEST is false for nan and for both infinities
 LARGEST = {"f32": 3.4028234663852886e38, "f64": 1.7976931348623157e308}
@@ -24,23 +25,35 @@ def link(program, paddle, measure=None):
     measure : object, optional
         ``outputs`` and ``states`` (tuples of Channel), ``init(sample) -> states`` and ``update(sample, states) ->
         (outputs, next_states)`` over traced values. Its outputs replace the traces, so that a sweep stores none.
-        ``sample`` is a dict: ``x``, ``v`` as sensed, in the scene's real type; ``x_true``, ``v_true`` [f64] at the sample;
-        and in ``update`` also ``F`` [N, f64] after saturation, ``F_applied`` [N, f64] the force felt from the switching
-        instant of this period to that of the next, ``x_switch`` [m, f64] the handle there, ``x_next``, ``v_next`` [f64] at
-        the next sample, ``tick`` (i32, 0 at the first sample), ``fault`` (bool) and the watched channels by name.
+        ``sample`` is a dict: ``x``, ``v`` as sensed, in the scene's real type; ``x_true``, ``v_true`` [f64] at the
+        sample; ``tick`` (i32, 0 at the first sample); and in ``update``, not in ``init``, also ``F`` [N, f64] after
+        saturation, ``F_applied`` [N, f64] the force felt from the switching instant in this period to that in the next,
+        ``x_switch`` [m, f64] the handle at that instant, ``x_next``, ``v_next`` [f64] the handle at the next sample,
+        ``fault`` (bool) and the watched channels by name.
 
     Returns
     -------
     Program
         Parameters: the scene's, then those of ``paddle.plant_values()``. Inputs: those of ``paddle.inputs(ticks)``.
         Outputs without measure: x, v, F, the watched channels, then x_true and v_true under an encoder or noise,
-        F_applied under a whole sample of delay, x_switch under a fraction of one, and fault: 0, or 1 where F is not finite,
-        or 2 + the position of the state that is not.
+        F_applied under a whole sample of delay, x_switch under a fraction of one, and fault: 0, or 1 where F is not
+        finite, or 2 + the position of the state that is not. Until the first force arrives the motor gives none.
 
     Raises
     ------
     PaddleError
         If the program was compiled for another T or wants what the paddle does not sense.
+
+    Examples
+    --------
+    >>> from hapticlab.compiler.lower import compile
+    >>> from hapticlab.device.simulated import SimulatedPaddle, link
+    >>> from hapticlab.scene.scene import Scene
+    >>> from hapticlab.scene.symbols import n, parameters, x
+    >>> k = parameters("k", units="N/m")
+    >>> linked = link(compile(Scene(force=k * x(n)), T=1e-3), SimulatedPaddle(m=0.05, b=0.1, T=1e-3))
+    >>> [c.name for c in linked.outputs], [c.name for c in linked.parameters][:2]
+    (['x', 'v', 'F', 'fault'], ['k', 'plant.phi_xv'])
     """
     loop = _Loop(paddle.accept(program), paddle, measure)
     init = loop.trace_init()
@@ -102,10 +115,8 @@ class _Loop:
 
     def _leaves(self, builder, states):
         """Return parameters, inputs and states by name."""
-        groups = {"param": self.parameters, "input": self.inputs, "state": tuple(self.states.values()) if states else ()}
-        return {
-            op: {c.name: builder.leaf(op, k, c.type) for k, c in enumerate(channels)} for op, channels in groups.items()
-        }
+        groups = {"param": self.parameters, "input": self.inputs, "state": self.states.values() if states else ()}
+        return {op: {c.name: builder.leaf(op, k, c.type) for k, c in enumerate(group)} for op, group in groups.items()}
 
     def _sense(self, p, inputs, x, v, before):
         """Return what the scene sees of the handle; before is the position sensed last, None at the first sample."""
@@ -117,7 +128,8 @@ class _Loop:
             counts = floor(counts if self.paddle.rounding == "floor" else counts + 0.5)
             seen = cast(counts, self.real) * p["plant.metres_per_count"]
         seen = cast(seen, self.real)
-        return {"x": seen, "v": (seen - (seen if before is None else before)) * p["plant.rate"], "x_true": x, "v_true": v}
+        moved = seen - (seen if before is None else before)
+        return {"x": seen, "v": moved * p["plant.rate"], "x_true": x, "v_true": v}
 
     def _scene(self, builder, block, p, sample, states):
         return builder.inline(
@@ -157,17 +169,13 @@ class _Loop:
         # Forces computed earlier and not yet felt, the newest first; a fault silences them all.
         past = [old[f"plant.F_{k + 1}"] for k in range(self.plant.whole + self.plant.split)]
         forces = [select(equal(fault, 0.0), force, 0.0) for force in (F, *past)]
-        applied, before = forces[self.plant.whole], forces[-1]
-        if self.plant.split:
-            before = past[-1]
-        x_switch, x, v = self.plant.step(
-            p, old["plant.x"], old["plant.v"], before, applied, inputs.get("intent", 0.0), inputs.get("intent.rate", 0.0)
-        )
+        applied, before = forces[self.plant.whole], past[-1] if self.plant.split else None
+        intent = inputs.get("intent", 0.0), inputs.get("intent.rate", 0.0)
+        x_switch, x, v = self.plant.step(p, old["plant.x"], old["plant.v"], before, applied, *intent)
         new = {f"scene.{c.name}": s for c, s in zip(self.program.states, scene, strict=True)}
         new.update({f"plant.F_{k + 1}": forces[k] for k in range(len(past))})
-        one = builder.const(1, "i32")
         new.update({"plant.x": x, "plant.v": v, "fault": fault, "sensed.x": sample["x"]})
-        new["tick"] = builder.emit("iadd", old["tick"], one)
+        new["tick"] = builder.emit("iadd", old["tick"], builder.const(1, "i32"))
         sample.update(watched | {"F": F, "F_applied": applied, "x_switch": x_switch, "x_next": x, "v_next": v})
         sample.update(tick=old["tick"], fault=fault > 0.0)
         if self.measure:
@@ -209,43 +217,3 @@ def _fault(before, values):
     if not hasattr(found, "type"):
         return before
     return select(before > 0.0, before, found)
-
-
-def drop_unused_states(program):
-    """Return the program without the states that no output depends on, however indirectly."""
-    block = program.tick
-    reach = [0] * len(block.instructions)  # bit s of reach[k]: instruction k depends on state s
-    for k, i in enumerate(block.instructions):
-        reach[k] = 1 << i.index if i.op == "state" else 0
-        for a in i.args:
-            reach[k] |= reach[a]
-    live = 0
-    for k in block.outputs:
-        live |= reach[k]
-    while True:
-        grown = live
-        for s, k in enumerate(block.states):
-            if live >> s & 1:
-                grown |= reach[k]
-        if grown == live:
-            break
-        live = grown
-    keep = [s for s in range(len(program.states)) if live >> s & 1]
-    states = tuple(program.states[s] for s in keep)
-    return replace(program, states=states, init=_keep(program.init, keep), tick=_keep(block, keep))
-
-
-def _keep(block, keep):
-    """Return the block handing out some of its states, without the instructions only the others needed."""
-    new_index = {s: k for k, s in enumerate(keep)}
-    wanted = set(block.outputs) | {block.states[s] for s in keep}
-    for k in range(len(block.instructions) - 1, -1, -1):
-        if k in wanted:
-            wanted.update(block.instructions[k].args)
-    order = {old: new for new, old in enumerate(sorted(wanted))}
-    kept = []
-    for old in sorted(wanted):
-        i = block.instructions[old]
-        index = new_index[i.index] if i.op == "state" else i.index
-        kept.append(Instruction(i.op, tuple(order[a] for a in i.args), i.type, i.value, index))
-    return Block(tuple(kept), tuple(order[k] for k in block.outputs), tuple(order[block.states[s]] for s in keep))

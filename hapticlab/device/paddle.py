@@ -46,7 +46,7 @@ class Paddle(ABC):
             raise PaddleError(f"duration = {duration!r} s; needs a finite duration > 0 s.")
         ticks = round(duration / self.T)
         if ticks < 1:
-            raise PaddleError(f"duration = {duration:g} s is shorter than one period T = {self.T:g} s; needs at least T.")
+            raise PaddleError(f"duration = {duration:g} s; needs at least one period T = {self.T:g} s.")
         return ticks
 
     def program(self, scene, **options):
@@ -61,7 +61,8 @@ class Paddle(ABC):
             raise PaddleError(f"{scene!r} is no scene; a paddle runs a Scene or a compiled Program.")
         if isinstance(scene, Program):
             if options:
-                raise PaddleError(f"{', '.join(options)}: a program is compiled already; give compile options with a scene.")
+                given = ", ".join(options)
+                raise PaddleError(f"{given}: a program is compiled already; give compile options with a scene.")
             program = scene
         else:
             program = compile(scene, T=self.T, velocity=self.velocity, **options)

@@ -45,8 +45,8 @@ def transition(M, b, k, h):
     """
     from scipy.linalg import expm
 
-    # In time over h, with v h, u h^2/M and d h^3/M as coordinates, every entry is of order one and so keeps its relative
-    # accuracy; in SI units h^3/6M would drown beside 1.
+    # In time over h, with v h, u h^2/M and d h^3/M as coordinates, every entry is of order one and so keeps its
+    # relative accuracy; in SI units h^3/6M would drown beside 1.
     A = np.array([[0, 1, 0, 0], [-k * h * h / M, -b * h / M, 1, 0], [0, 0, 0, 1], [0, 0, 0, 0]])
     E = expm(A)
     scale = {"x": 1.0, "v": h, "u": h * h / M, "d": h**3 / M}

@@ -12,8 +12,8 @@ hapkit = PaddleProfile(
     force_max=3.3,
     nominal=True,
     source=(
-        "published Hapkit sketches and dimensions for 12.8 um per count and 3.3 N (the lower of the published peaks, 3.3 to "
-        "8 N); m and b are published nowhere: round, illustrative values"
+        "published Hapkit sketches and dimensions for 12.8 um per count and 3.3 N (the lower of the published peaks, "
+        "3.3 to 8 N); m and b are published nowhere: round, illustrative values"
     ),
 )
 eth = PaddleProfile(
@@ -23,7 +23,8 @@ eth = PaddleProfile(
     nominal=True,
     source=(
         "ETH Zurich teaching paddle, published inertias, motor damping and pulley ratio (github.com/WilliamLinxw/"
-        "Physical-Human-Robot-Interaction-Lab) reflected to the handle at 65 mm; encoder, friction and force limit not included"
+        "Physical-Human-Robot-Interaction-Lab) reflected to the handle at 65 mm; encoder, friction and force limit "
+        "not included"
     ),
 )
 PROFILES = {p.name: p for p in (hapkit, eth)}

@@ -42,7 +42,7 @@ class SimulatedPaddle(Paddle):
     T : float
         Sampling period [s], T > 0.
     delay : float
-        Computational delay [s], delay >= 0, any fraction of T: the force computed from sample n is felt from n T + delay.
+        Computational delay [s], delay >= 0, whole or not: the force computed from sample n is felt from n T + delay on.
     counts_per_metre : float, optional
         Encoder counts per metre [1/m]. The scene then sees counts/counts_per_metre, in its own precision, and v by
         backward difference. Without encoder and noise it sees x, and v exactly.
@@ -110,12 +110,13 @@ class SimulatedPaddle(Paddle):
 
     @classmethod
     def from_profile(cls, profile, **changes):
-        """Return a paddle with the constants of a profile or of its name, some changed: ``from_profile("eth", T=5e-4)``."""
+        """Return a paddle with the constants of a profile, given itself or by name: ``from_profile("eth", T=5e-4)``."""
         profile = named_profile(profile) if isinstance(profile, str) else profile
         names = {f.name for f in fields(cls)} & {f.name for f in fields(PaddleProfile)}
         unknown = sorted(set(changes) - {f.name for f in fields(cls)})
         if unknown:
-            raise PaddleError(f"{unknown[0]} is not an argument of SimulatedPaddle; it has {', '.join(sorted(names))}, ...")
+            known = ", ".join(f.name for f in fields(cls))
+            raise PaddleError(f"{unknown[0]} is not an argument of SimulatedPaddle; it has {known}.")
         return cls(**{**{name: getattr(profile, name) for name in names}, "profile": profile, **changes})
 
     @property
@@ -193,10 +194,9 @@ class SimulatedPaddle(Paddle):
         if code.any():
             first = int(np.argmax(code > 0))
             names = ["the force F", *(f"the state {c.name}" for c in program.states)]
-            fault = (
-                f"tick {first} (t = {first * self.T:g} s): {names[int(code[first]) - 1]} of {program.name} was not finite; "
-                "the motor is off from there on"
-            )
+            culprit = f"{names[int(code[first]) - 1]} of {program.name}"
+            when = f"tick {first} (t = {first * self.T:g} s)"
+            fault = f"{when}: {culprit} was not finite; the motor is off from there on"
             columns.setdefault("F_applied", np.where(code > 0, 0.0, F))
         limited = np.abs(F) >= self.force_max if self.force_max is not None else None
         return Telemetry(

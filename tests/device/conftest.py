@@ -1,6 +1,5 @@
 """Scenes and programs the device tests run."""
 
-import numpy as np
 import pytest
 
 from hapticlab.compiler.ir import Block, Channel, Program
@@ -15,20 +14,8 @@ def spring():
     """F = K x(n), on both sides: no switching, so everything is linear."""
 
     def make(K, T=1e-3, dtype="float64", velocity="measured"):
-        (k,) = np.atleast_1d(parameters("k", units="N/m"))
+        k = parameters("k", units="N/m")
         return compile(Scene(force=k * x(n), name="spring")(k=K), T=T, dtype=dtype, velocity=velocity)
-
-    return make
-
-
-@pytest.fixture
-def constant_force():
-    """F = a constant, whatever the handle does."""
-
-    def make(F, T=1e-3):
-        builder = Builder("f64")
-        tick = builder.block([builder.const(F)])
-        return Program("constant", (Channel("x", "m", "f64"),), (), (), (Channel("F", "N", "f64"),), Block(), tick, T)
 
     return make
 

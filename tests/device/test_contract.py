@@ -18,7 +18,7 @@ PADDLES = {
     "pushed": lambda: SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=Hand(push=2.0)),
     "encoder": lambda: SimulatedPaddle(m=0.05, b=0.1, T=5e-4, counts_per_metre=2e4, rounding="nearest", hand=HAND),
     "late": lambda: SimulatedPaddle(m=0.05, b=0.1, T=1e-3, delay=1.3e-3, hand=HAND),
-    "everything": lambda: SimulatedPaddle.from_profile("hapkit", T=1e-3, delay=4e-4, coulomb=0.05, hand=HAND, noise=1e-5),
+    "everything": lambda: SimulatedPaddle.from_profile("hapkit", delay=4e-4, coulomb=0.05, hand=HAND, noise=1e-5),
 }
 k, x_o = parameters("k x_o", units="N/m m")
 z = coordinate("z", unit="m")
@@ -75,7 +75,8 @@ def test_bad_durations_are_refused(paddle, duration):
 
 
 def test_unbound_parameters_are_named_with_the_cure(paddle):
-    with pytest.raises(ParameterError, match=r"wall: no value for x_o \[m\]; bind them before the run: scene\(x_o=\.\.\.\)"):
+    said = r"wall: no value for x_o \[m\]; bind them before the run: scene\(x_o=\.\.\.\)"
+    with pytest.raises(ParameterError, match=said):
         paddle.run(WALL(k=150), duration=0.05)
 
 

@@ -89,7 +89,8 @@ def test_delay_is_split_exactly(delay, whole, fraction):
 
 def test_only_what_the_paddle_has_is_a_parameter():
     def names(**given):
-        return [c.name.removeprefix("plant.") for c in plant_of(SimulatedPaddle(m=1, b=0.1, T=1e-3, **given)).channels()]
+        plant = plant_of(SimulatedPaddle(m=1, b=0.1, T=1e-3, **given))
+        return [c.name.removeprefix("plant.") for c in plant.channels()]
 
     assert names() == ["phi_xv", "phi_xu", "phi_vv", "phi_vu"]
     assert names(hand=Hand(push=1)) == ["push", "phi_xv", "phi_xu", "phi_vv", "phi_vu"]

@@ -182,7 +182,7 @@ def test_what_a_paddle_cannot_run_is_refused(spring):
 
 
 def test_a_measured_velocity_is_not_promised_by_an_encoder():
-    (B,) = np.atleast_1d(parameters("B", units="N*s/m"))
+    B = parameters("B", units="N*s/m")
     damper = Scene(force=B * v(n), name="damper")(B=2)
     program = compile(damper, T=1e-3, velocity="measured")
     with pytest.raises(PaddleError, match="damper wants a measured v; this paddle has only its backward difference"):
