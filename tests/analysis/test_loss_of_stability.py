@@ -15,7 +15,9 @@ STEP = 0.004  # relative step of the grid in K, which the limit must fall into
 
 
 def growth(scene, paddle, K, **options):
-    return hl.sweep(scene, paddle, metric="growth", duration=20.0, progress=False, k=K, **options).values
+    """Return the growth rates [1/s]; a run that overflowed, and so ended in a fault, has grown without bound."""
+    rates = hl.sweep(scene, paddle, metric="growth", duration=20.0, progress=False, k=K, **options).values
+    return np.where(np.isnan(rates), np.inf, rates)
 
 
 @pytest.mark.parametrize("delay", [0.0, PERIOD])
@@ -51,15 +53,13 @@ def test_the_plain_unilateral_wall_begins_to_chatter_at_the_exact_limit(delay):
     assert (rates[K > exact] > 0).all(), rates
 
 
-@pytest.mark.parametrize("law", ["backward_difference", "ellis"])
-def test_a_predictive_law_behind_a_switch_chatters_earlier(law):
-    """The linear limit does not hold for a switched predictor: well under it, bouncing is already sustained."""
-    paddle = hl.SimulatedPaddle(m=0.05, b=0.02, T=PERIOD, hand=hl.Hand(push=1.0))
-    exact = hl.stability_limit(paddle, law=law).K
-    K = exact * np.array([0.3, 0.5, 0.7, 0.9])
-    linear = growth(hl.wall(law, unilateral=None), paddle, K, x=0.05)
-    assert (linear < 0).all()
-    switched = hl.sweep(hl.wall(law), paddle, metric="chatter", duration=20.0, progress=False, k=K, x=-0.05).values
-    plain = hl.stability_limit(paddle).K
-    assert (switched > 0).any(), switched
-    assert K[switched > 0].min() > plain  # and still later than the wall without prediction
+def test_a_predictive_law_behind_a_switch_chatters_earlier():
+    """Under its linear limit a gated predictor already bounces for ever; clipped, or always acting, it comes to rest."""
+    paddle = hl.SimulatedPaddle(m=0.166, b=0.057, T=PERIOD, hand=hl.Hand(push=1.0))
+    K = 0.96 * hl.stability_limit(paddle, law="backward_difference").K
+    swing = {}
+    for unilateral in ("gate", "clip", None):
+        wall = hl.wall("backward_difference", unilateral)
+        swing[unilateral] = hl.sweep(wall, paddle, duration=40.0, progress=False, k=[K], x=-0.02).values[0]
+    assert swing["gate"] > 1e-4
+    assert swing["clip"] == swing[None] == 0
