@@ -5,6 +5,7 @@ import numpy as np
 from ..errors import EngineMissingError, ProgramError
 from .interpreter import Interpreter
 from .llvm import Llvm, llvmlite_is_ready
+from .vm import Vm
 
 ENGINES = ("auto", "llvm", "interpreter", "vm")
 
@@ -80,7 +81,7 @@ def load(program, engine="auto"):
     """
     if engine not in ENGINES:
         raise ProgramError(f"engine = {engine!r}; needs one of {', '.join(ENGINES)}")
-    kernels = {"interpreter": Interpreter, "llvm": Llvm}
+    kernels = {"interpreter": Interpreter, "llvm": Llvm, "vm": Vm}
     if engine == "auto":
         engine = "llvm" if llvmlite_is_ready() else "interpreter"
     if engine not in kernels:
