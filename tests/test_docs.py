@@ -1,0 +1,69 @@
+"""What the documents promise: README's code runs, and its two commands are the ones CI runs."""
+
+import re
+import shlex
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import hapticlab as hl
+from hapticlab.cli import main
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text("utf-8")
+
+
+def blocks(language):
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.M | re.S)
+
+
+def test_readme_python_runs(capsys):
+    names = {}
+    for block in blocks("python"):
+        exec(compile(block, "README.md", "exec"), names)
+    assert names["log"].x.shape == (20_000,)
+    assert names["grid"].values.shape == (200, 3)
+    assert names["program"].outputs[0].name == "F"
+    printed = capsys.readouterr().out
+    assert "200 N/m" in printed  # 2 b/T of this paddle, Eq. (23.10)
+    assert "200.067 N/m" in printed  # its eigenvalues: 2 b/T (1 + b T/(6 m)), within 1e-6
+
+
+def test_readme_begins_with_the_two_commands():
+    demo, tests = (block.strip() for block in blocks("sh")[:2])
+    assert demo.endswith("hapticlab demo")
+    assert tests.endswith("pytest")
+    assert "\n" not in demo + tests
+    assert README.index(tests) < README.index("## ")
+
+
+@pytest.mark.parametrize("ending", ["hapticlab demo", "pytest"])
+def test_ci_runs_what_readme_says(ending):
+    script = (ROOT / ".ci" / "run").read_text("utf-8")
+    (line,) = re.findall(rf"^\w+=\$\((grep .*{ending}\$.*README.md)\)$", script, re.M)
+    found = subprocess.run(shlex.split(line), cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+    assert found in (block.strip() for block in blocks("sh")[:2])
+    name = re.search(rf"^(\w+)=.*{ending}\$", script, re.M)[1]
+    assert f'eval "${name}"' in script
+
+
+def test_readme_command_of_a_scene_file_runs(tmp_path, capsys):
+    (command,) = (shlex.split(line) for line in "".join(blocks("sh")).splitlines() if "hapticlab run" in line)
+    command = [str(ROOT / word) if word.endswith(".py") else word for word in command[1:]]
+    assert main([*command, "--out", str(tmp_path)]) == 0
+    assert "K = 500" in capsys.readouterr().out
+
+
+def test_public_names_are_documented_and_exist():
+    assert sorted(hl.__all__) == hl.__all__
+    undocumented = [name for name in hl.__all__ if callable(getattr(hl, name)) and not getattr(hl, name).__doc__]
+    assert not undocumented
+    assert f"Version {'.'.join(hl.__version__.split('.')[:2])}," in README
+
+
+def test_files_named_in_the_documents_exist():
+    contributing = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    named = set(re.findall(r"`((?:tests|firmware|hapticlab|\.ci)/[\w/.]+)`", README + contributing))
+    assert len(named) >= 5
+    assert [path for path in sorted(named) if not (ROOT / path).exists()] == []
