@@ -257,7 +257,7 @@ def _is_neg(v):
 def _simplify_add(builder, operands, constants, type):
     for (a, b), c in ((operands, constants[1]), (operands[::-1], constants[0])):
         if c == 0:
-            return a
+            return a  # exact but for -0 + 0, which stays -0
         if _is_neg(b) is not None:
             return a - _is_neg(b)
     return None
@@ -268,7 +268,7 @@ def _simplify_sub(builder, operands, constants, type):
     if constants[1] == 0:
         return a
     if constants[0] == 0:
-        return -b
+        return -b  # exact but for 0 - 0, which becomes -0
     return a + _is_neg(b) if _is_neg(b) is not None else None
 
 
@@ -285,8 +285,8 @@ def _simplify_div(builder, operands, constants, type):
     a, c = operands[0], constants[1]
     if constants[0] == 0 and c is None:
         return builder.const(0.0, type)
-    if c is not None and math.isfinite(c) and c != 0 and abs(math.frexp(c)[0]) == 0.5 and abs(c) < 2.0**100:
-        return a * (1 / c)  # a power of two has an exact reciprocal
+    if c is not None and 2.0**-100 < abs(c) < 2.0**100 and abs(math.frexp(c)[0]) == 0.5:
+        return a * (1 / c)  # a power of two has an exact reciprocal, in either type within these bounds
     return None
 
 
