@@ -6,7 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..compiler.engine import load
-from ..device.simulated import link
+from ..device.link import link
+from ..device.progress import bar
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from .measures import METRICS, WithFault
@@ -177,8 +178,6 @@ class _Grid:
 
 def _measure(grid, settings, duration, metric, engine, progress):
     """Return the points of settings that share a program, and the metric there."""
-    from tqdm import tqdm
-
     paddle = grid.paddles[settings[0]]
     cells = np.flatnonzero(np.isin(grid.setting, settings))
     ticks = paddle.ticks(duration)
@@ -187,13 +186,13 @@ def _measure(grid, settings, duration, metric, engine, progress):
     loaded = load(link(program, paddle, WithFault(measure)), engine)
     inputs, parameters = paddle.inputs(ticks), grid.parameters(program, settings, cells)
     last = []
-    with tqdm(total=ticks * len(cells), delay=2, disable=not progress, unit="tick", leave=False) as bar:
+    with bar(ticks * len(cells), show=progress) as shown:
         for lanes in np.array_split(parameters, range(LANES, len(cells), LANES), axis=1):
             states = None
             for start in range(0, ticks, TICKS):
                 rows = inputs[start : start + TICKS]
                 outputs, states = loaded.run(len(rows), rows, lanes, states, every=len(rows))
-                bar.update(len(rows) * lanes.shape[1])
+                shown.update(len(rows) * lanes.shape[1])
             last.append(outputs[-1])
     *numbers, fault = np.concatenate(last, axis=1)
     counts = np.array([1 / p.counts_per_metre if p.counts_per_metre else 0.0 for p in grid.paddles])

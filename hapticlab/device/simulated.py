@@ -12,6 +12,8 @@ from .link import link
 from .paddle import Paddle
 from .plant import delay_parts, plant_of, values
 from .profiles import profile as named_profile
+from .progress import progress_bar
+from .progress import bar
 
 __all__ = ["SimulatedPaddle", "link"]
 
@@ -233,13 +235,11 @@ class SimulatedPaddle(Paddle):
 
 def _run_in_chunks(loaded, inputs, parameters, chunk, progress):
     """Run, with a bar that appears only after two seconds; return outputs of shape (ticks, outputs)."""
-    from tqdm import tqdm
-
     ticks, states, done = len(inputs), None, []
-    with tqdm(total=ticks, delay=2, disable=not progress, unit="tick", leave=False) as bar:
+    with bar(ticks, show=progress) as shown:
         for start in range(0, ticks, chunk):
             rows = inputs[start : start + chunk]
             outputs, states = loaded.run(len(rows), rows, parameters, states)
             done.append(outputs[:, :, 0])
-            bar.update(len(rows))
+            shown.update(len(rows))
     return np.concatenate(done)
