@@ -7,7 +7,7 @@ import numpy as np
 
 from ..compiler.engine import load
 from ..device.link import link
-from ..device.progress import bar
+from ..device.progress import progress_bar
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from .measures import METRICS, WithFault
@@ -186,7 +186,7 @@ def _measure(grid, settings, duration, metric, engine, progress):
     loaded = load(link(program, paddle, WithFault(measure)), engine)
     inputs, parameters = paddle.inputs(ticks), grid.parameters(program, settings, cells)
     last = []
-    with bar(ticks * len(cells), show=progress) as shown:
+    with progress_bar(ticks * len(cells), progress) as shown:
         for lanes in np.array_split(parameters, range(LANES, len(cells), LANES), axis=1):
             states = None
             for start in range(0, ticks, TICKS):

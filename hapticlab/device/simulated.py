@@ -12,8 +12,6 @@ from .link import link
 from .paddle import Paddle
 from .plant import delay_parts, plant_of, values
 from .profiles import profile as named_profile
-from .progress import progress_bar
-from .progress import bar
 
 __all__ = ["SimulatedPaddle", "link"]
 
@@ -236,7 +234,7 @@ class SimulatedPaddle(Paddle):
 def _run_in_chunks(loaded, inputs, parameters, chunk, progress):
     """Run, with a bar that appears only after two seconds; return outputs of shape (ticks, outputs)."""
     ticks, states, done = len(inputs), None, []
-    with bar(ticks, show=progress) as shown:
+    with progress_bar(ticks, progress) as shown:
         for start in range(0, ticks, chunk):
             rows = inputs[start : start + chunk]
             outputs, states = loaded.run(len(rows), rows, parameters, states)
