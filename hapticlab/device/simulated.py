@@ -12,6 +12,7 @@ from .link import link
 from .paddle import Paddle
 from .plant import delay_parts, plant_of, values
 from .profiles import profile as named_profile
+from .progress import progress_bar
 
 __all__ = ["SimulatedPaddle", "link"]
 
