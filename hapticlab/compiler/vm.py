@@ -7,6 +7,7 @@ import ctypes
 import functools
 import hashlib
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -101,19 +102,19 @@ def c_compiler():
     )
 
 
-def build_command(compiler, folder, word_bits, target, sources=SOURCES):
+def build_command(compiler, word_bits, target, *flags, sources=SOURCES):
     """Return the command that compiles sources of the firmware folder into target."""
+    folder = firmware_folder()
     includes = [f"-I{folder / name}" for name in ("core", "generated", "boards/host")]
     math = [] if os.name == "nt" else ["-lm"]
     files = [str(folder / s) for s in sources]
-    return [*compiler, *FLAGS, f"-DHL_WORD_BITS={word_bits}", *includes, *files, "-o", str(target), *math]
+    return [*compiler, *FLAGS, *flags, f"-DHL_WORD_BITS={word_bits}", *includes, *files, "-o", str(target), *math]
 
 
-@functools.lru_cache(maxsize=None)
-def load_library(word_bits):
+@functools.cache
+def load_library(word_bits, *flags):
     """Return the machine as a shared library, built now if the cache has none of these sources and flags."""
-    path = _built_library(c_compiler, word_bits)
-    library = ctypes.CDLL(str(path))
+    library = ctypes.CDLL(str(_built_library(word_bits, flags)))
     pointer, i64 = ctypes.c_void_p, ctypes.c_int64
     program = [ctypes.c_char_p, ctypes.c_uint32, pointer, ctypes.c_uint16]
     library.hl_host_verify.argtypes = program
@@ -121,20 +122,21 @@ def load_library(word_bits):
     return library
 
 
-def _built_library(find_compiler, word_bits):
+def _built_library(word_bits, flags):
     folder = firmware_folder()
+    flags = ("-shared", *(() if os.name == "nt" else ("-fPIC",)), *flags)
     headers = sorted(p for part in ("core", "generated", "boards/host") for p in (folder / part).glob("*.h"))
     text = b"".join(p.read_bytes() for p in (*headers, *(folder / s for s in SOURCES)))
-    key = hashlib.sha256(text + repr((FLAGS, word_bits, sys.platform, os.name, _machine())).encode()).hexdigest()[:20]
+    text += repr((FLAGS, flags, word_bits, sys.platform, sys.maxsize, platform.machine())).encode()
     suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
-    path = _cache_folder() / f"vm{word_bits}-{key}{suffix}"
+    path = _cache_folder() / f"vm{word_bits}-{hashlib.sha256(text).hexdigest()[:20]}{suffix}"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
         # built aside and renamed: another process sees the whole library or none
         with tempfile.TemporaryDirectory(dir=path.parent) as aside:
             target = Path(aside, path.name)
-            command = build_command([*find_compiler(), "-shared", *([] if os.name == "nt" else ["-fPIC"])], folder, word_bits, target)
-            done = subprocess.run(command, capture_output=True, text=True)
+            command = build_command(c_compiler(), word_bits, target, *flags)
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
             if done.returncode:
                 raise EngineMissingError(f"the virtual machine did not compile: {' '.join(command)}\n{done.stderr}")
             _put(target, path)
@@ -147,10 +149,6 @@ def _put(target, path):
     except PermissionError:  # Windows: another process has put it there and opened it
         if not path.exists():
             raise
-
-
-def _machine():
-    return f"{os.uname().machine if hasattr(os, 'uname') else os.environ.get('PROCESSOR_ARCHITECTURE')}-{sys.maxsize}"
 
 
 def _cache_folder():
