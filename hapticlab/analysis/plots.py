@@ -30,7 +30,7 @@ NAMES = {
     "x": "handle position x", "v": "handle velocity v", "F": "force F", "k": "stiffness k", "K": "stiffness K",
     "B": "virtual damping B", "T": "sampling period T", "m": "handle mass m", "b": "handle damping b", "delay": "delay",
     "x_o": "wall boundary x_o", "chatter": "chatter amplitude", "growth": "growth of the oscillation", "contacts": "contacts",
-    "energy": "energy generated", "peak_force": "peak force",
+    "energy": "energy drawn from the environment", "peak_force": "peak force",
 }  # fmt: skip
 #: two axes with at most this many values of one are drawn as lines, else as a map
 FAMILY = len(STYLES)

@@ -7,6 +7,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from hapticlab.analysis.passivity import passivity_limit
 from hapticlab.analysis.stability import closed_loop_matrix, closed_loop_poles, stability_limit
 from hapticlab.errors import AnalysisError
 from hapticlab.scene.taps import LEAD, TAPS
@@ -209,3 +210,18 @@ def test_bad_laws_and_keywords_are_refused():
         closed_loop_matrix(paddle(), K=math.nan)
     with pytest.raises(TypeError, match="lawe"):
         stability_limit(paddle(), lawe="zoh")
+
+
+def test_what_is_passive_is_stable():
+    """The two limits come from different mathematics; passivity in any hand must not exceed stability in this one."""
+    rng = np.random.default_rng(3)
+    for _ in range(60):
+        T, delta = 10 ** rng.uniform(-4, -2), 10 ** rng.uniform(-4, 1)
+        m = 10 ** rng.uniform(-3, 0)
+        b = delta * m / T
+        delay = rng.choice([0.0, T, rng.uniform(0, 3) * T, rng.integers(0, 30) * T])
+        grip = rng.choice([None, hand(m=rng.uniform(0, 2) * m, b=rng.uniform(0, 3) * b, k=rng.uniform(0, 1) * m / T**2)])
+        law, B = rng.choice(["zoh", "backward_difference", "ellis"]), rng.choice([0.0, rng.uniform(-0.9, 0.9) * b])
+        passive = passivity_limit(b=b, T=T, B=B, delay=delay, law=law).K
+        stable = stability_limit(paddle(m=m, b=b, T=T, delay=delay, hand=grip), law=law, B=B).K
+        assert 0 < passive <= stable * (1 + 1e-9)
