@@ -1,5 +1,7 @@
 """Seeded random programs of every operation and type, and the comparison of results bit for bit."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from hapticlab.compiler.ir import ELEMENTARY, OPERATIONS, Block, Channel, Instruction, Program
@@ -22,6 +24,28 @@ def random_program(seed, reals=("f32", "f64"), size=80, operations=PRIMITIVE):
     values = random_rows(rng, channels["p"], 1)[:, 0]
     name = f"random{seed}"
     return Program(name, channels["x"], channels["p"], channels["s"], channels["y"], init, tick, 1e-3, tuple(values)).verify()
+
+
+def kept_finite(program):
+    """Return the program with 0 in place of every float32 output and next state past 1e30, infinite or nan."""
+
+    def kept(block):
+        code = list(block.instructions)
+
+        def add(*instruction, **value):
+            code.append(Instruction(*instruction, **value))
+            return len(code) - 1
+
+        def guard(k):
+            if code[k].type != "f32":
+                return k
+            most, zero = (add("const", (), "f32", value=float(np.float32(v))) for v in (1e30, 0.0))
+            return add("select", (add("le", (add("abs", (k,), "f32"), most), "bool"), k, zero), "f32")
+
+        outputs, states = (tuple(guard(k) for k in ids) for ids in (block.outputs, block.states))
+        return Block(tuple(code), outputs, states)
+
+    return replace(program, init=kept(program.init), tick=kept(program.tick)).verify()
 
 
 def random_rows(rng, channels, columns):
