@@ -48,7 +48,7 @@ def wall(law="zoh", unilateral="gate", clamp=False):
     --------
     >>> import hapticlab as hl
     >>> hl.wall("ellis")(k=150, x_o="10 mm").values
-    {'B': 0.0, 'k': 150.0, 'x_o': 0.01}
+    {'B': 0.0, 'x_o': 0.01, 'k': 150.0}
     """
     if law not in TAPS:
         raise SceneError(f"law = {law!r}; needs one of {', '.join(TAPS)}")
@@ -140,7 +140,7 @@ def virtual_coupler(z, *, K, b):
     >>> import hapticlab as hl
     >>> z = hl.coordinate("z", unit="m"); K, b = hl.parameters("K b", units="N/m N*s/m")
     >>> hl.virtual_coupler(z, K=K, b=b)
-    K*(x(t) - z(t)) + b*(v(t) - Derivative(z(t), t))
+    K*(-z(t) + x(t)) + b*(v(t) - Derivative(z(t), t))
     """
     return K * (x(t) - z) + b * (v(t) - z.diff(t))
 

@@ -252,7 +252,7 @@ def when(condition, value, otherwise=0):
     >>> import hapticlab as hl
     >>> k, x_o = hl.parameters("k x_o", units="N/m m")
     >>> hl.when(hl.x(hl.n) >= x_o, k * (hl.x(hl.n) - x_o))
-    Piecewise((k*(-x_o + x(n)), x_o <= x(n)), (0, True))
+    Piecewise((k*(-x_o + x(n)), x(n) >= x_o), (0, True))
     """
     # not evaluated: SymPy would rearrange the condition, and the boundary would move by a rounding
     return sp.Piecewise((sp.sympify(value), sp.sympify(condition)), (sp.sympify(otherwise), True), evaluate=False)
