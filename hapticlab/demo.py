@@ -1,7 +1,7 @@
 """The demonstration: where a virtual wall begins to chatter, and a student's own equation of motion, on one paddle."""
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
