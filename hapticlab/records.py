@@ -4,6 +4,7 @@ import csv
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -170,13 +171,13 @@ class Telemetry:
     def load(cls, path):
         """Read what :meth:`save` wrote; the file can hold numbers and text only, never code."""
         try:
-            with np.load(path, allow_pickle=False) as file:
+            with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as file:
                 about = json.loads(str(file["about"]))
                 channels = {name: file[f"channel.{name}"] for name in about.pop("order")}
                 arrays = {name: file[name] for name in ("t", "x", "v", "F", *FLAGS)}
-        except (KeyError, ValueError) as problem:
+                return cls(**arrays, **about, channels=channels)
+        except (KeyError, TypeError, ValueError, EOFError, BadZipFile) as problem:
             raise AnalysisError(f"{path} is not a telemetry file ({problem}); needs one of log.save()") from None
-        return cls(**arrays, **about, channels=channels)
 
     def to_csv(self, path):
         """Write a table whose header carries the units, and return its path; flags appear where any is raised."""

@@ -49,8 +49,13 @@ def test_load_refuses_other_files(tmp_path):
     with pytest.raises(AnalysisError, match="not a telemetry file.*log.save"):
         Telemetry.load(tmp_path / "other.npz")
     np.savez(tmp_path / "code.npz", about=np.array([{}], object))
-    with pytest.raises(AnalysisError, match="not a telemetry file"):
-        Telemetry.load(tmp_path / "code.npz")
+    np.save(tmp_path / "array.npy", np.zeros(3))
+    whole = make_log().save(tmp_path / "whole.npz").read_bytes()
+    (tmp_path / "cut.npz").write_bytes(whole[: len(whole) // 2])
+    (tmp_path / "text.npz").write_text("t,x,v,F")
+    for name in ("code.npz", "array.npy", "cut.npz", "text.npz"):
+        with pytest.raises(AnalysisError, match="not a telemetry file"):
+            Telemetry.load(tmp_path / name)
 
 
 def test_csv_has_units_and_every_digit(tmp_path):

@@ -2,19 +2,22 @@
 
 Over a piece h with b h/M and k h^2/M small, a slipping handle obeys v'' = -(b/M) v' - (k/M) v. Its velocity is a
 Taylor polynomial to machine accuracy, and its acceleration changes sign at most once: so it stops where the polynomial
-has its first zero, found by a fixed number of safeguarded Newton steps. A stuck handle waits until the net force, linear
-in time, leaves [-coulomb, coulomb]. All of it is straight-line arithmetic; unneeded phases last no time.
+has its first zero, found by a fixed number of safeguarded Newton steps. A stuck handle waits until the net force,
+linear in time, leaves [-coulomb, coulomb]. All of it is straight-line arithmetic; unneeded phases last no time.
 """
 
 import math
 from typing import Any, NamedTuple
 
 from ..compiler.trace import equal, maximum, minimum, select, sqrt
+from ..errors import PaddleError
 
 #: number of terms -> growth rate of the derivatives, per piece, for which the first neglected term is below 1e-17
 TERMS = {8: 0.028, 12: 0.2, 20: 1.0}
 #: from the zero of the parabola: over 6000 random pieces the worst error is 2e-7, 4e-13, 1e-15 after 4, 5, 6
 NEWTON_STEPS = 6
+#: pieces of a period; beyond, the linked program would be past a hundred thousand instructions
+MOST_PIECES = 64
 
 
 class Piece(NamedTuple):
@@ -37,6 +40,11 @@ def resolution(length, M, b, k):
     """
     g = (b / M + math.sqrt((b / M) ** 2 + 4 * k / M)) / 2
     pieces = max(1, math.ceil(g * length))
+    if pieces > MOST_PIECES:
+        raise PaddleError(
+            f"coulomb > 0 on a handle that settles in {1 / g:.3g} s would cut the period into {pieces} pieces; at most "
+            f"{MOST_PIECES}. Use T <= {MOST_PIECES / g:.3g} s, more mass, a softer or less damped hand, or coulomb=0."
+        )
     return pieces, next(terms for terms, growth in TERMS.items() if g * length / pieces <= growth)
 
 

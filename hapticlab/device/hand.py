@@ -54,7 +54,7 @@ class Hand:
     b: float = 0.0
     k: float = 0.0
     push: float = 0.0
-    intent: None | float | Callable = None
+    intent: float | Callable | None = None
 
     def __post_init__(self):
         for name, reason in _REASONS.items():

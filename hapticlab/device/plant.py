@@ -92,7 +92,7 @@ class Plant:
         leans = self.spring and self.ramp
         common = (
             ("push", "N", self.push),
-            ("k", "N/m", leans or self.spring and self.coulomb),
+            ("k", "N/m", leans or (self.spring and self.coulomb)),
             ("b_hand", "N s/m", self.drag),
             ("offset", "s", leans and self.split),
             ("coulomb", "N", self.coulomb),

@@ -18,6 +18,8 @@ __all__ = ["SimulatedPaddle", "link"]
 
 #: ticks between two looks at the progress bar, where an engine is slow enough to need one
 CHUNK = 250
+#: in samples
+LONGEST_DELAY = 1000
 _POSITIVE = {"m": "kg", "T": "s"}
 _NOT_NEGATIVE = {
     "b": ("N s/m", "A negative damper feeds energy to the user."),
@@ -99,6 +101,11 @@ class SimulatedPaddle(Paddle):
         for name, unit in (("counts_per_metre", "1/m"), ("force_max", "N")):
             if getattr(self, name) is not None:
                 self._take(name, unit, "None leaves it out.", above=0)
+        if self.delay > LONGEST_DELAY * self.T:
+            raise PaddleError(
+                f"delay = {self.delay:g} s is {self.delay / self.T:.0f} samples; a simulated paddle keeps "
+                f"{LONGEST_DELAY} forces under way at most: delay <= {LONGEST_DELAY * self.T:g} s at T = {self.T:g} s."
+            )
         if self.rounding not in ("floor", "nearest"):
             raise PaddleError(f"rounding = {self.rounding!r}; an encoder needs 'floor' or 'nearest'.")
         if self.hand is not None and not isinstance(self.hand, Hand):
@@ -235,7 +242,7 @@ class SimulatedPaddle(Paddle):
 def _run_in_chunks(loaded, inputs, parameters, chunk, progress):
     """Run, with a bar that appears only after two seconds; return outputs of shape (ticks, outputs)."""
     ticks, states, done = len(inputs), None, []
-    with progress_bar(ticks, progress) as shown:
+    with progress_bar(ticks, progress and chunk < ticks) as shown:
         for start in range(0, ticks, chunk):
             rows = inputs[start : start + chunk]
             outputs, states = loaded.run(len(rows), rows, parameters, states)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hapticlab.compiler.ir import Block, Channel, Program
+from hapticlab.compiler.ir import Channel, Program
 from hapticlab.compiler.lower import compile
 from hapticlab.compiler.trace import Builder, equal, select
 from hapticlab.scene.scene import Scene

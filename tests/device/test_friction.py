@@ -11,6 +11,7 @@ from hapticlab.device import friction
 from hapticlab.device.hand import Hand
 from hapticlab.device.plant import plant_of, values
 from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.errors import PaddleError
 
 
 def step(paddle, x, v, F=0.0, intent=0.0, rate=0.0):
@@ -42,7 +43,7 @@ def test_stopping_time_is_exact():
     assert 0 < before[1] < 1e-11 * v and after[1] == 0
 
 
-@pytest.mark.parametrize("push", [0.29, -0.29, 0.3, 0.0])
+@pytest.mark.parametrize("push", [0.29, -0.29, 0.2999, 0.3, 0.0])
 def test_stuck_below_the_friction(push):
     paddle = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, coulomb=0.3, hand=Hand(push=push, b=2))
     assert step(paddle, 0.017, 0.0) == (0.017, 0.0)
@@ -77,7 +78,8 @@ def reference(M, b, k, c, u, d, x, v, T, steps=25):
     """Integrate M x'' = u + d t - b x' - k x - c sign(x') with its events located on DOP853's dense output."""
     now, stops = 0.0, 0
     while now < T:
-        def net(time):
+
+        def net(time, x=x):
             return u + d * time - k * x
 
         if v == 0 and abs(net(now)) <= c:
@@ -169,3 +171,9 @@ def test_pieces_bound_the_growth(M, b, k, T):
     pieces, terms = friction.resolution(T, M, b, k)
     rates = np.abs(np.roots([1, -b / M, -k / M]))  # of g^2 = (b/M) g + k/M
     assert rates.max() * T / pieces <= friction.TERMS[terms] * (1 + 1e-12)
+
+
+def test_too_many_pieces_are_refused():
+    paddle = SimulatedPaddle(m=1e-6, b=1.0, T=1e-3, coulomb=0.1)
+    with pytest.raises(PaddleError, match="settles in 1e-06 s would cut the period into 1000 pieces; at most 64"):
+        _ = paddle.plant

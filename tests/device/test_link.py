@@ -28,7 +28,7 @@ WALL = Scene(force=when(x(n) >= x_o, k * (x(n) - x_o)), name="wall")
 def closed_loop(paddle, law, ticks, x, v):
     """Integrate handle and hand with DOP853 from event to event: every sample and every arrival of a force."""
     hand, T = paddle.hand, paddle.T
-    M, b = paddle.m + hand.m, paddle.b + hand.b
+    M = paddle.m + hand.m
     intent = hand.intent(np.arange(ticks + 1) * T)
     y, rows, arrivals, F = np.array([x, v]), [], [], 0.0
     for tick in range(ticks):
@@ -72,7 +72,7 @@ def test_only_what_the_paddle_has_is_compiled_in():
     assert "sqrt" not in str(bare) and "floor" not in str(bare)
     full = link(compile(WALL, T=1e-3), SimulatedPaddle(**EVERYTHING, counts_per_metre=1e5, noise=1e-5))
     assert [c.name for c in full.inputs] == ["intent", "intent.rate", "noise"]
-    assert [c.name for c in full.outputs] == "x v F x_true v_true F_applied x_switch fault".split()
+    assert [c.name for c in full.outputs] == ["x", "v", "F", "x_true", "v_true", "F_applied", "x_switch", "fault"]
     assert "floor" in str(full) and len(full) > 20 * len(bare)
 
 

@@ -79,8 +79,11 @@ def test_step_is_the_differential_equation(hand, delay):
 
 @pytest.mark.parametrize(
     ("delay", "whole", "fraction"),
-    [(0, 0, 0), (1e-3, 1, 0), (3e-3, 3, 0), (0.3e-3, 0, 0.3), (2.5e-3, 2, 0.5), (7e-4 + 3e-4, 1, 0)],
-)
+    [
+        (0, 0, 0), (1e-3, 1, 0), (3e-3, 3, 0), (0.3e-3, 0, 0.3), (2.5e-3, 2, 0.5), (7e-4 + 3e-4, 1, 0),
+        (1.0001e-3, 1, 1e-4),
+    ],
+)  # fmt: skip
 def test_delay_is_split_exactly(delay, whole, fraction):
     got = delay_parts(SimulatedPaddle(m=1, b=0, T=1e-3, delay=delay))
     assert got[0] == whole and got[1] == pytest.approx(fraction, abs=1e-12)

@@ -27,6 +27,7 @@ NAN = float("nan")
         ({"T": -1e-3}, r"T = -0.001 s"),
         ({"T": float("inf")}, r"T = inf s"),
         ({"delay": -1e-4}, r"delay = -0.0001 s; a paddle needs delay >= 0"),
+        ({"delay": 5}, r"delay = 5 s is 5000 samples; a simulated paddle keeps 1000 forces"),
         ({"counts_per_metre": 0}, r"counts_per_metre = 0 1/m; a paddle needs counts_per_metre > 0"),
         ({"counts_per_metre": NAN}, r"counts_per_metre = nan"),
         ({"rounding": "up"}, r"rounding = 'up'; an encoder needs 'floor' or 'nearest'"),
@@ -169,6 +170,11 @@ def test_chunks_do_not_change_the_run(spring, monkeypatch, given):
     pieces = paddle.run(program, duration=0.1, engine="interpreter")
     for name in whole.columns:
         assert np.array_equal(getattr(whole, name), getattr(pieces, name)), name
+
+
+def test_a_short_run_shows_no_bar(spring, capfd):
+    SimulatedPaddle(**PLAIN).run(spring(90.0), duration=0.6, engine="interpreter")
+    assert capfd.readouterr() == ("", "")
 
 
 def test_what_a_paddle_cannot_run_is_refused(spring):
