@@ -173,6 +173,27 @@ def test_pieces_bound_the_growth(M, b, k, T):
     assert rates.max() * T / pieces <= friction.TERMS[terms] * (1 + 1e-12)
 
 
+def test_every_period_of_a_run(spring):
+    """Stick and slip of a dragged handle on a spring, late by 1.3 periods: each period again, from its recorded start."""
+    T, delay, c = 1e-3, 1.3e-3, 0.3
+    hand = Hand(m=0.02, b=1.5, k=120, push=0.1, intent=lambda t: 0.02 * np.sin(60 * t))
+    paddle = SimulatedPaddle(m=0.05, b=0.1, T=T, delay=delay, coulomb=c, hand=hand)
+    log = paddle.run(spring(150.0), duration=0.12, v=-0.1)
+    intent = hand.intent(np.arange(len(log) + 1) * T)
+    part, stops = delay - T, 0
+    for n in range(1, len(log) - 1):
+        x, v, rate = log.x[n], log.v[n], (intent[n + 1] - intent[n]) / T
+        for F, start, length in ((log.F_applied[n - 1], 0.0, part), (log.F_applied[n], part, T - part)):
+            if start:
+                assert log.x_switch[n] == pytest.approx(x, rel=1e-11)
+            u = hand.push - F + hand.b * rate + hand.k * (intent[n] + start * rate)
+            x, v, stopped = reference(0.07, 1.6, hand.k, c, u, hand.k * rate, x, v, length, steps=4)
+            stops += stopped
+        assert log.x[n + 1] == pytest.approx(x, rel=1e-10, abs=1e-15)
+        assert log.v[n + 1] == pytest.approx(v, rel=1e-9, abs=1e-12)
+    assert stops >= 3 and (log.v == 0).sum() >= 10
+
+
 def test_too_many_pieces_are_refused():
     paddle = SimulatedPaddle(m=1e-6, b=1.0, T=1e-3, coulomb=0.1)
     with pytest.raises(PaddleError, match="settles in 1e-06 s would cut the period into 1000 pieces; at most 64"):
