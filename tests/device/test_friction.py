@@ -175,7 +175,7 @@ def test_pieces_bound_the_growth(M, b, k, T):
 
 def test_every_period_of_a_run(spring):
     """Stick and slip of a dragged handle on a spring, late by 1.3 periods: each period again, from its recorded start."""
-    T, delay, c = 1e-3, 1.3e-3, 0.3
+    T, delay, c = 1e-3, 1.3e-3, 0.9
     hand = Hand(m=0.02, b=1.5, k=120, push=0.1, intent=lambda t: 0.02 * np.sin(60 * t))
     paddle = SimulatedPaddle(m=0.05, b=0.1, T=T, delay=delay, coulomb=c, hand=hand)
     log = paddle.run(spring(150.0), duration=0.12, v=-0.1)
