@@ -24,7 +24,7 @@ FULL = SimulatedPaddle(
 K = np.array([60.0, 150.0, 420.0, 1300.0])
 
 
-def traces(paddle, metric, k, duration=2.0, **start):
+def traces(paddle, metric, k, duration=0.8, **start):
     """Measure a stored trace in whole-array arithmetic, apart from the compiled measures."""
     log = paddle.run(wall()(k=k, x_o=0.002), duration=duration, progress=False, **start)
     true = log.channels.get("x_true", log.x)
@@ -43,7 +43,7 @@ def traces(paddle, metric, k, duration=2.0, **start):
 @pytest.mark.parametrize("paddle", [PUSHED, FULL], ids=["plain", "full"])
 @pytest.mark.parametrize("metric", ["growth", "contacts", "energy", "peak_force"])
 def test_metrics_match_the_stored_traces(paddle, metric):
-    swept = sweep(wall()(x_o=0.002), paddle, duration=2.0, metric=metric, progress=False, k=K)
+    swept = sweep(wall()(x_o=0.002), paddle, duration=0.8, metric=metric, progress=False, k=K)
     expected = [traces(paddle, metric, k) for k in K]
     # without an encoder a trace holds x in single precision; the measure sees it in double
     np.testing.assert_allclose(swept.values, expected, rtol=2e-4 if metric == "growth" else 1e-5, atol=1e-7)
@@ -71,11 +71,11 @@ def test_motion_within_one_count_is_no_chatter():
 def test_every_point_is_what_it_is_alone_bit_for_bit(paddle):
     axes = {"k": K, "T": np.array([5e-4, 1e-3]), "b": np.array([0.07, 0.2, 0.9])}
     for metric in ("chatter", "energy"):
-        swept = sweep(wall()(x_o=0.002), paddle, duration=0.6, metric=metric, progress=False, **axes)
+        swept = sweep(wall()(x_o=0.002), paddle, duration=0.25, metric=metric, progress=False, **axes)
         assert list(swept.axes) == ["k", "T", "b"] and swept.values.shape == (4, 2, 3)
-        for i, j, h in ((0, 0, 0), (3, 1, 2), (2, 0, 1), (1, 1, 0)):
+        for i, j, h in ((0, 0, 0), (3, 1, 2), (2, 0, 1)):
             alone = {"k": K[i], "T": axes["T"][j], "b": axes["b"][h]}
-            one = sweep(wall()(x_o=0.002), paddle, duration=0.6, metric=metric, progress=False, **alone)
+            one = sweep(wall()(x_o=0.002), paddle, duration=0.25, metric=metric, progress=False, **alone)
             assert one.values.shape == () and one.values == swept.values[i, j, h]
 
 
