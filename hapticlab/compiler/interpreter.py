@@ -7,7 +7,7 @@ import numpy as np
 
 from .elementary import expand
 from .ir import LEAVES
-from .trace import EVALUATE, NUMPY_TYPE
+from .simplify import EVALUATE, NUMPY_TYPE
 
 #: exponent bias, mantissa bits and the integer of the same width
 LAYOUT = {"f32": (127, 23, np.int32), "f64": (1023, 52, np.int64)}
