@@ -175,8 +175,8 @@ def test_pieces_bound_the_growth(M, b, k, T):
 
 def test_every_period_of_a_run(spring):
     """Stick and slip of a dragged handle on a spring, late by 1.3 periods: each period again, from its recorded start."""
-    T, delay, c = 1e-3, 1.3e-3, 0.9
-    hand = Hand(m=0.02, b=1.5, k=120, push=0.1, intent=lambda t: 0.02 * np.sin(60 * t))
+    T, delay, c = 1e-3, 1.3e-3, 0.5
+    hand = Hand(m=0.02, b=1.5, k=120, push=0.1, intent=lambda t: 0.004 * np.sin(60 * t))
     paddle = SimulatedPaddle(m=0.05, b=0.1, T=T, delay=delay, coulomb=c, hand=hand)
     log = paddle.run(spring(150.0), duration=0.12, v=-0.1)
     intent = hand.intent(np.arange(len(log) + 1) * T)
@@ -191,7 +191,7 @@ def test_every_period_of_a_run(spring):
             stops += stopped
         assert log.x[n + 1] == pytest.approx(x, rel=1e-10, abs=1e-15)
         assert log.v[n + 1] == pytest.approx(v, rel=1e-9, abs=1e-12)
-    assert stops >= 3 and (log.v == 0).sum() >= 10
+    assert stops >= 2 and (log.v == 0).sum() >= 10
 
 
 def test_too_many_pieces_are_refused():
