@@ -13,7 +13,7 @@ K = Instruction("param", (), "f32", index=0)
 TWO = Instruction("const", (), "f32", value=2.0)
 
 
-def program(*code, outputs=None, states=(), init=Block(), channels=()):
+def program(*code, outputs=None, states=(), init=Block(), channels=()):  # noqa: B008
     """Return x [m], k [N/m] -> F [N] with this tick after the leaves x, k, 2."""
     code = (X, K, TWO, *code)
     outputs = (len(code) - 1,) if outputs is None else outputs

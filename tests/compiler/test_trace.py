@@ -35,7 +35,7 @@ EXACT = [
     (lambda x: x - 0.0, []),
     (lambda x: x * 1.0, []),
     (lambda x: x * -1.0, ["neg"]),
-    (lambda x: -(-x), []),
+    (lambda x: -(-x), []),  # noqa: B002
     (lambda x: x / 4.0, ["mul"]),
     (lambda x: x / -(2.0**99), ["mul"]),
     (lambda x: x / 2.0**-99, ["mul"]),
