@@ -2,8 +2,8 @@
 
 The six functions below are traced, never called in a loop. Engines on this computer run the arithmetic that
 :func:`expand` puts in their place, firmware/generated/elementary.c is the same trace printed as C: the same bits
-everywhere, with no C library. Measured against mpmath (tests/compiler/test_elementary.py): within 2 units in the last
-place, in both types, for |x| <= 100 (sin, cos) and everywhere (the others).
+everywhere, with no C library. Measured against mpmath (tests/compiler/test_elementary.py): within 1.5 units in the last
+place, in both types, for |x| <= 100 (sin, cos; 2.5 up to the limit of the angle) and everywhere (the others).
 
 Reductions after W. J. Cody and W. Waite, Software Manual for the Elementary Functions (1980); the form of log after
 P. T. P. Tang (1990). The polynomials interpolate at Chebyshev nodes; a test computes them again at 50 digits.
