@@ -20,8 +20,8 @@ class Chatter:
     Attributes
     ----------
     state : {"none", "chatter", "growing", "decaying"}
-        "chatter" is a sustained limit cycle: the last two quarters agree within 1 %. Just inside a stability limit a
-        decay can take 1e5 samples, so look at ``growth`` too.
+        "chatter" is a sustained limit cycle: the last two quarters agree within 1 %, or differ by less than its own
+        irregularity explains. Just inside a stability limit a decay can take 1e5 samples, so look at ``growth`` too.
     amplitude : float
         Half the peak-to-peak of the handle's oscillation over the last half [m]; 0 where there is none.
     frequency : float or None
@@ -104,7 +104,7 @@ def chatter(log):
         return Chatter("none", 0.0, None, float(contacts), 0.0, False, False, rest)
     frequency = (len(crossings) - 1) / (crossings[-1] - crossings[0])
     ratio = math.log(later / max(earlier, least * 1e-3))
-    locked = abs(ratio) < LOCK
+    locked = abs(ratio) < max(LOCK, 2 * _irregularity(y))
     state = "chatter" if locked else "growing" if ratio > 0 else "decaying"
     growth = ratio / (quarter * log.T)
     dither = len(np.unique(log.x[-half:])) == 2
@@ -127,6 +127,20 @@ def _strength(x):
     """Return the amplitude of the sinusoid of equal energy."""
     y, window = _around_trend(x)
     return math.sqrt(2 * (window @ y**2))
+
+
+def _irregularity(y):
+    """Return the standard error of the logarithm of the amplitude's ratio between the two halves of y.
+
+    Four windows, a straight line through the logarithms of their amplitudes: exponential growth lies on it, the ups and
+    downs of an irregular limit cycle (encoder, friction, contacts between samples) do not.
+    """
+    size = len(y) // 4
+    logs = np.log([_strength(y[i * size : (i + 1) * size]) + 1e-300 for i in range(4)])
+    at = np.array([-0.75, -0.25, 0.25, 0.75])  # so that the slope is the change from one half to the other
+    slope = (at @ logs) / (at @ at)
+    residual = logs - logs.mean() - slope * at
+    return math.sqrt((residual @ residual) / 2 / (at @ at))
 
 
 def _upward_crossings(y):

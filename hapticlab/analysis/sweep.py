@@ -131,7 +131,9 @@ def _names(scene, values):
                 f"the start: {', '.join(START_AXES)}"
             )
         if name in own and name in {**PADDLE_AXES, **START_AXES}:
-            raise AnalysisError(f"{name} is a parameter of the scene and of the paddle; rename the scene's to sweep one of them")
+            raise AnalysisError(
+                f"{name} is a parameter of the scene and of the paddle; rename the scene's to sweep one of them"
+            )
         array = np.asarray(given, float)
         if array.ndim > 1 or array.size == 0 or not np.isfinite(array).all():
             raise AnalysisError(f"{name} = {given}; an axis needs one or more finite numbers [{known[name]}]")

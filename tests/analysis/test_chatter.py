@@ -33,7 +33,9 @@ def test_a_sustained_sinusoid(f):
     assert abs(found.growth) < 1e-2
 
 
-@pytest.mark.parametrize("growth, state", [(0.9, "growing"), (-0.9, "decaying"), (0.02, "growing"), (-0.02, "decaying")])
+@pytest.mark.parametrize(
+    "growth, state", [(0.9, "growing"), (-0.9, "decaying"), (0.02, "growing"), (-0.02, "decaying")]
+)
 def test_growth_is_measured(growth, state):
     found = chatter(record(oscillation(growth=growth)))
     assert found.state == state and not found.locked
@@ -78,6 +80,16 @@ def test_encoder_dither_is_named():
     assert found.amplitude == pytest.approx(0.1e-6, rel=2e-3)  # the handle's own motion, not the count
     coarse = oscillation(amplitude=20 * count)
     assert not chatter(record(np.floor(coarse / count) * count, x_true=coarse)).dither
+
+
+def test_an_irregular_limit_cycle_is_told_from_growth():
+    """Ups and downs of 10 % without a trend are chatter; the same ups and downs on a real growth are growth."""
+    t = np.arange(8000) * T
+    uneven = 1 + 0.1 * np.sin(2 * np.pi * 0.7 * t + 1.0)
+    carrier = 1e-3 * np.sin(2 * np.pi * 40 * t)
+    steady = chatter(record(uneven * carrier))
+    assert steady.state == "chatter" and steady.locked
+    assert chatter(record(uneven * np.exp(0.3 * t) * carrier)).state == "growing"
 
 
 def test_contacts_are_counted_from_the_force():

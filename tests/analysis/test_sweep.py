@@ -113,13 +113,22 @@ def test_the_start_is_an_axis_too():
 
 
 def test_a_force_that_overflows_gives_nan():
-    blown = sweep(wall(unilateral=None), SimulatedPaddle(m=0.05, b=0.1, T=1e-3), duration=1.0, progress=False, x=1e-3, k=[10.0, 1e7])
+    blown = sweep(
+        wall(unilateral=None),
+        SimulatedPaddle(m=0.05, b=0.1, T=1e-3),
+        duration=1.0,
+        progress=False,
+        x=1e-3,
+        k=[10.0, 1e7],
+    )
     assert np.isfinite(blown.values[0]) and np.isnan(blown.values[1])
 
 
 def test_bad_sweeps_are_refused():
     scene = wall()
-    with pytest.raises(AnalysisError, match="kk: nothing has that name.*parameters: .*k.*paddle's: T, m, b.*start: x, v"):
+    with pytest.raises(
+        AnalysisError, match="kk: nothing has that name.*parameters: .*k.*paddle's: T, m, b.*start: x, v"
+    ):
         sweep(scene, PUSHED, kk=[1.0])
     with pytest.raises(AnalysisError, match="metric = 'noise'; needs one of chatter, growth"):
         sweep(scene, PUSHED, metric="noise", k=[1.0])
