@@ -68,7 +68,7 @@ def error(scene, reference, method, T):
     ids=["oscillator", "pendulum", "with a first-order state"],
 )
 def test_the_measured_order_is_within_a_tenth_of_the_claim(scene, reference, method):
-    errors = [error(scene, reference, method, T) for T in (1e-3, 5e-4, 2.5e-4)]
+    errors = [error(scene, reference, method, T) for T in (2e-3, 1e-3, 5e-4)]
     # Richardson on three steps: the order of the last halving, with the next term's drift taken out
     orders = np.log2(errors[:-1]) - np.log2(errors[1:])
     assert 2 * orders[1] - orders[0] == pytest.approx(METHODS[method].order, abs=0.1), (errors, orders)
