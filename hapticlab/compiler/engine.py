@@ -45,7 +45,9 @@ class Engine:
         """
         program = self.program
         if ticks < 1 or every < 1:
-            raise ProgramError(f"ticks = {ticks}, every = {every}; a run needs at least one tick, kept every one or more")
+            raise ProgramError(
+                f"ticks = {ticks}, every = {every}; a run needs at least one tick, kept every one or more"
+            )
         parameters = np.array(program.values if parameters is None else parameters, float, ndmin=1)
         if parameters.ndim == 1:
             parameters = parameters[:, None]

@@ -9,9 +9,10 @@ from ..errors import EngineMissingError
 from .elementary import expand
 from .llvm_emit import emit
 
-#: Lanes stepped together: two registers of AVX-512 a value hide the latency of a short program, a long one runs out of
-#: registers. Measured, 16 against 8 lanes: 1.5 times as fast at 50 instructions; 1.3 times slower at 4000, 3 times the compile.
-WIDE, NARROW, LONG = 16, 8, 500
+#: Lanes stepped together in a program of at most so many instructions; 8 in a longer one. Several vectors a value hide
+#: the latency of a short program, a long one runs out of registers. Measured with AVX-512, seconds for 1e7 lane-ticks at 8,
+#: 16 and 32 lanes: 26 instructions 0.013, 0.009, 0.006; 51 instructions 0.018, 0.012, 0.013; 4000 instructions 1, 1.3, 1.6.
+WIDTHS = {40: 32, 500: 16}
 
 
 class Llvm:
@@ -25,12 +26,13 @@ class Llvm:
     def __init__(self, program):
         _open_llvmlite()
         self.program = expand(program.verify())
+        self._width = next((lanes for most, lanes in WIDTHS.items() if len(self.program) <= most), 8)
         self._compiled = {}
         self._lock = threading.Lock()
 
     def run(self, ticks, inputs, parameters, states=None, every=1):
         lanes = parameters.shape[1]
-        width = 1 if lanes == 1 else NARROW if len(self.program) > LONG else WIDE
+        width = 1 if lanes == 1 else self._width
         stride = -(-lanes // width) * width
         outputs = np.empty((ticks // every, len(self.program.outputs), stride))
         carried = np.empty((len(self.program.states), stride))
@@ -65,7 +67,8 @@ def _open_llvmlite():
         from llvmlite import binding
     except (ImportError, OSError) as missing:  # OSError: installed, but its library does not load here
         raise EngineMissingError(
-            'engine = "llvm" needs llvmlite, which does not import here: pip install llvmlite, or use engine="interpreter"'
+            'engine = "llvm" needs llvmlite, which does not import here; '
+            'do: pip install llvmlite, or use engine="interpreter"'
         ) from missing
     if binding.llvm_version_info[0] < 20:  # newer ones do this by themselves
         binding.initialize()

@@ -4,13 +4,16 @@
 for PyDy a mass against that wall, since it compiles equations of motion only.
 """
 
+import os
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
+from timing import row
 
+FILE = Path(__file__).resolve()
 SAMPLES, K, X_O = np.array([0.0, 0.02, 0.03]), 150.0, 0.01
 EXPECTED = np.array([0.0, 1.5, 3.0])
 
@@ -22,18 +25,22 @@ def _expression():
     return (x, k, x_o), sp.Piecewise((k * (x - x_o), x >= x_o), (0.0, True))
 
 
-def hapticlab_float64(dtype="float64"):
+def hapticlab(units_open=True):
+    import llvmlite.binding  # noqa: F401
+    import pint  # noqa: F401
+
     import hapticlab as hl
     from hapticlab.compiler.engine import load
+
+    if units_open:
+        hl.parameters("any", units="N/m")  # reads pint's definitions, once a process
 
     def work():
         x, n = hl.x, hl.n
         k, x_o = hl.parameters("k x_o", units="N/m m")
         scene = hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n) - x_o)))
-        program = hl.compile(scene(k=K, x_o=X_O), T=1e-3, dtype=dtype)
+        program = hl.compile(scene(k=K, x_o=X_O), T=1e-3, dtype="float64")
         return load(program, "llvm").run(3, SAMPLES).outputs[:, 0, 0]
-
-    import llvmlite.binding  # noqa: F401  an import, so not counted; pint opens with the first unit, which is
 
     return work
 
@@ -85,16 +92,16 @@ def pydy(generator="cython"):
 
 
 PREPARE = {
-    "hapticlab": hapticlab_float64, "numba": numba, "symjit": symjit,
+    "hapticlab": hapticlab, "hapticlab, first unit of the process": lambda: hapticlab(False), "numba": numba, "symjit": symjit,
     "PyDy (cython)": pydy, "PyDy (lambdify)": lambda: pydy("lambdify"),
 }  # fmt: skip
 
 
 def measure(name, rounds):
     """Return the best CPU seconds of fresh processes (a compiler they start included), or why there is none."""
-    best = None
+    best, here = None, {**os.environ, "PYTHONPATH": str(FILE.parents[2])}
     for _ in range(rounds):
-        done = subprocess.run([sys.executable, str(Path(__file__)), name], capture_output=True, text=True, check=False)
+        done = subprocess.run([sys.executable, str(FILE), name], env=here, capture_output=True, text=True, check=False)
         if done.returncode:
             last = (done.stderr.strip().splitlines() or ["failed"])[-1]
             return None, "not installed" if "ModuleNotFoundError" in last else last[:60]
@@ -103,18 +110,24 @@ def measure(name, rounds):
     return best, ""
 
 
-def cpu():
-    """CPU seconds of this process and of the ones it waited for."""
-    import os
+def rows(rounds):
+    """Measure every package; the ratio is to hapticlab."""
+    found = {name: measure(name, min(rounds, 3)) for name in PREPARE}
+    ours = found["hapticlab"][0]
+    return [row(name, seconds, "ms", against=ours, note=note) for name, (seconds, note) in found.items()]
 
+
+def _cpu():
+    """Return CPU seconds of this process and of the compilers it waited for."""
     used = os.times()
     return used.user + used.system + used.children_user + used.children_system
 
 
 if __name__ == "__main__":
     prepared = PREPARE[sys.argv[1]]()
-    start = cpu() if sys.argv[1].startswith("PyDy") else time.process_time()
+    clock = _cpu if sys.argv[1] == "PyDy (cython)" else time.process_time  # the first counts in steps of 10 ms
+    start = clock()
     found = prepared()
-    spent = (cpu() if sys.argv[1].startswith("PyDy") else time.process_time()) - start
+    spent = clock() - start
     np.testing.assert_allclose(found, EXPECTED, rtol=1e-6)
     print(spent)

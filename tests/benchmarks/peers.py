@@ -1,4 +1,4 @@
-"""The same work by other packages, as their users write it. A function raises ImportError where its package is missing."""
+"""The same work by numba, as its users write it; ImportError where it is not installed."""
 
 import math
 

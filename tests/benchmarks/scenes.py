@@ -64,4 +64,5 @@ def paddles():
     """Return the two paddles of the sweep: a bare handle, and one with an encoder in a hand."""
     plain = hl.SimulatedPaddle(m=0.05, b=0.1, T=T)
     hand = hl.Hand(m=0.1, b=2.0, k=200.0, push=1.0)
-    return {"wall": plain, "wall, hand, encoder": hl.SimulatedPaddle(m=0.05, b=0.1, T=T, counts_per_metre=50_000, hand=hand)}
+    held = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, counts_per_metre=50_000, hand=hand)
+    return {"wall": plain, "wall, hand, encoder": held}

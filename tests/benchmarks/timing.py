@@ -5,7 +5,7 @@ import time
 
 def best_of(rounds, **calls):
     """Return the least CPU seconds of each call; a call that is None stays None."""
-    best = {name: None for name in calls}
+    best = dict.fromkeys(calls)
     for _ in range(rounds):
         for name, call in calls.items():
             if call is None:
@@ -17,7 +17,16 @@ def best_of(rounds, **calls):
     return best
 
 
-def row(name, seconds, *, against=None, target="", note=""):
-    """Return one line of the table; ``against`` are the seconds the ratio is taken to."""
-    ratio = seconds / against if seconds is not None and against else None
-    return {"what": name, "seconds": seconds, "ratio": ratio, "target": target, "note": note}
+def row(what, value, unit="s", *, against=None, note=""):
+    """Return one line of the table: ``value`` in seconds or bytes, shown in ``unit``, and divided by ``against``."""
+    ratio = value / against if value is not None and against else None
+    note = note or ("not installed" if value is None else "")
+    return {"what": what, "value": value, "unit": unit, "ratio": ratio, "note": note}
+
+
+def imported(make):
+    """Return what ``make`` makes, or None where it needs a package that is not installed."""
+    try:
+        return make()
+    except ImportError:
+        return None

@@ -7,7 +7,25 @@ import numpy as np
 from hapticlab.compiler.ir import ELEMENTARY, OPERATIONS, Block, Channel, Instruction, Program
 
 #: what breaks arithmetic that is not IEEE: signed zeros, denormals, halves, the ends of the range, infinities and nan
-HARD = (0.0, -0.0, 1.0, -1.0, 0.5, 1.5, -2.5, 3e-39, -1e-45, 5e-324, 2e-308, 1e38, 3e300, 1e-20, np.inf, -np.inf, np.nan)
+HARD = (
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    0.5,
+    1.5,
+    -2.5,
+    3e-39,
+    -1e-45,
+    5e-324,
+    2e-308,
+    1e38,
+    3e300,
+    1e-20,
+    np.inf,
+    -np.inf,
+    np.nan,
+)
 PRIMITIVE = tuple(op for op in OPERATIONS if op not in ELEMENTARY)
 
 
@@ -23,7 +41,9 @@ def random_program(seed, reals=("f32", "f64"), size=80, operations=PRIMITIVE):
     tick = _random_block(rng, {**leaves, "state": channels["s"]}, size, reals, operations, states=types, outputs=types)
     values = random_rows(rng, channels["p"], 1)[:, 0]
     name = f"random{seed}"
-    return Program(name, channels["x"], channels["p"], channels["s"], channels["y"], init, tick, 1e-3, tuple(values)).verify()
+    return Program(
+        name, channels["x"], channels["p"], channels["s"], channels["y"], init, tick, 1e-3, tuple(values)
+    ).verify()
 
 
 def kept_finite(program):

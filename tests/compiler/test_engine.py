@@ -59,7 +59,10 @@ def test_what_does_not_fit_the_program_is_refused(engine):
         (dict(ticks=4, inputs=x, parameters=[1]), r"parameters of shape \(1, 1\); needs \(2, 1\)"),
         (dict(ticks=4, parameters=[1, 1]), r"inputs of shape \(4, 0\); needs \(4, 1\)"),
         (dict(ticks=5, inputs=x, parameters=[1, 1]), r"inputs of shape \(4, 1\); needs \(5, 1\)"),
-        (dict(ticks=4, inputs=x, parameters=[1, 1], states=np.ones((1, 2))), r"states of shape \(1, 2\); needs \(1, 1\)"),
+        (
+            dict(ticks=4, inputs=x, parameters=[1, 1], states=np.ones((1, 2))),
+            r"states of shape \(1, 2\); needs \(1, 1\)",
+        ),
     ):
         with pytest.raises(ProgramError, match=complaint):
             engine.run(**given)
@@ -73,7 +76,7 @@ def test_auto_takes_llvm_where_it_is_installed():
 def test_without_llvmlite_auto_interprets_and_llvm_says_what_to_do(monkeypatch):
     monkeypatch.setitem(sys.modules, "llvmlite", None)
     assert load(filtered_wall()).name == "interpreter"
-    with pytest.raises(EngineMissingError, match='pip install llvmlite, or use engine="interpreter"'):
+    with pytest.raises(EngineMissingError, match='do: pip install llvmlite, or use engine="interpreter"'):
         load(filtered_wall(), "llvm")
 
 
@@ -84,7 +87,9 @@ def test_an_unknown_engine_is_refused():
 
 def test_a_damaged_program_is_refused_before_it_runs():
     good = filtered_wall()
-    bad = Program("bad", good.inputs, good.parameters, good.states, good.outputs, Block(), good.tick, good.T, good.values)
+    bad = Program(
+        "bad", good.inputs, good.parameters, good.states, good.outputs, Block(), good.tick, good.T, good.values
+    )
     with pytest.raises(ProgramError, match="init: gives 0 states, needs 1"):
         load(bad)
 

@@ -69,7 +69,10 @@ def test_results_must_exist_and_have_their_type():
         (program(good, outputs=(3, 3)), "must give its 1 outputs"),
         (program(good, states=(3,)), "p, tick: gives 1 states, needs 0"),
         (program(good, states=(3,), channels=z), "p, init: gives 0 states, needs 1"),
-        (program(good, op("eq", 0, 1, type="bool"), outputs=(3,), states=(4,), init=begin, channels=z), "state 0 is not"),
+        (
+            program(good, op("eq", 0, 1, type="bool"), outputs=(3,), states=(4,), init=begin, channels=z),
+            "state 0 is not",
+        ),
         (program(good, init=Block((X,), outputs=(0,))), "outputs, init none"),
         (replace(program(good), values=()), "1 parameters but 0 values"),
     ):
