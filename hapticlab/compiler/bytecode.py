@@ -270,7 +270,8 @@ def disassemble(data):
         lines.append(f"  r{k:<4} {type:<5} const    {value:.9g}")
     moves = words_of(data, at.moves, at.outputs, at.word)
     split = 2 * at.size["init_moves"]
-    for name, begin, end, pairs in (("init", at.init, at.tick, moves[:split]), ("tick", at.tick, at.moves, moves[split:])):
+    blocks = ("init", at.init, at.tick, moves[:split]), ("tick", at.tick, at.moves, moves[split:])
+    for name, begin, end, pairs in blocks:
         lines.append(f"{name}:")
         for _, op, registers in instructions_of(words_of(data, begin, end, at.word)):
             lines.append(f"  r{registers[0]:<4} {op:<8} " + "  ".join(f"r{r}" for r in registers[1:]))

@@ -15,9 +15,10 @@ from .trace import Builder
 NOTICE = "/* Written by hapticlab/compiler/cheaders.py: change the Python tables, not this file. */\n"
 _C_TYPE = {"f32": "float", "bool": "int32_t"}
 _C_FORM = {
-    "neg": "-{0}", "abs": "hl_absf({0})", "add": "{0} + {1}", "sub": "{0} - {1}", "mul": "{0} * {1}", "div": "{0} / {1}",
-    "floor": "hl_floorf({0})", "lt": "{0} < {1}", "le": "{0} <= {1}", "eq": "{0} == {1}", "and": "{0} & {1}",
-    "or": "{0} | {1}", "not": "!{0}", "select": "{0} ? {1} : {2}", "exp2i": "hl_exp2if({0})", "exponent": "hl_exponentf({0})",
+    "neg": "-{0}", "abs": "hl_absf({0})", "floor": "hl_floorf({0})",
+    "add": "{0} + {1}", "sub": "{0} - {1}", "mul": "{0} * {1}", "div": "{0} / {1}",
+    "lt": "{0} < {1}", "le": "{0} <= {1}", "eq": "{0} == {1}", "and": "{0} & {1}", "or": "{0} | {1}", "not": "!{0}", "select": "{0} ? {1} : {2}",
+    "exp2i": "hl_exp2if({0})", "exponent": "hl_exponentf({0})",
 }  # fmt: skip
 
 

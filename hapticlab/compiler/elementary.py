@@ -20,8 +20,8 @@ from .trace import Builder, equal, floor, select
 class Table:
     """Constants of one real type. Polynomials are in ascending powers.
 
-    ``half_pi`` and ``ln2`` are sums of pieces short enough for a whole number of them to be exact, the last piece rounded.
-    The first two pieces of ``half_pi`` also end where the remainder does (2**-24, 2**-53), so that taking them off is exact.
+    ``half_pi`` and ``ln2`` are sums of pieces so short that whole multiples are exact, all but the last, rounded piece.
+    The first two pieces of ``half_pi`` also end where the remainder does (2**-24, 2**-53): taking them off is exact.
     """
 
     half_pi: tuple  # pi/2 in four pieces
@@ -239,7 +239,8 @@ def _atan(x):
     table = _table(x)
     a = abs(x)
     middle, far = 0.5 < a, 1 + math.sqrt(2) < a
-    t = select(far, _const(x, -1.0), select(middle, a - 1.0, a)) / select(far, a, select(middle, a + 1.0, _const(x, 1.0)))
+    above = select(far, _const(x, -1.0), select(middle, a - 1.0, a))
+    t = above / select(far, a, select(middle, a + 1.0, _const(x, 1.0)))
     z = t * t
     quarters = select(far, _const(x, 2.0), select(middle, _const(x, 1.0), _const(x, 0.0)))
     high, low = table.atan_of_1

@@ -20,17 +20,17 @@ import numpy as np
 from ..errors import EngineMissingError, ProgramError
 from .bytecode import RESULTS, encode, layout
 
-SOURCES = ("core/vm.c", "generated/elementary.c", "boards/host/run.c")
+SOURCES = ("core/vm.c", "core/verify.c", "generated/elementary.c", "boards/host/run.c")
 #: contraction off: a fused multiply-add rounds once where a board rounds twice
 FLAGS = ("-O2", "-std=c99", "-ffp-contract=off")
 
 
 class Vm:
-    """Run a float32 program on the virtual machine. See :meth:`hapticlab.compiler.engine.Engine.run` for the contract.
+    """Run a float32 program on the virtual machine: the contract is :meth:`hapticlab.compiler.engine.Engine.run`.
 
-    Where the other engines carry a nan or an infinity on, the machine stops as a board does: from the sample whose output
-    or next state is not finite, the outputs of that lane and its states are nan. ``faults`` holds what the machine said
-    about each lane of the last run.
+    Where the other engines carry a nan or an infinity on, the machine stops as a board does: from the sample whose
+    output or next state is not finite, the outputs of that lane and its states are nan. ``faults`` holds what the
+    machine said about each lane of the last run.
 
     Parameters
     ----------

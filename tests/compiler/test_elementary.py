@@ -63,13 +63,15 @@ def operands(name, type, count):
         return np.concatenate([*spread, near, 10 ** rng.uniform(-30, 0, 200)])
     if name == "exp":
         low, high = np.log(float(finfo.smallest_subnormal)) + 0.1, np.log(float(finfo.max)) - 1e-4
-        return np.concatenate([rng.uniform(low, high, count), np.linspace(-1, 1, count), 10 ** rng.uniform(-30, 0, 200)])
+        tiny = 10 ** rng.uniform(-30, 0, 200)
+        return np.concatenate([rng.uniform(low, high, count), np.linspace(-1, 1, count), tiny])
     if name == "log":
         wide = np.log10(float(finfo.smallest_subnormal)), np.log10(float(finfo.max))
         near = 1 + rng.normal(size=500) * 1e-4  # where log loses its digits
         return np.concatenate([10 ** rng.uniform(*wide, count)[1:-1], np.linspace(0.3, 3, count), near])
     wide = rng.choice([-1, 1], count) * 10 ** rng.uniform(-30, 30, count)
-    return np.concatenate([wide, np.linspace(-4, 4, 2 * count), rng.uniform(-0.7, 0.7, count), [float(finfo.smallest_subnormal)]])
+    middle = np.linspace(-4, 4, 2 * count), rng.uniform(-0.7, 0.7, count)
+    return np.concatenate([wide, *middle, [float(finfo.smallest_subnormal)]])
 
 
 @pytest.mark.parametrize("type", TYPES)
@@ -172,7 +174,8 @@ def test_expand_leaves_the_interface_and_every_other_instruction_alone():
     add, exp = Instruction("add", (0, 1), "f32"), Instruction("exp", (2,), "f32")  # -0 + 0 is +0: not to be simplified
     block = Block((x, zero, add, exp), outputs=(2, 3), states=(2,))
     channel = Channel("s")
-    p = Program("p", (Channel("x"),), (), (channel,), (Channel("F"), Channel("G")), Block((x,), states=(0,)), block, 1e-3)
+    outputs, init = (Channel("F"), Channel("G")), Block((x,), states=(0,))
+    p = Program("p", (Channel("x"),), (), (channel,), outputs, init, block, 1e-3)
     q = expand(p.verify()).verify()
     assert (q.inputs, q.states, q.outputs, q.init, q.T) == (p.inputs, p.states, p.outputs, p.init, p.T)
     assert not {i.op for i in q.tick.instructions} & set(ELEMENTARY)

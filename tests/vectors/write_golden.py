@@ -1,7 +1,7 @@
 """Write golden.json: programs, what goes in, and the bits that come out of the interpreter.
 
-Run it only to add programs or after a change of format: ``python tests/vectors/write_golden.py``. The committed bits are
-what every engine, and every board, is held to.
+Run it only to add programs or after a change of format: ``python tests/vectors/write_golden.py``. The committed bits
+are what every engine, and every board, is held to.
 """
 
 import json
@@ -93,7 +93,8 @@ def golden(program, seed):
     }
     channels = {n: [c.type for c in getattr(program, n)] for n in ("inputs", "parameters", "states", "outputs")}
     coded = {f"bytes_{bits}": encode(program, word_bits=bits).hex() for bits in (8, 16)}
-    numbers = {"given": hexed(inputs), "values": hexed(program.values), "out": hexed(run.outputs), "end": hexed(run.states)}
+    numbers = {"given": inputs, "values": program.values, "out": run.outputs, "end": run.states}
+    numbers = {name: hexed(array) for name, array in numbers.items()}
     return {"name": program.name, "T": program.T, **channels, **blocks, **coded, **numbers}
 
 

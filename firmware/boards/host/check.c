@@ -1,4 +1,4 @@
-/* Reads programs from standard input, each a 32-bit length and its bytes; says in one line what the machine makes of it.
+/* Reads programs from standard input, each a 32-bit length and its bytes; a line says what the machine makes of each.
  * Built with sanitizers by the tests: every program lies in memory of exactly its length. */
 #include "vm.h"
 
@@ -32,7 +32,8 @@ int main(void)
 {
     uint8_t length[4];
     while (fread(length, 1, 4, stdin) == 4) {
-        const uint32_t size = length[0] | (uint32_t)length[1] << 8 | (uint32_t)length[2] << 16 | (uint32_t)length[3] << 24;
+        const uint32_t low = length[0] | (uint32_t)length[1] << 8, high = length[2] | (uint32_t)length[3] << 8;
+        const uint32_t size = low | high << 16;
         uint8_t *bytes = malloc(size ? size : 1);
         hl_slot *registers = malloc(CAPACITY * sizeof *registers);
         hl_program program;

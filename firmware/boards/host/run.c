@@ -18,7 +18,8 @@ static double to_double(hl_slot s, uint8_t type)
     return type == HL_TYPE_F32 ? (double)s.f : (double)s.i;
 }
 
-static void load(const hl_program *p, hl_slot *registers, uint16_t first, uint16_t count, const double *from, int64_t stride)
+static void load(const hl_program *p, hl_slot *registers, uint16_t first, uint16_t count, const double *from,
+                 int64_t stride)
 {
     for (uint16_t k = 0; k < count; k++) {
         registers[first + k] = to_slot(from[k * stride], p->types[first + k]);
