@@ -41,17 +41,17 @@ def _table(scene, calls, ticks, short, rounds):
 
 
 def _coupler(rounds):
-    inputs = scenes.handle(2000)
+    inputs = scenes.handle(20_000)
     calls, short = _ours(scenes.coupler(), scenes.COUPLER, inputs)
-    run, force = imported(lambda: peers.numba_steps(peers.coupler_rates, 2, scenes.T)), np.empty(2000)
+    run, force = imported(lambda: peers.numba_steps(peers.coupler_rates, 2, scenes.T)), np.empty(20_000)
     values = np.array(list(scenes.COUPLER.values()))
     calls["numba"] = run and (lambda: run(inputs, values, force))
     if run:
         run(inputs, values, force)
-    return _table("coupler", calls, 2000, short, rounds)
+    return _table("coupler", calls, 20_000, short, rounds)
 
 
 def _pendulum(rounds):
-    inputs = scenes.handle(500)[:, :1]
+    inputs = scenes.handle(2000)[:, :1]
     calls, short = _ours(scenes.pendulum(), scenes.PENDULUM, np.ascontiguousarray(inputs))
-    return _table("8-link pendulum", calls, 500, short, rounds)
+    return _table("8-link pendulum", calls, 2000, short, rounds)

@@ -6,10 +6,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from random_programs import assert_same_bits, random_program, random_rows
+from random_programs import PRIMITIVE, assert_same_bits, random_program, random_rows
 
 from hapticlab.compiler.engine import load
-from hapticlab.compiler.ir import Block, Channel, Program
+from hapticlab.compiler.ir import OPERATIONS, Block, Channel, Program
 from hapticlab.compiler.trace import Builder, floor, select, sqrt
 
 pytest.importorskip("llvmlite")
@@ -34,7 +34,8 @@ def one_block(real, names, body):
 @pytest.mark.parametrize("reals", REALS)
 @pytest.mark.parametrize("seed", range(30))
 def test_a_random_program_gives_the_interpreters_bits_in_every_shape(seed, reals):
-    program = random_program(seed, REALS[reals])
+    operations = tuple(OPERATIONS) if seed % 3 == 0 else PRIMITIVE
+    program = random_program(seed, REALS[reals], operations=operations)
     lanes = (2, 15, 16, 17, 33)[seed % 5]
     inputs, parameters = drive(program, seed, 12, lanes)
     fast, slow = load(program, "llvm"), load(program, "interpreter")
@@ -115,6 +116,16 @@ def test_a_program_may_have_no_inputs_parameters_or_states():
         result = load(program, engine).run(3)
         assert result.outputs.tolist() == [[[2.5]]] * 3 and result.states.shape == (0, 1)
         assert load(program, engine).run(2, parameters=np.empty((0, 20))).outputs.shape == (2, 1, 20)
+
+
+@pytest.mark.parametrize("size", [20, 300, 900])
+def test_the_number_of_lanes_stepped_together_changes_no_bit(size):
+    program = random_program(size, reals=("f64",), size=size)
+    inputs, parameters = drive(program, size, 5, 70)
+    together = load(program, "llvm").run(5, inputs, parameters)
+    reference = load(program, "interpreter").run(5, inputs, parameters)
+    assert_same_bits(together.outputs, reference.outputs)
+    assert_same_bits(together.states, reference.states)
 
 
 def test_many_engines_and_threads_share_nothing():
