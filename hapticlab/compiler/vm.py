@@ -131,7 +131,7 @@ def _built_library(word_bits, flags):
     suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
     path = _cache_folder() / f"vm{word_bits}-{hashlib.sha256(text).hexdigest()[:20]}{suffix}"
     if not path.exists():
-        path.parent.mkdir(parents=True, exist_ok=True)
+        _make_folder(path.parent)
         # built aside and renamed: another process sees the whole library or none
         with tempfile.TemporaryDirectory(dir=path.parent) as aside:
             target = Path(aside, path.name)
@@ -141,6 +141,16 @@ def _built_library(word_bits, flags):
                 raise EngineMissingError(f"the virtual machine did not compile: {' '.join(command)}\n{done.stderr}")
             _put(target, path)
     return path
+
+
+def _make_folder(folder):
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise EngineMissingError(
+            f'engine "vm" keeps its library in {folder}, which is not to be written ({error.strerror}); '
+            'set XDG_CACHE_HOME to a folder of yours, or use engine="interpreter"'
+        ) from error
 
 
 def _put(target, path):

@@ -372,7 +372,25 @@ def test_the_library_is_built_once_and_kept(monkeypatch, tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == [first.name]
 
 
-def test_the_machine_says_what_it_refuses(monkeypatch):
+def test_a_cache_that_cannot_be_written_is_an_error_with_a_cure(monkeypatch, tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setattr(vm, "_cache_folder", lambda: tmp_path / "file" / "hapticlab")
+    with pytest.raises(EngineMissingError, match="set XDG_CACHE_HOME"):
+        vm._built_library(16, ())
+
+
+def test_the_sources_are_found_in_a_checkout_and_in_an_installed_package(monkeypatch, tmp_path):
+    monkeypatch.setattr(vm, "__file__", str(tmp_path / "hapticlab" / "compiler" / "vm.py"))
+    with pytest.raises(EngineMissingError, match="reinstall hapticlab"):
+        vm.firmware_folder()
+    for folder in (tmp_path / "firmware", tmp_path / "hapticlab" / "firmware"):  # the package's own goes first
+        for source in vm.SOURCES:
+            (folder / source).parent.mkdir(parents=True, exist_ok=True)
+            (folder / source).touch()
+        assert vm.firmware_folder() == folder.resolve()
+
+
+def test_the_machine_says_what_it_refuses():
     machine = vm.Vm(reciprocal())
     machine.bytes = machine.bytes[:-1]
     with pytest.raises(ProgramError, match="reciprocal: the virtual machine refuses it: SIZE: the program is cut"):
