@@ -9,8 +9,10 @@ from ..errors import AnalysisError
 
 #: amplitudes of the last two quarters within this ratio count as one sustained oscillation
 LOCK = 0.01
-#: fewer cycles in a quarter of the record than this do not tell an oscillation from a motion
+#: fewer cycles in a quarter of the record than this do not tell a sustained oscillation from a growing one
 CYCLES = 3
+#: a motion that turns round less often than this in the last half is no oscillation
+REVERSALS = 2
 
 
 @dataclass(frozen=True)
@@ -19,9 +21,10 @@ class Chatter:
 
     Attributes
     ----------
-    state : {"none", "chatter", "growing", "decaying"}
+    state : {"none", "chatter", "growing", "decaying", "undecided"}
         "chatter" is a sustained limit cycle: the last two quarters agree within 1 %, or differ by less than its own
         irregularity explains. Just inside a stability limit a decay can take 1e5 samples, so look at ``growth`` too.
+        "undecided": it oscillates, but with fewer than three cycles a quarter and no clear growth.
     amplitude : float
         Half the peak-to-peak of the handle's oscillation over the last half [m]; 0 where there is none.
     frequency : float or None
@@ -36,6 +39,8 @@ class Chatter:
         The sensed position takes two neighbouring values and no other: one encoder count.
     rest : float
         Mean position over the last quarter [m].
+    travel : float
+        Peak-to-peak of the handle over the last quarter [m].
     """
 
     state: str
@@ -46,11 +51,15 @@ class Chatter:
     locked: bool
     dither: bool
     rest: float
+    travel: float
 
     def __str__(self):
         if self.state == "none":
-            return f"none: the handle rests at {1e3 * self.rest:.4g} mm, with no oscillation in the last half"
-        place = f"{1e3 * self.amplitude:.4g} mm at {self.frequency:.4g} Hz, {self.contacts_per_second:.4g} contacts/s"
+            moves = self.travel > 1e-3 * abs(self.rest) + 1e-6
+            where = f"moves on by {1e3 * self.travel:.4g} mm" if moves else f"rests at {1e3 * self.rest:.4g} mm"
+            return f"none: the handle {where}, with no oscillation in the last half"
+        tone = "no measurable frequency" if self.frequency is None else f"{self.frequency:.4g} Hz"
+        place = f"{1e3 * self.amplitude:.4g} mm at {tone}, {self.contacts_per_second:.4g} contacts/s"
         if self.dither:
             place += "; the sensed position moves by one encoder count only: dither of the encoder"
         if self.locked:
@@ -62,8 +71,8 @@ def chatter(log):
     """Find chatter, Section 23.4: sustained oscillation, often with repeated contact with the wall.
 
     Looks at the last half of a record, at the handle itself where an encoder or noise hid it (``x_true``). An oscillation
-    is at least three cycles in a quarter of the record and larger than a nanometre, a millionth of the travel, and single
-    precision.
+    turns round at least twice there and is larger than a nanometre, a millionth of the travel, and single precision; to
+    call it sustained takes three cycles in a quarter of the record.
 
     Parameters
     ----------
@@ -94,21 +103,36 @@ def chatter(log):
     if not (np.isfinite(x).all() and np.isfinite(F).all()):
         raise AnalysisError(f"the record holds values that are not finite; fault: {log.fault or 'none recorded'}")
     half, quarter = len(t) // 2, len(t) // 4
+    contacts = float(np.count_nonzero((F[-half:][1:] != 0) & (F[-half:][:-1] == 0)) / (half * log.T))
+    last, before = x[-quarter:], x[len(x) - 2 * quarter : len(x) - quarter]
+    rest, travel = float(last.mean()), float(np.ptp(last))
     y, _ = _around_trend(x[-half:])
-    earlier, later = (_strength(x[len(x) - end : len(x) - end + quarter]) for end in (2 * quarter, quarter))
-    contacts = np.count_nonzero((F[-half:][1:] != 0) & (F[-half:][:-1] == 0)) / (half * log.T)
-    rest = float(x[-quarter:].mean())
     least = max(1e-9, 1e-6 * np.ptp(x), 4 * np.finfo(np.float32).eps * abs(x).max())
+    if _strength(last) < least or _reversals(x[-half:]) < REVERSALS:
+        return Chatter("none", 0.0, None, contacts, 0.0, False, False, rest, travel)
     crossings = _upward_crossings(y) * log.T
-    if later < least or len(crossings) <= 2 * CYCLES:
-        return Chatter("none", 0.0, None, float(contacts), 0.0, False, False, rest)
-    frequency = (len(crossings) - 1) / (crossings[-1] - crossings[0])
-    ratio = math.log(later / max(earlier, least * 1e-3))
-    locked = abs(ratio) < max(LOCK, 2 * _irregularity(y))
-    state = "chatter" if locked else "growing" if ratio > 0 else "decaying"
-    growth = ratio / (quarter * log.T)
+    frequency = float((len(crossings) - 1) / (crossings[-1] - crossings[0])) if len(crossings) > 1 else None
+    if len(crossings) > 2 * CYCLES:
+        ratio = math.log(_strength(last) / max(_strength(before), least * 1e-3))
+        locked = abs(ratio) < max(LOCK, 2 * _irregularity(y))
+        state = "chatter" if locked else _trend(ratio)
+    else:
+        ratio, locked = math.log(travel / max(float(np.ptp(before)), least * 1e-3)), False
+        state = "undecided" if abs(ratio) < 0.1 else _trend(ratio)
     dither = len(np.unique(log.x[-half:])) == 2
-    return Chatter(state, float(np.ptp(y) / 2), float(frequency), float(contacts), growth, locked, dither, rest)
+    growth = ratio / (quarter * log.T)
+    return Chatter(state, float(np.ptp(y) / 2), frequency, contacts, growth, locked, dither, rest, travel)
+
+
+def _trend(ratio):
+    return "growing" if ratio > 0 else "decaying"
+
+
+def _reversals(x):
+    """Return how often the handle turns round; standing still between is no turn."""
+    moves = np.sign(np.diff(x))
+    moves = moves[moves != 0]
+    return int(np.count_nonzero(moves[1:] != moves[:-1]))
 
 
 def _around_trend(x):

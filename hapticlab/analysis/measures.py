@@ -9,10 +9,10 @@ import numpy as np
 
 from ..compiler.ir import Channel
 from ..compiler.trace import equal, maximum, minimum, select
-from .chatter import LOCK
+from .chatter import LOCK, REVERSALS
 
-#: reversals of the handle in a quarter of the run that make an oscillation: two cycles
-REVERSALS = 4
+#: a swing below this [m] is rounding of a float32 scene: some ulp of a position of centimetres
+LEAST = 2e-8
 
 
 def _f64(*names):
@@ -24,7 +24,7 @@ def _number(tick):
 
 
 class Swing:
-    """Peak-to-peak of the handle in the third and the last quarter, and its reversals in the last."""
+    """Peak-to-peak of the handle in the third and the last quarter, and its reversals in both together."""
 
     states = _f64(("low", "m"), ("high", "m"), ("before", "m"), ("heading", "m/s"), ("reversals", "1"))
     outputs = _f64(("before", "m"), ("after", "m"), ("reversals", "1"))
@@ -43,21 +43,24 @@ class Swing:
         before = select(equal(now, self.last), high - low, before)
         starts = equal(now, self.third) | equal(now, self.last)
         low, high = select(starts, x, minimum(x, low)), select(starts, x, maximum(x, high))
-        turned = (heading * v < 0.0) & (now > self.last)
+        turned = (heading * v < 0.0) & (now > self.third)
         reversals = select(turned, reversals + 1.0, reversals)
         heading = select(equal(v, 0.0), heading, v)
         return [before, high - low, reversals], [low, high, before, heading, reversals]
 
 
 class Chatter(Swing):
-    """Sustained amplitude [m]; 0 where the handle rests, its motion decays or stays within one encoder count."""
+    """Sustained or growing amplitude [m]; 0 where the handle rests, its motion decays or stays within one encoder count.
+
+    nan where it turned round but once, and has not come to rest: the run is too short to tell.
+    """
 
     unit = "m"
 
     def value(self, outputs, *, count, quarter):
         before, after, reversals = outputs
-        sustained = (reversals >= REVERSALS) & (after > np.maximum(1.001 * count, 2e-9)) & (after > (1 - LOCK) * before)
-        return np.where(sustained, after / 2, 0.0)
+        lasting = (reversals > 0) & (after > np.maximum(1.001 * count, LEAST)) & (after > (1 - LOCK) * before)
+        return np.where(lasting, np.where(reversals >= REVERSALS, after / 2, np.nan), 0.0)
 
 
 class Growth(Swing):

@@ -58,7 +58,9 @@ def test_rest_and_drift_are_not_chatter():
     assert rest.state == "none" and rest.amplitude == 0 and rest.frequency is None
     assert str(rest).startswith("none: the handle rests at 12 mm")
     assert chatter(record(0.5 * t)).state == "none"  # it flew away
-    assert chatter(record(oscillation(f=0.5, seconds=4.0))).state == "none"  # one cycle is a motion
+    slow = chatter(record(oscillation(f=0.5, seconds=4.0)))  # one cycle in the last half turns round, but tells no more
+    assert slow.state == "undecided"
+    assert not slow.locked
     assert chatter(record(oscillation(growth=-12.0))).state == "none"  # decayed to less than a nanometre
 
 
@@ -106,3 +108,17 @@ def test_short_and_broken_records_are_refused():
     x[100] = np.nan
     with pytest.raises(AnalysisError, match="not finite"):
         chatter(record(x))
+
+
+def test_a_few_large_bounces_are_growing_and_not_rest():
+    """Thrown far off a wall much too stiff, the handle comes back only a few times in the last half."""
+    found = chatter(record(oscillation(f=1.1, growth=0.8, amplitude=1e-2)))
+    assert found.state == "growing"
+    assert found.growth == pytest.approx(0.8, rel=0.2)  # with so few cycles the peaks fall anywhere in a quarter
+    assert found.amplitude > 0.1
+
+
+def test_a_handle_that_moves_on_is_not_said_to_rest():
+    t = np.arange(4000) * T
+    assert "moves on by 9.99 mm" in str(chatter(record(1e-2 * t)))
+    assert "rests at 5 mm" in str(chatter(record(5e-3 + 0 * t)))
