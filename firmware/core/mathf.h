@@ -19,8 +19,9 @@
 #define HL_NO_CONTRACTION _Pragma("STDC FP_CONTRACT OFF")
 #endif
 
-#define HL_NAN NAN
-#define HL_INFINITY INFINITY
+/* avr-libc has these as double */
+#define HL_NAN ((float)NAN)
+#define HL_INFINITY ((float)INFINITY)
 
 /* one register: a float, an int32, or a bool as 0 or 1 */
 typedef union {
