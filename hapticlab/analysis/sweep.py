@@ -74,7 +74,8 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
         ``chatter`` sustained or growing amplitude [m], 0 where there is none: half the peak-to-peak of the last quarter,
         where the handle turns round at least twice in the last half, does not swing less than in the quarter before by
         more than 1 %, and swings by more than one encoder count and 20 nm. nan where it turned but once: run longer.
-        Near a limit a decay is slow, and looks sustained in a short run: lengthen ``duration``. ``growth`` logarithm of the swing's ratio between these quarters [1/s].
+        Near a limit a decay is slow, and looks sustained in a short run: lengthen ``duration``. ``growth`` logarithm of the
+        swing's ratio between these quarters [1/s].
         ``contacts`` of the last half [1/s]. ``energy`` the most ever drawn from the environment [J]. ``peak_force`` [N].
     engine : {"auto", "llvm", "interpreter"}
     progress : bool
