@@ -52,6 +52,8 @@ class Engine:
         if parameters.ndim == 1:
             parameters = parameters[:, None]
         lanes = parameters.shape[1]
+        if lanes == 0:
+            raise ProgramError(f"{program.name}: parameters of shape {parameters.shape}; needs at least one lane")
         parameters = self._shaped("parameters", parameters, (len(program.parameters), lanes))
         unbound = [c.name for c, row in zip(program.parameters, parameters, strict=True) if np.isnan(row).any()]
         if unbound:

@@ -57,6 +57,7 @@ def test_what_does_not_fit_the_program_is_refused(engine):
         (dict(ticks=4, inputs=x, parameters=[1, 1], every=0), "at least one tick"),
         (dict(ticks=4, inputs=x), "no value for a; bind it"),
         (dict(ticks=4, inputs=x, parameters=[1]), r"parameters of shape \(1, 1\); needs \(2, 1\)"),
+        (dict(ticks=4, inputs=x, parameters=np.ones((2, 0))), "at least one lane"),
         (dict(ticks=4, parameters=[1, 1]), r"inputs of shape \(4, 0\); needs \(4, 1\)"),
         (dict(ticks=5, inputs=x, parameters=[1, 1]), r"inputs of shape \(4, 1\); needs \(5, 1\)"),
         (
