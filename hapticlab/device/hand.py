@@ -8,11 +8,12 @@ import numpy as np
 
 from ..errors import PaddleError
 
-UNITS = {"m": "kg", "b": "N s/m", "k": "N/m", "push": "N"}
+UNITS = {"m": "kg", "b": "N s/m", "k": "N/m", "push": "N", "noise": "N"}
 _REASONS = {
     "m": "A negative mass is no mass.",
     "b": "A negative damper feeds energy to the handle.",
     "k": "A negative spring feeds energy to the handle.",
+    "noise": "It is a standard deviation.",
 }
 
 
@@ -36,6 +37,8 @@ class Hand:
     intent : None, float or callable, optional
         Where the hand means to be [m]: a place, or a function of an array of times [s] that returns as many positions
         [m]. It is sampled at the ticks and linear in between. It acts through k or b.
+    noise : float
+        Standard deviation of a white Gaussian force beside the push [N], held over each sample; the paddle's seed draws it.
 
     Raises
     ------
@@ -55,6 +58,7 @@ class Hand:
     k: float = 0.0
     push: float = 0.0
     intent: float | Callable | None = None
+    noise: float = 0.0
 
     def __post_init__(self):
         for name, reason in _REASONS.items():

@@ -65,8 +65,8 @@ class Plant:
         Whole samples of delay.
     split : bool
         A fraction of a sample of delay is left: the force changes inside the period.
-    push, spring, drag, ramp : bool
-        The hand pushes or leans on a resting intent, has k, has b with a moving intent, has a moving intent.
+    push, shake, spring, drag, ramp : bool
+        The hand pushes or leans on a resting intent, has noise, has k, has b with a moving intent, has a moving intent.
     coulomb : bool
     pieces, terms : int
         With Coulomb friction: pieces a period part is cut into, terms of the Taylor polynomial in each.
@@ -75,6 +75,7 @@ class Plant:
     whole: int = 0
     split: bool = False
     push: bool = False
+    shake: bool = False
     spring: bool = False
     drag: bool = False
     ramp: bool = False
@@ -108,15 +109,16 @@ class Plant:
         drop = (() if self.spring else ("xx", "vx", "xd", "vd")) + (() if self.ramp else ("xd", "vd"))
         return [(f"phi_{e}", unit) for e, unit in PHI.items() if e not in drop]
 
-    def step(self, p, x, v, F_before, F_after, intent=0.0, rate=0.0):
+    def step(self, p, x, v, F_before, F_after, intent=0.0, rate=0.0, shake=0.0):
         """Advance one period; the force changes from F_before to F_after where the plant is split.
 
         Parameters
         ----------
         p : dict of str to float, array or Value
             The plant's parameters by name.
-        x, v, F_before, F_after, intent, rate : float, array or Value
-            Position [m], velocity [m/s], forces on the environment [N], intent [m] and its rate [m/s] at the sample.
+        x, v, F_before, F_after, intent, rate, shake : float, array or Value
+            Position [m], velocity [m/s], forces on the environment [N], intent [m] and its rate [m/s] at the sample, and
+            the hand's noise over the period [N].
 
         Returns
         -------
@@ -127,6 +129,7 @@ class Plant:
         for part, F in zip(self.parts, (F_before, F_after) if self.split else (F_after,), strict=True):
             x_switch = x
             u = p["plant.push"] - F if self.push else -F
+            u = u + shake if self.shake else u
             d = None
             if self.drag:
                 u = u + p["plant.b_hand"] * rate
@@ -166,6 +169,7 @@ def plant_of(paddle):
         whole=whole,
         split=fraction > 0,
         push=hand is not None and (hand.push != 0 or leaning),
+        shake=hand is not None and hand.noise > 0,
         spring=hand is not None and hand.k > 0,
         drag=hand is not None and hand.moves and hand.b > 0,
         ramp=hand is not None and hand.moves,

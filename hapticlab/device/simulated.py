@@ -57,7 +57,7 @@ class SimulatedPaddle(Paddle):
         The motor saturates at this magnitude [N].
     hand : Hand, optional
     seed : int
-        Of the sensor noise; the same seed gives the same run.
+        Of the sensor's and the hand's noise; the same seed gives the same run.
     noise : float
         Standard deviation of white Gaussian noise on the sensed position [m], added before the encoder.
     profile : PaddleProfile, optional
@@ -151,14 +151,19 @@ class SimulatedPaddle(Paddle):
         return tuple(float(a) for a in (*values(self), *sensor, *encoder, *limit, *start))
 
     def inputs(self, ticks):
-        """Return the linked program's inputs, shape (ticks, inputs): intent [m], its rate [m/s], noise [m]."""
+        """Return the linked program's inputs, shape (ticks, inputs).
+
+        Intent [m], its rate [m/s], the sensor's noise [m], the hand's noise [N], each where the paddle has it.
+        """
         columns = []
         if self.plant.ramp:
             intent = self.hand.samples(ticks, self.T)
             columns += [intent[:-1]] if self.plant.spring else []
             columns.append(np.diff(intent) / self.T)
-        if self.noise:
-            columns.append(self.noise * np.random.default_rng(self.seed).standard_normal(ticks))
+        # a stream each, so that one noise is the same with and without the other
+        for stream, deviation in enumerate((self.noise, self.hand.noise if self.hand else 0.0)):
+            if deviation:
+                columns.append(deviation * np.random.default_rng([self.seed, stream]).standard_normal(ticks))
         return np.column_stack(columns) if columns else np.zeros((ticks, 0))
 
     def run(self, scene, *, duration, x=0.0, v=0.0, engine="auto", progress=True, **options):

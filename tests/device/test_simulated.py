@@ -91,6 +91,18 @@ def test_noise_is_seeded(spring):
     assert sensed(3).std() == pytest.approx(2e-5, rel=0.05)  # the handle stays at zero; 4000 samples: 1.1 % one sigma
 
 
+def test_the_hands_noise_is_a_seeded_force_held_over_each_sample(spring):
+    def run(seed, **noise):
+        paddle = SimulatedPaddle(m=0.05, b=0.0, T=1e-3, seed=seed, hand=Hand(m=0.03, noise=0.2), **noise)
+        return paddle.run(spring(0.0, velocity=paddle.velocity), duration=4)
+
+    log = run(7)
+    force = 0.08 * np.diff(log.v) / 1e-3  # a free mass: M dv/dt is the force of each period
+    assert force.std() == pytest.approx(0.2, rel=0.05)  # 4000 samples: 1.1 % one sigma
+    assert np.array_equal(log.v, run(7).v) and not np.array_equal(log.v, run(8).v)
+    assert np.array_equal(log.v, run(7, noise=1e-5).v_true)  # the sensor's noise is a stream of its own
+
+
 @pytest.mark.parametrize("delay", [0.0, 4e-4, 2e-3])
 @pytest.mark.parametrize("bad", [NAN, float("inf")])
 def test_a_force_that_is_no_number_switches_the_motor_off(breaks_at, delay, bad):
