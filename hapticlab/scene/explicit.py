@@ -4,9 +4,11 @@
 equations; the compiler emits the solution as an unrolled LDL^T.
 """
 
+import math
+import random
 from dataclasses import dataclass
 
-import numpy as np
+import mpmath
 import sympy as sp
 
 from ..errors import MassError, SceneError
@@ -149,20 +151,26 @@ def _check_mass(form, values):
     if not form.coordinates:
         return
     symbols = sorted({s for row in form.M for m in row for s in m.free_symbols | m.atoms(sp.Function, sp.Derivative)}, key=str)
-    generator = np.random.default_rng(23)
+    generator = random.Random(23)
     worst = None
     for _ in range(3):
         at = {s: sp.Float(generator.uniform(0.5, 1.5)) for s in symbols}
         at |= {s: sp.Float(values[s.name]) for s in symbols if isinstance(s, Parameter) and s.name in values}
         at[T] = sp.Float(1e-3)
-        M = np.array([[complex(m.xreplace(at)).real for m in row] for row in form.M], float)
-        scale = np.sqrt(np.abs(M).max(axis=1, keepdims=True) * np.abs(M).max(axis=0, keepdims=True))
-        singular = np.linalg.svd(M / np.where(scale > 0, scale, 1))
-        if singular.S[-1] > 1e-10 * singular.S[0]:
+        M = [[complex(m.xreplace(at)).real for m in row] for row in form.M]
+        _, singular_values, directions = mpmath.svd_r(mpmath.matrix(_balanced(M)))
+        if singular_values[len(M) - 1] > 1e-10 * singular_values[0]:
             return
-        worst = singular.Vh[-1]
+        worst = directions[len(M) - 1, :]
     names = [type(q).__name__ for q, c in zip(form.coordinates, worst, strict=True) if abs(c) > 1e-6]
     raise MassError(
         f"singular mass: the equations do not determine the accelerations of {' and '.join(names)} "
         "(a massless direction, or an equation that repeats another); give each its own mass or equation"
     )
+
+
+def _balanced(M):
+    """Scale rows and columns to their largest entries, so that grams beside kilograms are not taken for nothing."""
+    rows = [max(map(abs, row)) or 1.0 for row in M]
+    columns = [max(map(abs, column)) or 1.0 for column in zip(*M, strict=True)]
+    return [[m / math.sqrt(r * c) for m, c in zip(row, columns, strict=True)] for row, r in zip(M, rows, strict=True)]
