@@ -11,6 +11,10 @@ from ..errors import AnalysisError
 LOCK = 0.01
 #: fewer cycles in a quarter of the record than this do not tell a sustained oscillation from a growing one
 CYCLES = 3
+#: swings that differ by less are the same, turning points being located between samples
+SAME = 5e-4
+#: samples, below which a quarter of a record says nothing
+SHORTEST = 32
 #: a motion that turns round less often than this in the last half is no oscillation
 REVERSALS = 2
 
@@ -24,7 +28,7 @@ class Chatter:
     state : {"none", "chatter", "growing", "decaying", "undecided"}
         "chatter" is a sustained limit cycle: the last two quarters agree within 1 %, or differ by less than its own
         irregularity explains. Just inside a stability limit a decay can take 1e5 samples, so look at ``growth`` too.
-        "undecided": it oscillates, but with fewer than three cycles a quarter and no clear growth.
+        "undecided": it oscillates, but with fewer than three cycles a quarter that neither all grow nor all decay.
     amplitude : float
         Half the peak-to-peak of the handle's oscillation over the last half [m]; 0 where there is none.
     frequency : float or None
@@ -32,7 +36,7 @@ class Chatter:
     contacts_per_second : float
         How often the force goes from zero to nonzero [1/s], over the last half.
     growth : float
-        Logarithm of the amplitude's ratio between the last two quarters, per second [1/s].
+        Logarithm of the amplitude's ratio between the last two quarters, per second [1/s]; nan where one has no swing.
     locked : bool
         True for a sustained oscillation alone.
     dither : bool
@@ -72,7 +76,8 @@ def chatter(log):
 
     Looks at the last half of a record, at the handle itself where an encoder or noise hid it (``x_true``). An oscillation
     turns round at least twice there and is larger than a nanometre, a millionth of the travel, and single precision; to
-    call it sustained takes three cycles in a quarter of the record.
+    call it sustained takes three cycles in a quarter of the record. Motion that is driven, by a hand's noise or moving
+    intent or by a scene's own vibration, is not told apart from chatter.
 
     Parameters
     ----------
@@ -98,8 +103,8 @@ def chatter(log):
     ('chatter', 20.0, 20)
     """
     t, x, F = (np.asarray(a, float) for a in (log.t, log.channels.get("x_true", log.x), log.F))
-    if len(t) < 32:
-        raise AnalysisError(f"the record has {len(t)} samples; chatter needs at least 32: run longer")
+    if len(t) < SHORTEST:
+        raise AnalysisError(f"the record has {len(t)} samples; chatter needs at least {SHORTEST}: run longer")
     if not (np.isfinite(x).all() and np.isfinite(F).all()):
         raise AnalysisError(f"the record holds values that are not finite; fault: {log.fault or 'none recorded'}")
     half, quarter = len(t) // 2, len(t) // 4
@@ -115,17 +120,48 @@ def chatter(log):
     if len(crossings) > 2 * CYCLES:
         ratio = math.log(_strength(last) / max(_strength(before), least * 1e-3))
         locked = abs(ratio) < max(LOCK, 2 * _irregularity(y))
-        state = "chatter" if locked else _trend(ratio)
+        state = "chatter" if locked else "growing" if ratio > 0 else "decaying"
     else:
-        ratio, locked = math.log(travel / max(float(np.ptp(before)), least * 1e-3)), False
-        state = "undecided" if abs(ratio) < 0.1 else _trend(ratio)
+        state, ratio, locked = *_compare_swings(x, quarter), False
     dither = len(np.unique(log.x[-half:])) == 2
     growth = ratio / (quarter * log.T)
     return Chatter(state, float(np.ptp(y) / 2), frequency, contacts, growth, locked, dither, rest, travel)
 
 
-def _trend(ratio):
-    return "growing" if ratio > 0 else "decaying"
+def decaying(largest, least_before, largest_before):
+    """Tell whether swings die out, from those of the last quarter and of the one before it.
+
+    However slow a decay, all of the last quarter lie below all of the one before; where the difference is too small to
+    be seen in neighbours, the largest lies at the bottom of the range before it, by 1 % in all. No limit cycle does that,
+    regular or not. Where a beat hides a decay, the largest has lost a third.
+    """
+    bottom = least_before + 0.05 * (largest_before - least_before)
+    slow = (largest <= bottom) & (largest < (1 - LOCK) * largest_before)
+    return (largest < (1 - SAME) * least_before) | slow | (largest < 2 / 3 * largest_before)
+
+
+def _compare_swings(x, quarter):
+    """Return what a few swings show, and the logarithm of the ratio of the largest of the last two quarters."""
+    ends, swings = _swings(x)
+    last = swings[ends >= len(x) - quarter]
+    before = swings[(ends < len(x) - quarter) & (ends >= len(x) - 2 * quarter)]
+    if not (len(last) and len(before)):
+        return "undecided", math.nan
+    ratio = math.log(last.max() / before.max())
+    if decaying(last.max(), before.min(), before.max()):
+        return "decaying", ratio
+    return ("growing" if last.min() > (1 + SAME) * before.max() else "undecided"), ratio
+
+
+def _swings(x):
+    """Return where swings end, in samples, and how far each goes: from turning point to turning point."""
+    d = np.diff(x)
+    moving = np.flatnonzero(d)
+    turns = np.flatnonzero(d[moving[:-1]] * d[moving[1:]] < 0)
+    a, b = moving[turns], moving[turns + 1]
+    # the parabola through a turning point's three samples; a handle that stops for a while turns where it stands
+    peak = x[b] + np.where(b == a + 1, (d[b] + d[a]) ** 2 / (8 * (d[a] - d[b])), 0.0)
+    return b[1:], abs(np.diff(peak))
 
 
 def _reversals(x):

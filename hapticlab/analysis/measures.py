@@ -9,7 +9,7 @@ import numpy as np
 
 from ..compiler.ir import Channel
 from ..compiler.trace import equal, maximum, minimum, select
-from .chatter import LOCK, REVERSALS
+from .chatter import decaying
 
 #: a swing below this [m] is rounding of a float32 scene: some ulp of a position of centimetres
 LEAST = 2e-8
@@ -24,55 +24,70 @@ def _number(tick):
 
 
 class Swing:
-    """Peak-to-peak of the handle in the third and the last quarter, and its reversals in both together."""
+    """The swings of the handle, each from one turning point to the next, that end in the third and the last quarter.
 
-    states = _f64(("low", "m"), ("high", "m"), ("before", "m"), ("heading", "m/s"), ("reversals", "1"))
-    outputs = _f64(("before", "m"), ("after", "m"), ("reversals", "1"))
+    Swings need no whole number of cycles to be compared. Turning points lie between samples: with the force held the
+    handle moves there on a parabola, x_prev + v_prev^2 T / 2(v_prev - v).
+    """
 
-    def __init__(self, ticks):
-        self.third, self.last = float(ticks - 2 * (ticks // 4)), float(ticks - ticks // 4)
+    states = _f64(
+        ("x", "m"), ("v", "m/s"), ("heading", "m/s"), ("anchor", "m"), ("turns", "1"),
+        ("largest_before", "m"), ("least_before", "m"), ("largest", "m"),
+    )  # fmt: skip
+    outputs = _f64(("largest_before", "m"), ("least_before", "m"), ("largest", "m"), ("turns", "1"), ("heading", "m/s"))
+
+    def __init__(self, ticks, T):
+        self.third, self.last, self.T = float(ticks - 2 * (ticks // 4)), float(ticks - ticks // 4), T
 
     def init(self, sample):
         x = sample["x_true"]
         zero = x.builder.const(0.0, "f64")
-        return [x, x, zero, zero, zero]
+        return [x, zero, zero, x, zero, zero, zero + 1e300, zero]
 
     def update(self, sample, states):
-        low, high, before, heading, reversals = states
+        x_prev, v_prev, heading, anchor, turns, largest_before, least_before, largest = states
         x, v, now = sample["x_true"], sample["v_true"], _number(sample["tick"])
-        before = select(equal(now, self.last), high - low, before)
-        starts = equal(now, self.third) | equal(now, self.last)
-        low, high = select(starts, x, minimum(x, low)), select(starts, x, maximum(x, high))
-        turned = (heading * v < 0.0) & (now > self.third)
-        reversals = select(turned, reversals + 1.0, reversals)
+        turned = heading * v < 0.0
+        extreme = x_prev + v_prev * v_prev * (self.T / 2) / select(turned, v_prev - v, 1.0)
+        swing = abs(extreme - anchor)
+        counts = turned & (turns > 0.0)  # the way from the start to the first turning point is no swing
+        in_third, in_last = counts & (now > self.third) & (now <= self.last), counts & (now > self.last)
+        largest_before = select(in_third, maximum(swing, largest_before), largest_before)
+        least_before = select(in_third, minimum(swing, least_before), least_before)
+        largest = select(in_last, maximum(swing, largest), largest)
+        anchor, turns = select(turned, extreme, anchor), select(turned, turns + 1.0, turns)
         heading = select(equal(v, 0.0), heading, v)
-        return [before, high - low, reversals], [low, high, before, heading, reversals]
+        new = [x, v, heading, anchor, turns, largest_before, least_before, largest]
+        return [largest_before, least_before, largest, turns, heading], new
 
 
 class Chatter(Swing):
-    """Sustained or growing amplitude [m]; 0 where the handle rests, its motion decays or stays within one encoder count.
+    """Sustained or growing amplitude [m]; 0 where the handle rests, its swings decay or stay within one encoder count.
 
-    nan where it turned round but once, and has not come to rest: the run is too short to tell.
+    nan where the run cannot tell: nothing ever moved, or a handle that turned has no swing in one of the quarters.
     """
 
     unit = "m"
 
     def value(self, outputs, *, count, quarter):
-        before, after, reversals = outputs
-        lasting = (reversals > 0) & (after > np.maximum(1.001 * count, LEAST)) & (after > (1 - LOCK) * before)
-        return np.where(lasting, np.where(reversals >= REVERSALS, after / 2, np.nan), 0.0)
+        largest_before, least_before, largest, turns, heading = outputs
+        seen = largest > np.maximum(1.001 * count, LEAST)
+        lasting = seen & ~decaying(largest, least_before, largest_before)
+        still = (turns == 0) & (heading == 0)
+        unknown = still | (seen & (largest_before == 0)) | ((turns > 0) & (largest == 0) & (heading != 0))
+        return np.where(unknown, np.nan, np.where(lasting, largest / 2, 0.0))
 
 
 class Growth(Swing):
-    """Logarithm of the swing's ratio between the last two quarters, per second [1/s]; -inf where the handle rests."""
+    """Logarithm of the largest swings' ratio between the last two quarters, per second [1/s]; nan where either has none."""
 
     unit = "1/s"
 
     def value(self, outputs, *, count, quarter):
-        before, after, _ = outputs
+        largest_before, _, largest, _, _ = outputs
         with np.errstate(divide="ignore", invalid="ignore"):
-            rate = np.log(after / before) / quarter
-        return np.where(after == 0, -np.inf, rate)
+            rate = np.log(largest / largest_before) / quarter
+        return np.where((largest_before > 0) & (largest > 0), rate, np.nan)
 
 
 class Contacts:
@@ -82,7 +97,7 @@ class Contacts:
     states = _f64(("force", "N"), ("contacts", "1"))
     outputs = _f64(("contacts", "1"))
 
-    def __init__(self, ticks):
+    def __init__(self, ticks, T):
         self.half = float(ticks - 2 * (ticks // 4))
 
     def init(self, sample):
@@ -107,7 +122,7 @@ class Energy:
     states = _f64(("W", "J"), ("least", "J"), ("force", "N"))
     outputs = _f64(("least", "J"))
 
-    def __init__(self, ticks):
+    def __init__(self, ticks, T):
         pass
 
     def init(self, sample):
@@ -132,7 +147,7 @@ class PeakForce:
     states = _f64(("peak", "N"))
     outputs = _f64(("peak", "N"))
 
-    def __init__(self, ticks):
+    def __init__(self, ticks, T):
         pass
 
     def init(self, sample):

@@ -10,6 +10,7 @@ from ..device.link import link
 from ..device.progress import progress_bar
 from ..errors import AnalysisError
 from ..scene.scene import Scene
+from .chatter import SHORTEST
 from .measures import METRICS, WithFault
 from .plots import plot_sweep
 
@@ -71,10 +72,11 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
     duration : float
         [s]
     metric : {"chatter", "growth", "contacts", "energy", "peak_force"}
-        ``chatter`` sustained or growing amplitude [m], 0 where there is none: half the peak-to-peak of the last quarter,
-        where the handle turns round at least twice in the last half, does not swing less than in the quarter before by
-        more than 1 %, and swings by more than one encoder count and 20 nm. nan where it turned but once: run longer.
-        Near a limit a decay is slow, and looks sustained in a short run: lengthen ``duration``. ``growth`` logarithm of the
+        ``chatter`` sustained or growing amplitude [m]: half the largest swing, from turning point to turning point, of the
+        last quarter. 0 where the handle rests, where every swing of the last quarter is smaller than every one of the
+        quarter before, and within one encoder count or 20 nm. nan where the run cannot tell: nothing moves the handle, or
+        a quarter has no whole swing; lengthen ``duration``. Driven motion (noise, a moving intent) is not told apart.
+        ``growth`` logarithm of the
         swing's ratio between these quarters [1/s].
         ``contacts`` of the last half [1/s]. ``energy`` the most ever drawn from the environment [J]. ``peak_force`` [N].
     engine : {"auto", "llvm", "interpreter"}
@@ -186,7 +188,9 @@ def _measure(grid, settings, duration, metric, engine, progress):
     cells = np.flatnonzero(np.isin(grid.setting, settings))
     ticks = paddle.ticks(duration)
     program = paddle.program(grid.scene)
-    measure = METRICS[metric](ticks)
+    if ticks < SHORTEST:
+        raise AnalysisError(f"duration = {duration:g} s is {ticks} samples of T = {paddle.T:g} s; needs at least {SHORTEST}")
+    measure = METRICS[metric](ticks, paddle.T)
     loaded = load(link(program, paddle, WithFault(measure)), engine)
     inputs, parameters = paddle.inputs(ticks), grid.parameters(program, settings, cells)
     last = []

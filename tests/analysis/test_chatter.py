@@ -122,3 +122,13 @@ def test_a_handle_that_moves_on_is_not_said_to_rest():
     t = np.arange(4000) * T
     assert "moves on by 9.99 mm" in str(chatter(record(1e-2 * t)))
     assert "rests at 5 mm" in str(chatter(record(5e-3 + 0 * t)))
+
+
+@pytest.mark.parametrize(("growth", "state"), [(0.78, "growing"), (-0.11, "decaying"), (0.0, "undecided")])
+def test_less_than_three_cycles_a_quarter_are_judged_by_their_swings(growth, state):
+    """A quarter with less than one cycle: its peak-to-peak would depend on phase alone."""
+    for phase in np.linspace(0, 2 * np.pi, 9):
+        found = chatter(record(oscillation(f=3.3, seconds=1.0, amplitude=0.04, growth=growth, phase=phase)))
+        assert found.state in (state, "undecided")
+        assert not found.locked
+    assert chatter(record(oscillation(f=6.1, seconds=1.0, amplitude=0.04, growth=growth))).state == state

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 from hapticlab.analysis.chatter import chatter
 from hapticlab.analysis.energy import energy
@@ -30,10 +31,10 @@ def traces(paddle, metric, k, duration=0.8, **start):
     log = paddle.run(wall()(k=k, x_o=0.002), duration=duration, progress=False, **start)
     true = log.channels.get("x_true", log.x)
     quarter = len(true) // 4
-    before, after = np.ptp(true[-2 * quarter : -quarter]), np.ptp(true[-quarter:])
+    before, after = (largest_swing(true, log.T, len(true) - end, quarter) for end in (2 * quarter, quarter))
     half = log.F[-2 * quarter :]
     return {
-        "growth": lambda: math.log(after / before) / (quarter * log.T) if after else -math.inf,
+        "growth": lambda: math.log(after / before) / (quarter * log.T) if after and before else math.nan,
         "contacts": lambda: np.count_nonzero((half[1:] != 0) & (half[:-1] == 0)) / (2 * quarter * log.T),
         "energy": lambda: energy(log).extracted,
         "peak_force": lambda: abs(log.F).max(),
@@ -41,13 +42,22 @@ def traces(paddle, metric, k, duration=0.8, **start):
     }[metric]()
 
 
+def largest_swing(x, T, start, length):
+    """Return the largest way between turning points whose later one lies in a stretch, by a spline through the samples."""
+    turns = CubicSpline(np.arange(len(x)), x).derivative().roots(extrapolate=False)
+    at = CubicSpline(np.arange(len(x)), x)(turns)
+    ends = turns[1:]
+    inside = (ends > start - 1) & (ends < start + length - 1)  # a turn is known one sample later
+    return abs(np.diff(at))[inside].max(initial=0.0)
+
+
 @pytest.mark.parametrize("paddle", [PUSHED, FULL], ids=["plain", "full"])
 @pytest.mark.parametrize("metric", ["growth", "contacts", "energy", "peak_force"])
 def test_metrics_match_the_stored_traces(paddle, metric):
     swept = sweep(wall()(x_o=0.002), paddle, duration=0.8, metric=metric, progress=False, k=K)
     expected = [traces(paddle, metric, k) for k in K]
-    # without an encoder a trace holds x in single precision; the measure sees it in double
-    np.testing.assert_allclose(swept.values, expected, rtol=2e-4 if metric == "growth" else 1e-5, atol=1e-7)
+    # a trace without encoder holds x in single precision, and a spline bends at contact where the handle moves on parabolas
+    np.testing.assert_allclose(swept.values, expected, rtol=5e-3 if metric == "growth" else 1e-5, atol=1e-7)
 
 
 def test_chatter_is_the_sustained_amplitude():
@@ -57,7 +67,7 @@ def test_chatter_is_the_sustained_amplitude():
     assert [c.state for c in found] == ["none", "none", "chatter", "chatter"] or found[1].state == "decaying"
     assert (swept.values[:2] == 0).all()  # 200 N/m is where Eq. (23.10) ends
     np.testing.assert_allclose(swept.values[2:], [c.amplitude for c in found[2:]], rtol=2e-2)
-    np.testing.assert_allclose(swept.values[2:], [traces(PUSHED, "chatter", k, 20.0) for k in K[2:]], rtol=1e-6)
+    np.testing.assert_allclose(swept.values[2:], [traces(PUSHED, "chatter", k, 20.0) for k in K[2:]], rtol=1e-4)
 
 
 def test_motion_within_one_count_is_no_chatter():
@@ -159,3 +169,31 @@ def test_a_wall_far_too_stiff_is_never_called_quiet():
     swings = sweep(wall(), slow, progress=False, k=k).values
     assert not (swings == 0).any()
     assert np.isfinite(swings).mean() > 0.9
+
+
+@pytest.mark.parametrize("push", [0.5, 2.0])
+def test_a_short_sweep_finds_the_limit_and_nothing_on_either_side_of_it(push):
+    """One second holds two or three periods of this paddle; what it cannot tell it calls nan, not chatter or rest."""
+    heavy = SimulatedPaddle.from_profile("eth", hand=Hand(push=push))
+    k = np.geomspace(10.0, 1000.0, 120)
+    limit = stability_limit(heavy).K
+    swings = sweep(wall(), heavy, progress=False, k=k).values
+    assert not (swings[k < 0.96 * limit] > 0).any()
+    assert not (swings[k > 1.04 * limit] == 0).any()
+    assert np.isfinite(swings).mean() > 0.85
+
+
+def test_what_never_moved_has_no_verdict():
+    still = SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
+    assert np.isnan(sweep(wall(), still, progress=False, k=[100.0, 5000.0]).values).all()
+
+
+def test_drift_through_a_saturated_wall_does_not_grow():
+    weak = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, force_max=0.3, hand=Hand(push=0.5))
+    assert np.isnan(sweep(wall(), weak, metric="growth", progress=False, k=100.0).values)
+    assert sweep(wall(), weak, progress=False, k=100.0).values == 0
+
+
+def test_a_run_of_a_few_samples_is_refused():
+    with pytest.raises(AnalysisError, match="duration = 1 s is 3 samples of T = 0.3 s; needs at least 32"):
+        sweep(wall(), PUSHED, progress=False, k=100.0, T=[0.3])
