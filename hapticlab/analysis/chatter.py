@@ -95,6 +95,7 @@ def chatter(log):
 
     Examples
     --------
+    >>> import numpy as np
     >>> from hapticlab.records import Telemetry
     >>> t = np.arange(2000) * 1e-3
     >>> x = 1e-3 * np.sin(2 * np.pi * 20 * t)

@@ -70,6 +70,7 @@ def energy(log):
     --------
     A spring of 100 N/m pushed in by 2 mm a sample to 6 mm and out again gives K (v T) x_max too much:
 
+    >>> import numpy as np
     >>> from hapticlab.records import Telemetry
     >>> x = 1e-3 * np.array([0, 2, 4, 6, 4, 2, 0, -2])
     >>> log = Telemetry(t=np.arange(8) * 1e-3, x=x, v=0 * x, F=np.maximum(100 * x, 0), T=1e-3)

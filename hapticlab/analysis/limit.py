@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from ..errors import AnalysisError
 from ..scene.taps import TAPS
 
+#: a limit's polynomials have a degree for each period of delay; past this their roots lose their digits
+MOST_PERIODS = 200
+
 
 @dataclass(frozen=True)
 class Limit:
@@ -66,11 +69,11 @@ def check_number(name, value, unit, need, allowed):
     return number
 
 
-def whole_and_fraction(delay, T):
+def whole_and_fraction(delay, T, most=math.inf):
     """Split a delay [s] into whole periods and a fraction of one; 1e-9 of a period is rounding, not delay."""
     periods = delay / T
-    if periods > 200:
-        raise AnalysisError(f"delay = {delay:g} s is {periods:.0f} periods of T = {T:g} s; needs at most 200 periods")
+    if periods > most:
+        raise AnalysisError(f"delay = {delay:g} s is {periods:.0f} periods of T = {T:g} s; needs at most {most} periods")
     nearest = round(periods)
     if abs(periods - nearest) < 1e-9:
         return nearest, 0.0

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..scene.taps import LEAD, TAPS
-from .limit import Limit, check_law, check_number, whole_and_fraction
+from .limit import MOST_PERIODS, Limit, check_law, check_number, whole_and_fraction
 
 KIND = "passivity: any passive hand, sufficient"
 NO_VELOCITY = "its exact velocity jumps at the samples: a hand that moves only there draws energy at any stiffness"
@@ -35,7 +35,7 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh"):
     Parameters
     ----------
     b : float
-        Viscous damping of the device [N s/m], > 0.
+        Viscous damping of the device [N s/m], >= 0.
     T : float
         Sampling period [s], > 0.
     B : float
@@ -64,19 +64,23 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh"):
     >>> passivity_limit(b=0.1, T=1e-3, law="half_sample").K
     0.0
     """
-    b = check_number("b", b, "N s/m", "passivity needs b > 0: the device's damping pays for the hold", lambda v: v > 0)
+    b = check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda v: v >= 0)
     whole, fraction = _checked(T, B, delay, law)
-    notes = ("device damping b alone: no encoder, no Coulomb friction", _unilateral(law, delay))
+    notes = ("device damping b alone: no encoder, no Coulomb friction",)
     if LEAD[law]:
         return Limit(0.0, None, KIND, f"law {law}: {NO_VELOCITY}", notes)
+    if b == 0:
+        return Limit(0.0, None, KIND, "b = 0: without device damping nothing pays for the hold", notes)
     beta = B / b
     _, margin = _worst(_law_taps(0.0, beta, law), whole, fraction, 1.0)
     if margin < 0:
         return Limit(0.0, None, KIND, f"B = {B:g} N s/m alone is active: it needs more than b = {b:g} N s/m", notes)
     kappa, u = _falling_cuts(lambda k: _law_taps(k, beta, law), whole, fraction)
     frequency = None if u is None else math.acos(u) / (2 * math.pi * T)
-    place = "all frequencies alike" if u is None else f"worst at {math.acos(u) / math.pi:.4g} of the Nyquist frequency"
-    return Limit(float(kappa * b / T), frequency, KIND, f"b = {b:g} N s/m is spent, {place}", notes)
+    place = f"worst at {math.acos(u) / math.pi:.4g} of the Nyquist frequency" if frequency else "worst for slow motion"
+    place = "all frequencies alike" if u is None else place
+    reason = f"b = {b:g} N s/m is spent, {place}"
+    return Limit(float(kappa * b / T), frequency, KIND, reason, (*notes, _unilateral(law, delay)))
 
 
 def required_damping(*, K, T, B=0.0, delay=0.0, law="zoh"):
@@ -124,7 +128,7 @@ def _checked(T, B, delay, law):
     delay = check_number(
         "delay", delay, "s", "needs delay >= 0: a force cannot come before its sample", lambda v: v >= 0
     )
-    return whole_and_fraction(delay, T)
+    return whole_and_fraction(delay, T, most=MOST_PERIODS)
 
 
 def _unilateral(law, delay):

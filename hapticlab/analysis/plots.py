@@ -32,6 +32,8 @@ NAMES = {
     "x_o": "wall boundary x_o", "chatter": "chatter amplitude", "growth": "growth of the oscillation", "contacts": "contacts",
     "energy": "energy drawn from the environment", "peak_force": "peak force",
 }  # fmt: skip
+NONE = "#e4e4e4"
+FRAME = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}
 #: two axes with at most this many values of one are drawn as lines, else as a map
 FAMILY = len(STYLES)
 
@@ -90,8 +92,8 @@ def plot_sweep(result, *, limits=None):
     ----------
     result : Sweep
     limits : Limit, sequence of Limit, or dict of str to Limit or to a sequence of Limit, optional
-        Stiffness limits, drawn across the axis whose unit is N/m and labelled with what they are. On a map a sequence under
-        one name is a curve: a limit for each value of the other axis.
+        Stiffness limits, drawn across the axis whose unit is N/m and labelled with what they are. A sequence under one
+        name holds a limit for each line, in its colour, or on a map a curve: one for each value of the other axis.
 
     Returns
     -------
@@ -132,31 +134,39 @@ def _lines(axes, result):
         )
     axes.set_xlabel(x_label)
     axes.set_ylabel(label)
-    axes.set_xscale(_spacing(result.axes[over]))
+    _space(axes, "x", x_scale * result.axes[over])
     if len(names) == 2:
-        axes.legend()
+        axes.legend(**FRAME)
     return over, None
 
 
 def _map(figure, axes, result):
-    """Draw a grey-safe map with contours; the first axis runs to the right."""
+    """Draw a grey-safe map, zero apart in light grey and nan left white; the first axis runs to the right."""
+    from matplotlib import colormaps
+
     across, up = result.axes
     scale, label = _label(result.metric, result.unit)
     (x_scale, x_label), (y_scale, y_label) = (_label(name, result.units.get(name, "1")) for name in (across, up))
     x, y = x_scale * result.axes[across], y_scale * result.axes[up]
     values = np.ma.masked_invalid(scale * result.values.T)
-    image = axes.pcolormesh(x, y, values, shading="nearest", cmap="cividis", rasterized=True)
-    figure.colorbar(image, ax=axes, label=label)
-    if values.count() and np.ptp(values.compressed()) > 0:
-        axes.contour(x, y, values, colors="white", linewidths=0.7, levels=5)
-    for axis, array, text in (("x", x, x_label), ("y", y, y_label)):
-        axes.set(**{f"{axis}label": text, f"{axis}scale": _spacing(array)})
+    least = values[values > 0].min() if (values >= 0).all() and (values > 0).any() else None
+    colours = colormaps["cividis"].with_extremes(under=NONE)
+    image = axes.pcolormesh(x, y, values, shading="nearest", cmap=colours, vmin=least, rasterized=True)
+    if least is None:
+        figure.colorbar(image, ax=axes, label=label)
+    else:
+        figure.colorbar(image, ax=axes, extend="min", label=f"{label}; light: none")
+    axes.set(xlabel=x_label, ylabel=y_label)
+    _space(axes, "x", x)
+    _space(axes, "y", y)
     axes.grid(False)
     return across, up
 
 
 def _draw_limits(axes, result, shown, limits):
-    """Draw stiffness limits as dashes of their own, dark on lines and white on a map."""
+    """Draw stiffness limits as dashes of their own."""
+    from matplotlib.patheffects import withStroke
+
     if not limits:
         return
     stiff = [name for name in shown if name and result.units.get(name) == "N/m"]
@@ -164,15 +174,28 @@ def _draw_limits(axes, result, shown, limits):
         raise AnalysisError("limits are stiffnesses; needs an axis in N/m, such as k")
     on_map, upright = shown[1] is not None, stiff[0] == shown[0]
     for number, (text, limit) in enumerate(limits.items()):
-        style = {"color": "white" if on_map else "#4d4d4d", "linestyle": LIMIT_DASHES[number % 3], "linewidth": 2.2}
-        if np.ndim(limit):
+        style = {"color": "#4d4d4d", "linestyle": LIMIT_DASHES[number % 3], "linewidth": 2.2}
+        if on_map:  # black with a white edge is seen on light and dark alike
+            style |= {"color": "black", "path_effects": [withStroke(linewidth=4.2, foreground="white")]}
+        if np.ndim(limit) and not on_map:
+            _draw_family(axes, text, limit, result, style)
+        elif np.ndim(limit):
             other = shown[1] if upright else shown[0]
             K, along = [float(one) for one in limit], _curve_axis(result, other, len(limit))
             axes.plot(*((K, along) if upright else (along, K)), label=text, **style)
         else:
             (axes.axvline if upright else axes.axhline)(float(limit), label=f"{text}: {float(limit):.4g} N/m", **style)
-    frame = {"frameon": True, "facecolor": "#555555", "labelcolor": "white", "framealpha": 1} if on_map else {}
-    axes.legend(**frame)
+    axes.legend(**FRAME)
+
+
+def _draw_family(axes, text, limits, result, style):
+    """Draw one limit a line, in the line's colour."""
+    lines = len(result.axes[list(result.axes)[_short_axis(result)]]) if len(result.axes) == 2 else 1
+    if len(limits) != lines:
+        raise AnalysisError(f"{len(limits)} limits for {lines} line(s); give one limit for each line, or a single one")
+    for number, limit in enumerate(limits):
+        colour = STYLES[number % len(STYLES)]["color"]
+        axes.axvline(float(limit), **{**style, "color": colour}, label=None if number else f"{text}, in each line's colour")
 
 
 def _curve_axis(result, name, length):
@@ -195,6 +218,18 @@ def _short_axis(result):
         return 0
     short = int(np.argmin(lengths))
     return short if lengths[short] <= FAMILY else None
+
+
+def _space(axes, side, array):
+    """Scale the x or y side as its values are spaced; a logarithmic one shows plain numbers at 1, 2 and 5."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    axes.set(**{f"{side}scale": _spacing(array)})
+    axis = getattr(axes, f"{side}axis")
+    if _spacing(array) == "log":
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def _spacing(array):

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..scene.taps import LEAD, TAPS
-from .limit import Limit, check_law, check_number, whole_and_fraction
+from .limit import MOST_PERIODS, Limit, check_law, check_number, whole_and_fraction
 from .matrix import held
 
 KIND = "exact linear stability of this plant"
@@ -22,6 +22,7 @@ NOTES = (
     "handle, hand, delay and law alone, the spring always acting",
     "ignores encoder, noise, Coulomb friction, force limit and the hand's push; a unilateral wall can chatter earlier",
 )
+ESTIMATED = "the paddle estimates v by backward difference, so half_sample is the law backward_difference, Eq. (23.5)"
 
 
 def stability_limit(paddle, *, law="zoh", B=0.0):
@@ -36,7 +37,8 @@ def stability_limit(paddle, *, law="zoh", B=0.0):
     paddle : SimulatedPaddle or any object with m [kg], b [N s/m], T [s], delay [s] and hand
         ``hand`` is None or has m [kg], b [N s/m] and k [N/m]. The delay may hold whole and fractional periods.
     law : {"zoh", "half_sample", "backward_difference", "ellis"}
-        Eqs. (23.1), (23.3), (23.5), (23.7); half_sample uses the exact velocity at the sample.
+        Eqs. (23.1), (23.3), (23.5), (23.7); half_sample uses the exact velocity at the sample where the paddle measures
+        it. Where it is estimated (``paddle.velocity``: an encoder, a board) Eq. (23.3) is Eq. (23.5), and so is its limit.
     B : float
         Virtual damper of either sign [N s/m]: its force is ``B*(x[n] - x[n-1])/T``, beside the law, not through it.
 
@@ -58,17 +60,18 @@ def stability_limit(paddle, *, law="zoh", B=0.0):
     200.066689
     """
     loop = _Loop.of(paddle, law, B)
+    notes = NOTES + (ESTIMATED,) * (LEAD[law] != loop.lead)
     candidates = _crossings(loop)
     tests = [k for k, _ in candidates]
     # the least K to look at when nothing crosses: well inside any band that a sampled plant of this mass can hold
     between = [K / 2 for K in tests[:1]] + [math.sqrt(a * b) for a, b in zip(tests, tests[1:], strict=False)]
     between.append(2 * tests[-1] if tests else 0.1 * loop.scale)
     if _unstable(loop, between[0]):
-        return Limit(0.0, None, KIND, _why_never(loop, paddle, law), NOTES)
+        return Limit(0.0, None, KIND, _why_never(loop, paddle, law), notes)
     for (K, theta), above in zip(candidates, between[1:], strict=True):
         if _unstable(loop, above):
-            return Limit(K, theta / (2 * math.pi * loop.T), KIND, "a pole leaves the unit circle", NOTES)
-    return Limit(math.inf, None, KIND, "no stiffness moves a pole out of the unit circle", NOTES)
+            return Limit(K, theta / (2 * math.pi * loop.T), KIND, "a pole leaves the unit circle", notes)
+    return Limit(math.inf, None, KIND, "no stiffness moves a pole out of the unit circle", notes)
 
 
 def closed_loop_matrix(paddle, *, K, law="zoh", B=0.0):
@@ -130,13 +133,16 @@ class _Loop:
         M = check_number("m", sums["m"], "kg", "the handle needs a mass m > 0", lambda v: v > 0)
         k = 0.0 if hand is None else check_number("hand k", hand.k, "N/m", "needs k >= 0", lambda v: v >= 0)
         delay = check_number("delay", paddle.delay, "s", "needs delay >= 0", lambda v: v >= 0)
-        whole, f = whole_and_fraction(delay, T)
+        whole, f = whole_and_fraction(delay, T, most=MOST_PERIODS)
         A = np.array([[0.0, 1.0], [-k * T**2 / M, -sums["b"] * T / M]])
         force = np.array([0.0, T**2 / M])
         Phi_rest, Psi_rest = held(A, 1 - f)
         late, early = Psi_rest @ force, Phi_rest @ held(A, f)[1] @ force
         scale = M / T**2 + sums["b"] / T + k
-        return cls(T, A, early, late, held(A, 1.0)[1], whole, f, TAPS[law], LEAD[law], B / T, scale)
+        taps, lead = TAPS[law], LEAD[law]
+        if lead and getattr(paddle, "velocity", "measured") == "backward_difference":
+            taps, lead = (taps[0] + lead, -lead), 0.0
+        return cls(T, A, early, late, held(A, 1.0)[1], whole, f, taps, lead, B / T, scale)
 
 
 def _matrix(loop, K):

@@ -39,7 +39,7 @@ class Sweep:
     duration : float
         Simulated time of every point [s].
     about : str
-        The scene, the paddle and the values that were the same everywhere.
+        The scene, the paddle and the values that were the same everywhere, in lines.
     """
 
     axes: dict
@@ -116,7 +116,7 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
     for settings in grid.groups():
         cells, found = _measure(grid, settings, duration, metric, engine, progress)
         result[cells] = found
-    about = f"{scene.name}; {paddle}; " + ", ".join(f"{name} = {a:g}" for name, a in fixed.items())
+    about = "\n".join([scene.name, str(paddle), *(f"{name} = {a:g}" for name, a in fixed.items())])
     return Sweep(axes, result.reshape(grid.shape), metric, METRICS[metric].unit, units, duration, about)
 
 

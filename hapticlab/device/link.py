@@ -35,7 +35,7 @@ def link(program, paddle, measure=None):
     -------
     Program
         Parameters: the scene's, then those of ``paddle.plant_values()``. Inputs: those of ``paddle.inputs(ticks)``.
-        Outputs without measure: x, v, F, the watched channels, then x_true and v_true under an encoder or noise,
+        Outputs without measure: x, v, F (zero from a fault on), the watched channels, then x_true and v_true under an encoder or noise,
         F_applied under a whole sample of delay, x_switch under a fraction of one, and fault: 0, or 1 where F is not
         finite, or 2 + the position of the state that is not. Until the first force arrives the motor gives none.
 
@@ -176,7 +176,7 @@ class _Loop:
         new.update({f"plant.F_{k + 1}": forces[k] for k in range(len(past))})
         new.update({"plant.x": x, "plant.v": v, "fault": fault, "sensed.x": sample["x"]})
         new["tick"] = builder.emit("iadd", old["tick"], builder.const(1, "i32"))
-        sample.update(watched | {"F": F, "F_applied": applied, "x_switch": x_switch, "x_next": x, "v_next": v})
+        sample.update(watched | {"F": forces[0], "F_applied": applied, "x_switch": x_switch, "x_next": x, "v_next": v})
         sample.update(tick=old["tick"], fault=fault > 0.0)
         if self.measure:
             results, following = self.measure.update(sample, [old[f"measure.{c.name}"] for c in self.measure.states])

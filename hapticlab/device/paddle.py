@@ -44,7 +44,7 @@ class Paddle(ABC):
         """Return the number of samples in a duration [s]."""
         if not (isinstance(duration, (int, float, np.number)) and math.isfinite(duration) and duration > 0):
             raise PaddleError(f"duration = {duration!r} s; needs a finite duration > 0 s.")
-        ticks = round(duration / self.T)
+        ticks = math.floor(duration / self.T + 0.5)
         if ticks < 1:
             raise PaddleError(f"duration = {duration:g} s; needs at least one period T = {self.T:g} s.")
         return ticks

@@ -210,7 +210,6 @@ class SimulatedPaddle(Paddle):
             culprit = f"{names[int(code[first]) - 1]} of {program.name}"
             when = f"tick {first} (t = {first * self.T:g} s)"
             fault = f"{when}: {culprit} was not finite; the motor is off from there on"
-            columns.setdefault("F_applied", np.where(code > 0, 0.0, F))
         limited = np.abs(F) >= self.force_max if self.force_max is not None else None
         return Telemetry(
             t=np.arange(len(x)) * self.T, x=x, v=v, F=F, T=self.T, delay=self.delay, channels=columns,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hapticlab.analysis.limit import Limit, whole_and_fraction
+from hapticlab.analysis.limit import MOST_PERIODS, Limit, whole_and_fraction
 from hapticlab.errors import AnalysisError
 
 
@@ -23,4 +23,5 @@ def test_delays_split_without_rounding_noise(T):
     whole, fraction = whole_and_fraction(2.25 * T, T)
     assert whole == 2 and fraction == pytest.approx(0.25, abs=1e-12)
     with pytest.raises(AnalysisError, match="at most 200 periods"):
-        whole_and_fraction(201 * T, T)
+        whole_and_fraction(201 * T, T, most=MOST_PERIODS)
+    assert whole_and_fraction(301 * T, T)[0] == 301  # a record may be older than a polynomial can be long

@@ -104,12 +104,18 @@ def test_zero_limits_say_why():
         damper = passivity_limit(b=b, T=T, B=B)
         assert damper.K == 0 and "alone" in damper.reason and "0.13 N s/m" in damper.reason
     assert "passivity" in damper.kind
+    undamped = passivity_limit(b=0, T=T)
+    assert undamped.K == 0 and "nothing pays for the hold" in undamped.reason
+    assert not any("unilateral" in note for limit in (exact_velocity, undamped) for note in limit.assumptions)
+
+
+def test_a_limit_at_rest_is_said_in_words():
+    assert "worst for slow motion" in str(passivity_limit(b=b, T=T, delay=T / 2))
 
 
 @pytest.mark.parametrize(
     "change, words",
     [
-        ({"b": 0}, "b = 0 N s/m; passivity needs b > 0"),
         ({"b": -0.1}, "b = -0.1 N s/m"),
         ({"b": math.nan}, "b = nan N s/m"),
         ({"T": 0}, "T = 0 s; a sampling period needs T > 0"),

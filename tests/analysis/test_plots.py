@@ -80,6 +80,17 @@ def test_limits_are_drawn_and_named():
         np.testing.assert_allclose(y, b, rtol=1e-12)
 
 
+def test_each_line_of_a_family_has_its_own_limit():
+    result = swept(k=k, b=b[:3])
+    limits = [Limit(K=2000.0 * one, frequency=None, kind="passivity", reason="") for one in b[:3]]
+    lines = plot_sweep(result, limits={"Eq. (23.10)": limits}).axes[0].lines
+    for curve, limit, one in zip(lines[:3], lines[3:], b, strict=False):
+        assert limit.get_xdata()[0] == 2000.0 * one
+        assert limit.get_color() == curve.get_color()
+    with pytest.raises(AnalysisError, match=r"2 limits for 3 line\(s\)"):
+        plot_sweep(result, limits={"Eq. (23.10)": limits[:2]})
+
+
 def test_what_cannot_be_drawn_is_said():
     with pytest.raises(AnalysisError, match="3 axes; a plot shows 1 or 2"):
         plot_sweep(swept(k=k, b=b, B=b))

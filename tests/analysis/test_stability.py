@@ -227,3 +227,14 @@ def test_what_is_passive_is_stable():
         passive = passivity_limit(b=b, T=T, B=B, delay=delay, law=law).K
         stable = stability_limit(paddle(m=m, b=b, T=T, delay=delay, hand=grip), law=law, B=B).K
         assert 0 < passive <= stable * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("hand", [None, SimpleNamespace(m=0.02, b=1.0, k=200.0)])
+def test_half_sample_with_an_estimated_velocity_is_the_backward_difference(hand):
+    """Eq. (23.3) with the estimate is Eq. (23.5); the exact velocity would promise 45 times more."""
+    plant = {"m": 0.05, "b": 0.1, "T": 1e-3, "delay": 0.0, "hand": hand}
+    estimated = SimpleNamespace(**plant, velocity="backward_difference")
+    limit = stability_limit(estimated, law="half_sample")
+    assert limit.K == stability_limit(SimpleNamespace(**plant), law="backward_difference").K
+    assert limit.K < 0.5 * stability_limit(SimpleNamespace(**plant), law="half_sample").K
+    assert any("backward difference" in note for note in limit.assumptions)
