@@ -237,7 +237,7 @@ class _Lowering:
 
         translate = Translator(self.tracing.tick, leaf)
         M = [[translate(m) for m in row] for row in self.form.M]
-        solution = solve(M, [translate(f) for f in self.form.f])
+        solution = solve(M, [translate(f) for f in self.form.f], self.form.definite)
         by_order = {2: [], 1: []}
         for rate, order in zip(solution, self.form.orders, strict=True):
             by_order[order].append(rate)

@@ -1,30 +1,42 @@
-"""Solve M a = f as straight-line arithmetic: LDL^T where M is symmetric, else LU. Structural zeros cost nothing.
+"""Solve M a = f as straight-line arithmetic: LDL^T where M is symmetric and definite, else LU with partial pivoting.
 
 M is never inverted or factored in symbols, whose size grows eightfold per link. Golub and Van Loan, *Matrix
-Computations*, sections 4.1.2 and 3.2. Pivots are inverted once: a constant mass then costs one division for all the
-stages of a method. A pivot that reaches zero gives a nan or an infinity, and so a fault.
+Computations*, sections 4.1.2, 4.2 and 3.4: a definite matrix needs no pivoting, any other does. Which row holds the
+largest entry is known only at run time, so rows change places by selects; structural zeros are never compared, and
+constants fold to plain code. Pivots are inverted once: a constant mass then costs one division for all the stages of a
+method. A pivot that is zero all the same, of a singular M, gives a nan or an infinity, and so a fault.
 """
 
-from .trace import Value
+from .trace import Value, select
 
 
-def solve(M, f):
+def solve(M, f, definite=False):
     """Return a with M a = f.
 
     Parameters
     ----------
     M : list of lists of Value or float, shape (N, N)
     f : list of Value or float, shape (N,)
+    definite : bool
+        M has eigenvalues of one sign wherever it is evaluated; where it is symmetric too, LDL^T solves it at half the
+        cost.
+
+    Raises
+    ------
+    ZeroDivisionError
+        If a matrix of plain floats is singular.
 
     Examples
     --------
     >>> from hapticlab.compiler.solve import solve
     >>> solve([[2.0, 1.0], [1.0, 3.0]], [4.0, 7.0])
     [1.0, 2.0]
+    >>> solve([[0.0, 1.0], [1.0, 0.0]], [1.0, 2.0])
+    [2.0, 1.0]
     """
     N = len(f)
     symmetric = all(_same(M[i][j], M[j][i]) for i in range(N) for j in range(i))
-    return _ldl(M, f) if symmetric else _lu(M, f)
+    return _ldl(M, f) if definite and symmetric else _lu(M, f)
 
 
 def _same(a, b):
@@ -70,20 +82,35 @@ def _ldl(M, f):
 
 def _lu(M, f):
     N = len(f)
-    U, y, inverse = [list(row) for row in M], list(f), []
+    rows, inverse = [[*row, right] for row, right in zip(M, f, strict=True)], []
     for j in range(N):
-        inverse.append(1.0 / U[j][j])
         for i in range(j + 1, N):
-            if _zero(U[i][j]):
+            rows[j], rows[i] = _larger_first(rows[j], rows[i], j)
+        inverse.append(1.0 / rows[j][j])
+        for i in range(j + 1, N):
+            if _zero(rows[i][j]):
                 continue
-            factor = U[i][j] * inverse[j]
-            for k in range(j + 1, N):
-                U[i][k] = _less_product(U[i][k], factor, U[j][k])
-            y[i] = _less_product(y[i], factor, y[j])
+            factor = rows[i][j] * inverse[j]
+            for k in range(j + 1, N + 1):
+                rows[i][k] = _less_product(rows[i][k], factor, rows[j][k])
     a = [None] * N
     for j in reversed(range(N)):
-        total = y[j]
+        total = rows[j][N]
         for k in range(j + 1, N):
-            total = _less_product(total, U[j][k], a[k])
+            total = _less_product(total, rows[j][k], a[k])
         a[j] = total * inverse[j]
     return a
+
+
+def _larger_first(upper, lower, j):
+    """Return the two rows, the one whose entry j is larger first; before j they are zero by now and not looked at."""
+    if _zero(lower[j]):
+        return upper, lower
+    if _zero(upper[j]):
+        return lower, upper
+    swap = abs(upper[j]) < abs(lower[j])
+    pairs = list(zip(upper[j:], lower[j:], strict=True))
+    return (
+        upper[:j] + [select(swap, b, a) for a, b in pairs],
+        lower[:j] + [select(swap, a, b) for a, b in pairs],
+    )

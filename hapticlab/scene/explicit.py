@@ -6,13 +6,13 @@ equations; the compiler emits the solution as an unrolled LDL^T.
 
 import math
 import random
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mpmath
 import sympy as sp
 
 from ..errors import MassError, SceneError
-from .symbols import Parameter, T, t
+from .symbols import Parameter, T, delay, t
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,9 @@ class ExplicitForm:
     updates : dict y(n) -> expression
     force : sympy expression [N]
     watch : dict name -> expression
+    definite : bool
+        M was symmetric and of one sign at every configuration looked at: the initial state and others over a turn of
+        every angle, with parameters at their bound values. Then it may be factored without pivoting.
     """
 
     coordinates: tuple
@@ -38,6 +41,7 @@ class ExplicitForm:
     updates: dict
     force: sp.Expr
     watch: dict
+    definite: bool = False
 
     def __str__(self):
         lines = [f"F = {self.force}"]
@@ -76,8 +80,7 @@ def explicit_form(scene):
     M = [tuple(coefficients.get(a, sp.S.Zero) for a in unknowns) for coefficients, _ in rows]
     M, f = _in_order(M, [-rest for _, rest in rows], coordinates)
     form = ExplicitForm(coordinates, orders, tuple(M), tuple(f), updates, scene.force, dict(scene.watch))
-    _check_mass(form, scene.values)
-    return form
+    return replace(form, definite=_check_mass(form, scene.values))
 
 
 def _order(q, equations):
@@ -147,26 +150,92 @@ def _in_order(M, f, coordinates):
 
 
 def _check_mass(form, values):
-    """Refuse a mass matrix that is singular at three generic configurations, naming the direction without mass."""
-    if not form.coordinates:
-        return
-    symbols = sorted({s for row in form.M for m in row for s in m.free_symbols | m.atoms(sp.Function, sp.Derivative)}, key=str)
-    generator = random.Random(23)
-    worst = None
-    for _ in range(3):
-        at = {s: sp.Float(generator.uniform(0.5, 1.5)) for s in symbols}
-        at |= {s: sp.Float(values[s.name]) for s in symbols if isinstance(s, Parameter) and s.name in values}
-        at[T] = sp.Float(1e-3)
-        M = [[complex(m.xreplace(at)).real for m in row] for row in form.M]
-        _, singular_values, directions = mpmath.svd_r(mpmath.matrix(_balanced(M)))
-        if singular_values[len(M) - 1] > 1e-10 * singular_values[0]:
-            return
-        worst = directions[len(M) - 1, :]
-    names = [type(q).__name__ for q, c in zip(form.coordinates, worst, strict=True) if abs(c) > 1e-6]
-    raise MassError(
-        f"singular mass: the equations do not determine the accelerations of {' and '.join(names)} "
-        "(a massless direction, or an equation that repeats another); give each its own mass or equation"
+    """Tell whether the mass matrix is definite; refuse one that is singular at three generic configurations."""
+    configurations = _configurations(form, values)
+    generic = [M for M in (_mass_at(form, next(configurations)) for _ in range(3)) if M]
+    if all(map(_singular, generic)) and generic:
+        _, _, directions = mpmath.svd_r(mpmath.matrix(_balanced(generic[-1])))
+        worst = directions[len(form.M) - 1, :]
+        names = [type(q).__name__ for q, c in zip(form.coordinates, worst, strict=True) if abs(c) > 1e-6]
+        raise MassError(
+            f"singular mass: the equations do not determine the accelerations of {' and '.join(names)} "
+            "(a massless direction, or an equation that repeats another); give each its own mass or equation"
+        )
+    return (
+        len(generic) == 3
+        and all(map(_definite, generic))
+        and all(_definite(_mass_at(form, at)) for at in configurations)
     )
+
+
+def _configurations(form, values):
+    """Yield what every symbol of M is: three times generic, at the initial state, then over a turn of every angle."""
+    symbols = set().union(*(_variables(m) for row in form.M for m in row))
+    starts = {s: _start(s) for s in symbols}
+    symbols = sorted(symbols.union(*map(_variables, starts.values())), key=str)
+    bound = {s: sp.Float(values[s.name]) for s in symbols if isinstance(s, Parameter) and s.name in values}
+    bound[T] = sp.Float(1e-3)
+    generator = random.Random(23)
+
+    def sample(most=None):
+        ranges = ((0.5, 1.5) if most is None or isinstance(s, Parameter) else (-most, most) for s in symbols)
+        return {s: sp.Float(generator.uniform(*limits)) for s, limits in zip(symbols, ranges, strict=True)} | bound
+
+    for _ in range(3):
+        yield sample()
+    at = {s: value if isinstance(s, Parameter) else sp.S.Zero for s, value in sample().items()}
+    yield at | {s: start.xreplace(at) for s, start in starts.items()}
+    for _ in range(5):
+        yield sample(most=3.0)
+
+
+def _variables(expr):
+    """Return what a number can be put in place of: symbols, coordinates, their rates, samples and delays."""
+    functions = expr.atoms(sp.Function, sp.Derivative)
+    return expr.free_symbols | {
+        f for f in functions if hasattr(type(f), "role") or isinstance(f, (sp.Derivative, delay))
+    }
+
+
+def _start(symbol):
+    """Return the initial value of a variable; the handle and time start at zero, a parameter is what it is."""
+    if isinstance(symbol, sp.Derivative):
+        return getattr(type(symbol.expr), "rate", sp.S.Zero)
+    return symbol if isinstance(symbol, Parameter) else getattr(type(symbol), "initial", sp.S.Zero)
+
+
+def _mass_at(form, at):
+    """Return M as floats, or None where it is not real and finite."""
+    known = {}
+    for m in {m for row in form.M for m in row}:
+        number = m.xreplace(at).evalf()
+        if not (number.is_Float or number.is_Rational):
+            return None
+        known[m] = float(number)
+    return [[known[m] for m in row] for row in form.M] if all(map(math.isfinite, known.values())) else None
+
+
+def _singular(M):
+    singular_values = mpmath.svd_r(mpmath.matrix(_balanced(M)), compute_uv=False)
+    return singular_values[len(M) - 1] <= 1e-10 * singular_values[0]
+
+
+def _definite(M):
+    """Tell whether M is symmetric and its pivots, of entries scaled to a unit diagonal, have one sign and are not small."""
+    if not M or not all(row[k] * M[0][0] > 0 for k, row in enumerate(M)):
+        return False
+    N = len(M)
+    sign = math.copysign(1.0, M[0][0])
+    S = [[sign * m / math.sqrt(M[i][i] * M[j][j]) for j, m in enumerate(row)] for i, row in enumerate(M)]
+    if any(abs(S[i][j] - S[j][i]) > 1e-12 for i in range(N) for j in range(i)):
+        return False
+    for j in range(N):
+        if S[j][j] < 1e-6:
+            return False
+        for i in range(j + 1, N):
+            factor = S[i][j] / S[j][j]
+            S[i] = [a - factor * b for a, b in zip(S[i], S[j], strict=True)]
+    return True
 
 
 def _balanced(M):
