@@ -86,7 +86,7 @@ def report(found):
     """Return the study's numbers as a dictionary, each name ending in its unit."""
     constants = found.felt[0].paddle.profile
     grid = found.felt[0].grid
-    below = sum(np.count_nonzero(f.grid.values[grid.axes["k"] < found.passive.K]) for f in found.felt)
+    below = sum(np.count_nonzero(f.grid.values[grid.axes["k"] < found.passive.K] > 0) for f in found.felt)
     return {
         "paddle": {
             "name": constants.name, "m_kg": constants.m, "b_N_s_per_m": constants.b, "T_s": constants.T,

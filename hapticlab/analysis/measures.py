@@ -74,7 +74,8 @@ class Chatter(Swing):
         seen = largest > np.maximum(1.001 * count, LEAST)
         lasting = seen & ~decaying(largest, least_before, largest_before)
         still = (turns == 0) & (heading == 0)
-        unknown = still | (seen & (largest_before == 0)) | ((turns > 0) & (largest == 0) & (heading != 0))
+        away = (turns > 0) & (largest == 0) & (abs(heading) * quarter > LEAST)  # thrown off, and not back in time
+        unknown = still | away | (seen & (largest_before == 0))
         return np.where(unknown, np.nan, np.where(lasting, largest / 2, 0.0))
 
 

@@ -197,3 +197,8 @@ def test_drift_through_a_saturated_wall_does_not_grow():
 def test_a_run_of_a_few_samples_is_refused():
     with pytest.raises(AnalysisError, match="duration = 1 s is 3 samples of T = 0.3 s; needs at least 32"):
         sweep(wall(), PUSHED, progress=False, k=100.0, T=[0.3])
+
+
+def test_a_handle_that_has_come_to_rest_is_quiet_and_not_unknown():
+    held = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=Hand(m=0.02, b=1.0, k=200.0, push=2.0))
+    assert (sweep(wall(), held, duration=20.0, progress=False, k=np.geomspace(50.0, 1500.0, 60)).values == 0).all()
