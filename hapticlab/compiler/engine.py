@@ -1,5 +1,7 @@
 """Choose an engine for a program. All three keep one contract and give the same bits."""
 
+import operator
+
 import numpy as np
 
 from ..errors import EngineMissingError, ProgramError
@@ -44,11 +46,12 @@ class Engine:
         Run
         """
         program = self.program
+        ticks, every = _whole("ticks", ticks), _whole("every", every)
         if ticks < 1 or every < 1:
             raise ProgramError(
                 f"ticks = {ticks}, every = {every}; a run needs at least one tick, kept every one or more"
             )
-        parameters = np.array(program.values if parameters is None else parameters, float, ndmin=1)
+        parameters = np.atleast_1d(self._real("parameters", program.values if parameters is None else parameters))
         if parameters.ndim == 1:
             parameters = parameters[:, None]
         lanes = parameters.shape[1]
@@ -58,19 +61,48 @@ class Engine:
         unbound = [c.name for c, row in zip(program.parameters, parameters, strict=True) if np.isnan(row).any()]
         if unbound:
             raise ProgramError(f"{program.name}: no value for {', '.join(unbound)}; bind it: scene({unbound[0]}=...)")
-        inputs = np.zeros((ticks, 0)) if inputs is None else np.asarray(inputs, float)
+        inputs = np.zeros((ticks, 0)) if inputs is None else self._real("inputs", inputs)
         if inputs.ndim == 1:
             inputs = inputs[:, None]
         inputs = self._shaped("inputs", inputs, (ticks, len(program.inputs)))
         if states is not None:
-            states = self._shaped("states", states, (len(program.states), lanes))
-        return Run(self._kernel.run(int(ticks), inputs, parameters, states, int(every)))
+            states = self._shaped("states", self._real("states", states), (len(program.states), lanes))
+            self._check_int32("states", program.states, states)
+        self._check_int32("parameters", program.parameters, parameters)
+        self._check_int32("inputs", program.inputs, inputs.T)
+        return Run(self._kernel.run(ticks, inputs, parameters, states, every))
+
+    def _real(self, what, given):
+        """Return an array of float64, or say what is wrong with it."""
+        try:
+            array = np.asarray(given)
+            if array.dtype.kind not in "biuf":
+                raise TypeError
+            return array.astype(float)
+        except (TypeError, ValueError):
+            shown = repr(given) if len(repr(given)) < 60 else f"{repr(given)[:57]}..."
+            raise ProgramError(f"{self.program.name}: {what} = {shown}; needs an array of real numbers") from None
+
+    def _check_int32(self, what, channels, rows):
+        """Refuse what no int32 is: the engines would each round it in their own way."""
+        for c, row in zip(channels, rows, strict=True):
+            if c.type == "i32":
+                wrong = row[~((row == np.floor(row)) & (np.abs(row + 0.5) < 2.0**31))]
+                if wrong.size:
+                    raise ProgramError(f"{self.program.name}: {what} hold {c.name} = {wrong[0]:g}; needs an int32")
 
     def _shaped(self, what, array, needed):
         array = np.ascontiguousarray(array, float)
         if array.shape != needed:
             raise ProgramError(f"{self.program.name}: {what} of shape {array.shape}; needs {needed}")
         return array
+
+
+def _whole(name, given):
+    try:
+        return operator.index(given)
+    except TypeError:
+        raise ProgramError(f"{name} = {given!r}; needs a whole number") from None
 
 
 def load(program, engine="auto"):

@@ -6,7 +6,11 @@ A :class:`Block` is a list of instructions with the results it hands out. A :cla
 states. Programs are built by tracing (:mod:`hapticlab.compiler.trace`) and are immutable.
 """
 
+import math
 from dataclasses import dataclass, field
+from numbers import Real
+
+import numpy as np
 
 from ..errors import ProgramError
 
@@ -119,18 +123,17 @@ class Program:
         Traceback (most recent call last):
         hapticlab.errors.ProgramError: p, tick, instruction 1 (sqrt): operand 1 is not an earlier result
         """
-        if len(self.values) != len(self.parameters):
-            raise ProgramError(f"{self.name}: {len(self.parameters)} parameters but {len(self.values)} values")
+        _verify_interface(self)
         for name, block in (("init", self.init), ("tick", self.tick)):
             _verify_block(self, name, block)
-        if self.init.outputs or len(self.tick.outputs) != len(self.outputs):
-            raise ProgramError(f"{self.name}: the tick must give its {len(self.outputs)} outputs, init none")
         return self
 
     def __str__(self):
         from_leaf = {"param": self.parameters, "input": self.inputs, "state": self.states}
         made = ", ".join(f"{k} = {v}" for k, v in self.facts.items())
-        lines = [f"program {self.name}: T = {self.T:g} s, {len(self)} instructions a tick" + (f", {made}" if made else "")]
+        lines = [
+            f"program {self.name}: T = {self.T:g} s, {len(self)} instructions a tick" + (f", {made}" if made else "")
+        ]
         for title, channels in (("inputs", self.inputs), ("states", self.states), ("outputs", self.outputs)):
             lines.append(f"  {title:<10} " + (", ".join(f"{c.name} [{c.unit}] {c.type}" for c in channels) or "none"))
         values = dict(zip(self.parameters, self.values, strict=True))
@@ -141,30 +144,51 @@ class Program:
         return "\n".join(lines + [f"note: {note}" for note in self.notes])
 
 
+def _verify_interface(program):
+    name = program.name
+    if len(program.values) != len(program.parameters):
+        raise ProgramError(f"{name}: {len(program.parameters)} parameters but {len(program.values)} values")
+    for channel, value in zip(program.parameters, program.values, strict=True):
+        if not isinstance(value, Real) or isinstance(value, bool):
+            raise ProgramError(f"{name}: {channel.name} = {value!r}; needs a number, nan where none is bound yet")
+    if not (isinstance(program.T, Real) and math.isfinite(program.T) and program.T > 0):
+        raise ProgramError(f"{name}: T = {program.T!r} s; a sampling period needs a finite T > 0")
+    for channel in (*program.inputs, *program.parameters, *program.states, *program.outputs):
+        if channel.type not in TYPES:
+            raise ProgramError(f"{name}: {channel.name} is of type {channel.type!r}; needs one of {', '.join(TYPES)}")
+    names = [channel.name for channel in program.outputs]
+    for twice in names:
+        if names.count(twice) > 1:
+            raise ProgramError(f"{name}: {names.count(twice)} outputs are called {twice}; give each a name of its own")
+
+
 def _verify_block(program, name, block):
     leaves = {"param": program.parameters, "input": program.inputs, "state": program.states if name == "tick" else ()}
     for position, i in enumerate(block.instructions):
         problem = _problem(i, position, block.instructions, leaves)
         if problem:
             raise ProgramError(f"{program.name}, {name}, instruction {position} ({i.op}): {problem}")
-    expected = tuple(c.type for c in program.states)
-    for kind, ids, types in (
-        ("state", block.states, expected),
-        ("output", block.outputs, tuple(c.type for c in program.outputs)),
+    for kind, ids, channels in (
+        ("state", block.states, program.states),
+        ("output", block.outputs, program.outputs if name == "tick" else ()),
     ):
-        for position, (k, wanted) in enumerate(zip(ids, types, strict=False)):
-            if not (isinstance(k, int) and 0 <= k < len(block.instructions)) or block.instructions[k].type != wanted:
-                raise ProgramError(f"{program.name}, {name}: {kind} {position} is not a result of type {wanted}")
-    if len(block.states) != len(expected):
-        raise ProgramError(f"{program.name}, {name}: gives {len(block.states)} states, needs {len(expected)}")
+        if len(ids) != len(channels):
+            raise ProgramError(f"{program.name}, {name}: gives {len(ids)} {kind}s, needs {len(channels)}")
+        for position, (k, c) in enumerate(zip(ids, channels, strict=True)):
+            if not (isinstance(k, int) and 0 <= k < len(block.instructions)) or block.instructions[k].type != c.type:
+                raise ProgramError(f"{program.name}, {name}: {kind} {position} is not a result of type {c.type}")
 
 
 def _problem(i, position, instructions, leaves):
     """Say in words what is wrong with an instruction, or return None."""
+    if not isinstance(i.op, str):
+        return "its operation is not a name"
     if i.type not in TYPES:
         return f"{i.type!r} is not a type"
+    if not isinstance(i.args, tuple):
+        return f"its operands are {i.args!r}; needs a tuple of positions"
     if i.op == "const":
-        return None if isinstance(i.value, (int, float)) else "its value is not a number"
+        return _problem_of_constant(i.value, i.type)
     if i.op in leaves:
         if not (isinstance(i.index, int) and 0 <= i.index < len(leaves[i.op])):
             return f"there is no {i.op} {i.index} here"
@@ -191,6 +215,27 @@ def _problem(i, position, instructions, leaves):
     return None
 
 
+def _problem_of_constant(value, type):
+    """Say in words why a constant is not a number of its type, or return None: every engine must read the same one."""
+    if not isinstance(value, (bool, int, float)):
+        return "its value is not a number"
+    if type == "bool":
+        return None if isinstance(value, bool) else f"{value!r} is not True or False"
+    if type == "i32":
+        whole = isinstance(value, int) and not isinstance(value, bool) and -(2**31) <= value < 2**31
+        return None if whole else f"{value!r} is not an int32"
+    try:
+        with np.errstate(over="ignore"):
+            rounded = (np.float32 if type == "f32" else np.float64)(value).item()
+    except OverflowError:
+        rounded = math.copysign(math.inf, value)
+    return (
+        None
+        if rounded == value or value != value
+        else f"{repr(value)[:40]} is not a {type}; its nearest is {rounded!r}"
+    )
+
+
 def _list_block(block, leaves, program):
     names = {}
     lines = []
@@ -202,8 +247,8 @@ def _list_block(block, leaves, program):
         else:
             names[k] = f"%{k}"
             lines.append(f"  %{k:<4} {i.type:<5} {i.op:<8} " + "  ".join(names[a] for a in i.args))
-    for c, k in zip(program.outputs, block.outputs, strict=False):
+    for c, k in zip(program.outputs if block.outputs else (), block.outputs, strict=True):
         lines.append(f"  output {c.name} = {names[k]}")
-    for c, k in zip(program.states, block.states, strict=False):
+    for c, k in zip(program.states, block.states, strict=True):
         lines.append(f"  next   {c.name} = {names[k]}")
     return lines

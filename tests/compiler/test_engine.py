@@ -69,6 +69,48 @@ def test_what_does_not_fit_the_program_is_refused(engine):
             engine.run(**given)
 
 
+@pytest.mark.parametrize(
+    "given, complaint",
+    [
+        (dict(inputs=["a", "b"]), r"filtered: inputs = \['a', 'b'\]; needs an array of real numbers"),
+        (dict(inputs=[1j, 2.0]), "inputs = .*; needs an array of real numbers"),
+        (dict(inputs=[None, "1"]), "inputs = .*; needs an array of real numbers"),
+        (dict(inputs=[[1.0], [1.0, 2.0]]), "inputs = .*; needs an array of real numbers"),
+        (dict(parameters=["k", 1]), "parameters = .*; needs an array of real numbers"),
+        (dict(states=[[1j]]), "states = .*; needs an array of real numbers"),
+        (dict(ticks="2"), "ticks = '2'; needs a whole number"),
+        (dict(ticks=2.0), "ticks = 2.0; needs a whole number"),
+        (dict(every=1.5), "every = 1.5; needs a whole number"),
+    ],
+)
+def test_what_is_no_number_is_refused_in_words(engine, given, complaint):
+    good = dict(ticks=2, inputs=[1.0, 1.0], parameters=[1, 1])
+    assert engine.run(**good, every=np.int64(2)).outputs.shape == (1, 1, 1)
+    with pytest.raises(ProgramError, match=complaint):
+        engine.run(**{**good, **given})
+
+
+@pytest.mark.parametrize("name", ["interpreter", "llvm", "vm"])
+def test_a_whole_number_must_be_an_int32_on_every_engine(name):
+    b = Builder("f32")
+    tick, one = b.leaf("state", 0, "i32"), b.const(1, "i32")
+    next = b.emit("iadd", tick, one)
+    block = b.block([b.emit("itof", tick, type="f32")], [next])
+    b = Builder("f32")
+    init = b.block((), [b.const(0, "i32")])
+    program = Program("count", (), (), (Channel("tick", "1", "i32"),), (Channel("F"),), init, block, 1e-3)
+    if name == "llvm":
+        pytest.importorskip("llvmlite")
+    count = load(program, name)
+    for most in (2**31 - 2, -(2**31)):
+        assert count.run(1, states=[[most]]).states[0, 0] == most + 1
+    for wrong in (2.0**31, -(2.0**31) - 1, 1.5, np.nan, np.inf):
+        with pytest.raises(
+            ProgramError, match=f"count: states hold tick = {wrong:g}; needs an int32".replace("+", r"\+")
+        ):
+            count.run(1, states=[[wrong]])
+
+
 def test_auto_takes_llvm_where_it_is_installed():
     pytest.importorskip("llvmlite")
     assert load(filtered_wall()).name == "llvm"

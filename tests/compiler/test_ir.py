@@ -50,6 +50,28 @@ def op(name, *args, type="f32", **more):
         ([op("state", index=0)], "there is no state 0 here"),
         ([op("input", index=0, type="f64")], "input 0 is not f64"),
         ([op("const", value="2")], "its value is not a number"),
+        ([op("const", value=None)], "its value is not a number"),
+        ([op("const", value=2j)], "its value is not a number"),
+        ([op("const", value=0.1)], "0.1 is not a f32; its nearest is 0.10000000149011612"),
+        ([op("const", value=1e300)], "1e+300 is not a f32; its nearest is inf"),
+        ([op("const", value=1e-50)], "1e-50 is not a f32; its nearest is 0.0"),
+        ([op("const", value=2**24 + 1)], "16777217 is not a f32; its nearest is 16777216.0"),
+        (
+            [op("const", value=2**53 + 1, type="f64")],
+            "9007199254740993 is not a f64; its nearest is 9007199254740992.0",
+        ),
+        ([op("const", value=2**2000)], f"{str(2**2000)[:40]} is not a f32; its nearest is inf"),
+        ([op("const", value=1.5, type="i32")], "1.5 is not an int32"),
+        ([op("const", value=2**40, type="i32")], "1099511627776 is not an int32"),
+        ([op("const", value=2**31, type="i32")], "2147483648 is not an int32"),
+        ([op("const", value=float("nan"), type="i32")], "nan is not an int32"),
+        ([op("const", value=True, type="i32")], "True is not an int32"),
+        ([op("const", value=2, type="bool")], "2 is not True or False"),
+        ([op("const", value=0.0, type="bool")], "0.0 is not True or False"),
+        ([op("const", type=[])], "[] is not a type"),
+        ([Instruction("neg", None, "f32")], "its operands are None; needs a tuple of positions"),
+        ([Instruction("neg", [0], "f32")], "its operands are [0]; needs a tuple of positions"),
+        ([Instruction([], (0,), "f32")], "its operation is not a name"),
     ],
 )
 def test_a_damaged_instruction_is_named(code, complaint):
@@ -65,20 +87,59 @@ def test_results_must_exist_and_have_their_type():
     for broken, complaint in (
         (program(good, outputs=(9,)), "p, tick: output 0 is not a result of type f32"),
         (program(op("lt", 0, 1, type="bool")), "p, tick: output 0 is not a result of type f32"),
-        (program(good, outputs=()), "must give its 1 outputs"),
-        (program(good, outputs=(3, 3)), "must give its 1 outputs"),
+        (program(good, outputs=()), "p, tick: gives 0 outputs, needs 1"),
+        (program(good, outputs=(3, 3)), "p, tick: gives 2 outputs, needs 1"),
         (program(good, states=(3,)), "p, tick: gives 1 states, needs 0"),
         (program(good, states=(3,), channels=z), "p, init: gives 0 states, needs 1"),
         (
             program(good, op("eq", 0, 1, type="bool"), outputs=(3,), states=(4,), init=begin, channels=z),
             "state 0 is not",
         ),
-        (program(good, init=Block((X,), outputs=(0,))), "outputs, init none"),
+        (program(good, init=Block((X,), outputs=(0,))), "p, init: gives 1 outputs, needs 0"),
         (replace(program(good), values=()), "1 parameters but 0 values"),
     ):
         with pytest.raises(ProgramError, match=complaint):
             broken.verify()
     assert program(good, states=(3,), init=begin, channels=z).verify()
+
+
+@pytest.mark.parametrize(
+    "type, value",
+    [
+        *(("f32", v) for v in (0.5, -0.0, 3, 2**30, float("inf"), -float("inf"), float("nan"), 2.0**-149)),
+        *(("f64", v) for v in (0.1, 1e300, 5e-324, float("nan"))),
+        *(("i32", v) for v in (-(2**31), 2**31 - 1)),
+        ("bool", True),
+    ],
+)
+def test_a_constant_of_its_type_is_accepted(type, value):
+    assert program(op("const", value=value, type=type), op("mul", 0, 1), outputs=(4,)).verify()
+
+
+def test_the_interface_is_checked():
+    good, z = program(op("mul", 0, 1)), Channel("z", "m")
+    twice = replace(good, outputs=(Channel("F"), Channel("F")), tick=replace(good.tick, outputs=(3, 3)))
+    for broken, complaint in (
+        (replace(good, T=float("nan")), "p: T = nan s; a sampling period needs a finite T > 0"),
+        (replace(good, T=-1), "p: T = -1 s"),
+        (replace(good, T=0.0), "p: T = 0.0 s"),
+        (replace(good, T=float("inf")), "p: T = inf s"),
+        (replace(good, T="1"), "p: T = '1' s"),
+        (replace(good, values=("a",)), "p: k = 'a'; needs a number"),
+        (replace(good, values=(None,)), "p: k = None; needs a number"),
+        (replace(good, values=(True,)), "p: k = True; needs a number"),
+        (
+            replace(good, inputs=(Channel("x", "m"), Channel("v", "m/s", "f16"))),
+            "p: v is of type 'f16'; needs one of f32",
+        ),
+        (replace(good, parameters=(Channel("k", "N/m", None),)), "p: k is of type None"),
+        (replace(good, states=(z,)), "p, init: gives 0 states, needs 1"),
+        (replace(good, states=(z,), init=Block((X,), states=(0,))), "p, tick: gives 0 states, needs 1"),
+        (twice, "p: 2 outputs are called F; give each a name of its own"),
+    ):
+        with pytest.raises(ProgramError) as caught:
+            broken.verify()
+        assert str(caught.value).startswith(complaint)
 
 
 def test_init_sees_no_states():
