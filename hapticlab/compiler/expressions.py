@@ -1,9 +1,12 @@
 """Translate a SymPy expression into traced values, term by term, each shared subexpression once."""
 
+import operator
+
 import sympy as sp
 
 from ..errors import ProgramError, ProgramLimitError
 from ..scene.symbols import delay
+from ..scene.units import fixed
 from . import trace
 from .trace import Value, maximum, minimum, select
 
@@ -74,6 +77,7 @@ class Translator:
         above, below = [], []
         for factor in expr.args:
             base, exponent = factor.as_base_exp() if isinstance(factor, sp.Pow) else (factor, sp.S.One)
+            exponent = fixed(exponent)
             if exponent.is_Rational and exponent < 0:
                 below.append(base**-exponent)
             else:
@@ -89,6 +93,7 @@ class Translator:
 
     def _power(self, expr):
         base, exponent = expr.as_base_exp()
+        exponent = fixed(exponent)
         if exponent.is_Rational and exponent < 0:
             return _divided(self.builder.const(1.0), self(base**-exponent))
         if exponent.is_Rational and exponent.q in (1, 2):
@@ -99,6 +104,7 @@ class Translator:
             return root if whole is None else whole * root
         if base == sp.E:
             return trace.exp(self(exponent))
+        # any other exponent needs a positive base
         return trace.exp(self(exponent) * trace.log(self(base)))
 
     def _cases(self, expr):
@@ -112,6 +118,8 @@ class Translator:
 
     def _relation(self, expr):
         a, b = self(expr.lhs), self(expr.rhs)
+        if "bool" in (a.type, b.type):
+            raise ProgramError(f"{expr} compares conditions; combine them with &, | and ~ instead")
         compared = {">": b < a, ">=": b <= a, "<": a < b, "<=": a <= b}
         if expr.rel_op in compared:
             return compared[expr.rel_op]
@@ -119,12 +127,10 @@ class Translator:
 
     def _logic(self, expr):
         values = [self(a) for a in expr.args]
-        if isinstance(expr, sp.Not):
-            return ~values[0]
-        result = values[0]
-        for value in values[1:]:
-            result = result & value if isinstance(expr, sp.And) else result | value
-        return result
+        number = next((a for a, value in zip(expr.args, values, strict=True) if value.type != "bool"), None)
+        if number is not None:
+            raise ProgramError(f"{number} is a number where {expr} needs a condition; compare it, as in {number} > 0")
+        return _LOGIC[type(expr)](*values)
 
 
 def _divided(a, b):
@@ -192,8 +198,12 @@ _RULES = (
     ((sp.Pow, sp.exp), Translator._power),
     (sp.Piecewise, Translator._cases),
     (sp.core.relational.Relational, Translator._relation),
-    ((sp.And, sp.Or, sp.Not), Translator._logic),
+    ((sp.And, sp.Or, sp.Not, sp.Xor, sp.ITE), Translator._logic),
 )
+_LOGIC = {
+    sp.And: _fold(operator.and_), sp.Or: _fold(operator.or_), sp.Not: operator.invert,
+    sp.Xor: _fold(lambda a, b: (a | b) & ~(a & b)), sp.ITE: lambda c, a, b: (c & a) | (~c & b),
+}  # fmt: skip
 _FUNCTIONS = {
     sp.sin: trace.sin, sp.cos: trace.cos, sp.tan: lambda a: trace.sin(a) / trace.cos(a),
     sp.log: trace.log, sp.atan: trace.atan, sp.tanh: trace.tanh, sp.sinh: _sinh, sp.cosh: _cosh,

@@ -64,11 +64,13 @@ def explicit_form(scene):
     MassError
         A coordinate has no equation, the equations outnumber the coordinates, or they are dependent (singular mass).
     SceneError
-        A highest derivative enters nonlinearly.
+        A highest derivative enters nonlinearly, a signal does not stand alone on the left of its equation, or a
+        coordinate of first order is given an initial rate.
     """
     updates = {e.lhs: e.rhs for e in scene.eom if getattr(type(e.lhs), "role", None) == "signal"}
     equations = [e for e in scene.eom if e.lhs not in updates]
     coordinates = scene.coordinates
+    _check_signals(equations)
     orders = tuple(_order(q, equations) for q in coordinates)
     if len(equations) != len(coordinates):
         named = ", ".join(type(q).__name__ for q in coordinates) or "none"
@@ -94,7 +96,24 @@ def _order(q, equations):
         )
     if max(counts) > 2:
         raise MassError(f"{name} appears with derivative {max(counts)}; equations of motion go up to the second")
+    rate = getattr(type(q), "rate", sp.S.Zero)
+    if max(counts) == 1 and rate != 0:
+        raise SceneError(
+            f"{name} has an equation of first order, which gives its rate; rate={rate} would be lost: leave it out, "
+            f"or write an equation with {name}.diff(t, 2)"
+        )
     return max(counts)
+
+
+def _check_signals(equations):
+    """Refuse an equation that moves no coordinate and defines no signal."""
+    for e in equations:
+        functions = e.atoms(sp.Function)
+        signals = sorted({type(a).__name__ for a in functions if getattr(type(a), "role", None) == "signal"})
+        if signals and not e.atoms(sp.Derivative):
+            raise SceneError(
+                f"{e.lhs} = {e.rhs} defines nothing: write the signal alone on the left, sp.Eq({signals[0]}(n), ...)"
+            )
 
 
 def _affine(expr, unknowns, equation):

@@ -1,124 +1,22 @@
 """The words a scene is written in: x(n), x(t), v(t), parameters, coordinates, signals, when and delay."""
 
-import math
+import copyreg
 
 import sympy as sp
+from sympy.core.function import AppliedUndef, UndefinedFunction
 
-from ..errors import ParameterError, SignalError
-from .units import dimension, in_si, kind_of
+from ..errors import SignalError
+from .cases import when
+from .parameters import Parameter, T, parameters
+from .units import dimension
+from .written import CONDITIONS, check_name, expression
+
+__all__ = ["Parameter", "T", "coordinate", "delay", "lag_of", "n", "parameters", "signal", "t", "v", "when", "x"]
 
 #: time [s]; a plain SymPy symbol, so that expressions of sympy.physics.mechanics speak of the same time
 t = sp.Symbol("t")
 #: number of the present sample
 n = sp.Symbol("n", integer=True)
-
-
-class Parameter(sp.Symbol):
-    """A named quantity with a unit and a range, bound to a value by calling the scene. Made by :func:`parameters`."""
-
-    def __new__(cls, name, unit, low=-math.inf, high=math.inf, value=math.nan):
-        self = sp.Symbol.__xnew__(cls, name, real=True)
-        self.unit, self.low, self.high, self.value = unit, low, high, value
-        return self
-
-    def __getnewargs_ex__(self):
-        return (self.name, self.unit, self.low, self.high, self.value), {}
-
-    def _hashable_content(self):
-        return (*super()._hashable_content(), self.unit, self.low, self.high, str(self.value))
-
-    def check(self, value):
-        """Return the value as a float in SI, or raise ParameterError saying what is needed."""
-        number = in_si(value, self.unit, self.name)
-        kind, word = kind_of(self.unit)
-        if not math.isfinite(number):
-            raise ParameterError(f"{self.name} = {number}; needs a finite number in {self.unit}")
-        if kind == "inertia" and number <= 0:
-            raise ParameterError(f"{self.name} = {number:g} {self.unit}; a {word} needs {self.name} > 0")
-        if not self.low <= number <= self.high:
-            raise ParameterError(f"{self.name} = {number:g} {self.unit}; {self._range(word)}")
-        return number
-
-    def _range(self, word):
-        if self.low == 0 and math.isinf(self.high) and word:
-            return (
-                f"a {word} needs {self.name} >= 0. A negative one feeds energy to the user; if that is meant, "
-                f"declare it: hl.parameters('{self.name}', units='{self.unit}', ranges=(-limit, limit))"
-            )
-        return f"it was declared to lie within {self.low:g} and {self.high:g}"
-
-
-#: sampling period [s], bound when a scene is compiled
-T = Parameter("T", "s", 0.0)
-
-
-def parameters(names, *, units, values=None, ranges=None):
-    """Declare the parameters of a scene, each with its unit.
-
-    Parameters
-    ----------
-    names : str
-        Names separated by spaces.
-    units : str
-        One SI unit for each, separated by spaces; ``1`` for a pure number.
-    values : number, sequence or dict, optional
-        Default values in SI, or texts with a unit such as ``"10 mm"``.
-    ranges : (low, high), sequence of them, or dict, optional
-        Closed ranges in SI. Without one a mass must be > 0, and a stiffness, damping or time >= 0.
-
-    Returns
-    -------
-    Parameter, or tuple of Parameter
-
-    Raises
-    ------
-    UnitsError, ParameterError
-
-    Examples
-    --------
-    >>> import hapticlab as hl
-    >>> k, x_o = hl.parameters("k x_o", units="N/m m")
-    >>> g = hl.parameters("g", units="m/s^2", values=9.81)
-    >>> k.unit, g.value
-    ('N/m', 9.81)
-    """
-    names, units = names.replace(",", " ").split(), units.replace(",", " ").split()
-    if len(names) != len(units) or not names:
-        raise ParameterError(
-            f"{len(names)} names ({' '.join(names)}) but {len(units)} units ({' '.join(units)}); "
-            "give one unit a name, separated by spaces, such as units='N/m m'"
-        )
-    if len(names) == 1:
-        values = values if isinstance(values, dict) else {names[0]: values}
-        ranges = ranges if isinstance(ranges, dict) else {names[0]: ranges}
-    made = tuple(
-        _parameter(name, unit, _entry(values, names, k), _entry(ranges, names, k))
-        for k, (name, unit) in enumerate(zip(names, units, strict=True))
-    )
-    return made if len(made) > 1 else made[0]
-
-
-def _entry(given, names, k):
-    if isinstance(given, dict):
-        strangers = set(given) - set(names)
-        if strangers:
-            raise ParameterError(f"{', '.join(sorted(strangers))} is not among the names {' '.join(names)}")
-        return given.get(names[k])
-    if given is not None and len(given) != len(names):
-        raise ParameterError(f"{len(given)} entries for {len(names)} names ({' '.join(names)}); give one for each")
-    return None if given is None else given[k]
-
-
-def _parameter(name, unit, value, limits):
-    dimension(unit)  # refuses what is not SI
-    if not name.isidentifier() or name in ("n", "t", "T", "x", "v", "F"):
-        raise ParameterError(f"{name!r} cannot name a parameter; n, t, T, x, v and F are taken, others must be like k_1")
-    kind, _ = kind_of(unit)
-    low, high = limits if limits is not None else ((0.0 if kind else -math.inf), math.inf)
-    if not low <= high:
-        raise ParameterError(f"{name}: range ({low}, {high}) is empty; give (low, high) with low <= high")
-    made = Parameter(name, unit, float(low), float(high))
-    return made if value is None else Parameter(name, unit, float(low), float(high), made.check(value))
 
 
 def coordinate(name, *, unit, initial=0, rate=0):
@@ -127,10 +25,12 @@ def coordinate(name, *, unit, initial=0, rate=0):
     Parameters
     ----------
     name : str
+        One word that no parameter, signal or other coordinate of the scene has, and no column of a record.
     unit : str
         SI unit, such as ``m`` or ``rad``.
     initial, rate : number or expression
         Value and rate at the first sample; may use parameters and x(n), so that a body can start at the handle.
+        A coordinate with an equation of first order starts with its value alone.
 
     Returns
     -------
@@ -143,9 +43,41 @@ def coordinate(name, *, unit, initial=0, rate=0):
     >>> z.diff(hl.t, 2)
     Derivative(z(t), (t, 2))
     """
+    check_name(name, "coordinate")
     dimension(unit)
-    facts = {"role": "coordinate", "initial": sp.sympify(initial), "rate": sp.sympify(rate)}
-    return sp.Function(name, real=True, unit=unit, **facts)(t)
+    start = {"initial": expression(initial, f"initial of {name}"), "rate": expression(rate, f"rate of {name}")}
+    return sp.Function(name, real=True, unit=unit, role="coordinate", **start)(t)
+
+
+class _Sampled:
+    """One value a sample: it changes with the clock, so SymPy must not take its rate for zero."""
+
+    @property
+    def free_symbols(self):
+        symbols = super().free_symbols
+        return symbols | {t} if n in symbols else symbols
+
+    def _eval_derivative(self, s):
+        if s in (n, t) and self.args[0].has(n):
+            name = type(self).__name__
+            written = "v(n)" if name == "x" else f"({name}(n) - {name}(n-1))/T"
+            raise SignalError(f"{self} has no derivative: it is known at the samples only; write {written}")
+        return super()._eval_derivative(s)
+
+
+class _Signal(_Sampled, AppliedUndef):
+    """A sample y(n-k) of a signal."""
+
+
+class _SignalFunction(UndefinedFunction):
+    """A signal y; a type of its own because SymPy restores its undefined functions without their base class."""
+
+
+def _restored(name, facts):
+    return _SignalFunction(name, (_Signal,), **facts)
+
+
+copyreg.pickle(_SignalFunction, lambda made: (_restored, (made.name, dict(made._kwargs))))
 
 
 def signal(name, *, unit, initial=0):
@@ -156,6 +88,7 @@ def signal(name, *, unit, initial=0):
     Parameters
     ----------
     name : str
+        One word that no parameter, coordinate or other signal of the scene has, and no column of a record.
     unit : str
     initial : number or expression
         The value of every sample before the first.
@@ -171,8 +104,10 @@ def signal(name, *, unit, initial=0):
     >>> y(hl.n - 1)
     y(n - 1)
     """
+    check_name(name, "signal")
     dimension(unit)
-    return sp.Function(name, real=True, unit=unit, role="signal", initial=sp.sympify(initial))
+    facts = {"unit": unit, "role": "signal", "initial": expression(initial, f"initial of {name}")}
+    return _restored(name, {"real": True, **facts})
 
 
 def lag_of(applied):
@@ -189,29 +124,44 @@ def lag_of(applied):
             f"{applied} lies in the future: at sample n it has not been measured. "
             f"Predict it from the past, {name}(n+1) = 2*{name}(n) - {name}(n-1), Eq. (23.4)"
         )
+    clock = sorted({s.name for s in argument.free_symbols - {n, t}} & {"n", "t"})
+    if clock:
+        raise SignalError(f"{applied}: this {clock[0]} is another symbol of that name; from hapticlab import {clock[0]}")
     cure = f"write {name}(n), {name}(n-1), ... or {name}(t), with n and t from hapticlab"
     raise SignalError(f"{applied} is not a sample: {cure}")
 
 
-class _HandleSignal(sp.Function):
+class _HandleSignal(_Sampled, sp.Function):
     """A signal of the handle: one argument, checked when written."""
 
     nargs = 1
     is_real = True
+    is_number = False
     role = "handle"
 
     @classmethod
     def eval(cls, argument):
-        if not argument.free_symbols & {n, t}:
-            raise SignalError(f"{cls.__name__}({argument}) is not a sample: write {cls.__name__}(n) or {cls.__name__}(t)")
-        applied = sp.Basic.__new__(cls, argument)
-        lag_of(applied)
+        # SymPy tries other arguments while it substitutes and compares; in a scene they are refused later
+        if any((argument - clock).is_number for clock in (n, t)):
+            lag_of(sp.Basic.__new__(cls, argument))
 
 
 class v(_HandleSignal):
-    """Velocity of the handle v_e [m/s]: v(n) at the present sample, v(t) in an equation of motion."""
+    """Velocity of the handle v_e [m/s]: v(n) at the present sample, v(t) in an equation of motion.
+
+    In a force or a watched expression v(t) is the sample v(n), the plain backward difference on a board, while an
+    equation of motion may see it half a period further on (see :class:`~hapticlab.compiler.handle.Handle`). The two
+    differ by a T/2, with a the acceleration of the handle, on purpose: a force that looks ahead through a damper b asks
+    for b more damping from the device.
+    """
 
     unit = "m/s"
+
+    def fdiff(self, argindex=1):
+        raise SignalError(
+            f"the derivative of {self} is the acceleration of the handle, which no sample holds; "
+            "write (v(n) - v(n-1))/T in a force, or give its mass to a coordinate behind a coupler"
+        )
 
 
 class x(_HandleSignal):
@@ -226,6 +176,8 @@ class x(_HandleSignal):
 class delay(sp.Function):
     """The value an expression had one sample ago; at the first sample, its present value.
 
+    The delay of a number is the number. A condition has no delay: delay ``hl.when(condition, 1, 0)`` instead.
+
     Examples
     --------
     >>> import hapticlab as hl
@@ -238,21 +190,11 @@ class delay(sp.Function):
     is_real = True
     keeps_unit = True
 
+    @classmethod
+    def eval(cls, argument):
+        if isinstance(argument, CONDITIONS):
+            raise SignalError(f"delay({argument}): a condition has no delay; write hl.delay(hl.when({argument}, 1, 0)) > 0")
+        return argument if argument.is_number else None
 
-def when(condition, value, otherwise=0):
-    """Return value where condition holds, else otherwise, as the cases of Eq. (23.1).
-
-    Parameters
-    ----------
-    condition : sympy relation, such as ``x(n) >= x_o``
-    value, otherwise : expression
-
-    Examples
-    --------
-    >>> import hapticlab as hl
-    >>> k, x_o = hl.parameters("k x_o", units="N/m m")
-    >>> hl.when(hl.x(hl.n) >= x_o, k * (hl.x(hl.n) - x_o))
-    Piecewise((k*(-x_o + x(n)), x(n) >= x_o), (0, True))
-    """
-    # not evaluated: SymPy would rearrange the condition, and the boundary would move by a rounding
-    return sp.Piecewise((sp.sympify(value), sp.sympify(condition)), (sp.sympify(otherwise), True), evaluate=False)
+    def _eval_derivative(self, s):
+        raise SignalError(f"{self} has no derivative: it is known at the samples only; write ({self.args[0]} - {self})/T")

@@ -1,5 +1,6 @@
 """Units of what a student writes: parsed by pint, carried as exponents of the SI base, checked term by term."""
 
+import re
 from collections import Counter
 from fractions import Fraction
 from functools import lru_cache
@@ -14,6 +15,9 @@ _NAMES = ("1", "m", "s", "kg", "N", "N/m", "N*s/m", "m/s", "m/s^2", "N*m", "N*s"
 #: passive elements: a negative one feeds energy to the user, so it must be asked for by a declared range
 _PASSIVE = {"N/m": "stiffness", "N*s/m": "damping", "s": "time", "N*m/rad": "stiffness", "N*m*s/rad": "damping"}
 _INERTIA = {"kg": "mass", "kg*m^2": "moment of inertia"}
+#: a number, then its unit; pint alone would read '10 N/m; 5' as 50 N/m and 'N/m' as 1 N/m
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)")
+_UNIT = re.compile(r"[\w\s*/^().+°·%-]*")
 #: the two symbols every scene shares: time and the number of the sample
 _CLOCK = {"t": "s", "n": "1"}
 
@@ -25,7 +29,16 @@ def _registry():
     return pint.UnitRegistry()
 
 
-@lru_cache(maxsize=1024)
+def _parsed(number, unit):
+    """Return a pint quantity, or raise ValueError with pint's reason."""
+    if not _UNIT.fullmatch(unit):
+        raise ValueError("a unit is made of names, numbers and * / ^ ( )")
+    try:
+        return _registry().Quantity(number, unit)
+    except Exception as problem:  # pint lets Python's own parser and arithmetic fail on what is no unit
+        raise ValueError(f"{type(problem).__name__}: {problem}") from None
+
+
 def dimension(unit):
     """Return the SI exponents of a unit as a sorted tuple, ("[length]", 1), ...; refuse units that are not SI.
 
@@ -34,16 +47,20 @@ def dimension(unit):
     UnitsError
         The unit is unknown, or is a multiple of its SI unit (mm, deg): a plain number in it would be a silent error.
     """
+    if not isinstance(unit, str):
+        raise UnitsError(f"unit {unit!r} is not a text; write it like 'N*s/m', 'm/s^2', 'kg' or '1'")
+    return _dimension(unit)
+
+
+@lru_cache(maxsize=1024)
+def _dimension(unit):
     if unit == "1":
         return ()
-    import pint
-
     try:
-        quantity = _registry().Quantity(1.0, unit)
-        base = quantity.to_base_units()
-    except (pint.errors.PintError, AttributeError, TypeError, ValueError) as problem:
+        quantity = _parsed(1.0, unit)
+    except ValueError as problem:
         raise UnitsError(f"unit {unit!r} is not known ({problem}); write it like N*s/m, m/s^2, kg or 1") from None
-    if base.magnitude != 1.0:
+    if quantity.to_base_units().magnitude != 1.0:
         si = si_name(_exponents(quantity))
         raise UnitsError(f"unit {unit!r} is not SI; declare {si} and bind a value with its unit, as in '10 {unit}'")
     return _exponents(quantity)
@@ -65,16 +82,27 @@ def si_name(dimensions):
 def in_si(value, unit, name):
     """Return a bound value as a float in its declared unit; a text such as '10 mm' is converted."""
     if isinstance(value, str):
-        import pint
-
-        try:
-            return float(_registry().Quantity(value).to(unit if unit != "1" else "dimensionless").magnitude)
-        except (pint.errors.PintError, AttributeError, TypeError, ValueError) as problem:
-            raise UnitsError(f"{name} = {value!r}; needs a quantity in {unit}, like '2 {unit}' ({problem})") from None
+        return _converted(value, unit, name)
     try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise ParameterError(f"{name} = {value!r}; needs a number in {unit} or a text such as '10 {unit}'") from None
+        if not isinstance(value, bool):
+            return float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass  # refused below, in words
+    shown = "a number past 1e308" if isinstance(value, int) and abs(value) > 1e308 else repr(value)
+    raise ParameterError(f"{name} = {shown}; needs a number in {unit} or a text such as '10 {unit}'")
+
+
+def _converted(text, unit, name):
+    written = _QUANTITY.fullmatch(text)
+    cure = f"{name} = {text!r}; needs a quantity in {unit}, like '2 {unit}'"
+    if not written:
+        raise UnitsError(f"{cure} (it does not begin with a number)")
+    number, own = written.groups()
+    try:
+        quantity = _parsed(float(number), own or "dimensionless")
+        return float(quantity.to(unit if unit != "1" else "dimensionless").magnitude)
+    except (AttributeError, TypeError, ValueError, OverflowError) as problem:
+        raise UnitsError(f"{cure} ({problem})") from None
 
 
 def kind_of(unit):
@@ -99,6 +127,23 @@ def _times(*factors):
 
 def _power(dimensions, exponent):
     return tuple((k, p * exponent) for k, p in dimensions)
+
+
+def fixed(exponent):
+    """Return a float exponent as the fraction it stands for, 2.0 as 2 and 1.5 as 3/2; any other as it is.
+
+    Examples
+    --------
+    >>> import sympy as sp
+    >>> from hapticlab.scene.units import fixed
+    >>> fixed(sp.Float(1.5))
+    3/2
+    """
+    if exponent.is_Float:
+        near = Fraction(float(exponent)).limit_denominator(12)
+        if abs(float(exponent) - near) <= 1e-12:
+            return sp.Rational(near.numerator, near.denominator)
+    return exponent
 
 
 def dimension_of(expr, where):
@@ -168,7 +213,7 @@ def _of_product(expr, where):
 
 def _of_power(expr, where):
     base, exponent = expr.as_base_exp() if not isinstance(expr, sp.exp) else (sp.S.One, expr.args[0])
-    d = dimension_of(base, where)
+    d, exponent = dimension_of(base, where), fixed(exponent)
     if exponent.is_Rational:
         return None if d is None else _power(d, Fraction(int(exponent.p), int(exponent.q)))
     if d or dimension_of(exponent, where):

@@ -51,7 +51,7 @@ def test_shared_subexpressions_are_computed_once():
     ],
 )
 def test_what_cannot_run_is_refused(expression, words):
-    with pytest.raises(ProgramError, match=words):
+    with pytest.raises(HapticlabError, match=words):
         hl.compile(hl.Scene(force=F * expression), T=1e-3)
 
 

@@ -1,0 +1,48 @@
+"""Cases: an expression that is one thing where a condition holds and another elsewhere, kept as written."""
+
+import sympy as sp
+from sympy.functions.elementary.piecewise import ExprCondPair
+
+from .written import condition as as_condition
+from .written import expression
+
+
+class Case(ExprCondPair):
+    """A value and its condition; SymPy's own pair rewrites a condition that holds cases itself."""
+
+    def __new__(cls, value, condition):
+        return sp.Tuple.__new__(cls, value, condition)
+
+
+class Cases(sp.Piecewise):
+    """A Piecewise that is never evaluated: SymPy would rearrange a condition, and move the boundary by a rounding."""
+
+    def __new__(cls, *cases, **_):
+        return sp.Basic.__new__(cls, *(Case(*getattr(case, "args", case)) for case in cases))
+
+    def _sympystr(self, printer):
+        return printer._print(sp.Basic.__new__(sp.Piecewise, *self.args))
+
+
+def when(condition, value, otherwise=0):
+    """Return value where condition holds, else otherwise, as the cases of Eq. (23.1).
+
+    Parameters
+    ----------
+    condition : sympy relation, such as ``x(n) >= x_o``
+        ``sp.Eq(a, b)`` for equality; ``&``, ``|`` and ``~`` combine conditions.
+    value, otherwise : expression
+
+    Raises
+    ------
+    SceneError
+        ``condition`` is no relation of expressions, such as the False that ``x(n) == x_o`` is in Python.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k, x_o = hl.parameters("k x_o", units="N/m m")
+    >>> hl.when(hl.x(hl.n) >= x_o, k * (hl.x(hl.n) - x_o))
+    Piecewise((k*(-x_o + x(n)), x(n) >= x_o), (0, True))
+    """
+    return Cases((expression(value, "value"), as_condition(condition)), (expression(otherwise, "otherwise"), sp.true))
