@@ -1,16 +1,16 @@
 """Lower a scene to a program: the sample is taken, the force computed from it, then the equations of motion advance."""
 
-import math
-
 import sympy as sp
 
 from ..errors import ParameterError, ProgramError, SceneError
+from ..scene.scene import Scene
 from ..scene.symbols import Parameter, T, delay, lag_of, n, t, v, x
 from ..scene.units import unit_of
 from .expressions import Translator
 from .handle import HOLDS, VELOCITIES, Handle
 from .ir import Channel
 from .methods import METHODS
+from .options import choice, live_names, period, steps
 from .solve import solve
 from .trace import cast
 from .tracing import Tracing
@@ -49,7 +49,7 @@ def compile(
         float32 is what a board runs.
     velocity : {"backward_difference", "measured"}
         Where v(n) comes from; "measured" asks the paddle for it.
-    live : sequence of str, optional
+    live : str or sequence of names or Parameters, optional
         Parameters that stay settable while running, all by default; the others become constants.
 
     Returns
@@ -69,26 +69,20 @@ def compile(
     >>> len(hl.compile(wall, T=1e-3))
     4
     """
-    _check("method", method, METHODS)
-    _check("hold", hold, HOLDS)
-    _check("dtype", dtype, REAL_OF)
-    _check("velocity", velocity, VELOCITIES)
-    if not (isinstance(T, (int, float)) and math.isfinite(T) and T > 0):
-        raise ParameterError(f"T = {T} s; a sampling period needs T > 0, such as T=1e-3")
-    if not (isinstance(substeps, int) and substeps >= 1):
-        raise ProgramError(f"substeps = {substeps!r}; needs a whole number >= 1")
+    if not isinstance(scene, Scene):
+        raise SceneError(f"{scene!r} is not a scene; write hl.compile(hl.Scene(force=...), T=1e-3)")
+    choice("method", method, METHODS)
+    choice("hold", hold, HOLDS)
+    choice("dtype", dtype, REAL_OF)
+    choice("velocity", velocity, VELOCITIES)
+    T, substeps, live = period(T), steps(substeps), live_names(live)
     try:
-        return _Lowering(scene, METHODS[method], float(T), substeps, hold, dtype, velocity, live).program()
+        return _Lowering(scene, METHODS[method], T, substeps, hold, dtype, velocity, live).program()
     except RecursionError:
         raise ProgramError(
             f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals, "
             "y = hl.signal(...), with an equation for each"
         ) from None
-
-
-def _check(name, given, known):
-    if given not in known:
-        raise ProgramError(f"{name} = {given!r}; needs one of {', '.join(known)}")
 
 
 class _Lowering:
@@ -106,7 +100,7 @@ class _Lowering:
         self.folded = _folded(scene, live)
         self.at_start = Translator(self.tracing.init, self._leaf_at_start)
         self.at_sample = Translator(self.tracing.tick, self._leaf_at_sample)
-        self.resolving = []
+        self.resolving, self.resolved = [], set()
 
     def program(self):
         """Trace the tick in the order it runs."""
@@ -116,7 +110,9 @@ class _Lowering:
         for name, expr in self.form.watch.items():
             outputs.append((Channel(name, units[name], real), self._real(self.at_sample(expr))))
         self._advance()
-        return self.tracing.finish(self.scene.name, outputs, self.scene.values, self.facts)
+        self.tracing.complete()
+        unused = [str(sample) for sample in self.form.updates if sample not in self.resolved]
+        return self.tracing.finish(self.scene.name, outputs, self.scene.values, self.facts, unused)
 
     def _real(self, value):
         if value.type == "bool":
@@ -182,6 +178,7 @@ class _Lowering:
             loop = " -> ".join(map(str, [*self.resolving, sample]))
             raise SceneError(f"{loop}: a sample cannot depend on itself; use {type(sample).__name__}(n-1) on one side")
         self.resolving.append(sample)
+        self.resolved.add(sample)
         value = translate(self.form.updates[sample])
         self.resolving.pop()
         return value

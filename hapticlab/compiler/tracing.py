@@ -37,17 +37,21 @@ class Tracing:
         """Give a state the value it has at the next tick."""
         self._states[key][2] = value
 
-    def finish(self, name, outputs, values, facts):
-        """Return the program that computes ``outputs``: a list of (Channel, Value).
-
-        States, inputs and parameters the outputs cannot see are dropped; the program's notes name the states.
-        """
+    def complete(self):
+        """Trace the next values still waiting, and those they ask for."""
         while self._waiting:
             key, next = self._waiting.pop()
             self._states[key][2] = next()
+
+    def finish(self, name, outputs, values, facts, unused=()):
+        """Return the program that computes ``outputs``: a list of (Channel, Value). All states must have a next value.
+
+        States, inputs and parameters the outputs cannot see are dropped; the program's notes name the states, and
+        beside them what was ``unused`` from the start.
+        """
         states = list(self._states.values())
         alive = self._observed([value for _, value in outputs])
-        dropped = [channel.name for k, (channel, _, _) in enumerate(states) if k not in alive]
+        dropped = [*unused, *(channel.name for k, (channel, _, _) in enumerate(states) if k not in alive)]
         alive = sorted(alive)
         tick = self.tick.block([value for _, value in outputs], [states[k][2] for k in alive])
         init = self.init.block((), [states[k][1] for k in alive])

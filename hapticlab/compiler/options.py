@@ -1,0 +1,53 @@
+"""What a scene is compiled with: each option checked, and told apart in words."""
+
+import math
+import operator
+from numbers import Real
+
+from ..errors import ParameterError, ProgramError
+from ..scene.symbols import Parameter
+
+
+def choice(name, given, known):
+    """Return the option, one of the names known."""
+    if not (isinstance(given, str) and given in known):
+        raise ProgramError(f"{name} = {given!r}; needs one of {', '.join(known)}")
+    return given
+
+
+def period(T):
+    """Return the sampling period as a float [s], from a real number > 0 of any library."""
+    if isinstance(T, bool) or not (isinstance(T, Real) and math.isfinite(T) and T > 0):
+        raise ParameterError(f"T = {T} s; a sampling period needs T > 0, such as T=1e-3")
+    return float(T)
+
+
+def steps(substeps):
+    """Return the steps a period as an int >= 1, from a whole number of any library."""
+    try:
+        count = 0 if isinstance(substeps, bool) else operator.index(substeps)
+    except TypeError:
+        count = 0
+    if count < 1:
+        raise ProgramError(f"substeps = {substeps!r}; needs a whole number >= 1")
+    return count
+
+
+def live_names(live):
+    """Return the names of the live parameters, or None for all.
+
+    Examples
+    --------
+    >>> from hapticlab.compiler.options import live_names
+    >>> live_names("k b")
+    ('k', 'b')
+    """
+    if live is None:
+        return None
+    if isinstance(live, str):
+        return tuple(live.replace(",", " ").split())
+    listed = (live,) if isinstance(live, Parameter) or not hasattr(live, "__iter__") else live
+    names = tuple(p.name if isinstance(p, Parameter) else p for p in listed)
+    if not all(isinstance(name, str) for name in names):
+        raise ParameterError(f"live = {live!r}; needs names of parameters, such as live='k b', or None for all")
+    return names
