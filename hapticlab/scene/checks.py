@@ -6,7 +6,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from ..errors import ParameterError, SceneError, SignalError
-from .symbols import Parameter, T, lag_of, n, t
+from .symbols import Parameter, T, delay, lag_of, n, t, v, x
 from .units import agree, dimension
 from .written import CONDITIONS, RESERVED, check_name, expression
 
@@ -82,10 +82,7 @@ def check_symbols(expressions):
                 )
         for d in expr.atoms(sp.Derivative):
             if getattr(type(d.expr), "role", None) != "coordinate" or set(d.variables) != {t}:
-                raise SignalError(
-                    f"{d} is not worked out: write v(t) for the rate of x(t), whose acceleration no sample holds; "
-                    "call .doit() on the rate of anything else"
-                )
+                raise SignalError(_without_rate(d))
         if expr.has(*_NOT_REAL):
             raise SceneError(f"{expr} is not a real number; only finite real numbers can be felt")
 
@@ -98,6 +95,19 @@ def _check_arguments(expressions):
                 raise SignalError(f"{a}: {name} is a coordinate, a function of time; write {name}(t), with t from hapticlab")
         elif lag_of(a) is None and role == "signal":
             raise SignalError(f"{a}: {name} is a discrete-time signal; write it at n, n-1, ...")
+
+
+def _without_rate(d):
+    of, name = d.expr, type(d.expr).__name__
+    if of == x(t) and d.derivative_count == 1:
+        return f"{d} is not worked out; write v(t), or x(t).diff(t)"
+    if of in (x(t), v(t)):
+        cure = "write (v(n) - v(n-1))/T in a force, or give its mass to a coordinate behind a coupler"
+        return f"{d} is the acceleration of the handle, which no sample holds; {cure}"
+    if isinstance(of, (x, v, delay)) or getattr(type(of), "role", None) == "signal":
+        cure = {"x": "v(n)", "delay": f"({of.args[0]} - {of})/T"}.get(name, f"({name}(n) - {name}(n-1))/T")
+        return f"{of} has no derivative: it is known at the samples only; write {cure}"
+    return f"{d} is not worked out; a coordinate has a rate q.diff(t), anything else needs .doit()"
 
 
 def _undeclared(symbol):

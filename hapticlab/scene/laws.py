@@ -123,7 +123,10 @@ def virtual_coupler(z, *, K, b):
     """Virtual coupler of Fig. 23.4: the force K (x - z) + b (x' - z') of a spring and damper from handle to proxy.
 
     It is at once the force on the environment and the force on the proxy z; it covers K and b, and sees the handle
-    between samples as ``hold`` says.
+    between samples as ``hold`` says. As the force that is felt it takes v(t) = v(n), the plain backward difference on a
+    board, so the two sides differ by b a T/2, with a the acceleration of the handle: 0.036 % of K times 10 mm at
+    K = 500 N/m, b = 1 N s/m, T = 1 ms and 10 mm at 3 Hz. Looking ahead in the force as well would close that gap to
+    0.007 % and ask for b more damping from the device (:class:`~hapticlab.compiler.handle.Handle`).
 
     Parameters
     ----------

@@ -58,11 +58,8 @@ class _Sampled:
         return symbols | {t} if n in symbols else symbols
 
     def _eval_derivative(self, s):
-        if s in (n, t) and self.args[0].has(n):
-            name = type(self).__name__
-            written = "v(n)" if name == "x" else f"({name}(n) - {name}(n-1))/T"
-            raise SignalError(f"{self} has no derivative: it is known at the samples only; write {written}")
-        return super()._eval_derivative(s)
+        # not refused here but in a scene, for SymPy takes derivatives of its own while it simplifies
+        return sp.Derivative(self, s, evaluate=False) if self.args[0].has(n) else super()._eval_derivative(s)
 
 
 class _Signal(_Sampled, AppliedUndef):
@@ -152,16 +149,11 @@ class v(_HandleSignal):
     In a force or a watched expression v(t) is the sample v(n), the plain backward difference on a board, while an
     equation of motion may see it half a period further on (see :class:`~hapticlab.compiler.handle.Handle`). The two
     differ by a T/2, with a the acceleration of the handle, on purpose: a force that looks ahead through a damper b asks
-    for b more damping from the device.
+    for b more damping from the device (2.29 instead of 1.29 N s/m at b = 1 N s/m). For a coupler the difference is
+    0.036 % of the force of its spring at 10 mm and 3 Hz (K = 500 N/m, b = 1 N s/m, T = 1 ms).
     """
 
     unit = "m/s"
-
-    def fdiff(self, argindex=1):
-        raise SignalError(
-            f"the derivative of {self} is the acceleration of the handle, which no sample holds; "
-            "write (v(n) - v(n-1))/T in a force, or give its mass to a coordinate behind a coupler"
-        )
 
 
 class x(_HandleSignal):
@@ -197,4 +189,4 @@ class delay(sp.Function):
         return argument if argument.is_number else None
 
     def _eval_derivative(self, s):
-        raise SignalError(f"{self} has no derivative: it is known at the samples only; write ({self.args[0]} - {self})/T")
+        return sp.Derivative(self, s, evaluate=False)
