@@ -8,7 +8,7 @@ import hapticlab as hl
 from hapticlab import n, x
 from hapticlab.compiler import expressions
 from hapticlab.compiler.engine import load
-from hapticlab.errors import HapticlabError, ProgramError, ProgramLimitError
+from hapticlab.errors import HapticlabError, ProgramLimitError
 
 L, F = hl.parameters("L F_0", units="m N", values=(1.0, 1.0))
 u = x(n) / L
@@ -34,6 +34,43 @@ def test_a_function_has_the_value_mpmath_gives(function):
     np.testing.assert_allclose(computed, expected, rtol=2e-15, atol=4e-16)
 
 
+@pytest.mark.parametrize("exponent", [2.0, -2.0, 1.5, -0.5])
+def test_a_float_exponent_is_the_fraction_it_stands_for(exponent):
+    """A student's 2.0 is as good as 2, below zero too; exp(2 log(a)) would be nan there."""
+    points = np.array([-0.7, -0.2, 0.3, 0.9]) if float(exponent).is_integer() else np.array([0.2, 0.7])
+    program = hl.compile(hl.Scene(force=F * u**exponent), T=1e-3, dtype="float64")
+    computed = load(program).run(len(points), points[:, None]).outputs[:, 0, 0]
+    np.testing.assert_allclose(computed, points**exponent, rtol=1e-15)
+    assert not {i.op for i in program.tick.instructions} & {"exp", "log"}
+
+
+depth = hl.when(u >= 0.25, u - 0.25)
+fast = hl.when(u > 0.5, 1, -1)
+
+
+@pytest.mark.parametrize(
+    ("condition", "holds"),
+    [
+        (depth > 0, lambda a: a > 0.25),
+        (sp.Max(depth, 0) > 0, lambda a: a > 0.25),
+        (sp.Abs(depth) > 0, lambda a: a > 0.25),
+        ((depth > 0) & (u < 0.9), lambda a: (a > 0.25) & (a < 0.9)),
+        (fast > 0, lambda a: a > 0.5),
+        (sp.Xor(u > 0, u > 0.5), lambda a: (a > 0) != (a > 0.5)),
+        (sp.Xor(u > 0, u > 0.5, u > -0.5), lambda a: (a > 0) ^ (a > 0.5) ^ (a > -0.5)),
+        (sp.ITE(u > 0, u > 0.5, u < -0.5), lambda a: np.where(a > 0, a > 0.5, a < -0.5)),
+    ],
+    ids=str,
+)
+def test_cases_may_stand_in_a_condition(condition, holds):
+    points = np.array([-0.9, -0.3, 0.0, 0.1, 0.25, 0.3, 0.5, 0.7, 0.95])
+    # by hl.when, which keeps what was written, and by SymPy's own Piecewise, which folds it
+    for force in (hl.when(condition, 3 * F, F), sp.Piecewise((3 * F, condition), (F, True))):
+        program = hl.compile(hl.Scene(force=force), T=1e-3, dtype="float64")
+        computed = load(program).run(len(points), points[:, None]).outputs[:, 0, 0]
+        np.testing.assert_array_equal(computed, np.where(holds(points), 3.0, 1.0))
+
+
 def test_shared_subexpressions_are_computed_once():
     shared = sp.sin(u + 2)
     once = hl.compile(hl.Scene(force=F * shared), T=1e-3)
@@ -48,6 +85,8 @@ def test_shared_subexpressions_are_computed_once():
         (sp.Piecewise((1, u > 0)), "no case for when"),
         (sp.I * u, "not a real number"),
         (sp.zoo * F / F, "not a real number"),
+        (hl.when(sp.And(F, u > 0), u), "F_0 is a number where .* needs a condition"),
+        (hl.when(sp.Eq(u > 0, u > 1), u), "compares conditions"),
     ],
 )
 def test_what_cannot_run_is_refused(expression, words):

@@ -146,11 +146,61 @@ def test_a_massless_coupler_is_a_first_order_scene():
         ({"T": 1e-3, "velocity": "guess"}, "needs one of backward_difference, measured"),
         ({"T": 1e-3, "substeps": 0}, "substeps = 0; needs a whole number >= 1"),
         ({"T": 1e-3, "substeps": 2.5}, "needs a whole number"),
+        ({"T": 1e-3, "substeps": True}, "needs a whole number"),
+        ({"T": True}, "needs T > 0"),
+        ({"T": "1 ms"}, "needs T > 0"),
+        ({"T": 1e-3, "method": ["rk4"]}, "needs one of euler"),
+        ({"T": 1e-3, "live": 5}, "live = 5; needs names of parameters"),
+        ({"T": 1e-3, "live": [5]}, "needs names of parameters"),
+        ({"T": 1e-3, "live": "Km"}, "live: Km is not a parameter"),
     ],
 )
 def test_an_option_that_is_not_one_is_refused(options, words):
     with pytest.raises(HapticlabError, match=words):
         hl.compile(mass, **options)
+
+
+def test_options_may_be_numbers_of_any_library_and_parameters_themselves():
+    plain = hl.compile(mass, T=1e-3, substeps=2, live=("K", "m"))
+    assert hl.compile(mass, T=sp.Rational(1, 1000), substeps=np.int64(2), live="K m") == plain
+    assert hl.compile(mass, T=np.float64(1e-3), substeps=2, live=[K, m]) == plain
+    assert hl.compile(mass, T=np.float32(1e-3)).T == float(np.float32(1e-3))
+    assert [c.name for c in hl.compile(mass, T=1e-3, live=K).parameters] == ["K"]
+    with pytest.raises(SceneError, match="is not a scene"):
+        hl.compile(F_c, T=1e-3)
+
+
+def test_an_equation_nothing_needs_is_reported():
+    y, w = hl.signal("y", unit="m"), hl.signal("w", unit="m")
+    eom = [sp.Eq(y(n), w(n - 1)), sp.Eq(w(n), x(n))]
+    assert hl.compile(hl.Scene(force=k * x(n), eom=eom), T=1e-3).notes == (
+        "left out, because no output can see it: y(n), w(n)",
+    )
+    assert hl.compile(hl.Scene(force=k * y(n), eom=eom), T=1e-3).notes == ()
+
+
+def required_damping(program):
+    """Return max over frequency of T/(2(1 - cos a)) Re{(1 - e^-ja) H(e^ja)}: what a passive device must dissipate."""
+    size, engine = len(program.states), load(program)
+
+    def tick(sample, states):
+        run = engine.run(1, np.array([[sample]]), states=np.array(states, float)[:, None])
+        return np.concatenate([run.outputs[0, 0], run.states[:, 0]])
+
+    columns = np.array([tick(0.0, unit) for unit in np.eye(size)]).T
+    C, A = columns[0], columns[1:]
+    D, *B = tick(1.0, np.zeros(size))
+    angles = np.linspace(0.02, np.pi, 2001)
+    H = np.array([C @ np.linalg.solve(np.exp(1j * a) * np.eye(size) - A, B) + D for a in angles])
+    return (program.T / (2 * (1 - np.cos(angles))) * ((1 - np.exp(-1j * angles)) * H).real).max()
+
+
+@pytest.mark.parametrize("hold", ["foh", "soh"])
+def test_the_velocity_in_a_force_is_the_plain_difference_which_asks_for_less_damping(hold):
+    """K T/2 + b is the least a coupler needs; looking ahead in the force would take one b more, 2.29 N s/m."""
+    program = hl.compile(mass(K=500.0, b=1.0, m=0.05), T=1e-3, hold=hold, dtype="float64")
+    assert 1.25 < required_damping(program) < 1.05 * 1.25
+    assert required_damping(hl.compile(hl.wall(unilateral=None)(k=500), T=1e-3, dtype="float64")) == pytest.approx(0.25)
 
 
 def test_a_misspelt_option_never_passes():

@@ -1,5 +1,8 @@
 """Scenes: binding, printing, and every refusal of an equation that cannot be felt."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -21,6 +24,23 @@ def test_binding_returns_a_new_scene_and_leaves_the_old_one():
     assert mass.values == {}
     with pytest.raises(AttributeError):
         mass.name = "other"
+
+
+def test_what_a_scene_holds_cannot_be_changed_behind_its_checks():
+    bound = mass(m=0.1)
+    with pytest.raises(TypeError):
+        bound.values["m"] = float("nan")
+    with pytest.raises(TypeError):
+        bound.watch["m"] = K
+    assert repr(bound.values) == "{'m': 0.1}"
+
+
+def test_a_scene_survives_pickling_and_copying_and_can_be_a_key():
+    walled = hl.Scene(force=F_c + hl.when(hl.when(z >= x_o, z - x_o) > 0, k * z), eom=mass.eom, watch=[z], values={"m": 0.1})
+    for same in (pickle.loads(pickle.dumps(walled)), copy.deepcopy(walled)):
+        assert same == walled
+        assert {walled: 1}[same] == 1
+    assert mass(m=0.1) != mass(m=0.2)
 
 
 def test_an_unknown_parameter_is_refused_and_the_known_ones_listed():

@@ -3,6 +3,8 @@
 import copy
 import math
 import pickle
+import subprocess
+import sys
 
 import pytest
 import sympy as sp
@@ -91,6 +93,16 @@ def test_symbols_survive_pickling_and_copying(thing):
     assert pickle.loads(pickle.dumps(thing)) == thing
     assert copy.deepcopy(thing) == thing
     assert getattr(pickle.loads(pickle.dumps(thing)), "unit", "") == getattr(thing, "unit", "")
+
+
+def test_a_signal_restored_elsewhere_still_has_no_rate():
+    """Another process has no memory of the class: what comes out of the pickle must carry it."""
+    code = (
+        "import pickle, sys; from hapticlab import t; "
+        "y = pickle.loads(sys.stdin.buffer.read()); assert y.diff(t) != 0; assert type(y).unit == 'm'"
+    )
+    sent = pickle.dumps(hl.signal("y", unit="m")(n - 1))
+    subprocess.run([sys.executable, "-c", code], input=sent, check=True)
 
 
 def test_coordinates_that_differ_only_in_their_start_are_told_apart():

@@ -67,6 +67,14 @@ def test_a_multiple_of_an_si_unit_is_refused_where_a_bare_number_would_be_read_i
         hl.parameters("q", units=unit)
 
 
+def test_a_float_exponent_is_the_fraction_it_stands_for():
+    hertz = hl.parameters("k_h", units="N/m^1.5")
+    assert unit_of(hertz * x(n) ** 1.5) == "N"
+    assert unit_of(x_o**-2.0) == unit_of(x_o**-2)
+    with pytest.raises(UnitsError, match="not a fixed fraction"):
+        unit_of(x_o ** sp.Float(1.2345))
+
+
 def test_an_unknown_unit_is_refused():
     with pytest.raises(UnitsError, match="not known"):
         hl.parameters("q", units="furlongs_per_paddle")
