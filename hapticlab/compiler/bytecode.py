@@ -74,6 +74,8 @@ def encode(program, *, word_bits=16):
 
     Raises
     ------
+    ProgramError
+        If it holds float64 values, or T is not within a thousandth of whole microseconds.
     ProgramLimitError
         If the program has more registers or instructions than its words can number.
 
@@ -100,12 +102,24 @@ def encode(program, *, word_bits=16):
     counts += (*map(len, code), *map(len, moves))
     _check_limits(program, counts, word_bits)
     words = [*code[0], *code[1], *(w for pairs in moves for pair in pairs for w in pair), *blocks[1][2]]
-    period = max(1, round(program.T * 1e6))
+    period = _microseconds(program)
     body = HEADER.pack(MAGIC, VERSION, word_bits // 8, 0, table_hash(), period, *counts)
     body += b"".join(bits for _, bits in constants)
     body += struct.pack(f"<{len(words)}{'B' if word_bits == 8 else 'H'}", *words)
     body += bytes(TYPE_CODES[t] for t in types)
     return body + struct.pack("<I", zlib.crc32(body))
+
+
+def _microseconds(program):
+    """Return the period as the whole number a board's timer counts."""
+    exact = program.T * 1e6
+    nearest = min(max(1, round(exact)), 2**32 - 1)
+    if abs(exact - nearest) > 1e-3:
+        raise ProgramError(
+            f"{program.name}: T = {program.T:g} s; a board's timer counts whole microseconds, at least 1: "
+            f"the nearest is T={nearest}e-6"
+        )
+    return nearest
 
 
 def _require_float32(program):

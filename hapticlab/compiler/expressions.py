@@ -8,6 +8,8 @@ from ..errors import ProgramError, ProgramLimitError
 from ..scene.symbols import delay
 from ..scene.units import fixed
 from . import trace
+from .constants import check_folded, entering
+from .phase import angle_of
 from .trace import Value, maximum, minimum, select
 
 #: past this a program fits no board and a listing no eye; far above every scene of a course
@@ -22,10 +24,12 @@ class Translator:
     builder : Builder
     leaf : callable expression -> Value
         What symbols, samples, coordinates, derivatives and delays stand for.
+    clock : Clock, optional
+        What t is, for angles that time drives.
     """
 
-    def __init__(self, builder, leaf):
-        self.builder, self.leaf = builder, leaf
+    def __init__(self, builder, leaf, clock=None):
+        self.builder, self.leaf, self.clock = builder, leaf, clock
         self.known = {}
 
     def __call__(self, expr):
@@ -38,6 +42,7 @@ class Translator:
                     "keep M and f apart (never invert or expand symbolically) or take a smaller model"
                 )
             self.known[expr] = self._translate(expr)
+            check_folded(expr, self.known[expr], self.known)
         return self.known[expr]
 
     def _translate(self, expr):
@@ -58,9 +63,12 @@ class Translator:
 
     def _number(self, expr):
         try:
-            return self.builder.const(float(expr))
-        except (TypeError, ValueError):
+            return self.builder.const(entering(expr, self.builder.real, str(sp.N(expr, 3)).lower()))
+        except TypeError:
             raise ProgramError(f"{expr} is not a real number; only real numbers run at the sample rate") from None
+
+    def _of_angle(self, expr):
+        return _FUNCTIONS[type(expr)](angle_of(self, expr.args[0]))
 
     def _sum(self, expr):
         total = None
@@ -135,7 +143,8 @@ class Translator:
 
 def _divided(a, b):
     """Return a / b; a constant divisor becomes a factor, which is within one rounding and a third of the time."""
-    return a * (1.0 / b) if b.constant else a / b
+    factor = b.constant and 2.0**-100 < abs(b.constant) < 2.0**100  # past these the reciprocal leaves float32
+    return a * (1.0 / b) if factor else a / b
 
 
 def _repeated(value, power):
@@ -194,6 +203,7 @@ def _atan2(y, x):
 
 _RULES = (
     (sp.Add, Translator._sum),
+    ((sp.sin, sp.cos, sp.tan), Translator._of_angle),
     (sp.Mul, Translator._product),
     ((sp.Pow, sp.exp), Translator._power),
     (sp.Piecewise, Translator._cases),

@@ -228,7 +228,7 @@ def _problem_of_constant(value, type):
         with np.errstate(over="ignore"):
             rounded = (np.float32 if type == "f32" else np.float64)(value).item()
     except OverflowError:
-        rounded = math.copysign(math.inf, value)
+        rounded = math.inf if value > 0 else -math.inf
     return (
         None
         if rounded == value or value != value

@@ -6,11 +6,13 @@ from ..errors import ParameterError, ProgramError, SceneError
 from ..scene.scene import Scene
 from ..scene.symbols import Parameter, T, delay, lag_of, n, t, v, x
 from ..scene.units import unit_of
+from .constants import entering
 from .expressions import Translator
 from .handle import HOLDS, VELOCITIES, Handle
 from .ir import Channel
 from .methods import METHODS
 from .options import choice, live_names, period, steps
+from .phase import Clock
 from .solve import solve
 from .trace import cast
 from .tracing import Tracing
@@ -96,10 +98,12 @@ class _Lowering:
             self.facts = {"velocity": velocity, "dtype": dtype}
         parameters = tuple(scene.parameters.values())
         self.tracing = Tracing(REAL_OF[dtype], T, parameters)
+        for value, text in ((T, "T"), (1 / T, "1/T with T"), (T / substeps, "T/substeps with T")):
+            entering(value, REAL_OF[dtype], f"{text} = {T:g} s", ParameterError)
         self.handle = Handle(self.tracing, velocity, hold)
         self.folded = _folded(scene, live)
         self.at_start = Translator(self.tracing.init, self._leaf_at_start)
-        self.at_sample = Translator(self.tracing.tick, self._leaf_at_sample)
+        self.at_sample = Translator(self.tracing.tick, self._leaf_at_sample, Clock(self._tick_count, self.tracing.T))
         self.resolving, self.resolved = [], set()
 
     def program(self):
@@ -112,7 +116,14 @@ class _Lowering:
         self._advance()
         self.tracing.complete()
         unused = [str(sample) for sample in self.form.updates if sample not in self.resolved]
-        return self.tracing.finish(self.scene.name, outputs, self.scene.values, self.facts, unused)
+        program = self.tracing.finish(self.scene.name, outputs, self.scene.values, self.facts, unused)
+        for channel, value in zip(program.parameters, program.values, strict=True):
+            if value == value:
+                self._entering(channel.name, value)
+        return program
+
+    def _entering(self, name, value):
+        return entering(value, self.tracing.real, f"{name} = {value:g}", ParameterError)
 
     def _real(self, value):
         if value.type == "bool":
@@ -127,7 +138,7 @@ class _Lowering:
             return builder.const(self.tracing.T)
         if isinstance(symbol, Parameter):
             if symbol.name in self.folded:
-                return builder.const(self.folded[symbol.name])
+                return builder.const(self._entering(symbol.name, self.folded[symbol.name]))
             return self.tracing.parameter(builder, self.tracing.parameters.index(symbol))
         return None
 
@@ -232,7 +243,7 @@ class _Lowering:
                 return handle[expr]
             return self.at_sample(expr) + tau if expr == t else self.at_sample(expr)
 
-        translate = Translator(self.tracing.tick, leaf)
+        translate = Translator(self.tracing.tick, leaf, Clock(self._tick_count, self.tracing.T, tau))
         M = [[translate(m) for m in row] for row in self.form.M]
         solution = solve(M, [translate(f) for f in self.form.f], self.form.definite)
         by_order = {2: [], 1: []}

@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from ..compiler.elementary import TABLES
 from ..compiler.engine import load
 from ..errors import PaddleError
 from ..records import PaddleProfile, Telemetry
@@ -209,7 +210,7 @@ class SimulatedPaddle(Paddle):
             names = ["the force F", *(f"the state {c.name}" for c in program.states)]
             culprit = f"{names[int(code[first]) - 1]} of {program.name}"
             when = f"tick {first} (t = {first * self.T:g} s)"
-            fault = f"{when}: {culprit} was not finite; the motor is off from there on"
+            fault = f"{when}: {culprit} was not finite; the motor is off from there on{_likely_cause(program)}"
         limited = np.abs(F) >= self.force_max if self.force_max is not None else None
         return Telemetry(
             t=np.arange(len(x)) * self.T, x=x, v=v, F=F, T=self.T, delay=self.delay, channels=columns,
@@ -241,6 +242,15 @@ class SimulatedPaddle(Paddle):
         if self.profile is not None:
             lines.append(f"  from {self.profile}")
         return "\n".join(lines)
+
+
+def _likely_cause(program):
+    """Return what to look for where a program that holds sines and cosines stopped, else nothing."""
+    if not any(i.op in ("sin", "cos") for i in program.tick.instructions):
+        return ""
+    real = program.outputs[0].type
+    dtype = "float32" if real == "f32" else "float64"
+    return f". Look for an angle beyond {TABLES[real].angle_limit:g} rad: it has no meaning in {dtype}, and no sine"
 
 
 def _run_in_chunks(loaded, inputs, parameters, chunk, progress):
