@@ -14,14 +14,14 @@ class Case(ExprCondPair):
         return sp.Tuple.__new__(cls, value, condition)
 
 
-class Cases(sp.Piecewise):
-    """A Piecewise that is never evaluated: SymPy would rearrange a condition, and move the boundary by a rounding."""
+class Piecewise(sp.Piecewise):
+    """SymPy's Piecewise, never evaluated: SymPy would rearrange a condition, and move the boundary by a rounding.
+
+    It keeps the name, by which SymPy's printers know how to set it.
+    """
 
     def __new__(cls, *cases, **_):
         return sp.Basic.__new__(cls, *(Case(*getattr(case, "args", case)) for case in cases))
-
-    def _sympystr(self, printer):
-        return printer._print(sp.Basic.__new__(sp.Piecewise, *self.args))
 
 
 def when(condition, value, otherwise=0):
@@ -45,4 +45,4 @@ def when(condition, value, otherwise=0):
     >>> hl.when(hl.x(hl.n) >= x_o, k * (hl.x(hl.n) - x_o))
     Piecewise((k*(-x_o + x(n)), x(n) >= x_o), (0, True))
     """
-    return Cases((expression(value, "value"), as_condition(condition)), (expression(otherwise, "otherwise"), sp.true))
+    return Piecewise((expression(value, "value"), as_condition(condition)), (expression(otherwise, "otherwise"), sp.true))

@@ -129,8 +129,9 @@ def parameters_in(expressions):
                 "declare it once and use that one everywhere"
             )
     kinds = {p.name: ("parameter", p) for p in found.values()}
-    for a in applied(expressions, "coordinate", "signal"):
-        kind, name = type(a), type(a).__name__
+    moving = {type(a) for a in applied(expressions, "coordinate", "signal")}
+    for kind in sorted(moving, key=lambda kind: (kind.__name__, _declared(kind))):
+        name = kind.__name__
         word, known = kinds.setdefault(name, (kind.role, kind))
         if known != kind:
             what = f"two different {word}s" if word == kind.role else f"a {word} and a {kind.role}"

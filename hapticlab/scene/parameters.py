@@ -99,7 +99,8 @@ def parameters(names, *, units, values=None, ranges=None):
 
 def _words(what, given):
     if not isinstance(given, str):
-        raise ParameterError(f"{what} = {given!r}; needs one text with spaces between, as in hl.parameters('k m', units='N/m kg')")
+        example = "hl.parameters('k m', units='N/m kg')"
+        raise ParameterError(f"{what} = {given!r}; needs one text with spaces between, as in {example}")
     return given.replace(",", " ").split()
 
 

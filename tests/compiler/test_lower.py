@@ -266,3 +266,13 @@ def pendulum_by_scipy(weight, time):
 
     start = np.concatenate([0.1 * np.arange(1, 9), np.zeros(8)])
     return solve_ivp(rhs, (0, time), start, method="DOP853", rtol=1e-13, atol=1e-15).y[7, -1]
+
+
+def test_a_body_may_start_where_another_one_starts():
+    """The start of z is the start of y, and that a parameter no equation holds."""
+    r = hl.parameters("r", units="m", values=0.02)
+    y = hl.coordinate("y", unit="m", initial=r)
+    follower = hl.coordinate("z", unit="m", initial=y)
+    eom = [sp.Eq(m * follower.diff(t, 2), K * (x(t) - follower)), sp.Eq(b * y.diff(t), -K * y)]
+    program = hl.compile(hl.Scene(force=K * (x(t) - follower), eom=eom), T=1e-3, dtype="float64")
+    assert load(program).run(1, np.zeros((1, 1))).outputs[0, 0, 0] == -400.0 * 0.02

@@ -202,6 +202,19 @@ def test_sympy_may_simplify_substitute_and_compare_samples():
     assert cases.subs(k, K) == hl.when(x(n) >= x_o, K * x(n))
 
 
+def test_cases_are_set_as_sympy_sets_its_own():
+    cases = hl.when(x(n) >= x_o, k * x(n))
+    own = sp.Piecewise((k * x(n), x(n) >= x_o), (0, True), evaluate=False)
+    assert sp.latex(cases) == sp.latex(own)
+    assert sp.pretty(cases) == sp.pretty(own)
+    assert str(cases) == str(own)
+
+
+def test_a_potential_with_cases_has_a_force():
+    potential = hl.when(hl.when(z > 0, z) > 0, k * z**2 / 2)
+    assert potential.diff(z) == hl.when(hl.when(z > 0, z) > 0, k * z)
+
+
 def test_the_delay_of_a_number_is_the_number_and_a_condition_has_none():
     assert hl.delay(3) == 3
     with pytest.raises(SignalError, match=r"write hl.delay\(hl.when\(x\(n\) > 0, 1, 0\)\) > 0"):
