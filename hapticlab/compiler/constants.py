@@ -54,8 +54,8 @@ def is_ordinary(value, type):
     return float(np.finfo(NUMPY_TYPE[type]).tiny) <= abs(value) < math.inf
 
 
-def check_folded(expr, value, known):
-    """Refuse a constant that a program's arithmetic made zero, denormal or infinite out of a number that is not.
+def check_product(expr, value, known, bound):
+    """Refuse what parameters alone make, and the program's arithmetic turns into zero or infinity where it is neither.
 
     Parameters
     ----------
@@ -64,12 +64,21 @@ def check_folded(expr, value, known):
         What it was translated to.
     known : dict sympy expression -> Value
         Values of the symbols in it.
+    bound : dict name -> float
+        The values of live parameters.
     """
-    if value.constant is None or value.type not in DTYPE or is_ordinary(value.constant, value.type):
+    if (
+        value.type not in DTYPE
+        or not expr.args
+        or (value.constant is not None and is_ordinary(value.constant, value.type))
+    ):
         return
-    constants = {s: known[s].constant if s in known else None for s in expr.free_symbols}
-    if any(c is None for c in constants.values()):
-        return  # a product with a structural zero is zero whatever the rest
-    exact = expr.xreplace({s: sp.Float(c) for s, c in constants.items()}).evalf()
+    numbers = {}
+    for s in expr.free_symbols:
+        constant = known[s].constant if s in known else None
+        numbers[s] = bound.get(s.name) if constant is None else constant
+    if any(number is None for number in numbers.values()):
+        return  # samples, states, time, and what has no value yet
+    exact = expr.xreplace({s: sp.Float(number) for s, number in numbers.items()}).evalf()
     if exact.is_Float and exact.is_finite:
         entering(exact, value.type, f"{expr} = {str(sp.Float(exact, 3)).lower()}")

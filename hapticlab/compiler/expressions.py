@@ -8,7 +8,7 @@ from ..errors import ProgramError, ProgramLimitError
 from ..scene.symbols import delay
 from ..scene.units import fixed
 from . import trace
-from .constants import check_folded, entering
+from .constants import check_product, entering
 from .phase import angle_of
 from .trace import Value, maximum, minimum, select
 
@@ -26,10 +26,12 @@ class Translator:
         What symbols, samples, coordinates, derivatives and delays stand for.
     clock : Clock, optional
         What t is, for angles that time drives.
+    bound : dict name -> float, optional
+        The values of live parameters, with which their products must stay numbers of the real type.
     """
 
-    def __init__(self, builder, leaf, clock=None):
-        self.builder, self.leaf, self.clock = builder, leaf, clock
+    def __init__(self, builder, leaf, clock=None, bound=None):
+        self.builder, self.leaf, self.clock, self.bound = builder, leaf, clock, bound or {}
         self.known = {}
 
     def __call__(self, expr):
@@ -42,7 +44,7 @@ class Translator:
                     "keep M and f apart (never invert or expand symbolically) or take a smaller model"
                 )
             self.known[expr] = self._translate(expr)
-            check_folded(expr, self.known[expr], self.known)
+            check_product(expr, self.known[expr], self.known, self.bound)
         return self.known[expr]
 
     def _translate(self, expr):

@@ -102,8 +102,8 @@ class _Lowering:
             entering(value, REAL_OF[dtype], f"{text} = {T:g} s", ParameterError)
         self.handle = Handle(self.tracing, velocity, hold)
         self.folded = _folded(scene, live)
-        self.at_start = Translator(self.tracing.init, self._leaf_at_start)
-        self.at_sample = Translator(self.tracing.tick, self._leaf_at_sample, Clock(self._tick_count, self.tracing.T))
+        self.at_start = Translator(self.tracing.init, self._leaf_at_start, bound=scene.values)
+        self.at_sample = self._translator(self._leaf_at_sample)
         self.resolving, self.resolved = [], set()
 
     def program(self):
@@ -121,6 +121,10 @@ class _Lowering:
             if value == value:
                 self._entering(channel.name, value)
         return program
+
+    def _translator(self, leaf, after=0.0):
+        """Return what translates expressions of the tick, ``after`` [s] after the sample."""
+        return Translator(self.tracing.tick, leaf, Clock(self._tick_count, self.tracing.T, after), self.scene.values)
 
     def _entering(self, name, value):
         return entering(value, self.tracing.real, f"{name} = {value:g}", ParameterError)
@@ -243,7 +247,7 @@ class _Lowering:
                 return handle[expr]
             return self.at_sample(expr) + tau if expr == t else self.at_sample(expr)
 
-        translate = Translator(self.tracing.tick, leaf, Clock(self._tick_count, self.tracing.T, tau))
+        translate = self._translator(leaf, tau)
         M = [[translate(m) for m in row] for row in self.form.M]
         solution = solve(M, [translate(f) for f in self.form.f], self.form.definite)
         by_order = {2: [], 1: []}

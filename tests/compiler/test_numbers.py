@@ -79,14 +79,20 @@ def test_bound_values_are_checked_whether_they_are_live_or_not():
 def test_folded_products_that_vanish_or_overflow_are_refused():
     s, r, e = hl.parameters("s r e", units="m m N", values=(3.4e-10, 3e-10, 1e-12))
     force = e * s**6 / (x(n) + r) ** 6
-    with pytest.raises(ProgramError, match=r"s\*\*6 = 1.54e-57 is 0 in float32; use units of a larger scale"):
-        law(force, live=[])
+    for live in ([], None):  # bound and live, the same answer
+        with pytest.raises(ProgramError, match=r"s\*\*6 = 1.54e-57 is 0 in float32; use units of a larger scale"):
+            law(force, live=live)
     position = np.array([0.0, 1e-10])
     computed = load(law(force, live=[], dtype="float64")).run(2, position).outputs[:, 0, 0]
     assert computed == pytest.approx(1e-12 * 3.4e-10**6 / (position + 3e-10) ** 6, rel=1e-14)
     large = hl.parameters("large", units="m", values=1e20)
     with pytest.raises(ProgramError, match=r"large\*\*2 = 1.00e[+]40 is inf in float32; use units of a smaller scale"):
         law(F0 * x(n) / u * (large / u) ** 2, live=[])
+    z = hl.coordinate("z", unit="m")
+    small = hl.parameters("small", units="kg", values=1e-20)
+    motion = [sp.Eq(small**3 * z.diff(t, 2), k * small**2 * x(t))]
+    with pytest.raises(ProgramError, match=r"small\*\*[23] = 1.00e-[46]0 is .* in float32"):
+        hl.compile(hl.Scene(force=k * z, eom=motion), T=1e-3)
 
 
 def test_folded_zeros_that_are_zeros_pass():
