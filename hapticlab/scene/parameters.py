@@ -54,7 +54,7 @@ def parameters(names, *, units, values=None, ranges=None):
     Parameters
     ----------
     names : str
-        Names separated by spaces.
+        Names separated by spaces; none may be a word of Python, or what a scene or a record calls its own (x, T, delay).
     units : str
         One SI unit for each, separated by spaces; ``1`` for a pure number.
     values : number, sequence or dict, optional
