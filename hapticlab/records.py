@@ -198,3 +198,9 @@ def _column(name, values, samples, type):
         raise AnalysisError(f"{name} has shape {array.shape}; needs one value a sample: ({samples},), as t has")
     array.flags.writeable = False
     return array
+
+
+def check_record(log, asker):
+    """Refuse what is no Telemetry, with the call that makes one."""
+    if not isinstance(log, Telemetry):
+        raise AnalysisError(f"{asker} of a {type(log).__name__}; needs a record, log = paddle.run(scene, duration=...)")

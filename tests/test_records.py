@@ -8,6 +8,7 @@ import pickle
 import numpy as np
 import pytest
 
+import hapticlab as hl
 from hapticlab.errors import AnalysisError
 from hapticlab.records import PaddleProfile, Telemetry
 
@@ -93,3 +94,17 @@ def test_profile_says_what_it_is():
     nominal = PaddleProfile("toy", m=0.05, b=0.1, counts_per_metre=1e5, coulomb=0.2, force_max=3, source="a sketch")
     assert "10 um per count (floor)" in str(nominal) and "nominal, not measured" in str(nominal)
     assert "measured; source: lab" in str(dataclasses.replace(nominal, nominal=False, source="lab"))
+
+
+@pytest.mark.parametrize("asker", [hl.chatter, hl.energy, hl.plot])
+def test_what_is_no_record_is_refused_with_the_call_that_makes_one(asker):
+    with pytest.raises(AnalysisError, match=r"of a Scene; needs a record, log = paddle.run"):
+        asker(hl.wall())
+
+
+def test_a_list_of_names_and_a_scene_for_a_paddle_are_refused_in_words():
+    log = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(hl.wall()(k=100), duration=0.05, x=0.001)
+    with pytest.raises(AnalysisError, match="needs names one by one"):
+        hl.plot(log, ["x", "F"])
+    with pytest.raises(AnalysisError, match="a Scene has no m; needs a paddle"):
+        hl.stability_limit(hl.wall())

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import AnalysisError
+from ..records import check_record
 
 #: amplitudes of the last two quarters within this ratio count as one sustained oscillation
 LOCK = 0.01
@@ -68,7 +69,8 @@ class Chatter:
             place += "; the sensed position moves by one encoder count only: dither of the encoder"
         if self.locked:
             return f"chatter: {place}; sustained (growth {self.growth:+.2g} 1/s)"
-        return f"{self.state}: {place}; not locked (growth {self.growth:+.3g} 1/s): run longer for its final amplitude"
+        cure = "it dies out" if self.state == "decaying" else "run longer for its final amplitude"
+        return f"{self.state}: {place}; not locked (growth {self.growth:+.3g} 1/s): {cure}"
 
 
 def chatter(log):
@@ -103,6 +105,7 @@ def chatter(log):
     >>> found.state, round(found.frequency, 2), round(found.contacts_per_second)
     ('chatter', 20.0, 20)
     """
+    check_record(log, "chatter")
     t, x, F = (np.asarray(a, float) for a in (log.t, log.channels.get("x_true", log.x), log.F))
     if len(t) < SHORTEST:
         raise AnalysisError(f"the record has {len(t)} samples; chatter needs at least {SHORTEST}: run longer")

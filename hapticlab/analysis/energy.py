@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import AnalysisError
+from ..records import check_record
 from .limit import whole_and_fraction
 
 
@@ -77,6 +78,7 @@ def energy(log):
     >>> round(energy(log).generated, 12)
     0.0012
     """
+    check_record(log, "energy")
     x = np.asarray(log.channels.get("x_true", log.x), float)
     if len(x) < 2:
         raise AnalysisError(f"the record has {len(x)} sample(s); energy needs at least 2")

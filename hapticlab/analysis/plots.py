@@ -9,6 +9,7 @@ import io
 import numpy as np
 
 from ..errors import AnalysisError
+from ..records import check_record
 
 #: readable on a projector and in grey print: lines differ in dash and darkness, not in colour alone
 STYLES = [
@@ -64,7 +65,10 @@ def plot(log, *names):
     >>> [axes.get_ylabel() for axes in plot(log, "x", "F").axes]
     ['handle position x [mm]', 'force F [N]']
     """
+    check_record(log, "plot")
     names = names or ("x", "F")
+    if not all(isinstance(name, str) for name in names):
+        raise AnalysisError(f'plot of {names}; needs names one by one, as in hl.plot(log, "x", "F")')
     missing = [name for name in names if name not in log.columns]
     if missing:
         recorded = ", ".join(log.columns)

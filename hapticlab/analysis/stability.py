@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..errors import AnalysisError
 from ..scene.taps import LEAD, TAPS
 from .limit import MOST_PERIODS, Limit, check_law, check_number, whole_and_fraction
 from .matrix import held
@@ -123,6 +124,9 @@ class _Loop:
     @classmethod
     def of(cls, paddle, law, B):
         check_law(law)
+        lacking = [name for name in ("m", "b", "T", "delay", "hand") if not hasattr(paddle, name)]
+        if lacking:
+            raise AnalysisError(f"a {type(paddle).__name__} has no {lacking[0]}; needs a paddle, as hl.SimulatedPaddle(...)")
         B = check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
         T = check_number("T", paddle.T, "s", "a sampling period needs T > 0", lambda v: v > 0)
         hand = paddle.hand

@@ -5,18 +5,18 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..compiler.engine import load
-from ..device.link import link
+from ..device.link import link, load_linked
 from ..device.progress import progress_bar
 from ..errors import AnalysisError
 from ..scene.scene import Scene
+from ..scene.units import in_si
 from .chatter import SHORTEST
 from .measures import METRICS, WithFault
 from .plots import plot_sweep
 
 #: what a sweep may change about a simulated paddle, and its unit
 PADDLE_AXES = {
-    "T": "s", "m": "kg", "b": "N s/m", "delay": "s", "counts_per_metre": "1/m", "coulomb": "N", "force_max": "N", "noise": "m",
+    "T": "s", "m": "kg", "b": "N*s/m", "delay": "s", "counts_per_metre": "1/m", "coulomb": "N", "force_max": "N", "noise": "m",
 }  # fmt: skip
 START_AXES = {"x": "m", "v": "m/s"}
 #: lanes and ticks of one call of the engine, between two looks at the progress bar
@@ -83,8 +83,8 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
     progress : bool
         Show a bar when the sweep lasts longer than two seconds.
     **values : float or array of shape (n,)
-        SI. An array is an axis, a single number only sets the value. Names: the scene's parameters; of the paddle T, m, b,
-        delay, counts_per_metre, coulomb, force_max, noise; x and v, where the handle starts.
+        SI, or texts with a unit. An array is an axis, a single number only sets the value. Names: the scene's
+        parameters; of the paddle T, m, b, delay, counts_per_metre, coulomb, force_max, noise; x and v, where the handle starts.
 
     Returns
     -------
@@ -123,7 +123,8 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
 def _names(scene, values):
     """Return the axes, the single values and the units of the axes; refuse names that mean nothing or two things."""
     if not isinstance(scene, Scene):
-        raise AnalysisError(f"{scene!r} is no scene; a sweep compiles one for every T and needs a Scene")
+        what = getattr(scene, "name", repr(scene))
+        raise AnalysisError(f"{what} is no scene; a sweep compiles one for every T and needs a Scene")
     own = {name: str(p.unit) for name, p in scene.parameters.items()}
     known = {**START_AXES, **PADDLE_AXES, **own}
     axes, fixed = {}, {}
@@ -138,11 +139,23 @@ def _names(scene, values):
             raise AnalysisError(
                 f"{name} is a parameter of the scene and of the paddle; rename the scene's to sweep one of them"
             )
-        array = np.asarray(given, float)
+        array = _in_si(given, known[name], name)
         if array.ndim > 1 or array.size == 0 or not np.isfinite(array).all():
             raise AnalysisError(f"{name} = {given}; an axis needs one or more finite numbers [{known[name]}]")
         (axes if array.ndim else fixed)[name] = array if array.ndim else float(array)
     return axes, fixed, {name: known[name] for name in axes}
+
+
+def _in_si(given, unit, name):
+    """Return numbers as an array in SI; a text carries its unit, as where a scene is bound."""
+    several = np.ravel(np.asarray(given, object))
+    if any(isinstance(one, str) for one in several):
+        numbers = np.array([in_si(one, unit, name) for one in several])
+        return numbers.reshape(np.shape(given)) if not isinstance(given, str) else numbers[0]
+    try:
+        return np.asarray(given, float)
+    except (TypeError, ValueError):
+        raise AnalysisError(f"{name} = {given!r}; an axis needs one or more finite numbers [{unit}]") from None
 
 
 class _Grid:
@@ -191,7 +204,7 @@ def _measure(grid, settings, duration, metric, engine, progress):
     if ticks < SHORTEST:
         raise AnalysisError(f"duration = {duration:g} s is {ticks} samples of T = {paddle.T:g} s; needs at least {SHORTEST}")
     measure = METRICS[metric](ticks, paddle.T)
-    loaded = load(link(program, paddle, WithFault(measure)), engine)
+    loaded = load_linked(link(program, paddle, WithFault(measure)), engine)
     inputs, parameters = paddle.inputs(ticks), grid.parameters(program, settings, cells)
     last = []
     with progress_bar(ticks * len(cells), progress) as shown:

@@ -6,8 +6,10 @@ precision; everything around it is f64.
 
 from dataclasses import replace
 
+from ..compiler.engine import load
 from ..compiler.ir import Channel, Program
 from ..compiler.trace import Builder, cast, equal, floor, select
+from ..errors import PaddleError
 from .unused import drop_unused_states
 
 #: largest finite numbers: |a| <= LARGEST is false for nan and for both infinities
@@ -35,7 +37,8 @@ def link(program, paddle, measure=None):
     -------
     Program
         Parameters: the scene's, then those of ``paddle.plant_values()``. Inputs: those of ``paddle.inputs(ticks)``.
-        Outputs without measure: x, v, F (zero from a fault on), the watched channels, then x_true and v_true under an encoder or noise,
+        Outputs without measure: x, v, F (zero from a fault on), the watched channels, then x_true and v_true under an
+        encoder or noise,
         F_applied under a whole sample of delay, x_switch under a fraction of one, and fault: 0, or 1 where F is not
         finite, or 2 + the position of the state that is not. Until the first force arrives the motor gives none.
 
@@ -72,6 +75,13 @@ def link(program, paddle, measure=None):
         notes=program.notes,
     )
     return drop_unused_states(linked).verify()
+
+
+def load_linked(linked, engine):
+    """Return a linked program ready to run; its plant is float64, which the firmware's machine does not take."""
+    if engine not in ("auto", "llvm", "interpreter"):
+        raise PaddleError(f"engine = {engine!r}; a simulated paddle, float64 inside, runs on auto, llvm or interpreter.")
+    return load(linked, engine)
 
 
 class _Loop:

@@ -65,6 +65,9 @@ class Paddle(ABC):
                 raise PaddleError(f"{given}: a program is compiled already; give compile options with a scene.")
             program = scene
         else:
+            own = sorted({"T", "velocity"} & set(options))
+            if own:
+                raise PaddleError(f"{own[0]} is the paddle's own, {getattr(self, own[0])}; make a paddle with another one.")
             program = compile(scene, T=self.T, velocity=self.velocity, **options)
         missing = [c for c, value in zip(program.parameters, program.values, strict=True) if math.isnan(value)]
         if missing:

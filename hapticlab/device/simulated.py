@@ -5,20 +5,21 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ..compiler.elementary import TABLES
-from ..compiler.engine import load
 from ..errors import PaddleError
 from ..records import PaddleProfile, Telemetry
 from .hand import Hand, require
-from .link import link
+from .link import link, load_linked
 from .paddle import Paddle
 from .plant import delay_parts, plant_of, values
 from .profiles import profile as named_profile
 from .progress import progress_bar
 
-__all__ = ["SimulatedPaddle", "link"]
+__all__ = ["SimulatedPaddle", "link", "load_linked"]
 
-#: ticks between two looks at the progress bar, where an engine is slow enough to need one
-CHUNK = 250
+#: ticks between two looks at the progress bar, by engine: some tenths of a second
+CHUNK = {"interpreter": 250, "llvm": 100_000}
+#: samples a run keeps, at most; a sweep keeps none
+LONGEST_RUN = 10_000_000
 #: in samples
 LONGEST_DELAY = 1000
 _POSITIVE = {"m": "kg", "T": "s"}
@@ -192,12 +193,16 @@ class SimulatedPaddle(Paddle):
         PaddleError, ParameterError
         """
         ticks = self.ticks(duration)
+        if ticks > LONGEST_RUN:
+            raise PaddleError(
+                f"duration = {duration:g} s is {ticks} samples; a run keeps at most {LONGEST_RUN} "
+                f"({LONGEST_RUN * self.T:g} s here). Run less, or measure with hl.sweep, which keeps none."
+            )
         program = self.program(scene, **options)
         linked = link(program, self)
-        loaded = load(linked, engine)
+        loaded = load_linked(linked, engine)
         parameters = (*program.values, *self.plant_values(x, v))
-        chunk = CHUNK if loaded.name == "interpreter" else ticks
-        outputs = _run_in_chunks(loaded, self.inputs(ticks), parameters, chunk, progress)
+        outputs = _run_in_chunks(loaded, self.inputs(ticks), parameters, CHUNK[loaded.name], progress)
         return self._telemetry(program, linked, outputs)
 
     def _telemetry(self, program, linked, outputs):
@@ -256,7 +261,7 @@ def _likely_cause(program):
 def _run_in_chunks(loaded, inputs, parameters, chunk, progress):
     """Run, with a bar that appears only after two seconds; return outputs of shape (ticks, outputs)."""
     ticks, states, done = len(inputs), None, []
-    with progress_bar(ticks, progress and chunk < ticks) as shown:
+    with progress_bar(ticks, progress) as shown:
         for start in range(0, ticks, chunk):
             rows = inputs[start : start + chunk]
             outputs, states = loaded.run(len(rows), rows, parameters, states)

@@ -25,6 +25,8 @@ def wall(law="zoh", unilateral="gate", clamp=False):
     ``ellis``               (23.7)   k (2 p(n) - 1.5 p(n-1) + 0.5 p(n-2))
     ======================  =======  ====================================================
 
+    With an encoder, or on a board, v(n) is estimated from positions, and ``half_sample`` is ``backward_difference``.
+
     The law predicts for the spring alone. The damper is always B (p(n) - p(n-1))/T, the backward difference of the
     sensed position, whatever the law.
 

@@ -1,7 +1,7 @@
 """Where simulation loses stability, against the exact limit: by growth rate, within one step of a grid in K.
 
-Amplitude would not tell: 1 % under the limit a decay takes 1e5 samples. The swing of the second half of a long run over
-that of the first is above one exactly where the closed loop grows.
+Amplitude would not tell: 1 % under the limit a decay takes 1e5 samples. The largest swing of the last quarter of a long
+run over that of the quarter before is above one exactly where the closed loop grows.
 """
 
 import numpy as np
@@ -16,8 +16,11 @@ STEP = 0.004  # relative step of the grid in K, which the limit must fall into
 
 def growth(scene, paddle, K, **options):
     """Return the growth rates [1/s]; a run that overflowed, and so ended in a fault, has grown without bound."""
-    rates = hl.sweep(scene, paddle, metric="growth", duration=20.0, progress=False, k=K, **options).values
-    return np.where(np.isnan(rates), np.inf, rates)
+    rates, peaks = (
+        hl.sweep(scene, paddle, metric=metric, duration=20.0, progress=False, k=K, **options).values
+        for metric in ("growth", "peak_force")
+    )
+    return np.where(np.isnan(peaks), np.inf, rates)
 
 
 @pytest.mark.parametrize("delay", [0.0, PERIOD])
@@ -53,13 +56,37 @@ def test_the_plain_unilateral_wall_begins_to_chatter_at_the_exact_limit(delay):
     assert (rates[K > exact] > 0).all(), rates
 
 
-def test_a_predictive_law_behind_a_switch_chatters_earlier():
-    """Under its linear limit a gated predictor already bounces for ever; clipped, or always acting, it comes to rest."""
+@pytest.mark.parametrize(
+    ("law", "m", "b", "delay", "share", "switched"),
+    [
+        ("half_sample", 0.05, 0.1, 0.0, 0.1, True),  # a tenth of its linear limit, and it bounces for ever
+        ("backward_difference", 0.05, 0.1, 0.0, 0.9, True),
+        ("backward_difference", 0.166, 0.057, 0.0, 0.96, True),
+        # a sample of delay takes prediction's advantage: the limit falls to some 2b/T, and the switch adds nothing
+        ("half_sample", 0.05, 0.1, PERIOD, 0.97, False),
+        ("backward_difference", 0.05, 0.1, PERIOD, 0.97, False),
+        ("ellis", 0.05, 0.1, PERIOD, 0.97, False),
+    ],
+)
+def test_a_predictive_law_behind_a_switch_chatters_earlier(law, m, b, delay, share, switched):
+    """Under its linear limit the law that always acts comes to rest; the gated one may not."""
+    paddle = hl.SimulatedPaddle(m=m, b=b, T=PERIOD, delay=delay, hand=hl.Hand(push=1.0))
+    K = share * hl.stability_limit(paddle, law=law).K
+
+    def swing(unilateral):
+        wall = hl.wall(law, unilateral)
+        return hl.sweep(wall, paddle, duration=40.0, progress=False, k=[K], x=-0.02).values[0]
+
+    assert swing(None) == 0
+    assert swing("gate") > 1e-4 if switched else swing("gate") == 0
+
+
+def test_clipping_calms_the_backward_difference():
     paddle = hl.SimulatedPaddle(m=0.166, b=0.057, T=PERIOD, hand=hl.Hand(push=1.0))
     K = 0.96 * hl.stability_limit(paddle, law="backward_difference").K
-    swing = {}
-    for unilateral in ("gate", "clip", None):
-        wall = hl.wall("backward_difference", unilateral)
-        swing[unilateral] = hl.sweep(wall, paddle, duration=40.0, progress=False, k=[K], x=-0.02).values[0]
-    assert swing["gate"] > 1e-4
-    assert swing["clip"] == swing[None] == 0
+    gate, clip = (
+        hl.sweep(hl.wall("backward_difference", variant), paddle, duration=40.0, progress=False, k=[K], x=-0.02).values
+        for variant in ("gate", "clip")
+    )
+    assert gate[0] > 1e-4
+    assert clip[0] == 0

@@ -202,3 +202,17 @@ def test_a_run_of_a_few_samples_is_refused():
 def test_a_handle_that_has_come_to_rest_is_quiet_and_not_unknown():
     held = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=Hand(m=0.02, b=1.0, k=200.0, push=2.0))
     assert (sweep(wall(), held, duration=20.0, progress=False, k=np.geomspace(50.0, 1500.0, 60)).values == 0).all()
+
+
+def test_texts_with_units_are_axes_too():
+    told = sweep(wall(), PUSHED, metric="peak_force", progress=False, duration=0.2, k=["100 N/m", "0.2 N/mm"], T="1 ms")
+    plain = sweep(wall(), PUSHED, metric="peak_force", progress=False, duration=0.2, k=[100.0, 200.0], T=1e-3)
+    np.testing.assert_array_equal(told.axes["k"], [100.0, 200.0])
+    np.testing.assert_array_equal(told.values, plain.values)
+    with pytest.raises(AnalysisError, match=r"k = \[None\]; an axis needs"):
+        sweep(wall(), PUSHED, k=[None])
+
+
+def test_the_engine_of_a_sweep_takes_doubles():
+    with pytest.raises(PaddleError, match="engine = 'vm'; a simulated paddle, float64 inside, runs on auto, llvm"):
+        sweep(wall(), PUSHED, engine="vm", k=100.0)

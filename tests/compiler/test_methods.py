@@ -163,3 +163,15 @@ def test_velocity_enters_only_where_it_is_used():
     damper = hl.Scene(force=c * v(n))
     assert [c.name for c in hl.compile(damper, T=1e-3, velocity="measured").inputs] == ["x", "v"]
     assert [c.name for c in hl.compile(damper, T=1e-3).states] == ["x(n-1)"]
+
+
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+def test_a_method_evaluates_as_often_as_it_says(method):
+    calls = []
+
+    def rhs(tau, q, v, s):
+        calls.append(tau)
+        return [-q[0]], [-s[0]]
+
+    method.step(rhs, 0.0, ([1.0], [0.0], [1.0]), 0.1)
+    assert len(calls) == method.evaluations

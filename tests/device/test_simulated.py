@@ -10,7 +10,7 @@ from hapticlab.device.hand import Hand
 from hapticlab.device.simulated import SimulatedPaddle
 from hapticlab.errors import PaddleError
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import n, parameters, v
+from hapticlab.scene.symbols import n, parameters, v, x
 
 PLAIN = {"m": 0.05, "b": 0.1, "T": 1e-3}
 NAN = float("nan")
@@ -180,7 +180,7 @@ def test_chunks_do_not_change_the_run(spring, monkeypatch, given):
     paddle = SimulatedPaddle(**PLAIN, **given, hand=Hand(k=100, b=1, intent=lambda t: 0.01 * np.sin(9 * t)))
     program = spring(90.0, velocity=paddle.velocity)
     whole = paddle.run(program, duration=0.1, engine="interpreter", progress=False)
-    monkeypatch.setattr("hapticlab.device.simulated.CHUNK", 7)
+    monkeypatch.setattr("hapticlab.device.simulated.CHUNK", {"interpreter": 7, "llvm": 7})
     pieces = paddle.run(program, duration=0.1, engine="interpreter")
     for name in whole.columns:
         assert np.array_equal(getattr(whole, name), getattr(pieces, name)), name
@@ -209,3 +209,14 @@ def test_a_measured_velocity_is_not_promised_by_an_encoder():
         SimulatedPaddle(**PLAIN, counts_per_metre=1e4).run(program, duration=0.1)
     assert SimulatedPaddle(**PLAIN, counts_per_metre=1e4).run(damper, duration=0.1, v=1).F[1] > 1
     assert SimulatedPaddle(**PLAIN).run(program, duration=0.1, v=1).F[0] == 2
+
+
+def test_what_belongs_to_the_paddle_or_to_no_run_is_refused(spring):
+    paddle = SimulatedPaddle(**PLAIN)
+    with pytest.raises(PaddleError, match="T is the paddle's own, 0.001"):
+        paddle.run(Scene(force=parameters("k", units="N/m", values=1.0) * x(n)), duration=1, T=5e-4)
+    with pytest.raises(PaddleError, match="100000000000 samples; a run keeps at most 10000000 .*hl.sweep"):
+        paddle.run(spring(1.0), duration=1e8)
+    with pytest.raises(PaddleError, match="engine = 'vm'; a simulated paddle, float64 inside"):
+        paddle.run(spring(1.0), duration=1, engine="vm")
+
