@@ -98,7 +98,7 @@ class Program:
     tick: Block
     T: float
     values: tuple[float, ...] = ()
-    facts: dict = field(default_factory=dict)
+    facts: dict = field(default_factory=dict, hash=False)
     notes: tuple[str, ...] = ()
 
     def __len__(self):

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from random_programs import random_program
 
+import hapticlab as hl
 from hapticlab.compiler.ir import LEAVES, OPERATIONS, TYPES, Block, Channel, Instruction, Program
 from hapticlab.errors import ProgramError
 
@@ -178,3 +179,9 @@ def test_the_listing_names_everything_and_counts_what_computes():
     ):  # fmt: skip
         assert line in text
     assert "k = ? N/m" in str(replace(p, values=(float("nan"),)))
+
+
+def test_programs_can_be_told_apart_and_looked_up():
+    one, same, other = (hl.compile(hl.wall()(k=100), T=T) for T in (1e-3, 1e-3, 2e-3))
+    assert one == same != other
+    assert {one: "known"}[same] == "known"
