@@ -48,8 +48,8 @@ class Limit:
         return f"{self.K:.6g} N/m{at}: {self.kind}; {self.reason}{notes}"
 
     def __repr__(self):
-        at = "None" if self.frequency is None else f"{self.frequency:.6g}"
-        return f"Limit(K={self.K:.9g} N/m, frequency={at} Hz, kind={self.kind!r}, reason={self.reason!r})"
+        at = "None" if self.frequency is None else f"{self.frequency:.6g} Hz"
+        return f"Limit(K={self.K:.9g} N/m, frequency={at}, kind={self.kind!r}, reason={self.reason!r})"
 
 
 def check_law(law):
