@@ -2,7 +2,9 @@
 
 import argparse
 import json
+import os
 import sys
+import tempfile
 import traceback
 from dataclasses import replace
 from pathlib import Path
@@ -14,22 +16,31 @@ from .compiler.methods import METHODS
 from .errors import HapticlabError
 from .scenefile import describe, load_scene, report_of, run_scene
 
-FAILED, USAGE, INTERRUPTED = 1, 2, 130
+#: the last two are what a shell reports of a program that ended by Ctrl-C, or by writing to a closed pipe
+FAILED, USAGE, INTERRUPTED, BROKEN_PIPE = 1, 2, 130, 141
 
 
 def main(arguments=None):
-    """Run the command line and return its exit code: 0, 1 for a run that failed, 2 for a wrong command."""
+    """Run the command line and return its exit code: 0, 1 for a run that failed, 2 for a wrong command.
+
+    130 for one interrupted by Ctrl-C, 141 where the reader of its output went away.
+    """
     parser = _parser()
     options = parser.parse_args(arguments)
     if options.command is None:
         parser.print_help()
         return USAGE
     try:
-        return options.command(parser, options)
+        code = options.command(options.parser, options)
+        sys.stdout.flush()  # here, where a closed pipe can still be met
+        return code
     except HapticlabError as problem:
         return _complain(problem)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for the flush when Python ends
+        return BROKEN_PIPE
     except OSError as problem:
-        return _complain(f"{problem.filename}: {problem.strerror}; choose another folder with --out")
+        return _complain(": ".join(str(a) for a in (problem.filename, problem.strerror or problem) if a))
     except KeyboardInterrupt:
         _complain("interrupted")
         return INTERRUPTED
@@ -37,15 +48,18 @@ def main(arguments=None):
 
 def demo(parser, options):
     """Show where the chapter's wall chatters, and run a student's own scene."""
+    folder = _folder(options)
     found = demonstration.study(quick=options.quick)
     facts = demonstration.report(found)
-    files = demonstration.write(found, options.out or "hapticlab-demo")
+    files = demonstration.write(found, folder)
     return _tell(options, facts, files, demonstration.words(facts))
 
 
 def run(parser, options):
     """Run a scene file."""
     path = Path(options.file)
+    if path.is_dir():
+        parser.error(f"{path} is a folder, needs a file; give a Python file that defines scene = hl.Scene(...)")
     if not path.is_file():
         parser.error(f"{path}: no such file; give a Python file that defines scene = hl.Scene(...)")
     try:
@@ -56,15 +70,25 @@ def run(parser, options):
         file = _changed(file, options)
     except HapticlabError as problem:
         parser.error(str(problem))
+    folder = _folder(options)
     program, log = run_scene(file, **({"method": options.method} if options.method else {}))
     facts = report_of(program, log)
-    folder = Path(options.out or "hapticlab-run")
-    folder.mkdir(parents=True, exist_ok=True)
     figure, names = folder / f"{path.stem}.png", [name for name in file.scene.watch if name in log.channels]
     plot(log, "x", *names, "F").savefig(figure)
     files = {"figure": figure, "telemetry": log.to_csv(folder / f"{path.stem}.csv")}
     _tell(options, facts, files, f"{log.paddle}\n{describe(facts)}")
     return _complain(f"the run failed: {log.fault}") if log.fault else 0
+
+
+def _folder(options):
+    """Return the folder for the results, ready to be written to: asked for before anything is computed."""
+    folder = Path(options.out)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError as problem:
+        raise OSError(problem.errno, f"{problem.strerror}; choose another folder with --out", str(folder)) from None
 
 
 def _tell(options, facts, files, text):
@@ -94,11 +118,12 @@ def _setting(text):
 
 
 def _in_their_words(problem, path):
-    """Return an error of a scene file: ours in one line, any other with the frames of that file alone."""
+    """Return an error of a scene file: ours in one line, any other with the frames of that file and those beside it."""
     told = traceback.TracebackException.from_exception(problem)
-    frames = [frame for frame in told.stack if frame.filename == str(path)]
+    folder = path.resolve().parent
+    frames = [frame for frame in told.stack if folder == Path(frame.filename).resolve().parent and frame.filename[0] != "<"]
     if isinstance(problem, HapticlabError):
-        return f"{path}, line {frames[-1].lineno}: {problem}" if frames else problem
+        return f"{frames[-1].filename}, line {frames[-1].lineno}: {problem}" if frames else problem
     where = "".join(traceback.StackSummary.from_list(frames).format())
     return f"{path} failed\n{where}{''.join(told.format_exception_only())}".rstrip()
 
@@ -111,15 +136,14 @@ def _complain(problem):
 def _parser():
     parser = argparse.ArgumentParser(prog="hapticlab", description="From an equation of motion to a felt virtual wall.")
     parser.add_argument("--version", action="version", version=f"hapticlab {__version__}")
-    parser.set_defaults(command=None)
+    parser.set_defaults(command=None, parser=parser)
     commands = parser.add_subparsers(title="commands", metavar="{demo,run}")
     shared = argparse.ArgumentParser(add_help=False)
-    shared.add_argument("--json", action="store_true", help="print the numbers as JSON and nothing else")
-    shared.add_argument("--out", metavar="DIR", help="where figure and telemetry go (default: hapticlab-demo, hapticlab-run)")
+    shared.add_argument("--json", action="store_true", help="print the numbers, named with units, as JSON and nothing else")
     text = "show where the chapter's wall begins to chatter, and run a student's own equation of motion"
     shown = commands.add_parser("demo", parents=[shared], help=text, description=text)
     shown.add_argument("--quick", action="store_true", help="fewer stiffnesses, shorter runs")
-    shown.set_defaults(command=demo)
+    shown.set_defaults(command=demo, parser=shown)
     text = "run a Python file that defines `scene`, and optionally `paddle` and `duration`"
     ran = commands.add_parser("run", parents=[shared], help=text, description=text)
     ran.add_argument("file", metavar="FILE.py")
@@ -127,5 +151,7 @@ def _parser():
     ran.add_argument("--T", type=float, metavar="SECONDS", help="sampling period [s]")
     ran.add_argument("--method", choices=sorted(METHODS), help="integrator of the equations of motion (default: rk4)")
     ran.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
-    ran.set_defaults(command=run)
+    ran.set_defaults(command=run, parser=ran)
+    for one, folder in ((shown, "hapticlab-demo"), (ran, "hapticlab-run")):
+        one.add_argument("--out", metavar="DIR", default=folder, help="where figure and telemetry go (default: %(default)s)")
     return parser

@@ -14,6 +14,7 @@ from .analysis.sweep import Sweep, sweep
 from .compiler.engine import load
 from .device.hand import Hand
 from .device.profiles import profile
+from .device.progress import progress_bar
 from .device.simulated import SimulatedPaddle
 from .scene.laws import wall
 from .scenefile import SceneFile, describe, load_scene, report_of, run_scene
@@ -37,17 +38,18 @@ class Felt:
     grid: Sweep
 
     @property
-    def onset(self):
-        """The grid stiffnesses [N/m] between which chatter begins; None where the grid does not hold the beginning."""
-        k, chatters = self.grid.axes["k"], self.grid.values > 0
-        first = int(np.argmax(chatters))
-        return (float(k[first - 1]), float(k[first])) if chatters.any() and first > 0 else None
+    def bracket(self):
+        """The last quiet and the first chattering stiffness [N/m]; None where the grid does not hold the beginning."""
+        k, amplitude = self.grid.axes["k"], self.grid.values
+        first = int(np.argmax(amplitude > 0))
+        quiet = np.flatnonzero(amplitude[:first] == 0)  # nan is neither: that run could not tell
+        return (float(k[quiet[-1]]), float(k[first])) if len(quiet) else None
 
-    @property
-    def agrees(self):
-        """True where the exact limit lies within one grid step of the simulated beginning."""
-        step = self.grid.axes["k"][1] / self.grid.axes["k"][0]
-        return self.onset is not None and bool(self.onset[0] / step <= self.limit.K <= self.onset[1] * step)
+    def lies_within(self, steps):
+        """Tell whether the exact limit lies in the bracket, or at most so many steps of the geometric grid outside it."""
+        k, found = self.grid.axes["k"], self.bracket
+        margin = (k[1] / k[0]) ** steps
+        return found is not None and bool(found[0] / margin <= self.limit.K <= found[1] * margin)
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,7 @@ class Study:
 
 
 def study(*, quick=False, progress=True):
-    """Run the demonstration; quick takes fewer stiffnesses and shorter runs."""
+    """Run the demonstration; quick takes fewer stiffnesses and shorter runs. One progress bar covers all of it."""
     start = time.perf_counter()
     points, duration = (60, 8.0) if quick else (160, 40.0)
     constants = profile("eth")
@@ -71,37 +73,58 @@ def study(*, quick=False, progress=True):
     paddles = {name: SimulatedPaddle.from_profile(constants, hand=hand) for name, hand in HANDS.items()}
     limits = {name: stability_limit(paddle) for name, paddle in paddles.items()}
     stiffnesses = np.geomspace(passive.K / 2, 2 * max(limit.K for limit in limits.values()), points)
-    felt = tuple(
-        Felt(name, paddle, limits[name], sweep(wall(), paddle, duration=duration, k=stiffnesses, progress=progress))
-        for name, paddle in paddles.items()
-    )
     pushed = paddles["push alone"]
     files = {k: SceneFile(wall()(k=k), pushed, min(duration, 20.0)) for k in (passive.K / 2, 2 * passive.K)}
-    walls = {k: run_scene(file, progress=progress) for k, file in files.items()}
     own = load_scene(EXAMPLE)
-    return Study(passive, felt, walls, own, run_scene(own, progress=progress), time.perf_counter() - start)
+    runs = [*files.values(), own]
+    # all points of a sweep advance together, so that ticks alone tell how much is done
+    ticks = sum(paddle.ticks(duration) for paddle in paddles.values()) + sum(f.paddle.ticks(f.duration) for f in runs)
+    with progress_bar(ticks, progress) as shown:
+
+        def swept(paddle):
+            grid = sweep(wall(), paddle, duration=duration, k=stiffnesses, progress=False)
+            shown.update(paddle.ticks(duration))
+            return grid
+
+        def ran(file):
+            run = run_scene(file, progress=False)
+            shown.update(file.paddle.ticks(file.duration))
+            return run
+
+        felt = tuple(Felt(name, paddle, limits[name], swept(paddle)) for name, paddle in paddles.items())
+        walls = {k: ran(file) for k, file in files.items()}
+        own_run = ran(own)
+    return Study(passive, felt, walls, own, own_run, time.perf_counter() - start)
 
 
 def report(found):
-    """Return the study's numbers as a dictionary, each name ending in its unit."""
+    """Return the study's numbers as a dictionary for JSON.
+
+    A number's name ends in its unit, as in :func:`hapticlab.scenefile.report_of`; a count has none.
+    """
     constants = found.felt[0].paddle.profile
     grid = found.felt[0].grid
     below = sum(np.count_nonzero(f.grid.values[grid.axes["k"] < found.passive.K] > 0) for f in found.felt)
     return {
-        "paddle": {
+        "profile": {
             "name": constants.name, "m_kg": constants.m, "b_N_s_per_m": constants.b, "T_s": constants.T,
             "nominal": constants.nominal, "source": constants.source,
         },
         "passivity": {"K_N_per_m": found.passive.K, "equation": "23.10", "kind": found.passive.kind},
         "hands": [
             {
-                "hand": f.hand,
-                "values": str(f.paddle.hand),
+                "name": f.hand,
+                "hand": {
+                    "m_kg": f.paddle.hand.m, "b_N_s_per_m": f.paddle.hand.b,
+                    "k_N_per_m": f.paddle.hand.k, "push_N": f.paddle.hand.push,
+                },
+                "words": str(f.paddle.hand),
                 "stability_K_N_per_m": f.limit.K,
                 "stability_frequency_Hz": f.limit.frequency,
                 "kind": f.limit.kind,
-                "chatter_begins_between_N_per_m": f.onset,
-                "within_one_grid_step": f.agrees,
+                "chatter_begins_between_N_per_m": f.bracket,
+                "inside_bracket": f.lies_within(0),
+                "within_one_grid_step": f.lies_within(1),
             }
             for f in found.felt
         ],
@@ -116,7 +139,7 @@ def report(found):
 
 def words(facts):
     """Return a report in words."""
-    paddle, own = facts["paddle"], facts["own_scene"]
+    paddle, own = facts["profile"], facts["own_scene"]
     standing = "nominal: published constants, not measured on this device" if paddle["nominal"] else "measured"
     lines = [
         f"paddle   {paddle['name']}: m = {paddle['m_kg']:g} kg, b = {paddle['b_N_s_per_m']:g} N s/m, T = {paddle['T_s']:g} s, "
@@ -140,11 +163,15 @@ def words(facts):
 
 
 def _hand_words(hand):
-    onset = hand["chatter_begins_between_N_per_m"]
-    seen = f"chatter begins between {onset[0]:.4g} and {onset[1]:.4g} N/m" if onset else "chatter does not begin in the grid"
-    verdict = "within one grid step of the exact limit" if hand["within_one_grid_step"] else "NOT where the exact limit is"
+    bracket = hand["chatter_begins_between_N_per_m"]
+    seen = "chatter begins between {:.4g} and {:.4g} N/m".format(*bracket) if bracket else "chatter does not begin in the grid"
+    verdict = "NOT where the exact limit is"
+    if hand["within_one_grid_step"]:
+        verdict = "the exact limit is at most one grid step outside this bracket"
+    if hand["inside_bracket"]:
+        verdict = "the exact limit is inside this bracket"
     return [
-        f"  {hand['hand']} ({hand['values']})",
+        f"  {hand['name']} ({hand['words']})",
         f"    exact linear limit of this hand and paddle: {hand['stability_K_N_per_m']:.6g} N/m at "
         f"{hand['stability_frequency_Hz']:.4g} Hz",
         f"    simulated: {seen}; {verdict}",

@@ -2,7 +2,9 @@
 
 import math
 import runpy
+import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from .compiler.ir import Program
 from .device.hand import Hand
 from .device.paddle import Paddle
 from .device.simulated import SimulatedPaddle
-from .errors import SceneError
+from .errors import PaddleError, SceneError
 from .scene.scene import Scene
 
 
@@ -37,6 +39,8 @@ class SceneFile:
 def load_scene(path):
     """Run a scene file as a script and return what it defines; its own errors pass through.
 
+    It may import modules that lie beside it.
+
     Parameters
     ----------
     path : str or Path
@@ -44,9 +48,9 @@ def load_scene(path):
     Raises
     ------
     SceneError
-        Where it defines no scene.
+        Where it is no text, ends by sys.exit(), defines no scene, or a paddle or duration that is none.
     """
-    names = runpy.run_path(str(path))
+    names = _run_as_script(path)
     scene = names.get("scene")
     if not isinstance(scene, Scene):
         given = f"scene = {scene!r}" if "scene" in names else "no variable `scene`"
@@ -54,7 +58,27 @@ def load_scene(path):
     paddle = names.get("paddle", SimulatedPaddle.from_profile("eth", hand=Hand(push=2.0)))
     if not isinstance(paddle, Paddle):
         raise SceneError(f"{path} has paddle = {paddle!r}; it needs paddle = hl.SimulatedPaddle(...)")
-    return SceneFile(scene, paddle, names.get("duration", 2.0))
+    duration = names.get("duration", 2.0)
+    try:
+        paddle.ticks(duration)
+    except PaddleError as problem:
+        raise SceneError(f"{path}: {problem}") from None
+    return SceneFile(scene, paddle, duration)
+
+
+def _run_as_script(path):
+    """Return the names a Python file defines; its folder comes first where it imports, as for any script."""
+    if b"\0" in Path(path).read_bytes():
+        raise SceneError(f"{path} holds null bytes, which no Python source has; save it as plain text in UTF-8")
+    before = sys.path[:]
+    sys.path.insert(0, str(Path(path).resolve().parent))
+    try:
+        return runpy.run_path(str(path))
+    except SystemExit as end:
+        said = "" if end.code is None else repr(end.code)
+        raise SceneError(f"{path} ended itself by sys.exit({said}); it needs to run to its end and define scene") from None
+    finally:
+        sys.path[:] = before
 
 
 def run_scene(file, *, progress=True, **options):
@@ -64,11 +88,16 @@ def run_scene(file, *, progress=True, **options):
 
 
 def report_of(program: Program, log):
-    """Return what a run showed as a dictionary of plain numbers, each name ending in its unit."""
+    """Return what a run showed as a dictionary for JSON.
+
+    A number's name ends in its unit; counts (samples, instructions, substeps, contacts) have none, and the units of the
+    parameters stand beside them under ``units``. None is a number that does not exist, such as a rate without a swing.
+    """
     found, port = chatter(log) if len(log) >= 32 and not log.fault else None, energy(log) if not log.fault else None
     return {
         "scene": log.scene,
         "parameters": log.parameters,
+        "units": {c.name: c.unit for c in program.parameters},
         "paddle": log.paddle,
         "program": {"instructions": len(program), "T_s": program.T, **program.facts, "left_out": list(program.notes)},
         "samples": len(log),
@@ -80,6 +109,10 @@ def report_of(program: Program, log):
             "frequency_Hz": found.frequency,
             "contacts_per_s": found.contacts_per_second,
             "growth_per_s": finite(found.growth),
+            "rest_m": found.rest,
+            "travel_m": found.travel,
+            "locked": found.locked,
+            "dither": found.dither,
             "words": str(found),
         },
         "energy": port and {

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
+from hapticlab import cli
+from hapticlab.scenefile import load_scene
 
 EXAMPLE = Path(hl.__file__).parent / "examples" / "mass_on_coupler.py"
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -35,7 +37,7 @@ def test_demo_prints_json_and_nothing_else(demo):
     # 2 b/T of the published set, m = 0.166 kg, b = 0.057 N s/m, T = 1 ms
     assert facts["passivity"]["K_N_per_m"] == pytest.approx(114.0, rel=1e-12)
     assert facts["chatters_below_passivity_limit"] is False
-    assert facts["paddle"]["nominal"] is True
+    assert facts["profile"]["nominal"] is True
 
 
 def test_demo_finds_the_exact_limits_in_simulation(demo):
@@ -44,9 +46,38 @@ def test_demo_finds_the_exact_limits_in_simulation(demo):
         limit = hand["stability_K_N_per_m"]
         assert limit == pytest.approx(highest_stable(m, b, k, 1e-3), rel=1e-6)
         low, high = hand["chatter_begins_between_N_per_m"]
-        step = high / low
-        assert low / step <= limit <= high * step
+        assert low <= limit <= high
+        assert hand["inside_bracket"] is True
         assert hand["within_one_grid_step"] is True
+
+
+def test_demo_gives_the_hands_as_numbers(demo):
+    alone, fingers = json.loads(demo[0].stdout)["hands"]
+    assert alone["hand"] == {"m_kg": 0.0, "b_N_s_per_m": 0.0, "k_N_per_m": 0.0, "push_N": 2.0}
+    assert fingers["hand"] == {"m_kg": 0.02, "b_N_s_per_m": 1.0, "k_N_per_m": 200.0, "push_N": 2.0}
+
+
+UNITS = ("_m", "_s", "_kg", "_N", "_Hz", "_J", "_per_s", "_per_m")
+COUNTS = {"points", "samples", "instructions", "substeps", "contacts"}
+
+
+def nameless(facts, name=""):
+    """Return the names of numbers that tell no unit; check that units stand beside parameters, and what `paddle` is."""
+    if isinstance(facts, list):
+        return [bad for one in facts for bad in nameless(one, name)]
+    if isinstance(facts, dict):
+        if "parameters" in facts:
+            assert facts["units"].keys() == facts["parameters"].keys()
+        assert isinstance(facts.get("paddle", ""), str)
+        return [bad for key, one in facts.items() if key != "parameters" for bad in nameless(one, key)]
+    number = isinstance(facts, int | float) and not isinstance(facts, bool)
+    return [name] if number and not name.endswith(UNITS) and name not in COUNTS else []
+
+
+def test_demo_names_every_number_with_its_unit(demo):
+    facts = json.loads(demo[0].stdout)
+    assert nameless(facts) == []
+    assert facts["own_scene"]["units"] == {"m": "kg", "b": "N*s/m", "K": "N/m", "k_w": "N/m", "z_o": "m"}
 
 
 def highest_stable(m, b, k, T):
@@ -121,7 +152,48 @@ def test_run_settles_where_statics_say(tmp_path):
     assert last["F [N]"] == pytest.approx(K * (x - z), rel=1e-4)
 
 
+def test_run_names_every_number_with_its_unit(tmp_path):
+    facts = json.loads(command("run", EXAMPLE, "--json", folder=tmp_path).stdout)
+    assert nameless(facts) == []
+    found = facts["chatter"]
+    # the statics of test_run_settles_where_statics_say, solved for x: the handle rests there
+    assert found["rest_m"] == pytest.approx(0.0071698, rel=1e-4)
+    assert found["travel_m"] == pytest.approx(0, abs=1e-8)
+    assert found["locked"] is False
+    assert found["dither"] is False
+
+
+def test_a_scene_file_imports_what_lies_beside_it(tmp_path):
+    (tmp_path / "scenes").mkdir()
+    (tmp_path / "scenes" / "my_own_law.py").write_text("import hapticlab as hl\nwall = hl.wall()\n")
+    file = tmp_path / "scenes" / "own.py"
+    file.write_text("from my_own_law import wall\nscene, duration = wall(k=50), 0.1\n")
+    before = sys.path[:]
+    assert load_scene(file).scene.values["k"] == 50
+    assert sys.path == before
+    file.write_text("import my_own_law\nmy_own_law.absent\n")
+    with pytest.raises(AttributeError):
+        load_scene(file)
+    assert sys.path == before
+    sys.modules.pop("my_own_law")
+    done = command("run", Path("scenes") / "own.py", folder=tmp_path)
+    assert "AttributeError" in done.stderr
+
+
+def test_an_error_beside_the_scene_file_shows_where(tmp_path):
+    (tmp_path / "law.py").write_text("import hapticlab as hl\n\nwall = hl.wall()(k=-5)\n")
+    (tmp_path / "own.py").write_text("from law import wall\n")
+    done = command("run", "own.py", folder=tmp_path)
+    assert done.returncode == 1
+    assert "law.py, line 3: k = -5 N/m" in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1, done.stderr
+
+
 BAD = {
+    "duration_0": ("import hapticlab as hl\nscene = hl.wall()(k=1)\nduration = 0\n", ["duration_0.py: duration = 0 s"]),
+    "exits": ("import sys\nsys.exit()\n", ["exits.py ended itself by sys.exit()", "define scene"]),
+    "exits_3": ("raise SystemExit(3)\n", ["ended itself by sys.exit(3)"]),
+    "null": ("scene = 1\0\n", ["null.py holds null bytes", "plain text"]),
     "no_scene": ("x = 1\n", ["no variable `scene`", "hl.Scene(force=...)"]),
     "not_a_scene": ("scene = 3\n", ["scene = 3"]),
     "unbound": (
@@ -186,6 +258,9 @@ def test_a_fault_fails_the_run(tmp_path):
         ((), "usage"),
         (("run",), "FILE.py"),
         (("run", "nowhere.py"), "no such file"),
+        (("run", "."), "is a folder, needs a file"),
+        (("run", "nowhere.py"), "usage: hapticlab run"),
+        (("run", EXAMPLE, "--T", "0"), "usage: hapticlab run"),
         (("run", EXAMPLE, "--set", "K"), "NAME=VALUE"),
         (("run", EXAMPLE, "--set", "q=1"), "no parameter q"),
         (("run", EXAMPLE, "--set", "K=-50"), "needs K >= 0"),
@@ -201,6 +276,45 @@ def test_a_wrong_command_is_told_and_ends_with_2(tmp_path, arguments, words):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.parametrize("arguments", [("demo", "--quick"), ("run", str(EXAMPLE))])
+def test_a_folder_that_cannot_be_is_told_before_anything_is_computed(tmp_path, monkeypatch, capsys, arguments):
+    (tmp_path / "taken").write_text("a file")
+    for owner, name in ((cli.demonstration, "study"), (cli, "run_scene")):
+        monkeypatch.setattr(owner, name, lambda *_, **__: pytest.fail("computed"))
+    assert cli.main([*arguments, "--out", str(tmp_path / "taken")]) == 1
+    told = capsys.readouterr().err
+    assert str(tmp_path / "taken") in told
+    assert "--out" in told
+    assert cli.main([*arguments, "--out", str(tmp_path / "taken" / "below")]) == 1
+    assert "None" not in told + capsys.readouterr().err
+
+
+def test_a_wrong_command_leaves_no_folder(tmp_path):
+    command("run", EXAMPLE, "--set", "q=1", folder=tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_error_without_a_file_names_none(tmp_path, monkeypatch, capsys):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(cli, "run_scene", full)
+    assert cli.main(["run", str(EXAMPLE), "--out", str(tmp_path)]) == 1
+    assert capsys.readouterr().err == "hapticlab: No space left on device\n"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows reports a closed pipe in another way")
+def test_a_closed_pipe_ends_it_quietly(tmp_path):
+    call = [sys.executable, "-m", "hapticlab", "run", str(EXAMPLE), "--json", "--duration", "0.1"]
+    environment = os.environ | {"PYTHONPATH": str(Path(hl.__file__).parents[1])}
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(call, cwd=tmp_path, stdout=writer, stderr=subprocess.PIPE, text=True, env=environment)
+    os.close(writer)
+    assert done.returncode == 128 + 13  # as a shell reports SIGPIPE
+    assert done.stderr == ""
+
+
 def test_an_unwritable_folder_is_one_line(tmp_path):
     (tmp_path / "taken").write_text("a file")
     done = command("run", EXAMPLE, "--out", "taken", "--duration", "0.1", folder=tmp_path)
@@ -214,4 +328,8 @@ def test_version_and_help(tmp_path):
     helped = command("-h", folder=tmp_path)
     assert helped.returncode == 0
     assert "demo" in helped.stdout
+    for name, other in (("demo", "run"), ("run", "demo")):
+        told = command(name, "-h", folder=tmp_path).stdout
+        assert f"(default: hapticlab-{name})" in " ".join(told.split())
+        assert f"hapticlab-{other}" not in told
     assert "run" in helped.stdout

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import tqdm
 
 from hapticlab import demo
 from hapticlab.analysis.limit import Limit
@@ -17,32 +18,73 @@ def felt(limit, first_chattering):
 
 
 @pytest.mark.parametrize(
-    ("limit", "first", "onset", "agrees"),
+    ("limit", "first", "bracket", "inside", "near"),
     [
-        (115.0, 2, (110.0, 121.0), True),
-        (130.0, 2, (110.0, 121.0), True),  # a grid step of 10 percent further
-        (140.0, 2, (110.0, 121.0), False),
-        (99.0, 2, (110.0, 121.0), False),
-        (115.0, 0, None, False),  # chatters everywhere: the grid does not hold the beginning
-        (115.0, 4, None, False),
+        (115.0, 2, (110.0, 121.0), True, True),
+        (110.0, 2, (110.0, 121.0), True, True),
+        (121.0, 2, (110.0, 121.0), True, True),
+        (130.0, 2, (110.0, 121.0), False, True),  # a grid step of 10 percent outside
+        (101.0, 2, (110.0, 121.0), False, True),
+        (140.0, 2, (110.0, 121.0), False, False),
+        (99.0, 2, (110.0, 121.0), False, False),
+        (115.0, 0, None, False, False),  # chatters everywhere: the grid does not hold the beginning
+        (115.0, 4, None, False, False),
     ],
 )
-def test_agreement_is_within_one_grid_step(limit, first, onset, agrees):
+def test_limit_inside_the_bracket_or_one_grid_step_outside(limit, first, bracket, inside, near):
     one = felt(limit, first)
-    assert one.onset == onset
-    assert one.agrees is agrees
+    assert one.bracket == bracket
+    assert one.lies_within(0) is inside
+    assert one.lies_within(1) is near
+
+
+def test_a_run_that_could_not_tell_is_not_quiet():
+    one = felt(105.0, 2)
+    one.grid.values[1] = np.nan
+    assert one.bracket == (100.0, 121.0)
 
 
 @pytest.fixture(scope="module")
-def found():
-    return demo.study(quick=True, progress=False)
+def study():
+    """The quick study, and every progress bar it showed."""
+    bars = []
+
+    class Bar(tqdm.tqdm):
+        def __init__(self, **options):
+            super().__init__(**options)
+            self.told = 0
+            bars.extend([] if self.disable else [self])  # closing disables it too
+
+        def update(self, n=1):
+            self.told += n
+            return super().update(n)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tqdm, "tqdm", Bar)
+        return demo.study(quick=True), bars
+
+
+@pytest.fixture(scope="module")
+def found(study):
+    return study[0]
+
+
+def test_one_progress_bar_covers_the_study(study):
+    (bar,) = study[1]
+    # two sweeps and two walls of 8 s, the student's scene for 3 s; a tick is 1 ms
+    assert bar.told == bar.total == 4 * 8000 + 3000
 
 
 def test_words_follow_the_numbers(found):
     facts = demo.report(found)
     assert "no simulated wall chattered below" in demo.words(facts)
     first = found.felt[0]
-    assert demo.words(facts).count("within one grid step of the exact limit") == len(found.felt)
+    assert demo.words(facts).count("the exact limit is inside this bracket") == len(found.felt)
+
+    low, high = first.bracket
+    near = replace(first, limit=replace(first.limit, K=high * (1 + 0.5 * (high / low - 1))))
+    told = demo.words(demo.report(replace(found, felt=(near, found.felt[1]))))
+    assert "the exact limit is at most one grid step outside this bracket" in told
 
     elsewhere = replace(first, limit=replace(first.limit, K=3 * first.limit.K))
     early = replace(found.felt[1], grid=replace(found.felt[1].grid, values=np.ones_like(first.grid.values)))
@@ -50,6 +92,12 @@ def test_words_follow_the_numbers(found):
     assert "NOT where the exact limit is" in told
     assert "chatter was seen below" in told
     assert "chatter does not begin in the grid" in told
+
+
+def test_a_decay_is_not_told_to_run_longer(found):
+    decays = [line for line in demo.words(demo.report(found)).splitlines() if "decaying" in line]
+    assert len(decays) == 1
+    assert "run longer" not in decays[0]
 
 
 def test_figure_shows_both_limits_by_name_and_value(found):
