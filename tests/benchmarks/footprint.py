@@ -75,7 +75,7 @@ def _memory():
     known = {"ticks": sweeps.TICKS, "v0": sweeps.V0, "phi": phi}
     found = {name: _peak(define.format(**known)) for name, define in SWEEPS.items()}
     floor, more = found["C by hand"][0], f"more for a sweep of {sweeps.POINTS} points"
-    note = "two arrays of 80 kB, in pages it already had"
+    note = "its two arrays are 80 kB each"
     return [
         *(row(f"peak memory, loaded and compiled: {name}", peak, "MB", against=floor) for name, (peak, _) in found.items()),
         *(

@@ -32,6 +32,7 @@ def hapticlab(units_open=True):
     import hapticlab as hl
     from hapticlab.compiler.engine import load
 
+    _ = hl.Scene, hl.compile, hl.n, hl.parameters, hl.when, hl.x  # names load on first use: the imports are done here
     if units_open:
         hl.parameters("any", units="N/m")  # reads pint's definitions, once a process
 
