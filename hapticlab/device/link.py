@@ -186,7 +186,7 @@ class _Loop:
         new.update({f"plant.F_{k + 1}": forces[k] for k in range(len(past))})
         new.update({"plant.x": x, "plant.v": v, "fault": fault, "sensed.x": sample["x"]})
         new["tick"] = builder.emit("iadd", old["tick"], builder.const(1, "i32"))
-        sample.update(watched | {"F": forces[0], "F_applied": applied, "x_switch": x_switch, "x_next": x, "v_next": v})
+        sample.update(watched | {"F": F, "F_applied": applied, "x_switch": x_switch, "x_next": x, "v_next": v})
         sample.update(tick=old["tick"], fault=fault > 0.0)
         if self.measure:
             results, following = self.measure.update(sample, [old[f"measure.{c.name}"] for c in self.measure.states])
@@ -194,7 +194,8 @@ class _Loop:
             self.outputs = tuple(self.measure.outputs)
         else:
             self.outputs = tuple(self._output_channels())
-            results = [fault if c.name == "fault" else sample[c.name] for c in self.outputs]
+            shown = sample | {"F": forces[0], "fault": fault}  # what the motor gives: none after a fault
+            results = [shown[c.name] for c in self.outputs]
         return builder.block(results, [new[name] for name in self.states])
 
     def _limit(self, p, F):
