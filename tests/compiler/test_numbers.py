@@ -213,17 +213,17 @@ def test_phase_offsets_and_stages_between_samples_follow_the_closed_form():
     assert np.abs(computed - exact).max() < 2e-6 * np.abs(exact).max()  # RK4 is Simpson's rule here: (w h)^4/2880
 
 
-def test_three_engines_agree_on_a_driven_angle():
+@pytest.mark.parametrize("engine", ["llvm", "vm"])
+def test_the_engines_agree_on_a_driven_angle(engine):
     from random_programs import assert_same_bits
 
+    if engine == "llvm":
+        pytest.importorskip("llvmlite")
     f = hl.parameters("f", units="Hz", values=247.3)
     program = law(F0 * sp.sin(2 * sp.pi * f * t + x(n) / u))
     handle = np.linspace(-0.1, 0.1, 200)
-    runs = [
-        load(program, engine).run(200, handle, states=[[9_999_900]]).outputs for engine in ("interpreter", "llvm", "vm")
-    ]
-    for run in runs[1:]:
-        assert_same_bits(runs[0], run)
+    one, other = (load(program, e).run(200, handle, states=[[9_999_900]]).outputs for e in ("interpreter", engine))
+    assert_same_bits(one, other)
 
 
 def test_a_fault_names_the_angle_that_may_have_caused_it():
