@@ -1,0 +1,105 @@
+/* The loop of a paddle: what is kept between ticks and messages. Everything of one board is in one hl_core. */
+#ifndef HL_CORE_H
+#define HL_CORE_H
+
+#include "board_constants.h"
+#include "messages.h"
+#include "vm.h"
+
+/* bytes of the largest frame: version and message, sequence, payload, guard, CRC-16; COBS adds one, and the end one */
+#define HL_FRAME_BYTES (2 + HL_LARGEST_PAYLOAD + 4 + 2)
+#define HL_WIRE_BYTES (HL_FRAME_BYTES + 2)
+
+/* One tick for the link. */
+typedef struct {
+    uint32_t tick;
+    float values[HL_CHANNELS]; /* x, v, F, then what the scene watches */
+    uint8_t flags;             /* HL_SAMPLE_... */
+} hl_sample;
+
+/* A place for one program: its bytes, then its registers. */
+typedef struct {
+    union {
+        uint8_t bytes[HL_ARENA_BYTES];
+        hl_slot slots[HL_ARENA_BYTES / 4];
+    } arena;
+    hl_program program;
+    hl_slot *registers;
+    uint32_t crc;  /* the program's own, its last 4 bytes */
+    uint16_t size; /* of its bytes; 0 while nothing verified is here */
+} hl_place;
+
+/* What the tick has measured of itself, in counts of board_clock; begun anew with every start. */
+typedef struct {
+    uint16_t period_min, period_max, step_last, step_worst, overruns;
+    uint32_t step_sum;
+} hl_timing;
+
+typedef struct hl_core {
+    /* link: rx is filled by hl_core_byte, tx holds a frame the board had no room for */
+    uint8_t rx[HL_WIRE_BYTES], tx[HL_WIRE_BYTES];
+    volatile uint8_t rx_count, rx_ready, rx_overlong;
+    uint8_t tx_count;
+    uint8_t sequence;            /* of the last guarded request obeyed */
+    uint8_t sequence_known;      /* since this session's first guarded request */
+    uint8_t result;              /* what it was answered */
+    uint8_t sample_sequence;
+    uint16_t damaged;            /* frames that were */
+    uint32_t session;            /* the host's number, 0 until it says hello */
+
+    /* programs: `active` runs, the other place is loaded, where the board has two */
+    hl_place places[HL_SLOTS];
+    uint8_t active;
+    uint8_t loading;             /* place being loaded, HL_SLOTS: none */
+    uint8_t target;              /* of that upload */
+    uint16_t announced;          /* its size */
+
+    /* state */
+    volatile uint8_t state, fault, fault_unsent;
+    uint32_t fault_tick;
+    float fault_value;
+    hl_settings settings;
+    uint8_t calibrated, homed, passive, standalone, armed, mismatch;
+
+    /* the loop */
+    uint32_t tick;
+    int32_t counts, origin, lowest, highest, resting;
+    float x, v, force, rate, limit, per_force_full;
+    uint16_t period_us, period_clocks, last_begin;
+    uint8_t first;
+    uint16_t every, countdown;   /* decimation */
+    uint16_t silence, silence_ticks;
+    uint16_t late_now, late_second, second;
+    float heat, heat_sum, heat_gain;
+    uint8_t heat_count;
+    uint16_t still;              /* ticks the handle has rested in the middle, for standalone */
+    hl_timing timing;
+    volatile uint8_t ran;        /* set by every tick, for the watchdog */
+
+    /* telemetry */
+    hl_sample ring[HL_RING];
+    volatile uint8_t head, tail; /* written by the tick, by the link */
+    uint8_t channels;            /* numbers of a sample of the running program */
+    volatile uint16_t lost;
+
+    /* audit of the running program, a few bytes a poll */
+    uint32_t audit_crc;
+    uint16_t audit_at;
+} hl_core;
+
+/* Motor off, settings read, nothing loaded, position unknown. Call once, after the board's clock and timer exist. */
+void hl_core_start(hl_core *core);
+
+/* One sample: read the handle, run the scene, drive the motor, record. Called by the board's timer. */
+void hl_core_tick(hl_core *core);
+
+/* One byte from the link. Safe to call from an interrupt that interrupts the tick. */
+void hl_core_byte(hl_core *core, uint8_t byte);
+
+/* What there is time for between ticks: answer a frame, send samples, audit the program. Call for ever. */
+void hl_core_poll(hl_core *core);
+
+/* Motor off, now; then say why. The first fault stays. Callable from the tick and outside it. */
+void hl_core_fault(hl_core *core, uint8_t fault, float value);
+
+#endif
