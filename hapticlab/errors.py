@@ -11,6 +11,7 @@
     +-- ProgramError          a program is damaged, or asks for what no engine has
     |   +-- ProgramLimitError a program is past a limit of the engine or board
     +-- PaddleError           a device, simulated or real, was asked for what it cannot do
+    |   +-- PortError         a serial port is missing, taken, forbidden, or left during use
     +-- AnalysisError         a record or a model does not allow the question asked of it
     +-- EngineMissingError    an engine cannot run on this machine
 """
@@ -50,6 +51,18 @@ class ProgramLimitError(ProgramError):
 
 class PaddleError(HapticlabError, ValueError):
     """A paddle, simulated or real, was asked for what it cannot do."""
+
+
+class PortError(PaddleError):
+    """A serial port is missing, taken, forbidden, or left during use.
+
+    ``cause`` is one word for it: "missing", "busy", "permission", "url", "refused", "settings", "left", "silent" or
+    "failed".
+    """
+
+    def __init__(self, message, cause="failed"):
+        super().__init__(message)
+        self.cause = cause
 
 
 class AnalysisError(HapticlabError, ValueError):
