@@ -13,8 +13,8 @@
 /* One tick for the link. */
 typedef struct {
     uint32_t tick;
-    float values[HL_CHANNELS]; /* x, v, F, then what the scene watches */
-    uint8_t flags;             /* HL_SAMPLE_... */
+    hl_slot values[HL_CHANNELS]; /* x, v, F, then what the scene watches */
+    uint8_t flags;               /* HL_SAMPLE_... */
 } hl_sample;
 
 /* A place for one program: its bytes, then its registers. */
@@ -35,51 +35,61 @@ typedef struct {
     uint32_t step_sum;
 } hl_timing;
 
+/* Limits of the handle as counts, so that the tick compares whole numbers. */
+typedef struct {
+    int32_t lowest, highest; /* beyond them is over-travel */
+    int32_t speed;           /* counts a tick */
+    int32_t span;            /* between the stops */
+} hl_limits;
+
 typedef struct hl_core {
     /* link: rx is filled by hl_core_byte, tx holds a frame the board had no room for */
     uint8_t rx[HL_WIRE_BYTES], tx[HL_WIRE_BYTES];
-    volatile uint8_t rx_count, rx_ready, rx_overlong;
+    volatile uint8_t rx_count, rx_ready, rx_bad;
     uint8_t tx_count;
-    uint8_t sequence;            /* of the last guarded request obeyed */
-    uint8_t sequence_known;      /* since this session's first guarded request */
-    uint8_t result;              /* what it was answered */
-    uint8_t sample_sequence;
-    uint16_t damaged;            /* frames that were */
-    uint32_t session;            /* the host's number, 0 until it says hello */
+    uint8_t sequence, sequence_known, result; /* of the last guarded request obeyed in this session */
+    uint8_t sent;                             /* sequence of samples and fault reports */
+    uint16_t damaged;                         /* frames that were */
+    uint32_t session;                         /* the host's number, 0 until it says hello */
 
-    /* programs: `active` runs, the other place is loaded, where the board has two */
+    /* programs: `active` runs; `loading` is filled, and differs from it where the board has two places */
     hl_place places[HL_SLOTS];
-    uint8_t active;
-    uint8_t loading;             /* place being loaded, HL_SLOTS: none */
-    uint8_t target;              /* of that upload */
-    uint16_t announced;          /* its size */
+    uint8_t active, loading, target;
+    uint16_t announced; /* bytes of the upload under way, 0: none */
 
     /* state */
     volatile uint8_t state, fault, fault_unsent;
     uint32_t fault_tick;
     float fault_value;
     hl_settings settings;
-    uint8_t calibrated, homed, passive, standalone, armed, mismatch;
+    uint8_t calibrated, homed, mismatch, armed, standalone;
+
+    /* the handle */
+    int32_t counts, origin;    /* position = (counts - origin) * settings.metres_per_count */
+    int32_t seen_min, seen_max; /* since the position became unknown */
+    hl_limits limits;
 
     /* the loop */
     uint32_t tick;
-    int32_t counts, origin, lowest, highest, resting;
-    float x, v, force, rate, limit, per_force_full;
+    float x, v, force;
+    float rate, force_limit, duty_per_force;
     uint16_t period_us, period_clocks, last_begin;
     uint8_t first;
-    uint16_t every, countdown;   /* decimation */
-    uint16_t silence, silence_ticks;
-    uint16_t late_now, late_second, second;
+    uint16_t every, countdown; /* decimation */
+    uint16_t silent, silence;  /* ticks since the host was heard, and how many are too many */
+    volatile uint8_t heard, ran;
+    uint8_t late;              /* overruns in a row */
+    uint16_t late_second, second;
     float heat, heat_sum, heat_gain;
-    uint8_t heat_count;
-    uint16_t still;              /* ticks the handle has rested in the middle, for standalone */
+    uint8_t heat_ticks;
+    uint16_t rested;           /* ticks the handle has rested in the middle, for the standalone start */
+    int32_t resting;           /* where */
     hl_timing timing;
-    volatile uint8_t ran;        /* set by every tick, for the watchdog */
 
-    /* telemetry */
+    /* telemetry: head is written by the tick, tail by the link */
     hl_sample ring[HL_RING];
-    volatile uint8_t head, tail; /* written by the tick, by the link */
-    uint8_t channels;            /* numbers of a sample of the running program */
+    volatile uint8_t head, tail;
+    uint8_t channels; /* numbers of a sample of the running program */
     volatile uint16_t lost;
 
     /* audit of the running program, a few bytes a poll */

@@ -1,0 +1,16 @@
+/* This computer as a board. HL_WORD_BITS is given by the build. */
+#ifndef HL_BOARD_CONSTANTS_H
+#define HL_BOARD_CONSTANTS_H
+
+#define HL_BOARD_NAME "host"
+#define HL_ARENA_BYTES 32768
+#define HL_SLOTS 2
+#define HL_CHANNELS 12
+#define HL_RING 64
+#define HL_CLOCK_HZ 1000000
+#define HL_DUTY_FULL 32767
+#define HL_PERIOD_MIN_US 50
+#define HL_PERIOD_MAX_US 30000
+#define HL_STORE_BYTES 4096
+
+#endif

@@ -1,0 +1,71 @@
+#include "parts.h"
+
+/* The nearest whole number; far enough from the ends of int32 for sums. */
+static int32_t whole(float a)
+{
+    const float limited = a > 1e9f ? 1e9f : a < -1e9f ? -1e9f : a;
+    return (int32_t)(limited < 0.0f ? limited - 0.5f : limited + 0.5f);
+}
+
+static int32_t counts_of(const hl_core *core, float metres)
+{
+    return whole(metres / core->settings.metres_per_count);
+}
+
+/* Put the limits of settings and period into counts. */
+void hl_handle_limits(hl_core *core)
+{
+    const hl_settings *s = &core->settings;
+    const int32_t a = counts_of(core, s->travel_min), b = counts_of(core, s->travel_max);
+    const int32_t low = a < b ? a : b, high = a < b ? b : a;
+    const int32_t margin = (high - low) / 20; /* a stop gives a little */
+    core->limits.span = high - low;
+    core->limits.lowest = low - margin;
+    core->limits.highest = high + margin;
+    const int32_t speed = whole(hl_absf(s->speed_max / s->metres_per_count) * (float)core->period_us * 1e-6f);
+    core->limits.speed = speed < 2 ? 2 : speed; /* one count of noise either way is no motion */
+}
+
+/* The handle is at this position now. */
+void hl_handle_place(hl_core *core, float position)
+{
+    core->origin = core->counts - counts_of(core, position);
+    core->homed = 1;
+    core->mismatch = 0;
+}
+
+/* The position is not known any more. */
+void hl_handle_lose(hl_core *core)
+{
+    core->homed = 0;
+    core->mismatch = 0;
+    core->seen_min = core->seen_max = core->counts;
+}
+
+/* In IDLE: a handle led to both stops has told where it is. */
+void hl_handle_watch(hl_core *core)
+{
+    const int32_t counts = core->counts;
+    core->seen_min = counts < core->seen_min ? counts : core->seen_min;
+    core->seen_max = counts > core->seen_max ? counts : core->seen_max;
+    const int32_t seen = core->seen_max - core->seen_min, allowed = core->limits.span / 32;
+    if (core->homed || !core->calibrated || seen < core->limits.span - allowed) {
+        return;
+    }
+    /* the hand is still at the second stop when it turns back: wait for that, so that both ends are complete */
+    if (counts > core->seen_max - allowed || counts < core->seen_min + allowed) {
+        return;
+    }
+    if (seen > core->limits.span + allowed) {
+        core->mismatch = 1;
+        return;
+    }
+    const float middle = 0.5f * (core->settings.travel_min + core->settings.travel_max);
+    core->origin = core->seen_min + seen / 2 - counts_of(core, middle);
+    core->homed = 1;
+}
+
+float hl_handle_position(const hl_core *core)
+{
+    return (float)(core->counts - core->origin) * core->settings.metres_per_count;
+}

@@ -1,0 +1,201 @@
+/* The tick: one sample of the closed loop, and what stops it. */
+#include "parts.h"
+
+void hl_core_fault(hl_core *core, uint8_t fault, float value)
+{
+    board_motor(core, 0);
+    if (fault == HL_FAULT_SENSOR || fault == HL_FAULT_OVER_TRAVEL) {
+        core->homed = 0; /* counts may have been missed */
+    }
+    if (core->state != HL_STATE_RUN) {
+        return; /* nothing was running, or an earlier fault stands */
+    }
+    core->state = HL_STATE_FAULT;
+    board_motor(core, 0); /* again: called outside the tick, a tick may have come between */
+    core->fault = fault;
+    core->fault_tick = core->tick;
+    core->fault_value = value;
+    core->fault_unsent = 1;
+}
+
+/* Measure the period that ended with this tick; returns how many periods of the grid it was long. */
+static uint16_t measure(hl_core *core, uint16_t begin)
+{
+    const uint16_t since = (uint16_t)(begin - core->last_begin);
+    hl_timing *t = &core->timing;
+    core->last_begin = begin;
+    if (core->first) {
+        return 0;
+    }
+    t->period_min = since < t->period_min ? since : t->period_min;
+    t->period_max = since > t->period_max ? since : t->period_max;
+    const uint16_t half = core->period_clocks / 2;
+    return since < core->period_clocks + half ? 1 : (uint16_t)(((uint32_t)since + half) / core->period_clocks);
+}
+
+/* What stops the loop before the scene runs: host, position, speed. */
+static uint8_t is_unsafe(hl_core *core, uint16_t periods, int32_t before)
+{
+    core->silent = core->heard || core->standalone ? 0 : (uint16_t)(core->silent + periods);
+    core->heard = 0;
+    if (core->silent > core->silence) {
+        hl_core_fault(core, HL_FAULT_HOST_SILENT, 0.0f);
+        return 1;
+    }
+    if (!core->calibrated || core->force_limit == 0.0f) {
+        return 0; /* the motor is off: nothing to protect */
+    }
+    const int32_t place = core->counts - core->origin;
+    if (place < core->limits.lowest || place > core->limits.highest) {
+        hl_core_fault(core, HL_FAULT_OVER_TRAVEL, core->x);
+        return 1;
+    }
+    const int32_t moved = core->counts > before ? core->counts - before : before - core->counts;
+    if (!core->first && moved > core->limits.speed * (int32_t)(periods ? periods : 1)) {
+        hl_core_fault(core, HL_FAULT_OVER_SPEED, core->v);
+        return 1;
+    }
+    return 0;
+}
+
+static void record(hl_core *core, const hl_slot *outputs, uint8_t flags)
+{
+    if (--core->countdown != 0) {
+        return;
+    }
+    core->countdown = core->every;
+    const uint8_t next = (uint8_t)((core->head + 1u) % HL_RING);
+    if (next == core->tail) {
+        core->lost++;
+        return;
+    }
+    hl_sample *sample = &core->ring[core->head];
+    sample->tick = core->tick;
+    sample->flags = flags;
+    sample->values[0].f = core->x;
+    sample->values[1].f = core->v;
+    sample->values[2].f = core->force;
+    for (uint8_t k = 3; k < core->channels; k++) {
+        sample->values[k] = outputs[k - 2];
+    }
+    core->head = next;
+}
+
+/* Account for the time of this step; returns whether it missed its period. */
+static uint8_t is_late(hl_core *core, uint16_t begin)
+{
+    hl_timing *t = &core->timing;
+    const uint16_t step = (uint16_t)(board_clock(core) - begin);
+    t->step_last = step;
+    t->step_worst = step > t->step_worst ? step : t->step_worst;
+    t->step_sum += step;
+    if (step <= core->period_clocks) {
+        core->late = 0;
+        return 0;
+    }
+    t->overruns++;
+    core->late++;
+    core->late_second++;
+    return 1;
+}
+
+static void watch_overruns(hl_core *core)
+{
+    if (core->late >= HL_OVERRUNS_IN_A_ROW || core->late_second >= HL_OVERRUNS_PER_SECOND) {
+        hl_core_fault(core, HL_FAULT_OVERRUN, (float)core->timing.step_last / (float)core->period_clocks);
+    }
+    if (--core->second == 0) {
+        core->second = (uint16_t)(1000000u / core->period_us);
+        core->late_second = 0;
+    }
+}
+
+/* Run the scene on the sample; returns whether every number is finite. */
+static int compute(hl_core *core, hl_slot *outputs)
+{
+    const hl_place *place = &core->places[core->active];
+    const hl_program *program = &place->program;
+    hl_slot *registers = place->registers;
+    if (program->count[HL_COUNT_INPUTS]) {
+        registers[program->inputs].f = core->x;
+    }
+    hl_result result = core->first ? hl_init(program, registers) : HL_OK;
+    if (result == HL_OK) {
+        result = hl_tick(program, registers, outputs);
+    }
+    if (result != HL_OK) {
+        hl_core_fault(core, HL_FAULT_NOT_FINITE, (float)result);
+        return 0;
+    }
+    return 1;
+}
+
+static void run(hl_core *core, uint16_t begin, int32_t before)
+{
+    hl_slot outputs[HL_CHANNELS];
+    const uint16_t periods = measure(core, begin);
+    const float x = hl_handle_position(core);
+    core->tick += periods;
+    core->v = core->first ? 0.0f : (x - core->x) * core->rate;
+    core->x = x;
+    if (is_unsafe(core, periods, before) || !compute(core, outputs)) {
+        return;
+    }
+    uint8_t flags = core->first ? HL_SAMPLE_FIRST : 0;
+    const float limit = core->force_limit;
+    float force = outputs[0].f;
+    if (force > limit || force < -limit) {
+        force = force > limit ? limit : -limit;
+        flags |= HL_SAMPLE_SATURATED;
+    }
+    core->force = force;
+    board_motor(core, hl_duty(core, -force));
+    hl_heat(core, force);
+    if (is_late(core, begin)) {
+        flags |= HL_SAMPLE_OVERRUN;
+    }
+    record(core, outputs, flags);
+    core->first = 0;
+    watch_overruns(core);
+}
+
+/* Without a host: a program kept in the store starts when the handle, led to both stops, rests in the middle for 1 s. */
+static void await_standalone(hl_core *core)
+{
+    const int32_t middle = (core->limits.lowest + core->limits.highest) / 2 + core->origin;
+    const int32_t tenth = core->limits.span / 10;
+    const int32_t off = core->counts - middle, moved = core->counts - core->resting;
+    const int32_t still = core->limits.span / 200 + 2;
+    if (!core->homed || off > tenth || off < -tenth || moved > still || moved < -still) {
+        core->resting = core->counts;
+        core->rested = 0;
+        return;
+    }
+    if (++core->rested > 1000000u / core->period_us) {
+        core->rested = 0;
+        hl_place_start(core, core->active, 1, 0, core->settings.force_max);
+    }
+}
+
+static void idle(hl_core *core)
+{
+    hl_handle_watch(core);
+    hl_heat(core, 0.0f);
+    if (core->standalone && core->state == HL_STATE_IDLE) {
+        await_standalone(core);
+    }
+}
+
+void hl_core_tick(hl_core *core)
+{
+    const uint16_t begin = board_clock(core);
+    const int32_t before = core->counts;
+    core->counts = board_counts(core);
+    core->ran = 1;
+    if (core->state == HL_STATE_RUN) {
+        run(core, begin, before);
+    } else {
+        idle(core);
+        core->last_begin = begin;
+    }
+}

@@ -1,0 +1,357 @@
+/* What each request does. */
+#include "crc.h"
+#include "parts.h"
+#include "wire.h"
+
+#include <string.h>
+
+#define FIRMWARE_MAJOR 1
+#define FIRMWARE_MINOR 0
+
+static uint8_t welcome(hl_core *core, const uint8_t *payload, uint8_t *to)
+{
+    hl_stop(core); /* whatever ran belongs to an earlier session */
+    core->session = hl_get32(payload);
+    core->sequence_known = 0;
+    core->standalone = 0;
+    core->announced = 0;
+    memset(to, 0, HL_AT_WELCOME_RESET_CAUSE + 1);
+    memcpy(to + HL_AT_WELCOME_BOARD, HL_BOARD_NAME, sizeof HL_BOARD_NAME - 1);
+    hl_put32(to + HL_AT_WELCOME_TABLE, HL_PROTOCOL_HASH);
+    hl_put16(to + HL_AT_WELCOME_IDENT, (uint16_t)core->settings.ident);
+    to[HL_AT_WELCOME_MAJOR] = FIRMWARE_MAJOR;
+    to[HL_AT_WELCOME_MINOR] = FIRMWARE_MINOR;
+    to[HL_AT_WELCOME_WORD_BYTES] = HL_WORD_BYTES;
+    hl_put16(to + HL_AT_WELCOME_ARENA, HL_ARENA_BYTES);
+    to[HL_AT_WELCOME_SLOTS] = HL_SLOTS;
+    to[HL_AT_WELCOME_CHANNELS] = HL_CHANNELS;
+    hl_put32(to + HL_AT_WELCOME_CLOCK_HZ, HL_CLOCK_HZ);
+    hl_put16(to + HL_AT_WELCOME_DUTY_FULL, HL_DUTY_FULL);
+    hl_put16(to + HL_AT_WELCOME_PERIOD_MIN, HL_PERIOD_MIN_US);
+    hl_put16(to + HL_AT_WELCOME_PERIOD_MAX, HL_PERIOD_MAX_US);
+    to[HL_AT_WELCOME_RESET_CAUSE] = board_reset_cause(core);
+    return HL_AT_WELCOME_RESET_CAUSE + 1;
+}
+
+static uint8_t flags_of(const hl_core *core)
+{
+    const hl_settings *s = &core->settings;
+    return (uint8_t)((core->homed ? HL_FLAG_HOMED : 0) | (core->calibrated ? HL_FLAG_CALIBRATED : 0)
+                     | (s->checked ? HL_FLAG_SIGN_CHECKED : 0) | (core->armed ? HL_FLAG_ARMED : 0)
+                     | (core->standalone ? HL_FLAG_STANDALONE : 0) | (core->mismatch ? HL_FLAG_TRAVEL_MISMATCH : 0)
+                     | (core->places[core->active].size ? HL_FLAG_READY : 0));
+}
+
+static uint8_t state_of(hl_core *core, uint8_t *to)
+{
+    board_lock(core); /* numbers of one tick, not of two */
+    const hl_timing *t = &core->timing;
+    const float stands = core->settings.force_continuous * core->settings.force_continuous;
+    hl_put32(to + HL_AT_STATE_SESSION, core->session);
+    to[HL_AT_STATE_STATE] = core->state;
+    to[HL_AT_STATE_FAULT] = core->state == HL_STATE_FAULT ? core->fault : HL_FAULT_NONE;
+    to[HL_AT_STATE_FLAGS] = flags_of(core);
+    hl_put32(to + HL_AT_STATE_TICK, core->tick);
+    hl_put32(to + HL_AT_STATE_COUNTS, (uint32_t)core->counts);
+    hl_putf(to + HL_AT_STATE_X, hl_handle_position(core));
+    hl_putf(to + HL_AT_STATE_FORCE, core->state == HL_STATE_RUN ? core->force : 0.0f);
+    hl_putf(to + HL_AT_STATE_HEAT, core->heat / stands);
+    hl_put16(to + HL_AT_STATE_PERIOD_MIN, t->period_min);
+    hl_put16(to + HL_AT_STATE_PERIOD_MAX, t->period_max);
+    hl_put16(to + HL_AT_STATE_STEP_LAST, t->step_last);
+    hl_put16(to + HL_AT_STATE_STEP_WORST, t->step_worst);
+    hl_put32(to + HL_AT_STATE_STEP_SUM, t->step_sum);
+    hl_put16(to + HL_AT_STATE_OVERRUNS, t->overruns);
+    hl_put16(to + HL_AT_STATE_LOST, core->lost);
+    hl_put16(to + HL_AT_STATE_DAMAGED, core->damaged);
+    board_unlock(core);
+    return HL_AT_STATE_DAMAGED + 2;
+}
+
+static uint8_t read_settings(const hl_core *core, const uint8_t *payload, uint8_t *to)
+{
+    const uint16_t offset = hl_get16(payload + HL_AT_READ_OFFSET);
+    const uint16_t left = offset < sizeof core->settings ? (uint16_t)(sizeof core->settings - offset) : 0;
+    uint8_t count = payload[HL_AT_READ_COUNT];
+    count = count < HL_LARGEST_PAYLOAD - 2 ? count : HL_LARGEST_PAYLOAD - 2;
+    count = count < left ? count : (uint8_t)left;
+    hl_put16(to, offset);
+    memcpy(to + 2, (const uint8_t *)&core->settings + (left ? offset : 0), count);
+    return (uint8_t)(2 + count);
+}
+
+/* Begin an upload. Where the board has one place only, or for what is not a program, nothing may run. */
+static uint8_t begin(hl_core *core, const uint8_t *payload)
+{
+    const uint8_t target = payload[HL_AT_BEGIN_TARGET];
+    const uint16_t size = hl_get16(payload + HL_AT_BEGIN_SIZE);
+    if (target > HL_TARGET_STANDALONE) {
+        return HL_RESULT_RANGE;
+    }
+    if (core->state == HL_STATE_RUN && (HL_SLOTS == 1 || target != HL_TARGET_PROGRAM)) {
+        return HL_RESULT_BUSY;
+    }
+    const uint16_t store = HL_STORE_BYTES - HL_STORE_PROGRAM;
+    if (size == 0 || size > HL_ARENA_BYTES || (target == HL_TARGET_STANDALONE && size > store)) {
+        return HL_RESULT_TOO_LARGE;
+    }
+    core->loading = (uint8_t)((core->active + 1) % HL_SLOTS);
+    core->places[core->loading].size = 0;
+    core->target = target;
+    core->announced = size;
+    return HL_OK;
+}
+
+static uint8_t data(hl_core *core, const uint8_t *payload, uint8_t count)
+{
+    const uint16_t offset = hl_get16(payload);
+    const uint8_t bytes = (uint8_t)(count - 2);
+    if (core->announced == 0 || offset > core->announced || bytes > core->announced - offset) {
+        return HL_RESULT_RANGE;
+    }
+    memcpy(core->places[core->loading].arena.bytes + offset, payload + 2, bytes);
+    return HL_OK;
+}
+
+static uint8_t commit_settings(hl_core *core, const hl_place *place, uint16_t size)
+{
+    hl_settings settings;
+    if (size != sizeof settings) {
+        return HL_RESULT_LENGTH;
+    }
+    memcpy(&settings, place->arena.bytes, sizeof settings);
+    return hl_settings_valid(&settings) ? hl_settings_save(core, &settings) : (uint8_t)HL_RESULT_RANGE;
+}
+
+/* Take an upload into use: whole, undamaged and verified, or not at all. */
+static uint8_t commit(hl_core *core, const uint8_t *payload)
+{
+    const uint16_t size = hl_get16(payload + HL_AT_COMMIT_SIZE);
+    hl_place *place = &core->places[core->loading];
+    if (core->announced == 0 || core->announced != size || core->target != payload[HL_AT_COMMIT_TARGET]) {
+        return HL_RESULT_NO_PROGRAM;
+    }
+    if (core->state == HL_STATE_RUN && (HL_SLOTS == 1 || core->target != HL_TARGET_PROGRAM)) {
+        return HL_RESULT_BUSY;
+    }
+    core->announced = 0;
+    if (hl_crc32(0, place->arena.bytes, size) != hl_get32(payload + HL_AT_COMMIT_CRC)) {
+        return HL_CRC;
+    }
+    if (core->target == HL_TARGET_SETTINGS) {
+        return commit_settings(core, place, size);
+    }
+    const uint8_t result = hl_place_verify(place, size);
+    if (result != HL_OK || core->target == HL_TARGET_PROGRAM) {
+        return result;
+    }
+    /* without a host nobody sets parameters */
+    return place->program.count[HL_COUNT_PARAMETERS] ? (uint8_t)HL_RESULT_NO_VALUE : hl_store_program(core, place, size);
+}
+
+/* The place that SET and START mean: the one loaded last, if it holds a program, else the one that runs. */
+static uint8_t newest(const hl_core *core)
+{
+    return core->places[core->loading].size ? core->loading : core->active;
+}
+
+static uint8_t set(hl_core *core, const uint8_t *payload, uint8_t count)
+{
+    const uint8_t values = payload[HL_AT_SET_COUNT];
+    hl_place *place = &core->places[newest(core)];
+    if (count != 1 + 5 * (uint16_t)values) {
+        return HL_RESULT_LENGTH;
+    }
+    if (place->size == 0) {
+        return HL_RESULT_NO_PROGRAM;
+    }
+    for (uint8_t k = 0; k < values; k++) { /* all of them or none */
+        hl_slot value;
+        value.f = hl_getf(payload + 2 + 5 * k);
+        if (payload[1 + 5 * k] >= place->program.count[HL_COUNT_PARAMETERS]) {
+            return HL_RESULT_RANGE;
+        }
+        if (!hl_is_finite(value)) {
+            return HL_RESULT_NO_VALUE;
+        }
+    }
+    board_lock(core);
+    for (uint8_t k = 0; k < values; k++) {
+        place->registers[place->program.parameters + payload[1 + 5 * k]].f = hl_getf(payload + 2 + 5 * k);
+    }
+    board_unlock(core);
+    return HL_OK;
+}
+
+static uint8_t start(hl_core *core, const uint8_t *payload)
+{
+    const uint8_t index = newest(core);
+    const uint16_t every = hl_get16(payload + HL_AT_START_EVERY);
+    if (core->state == HL_STATE_RUN && index == core->active) {
+        return HL_RESULT_BUSY;
+    }
+    if (core->places[index].size == 0 || core->places[index].crc != hl_get32(payload + HL_AT_START_CRC)) {
+        return HL_RESULT_NO_PROGRAM;
+    }
+    board_lock(core);
+    const float force_max = hl_getf(payload + HL_AT_START_FORCE_MAX);
+    const uint8_t result = hl_place_start(core, index, every, payload[HL_AT_START_OPTIONS], force_max);
+    board_unlock(core);
+    if (result == HL_OK && HL_SLOTS > 1) {
+        core->places[(index + 1) % HL_SLOTS].size = 0; /* so that the newest is the one that runs */
+    }
+    return result;
+}
+
+static uint8_t home(hl_core *core, float position)
+{
+    hl_slot s;
+    s.f = position;
+    if (core->state != HL_STATE_IDLE) {
+        return core->state == HL_STATE_RUN ? HL_RESULT_BUSY : HL_RESULT_FAULT;
+    }
+    if (!core->calibrated) {
+        return HL_RESULT_NOT_CALIBRATED;
+    }
+    if (!hl_is_finite(s) || position < core->settings.travel_min || position > core->settings.travel_max) {
+        return HL_RESULT_RANGE;
+    }
+    board_lock(core);
+    hl_handle_place(core, position);
+    board_unlock(core);
+    return HL_OK;
+}
+
+static uint8_t clear(hl_core *core)
+{
+    if (core->state == HL_STATE_FAULT) {
+        core->fault_unsent = 0;
+        core->fault = HL_FAULT_NONE;
+        core->state = HL_STATE_IDLE;
+    }
+    return HL_OK;
+}
+
+static uint8_t arm(hl_core *core, uint8_t armed)
+{
+    if (core->state == HL_STATE_RUN) {
+        return HL_RESULT_BUSY;
+    }
+    return armed && !core->settings.checked ? (uint8_t)HL_RESULT_NOT_CALIBRATED : hl_store_arm(core, armed);
+}
+
+/* Do what a request asks and return the result. */
+static uint8_t obey(hl_core *core, uint8_t message, const uint8_t *payload, uint8_t count)
+{
+    switch (message) {
+    case HL_MESSAGE_BEGIN:
+        return begin(core, payload);
+    case HL_MESSAGE_DATA:
+        return data(core, payload, count);
+    case HL_MESSAGE_COMMIT:
+        return commit(core, payload);
+    case HL_MESSAGE_START:
+        return start(core, payload);
+    case HL_MESSAGE_STOP:
+        hl_stop(core);
+        return HL_OK;
+    case HL_MESSAGE_SET:
+        return set(core, payload, count);
+    case HL_MESSAGE_HOME:
+        return home(core, hl_getf(payload));
+    case HL_MESSAGE_CLEAR:
+        return clear(core);
+    case HL_MESSAGE_ARM:
+        return arm(core, payload[0]);
+    default:
+        return HL_RESULT_UNKNOWN;
+    }
+}
+
+/* Obey a guarded request once: a repeat is answered as it was, an older one refused. */
+static uint8_t obey_once(hl_core *core, uint8_t message, uint8_t sequence, const uint8_t *payload, uint8_t count)
+{
+    const uint8_t ahead = (uint8_t)(sequence - core->sequence);
+    if (core->sequence_known && ahead == 0) {
+        return core->result;
+    }
+    if (core->sequence_known && ahead > 127) {
+        return HL_RESULT_STALE;
+    }
+    core->sequence = sequence;
+    core->sequence_known = 1;
+    core->result = obey(core, message, payload, count);
+    return core->result;
+}
+
+static uint8_t acknowledge(hl_core *core, uint8_t message, uint8_t result, uint8_t *to)
+{
+    board_lock(core);
+    const uint32_t tick = core->tick;
+    board_unlock(core);
+    to[HL_AT_ACK_REQUEST] = message;
+    to[HL_AT_ACK_RESULT] = result;
+    hl_put32(to + HL_AT_ACK_TICK, tick);
+    return HL_AT_ACK_TICK + 4;
+}
+
+static const uint8_t rules[][4] = {
+#define RULE(name, number, bytes, guarded, open) {number, bytes, guarded, open},
+    HL_MESSAGES(RULE)
+#undef RULE
+};
+
+/* HL_OK where the message may be looked into, else the result to answer with. */
+static uint8_t check(const hl_core *core, const uint8_t *frame, uint8_t *count)
+{
+    const uint8_t message = frame[0] & 31;
+    for (uint8_t k = 0; k < sizeof rules / sizeof rules[0]; k++) {
+        const uint8_t *rule = rules[k];
+        if (rule[0] != message || message >= HL_MESSAGE_ACK) {
+            continue;
+        }
+        const uint8_t guard = rule[2] ? 4 : 0;
+        if (*count < rule[1] + guard || (!rule[3] && *count > rule[1] + guard)) {
+            return HL_RESULT_LENGTH;
+        }
+        *count = (uint8_t)(*count - guard);
+        if (guard && (core->session == 0 || hl_crc32(core->session, frame, 2u + *count) != hl_get32(frame + 2 + *count))) {
+            return HL_RESULT_GUARD;
+        }
+        return HL_OK;
+    }
+    return HL_RESULT_UNKNOWN;
+}
+
+uint8_t hl_answer(hl_core *core, const uint8_t *frame, uint8_t count, uint8_t *to, uint8_t *reply)
+{
+    const uint8_t message = frame[0] & 31, sequence = frame[1];
+    const uint8_t *payload = frame + 2;
+    uint8_t result = check(core, frame, &count);
+    if (result == HL_OK) {
+        switch (message) {
+        case HL_MESSAGE_HELLO:
+            *reply = HL_MESSAGE_WELCOME;
+            return welcome(core, payload, to);
+        case HL_MESSAGE_PING:
+            *reply = HL_MESSAGE_PONG;
+            memcpy(to, payload, 4);
+            return 4;
+        case HL_MESSAGE_STATUS:
+            *reply = HL_MESSAGE_STATE;
+            return state_of(core, to);
+        case HL_MESSAGE_READ:
+            *reply = HL_MESSAGE_BYTES;
+            return read_settings(core, payload, to);
+        case HL_MESSAGE_BEGIN:
+        case HL_MESSAGE_DATA:
+        case HL_MESSAGE_STOP:
+            result = obey(core, message, payload, count);
+            break;
+        default:
+            result = obey_once(core, message, sequence, payload, count);
+        }
+    }
+    *reply = HL_MESSAGE_ACK;
+    return acknowledge(core, message, result, to);
+}

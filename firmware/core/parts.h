@@ -1,0 +1,37 @@
+/* What the parts of the core ask of each other. */
+#ifndef HL_PARTS_H
+#define HL_PARTS_H
+
+#include "board.h"
+
+/* store.c: what survives power-off */
+enum { HL_STORE_ARMED = 96, HL_STORE_SIZE = 97, HL_STORE_PROGRAM = 100 }; /* addresses; the settings are at 0 */
+int hl_settings_valid(const hl_settings *settings);
+void hl_settings_load(hl_core *core);
+uint8_t hl_settings_save(hl_core *core, const hl_settings *settings);
+uint8_t hl_store_program(hl_core *core, const hl_place *place, uint16_t size);
+uint8_t hl_store_arm(hl_core *core, uint8_t armed);
+uint8_t hl_load_standalone(hl_core *core);
+
+/* handle.c: where the handle is */
+void hl_handle_limits(hl_core *core);
+void hl_handle_place(hl_core *core, float position);
+void hl_handle_lose(hl_core *core);
+void hl_handle_watch(hl_core *core);
+float hl_handle_position(const hl_core *core);
+
+/* place.c: programs */
+uint8_t hl_place_verify(hl_place *place, uint16_t size);
+uint8_t hl_place_start(hl_core *core, uint8_t index, uint16_t every, uint8_t options, float force_max);
+void hl_place_idle(hl_core *core);
+void hl_stop(hl_core *core);
+
+/* motor.c */
+int16_t hl_duty(const hl_core *core, float force);
+void hl_heat(hl_core *core, float force);
+
+/* message.c: do what the message at `frame` asks, `count` bytes of payload and guard; write the reply's payload and its
+ * number, and return how long it is */
+uint8_t hl_answer(hl_core *core, const uint8_t *frame, uint8_t count, uint8_t *to, uint8_t *reply);
+
+#endif
