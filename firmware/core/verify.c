@@ -1,3 +1,4 @@
+#include "flash.h"
 #include "word.h"
 
 enum { UNWRITTEN = 0 };
@@ -6,7 +7,7 @@ typedef struct {
     uint8_t operands, result, operand[3];
 } signature;
 
-static const signature signatures[OPCODES] = {
+static const signature signatures[OPCODES] HL_FLASH = {
 #define SIGNATURE(name, number, operands, result, a, b, c) [number] = {operands, result, {a, b, c}},
     HL_OPERATIONS(SIGNATURE)
 #undef SIGNATURE
@@ -99,16 +100,17 @@ static hl_result check_code(const hl_program *p, const uint8_t *pc, uint16_t wor
 {
     while (words > 1) {
         const uint16_t opcode = WORD(pc, 0);
-        if (opcode == HL_OP_END || opcode >= OPCODES || signatures[opcode].result == 0) {
+        if (opcode == HL_OP_END || opcode >= OPCODES || HL_FLASH_BYTE(&signatures[opcode].result) == 0) {
             return HL_OPCODE;
         }
         const signature *s = &signatures[opcode];
-        if (words < s->operands + 3u) { /* opcode, destination, operands, and END after them */
+        const uint8_t operands = HL_FLASH_BYTE(&s->operands);
+        if (words < operands + 3u) { /* opcode, destination, operands, and END after them */
             return HL_OPCODE;
         }
-        for (uint8_t k = 0; k < s->operands; k++) {
+        for (uint8_t k = 0; k < operands; k++) {
             const uint16_t operand = WORD(pc, 2 + k);
-            if (!is_written(p, types, operand) || types[operand].i != s->operand[k]) {
+            if (!is_written(p, types, operand) || types[operand].i != HL_FLASH_BYTE(&s->operand[k])) {
                 return HL_OPERAND;
             }
         }
@@ -116,9 +118,9 @@ static hl_result check_code(const hl_program *p, const uint8_t *pc, uint16_t wor
         if (to < p->temporaries || to >= p->count[HL_COUNT_REGISTERS]) {
             return HL_OPERAND;
         }
-        types[to].i = s->result;
-        ADVANCE(pc, 2 + s->operands);
-        words = (uint16_t)(words - 2 - s->operands);
+        types[to].i = HL_FLASH_BYTE(&s->result);
+        ADVANCE(pc, 2 + operands);
+        words = (uint16_t)(words - 2 - operands);
     }
     return words == 1 && WORD(pc, 0) == HL_OP_END ? HL_OK : HL_OPCODE;
 }

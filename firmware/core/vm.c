@@ -1,6 +1,7 @@
 #include "vm.h"
 
 #include "elementary.h"
+#include "flash.h"
 #include "word.h"
 
 HL_NO_CONTRACTION
@@ -43,18 +44,18 @@ HL_NO_CONTRACTION
 #pragma GCC diagnostic ignored "-Wpedantic"
 static void run(const uint8_t *pc, hl_slot *registers)
 {
-    static const void *const bodies[OPCODES] = {
+    static const void *const bodies[OPCODES] HL_FLASH = {
         [HL_OP_END] = &&end,
 #define LABEL(name, operands, body) [OP_##name] = &&body_##name,
         BODIES(LABEL)
 #undef LABEL
     };
-    goto *bodies[WORD(pc, 0)];
+    goto *HL_FLASH_POINTER(&bodies[WORD(pc, 0)]);
 #define BODY(name, operands, body) \
     body_##name: \
     body; \
     ADVANCE(pc, 2 + operands); \
-    goto *bodies[WORD(pc, 0)];
+    goto *HL_FLASH_POINTER(&bodies[WORD(pc, 0)]);
     BODIES(BODY)
 #undef BODY
 end:
