@@ -1,8 +1,8 @@
 """A progress bar for whatever lasts longer than two seconds; the only place where tqdm opens."""
 
 
-def progress_bar(ticks, shown=True):
+def progress_bar(ticks, shown=True, unit="tick"):
     """Return a bar on stderr that appears after two seconds; use it in a ``with``, and ``update`` it by ticks done."""
     from tqdm import tqdm
 
-    return tqdm(total=ticks, delay=2, disable=not shown, unit="tick", unit_scale=True, leave=False)
+    return tqdm(total=ticks, delay=2, disable=not shown, unit=unit, unit_scale=True, leave=False)
