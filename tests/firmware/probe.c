@@ -1,0 +1,95 @@
+/* A core that lets the tests see and drive the board underneath: in place of firmware/core. */
+#include "uno.h"
+
+#include <string.h>
+
+struct {
+    uint16_t period_us;    /* written by the test, taken once */
+    int16_t duty;
+    uint16_t spin;         /* clocks one tick lasts longer, taken once */
+    uint8_t echo;
+    uint32_t ticks;        /* read by the test */
+    uint16_t begin, before; /* clock at this tick and the one before */
+    uint16_t shortest, longest, grid;
+    uint8_t fault, cause;
+    float value;
+    uint16_t at;           /* store: write `byte` here, taken once; then `kept` */
+    uint8_t byte, kept, faulty;
+    uint32_t received, sum;
+    uint16_t refused;
+} volatile probe;
+
+static volatile uint8_t head, tail;
+#define QUEUED(k) uno_core.places[0].arena.bytes[k] /* memory nobody else needs here */
+
+void hl_core_start(hl_core *core)
+{
+    memset(core, 0, sizeof *core);
+    board_store_read(core, 0, (uint8_t *)&core->settings, sizeof core->settings);
+    probe.cause = board_reset_cause(core);
+    probe.at = 0xFFFF;
+    board_configure(core);
+    board_motor(core, 0);
+}
+
+void hl_core_tick(hl_core *core)
+{
+    const uint16_t begin = board_clock(core), gap = (uint16_t)(begin - probe.begin);
+    core->counts = board_counts(core);
+    core->ran = 1;
+    probe.before = probe.begin;
+    probe.begin = begin;
+    if (probe.ticks++) {
+        probe.shortest = gap < probe.shortest || probe.ticks == 2 ? gap : probe.shortest;
+        probe.longest = gap > probe.longest || probe.ticks == 2 ? gap : probe.longest;
+    }
+    board_motor(core, probe.duty);
+    if (probe.spin) {
+        const uint16_t spin = probe.spin;
+        probe.spin = 0;
+        while ((uint16_t)(board_clock(core) - begin) < spin) {
+        }
+    }
+}
+
+void hl_core_byte(hl_core *core, uint8_t byte)
+{
+    (void)core;
+    probe.received++;
+    probe.sum = probe.sum * 31 + byte;
+    if (probe.echo) {
+        QUEUED(head) = byte;
+        head++;
+    }
+}
+
+void hl_core_poll(hl_core *core)
+{
+    if (probe.period_us) {
+        board_period(core, probe.period_us);
+        probe.ticks = 0;
+        probe.period_us = 0;
+    }
+    if (probe.at != 0xFFFF) {
+        const uint8_t byte = probe.byte;
+        probe.kept = board_store_write(core, probe.at, &byte, 1);
+        probe.at = 0xFFFF;
+    }
+    while (tail != head) {
+        const uint8_t byte = QUEUED(tail);
+        if (!board_send(core, &byte, 1)) {
+            probe.refused++;
+            break;
+        }
+        tail++;
+    }
+    board_alive(core);
+}
+
+void hl_core_fault(hl_core *core, uint8_t fault, float value)
+{
+    (void)core;
+    board_motor(core, 0);
+    probe.fault = fault;
+    probe.value = value;
+}

@@ -1,0 +1,302 @@
+/* An Arduino Uno in simavr, in lockstep: for ctypes, see emulator.py. Compiled by the tests, never shipped.
+ *
+ * What simavr 1.6 does not do, this does: bytes take the UART's true time both ways and overrun its two-byte buffer,
+ * and 1 mV on a pin is one count of the ADC. */
+#include <simavr/avr_adc.h>
+#include <simavr/avr_eeprom.h>
+#include <simavr/avr_ioport.h>
+#include <simavr/avr_uart.h>
+#include <simavr/sim_avr.h>
+#include <simavr/sim_io.h>
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+DEFINE_FIFO(uint8_t, uart_fifo);
+
+enum { QUEUE = 1 << 16, LOG = 1 << 14, VECTORS = 26, RX_BUFFER = 3 /* two bytes, and the shift register */ };
+enum { /* addresses of the ATmega328P's registers */
+    PORTB = 0x25, DDRD = 0x2A, PORTD = 0x2B, TCCR0A = 0x44, TCCR0B = 0x45, OCR0B = 0x48, MCUSR = 0x54, SPL = 0x5D,
+    UCSR0A = 0xC0, UCSR0B = 0xC1, UBRR0L = 0xC4, UBRR0H = 0xC5
+};
+
+typedef struct { uint64_t cycle; int32_t value; } event;
+typedef struct { uint64_t begin, count, total, worst; } cost;
+typedef struct { event at[LOG]; uint64_t count; } event_log;
+
+typedef struct {
+    avr_t *avr;
+    avr_uart_t *uart;
+    uint8_t in[QUEUE];
+    uint64_t in_head, in_tail;
+    event out[QUEUE];
+    uint64_t out_head, out_tail, out_free; /* out_free: when the line is idle again */
+    uint64_t in_busy, overruns;
+    event_log duty, pin;                   /* changes, the latest LOG of them */
+    cost costs[VECTORS];
+    struct vector { struct uno *uno; int number; } vectors[VECTORS];
+    int delivering;
+    struct { avr_io_write_t call; void *param; } then[MAX_IOs]; /* simavr's own hooks, behind ours */
+} uno;
+
+static void silent(avr_t *avr, const int level, const char *format, va_list arguments)
+{
+    (void)avr, (void)level, (void)format, (void)arguments;
+}
+
+static void note(event_log *log, uint64_t cycle, int32_t value)
+{
+    if (log->count && log->at[(log->count - 1) % LOG].value == value)
+        return;
+    log->at[log->count++ % LOG] = (event){cycle, value};
+}
+
+/* Signed duty of the motor, 0 to 255: what the pins D5 and D8 do, whatever the firmware means. */
+int uno_duty(uno *u)
+{
+    const uint8_t *r = u->avr->data;
+    int duty = 0;
+    if (!(r[DDRD] & 0x20))
+        return 0;
+    if (!(r[TCCR0A] & 0x20))
+        duty = r[PORTD] & 0x20 ? 255 : 0;
+    else if (r[TCCR0B] & 7)
+        duty = r[TCCR0A] & 0x10 ? 255 - r[OCR0B] : r[OCR0B];
+    return r[PORTB] & 1 ? duty : -duty;
+}
+
+/* simavr shares a register between hooks four times in all: too few. */
+static void hook(uno *u, avr_io_addr_t address, avr_io_write_t call, int replace)
+{
+    const int k = AVR_DATA_TO_IO(address);
+    if (!replace) {
+        u->then[k].call = u->avr->io[k].w.c;
+        u->then[k].param = u->avr->io[k].w.param;
+    }
+    u->avr->io[k].w.c = call;
+    u->avr->io[k].w.param = u;
+}
+
+static void write_through(uno *u, avr_io_addr_t address, uint8_t value)
+{
+    const int k = AVR_DATA_TO_IO(address);
+    if (u->then[k].call)
+        u->then[k].call(u->avr, address, value, u->then[k].param);
+    else
+        u->avr->data[address] = value;
+}
+
+static void on_motor(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    uno *u = param;
+    write_through(u, address, value);
+    note(&u->duty, avr->cycle, uno_duty(u));
+}
+
+static void on_pin(avr_irq_t *irq, uint32_t value, void *param)
+{
+    uno *u = param;
+    (void)irq;
+    note(&u->pin, u->avr->cycle, (int32_t)(value & 1));
+}
+
+/* simavr counts a parity bit, and takes no notice of U2X when it comes late. */
+static void on_uart(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    uno *u = param;
+    write_through(u, address, value);
+    const unsigned divider = 1u + avr->data[UBRR0L] + 256u * (avr->data[UBRR0H] & 15u);
+    u->uart->cycles_per_byte = 10u * divider * (avr->data[UCSR0A] & 2 ? 8u : 16u);
+}
+
+static void on_sent(avr_irq_t *irq, uint32_t value, void *param)
+{
+    uno *u = param;
+    (void)irq;
+    const uint64_t now = u->avr->cycle, start = u->out_free > now ? u->out_free : now;
+    u->out_free = start + u->uart->cycles_per_byte;
+    u->out[u->out_head++ % QUEUE] = (event){u->out_free, (int32_t)(value & 255)};
+}
+
+/* A byte begins on the line: simavr raises its interrupt one byte's time later. */
+static avr_cycle_count_t on_line(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    uno *u = param;
+    const int waiting = uart_fifo_get_read_size(&u->uart->input);
+    if (u->in_tail == u->in_head) {
+        u->delivering = 0;
+        return 0;
+    }
+    const uint8_t byte = u->in[u->in_tail++ % QUEUE];
+    if (waiting >= RX_BUFFER)
+        u->overruns++;
+    else
+        avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT), byte);
+    u->in_busy = when + u->uart->cycles_per_byte;
+    return u->in_busy;
+}
+
+static void on_interrupt(avr_irq_t *irq, uint32_t value, void *param)
+{
+    struct vector *vector = param;
+    uno *u = (uno *)vector->uno;
+    (void)irq;
+    cost *c = &u->costs[vector->number];
+    if (value) {
+        c->begin = u->avr->cycle;
+        return;
+    }
+    const uint64_t cycles = u->avr->cycle - c->begin;
+    c->count++;
+    c->total += cycles;
+    c->worst = cycles > c->worst ? cycles : c->worst;
+}
+
+static void hook_registers(uno *u, int carrier)
+{
+    const avr_io_addr_t timer[] = {TCCR0A, TCCR0B, OCR0B}, port[] = {PORTB, PORTD, DDRD}, link[] = {UCSR0B, UBRR0L};
+    for (int k = 0; k < 3; k++) {
+        hook(u, timer[k], on_motor, !carrier);
+        hook(u, port[k], on_motor, 0);
+    }
+    for (int k = 0; k < 2; k++)
+        hook(u, link[k], on_uart, 0);
+}
+
+/* carrier: let timer 0 run in simavr, too, so that D5 has edges; the duty needs only its registers, and time. */
+uno *uno_new(const uint8_t *flash, uint32_t size, int carrier)
+{
+    uno *u = calloc(1, sizeof *u);
+    avr_global_logger_set(silent);
+    u->avr = avr_make_mcu_by_name("atmega328p");
+    avr_init(u->avr);
+    u->avr->frequency = 16000000;
+    u->avr->vcc = u->avr->avcc = u->avr->aref = 1023; /* 1 mV is a count */
+    avr_loadcode(u->avr, (uint8_t *)flash, size, 0);
+    u->avr->codeend = size;
+    for (avr_io_t *io = u->avr->io_port; io; io = io->next)
+        if (!strcmp(io->kind, "uart"))
+            u->uart = (avr_uart_t *)io;
+    uint32_t none = 0;
+    avr_ioctl(u->avr, AVR_IOCTL_UART_SET_FLAGS('0'), &none);
+    avr_irq_register_notify(avr_io_getirq(u->avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_sent, u);
+    avr_irq_register_notify(avr_io_getirq(u->avr, AVR_IOCTL_IOPORT_GETIRQ('D'), 5), on_pin, u);
+    hook_registers(u, carrier);
+    for (int k = 1; k < VECTORS; k++) {
+        u->vectors[k] = (struct vector){(struct uno *)u, k};
+        avr_irq_t *irq = avr_get_interrupt_irq(u->avr, (uint8_t)k);
+        if (irq)
+            avr_irq_register_notify(irq + AVR_INT_IRQ_RUNNING, on_interrupt, &u->vectors[k]);
+    }
+    return u;
+}
+
+void uno_free(uno *u)
+{
+    avr_terminate(u->avr);
+    free(u->avr);
+    free(u);
+}
+
+void uno_reset(uno *u, uint8_t mcusr)
+{
+    avr_reset(u->avr);
+    u->avr->data[MCUSR] = mcusr;
+    u->in_head = u->in_tail = 0;
+}
+
+static avr_cycle_count_t on_target(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    (void)avr, (void)when, (void)param;
+    return 0;
+}
+
+/* Run to the first instruction that ends at `cycle` or behind it. 0: the processor stopped. */
+int uno_run(uno *u, uint64_t cycle)
+{
+    avr_t *avr = u->avr;
+    if (avr->cycle >= cycle)
+        return 1;
+    avr_cycle_timer_register(avr, cycle - avr->cycle, on_target, u);
+    while (avr->cycle < cycle) {
+        const int state = avr_run(avr);
+        if (state == cpu_Done || state == cpu_Crashed)
+            return 0;
+    }
+    return 1;
+}
+
+uint64_t uno_cycle(uno *u) { return u->avr->cycle; }
+uint64_t uno_overruns(uno *u) { return u->overruns; }
+uint8_t *uno_memory(uno *u) { return u->avr->data; }
+uint16_t uno_stack(uno *u) { return (uint16_t)(u->avr->data[SPL] | u->avr->data[SPL + 1] << 8); }
+
+void uno_adc(uno *u, int channel, uint16_t counts)
+{
+    avr_raise_irq(avr_io_getirq(u->avr, AVR_IOCTL_ADC_GETIRQ, channel), counts);
+}
+
+void uno_pin(uno *u, char port, int pin, int level)
+{
+    avr_raise_irq(avr_io_getirq(u->avr, AVR_IOCTL_IOPORT_GETIRQ(port), pin), (uint32_t)level);
+}
+
+void uno_eeprom(uno *u, int write, uint8_t *bytes, uint32_t size)
+{
+    avr_eeprom_desc_t all = {.ee = bytes, .offset = 0, .size = size};
+    if (write) {
+        avr_ioctl(u->avr, AVR_IOCTL_EEPROM_SET, &all);
+    } else {
+        all.ee = NULL; /* simavr gives its own memory */
+        avr_ioctl(u->avr, AVR_IOCTL_EEPROM_GET, &all);
+        memcpy(bytes, all.ee, size);
+    }
+}
+
+void uno_write(uno *u, const uint8_t *bytes, uint32_t size)
+{
+    for (uint32_t k = 0; k < size; k++)
+        u->in[u->in_head++ % QUEUE] = bytes[k];
+    if (size && !u->delivering) {
+        const uint64_t now = u->avr->cycle;
+        u->delivering = 1;
+        avr_cycle_timer_register(u->avr, u->in_busy > now ? u->in_busy - now : 1, on_line, u);
+    }
+}
+
+/* Bytes whose stop bit is over. */
+uint32_t uno_waiting(uno *u)
+{
+    uint32_t count = 0;
+    while (u->out_tail + count < u->out_head && u->out[(u->out_tail + count) % QUEUE].cycle <= u->avr->cycle)
+        count++;
+    return count;
+}
+
+uint32_t uno_read(uno *u, uint8_t *bytes, uint32_t size)
+{
+    uint32_t count = 0;
+    while (count < size && u->out_tail < u->out_head && u->out[u->out_tail % QUEUE].cycle <= u->avr->cycle)
+        bytes[count++] = (uint8_t)u->out[u->out_tail++ % QUEUE].value;
+    return count;
+}
+
+/* Copy the latest events of one log, oldest first; returns how many. */
+uint32_t uno_events(uno *u, int pin, uint64_t *cycles, int32_t *values)
+{
+    const event_log *log = pin ? &u->pin : &u->duty;
+    const uint64_t begin = log->count > LOG ? log->count - LOG : 0;
+    for (uint64_t k = begin; k < log->count; k++) {
+        cycles[k - begin] = log->at[k % LOG].cycle;
+        values[k - begin] = log->at[k % LOG].value;
+    }
+    return (uint32_t)(log->count - begin);
+}
+
+void uno_cost(uno *u, int vector, uint64_t *numbers)
+{
+    const cost *c = &u->costs[vector];
+    numbers[0] = c->count, numbers[1] = c->total, numbers[2] = c->worst;
+}
