@@ -7,6 +7,8 @@ from .analysis.plots import plot
 from .analysis.stability import stability_limit
 from .analysis.sweep import sweep
 from .compiler.lower import compile
+from .device.board import SerialPaddle
+from .device.connect import connect
 from .device.hand import Hand
 from .device.paddle import Paddle
 from .device.profiles import profile
@@ -15,6 +17,7 @@ from .errors import (
     AnalysisError,
     EngineMissingError,
     HapticlabError,
+    LinkError,
     MassError,
     PaddleError,
     ParameterError,
@@ -37,6 +40,7 @@ __all__ = [
     "EngineMissingError",
     "Hand",
     "HapticlabError",
+    "LinkError",
     "MassError",
     "Paddle",
     "PaddleError",
@@ -47,6 +51,7 @@ __all__ = [
     "ProgramLimitError",
     "Scene",
     "SceneError",
+    "SerialPaddle",
     "SignalError",
     "SimulatedPaddle",
     "T",
@@ -54,6 +59,7 @@ __all__ = [
     "UnitsError",
     "chatter",
     "compile",
+    "connect",
     "coordinate",
     "delay",
     "energy",

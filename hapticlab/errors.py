@@ -12,6 +12,7 @@
     |   +-- ProgramLimitError a program is past a limit of the engine or board
     +-- PaddleError           a device, simulated or real, was asked for what it cannot do
     |   +-- PortError         a serial port is missing, taken, forbidden, or left during use
+    |   +-- LinkError         a board does not answer, refuses, or speaks another version
     +-- AnalysisError         a record or a model does not allow the question asked of it
     +-- EngineMissingError    an engine cannot run on this machine
 """
@@ -63,6 +64,17 @@ class PortError(PaddleError):
     def __init__(self, message, cause="failed"):
         super().__init__(message)
         self.cause = cause
+
+
+class LinkError(PaddleError):
+    """A board does not answer, refuses what was asked, or speaks another version.
+
+    ``result`` is the board's own word for a refusal, a name in hapticlab.device.messages.RESULTS, else None.
+    """
+
+    def __init__(self, message, result=None):
+        super().__init__(message)
+        self.result = result
 
 
 class AnalysisError(HapticlabError, ValueError):

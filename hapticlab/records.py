@@ -90,6 +90,8 @@ class Telemetry:
         What stopped the motor, when and why.
     saturated, gap, overrun : array of bool, shape (N,)
         Samples whose force was limited, that follow a lost sample, whose step missed its period.
+    changes : tuple of (float, dict)
+        What was set while it ran: the time [s] from which it holds, and the parameters, SI.
 
     Examples
     --------
@@ -117,6 +119,7 @@ class Telemetry:
     saturated: np.ndarray | None = None
     gap: np.ndarray | None = None
     overrun: np.ndarray | None = None
+    changes: tuple = ()
 
     def __post_init__(self):
         samples = len(self.t)
@@ -127,6 +130,7 @@ class Telemetry:
             object.__setattr__(self, name, _column(name, np.zeros(samples) if given is None else given, samples, bool))
         columns = {name: _column(name, values, samples, float) for name, values in self.channels.items()}
         object.__setattr__(self, "channels", columns)
+        object.__setattr__(self, "changes", tuple((float(t), dict(set_)) for t, set_ in self.changes))
         known = {name: UNITS[name] for name in self.columns if name in UNITS}
         object.__setattr__(self, "units", {**known, **self.units})
 
@@ -161,7 +165,7 @@ class Telemetry:
         """Write everything to a NumPy archive and return its path (``.npz`` is added where missing)."""
         path = Path(path)
         path = path if path.suffix == ".npz" else path.with_name(path.name + ".npz")
-        plain = ("T", "delay", "units", "paddle", "scene", "parameters", "fault")
+        plain = ("T", "delay", "units", "paddle", "scene", "parameters", "fault", "changes")
         about = json.dumps({"order": list(self.channels), **{name: getattr(self, name) for name in plain}})
         arrays = {name: getattr(self, name) for name in ("t", "x", "v", "F", *FLAGS)}
         np.savez(path, about=np.array(about), **arrays, **{f"channel.{k}": a for k, a in self.channels.items()})

@@ -80,9 +80,9 @@ class Hand:
         """Whether the intent is a function of time."""
         return callable(self.intent)
 
-    def samples(self, ticks, T):
-        """Return the intent at the ticks 0 ... ticks (one more than the ticks) [m], shape (ticks + 1,)."""
-        times = np.arange(ticks + 1) * T
+    def samples(self, ticks, T, first=0):
+        """Return the intent at the ticks first ... first + ticks (one more than the ticks) [m], shape (ticks + 1,)."""
+        times = np.arange(first, first + ticks + 1) * T
         places = np.asarray(self.intent(times), float)
         if places.shape not in ((), times.shape):
             raise PaddleError(

@@ -3,7 +3,8 @@
 A frame is COBS (Cheshire and Baker, 1999) ended by a zero byte, around ::
 
     version and message   1 byte: PROTOCOL in the high 3 bits, the message's number in the low 5
-    sequence              1 byte: a request's own, its reply repeats it; samples and fault reports count by themselves
+    sequence              1 byte: a request's own, its reply repeats it. Guarded requests count by themselves, and so do
+                          samples and fault reports
     payload               see MESSAGES
     guard                 4 bytes, on guarded requests only: CRC-32 of all before it, begun from the session's number
     CRC-16                2 bytes: CCITT, initial value 0xffff, of all before it

@@ -8,7 +8,7 @@ import shlex
 import sys
 from pathlib import Path
 
-from ..compiler.vm import firmware_folder
+from ..compiler.native import firmware_folder
 
 
 def explain(url, baudrate, problem, ports):

@@ -1,0 +1,317 @@
+"""A paddle on a board: scenes run in its firmware, and this computer sends, watches and records."""
+
+import math
+import zlib
+from dataclasses import replace
+
+import numpy as np
+
+from ..compiler.bytecode import encode
+from ..compiler.ir import Program
+from ..errors import LinkError, PaddleError, ParameterError
+from .exchange import Exchange
+from .greeting import introduction, say_hello, what_happened
+from .messages import FLAGS, OPTIONS, STATES
+from .paddle import Paddle
+from .progress import progress_bar
+from .recording import Recording
+from .serial import open_port
+from .timing import Timing
+from .upload import read_settings, upload
+
+#: part of the link that samples may take; state and requests need the rest
+SAMPLES_SHARE = 0.9
+#: bytes of a sample beside its numbers: tick, flags, frame
+SAMPLE_OVERHEAD = 11
+#: parameters in one SET
+MOST_AT_ONCE = 8
+#: seconds a board may be silent in a run before the host gives up
+PATIENCE = 1.0
+
+
+class SerialPaddle(Paddle):
+    """A paddle whose firmware runs the scene; made by :func:`hapticlab.connect`.
+
+    Parameters
+    ----------
+    url : str
+        A port or any URL of pyserial: ``COM3``, ``/dev/ttyACM0``, ``sim://hapkit``, ``socket://host:port``.
+    T : float
+        Sampling period [s], whole microseconds within the board's range.
+    port : serial object, optional
+        Already open; url then only names it.
+    hello : float
+        How long a board may take to answer, from reset [s].
+
+    Attributes
+    ----------
+    settings : Settings or None
+        What the board keeps; None where it was never calibrated.
+    board : dict
+        What the board said of itself: name, ident, sizes, clock, period range.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> x_o, k = hl.parameters("x_o k", units="m N/m")
+    >>> wall = hl.Scene(force=hl.when(hl.x(hl.n) >= x_o, k * (hl.x(hl.n) - x_o)), name="wall")
+    >>> with hl.connect("sim://hapkit") as paddle:
+    ...     log = paddle.run(wall(k=150, x_o=0.01), duration=0.1)
+    >>> len(log), log.fault
+    (100, None)
+    """
+
+    def __init__(self, url, *, T=1e-3, port=None, hello=3.0):
+        self.url, self.T = url, float(T)
+        self.exchange = Exchange(open_port(url) if port is None else port, self._on_frame)
+        self._recording = self._program = self._scene = None
+        try:
+            self.board = say_hello(self.exchange, url, hello)
+            self.settings = read_settings(self.exchange)
+            for sentence in what_happened(self.exchange, url, self.board["reset_cause"]):
+                print(sentence)
+        except BaseException:
+            self.exchange.close()
+            raise
+
+    @property
+    def velocity(self):
+        return "backward_difference"
+
+    def accept(self, program):
+        low, high = self.board["period_min"] * 1e-6, self.board["period_max"] * 1e-6
+        if not low * (1 - 1e-9) <= program.T <= high * (1 + 1e-9):
+            raise PaddleError(f"T = {program.T:g} s; this board's timer does {low:g} to {high:g} s: connect(..., T={low:g})")
+        watched, room = len(program.outputs) - 1, self.board["channels"] - 3
+        if watched > room:
+            raise PaddleError(f"{program.name} watches {watched} channels; this board passes {room} on: watch fewer.")
+        odd = [c.name for c in program.parameters if c.type != "f32"]
+        if odd:
+            raise PaddleError(f"{program.name}: {odd[0]} is no float32; a board's parameters are: compile with dtype='float32'.")
+        return super().accept(program)
+
+    def run(self, scene=None, *, duration, x=None, v=None, progress=True, **options):
+        """Run a scene on the board for a duration and return what it recorded; the motor is off before and after.
+
+        Parameters
+        ----------
+        scene : Scene, Program or None
+            None runs what is on the board again, with the parameters it has.
+        duration : float
+            [s]; rounded to whole samples.
+        x, v : None
+            A real handle is where it is; a start can be given to a simulated paddle alone.
+        progress : bool
+            Show a bar when the run lasts longer than two seconds.
+        **options
+            Of :meth:`start`: every, force_max, passive; and of hapticlab.compile.
+
+        Raises
+        ------
+        PaddleError, LinkError, PortError, ProgramLimitError
+        """
+        if x is not None or v is not None:
+            raise PaddleError("x, v: a handle on a board starts where it is; move it there, or use a SimulatedPaddle.")
+        ticks = self.ticks(duration)
+        self.start(scene, **options)
+        with progress_bar(ticks, progress) as bar:
+            self._collect(ticks, bar)
+        return self.stop(ticks=ticks)
+
+    def start(self, scene=None, *, every=None, force_max=math.inf, passive=False, **options):
+        """Start a scene and return at once; :meth:`set` changes it, :meth:`wait` lets it run, :meth:`stop` ends it.
+
+        Parameters
+        ----------
+        scene : Scene, Program or None
+        every : int, optional
+            One sample in so many ticks is sent; by default as many as the link carries.
+        force_max : float
+            A lower limit of force than the board's own, for this run [N].
+        passive : bool
+            Watch the handle with the motor off; needs no home.
+        """
+        if scene is not None:
+            self._load(self.program(scene, **options))
+            self._scene = None if isinstance(scene, Program) else scene
+        elif self._program is None:
+            raise PaddleError("nothing is on the board yet; give a scene: paddle.start(scene)")
+        if not passive:
+            self._require_home()
+        every = self._every(every)
+        self._recording = Recording(self._program, every)
+        self.exchange.beating = True
+        limit = min(float(force_max), 3e38)
+        self.exchange.command("START", self._crc, every, OPTIONS["PASSIVE"] if passive else 0, limit)
+
+    def set(self, **values):
+        """Set parameters of the scene on the board, live, all of them between the same two ticks.
+
+        Raises
+        ------
+        ParameterError
+            For an unknown name, a bad value, or more than 8 at once.
+        """
+        if self._program is None:
+            raise PaddleError("nothing is on the board yet; start a scene first: paddle.start(scene)")
+        names = [c.name for c in self._program.parameters]
+        scene, numbers = self._numbers(values, names)
+        tick = self._set({names.index(name): value for name, value in numbers.items()})
+        known = dict(zip(names, self._program.values, strict=True)) | numbers
+        self._program, self._scene = replace(self._program, values=tuple(known.values())), scene
+        if self._recording is not None:
+            self._recording.changes.append(((tick + 1) * self.T, numbers))
+
+    def wait(self, seconds):
+        """Let the scene run for so many seconds of the board's time."""
+        recording = self._running()
+        self._collect(max(recording.last_tick, 0) + self.ticks(seconds), None)
+
+    def stop(self, *, ticks=None):
+        """Switch the motor off and return the Telemetry of the run."""
+        recording = self._running()
+        self.exchange.command("STOP")
+        self.exchange.beating = False
+        state = self.exchange.refresh()
+        self._recording = None
+        if state["state"] == STATES["FAULT"]:
+            recording.fault = recording.fault or {"fault": state["fault"], "tick": state["tick"], "value": math.nan}
+            self.exchange.command("CLEAR")
+        self.timing = Timing(state, self.board["clock_hz"], self.T)
+        return recording.telemetry(ticks=ticks, delay=self.timing.mean, paddle=str(self))
+
+    def home(self, at=None, *, timeout=60.0):
+        """Tell the board where the handle is; it forgets with every reset, and gives no force until it knows.
+
+        Parameters
+        ----------
+        at : float, optional
+            The handle is held at this position [m], now. Without it the handle is to be led to both stops, by hand.
+        timeout : float
+            How long that may take [s].
+        """
+        if at is not None:
+            self.exchange.command("HOME", float(at))
+            return
+        if self._state_flag("HOMED"):
+            return
+        if self.settings is None:
+            raise PaddleError("the board has no calibration, so its stops tell nothing: run `hapticlab calibrate` first.")
+        print("Lead the handle slowly to one stop, then to the other, and let go: the board finds its position.")
+        if not self.exchange.wait(lambda: self._state_flag("HOMED"), timeout):
+            met = "more travel than was calibrated" if self._state_flag("TRAVEL_MISMATCH") else "not both stops"
+            raise PaddleError(
+                f"home: {met} within {timeout:g} s; lead the handle to both stops, or hold it in the middle and call "
+                "paddle.home(at=0.0). If it repeats, run `hapticlab calibrate`."
+            )
+
+    def state(self):
+        """Return the board's state as it is now: a dict of messages.STATE's fields."""
+        return self.exchange.refresh()
+
+    def close(self):
+        """Stop the motor and give the port back."""
+        try:
+            self.exchange.beating = False
+            if self.exchange.broken is None:
+                self.exchange.command("STOP", tries=2)
+        except (LinkError, PaddleError):
+            pass  # the board stops its motor 100 ms after the last word
+        finally:
+            self.exchange.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *failure):
+        self.close()
+
+    def __str__(self):
+        return introduction(self.board, self.settings, self.T)
+
+    def _load(self, program):
+        """Put a program and its parameters on the board; nothing runs until it is verified."""
+        data = encode(program, word_bits=8 * self.board["word_bytes"])
+        if self._recording is not None and self.board["slots"] == 1:
+            self.stop()
+        upload(self.exchange, "PROGRAM", data)
+        self._program, self._crc = program, zlib.crc32(data[:-4])
+        indices = dict(enumerate(program.values))
+        for first in range(0, len(indices), MOST_AT_ONCE):
+            self._set({k: indices[k] for k in list(indices)[first : first + MOST_AT_ONCE]})
+
+    def _numbers(self, values, names):
+        """Return the scene with the values bound, and the values in SI, checked."""
+        unknown = sorted(set(values) - set(names))
+        if unknown:
+            raise ParameterError(f"{unknown[0]} is no live parameter of {self._program.name}; it has {', '.join(names) or 'none'}.")
+        scene = self._scene and self._scene(**values)
+        numbers = {name: scene.values[name] if scene else float(value) for name, value in values.items()}
+        bad = [name for name, value in numbers.items() if not np.isfinite(np.float32(value))]
+        if bad:
+            raise ParameterError(f"{bad[0]} = {numbers[bad[0]]:g}; a board needs a finite float32, |{bad[0]}| < 3.4e38.")
+        return scene, numbers
+
+    def _set(self, values):
+        if len(values) > MOST_AT_ONCE:
+            raise ParameterError(f"{len(values)} parameters at once; a board takes {MOST_AT_ONCE} between two ticks: set fewer")
+        rest = b"".join(bytes([k]) + np.float32(value).tobytes() for k, value in values.items())
+        return self.exchange.command("SET", len(values), rest=rest)
+
+    def _every(self, every):
+        """Return the decimation: as asked, or as the link carries."""
+        channels = 2 + len(self._program.outputs)
+        port = self.exchange.port
+        rate = getattr(port, "bytes_per_second", port.baudrate / 10)
+        least = math.ceil((SAMPLE_OVERHEAD + 4 * channels) / self._program.T / (SAMPLES_SHARE * rate) - 1e-9)
+        if every is None:
+            return max(1, least)
+        if every < least or every != int(every) or every > 65535:
+            raise PaddleError(
+                f"every = {every}; at T = {self._program.T:g} s with {channels} numbers a sample this link carries one in "
+                f"{max(1, least)}: give a whole number from there on, watch fewer channels, or leave it out."
+            )
+        return int(every)
+
+    def _running(self):
+        if self._recording is None:
+            raise PaddleError("nothing runs; start a scene first: paddle.start(scene)")
+        return self._recording
+
+    def _collect(self, ticks, bar):
+        """Read until so many ticks are recorded, or a fault."""
+        recording, seen = self._recording, 0
+        wanted = (ticks - 1) // recording.every * recording.every
+        while recording.last_tick < wanted and recording.fault is None:
+            before = recording.last_tick
+            came = self.exchange.wait(
+                lambda: recording.last_tick >= wanted or recording.last_tick >= before + 500 or recording.fault,
+                PATIENCE + 500 * self._program.T,
+            )
+            if not came and recording.last_tick == before:
+                self._explain_silence()
+            if bar is not None:
+                bar.update(max(0, min(recording.last_tick + 1, ticks) - seen))
+                seen = max(seen, recording.last_tick + 1)
+
+    def _explain_silence(self):
+        state = self.exchange.refresh()
+        if state["session"] != self.exchange.session:
+            raise LinkError(
+                f"{self.url}: the board was reset while the scene ran, and its motor is off: a supply that falls too low "
+                "when the motor pulls, or its reset button. Check the supply, then connect again."
+            )
+        if state["state"] != STATES["FAULT"]:
+            raise LinkError(f"{self.url}: the board runs but sends no samples; connect again")
+
+    def _require_home(self):
+        if not self._state_flag("HOMED") and self.settings is not None:
+            self.home()
+
+    def _state_flag(self, name):
+        return bool(self.exchange.refresh()["flags"] & FLAGS[name])
+
+    def _on_frame(self, frame):
+        if self._recording is not None:
+            self._recording.add(frame)
+

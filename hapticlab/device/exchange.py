@@ -1,0 +1,193 @@
+"""Requests and replies over one open port, with one reader.
+
+On a real port a thread reads, and keeps the board's watchdog fed. A port in virtual time (``lockstep``) has no thread:
+whoever waits reads, so that the same calls give the same run.
+"""
+
+import itertools
+import secrets
+import threading
+import time
+
+from ..errors import LinkError
+from .messages import HOST_SILENCE_MS, MESSAGES, RESULTS
+from .serial import port_watched, read_available
+from .wire import Decoder, encode
+
+#: seconds; four heartbeats fit into the silence that a board takes for the host's end
+HEARTBEAT = HOST_SILENCE_MS / 4000
+#: seconds until a request is sent again, and how often. A board answers within a few periods.
+PATIENCE, TRIES = 0.15, 6
+
+
+class Exchange:
+    """Ask a board, and collect what it says by itself.
+
+    Parameters
+    ----------
+    port : serial object
+        Of open_port.
+    on_frame : callable
+        Called with every Frame that is no reply: samples, fault reports. In the reader's thread, so it only stores.
+
+    Attributes
+    ----------
+    state : dict or None
+        Fields of the last STATE.
+    broken : PortError or None
+        Why the reader stopped.
+    """
+
+    def __init__(self, port, on_frame=lambda frame: None):
+        self.port, self.on_frame = port, on_frame
+        self.lockstep = getattr(port, "lockstep", False)
+        self.now = port.now if self.lockstep else time.monotonic
+        self.decoder = Decoder()
+        self.session = secrets.randbits(31) + 1
+        self.state, self.broken, self.beating = None, None, False
+        # guarded requests count by themselves: a board refuses one older than the last it obeyed
+        self._sequences = {guarded: itertools.count(1) for guarded in (False, True)}
+        self._wanted = self._reply = self._beat_sequence = None
+        port.timeout = HEARTBEAT / 2  # so that a silent board does not keep the reader from beating
+        self._turn, self._news, self._closed = threading.Lock(), threading.Condition(), False
+        self._last_sent = self.now()
+        self._thread = None
+        if not self.lockstep:
+            self._thread = threading.Thread(target=self._read_for_ever, name=f"hapticlab {port.port}", daemon=True)
+            self._thread.start()
+
+    def ask(self, message, *values, rest=b"", patience=PATIENCE, tries=TRIES):
+        """Send a request until its reply comes; return the reply's Frame.
+
+        A repeat carries the same sequence number, so that a board obeys it once.
+
+        Raises
+        ------
+        LinkError
+            If nothing came back.
+        PortError
+            If the port failed.
+        """
+        with self._turn:
+            # a board takes one frame at a time: a heartbeat under way is answered first
+            self._wait_until(lambda: self._beat_sequence is None, HEARTBEAT)
+            self._beat_sequence = None
+            sequence = self._next_sequence(message)
+            frame = encode(message, sequence, *values, rest=rest, session=self.session)
+            self._wanted, self._reply = (message, sequence), None
+            for _ in range(tries):
+                self._send(frame)
+                if self._wait_until(lambda: self._reply is not None, patience):
+                    return self._reply
+        raise LinkError(
+            f"{self.port.port} does not answer {message} in {tries} tries of {patience:g} s; "
+            "check that the board has power and its cable is in, then connect again (`hapticlab doctor` finds the cause)"
+        )
+
+    def command(self, message, *values, rest=b"", **options):
+        """Ask for something to be done; return the tick after which it was, or raise LinkError with the board's reason."""
+        reply = self.ask(message, *values, rest=rest, **options)
+        said = reply.fields
+        if said["result"]:
+            name, meaning = _result(said["result"])
+            raise LinkError(f"the board refused {message}: {name}: {meaning}", name)
+        return said["tick"]
+
+    def refresh(self):
+        """Ask for the board's state and return its fields."""
+        return self.ask("STATUS").fields
+
+    def wait(self, condition, seconds):
+        """Read until condition() holds; return whether it did within so many seconds of the port's time."""
+        return self._wait_until(condition, seconds, beat=True)
+
+    def close(self):
+        """End the reader and close the port; the board goes silent-host by itself."""
+        self._closed = True
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join(2)
+        self.port.close()
+
+    def _next_sequence(self, message):
+        return next(self._sequences[MESSAGES[message].guarded]) % 256
+
+    def _send(self, frame):
+        self._check()
+        self._last_sent = self.now()
+        with port_watched(self.port):
+            self.port.write(frame)
+
+    def _check(self):
+        if self.broken is not None:
+            raise self.broken
+
+    def _wait_until(self, condition, seconds, beat=False):
+        deadline = self.now() + seconds
+        if not self.lockstep:
+            with self._news:
+                self._news.wait_for(lambda: condition() or self.broken, seconds)
+            self._check()
+            return bool(condition())
+        while not condition():
+            if self.now() >= deadline:
+                return False
+            if beat:
+                self._beat()
+            self._take(read_available(self.port))
+        return True
+
+    def _take(self, data):
+        """Sort what came: replies to whoever waits, states kept, the rest to on_frame."""
+        for frame in self.decoder.feed(data):
+            try:
+                known = frame.fields
+            except ValueError:
+                self.decoder.damaged += 1
+                continue
+            if frame.message == "STATE":
+                self.state = known
+                self._beat_sequence = None if frame.sequence == self._beat_sequence else self._beat_sequence
+            if frame.message in ("SAMPLE", "FAULTED"):
+                self.on_frame(frame)
+            elif self._is_wanted(frame, known):
+                self._reply = frame
+
+    def _is_wanted(self, frame, known):
+        if self._wanted is None or frame.sequence != self._wanted[1]:
+            return False
+        asked = MESSAGES[self._wanted[0]].number
+        return known["request"] == asked if frame.message == "ACK" else frame.message in _ANSWERS.get(self._wanted[0], ())
+
+    def _beat(self):
+        """Say that the host is there, unless a request said so or waits for its reply."""
+        if not self.beating or self.now() - self._last_sent < HEARTBEAT or not self._turn.acquire(blocking=False):
+            return
+        try:
+            self._beat_sequence = self._next_sequence("STATUS")
+            self._send(encode("STATUS", self._beat_sequence))
+        finally:
+            self._turn.release()
+
+    def _read_for_ever(self):
+        while not self._closed:
+            try:
+                data = read_available(self.port)
+                self._beat()
+            except Exception as problem:  # whatever it was, those who wait must hear of it
+                if not self._closed:
+                    self.broken = problem
+                with self._news:
+                    self._news.notify_all()
+                return
+            if data:
+                with self._news:
+                    self._take(data)
+                    self._news.notify_all()
+
+
+#: which message answers which request, where it is not ACK
+_ANSWERS = {"HELLO": ("WELCOME",), "PING": ("PONG",), "STATUS": ("STATE",), "READ": ("BYTES",)}
+
+
+def _result(number):
+    return next(((name, text) for name, (n, text) in RESULTS.items() if n == number), (f"result {number}", "unknown"))

@@ -1,0 +1,55 @@
+"""The first words with a board: is it a paddle, does it speak this version, what did it go through."""
+
+from ..errors import LinkError
+from .messages import RESET_CAUSES, STATES, table_hash
+from .recording import fault_words
+
+#: seconds between two hellos: opening the port has reset many a board, whose bootloader listens first
+AGAIN = 0.2
+
+
+def say_hello(exchange, url, seconds):
+    """Return what the board says of itself, the fields of WELCOME.
+
+    Raises
+    ------
+    LinkError
+        If nothing answers within so many seconds, or in another version.
+    """
+    try:
+        said = exchange.ask("HELLO", exchange.session, patience=AGAIN, tries=max(1, round(seconds / AGAIN))).fields
+    except LinkError:
+        raise LinkError(
+            f"{url}: no paddle answers within {seconds:g} s. Either the board has no hapticlab firmware "
+            "(`hapticlab flash` puts it there) or this is another device: `hapticlab ports` lists what is plugged in."
+        ) from None
+    if said["table"] != table_hash():
+        raise LinkError(
+            f"{url}: the board's firmware {said['major']}.{said['minor']} speaks another version of the messages than "
+            "this package; flash the firmware that came with it: hapticlab flash"
+        )
+    return said
+
+
+def what_happened(exchange, url, reset_cause):
+    """Return sentences about what the board went through before this hello, and clear a standing fault."""
+    told = []
+    if reset_cause in (RESET_CAUSES["BROWN_OUT"][0], RESET_CAUSES["WATCHDOG"][0]):
+        told.append(f"{url}: the board was reset by {next(t for n, t in RESET_CAUSES.values() if n == reset_cause)}")
+    state = exchange.refresh()
+    if state["state"] == STATES["FAULT"]:
+        told.append(f"{url}: a fault stood: {fault_words(state)}")
+        exchange.command("CLEAR")
+    return told
+
+
+def introduction(board, settings, T):
+    """Return a paddle in one line: board, firmware, period, calibration, limit."""
+    name = board["board"].rstrip(b"\0").decode("ascii", "replace")
+    parts = [f"{name} {board['ident']:04X}", f"firmware {board['major']}.{board['minor']}", f"T = {T * 1e3:g} ms"]
+    if settings is None:
+        return ", ".join([*parts, "not calibrated: gives no force (run `hapticlab calibrate`)"])
+    day = str(settings.date)
+    calibrated = "nominal constants, not calibrated" if settings.is_nominal else f"calibrated {day[:4]}-{day[4:6]}-{day[6:]}"
+    parts += [calibrated, f"|F| <= {min(settings.force_max, settings.force_full):.4g} N"]
+    return ", ".join(parts if settings.checked else [*parts, "motor sign not checked: 0.5 N at most"])

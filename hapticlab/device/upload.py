@@ -1,0 +1,40 @@
+"""Programs and settings onto a board, in pieces, whole or not at all."""
+
+import zlib
+
+from .messages import LARGEST_PAYLOAD, SETTINGS_STRUCT, TARGETS
+from .settings import Settings
+
+#: of one piece; the offset takes two bytes
+PIECE = LARGEST_PAYLOAD - 2
+#: a small board writes 300 bytes a second into its store [s]
+STORE_PATIENCE = 6.0
+
+
+def upload(exchange, target, data):
+    """Send bytes to a target, "PROGRAM", "SETTINGS" or "STANDALONE"; the board verifies before it takes them into use.
+
+    Every piece has its place, so that repeats and reorder do no harm; a missing piece fails the CRC-32 of the whole.
+
+    Raises
+    ------
+    LinkError
+        With the board's reason.
+    """
+    number = TARGETS[target]
+    exchange.command("BEGIN", number, len(data))
+    for offset in range(0, len(data), PIECE):
+        exchange.command("DATA", offset, rest=data[offset : offset + PIECE])
+    patience = {} if target == "PROGRAM" else {"patience": STORE_PATIENCE, "tries": 2}
+    exchange.command("COMMIT", number, len(data), zlib.crc32(data), **patience)
+
+
+def read_settings(exchange):
+    """Return the board's Settings, or None where it was never given any."""
+    data = b""
+    while len(data) < SETTINGS_STRUCT.size:
+        reply = exchange.ask("READ", len(data), min(PIECE, SETTINGS_STRUCT.size - len(data))).fields
+        if not reply["rest"]:
+            return None
+        data += reply["rest"]
+    return Settings.from_bytes(data)

@@ -1,0 +1,1 @@
+"""Where pyserial finds the handlers of this package's URLs: protocol_sim for ``sim://``."""

@@ -1,0 +1,128 @@
+"""``sim://``: the firmware's own core on this computer, closed around a simulated paddle, behind a serial port.
+
+``sim://hapkit`` takes the mechanics of a profile; ``sim://hapkit?pace=real`` runs by the clock on the wall. Without a
+pace time is virtual: it passes while somebody reads, as fast as the computer can, so that the same calls give the same run.
+"""
+
+import threading
+import time
+from urllib.parse import parse_qs, urlsplit
+
+from serial import SerialBase
+
+from ...errors import PaddleError, PortError
+from ..handle import Handle
+from ..host_board import HostBoard
+from ..profiles import PROFILES
+from ..settings import nominal, simulated
+from ..simulated import SimulatedPaddle
+
+
+class Serial(SerialBase):
+    """A port of a simulated board; see the module. ``paddle`` may be replaced before the first read."""
+
+    bytes_per_second = float("inf")
+
+    def open(self):
+        self._at, pace = _parts(self.port)
+        if pace not in ("virtual", "real"):
+            raise PaddleError(f"{self.port}: pace={pace}; needs pace=real, or none for virtual time.")
+        self.lockstep = pace == "virtual"
+        self._changed = threading.Condition()
+        self._heard = b""
+        self.is_open = True
+        self.put_on(None)
+
+    def put_on(self, paddle, x=0.0):
+        """Power the board anew, its core closed around this paddle, with the handle at x [m]."""
+        paddle, settings = _mechanics(self._at, paddle)
+        with self._changed:
+            self.settings = settings.to_float32()
+            self.board = HostBoard(self.settings.to_bytes())
+            self.handle = Handle(paddle, x).with_period(self.board.period)
+            self._per_metre = 1 / self.settings.metres_per_count
+        if not self.lockstep and not hasattr(self, "_thread"):
+            self._thread = threading.Thread(target=self._run_by_the_clock, name=self.port, daemon=True)
+            self._thread.start()
+
+    def close(self):
+        self.is_open = False
+
+    def now(self):
+        """Virtual time since power-on [s]."""
+        return self.handle.t
+
+    @property
+    def in_waiting(self):
+        self._require_open()
+        return len(self._heard)
+
+    def read(self, size=1):
+        self._require_open()
+        with self._changed:
+            if self.lockstep:
+                deadline = self.now() + (self.timeout or 0.0)
+                while len(self._heard) < size and self.now() < deadline:
+                    self._tick()
+            else:
+                self._changed.wait_for(lambda: len(self._heard) >= size or not self.is_open, self.timeout)
+            said, self._heard = self._heard[:size], self._heard[size:]
+        return said
+
+    def write(self, data):
+        self._require_open()
+        with self._changed:
+            self.board.receive(bytes(data))
+            self._heard += self.board.transmit()
+            self._changed.notify_all()
+        return len(data)
+
+    def reset_input_buffer(self):
+        self._heard = b""
+
+    def _require_open(self):
+        if not self.is_open:
+            raise PortError(f"{self.port} is closed; connect again", "left")
+
+    def _tick(self):
+        """One tick of the board, and what the handle does until the next."""
+        if abs(self.board.period - self.handle.paddle.T) > 1e-9:
+            self.handle = self.handle.with_period(self.board.period)
+        counts = self.handle.counts()
+        if counts is None:
+            counts = round(self.handle.seen * self._per_metre)
+        step = min(self.handle.paddle.delay, self.handle.paddle.T)
+        duty = self.board.tick(counts, self.handle.t, step)
+        self.handle.step(-self.settings.force_of_duty(duty))  # the motor gives -F (Fig. 23.5)
+        self._heard += self.board.transmit()
+
+    def _run_by_the_clock(self):
+        begun = time.monotonic() - self.now()
+        while self.is_open:
+            with self._changed:
+                while self.is_open and self.now() < time.monotonic() - begun:
+                    self._tick()
+                self._changed.notify_all()
+                self._changed.wait(self.board.period)
+
+    def _reconfigure_port(self):
+        """Nothing of a port's settings matters to a simulation."""
+
+    _update_dtr_state = _update_rts_state = _update_break_state = _reconfigure_port
+
+
+def _parts(url):
+    parts = urlsplit(url)
+    return parts.netloc, parse_qs(parts.query).get("pace", ["virtual"])[0]
+
+
+def _mechanics(at, paddle):
+    """Return the paddle and the settings of its board."""
+    if paddle is not None:
+        return paddle, simulated(paddle)
+    if at == "hapkit":
+        return SimulatedPaddle.from_profile("hapkit"), nominal("hapkit", checked=1)
+    if at in PROFILES:
+        found = SimulatedPaddle.from_profile(at)
+        return found, simulated(found)
+    raise PaddleError(f"sim://{at}: no such paddle; there are {', '.join(f'sim://{name}' for name in PROFILES)}.")
