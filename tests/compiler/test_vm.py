@@ -11,13 +11,13 @@ import pytest
 from encoded import is_sound, operand_positions, sealed, with_word, word_positions
 from random_programs import assert_same_bits, kept_finite, random_program, random_rows
 
-from hapticlab.compiler import vm
+from hapticlab.compiler import native, toolchain, vm
 from hapticlab.compiler.bytecode import HEADER, OPCODES, RESULTS, encode, layout
 from hapticlab.compiler.engine import load
 from hapticlab.compiler.interpreter import Interpreter
 from hapticlab.compiler.ir import Block, Channel, Instruction, Program
 from hapticlab.compiler.trace import Builder
-from hapticlab.errors import EngineMissingError, ProgramError
+from hapticlab.errors import ProgramError
 
 EVERY = tuple(OPCODES)
 WORDS = (8, 16)
@@ -30,7 +30,7 @@ def number(result):
 def verify(data, word_bits, capacity=256):
     """Return what hl_verify says, in memory of exactly the given sizes."""
     memory = (ctypes.c_int32 * max(1, capacity))()
-    return vm.load_library(word_bits).hl_host_verify(bytes(data), len(data), memory, capacity)
+    return vm.machine(word_bits).hl_host_verify(bytes(data), len(data), memory, capacity)
 
 
 def small_program(seed=7):
@@ -69,7 +69,7 @@ def test_switch_and_computed_goto_do_the_same(seed, monkeypatch):
     inputs, parameters = drive(program, seed, 6, 2)
     machine = vm.Vm(program)
     outputs, states = machine.run(6, inputs, parameters)
-    monkeypatch.setattr(machine, "_library", vm.load_library(16, "-DHL_NO_COMPUTED_GOTO"))
+    monkeypatch.setattr(machine, "_library", vm.machine(16, "-DHL_NO_COMPUTED_GOTO"))
     again, end = machine.run(6, inputs, parameters)
     assert_same_bits(outputs, again)
     assert_same_bits(states, end)
@@ -287,8 +287,9 @@ def test_states_of_bool_and_int32_are_carried_in_cycles():
 def compiled(tmp_path, *flags, word_bits=16, target="check"):
     """Compile the checking program; skip where this compiler does not know the flags."""
     path = tmp_path / (target + (".exe" if os.name == "nt" else ""))
-    sources = ("core/vm.c", "core/verify.c", "generated/elementary.c", "boards/host/check.c")
-    command = vm.build_command(vm.c_compiler(), word_bits, path, *flags, sources=sources)
+    firmware = native.firmware_folder()
+    files = (*toolchain.sources(firmware), "boards/host/tools/check.c")
+    command = toolchain.build_command(native.c_compiler(), firmware, word_bits, path, *flags, files=files)
     return path, subprocess.run(command, capture_output=True, text=True)
 
 
@@ -330,64 +331,15 @@ def test_the_sources_compile_without_a_warning(tmp_path, word_bits, dispatch):
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads the names in an ELF object")
 def test_nothing_of_the_c_library_but_the_square_root_is_called(tmp_path):
     path = tmp_path / "vm.o"
-    command = [*vm.c_compiler(), "-c", *vm.FLAGS, "-Wall", "-Werror", "-fno-builtin", "-o", str(path)]
-    includes = [f"-I{vm.firmware_folder() / name}" for name in ("core", "generated")]
+    command = [*native.c_compiler(), "-c", *toolchain.FLAGS, "-Wall", "-Werror", "-fno-builtin", "-o", str(path)]
+    includes = [f"-I{native.firmware_folder() / name}" for name in ("core", "generated")]
     text = ""
     for source in ("core/vm.c", "core/verify.c", "generated/elementary.c"):
-        subprocess.run([*command, *includes, str(vm.firmware_folder() / source)], check=True, capture_output=True)
+        subprocess.run([*command, *includes, str(native.firmware_folder() / source)], check=True, capture_output=True)
         text += path.read_bytes().decode("latin1")
     library = {"sinf", "cosf", "expf", "exp2f", "logf", "atanf", "tanhf", "floorf", "fabsf", "malloc", "memcpy"}
     assert not {name for name in library if f"\0{name}\0" in text}  # the names a linker would look for
     assert "\0sqrtf\0" in text
-
-
-# ---------------------------------------------------------------- building it
-
-
-def test_without_a_compiler_the_error_says_what_to_install(monkeypatch):
-    monkeypatch.setattr(vm.shutil, "which", lambda name: None)
-    monkeypatch.setattr(vm, "find_spec", lambda name: None)
-    with pytest.raises(EngineMissingError, match="needs a C compiler .* pip install ziglang"):
-        vm.c_compiler()
-
-
-def test_without_a_system_compiler_ziglang_is_taken(monkeypatch):
-    monkeypatch.setattr(vm.shutil, "which", lambda name: None)
-    monkeypatch.setattr(vm, "find_spec", lambda name: object())
-    assert vm.c_compiler() == [sys.executable, "-m", "ziglang", "cc"]
-
-
-def test_a_build_that_fails_says_what_the_compiler_said(monkeypatch, tmp_path):
-    monkeypatch.setattr(vm, "_cache_folder", lambda: tmp_path)
-    with pytest.raises(EngineMissingError, match="did not compile"):
-        vm.load_library(16, "-include", "no_such_header.h")
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_the_library_is_built_once_and_kept(monkeypatch, tmp_path):
-    monkeypatch.setattr(vm, "_cache_folder", lambda: tmp_path)
-    first = vm._built_library(8, ())
-    monkeypatch.setattr(vm.subprocess, "run", None)  # a second build would fail
-    assert vm._built_library(8, ()) == first
-    assert [p.name for p in tmp_path.iterdir()] == [first.name]
-
-
-def test_a_cache_that_cannot_be_written_is_an_error_with_a_cure(monkeypatch, tmp_path):
-    (tmp_path / "file").write_text("in the way")
-    monkeypatch.setattr(vm, "_cache_folder", lambda: tmp_path / "file" / "hapticlab")
-    with pytest.raises(EngineMissingError, match="set XDG_CACHE_HOME"):
-        vm._built_library(16, ())
-
-
-def test_the_sources_are_found_in_a_checkout_and_in_an_installed_package(monkeypatch, tmp_path):
-    monkeypatch.setattr(vm, "__file__", str(tmp_path / "hapticlab" / "compiler" / "vm.py"))
-    with pytest.raises(EngineMissingError, match="reinstall hapticlab"):
-        vm.firmware_folder()
-    for folder in (tmp_path / "firmware", tmp_path / "hapticlab" / "firmware"):  # the package's own goes first
-        for source in vm.SOURCES:
-            (folder / source).parent.mkdir(parents=True, exist_ok=True)
-            (folder / source).touch()
-        assert vm.firmware_folder() == folder.resolve()
 
 
 def test_the_machine_says_what_it_refuses():

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from hapticlab.compiler.vm import c_compiler
+from hapticlab.compiler.native import c_compiler
 from hapticlab.device.intelhex import parse_hex
 
 HERE = Path(__file__).parent
