@@ -40,12 +40,20 @@ def refused(url, **settings):
     return caught.value.cause, str(caught.value)
 
 
+def received(port, count):
+    """Read so many bytes, which may come in pieces."""
+    port.timeout, came = 5, b""
+    while len(came) < count and (piece := read_available(port)):
+        came += piece
+    return came
+
+
 def test_bytes_pass_both_ways(line):
     ours, name, _ = line
     with open_port(name, timeout=0) as port:
         assert read_available(port) == b""
         os.write(ours, bytes(range(256)))
-        assert read_available(port) == bytes(range(256))
+        assert received(port, 256) == bytes(range(256))
         port.write(b"\x00\r\n\x11\x13\xff")
         assert os.read(ours, 99) == b"\x00\r\n\x11\x13\xff"
         assert (port.baudrate, port.exclusive) == (500000, True)
@@ -74,10 +82,7 @@ def test_a_socket_is_a_port():
             peer, _ = server.accept()
             with peer:
                 peer.sendall(b"hello")
-                came = b""
-                while len(came) < 5:
-                    came += read_available(port)
-            assert came == b"hello"
+                assert received(port, 5) == b"hello"
         address = f"socket://127.0.0.1:{server.getsockname()[1]}"
     cause, words = refused(address)
     assert cause == "refused" and address in words and "check the address" in words
