@@ -49,11 +49,10 @@ class Library(BuildHookInterface):
 
     def _system_compiler_works(self):
         """A compiler may be there without the headers of its C library: so it is tried."""
-        if not toolchain.system_compiler():
-            return False
+        target, compiler = toolchain.running_target(), toolchain.system_compiler()
         with tempfile.TemporaryDirectory() as folder:
             try:
-                toolchain.build_library(FIRMWARE, folder, toolchain.running_target(), 16)
+                toolchain.build_library(FIRMWARE, folder, target, 16, tried=[compiler] if compiler else [])
             except toolchain.CompileError:
                 return False
         return True

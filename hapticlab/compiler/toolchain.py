@@ -103,8 +103,10 @@ def build_command(compiler, firmware, word_bits, output, *flags, files):
     return [*compiler, *FLAGS, *flags, f"-DHL_WORD_BITS={word_bits}", *includes, *paths, "-o", str(output), *math]
 
 
-def build_library(firmware, folder, target, word_bits, *flags):
+def build_library(firmware, folder, target, word_bits, *flags, tried=None):
     """Compile the library of a target into a folder, stamped with its sources, and return its path.
+
+    The compilers tried are those of :func:`compilers`, or the commands given.
 
     Raises
     ------
@@ -117,7 +119,7 @@ def build_library(firmware, folder, target, word_bits, *flags):
     text = stamp(firmware, word_bits, *flags).decode()
     mark.write_text(f'extern const char hl_sources[];\nconst char hl_sources[] = "{text}";\n', encoding="ascii")
     kind = ("-shared", "-s", *(() if target.startswith("windows") else ("-fPIC",)))
-    for compiler in compilers(target):
+    for compiler in compilers(target) if tried is None else tried:
         files = (*sources(firmware), mark)
         command = build_command(compiler, firmware, word_bits, name, *kind, *flags, files=files)
         # in the folder: a library for macOS remembers the path it was linked as, which is to be the same everywhere
