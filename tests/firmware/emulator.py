@@ -42,7 +42,7 @@ def library():
     shim.uno_new.restype = ctypes.c_void_p
     shim.uno_memory.restype = ctypes.POINTER(ctypes.c_uint8)
     shim.uno_cycle.restype = shim.uno_overruns.restype = ctypes.c_uint64
-    shim.uno_stack.restype = ctypes.c_uint16
+    shim.uno_pc.restype = ctypes.c_uint32
     shim.uno_waiting.restype = shim.uno_read.restype = shim.uno_events.restype = ctypes.c_uint32
     return shim
 
@@ -60,21 +60,26 @@ class Uno:
         MCUSR as the reset leaves it.
     carrier : bool
         Give D5 the edges of its PWM: slower.
+
+    Attributes
+    ----------
+    memory : array of uint8
+        Registers and RAM, live; what is written here goes past the hooks of registers.
     """
 
     def __init__(self, image, *, eeprom=b"", cause=POWER, carrier=False):
         self._shim = library()
         flash = parse_hex(Path(image).read_text(), str(image))
         self._uno = ctypes.c_void_p(self._shim.uno_new(flash, ctypes.c_uint32(len(flash)), int(carrier)))
-        self._memory = np.ctypeslib.as_array(self._shim.uno_memory(self._uno), (RAM_END,))
-        self._memory[RAM_BEGIN:] = PAINT
+        self.memory = np.ctypeslib.as_array(self._shim.uno_memory(self._uno), (RAM_END,))
+        self.memory[RAM_BEGIN:] = PAINT
         self.eeprom = eeprom
         self.reset(cause)
 
     def close(self):
         """Give its memory back."""
         if self._uno:
-            self._memory = None
+            self.memory = None
             self._shim.uno_free(self._uno)
             self._uno = None
 
@@ -95,7 +100,8 @@ class Uno:
     def run_to(self, cycle):
         """Run to a cycle: the first instruction that ends there or behind it."""
         if not self._shim.uno_run(self._uno, ctypes.c_uint64(cycle)):
-            raise RuntimeError(f"the processor stopped at {self.now:.6f} s")
+            at = self._shim.uno_pc(self._uno)
+            raise RuntimeError(f"the processor stopped at address 0x{at:04x} after {self.now:.6f} s")
 
     @property
     def cycle(self):
@@ -111,9 +117,9 @@ class Uno:
         """Put a pin of the ADC at so many counts."""
         self._shim.uno_adc(self._uno, channel, ctypes.c_uint16(int(counts)))
 
-    def pin(self, port, pin, level):
-        """Drive an input pin."""
-        self._shim.uno_pin(self._uno, ctypes.c_char(port.encode()), pin, int(level))
+    def pin(self, pin, level):
+        """Drive D0 to D7."""
+        self._shim.uno_pin(self._uno, pin, int(level))
 
     @property
     def duty(self):
@@ -153,13 +159,9 @@ class Uno:
         """Bytes lost because the receiver's buffer was full."""
         return self._shim.uno_overruns(self._uno)
 
-    def peek(self, address, dtype="uint8"):
-        """A number of its memory."""
-        return self._memory[address : address + np.dtype(dtype).itemsize].view(dtype)[0].item()
-
-    def poke(self, address, value, dtype="uint8"):
-        """Change a number of its memory, past the hooks of registers."""
-        self._memory[address : address + np.dtype(dtype).itemsize].view(dtype)[0] = value
+    def at(self, address, dtype="uint8"):
+        """Memory from an address on as one number or record, live: ``board.at(0x100, "int16")[()] = 5``."""
+        return self.memory[address : address + np.dtype(dtype).itemsize].view(dtype).reshape(())
 
     @property
     def eeprom(self):
@@ -174,7 +176,7 @@ class Uno:
 
     def stack_left(self, end):
         """Bytes between address ``end`` and the deepest the stack has been; memory was painted at the beginning."""
-        used = np.flatnonzero(self._memory[end:] != PAINT)
+        used = np.flatnonzero(self.memory[end:] != PAINT)
         return int(used[0]) if used.size else RAM_END - end
 
     def cost(self, vector):

@@ -4,19 +4,19 @@
 #include <string.h>
 
 struct {
-    uint16_t period_us;    /* written by the test, taken once */
+    /* written by the test; `taken` means back to 0 (at: to 0xFFFF) once it was done */
+    uint16_t period_us; /* taken */
     int16_t duty;
-    uint16_t spin;         /* clocks one tick lasts longer, taken once */
+    uint16_t spin;      /* clocks one tick lasts longer, taken */
     uint8_t echo;
-    uint32_t ticks;        /* read by the test */
-    uint16_t begin, before; /* clock at this tick and the one before */
-    uint16_t shortest, longest, grid;
+    uint16_t at;        /* write `byte` into the store here, taken */
+    uint8_t byte, kept;
+    /* read by the test */
+    uint32_t ticks;
+    uint16_t begin, shortest, longest; /* clock at this tick; distances of ticks */
     uint8_t fault, cause;
     float value;
-    uint16_t at;           /* store: write `byte` here, taken once; then `kept` */
-    uint8_t byte, kept, faulty;
-    uint32_t received, sum;
-    uint16_t refused;
+    uint32_t received;
 } volatile probe;
 
 static volatile uint8_t head, tail;
@@ -37,7 +37,6 @@ void hl_core_tick(hl_core *core)
     const uint16_t begin = board_clock(core), gap = (uint16_t)(begin - probe.begin);
     core->counts = board_counts(core);
     core->ran = 1;
-    probe.before = probe.begin;
     probe.begin = begin;
     if (probe.ticks++) {
         probe.shortest = gap < probe.shortest || probe.ticks == 2 ? gap : probe.shortest;
@@ -56,7 +55,6 @@ void hl_core_byte(hl_core *core, uint8_t byte)
 {
     (void)core;
     probe.received++;
-    probe.sum = probe.sum * 31 + byte;
     if (probe.echo) {
         QUEUED(head) = byte;
         head++;
@@ -77,10 +75,8 @@ void hl_core_poll(hl_core *core)
     }
     while (tail != head) {
         const uint8_t byte = QUEUED(tail);
-        if (!board_send(core, &byte, 1)) {
-            probe.refused++;
+        if (!board_send(core, &byte, 1))
             break;
-        }
         tail++;
     }
     board_alive(core);

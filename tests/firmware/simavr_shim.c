@@ -1,6 +1,6 @@
 /* An Arduino Uno in simavr, in lockstep: for ctypes, see emulator.py. Compiled by the tests, never shipped.
  *
- * What simavr 1.6 does not do, this does: bytes take the UART's true time both ways and overrun its two-byte buffer,
+ * What simavr 1.6 does not do, this does: masked interrupts wait, bytes take the UART's true time both ways and overrun its two-byte buffer,
  * and 1 mV on a pin is one count of the ADC. */
 #include <simavr/avr_adc.h>
 #include <simavr/avr_eeprom.h>
@@ -18,8 +18,8 @@ DEFINE_FIFO(uint8_t, uart_fifo);
 
 enum { QUEUE = 1 << 16, LOG = 1 << 14, VECTORS = 26, RX_BUFFER = 3 /* two bytes, and the shift register */ };
 enum { /* addresses of the ATmega328P's registers */
-    PORTB = 0x25, DDRD = 0x2A, PORTD = 0x2B, TCCR0A = 0x44, TCCR0B = 0x45, OCR0B = 0x48, MCUSR = 0x54, SPL = 0x5D,
-    UCSR0A = 0xC0, UCSR0B = 0xC1, UBRR0L = 0xC4, UBRR0H = 0xC5
+    PORTB = 0x25, DDRD = 0x2A, PORTD = 0x2B, TCCR0A = 0x44, TCCR0B = 0x45, OCR0B = 0x48, MCUSR = 0x54,
+    TIFR1 = 0x36, TIMSK1 = 0x6F, UCSR0A = 0xC0, UCSR0B = 0xC1, UBRR0L = 0xC4, UBRR0H = 0xC5
 };
 
 typedef struct { uint64_t cycle; int32_t value; } event;
@@ -38,6 +38,7 @@ typedef struct {
     cost costs[VECTORS];
     struct vector { struct uno *uno; int number; } vectors[VECTORS];
     int delivering;
+    avr_ioport_external_t driven;          /* pins of port D */
     struct { avr_io_write_t call; void *param; } then[MAX_IOs]; /* simavr's own hooks, behind ours */
 } uno;
 
@@ -111,6 +112,15 @@ static void on_uart(avr_t *avr, avr_io_addr_t address, uint8_t value, void *para
     u->uart->cycles_per_byte = 10u * divider * (avr->data[UCSR0A] & 2 ? 8u : 16u);
 }
 
+/* simavr forgets an interrupt that was flagged while it was masked; the processor takes it when the mask goes. */
+static void on_mask(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    write_through(param, address, value);
+    for (int k = 0; k < avr->interrupts.vector_count && value & avr->data[TIFR1] & 2; k++)
+        if (avr->interrupts.vector[k]->vector == 11) /* timer 1, compare A */
+            avr_raise_interrupt(avr, avr->interrupts.vector[k]);
+}
+
 static void on_sent(avr_irq_t *irq, uint32_t value, void *param)
 {
     uno *u = param;
@@ -163,6 +173,7 @@ static void hook_registers(uno *u, int carrier)
     }
     for (int k = 0; k < 2; k++)
         hook(u, link[k], on_uart, 0);
+    hook(u, TIMSK1, on_mask, 0);
 }
 
 /* carrier: let timer 0 run in simavr, too, so that D5 has edges; the duty needs only its registers, and time. */
@@ -184,6 +195,7 @@ uno *uno_new(const uint8_t *flash, uint32_t size, int carrier)
     avr_irq_register_notify(avr_io_getirq(u->avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_sent, u);
     avr_irq_register_notify(avr_io_getirq(u->avr, AVR_IOCTL_IOPORT_GETIRQ('D'), 5), on_pin, u);
     hook_registers(u, carrier);
+    u->driven.name = 'D';
     for (int k = 1; k < VECTORS; k++) {
         u->vectors[k] = (struct vector){(struct uno *)u, k};
         avr_irq_t *irq = avr_get_interrupt_irq(u->avr, (uint8_t)k);
@@ -231,16 +243,20 @@ int uno_run(uno *u, uint64_t cycle)
 uint64_t uno_cycle(uno *u) { return u->avr->cycle; }
 uint64_t uno_overruns(uno *u) { return u->overruns; }
 uint8_t *uno_memory(uno *u) { return u->avr->data; }
-uint16_t uno_stack(uno *u) { return (uint16_t)(u->avr->data[SPL] | u->avr->data[SPL + 1] << 8); }
+uint32_t uno_pc(uno *u) { return u->avr->pc; }
 
 void uno_adc(uno *u, int channel, uint16_t counts)
 {
     avr_raise_irq(avr_io_getirq(u->avr, AVR_IOCTL_ADC_GETIRQ, channel), counts);
 }
 
-void uno_pin(uno *u, char port, int pin, int level)
+/* Drive a pin of port D, whatever pull-up the firmware gives it. */
+void uno_pin(uno *u, int pin, int level)
 {
-    avr_raise_irq(avr_io_getirq(u->avr, AVR_IOCTL_IOPORT_GETIRQ(port), pin), (uint32_t)level);
+    u->driven.mask |= 1u << pin;
+    u->driven.value = (u->driven.value & ~(1u << pin)) | (level ? 1u << pin : 0u);
+    avr_ioctl(u->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('D'), &u->driven);
+    avr_raise_irq(avr_io_getirq(u->avr, AVR_IOCTL_IOPORT_GETIRQ('D'), pin), (uint32_t)level);
 }
 
 void uno_eeprom(uno *u, int write, uint8_t *bytes, uint32_t size)

@@ -66,7 +66,7 @@ void board_period(hl_core *core, uint16_t us)
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
     {
         period = (uint16_t)(us * CLOCKS_PER_US);
-        OCR1A = (uint16_t)(TCNT1 + period) | 1;
+        OCR1A = (uint16_t)(TCNT1 + (ticking ? 0 : period)) | 1; /* after a tick, next_tick goes on from here */
         TIFR1 = _BV(OCF1A);
     }
 }
@@ -87,9 +87,10 @@ void board_unlock(hl_core *core)
 /* The next point of the grid that is still to come. */
 static void next_tick(void)
 {
-    uint16_t here = OCR1A, passed = (uint16_t)(TCNT1 - here + SOONEST), step = period;
+    uint16_t here = OCR1A, passed = (uint16_t)(TCNT1 - here + SOONEST);
+    uint32_t step = period;
     while (step <= passed)
-        step = (uint16_t)(step + period);
+        step += period;
     OCR1A = (uint16_t)(here + step);
     TIFR1 = _BV(OCF1A);
 }

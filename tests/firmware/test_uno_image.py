@@ -1,0 +1,97 @@
+"""The whole image of the Uno under emulation, closed around a paddle, with the package on the other end of the link."""
+
+import numpy as np
+import pytest
+import serial
+from build_image import RAM, build, sizes, symbols
+from closed_loop import ClosedLoop, PaddleHandle
+from emulator import TIMER1_COMPA, USART_RX, Uno, missing
+from five_scenes import SCENES, compiled
+from uno_port import offer
+
+import hapticlab as hl
+from hapticlab.device.board import SerialPaddle
+from hapticlab.device.hand import Hand
+from hapticlab.device.settings import nominal
+
+pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
+
+STACK_SPARE = 100  # bytes never touched, in the worst of the runs below
+FITS = SCENES[:4]  # the double pendulum's program is larger than the arena
+
+
+@pytest.fixture(scope="module")
+def image(tmp_path_factory):
+    return build("uno", tmp_path_factory.mktemp("image"))
+
+
+@pytest.fixture
+def connect(image):
+    """Connect to a board around a handle that a hand holds and pushes."""
+    open_paddles = []
+
+    def connect(T=1e-3, **settings):
+        kept = nominal("hapkit", **{"checked": 1, "date": 20261120, "ident": 0x3F2A, **settings})
+        paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3, hand=Hand(m=0.1, b=2, k=50, push=1.0))
+        board = Uno(image[1], eeprom=kept.to_bytes())
+        loop = ClosedLoop.of(kept, board, PaddleHandle(paddle))
+        connected = SerialPaddle(offer("board", loop), T=T)
+        open_paddles.append((connected, board))
+        return connected, loop
+
+    yield connect
+    for paddle, board in open_paddles:
+        paddle.close()
+        board.close()
+
+
+def test_the_port_is_pyserials(image):
+    with Uno(image[1]) as board:
+        url = offer("bare", ClosedLoop.of(nominal("hapkit"), board, PaddleHandle(hl.SimulatedPaddle(m=1, b=1, T=1e-3))))
+        with serial.serial_for_url(url, baudrate=500000, timeout=0.05) as port:
+            assert port.lockstep and port.is_open and port.in_waiting == 0
+            begin = port.now()
+            assert port.read(5) == b"" and port.now() - begin == pytest.approx(0.05, abs=1e-6)
+            assert port.read(0) == b"" and port.now() - begin == pytest.approx(0.05, abs=1e-6)
+        with pytest.raises(serial.PortNotOpenError):
+            port.read(1)
+        with pytest.raises(serial.SerialException, match="no board is offered as 'nobody'"):
+            serial.serial_for_url("uno://nobody", baudrate=500000)
+
+
+def test_a_ping_takes_less_than_a_millisecond(connect):
+    paddle, loop = connect()
+    times = []
+    for k in range(101):
+        loop.run(1e-5 * k)  # at every phase of the tick
+        begin = loop.now
+        paddle.exchange.ask("PING", k)
+        times.append(loop.now - begin)
+    print(f"ping: median {np.median(times) * 1e3:.2f} ms, worst {max(times) * 1e3:.2f} ms")
+    assert np.median(times) < 1e-3
+
+
+def test_a_kilohertz_of_telemetry_without_loss(connect):
+    paddle, loop = connect()
+    paddle.home(at=0.0)
+    log = paddle.run(compiled(SCENES[0]), duration=1.0, every=1, progress=False)
+    assert log.fault is None and len(log.t) == 1000
+    assert loop.board.overruns == 0
+    assert np.abs(np.diff(log.t) - 1e-3).max() < 1e-9, "a sample is missing"
+
+
+@pytest.mark.parametrize("make", FITS, ids=lambda make: make.__name__)
+def test_the_stack_has_room(connect, image, make):
+    """Every path of the link and the tick at once: the painted memory between variables and stack is never touched."""
+    T = 1e-3 if make in SCENES[:2] else 2e-3
+    paddle, loop = connect(T=T)
+    paddle.home(at=0.0)
+    log = paddle.run(compiled(make, T), duration=0.25, progress=False)
+    assert log.fault is None and len(log.t) == round(0.25 / T)
+    flash, ram = sizes(image[0])
+    spare = loop.board.stack_left(symbols(image[0])["_end"] - 0x800000 + 4)
+    print(f"{make.__name__}: flash {flash}, static RAM {ram}, stack {RAM - ram - spare} bytes, {spare} never touched")
+    for vector, name in ((TIMER1_COMPA, "tick"), (USART_RX, "byte received")):
+        count, mean, worst = loop.board.cost(vector)
+        print(f"  {name}: {count} times, mean {mean:.0f}, worst {worst} cycles")
+    assert spare >= STACK_SPARE
