@@ -164,6 +164,7 @@ def _write_and_verify(port, content, progress):
     """Write the pages but the first, compare them, and only then let the board have a beginning."""
     first, *rest = [(at, content[at : at + PAGE].ljust(PAGE, b"\xff")) for at in range(0, len(content), PAGE)]
     _ask(port, ENTER)
+    at = 0
     try:
         _write(port, 0, STAND_STILL)
         with progress_bar(2 * PAGE * (1 + len(rest)), progress, unit="B") as bar:
@@ -174,16 +175,19 @@ def _write_and_verify(port, content, progress):
                 for at, page in pages:
                     _verify(port, at, page)
                     bar.update(PAGE)
-        _ask(port, LEAVE)
     except VerificationError:
         _write(port, 0, STAND_STILL)
         raise
     except PortError as problem:
+        # the 20 ms in which the first page is erased and not yet written are the only ones without STAND_STILL
+        state = "stands still with its motor off" if at else "has no beginning: switch its motor's supply off"
         raise PortError(
-            f"{problem}. The firmware that was on the board is gone and the new one not complete; the board stands "
-            "still with its motor off until it is flashed again",
+            f"{problem}. The firmware that was on the board is gone and the new one not complete; the board {state}. "
+            "Flash it again",
             problem.cause,
         ) from problem
+    with suppress(PortError):  # all is compared; unasked, the bootloader starts it a second later
+        _ask(port, LEAVE)
 
 
 def _write(port, at, page):
@@ -210,7 +214,8 @@ def _ask(port, command, length=0):
     if len(answer) < length + 2 or answer[:1] != IN_SYNC or answer[-1:] != OK:
         got = answer.hex(" ") or "nothing"
         raise PortError(
-            f"{port.port}: the bootloader answered {command[:1]!r} with {got[:60]}, needs 14, {length} bytes, 10. Flash it again",
+            f"{port.port}: the bootloader stopped making sense: it answered {command[:1]!r} with {got[:60]}, "
+            f"needs 14, {length} bytes, 10. Flash it again",
             "silent",
         )
     return answer[1:-1]

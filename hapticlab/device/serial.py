@@ -134,7 +134,7 @@ def port_watched(port):
                 "silent",
             ) from problem
         raise PortError(
-            f"{port.port}: the device left during use ({problem}). Its firmware stops the motor by itself; "
-            "check the cable and the supply, plug it in again, then connect again",
+            f"{port.port}: the device left during use ({problem}). Check its cable and supply, plug it in again, "
+            "then connect again",
             "left",
         ) from problem

