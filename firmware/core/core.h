@@ -22,6 +22,7 @@ typedef struct {
     union {
         uint8_t bytes[HL_ARENA_BYTES];
         hl_slot slots[HL_ARENA_BYTES / 4];
+        hl_settings settings; /* an upload of them passes through here too */
     } arena;
     hl_program program;
     hl_slot *registers;

@@ -65,7 +65,7 @@ void hl_handle_watch(hl_core *core)
     core->homed = 1;
 }
 
-float hl_handle_position(const hl_core *core)
+float hl_handle_position(const hl_core *core, int32_t counts)
 {
-    return (float)(core->counts - core->origin) * core->settings.metres_per_count;
+    return (float)(counts - core->origin) * core->settings.metres_per_count;
 }

@@ -45,18 +45,21 @@ static void finish(hl_core *core, uint8_t message, uint8_t sequence, uint8_t cou
 
 static void receive(hl_core *core)
 {
-    uint8_t reply = 0;
-    const uint8_t length = hl_wire_decode(core->rx, core->rx_count);
     const uint8_t *frame = core->rx + 1;
+    const uint8_t length = hl_wire_decode(core->rx, core->rx_count);
+    const uint8_t sequence = frame[1];
+    uint8_t reply = 0, count = 0;
     if (length >= 2 && frame[0] >> 5 == HL_PROTOCOL) {
         core->heard = 1;
-        const uint8_t count = hl_answer(core, frame, (uint8_t)(length - 2), core->tx + 3, &reply);
-        finish(core, reply, frame[1], count);
+        count = hl_answer(core, frame, (uint8_t)(length - 2), core->tx + 3, &reply);
     } else {
         core->damaged++;
     }
-    core->rx_count = 0;
+    core->rx_count = 0; /* before the reply leaves: the host answers it at once, a tick may come first */
     core->rx_ready = 0;
+    if (reply) {
+        finish(core, reply, sequence, count);
+    }
 }
 
 static void send_fault(hl_core *core)

@@ -105,7 +105,7 @@ static void watch_overruns(hl_core *core)
         hl_core_fault(core, HL_FAULT_OVERRUN, (float)core->timing.step_last / (float)core->period_clocks);
     }
     if (--core->second == 0) {
-        core->second = (uint16_t)(1000000u / core->period_us);
+        core->second = (uint16_t)(UINT32_C(1000000) / core->period_us);
         core->late_second = 0;
     }
 }
@@ -134,7 +134,7 @@ static void run(hl_core *core, uint16_t begin, int32_t before)
 {
     hl_slot outputs[HL_CHANNELS];
     const uint16_t periods = measure(core, begin);
-    const float x = hl_handle_position(core);
+    const float x = hl_handle_position(core, core->counts);
     core->tick += periods;
     core->v = core->first ? 0.0f : (x - core->x) * core->rate;
     core->x = x;
@@ -171,7 +171,7 @@ static void await_standalone(hl_core *core)
         core->rested = 0;
         return;
     }
-    if (++core->rested > 1000000u / core->period_us) {
+    if (++core->rested > UINT32_C(1000000) / core->period_us) {
         core->rested = 0;
         hl_place_start(core, core->active, 1, 0, core->settings.force_max);
     }

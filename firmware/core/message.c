@@ -44,27 +44,33 @@ static uint8_t flags_of(const hl_core *core)
 
 static uint8_t state_of(hl_core *core, uint8_t *to)
 {
-    board_lock(core); /* numbers of one tick, not of two */
-    const hl_timing *t = &core->timing;
+    /* numbers of one tick, not of two; the tick waits for the copies alone, never for arithmetic */
+    board_lock(core);
+    const hl_timing t = core->timing;
+    const uint32_t tick = core->tick;
+    const int32_t counts = core->counts;
+    const float force = core->force, heat = core->heat;
+    const uint16_t lost = core->lost;
+    const uint8_t state = core->state;
+    board_unlock(core);
     const float stands = core->settings.force_continuous * core->settings.force_continuous;
     hl_put32(to + HL_AT_STATE_SESSION, core->session);
-    to[HL_AT_STATE_STATE] = core->state;
-    to[HL_AT_STATE_FAULT] = core->state == HL_STATE_FAULT ? core->fault : HL_FAULT_NONE;
+    to[HL_AT_STATE_STATE] = state;
+    to[HL_AT_STATE_FAULT] = state == HL_STATE_FAULT ? core->fault : HL_FAULT_NONE;
     to[HL_AT_STATE_FLAGS] = flags_of(core);
-    hl_put32(to + HL_AT_STATE_TICK, core->tick);
-    hl_put32(to + HL_AT_STATE_COUNTS, (uint32_t)core->counts);
-    hl_putf(to + HL_AT_STATE_X, hl_handle_position(core));
-    hl_putf(to + HL_AT_STATE_FORCE, core->state == HL_STATE_RUN ? core->force : 0.0f);
-    hl_putf(to + HL_AT_STATE_HEAT, core->heat / stands);
-    hl_put16(to + HL_AT_STATE_PERIOD_MIN, t->period_min);
-    hl_put16(to + HL_AT_STATE_PERIOD_MAX, t->period_max);
-    hl_put16(to + HL_AT_STATE_STEP_LAST, t->step_last);
-    hl_put16(to + HL_AT_STATE_STEP_WORST, t->step_worst);
-    hl_put32(to + HL_AT_STATE_STEP_SUM, t->step_sum);
-    hl_put16(to + HL_AT_STATE_OVERRUNS, t->overruns);
-    hl_put16(to + HL_AT_STATE_LOST, core->lost);
+    hl_put32(to + HL_AT_STATE_TICK, tick);
+    hl_put32(to + HL_AT_STATE_COUNTS, (uint32_t)counts);
+    hl_putf(to + HL_AT_STATE_X, hl_handle_position(core, counts));
+    hl_putf(to + HL_AT_STATE_FORCE, state == HL_STATE_RUN ? force : 0.0f);
+    hl_putf(to + HL_AT_STATE_HEAT, heat / stands);
+    hl_put16(to + HL_AT_STATE_PERIOD_MIN, t.period_min);
+    hl_put16(to + HL_AT_STATE_PERIOD_MAX, t.period_max);
+    hl_put16(to + HL_AT_STATE_STEP_LAST, t.step_last);
+    hl_put16(to + HL_AT_STATE_STEP_WORST, t.step_worst);
+    hl_put32(to + HL_AT_STATE_STEP_SUM, t.step_sum);
+    hl_put16(to + HL_AT_STATE_OVERRUNS, t.overruns);
+    hl_put16(to + HL_AT_STATE_LOST, lost);
     hl_put16(to + HL_AT_STATE_DAMAGED, core->damaged);
-    board_unlock(core);
     return HL_AT_STATE_DAMAGED + 2;
 }
 
@@ -115,12 +121,11 @@ static uint8_t data(hl_core *core, const uint8_t *payload, uint8_t count)
 
 static uint8_t commit_settings(hl_core *core, const hl_place *place, uint16_t size)
 {
-    hl_settings settings;
-    if (size != sizeof settings) {
+    const hl_settings *settings = &place->arena.settings;
+    if (size != sizeof *settings) {
         return HL_RESULT_LENGTH;
     }
-    memcpy(&settings, place->arena.bytes, sizeof settings);
-    return hl_settings_valid(&settings) ? hl_settings_save(core, &settings) : (uint8_t)HL_RESULT_RANGE;
+    return hl_settings_valid(settings) ? hl_settings_save(core, settings) : (uint8_t)HL_RESULT_RANGE;
 }
 
 /* Take an upload into use: whole, undamaged and verified, or not at all. */

@@ -18,7 +18,7 @@ void hl_handle_limits(hl_core *core);
 void hl_handle_place(hl_core *core, float position);
 void hl_handle_lose(hl_core *core);
 void hl_handle_watch(hl_core *core);
-float hl_handle_position(const hl_core *core);
+float hl_handle_position(const hl_core *core, int32_t counts); /* [m] */
 
 /* place.c: programs */
 uint8_t hl_place_verify(hl_place *place, uint16_t size);

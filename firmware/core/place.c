@@ -73,8 +73,8 @@ static void set_period(hl_core *core, uint16_t us)
     core->period_us = us;
     core->period_clocks = (uint16_t)((uint32_t)us * (HL_CLOCK_HZ / 1000000u));
     core->rate = 1e6f / (float)us;
-    core->silence = (uint16_t)(HL_HOST_SILENCE_MS * 1000u / us);
-    core->second = (uint16_t)(1000000u / us);
+    core->silence = (uint16_t)(HL_HOST_SILENCE_MS * UINT32_C(1000) / us);
+    core->second = (uint16_t)(UINT32_C(1000000) / us);
     core->heat_gain = (float)us * 1e-6f / core->settings.heating_time;
     hl_handle_limits(core);
     board_period(core, us);

@@ -16,8 +16,8 @@ from .wire import Decoder, encode
 
 #: seconds; four heartbeats fit into the silence that a board takes for the host's end
 HEARTBEAT = HOST_SILENCE_MS / 4000
-#: seconds until a request is sent again, and how often. A board answers within a few periods.
-PATIENCE, TRIES = 0.15, 6
+#: seconds until a request is sent again, soon enough to break no silence, and how often. A board answers within 2 ms.
+PATIENCE, TRIES = 0.04, 25
 
 
 class Exchange:
