@@ -7,4 +7,5 @@ FIRMWARE = Path(__file__).resolve().parents[2] / "firmware"
 _SPEC = importlib.util.spec_from_file_location("build_image_of_firmware", FIRMWARE / "build.py")
 build_image = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(build_image)
-build, symbols, sizes, RAM = build_image.build, build_image.symbols, build_image.sizes, build_image.RAM
+build, symbols, sizes, tool = build_image.build, build_image.symbols, build_image.sizes, build_image.tool
+FLASH, RAM = build_image.FLASH, build_image.RAM

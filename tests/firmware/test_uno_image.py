@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 import serial
-from build_image import RAM, build, sizes, symbols
+from build_image import FLASH, RAM, build, sizes
 from closed_loop import ClosedLoop, PaddleHandle
-from emulator import TIMER1_COMPA, USART_RX, Uno, missing
+from emulator import RAM_BEGIN, TIMER1_COMPA, USART_RX, Uno, missing
 from five_scenes import SCENES, compiled
+from stack_bound import StackBound
 from uno_port import offer
 
 import hapticlab as hl
@@ -16,7 +17,7 @@ from hapticlab.device.settings import nominal
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
-STACK_SPARE = 100  # bytes never touched, in the worst of the runs below
+GUARD = 4  # bytes of board_alive's mark between variables and stack
 FITS = SCENES[:4]  # the double pendulum's program is larger than the arena
 
 
@@ -80,18 +81,28 @@ def test_a_kilohertz_of_telemetry_without_loss(connect):
     assert np.abs(np.diff(log.t) - 1e-3).max() < 1e-9, "a sample is missing"
 
 
+def test_the_stack_fits(image):
+    """The deepest chains of calls of main loop, tick and link at the same moment end above the guard."""
+    bound, (flash, ram) = StackBound(image[0]), sizes(image[0])
+    print(f"flash {flash} of {FLASH}, static RAM {ram}, stack {bound.image()} at most, of {RAM} bytes")
+    for name, meaning in (("main", "main loop"), ("__vector_11", "tick"), ("__vector_18", "byte received")):
+        depth, chain = bound.of(name)
+        print(f"  {meaning}: {depth} bytes: {' > '.join(chain)}")
+    assert flash <= FLASH
+    assert ram + GUARD + bound.image() <= RAM
+
+
 @pytest.mark.parametrize("make", FITS, ids=lambda make: make.__name__)
-def test_the_stack_has_room(connect, image, make):
-    """Every path of the link and the tick at once: the painted memory between variables and stack is never touched."""
+def test_the_stack_keeps_its_bound(connect, image, make):
     T = 1e-3 if make in SCENES[:2] else 2e-3
     paddle, loop = connect(T=T)
     paddle.home(at=0.0)
     log = paddle.run(compiled(make, T), duration=0.25, progress=False)
     assert log.fault is None and len(log.t) == round(0.25 / T)
-    flash, ram = sizes(image[0])
-    spare = loop.board.stack_left(symbols(image[0])["_end"] - 0x800000 + 4)
-    print(f"{make.__name__}: flash {flash}, static RAM {ram}, stack {RAM - ram - spare} bytes, {spare} never touched")
+    end = sizes(image[0])[1] + GUARD
+    used = RAM - end - loop.board.stack_left(RAM_BEGIN + end)
+    print(f"{make.__name__}: {used} bytes of stack used")
     for vector, name in ((TIMER1_COMPA, "tick"), (USART_RX, "byte received")):
         count, mean, worst = loop.board.cost(vector)
         print(f"  {name}: {count} times, mean {mean:.0f}, worst {worst} cycles")
-    assert spare >= STACK_SPARE
+    assert 100 < used <= StackBound(image[0]).image()

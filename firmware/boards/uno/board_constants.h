@@ -4,7 +4,7 @@
 
 #define HL_BOARD_NAME "uno"
 #define HL_WORD_BITS 8
-#define HL_ARENA_BYTES 928
+#define HL_ARENA_BYTES 848 /* the stack takes what is left: test_uno_image.py knows how much it may need */
 #define HL_SLOTS 1
 #define HL_CHANNELS 8
 #define HL_RING 4
