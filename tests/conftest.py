@@ -8,6 +8,10 @@ IN_CI = os.environ.get("CI", "").lower() in ("1", "true", "yes")
 ALLOWED = os.environ.get("HAPTICLAB_ALLOWED_SKIP", "")
 
 
+def pytest_addoption(parser):
+    parser.addoption("--port", help="run the contract of a paddle on a real board at this port, with a person beside it")
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item, call):
     report = yield

@@ -6,9 +6,9 @@
 #include <stdint.h>
 
 #define HL_PROTOCOL 1
-#define HL_PROTOCOL_HASH 0x753c0f00UL
+#define HL_PROTOCOL_HASH 0x4db1f176UL
 #define HL_SETTINGS_HASH 0xe1d4ada6UL
-#define HL_LARGEST_PAYLOAD 64
+#define HL_LARGEST_PAYLOAD 48
 #define HL_HOST_SILENCE_MS 100
 #define HL_UNCHECKED_FORCE_N 0.5f
 #define HL_OVERRUNS_IN_A_ROW 4

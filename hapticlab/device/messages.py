@@ -22,7 +22,7 @@ from ..compiler.bytecode import table_hash as machine_hash
 
 PROTOCOL = 1
 #: of COBS and CRC together, more than any message needs
-LARGEST_PAYLOAD = 64
+LARGEST_PAYLOAD = 48
 
 
 @dataclass(frozen=True)

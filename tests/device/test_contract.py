@@ -1,9 +1,16 @@
-"""What every paddle must do, simulated or real. A board joins by one more line in PADDLES."""
+"""What every paddle must do: simulated, the firmware's core behind sim://, the emulated Uno, and a real board.
+
+A person with a board runs it there: ``pytest tests/device/test_contract.py --port COM3``, the handle led to both stops
+when asked.
+"""
 
 import numpy as np
 import pytest
 import sympy as sp
+from emulated import emulated_uno
+from emulator import missing
 
+from hapticlab.device.connect import connect
 from hapticlab.device.hand import Hand
 from hapticlab.device.paddle import Paddle
 from hapticlab.device.simulated import SimulatedPaddle
@@ -20,21 +27,39 @@ PADDLES = {
     "late": lambda: SimulatedPaddle(m=0.05, b=0.1, T=1e-3, delay=1.3e-3, hand=HAND),
     "everything": lambda: SimulatedPaddle.from_profile("hapkit", delay=4e-4, coulomb=0.05, hand=HAND, noise=1e-5),
 }
+#: the same mechanics behind the whole protocol
+BEHIND_A_PORT = ("pushed", "encoder", "late", "everything")
 k, x_o = parameters("k x_o", units="N/m m")
 z = coordinate("z", unit="m")
 WALL = Scene(force=when(x(n) >= x_o, k * (x(n) - x_o)), name="wall")
 
 
-@pytest.fixture(params=PADDLES)
+@pytest.fixture(params=[*PADDLES, *(f"sim:// {name}" for name in BEHIND_A_PORT), "emulated Uno"])
 def paddle(request):
-    return PADDLES[request.param]()
+    url = request.config.getoption("--port")
+    if url:  # a person's board is asked in the place of the first, and the others are left alone
+        if request.param != "ideal":
+            pytest.skip("a board is asked instead: --port")
+        with connect(url) as board:
+            yield board
+    elif request.param == "emulated Uno":
+        if missing():
+            pytest.skip(missing())
+        with emulated_uno(hand=HAND) as board:
+            yield board
+    elif request.param.startswith("sim://"):
+        mechanics = PADDLES[request.param.split()[1]]()
+        with connect("sim://hapkit", paddle=mechanics, T=mechanics.T) as board:
+            yield board
+    else:
+        yield PADDLES[request.param]()
 
 
 def test_it_is_a_paddle_and_says_what_it_is(paddle):
     assert isinstance(paddle, Paddle)
     assert np.isfinite(paddle.T) and paddle.T > 0
     assert paddle.velocity in ("measured", "backward_difference")
-    assert f"T = {paddle.T:g} s" in str(paddle)
+    assert f"T = {paddle.T:g} s" in str(paddle) or f"T = {paddle.T * 1e3:g} ms" in str(paddle)
 
 
 def test_a_run_returns_one_row_a_sample(paddle):
