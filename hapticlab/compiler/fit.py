@@ -1,0 +1,169 @@
+"""Whether a scene fits a board's period and memory, and what would: a cheaper method, hold, law, or a slower rate."""
+
+import inspect
+
+from ..errors import HapticlabError, ProgramLimitError
+from ..scene.laws import wall
+from ..scene.scene import Scene
+from ..scene.taps import TAPS
+from .cost import board_named, cost
+from .lower import compile
+from .methods import METHODS
+
+#: periods that are offered [s]: rates of 2000, 1000, 800, 500, 400, 250, 200, 125 and 100 Hz
+PERIODS = (0.5e-3, 1e-3, 1.25e-3, 2e-3, 2.5e-3, 4e-3, 5e-3, 8e-3, 10e-3)
+#: alternatives named in a refusal
+MOST_NAMED = 3
+
+
+def fit(scene, board="uno", *, every=1, promise=False, **options):
+    """Return the cost of a scene or a program on a board, or refuse it and name what would fit.
+
+    Parameters
+    ----------
+    scene : Scene or Program
+        A program can only be offered a slower rate; of a scene the alternatives are compiled, when it does not fit.
+    board : str
+        See :func:`~hapticlab.compiler.cost.cost`.
+    every : int
+        Ticks per telemetry sample.
+    promise : bool
+        Ask for the bound that holds for any operands, not for the typical time and its error of 10 %.
+    **options
+        Of :func:`hapticlab.compile`: T, method, substeps, hold, live, velocity.
+
+    Returns
+    -------
+    Cost
+        Its ``program`` is ready to send.
+
+    Raises
+    ------
+    ProgramLimitError
+        With the share of the period it would take, and what fits.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> from hapticlab.compiler.fit import fit
+    >>> fit(hl.wall()(k=150, x_o=0.01), T=1e-3).fits
+    True
+    """
+    is_scene = isinstance(scene, Scene)
+    taken = cost(compile(scene, **options) if is_scene else scene, board, every=every)
+    if taken.promised if promise else taken.fits:
+        return taken
+    offers = list(_offers(scene, taken, promise, every, options)) if is_scene else [_slower(taken, promise)]
+    offers = [o for o in offers if o][:MOST_NAMED]
+    cure = "; fits " + ", or ".join(offers) if offers else "; simplify the scene: nothing cheaper was found that fits"
+    raise ProgramLimitError(_what(taken, promise) + cure)
+
+
+def _what(taken, promise):
+    """Say what a refused program takes."""
+    method = taken.program.facts.get("method")
+    name = f"{taken.name} with {method}" if method else taken.name
+    if taken.memory_problem:
+        return f"{name}: {taken.memory_problem}"
+    return f"{name}: {taken.in_words(promise)}"
+
+
+def _slower(taken, promise):
+    """Return a rate at which the same program fits, in words, or None."""
+    if taken.memory_problem:
+        return None
+    T = _period(taken, promise)
+    return T and f"at T = {T:g} s"
+
+
+def _period(taken, promise):
+    """Return the first period offered that is long enough, or None."""
+    long_enough = (T for T in PERIODS if max(taken.T, taken.T_needed(promise)) <= T <= taken.board.T_max)
+    return next(long_enough, None)
+
+
+def _offers(scene, taken, promise, every, options):
+    """Yield what fits, in words: at the same rate what changes the motion least, then slower rates, fastest first."""
+    same, slower = [], []
+    for words, other, changed in _cheaper(scene, options):
+        try:
+            found = cost(compile(other, **changed), taken.board, every=every)
+            T = taken.T if (found.promised if promise else found.fits) else _period(found, promise)
+            if found.memory_problem or T is None:
+                continue
+            if T != found.T and not _fits_at(T, other, changed, taken.board, every, promise):
+                continue
+        except HapticlabError:
+            continue
+        if T == taken.T:
+            same.append(words)
+        elif not words:
+            slower.append((T, 0, f"at T = {T:g} s"))
+        else:
+            slower.append((T, 1, f"{words} at T = {T:g} s"))
+    yield from same
+    rates = set()
+    for T, _, words in sorted(slower):
+        if T not in rates:
+            rates.add(T)
+            yield words
+
+
+def _fits_at(T, scene, options, board, every, promise):
+    found = cost(compile(scene, **{**options, "T": T}), board, every=every)
+    return found.promised if promise else found.fits
+
+
+def _cheaper(scene, options):
+    """Yield (words, scene, options) of cheaper ways to the same force, the most faithful first."""
+    yield "", scene, options
+    defaults = {n: p.default for n, p in inspect.signature(compile).parameters.items()}
+    used = {**defaults, **options}
+    if used["substeps"] > 1:
+        yield "with substeps=1", scene, {**options, "substeps": 1}
+    bound = set(scene.parameters) <= set(scene.values)
+    if used["live"] is None and bound and scene.parameters:
+        yield "with live='' (parameters fixed)", scene, {**options, "live": ()}
+    now = METHODS.get(used["method"])
+    if scene.eom and now:
+        below = [m for m in METHODS.values() if m.evaluations < now.evaluations and m.name != "euler"]
+        for m in sorted(below, key=lambda m: -m.order):
+            yield f"with method={m.name!r}", scene, {**options, "method": m.name}
+            if bound and used["live"] is None:
+                yield (
+                    f"with method={m.name!r}, live=''", scene, {**options, "method": m.name, "live": ()},
+                )  # fmt: skip
+        if used["hold"] != "zoh":
+            yield "with hold='zoh'", scene, {**options, "hold": "zoh"}
+    for law in _cheaper_laws(scene):
+        yield f"with law={law!r}", wall(law)(**scene.values), options
+
+
+def _cheaper_laws(scene):
+    """Yield the laws of walls that need fewer past samples, where the scene is one of :func:`hapticlab.wall`."""
+    for law, taps in TAPS.items():
+        if scene.name == f"{law} wall" and scene.force == wall(law).force:
+            yield from sorted((o for o in TAPS if len(TAPS[o]) < len(taps)), key=lambda o: -len(TAPS[o]))
+
+
+def table(scenes, board="uno", periods=(1e-3, 2e-3)):
+    """Return a table of what fits, as text: one line a scene, one column a period.
+
+    Parameters
+    ----------
+    scenes : iterable of (Scene, dict)
+        Each with its options of :func:`hapticlab.compile`.
+    """
+    given = board_named(board)
+    lines = [f"{given.name:<30} {'instr.':>6} {'typical':>8} {'bound':>8} {'bytes':>6}" + _heads(periods)]
+    for scene, options in scenes:
+        costs = [cost(compile(scene, **{**options, "T": T}), given) for T in periods]
+        c = costs[0]
+        answers = [("promised" if c.promised else "yes" if c.fits else "no") + f" {c.share:.0%}" for c in costs]
+        line = f"{c.name:<30} {c.instructions:>6} {c.typical:>8} {c.bound:>8} {c.arena:>6}"
+        lines.append(line + "".join(f"{a:>16}" for a in answers))
+    return "\n".join(lines)
+
+
+def _heads(periods):
+    return "".join(f"{f'{1 / T:g} Hz':>16}" for T in periods)

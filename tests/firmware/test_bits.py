@@ -1,0 +1,123 @@
+"""Bits of the cross-compiled machine on the Uno and on Cortex-M, against NumPy's float32."""
+
+import bare
+import cortex
+import numpy as np
+import pytest
+from bare import Avr, Bench
+from cortex import PROCESSORS, Cortex
+from measure_costs import awkward_bits
+from test_golden import GOLDEN, NAMES, array, program_of
+
+from hapticlab.compiler.interpreter import Interpreter
+from hapticlab.compiler.ir import OPERATIONS, Block, Channel, Instruction, Program
+
+BOARDS = ("uno", *PROCESSORS)
+NUMPY = {
+    "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide, "sqrt": np.sqrt, "floor": np.floor,
+    "neg": np.negative, "abs": np.abs, "lt": np.less, "le": np.less_equal, "eq": np.equal,
+}  # fmt: skip
+ELEMENTARY = ("sin", "cos", "exp", "log", "atan", "tanh", "exp2i", "exponent")
+SMALLEST_NORMAL = np.finfo(np.float32).smallest_normal
+
+
+@pytest.fixture(scope="module", params=BOARDS)
+def processor(request):
+    reason = bare.missing() if request.param == "uno" else cortex.missing()
+    if reason:
+        pytest.skip(reason)
+    return Avr() if request.param == "uno" else Cortex(request.param, counting=False)
+
+
+def all_at_once(operations):
+    """Return a program whose outputs are the operations on two inputs."""
+    inputs = Channel("a"), Channel("b")
+    code = [Instruction("input", (), "f32", index=k) for k in range(2)]
+    for op in operations:
+        kinds, result = OPERATIONS[op]
+        code.append(Instruction(op, tuple(range(len(kinds))), {"R": "f32", "B": "bool"}[result]))
+    outputs = tuple(Channel(op, "1", i.type) for op, i in zip(operations, code[2:], strict=True))
+    return Program("all", inputs, (), (), outputs, Block(), Block(tuple(code), tuple(range(2, len(code)))), 1e-3)
+
+
+def operands(count, seed):
+    """Return pairs of float32: any bits; twins that cancel; and numbers of a scene, angles among them."""
+    rng = np.random.default_rng(seed)
+    a, b = awkward_bits(rng, count), awkward_bits(rng, count)
+    twin = rng.random(count) < 0.25
+    b = np.where(twin, a ^ (1 << rng.integers(0, 24, count)).astype(np.uint32) ^ np.uint32(1 << 31), b)
+    any_bits = np.stack([a, b], axis=1).astype(np.uint32).view(np.float32)
+    usual = (rng.normal(size=(count, 2)) * 10.0 ** rng.integers(-3, 3, (count, 2))).astype(np.float32)
+    return np.where(rng.random((count, 1)) < 0.5, any_bits, usual)
+
+
+def bits(a):
+    """Return float32 bits, every nan the same."""
+    a = np.asarray(a).astype(np.float32)
+    return np.where(np.isnan(a), np.uint32(0x7FC00000), a.view(np.uint32))
+
+
+def check(processor, count, seed):
+    pairs = operands(count, seed)
+    assert (np.abs(pairs[:, 0]) < SMALLEST_NORMAL).mean() > 0.02, "denormals belong to it"
+    for group in (tuple(NUMPY), ELEMENTARY):
+        program = all_at_once(group)
+        with np.errstate(all="ignore"):
+            found = Bench(program, processor).run(pairs.astype(float), init=False)[0]
+            expected = _expected(group, pairs)
+        for k, op in enumerate(group):
+            same = bits(found[:, k]) == bits(expected[k])
+            if op == "div" and isinstance(processor, Avr):
+                same |= _next_denormal(found[:, k], expected[k])
+            wrong = np.flatnonzero(~same)
+            assert not wrong.size, f"{op}: {wrong.size} of {count}, first {pairs[wrong[0]]!r}: {found[wrong[0], k]!r}"
+
+
+def _expected(group, pairs):
+    if group is not ELEMENTARY:
+        return [f(*pairs.T) if f.nin == 2 else f(pairs[:, 0]) for f in (NUMPY[op] for op in group)]
+    code = [Instruction("param", (), "f32"), *(Instruction(op, (0,), "f32") for op in group)]
+    outputs, last = tuple(Channel(op) for op in group), tuple(range(1, len(code)))
+    program = Program("all", (), (Channel("a"),), (), outputs, Block(), Block(tuple(code), last), 1e-3, (0.0,))
+    return Interpreter(program).run(1, np.empty((1, 0)), pairs[:, 0].astype(float)[None])[0][0]  # a lane an operand
+
+
+def _next_denormal(found, expected):
+    """The documented exception: a denormal quotient may be the neighbour of the right one on AVR."""
+    denormal = (np.abs(expected) <= SMALLEST_NORMAL) & (expected != 0)
+    steps = np.abs(found.astype(np.float32).view(np.int32).astype(np.int64) - expected.view(np.int32))
+    return denormal & (steps <= 1)
+
+
+def test_every_operation_gives_the_same_bits(processor):
+    check(processor, 4000 if isinstance(processor, Avr) else 400, seed=1)
+
+
+@pytest.mark.slow
+def test_every_operation_gives_the_same_bits_over_100_000_operand_sets(processor):
+    check(processor, 100_000, seed=2)
+
+
+@pytest.mark.parametrize("g", GOLDEN, ids=NAMES)
+def test_golden_programs_give_the_committed_bits(g, processor):
+    program = program_of(g)
+    ticks = len(g["given"]) // len(g["inputs"])
+    outputs, states, _ = Bench(program, processor).run(array(g["given"], ticks, -1))
+    for found, channels, expected in (
+        (outputs.T, program.outputs, array(g["out"], ticks, -1).T), (states, program.states, array(g["end"], -1)),
+    ):  # fmt: skip
+        for row, channel, right in zip(found, channels, expected, strict=True):
+            if channel.type == "f32":
+                np.testing.assert_array_equal(bits(row), bits(right), err_msg=channel.name)
+            else:
+                np.testing.assert_array_equal(row, right, err_msg=channel.name)
+
+
+@pytest.mark.skipif(bool(bare.missing()), reason=str(bare.missing()))
+def test_a_denormal_quotient_is_the_one_exception_and_it_is_the_avrs():
+    """2**-126 / 3 and the like: some are one step beside the right one, none is further away."""
+    a = np.float32(2.0**-126) * np.arange(1, 401, dtype=np.float32)
+    pairs = np.stack([a, np.full(400, 1003.0, np.float32)], axis=1)
+    right = bits(pairs[:, 0] / pairs[:, 1]).astype(np.int64)
+    found = bits(Bench(all_at_once(("div",)), Avr()).run(pairs.astype(float), init=False)[0][:, 0]).astype(np.int64)
+    assert 0 < np.abs(found - right).max() <= 1
