@@ -1,7 +1,7 @@
 /* An Arduino Uno in simavr, in lockstep: for ctypes, see emulator.py. Compiled by the tests, never shipped.
  *
- * What simavr 1.6 does not do, this does: masked interrupts wait, bytes take the UART's true time both ways and overrun its two-byte buffer,
- * and 1 mV on a pin is one count of the ADC. */
+ * What simavr 1.6 does not do, this does: masked interrupts wait, bytes take the UART's true time both ways and overrun
+ * its two-byte buffer, the EEPROM takes 3.4 ms a byte, and 1 mV on a pin is one count of the ADC. */
 #include <simavr/avr_adc.h>
 #include <simavr/avr_eeprom.h>
 #include <simavr/avr_ioport.h>
@@ -18,9 +18,10 @@ DEFINE_FIFO(uint8_t, uart_fifo);
 
 enum { QUEUE = 1 << 16, LOG = 1 << 14, VECTORS = 26, RX_BUFFER = 3 /* two bytes, and the shift register */ };
 enum { /* addresses of the ATmega328P's registers */
-    PORTB = 0x25, DDRD = 0x2A, PORTD = 0x2B, TCCR0A = 0x44, TCCR0B = 0x45, OCR0B = 0x48, MCUSR = 0x54,
+    PORTB = 0x25, DDRD = 0x2A, PORTD = 0x2B, EECR = 0x3F, TCCR0A = 0x44, TCCR0B = 0x45, OCR0B = 0x48, MCUSR = 0x54,
     TIFR1 = 0x36, TIMSK1 = 0x6F, UCSR0A = 0xC0, UCSR0B = 0xC1, UBRR0L = 0xC4, UBRR0H = 0xC5
 };
+enum { EEPE = 2, EEMPE = 4 }; /* bits of EECR */
 
 typedef struct { uint64_t cycle; int32_t value; } event;
 typedef struct { uint64_t begin, count, total, worst; } cost;
@@ -37,7 +38,6 @@ typedef struct {
     event_log duty, pin;                   /* changes, the latest LOG of them */
     cost costs[VECTORS];
     struct vector { struct uno *uno; int number; } vectors[VECTORS];
-    int delivering;
     avr_ioport_external_t driven;          /* pins of port D */
     struct { avr_io_write_t call; void *param; } then[MAX_IOs]; /* simavr's own hooks, behind ours */
 } uno;
@@ -121,6 +121,24 @@ static void on_mask(avr_t *avr, avr_io_addr_t address, uint8_t value, void *para
             avr_raise_interrupt(avr, avr->interrupts.vector[k]);
 }
 
+static avr_cycle_count_t on_stored(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    (void)when, (void)param;
+    avr->data[EECR] &= (uint8_t)~EEPE;
+    return 0;
+}
+
+/* simavr stores a byte at once; the chip is busy for 3.4 ms. */
+static void on_store(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    const int begins = (avr->data[EECR] & EEMPE) && (value & EEPE);
+    write_through(param, address, value);
+    if (begins) {
+        avr->data[EECR] |= EEPE;
+        avr_cycle_timer_register(avr, 54400, on_stored, param);
+    }
+}
+
 static void on_sent(avr_irq_t *irq, uint32_t value, void *param)
 {
     uno *u = param;
@@ -135,10 +153,8 @@ static avr_cycle_count_t on_line(avr_t *avr, avr_cycle_count_t when, void *param
 {
     uno *u = param;
     const int waiting = uart_fifo_get_read_size(&u->uart->input);
-    if (u->in_tail == u->in_head) {
-        u->delivering = 0;
+    if (u->in_tail == u->in_head)
         return 0;
-    }
     const uint8_t byte = u->in[u->in_tail++ % QUEUE];
     if (waiting >= RX_BUFFER)
         u->overruns++;
@@ -173,6 +189,7 @@ static void hook_registers(uno *u, int carrier)
     }
     for (int k = 0; k < 2; k++)
         hook(u, link[k], on_uart, 0);
+    hook(u, EECR, on_store, 0);
     hook(u, TIMSK1, on_mask, 0);
 }
 
@@ -217,6 +234,7 @@ void uno_reset(uno *u, uint8_t mcusr)
     avr_reset(u->avr);
     u->avr->data[MCUSR] = mcusr;
     u->in_head = u->in_tail = 0;
+    u->out_tail = u->out_head; /* what was on the line is lost */
 }
 
 static avr_cycle_count_t on_target(avr_t *avr, avr_cycle_count_t when, void *param)
@@ -275,9 +293,8 @@ void uno_write(uno *u, const uint8_t *bytes, uint32_t size)
 {
     for (uint32_t k = 0; k < size; k++)
         u->in[u->in_head++ % QUEUE] = bytes[k];
-    if (size && !u->delivering) {
+    if (size && !avr_cycle_timer_status(u->avr, on_line, u)) { /* a reset by the watchdog ends all timers */
         const uint64_t now = u->avr->cycle;
-        u->delivering = 1;
         avr_cycle_timer_register(u->avr, u->in_busy > now ? u->in_busy - now : 1, on_line, u);
     }
 }

@@ -14,6 +14,7 @@ import hapticlab as hl
 from hapticlab.device.board import SerialPaddle
 from hapticlab.device.hand import Hand
 from hapticlab.device.settings import nominal
+from hapticlab.device.upload import read_settings, upload
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
@@ -79,6 +80,21 @@ def test_a_kilohertz_of_telemetry_without_loss(connect):
     assert log.fault is None and len(log.t) == 1000
     assert loop.board.overruns == 0
     assert np.abs(np.diff(log.t) - 1e-3).max() < 1e-9, "a sample is missing"
+
+
+def test_the_store_takes_longer_than_the_watchdog_waits(connect):
+    """3.4 ms a byte: settings are written while the tick runs on, and nothing resets the board."""
+    paddle, loop = connect()
+    session = paddle.state()["session"]
+    changed = nominal("hapkit", ident=0x1234, checked=1, wrap=900, force_max=2.5, m=0.07, b=0.4)
+    loop.board.eeprom = bytes(1024)  # so that every byte is written
+    begin = loop.now
+    upload(paddle.exchange, "SETTINGS", changed.to_bytes())
+    print(f"settings: {loop.now - begin:.2f} s")
+    assert loop.now - begin > 0.125
+    assert read_settings(paddle.exchange) == changed.to_float32()
+    assert loop.board.eeprom == changed.to_bytes().ljust(1024, b"\0")
+    assert paddle.state()["session"] == session, "the board was reset"
 
 
 def test_the_stack_fits(image):
