@@ -9,6 +9,9 @@
 /* bytes of the largest frame: version and message, sequence, payload, guard, CRC-16; COBS adds one, and the end one */
 #define HL_FRAME_BYTES (2 + HL_LARGEST_PAYLOAD + 4 + 2)
 #define HL_WIRE_BYTES (HL_FRAME_BYTES + 2)
+#if 5 + 4 * HL_CHANNELS > HL_LARGEST_PAYLOAD
+#error "a sample of HL_CHANNELS numbers is larger than HL_LARGEST_PAYLOAD"
+#endif
 
 /* One tick for the link. */
 typedef struct {
@@ -48,10 +51,11 @@ typedef struct hl_core {
     uint8_t rx[HL_WIRE_BYTES], tx[HL_WIRE_BYTES];
     volatile uint8_t rx_count, rx_ready, rx_bad;
     uint8_t tx_count;
-    uint8_t sequence, sequence_known, result; /* of the last guarded request obeyed in this session */
+    uint8_t result;                           /* of the last guarded request obeyed in this session */
     uint8_t sent;                             /* sequence of samples and fault reports */
     uint16_t damaged;                         /* frames that were */
     uint32_t session;                         /* the host's number, 0 until it says hello */
+    uint32_t obeyed;                          /* which of its guarded requests was obeyed last, counted from 1 */
 
     /* programs: `active` runs; `loading` is filled, and differs from it where the board has two places */
     hl_place places[HL_SLOTS];

@@ -8,13 +8,24 @@
 #define FIRMWARE_MAJOR 1
 #define FIRMWARE_MINOR 0
 
-static uint8_t welcome(hl_core *core, const uint8_t *payload, uint8_t *to)
+/* Whatever runs or was loaded belongs to an earlier session. */
+static void begin_session(hl_core *core, uint32_t session)
 {
-    hl_stop(core); /* whatever ran belongs to an earlier session */
-    core->session = hl_get32(payload);
-    core->sequence_known = 0;
+    hl_stop(core);
+    core->session = session;
+    core->obeyed = 0;
     core->standalone = 0;
     core->announced = 0;
+    for (uint8_t k = 0; k < HL_SLOTS; k++) {
+        core->places[k].size = 0;
+    }
+}
+
+static uint8_t welcome(hl_core *core, const uint8_t *payload, uint8_t *to)
+{
+    if (core->session != hl_get32(payload)) { /* a repeat of the session's own hello changes nothing */
+        begin_session(core, hl_get32(payload));
+    }
     memset(to, 0, HL_AT_WELCOME_RESET_CAUSE + 1);
     memcpy(to + HL_AT_WELCOME_BOARD, HL_BOARD_NAME, sizeof HL_BOARD_NAME - 1);
     hl_put32(to + HL_AT_WELCOME_TABLE, HL_PROTOCOL_HASH);
@@ -258,8 +269,7 @@ static uint8_t obey(hl_core *core, uint8_t message, const uint8_t *payload, uint
     case HL_MESSAGE_START:
         return start(core, payload);
     case HL_MESSAGE_STOP:
-        hl_stop(core);
-        return HL_OK;
+        return HL_OK; /* done already; but no older START is obeyed from here on */
     case HL_MESSAGE_SET:
         return set(core, payload, count);
     case HL_MESSAGE_HOME:
@@ -273,18 +283,24 @@ static uint8_t obey(hl_core *core, uint8_t message, const uint8_t *payload, uint
     }
 }
 
+/* Which of the session's guarded requests a sequence number means: the one nearest to the last obeyed. */
+static uint32_t number_of(const hl_core *core, uint8_t sequence)
+{
+    const uint8_t ahead = (uint8_t)(sequence - core->obeyed);
+    return core->obeyed + ahead - (ahead > 127 ? 256u : 0u);
+}
+
 /* Obey a guarded request once: a repeat is answered as it was, an older one refused. */
 static uint8_t obey_once(hl_core *core, uint8_t message, uint8_t sequence, const uint8_t *payload, uint8_t count)
 {
-    const uint8_t ahead = (uint8_t)(sequence - core->sequence);
-    if (core->sequence_known && ahead == 0) {
+    const uint32_t number = number_of(core, sequence), ahead = number - core->obeyed;
+    if (ahead == 0) {
         return core->result;
     }
-    if (core->sequence_known && ahead > 127) {
+    if (ahead > 127) {
         return HL_RESULT_STALE;
     }
-    core->sequence = sequence;
-    core->sequence_known = 1;
+    core->obeyed = number;
     core->result = obey(core, message, payload, count);
     return core->result;
 }
@@ -320,7 +336,8 @@ static uint8_t check(const hl_core *core, const uint8_t *frame, uint8_t *count)
             return HL_RESULT_LENGTH;
         }
         *count = (uint8_t)(*count - guard);
-        if (guard && (core->session == 0 || hl_crc32(core->session, frame, 2u + *count) != hl_get32(frame + 2 + *count))) {
+        const uint32_t begin = core->session + (number_of(core, frame[1]) >> 8);
+        if (guard && (core->session == 0 || hl_crc32(begin, frame, 2u + *count) != hl_get32(frame + 2 + *count))) {
             return HL_RESULT_GUARD;
         }
         return HL_OK;
@@ -333,6 +350,9 @@ uint8_t hl_answer(hl_core *core, const uint8_t *frame, uint8_t count, uint8_t *t
     const uint8_t message = frame[0] & 31, sequence = frame[1];
     const uint8_t *payload = frame + 2;
     uint8_t result = check(core, frame, &count);
+    if (message == HL_MESSAGE_STOP) {
+        hl_stop(core); /* whoever says it, however damaged, however late */
+    }
     if (result == HL_OK) {
         switch (message) {
         case HL_MESSAGE_HELLO:
@@ -350,7 +370,6 @@ uint8_t hl_answer(hl_core *core, const uint8_t *frame, uint8_t count, uint8_t *t
             return read_settings(core, payload, to);
         case HL_MESSAGE_BEGIN:
         case HL_MESSAGE_DATA:
-        case HL_MESSAGE_STOP:
             result = obey(core, message, payload, count);
             break;
         default:
@@ -358,5 +377,5 @@ uint8_t hl_answer(hl_core *core, const uint8_t *frame, uint8_t count, uint8_t *t
         }
     }
     *reply = HL_MESSAGE_ACK;
-    return acknowledge(core, message, result, to);
+    return acknowledge(core, message, message == HL_MESSAGE_STOP ? (uint8_t)HL_OK : result, to);
 }

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #define HL_PROTOCOL 1
-#define HL_PROTOCOL_HASH 0x4db1f176UL
+#define HL_PROTOCOL_HASH 0xdd234a45UL
 #define HL_SETTINGS_HASH 0xe1d4ada6UL
 #define HL_LARGEST_PAYLOAD 48
 #define HL_HOST_SILENCE_MS 100
@@ -24,7 +24,7 @@
     X(DATA, 6, 2, 0, 1) \
     X(COMMIT, 7, 7, 1, 0) \
     X(START, 8, 11, 1, 0) \
-    X(STOP, 9, 0, 0, 0) \
+    X(STOP, 9, 0, 1, 0) \
     X(SET, 10, 1, 1, 1) \
     X(HOME, 11, 4, 1, 0) \
     X(CLEAR, 12, 0, 1, 0) \

@@ -74,7 +74,7 @@ class Exchange:
             self._beat_sequence = None
             sequence = self._next_sequence(message)
             frame = encode(message, sequence, *values, rest=rest, session=self.session)
-            self._wanted, self._reply = (message, sequence), None
+            self._wanted, self._reply = (message, sequence & 255), None
             for _ in range(tries):
                 self._send(frame)
                 if self._wait_until(lambda: self._reply is not None, patience):
@@ -109,7 +109,7 @@ class Exchange:
         self.port.close()
 
     def _next_sequence(self, message):
-        return next(self._sequences[MESSAGES[message].guarded]) % 256
+        return next(self._sequences[MESSAGES[message].guarded])
 
     def _send(self, frame):
         self._check()
@@ -163,7 +163,7 @@ class Exchange:
         if not self.beating or self.now() - self._last_sent < HEARTBEAT or not self._turn.acquire(blocking=False):
             return
         try:
-            self._beat_sequence = self._next_sequence("STATUS")
+            self._beat_sequence = self._next_sequence("STATUS") & 255
             self._send(encode("STATUS", self._beat_sequence))
         finally:
             self._turn.release()

@@ -3,14 +3,16 @@
 A frame is COBS (Cheshire and Baker, 1999) ended by a zero byte, around ::
 
     version and message   1 byte: PROTOCOL in the high 3 bits, the message's number in the low 5
-    sequence              1 byte: a request's own, its reply repeats it. Guarded requests count by themselves, and so do
-                          samples and fault reports
+    sequence              1 byte: a request's own, its reply repeats it. Guarded requests count by themselves, from 1 in
+                          every session, and so do samples and fault reports
     payload               see MESSAGES
-    guard                 4 bytes, on guarded requests only: CRC-32 of all before it, begun from the session's number
+    guard                 4 bytes, on guarded requests only: CRC-32 of all before it, begun from the session's number plus
+                          how often the sequence has turned over
     CRC-16                2 bytes: CCITT, initial value 0xffff, of all before it
 
-Numbers are little endian. Guarded are the requests that can move the motor: a frame left over from another session, or
-damaged where CRC-16 does not see it, moves nothing.
+Numbers are little endian. Guarded are the requests that can move the motor: a frame left over from another session or from
+long ago, or damaged where CRC-16 does not see it, moves nothing. STOP is guarded so that no START sent before it is obeyed
+after it; it stops the motor whatever its guard says. HELLO with a new number begins a session: nothing runs, nothing is loaded.
 """
 
 import struct
@@ -62,7 +64,7 @@ MESSAGES = {
     "DATA": Message(6, fields("H offset"), open=True),
     "COMMIT": Message(7, fields("B target, H size, I crc"), guarded=True),
     "START": Message(8, fields("I crc, H every, B options, f force_max"), guarded=True),
-    "STOP": Message(9),
+    "STOP": Message(9, guarded=True),
     "SET": Message(10, fields("B count"), guarded=True, open=True),
     "HOME": Message(11, fields("f position"), guarded=True),
     "CLEAR": Message(12, guarded=True),

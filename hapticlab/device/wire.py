@@ -31,7 +31,7 @@ def encode(message, sequence, *values, rest=b"", session=0):
     message : str
         A name in MESSAGES; its fields are ``values``, bytes after them ``rest``.
     sequence : int
-        0 to 255.
+        Its low 8 bits are sent; the guard takes in the others.
     session : int
         The number said in HELLO, which the guard of guarded messages begins from.
 
@@ -39,12 +39,12 @@ def encode(message, sequence, *values, rest=b"", session=0):
     --------
     >>> from hapticlab.device.wire import encode
     >>> encode("STOP", 7).hex(" ")
-    '05 29 07 7c 01 00'
+    '09 29 07 b7 18 fb 9b a3 f9 00'
     """
     row = MESSAGES[message]
-    body = bytes([PROTOCOL << 5 | row.number, sequence]) + row.struct.pack(*values) + rest
+    body = bytes([PROTOCOL << 5 | row.number, sequence & 255]) + row.struct.pack(*values) + rest
     if row.guarded:
-        body += struct.pack("<I", zlib.crc32(body, session))
+        body += struct.pack("<I", zlib.crc32(body, session + (sequence >> 8) & 0xFFFFFFFF))
     return stuff(body + struct.pack(">H", crc_hqx(body, 0xFFFF))) + b"\0"
 
 

@@ -5,7 +5,7 @@
 #define HL_BOARD_NAME "host"
 #define HL_ARENA_BYTES 32768
 #define HL_SLOTS 2
-#define HL_CHANNELS 12
+#define HL_CHANNELS 10
 #define HL_RING 64
 #define HL_CLOCK_HZ 1000000
 #define HL_DUTY_FULL 32767
