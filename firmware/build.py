@@ -52,9 +52,8 @@ def build(board, folder, core=None):
     elf, image = Path(folder).resolve() / f"{board}.elf", Path(folder).resolve() / f"{board}.hex"
     include = [f"-I{header}" for header in ("core", "generated", f"boards/{board}", "boards")]
     subprocess.run([tool("avr-gcc"), *FLAGS, *include, *files, "-lm", "-o", elf], cwd=FIRMWARE, check=True)
-    # with Unix line ends on Windows too
-    text = subprocess.run([tool("avr-objcopy"), "-O", "ihex", elf, "/dev/stdout"], check=True, capture_output=True).stdout
-    image.write_bytes(text.replace(b"\r\n", b"\n"))
+    subprocess.run([tool("avr-objcopy"), "-O", "ihex", elf, image], check=True)
+    image.write_bytes(image.read_bytes().replace(b"\r\n", b"\n"))  # the same bytes on every computer
     return elf, image
 
 

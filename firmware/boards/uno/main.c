@@ -87,9 +87,9 @@ void board_unlock(hl_core *core)
 /* The next point of the grid that is still to come. */
 static void next_tick(void)
 {
-    uint16_t here = OCR1A, passed = (uint16_t)(TCNT1 - here + SOONEST);
+    uint16_t here = OCR1A;
     uint32_t step = period;
-    while (step <= passed)
+    while (step <= (uint16_t)(TCNT1 - here + SOONEST))
         step += period;
     OCR1A = (uint16_t)(here + step);
     TIFR1 = _BV(OCF1A);
