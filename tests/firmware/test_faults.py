@@ -1,0 +1,30 @@
+"""Every fault ends with the motor off, within the time that is stated for it."""
+
+import pytest
+from emulator import missing
+from faults import FAULTS, measure
+
+from hapticlab.device.messages import FAULTS as NAMES
+
+pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_the_motor_is_off_in_time(name, record_property):
+    fault = FAULTS[name]
+    taken, log = measure(fault)
+    record_property("motor_off_after_s", taken)
+    print(f"{name}: motor off {1e3 * taken:.3f} ms after it, stated {1e3 * fault.within:.1f} ms")
+    assert 0 <= taken <= fault.within
+    if fault.says:
+        _, cause, _ = NAMES[fault.says]
+        assert fault.says in log.fault and cause in log.fault and "the motor is off" in log.fault
+
+
+def test_every_fault_of_the_table_is_injected():
+    assert {fault.says for fault in FAULTS.values()} - {None} == set(NAMES)
+
+
+def test_the_heat_fault_comes_when_the_first_order_model_says():
+    taken, _ = measure(FAULTS["heat"])
+    assert 1.06 < taken < 1.57
