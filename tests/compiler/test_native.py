@@ -19,7 +19,7 @@ from hapticlab.errors import EngineMissingError
 
 ROOT = Path(__file__).parents[2]
 HERE = toolchain.running_target()
-CALLED = {"hl_host_run", "hl_host_verify", "hl_sources"}
+CALLED = {"hl_host_run", "hl_host_verify", "hl_host_new", "hl_host_tick"}
 RUN_VM = """
 import numpy as np, hapticlab, sys
 from hapticlab.compiler import engine, native
