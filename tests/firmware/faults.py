@@ -89,7 +89,7 @@ def nothing(paddle):
 
 
 #: travel so short that a handle beyond it is still within half a turn of the sensor's magnet
-SHORT = {"travel_min": -0.0048, "travel_max": 0.0048, "speed_max": 100.0}
+SHORT = {"travel_min": -0.006, "travel_max": 0.006, "speed_max": 100.0}
 #: at 0.9 N a motor that stands 0.8 N is too hot when 0.81 - (0.81 - h) exp(-t / 1 s) passes 0.64, in N^2; h is what was
 #: left of the half that a board takes for granted after a reset, at most 0.32: between 1.06 and 1.57 s
 HOT = {"force_continuous": 0.8, "heating_time": 1.0, "force_max": 0.9}
@@ -97,7 +97,7 @@ FAULTS = {
     "host silent": Fault("HOST_SILENT", 0.1 + 2 * T, fall_silent),
     "division by zero": Fault("NOT_FINITE", 3 * T, lambda paddle: paddle.set(y=0.0), QUOTIENT),
     "over-speed": Fault("OVER_SPEED", 2 * T, partial(push, v=4.0)),
-    "over-travel": Fault("OVER_TRAVEL", 2 * T, partial(push, x=0.0056), settings=SHORT),
+    "over-travel": Fault("OVER_TRAVEL", 2 * T, partial(push, x=0.007), ALWAYS(K=5), settings=SHORT),
     "sensor's wire": Fault("SENSOR", 2 * T, break_wire),
     "heat": Fault("OVER_HEAT", 1.57, nothing, ALWAYS, settings=HOT),
     "steps too long": Fault("OVERRUN", 20e-3, nothing, pendulum()[0], period=0.5e-3),
@@ -119,7 +119,7 @@ def measure(fault):
         paddle.start(fault.scene)
         if fault.inject is not nothing:
             paddle.wait(0.1)
-            assert paddle.loop.board.duty != 0
+            assert paddle.loop.board.duty != 0, paddle.stop().fault
         begun = paddle.loop.board.cycle
         fault.inject(paddle)
         last = paddle.exchange.now() + fault.within + 0.2
