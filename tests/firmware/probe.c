@@ -11,12 +11,14 @@ struct {
     uint8_t echo;
     uint16_t at;        /* write `byte` into the store here, taken */
     uint8_t byte, kept;
+    uint8_t pieces;     /* send so many pieces of 50 bytes, one after the other; counts down to 0 */
     /* read by the test */
     uint32_t ticks;
     uint16_t begin, shortest, longest; /* clock at this tick; distances of ticks */
     uint8_t fault, cause;
     float value;
     uint32_t received;
+    uint16_t refused;
 } volatile probe;
 
 static volatile uint8_t head, tail;
@@ -78,6 +80,15 @@ void hl_core_poll(hl_core *core)
         if (!board_send(core, &byte, 1))
             break;
         tail++;
+    }
+    if (probe.pieces) {
+        uint8_t piece[50];
+        for (uint8_t k = 0; k < sizeof piece; k++)
+            piece[k] = (uint8_t)(probe.pieces * 50 + k);
+        if (board_send(core, piece, sizeof piece))
+            probe.pieces--;
+        else
+            probe.refused++;
     }
     board_alive(core);
 }

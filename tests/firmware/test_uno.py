@@ -25,10 +25,10 @@ from hapticlab.device.settings import nominal
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
-DDRD, PORTD, EIMSK, TIMSK1 = 0x2A, 0x2B, 0x3D, 0x6F
+DDRD, PORTD, EIMSK, MCUSR, TIMSK1 = 0x2A, 0x2B, 0x3D, 0x54, 0x6F
 FIELDS = (
-    "period_us u2, duty i2, spin u2, echo u1, at u2, byte u1, kept u1, "
-    "ticks u4, begin u2, shortest u2, longest u2, fault u1, cause u1, value f4, received u4"
+    "period_us u2, duty i2, spin u2, echo u1, at u2, byte u1, kept u1, pieces u1, "
+    "ticks u4, begin u2, shortest u2, longest u2, fault u1, cause u1, value f4, received u4, refused u2"
 )
 PROBE = np.dtype([tuple(field.split()) for field in FIELDS.split(", ")])  # as probe.c has it: an AVR pads nothing
 MEMORY, SENSOR = FAULTS["MEMORY"][0], FAULTS["SENSOR"][0]
@@ -242,6 +242,14 @@ def test_the_link_loses_nothing_both_ways(start, period):
         assert abs(int(distance) - 2 * period) <= 24, "one interrupt of the link holds the tick off, not two"
 
 
+def test_a_frame_is_taken_whole_or_not_at_all(start):
+    board = start()
+    board.probe["pieces"] = 5
+    board.run(0.010)
+    assert board.probe["refused"] > 0, "128 bytes of room were never full"
+    assert board.read() == bytes((piece * 50 + k) % 256 for piece in (5, 4, 3, 2, 1) for k in range(50))
+
+
 def test_the_watchdog_resets_a_board_whose_tick_stops(start):
     board = start()
     board.probe["duty"] = 77
@@ -276,6 +284,7 @@ def test_the_watchdog_resets_a_board_whose_tick_stops(start):
 def test_the_reset_cause(start, flags, cause):
     board = start(cause=flags)
     assert board.probe["cause"] == RESET_CAUSES[cause][0]
+    assert board.at(MCUSR) == 0, "the next reset must not find this one's cause; a flag left keeps the watchdog on"
     board.reset(EXTERNAL)
     board.run(0.002)
     assert board.probe["cause"] == RESET_CAUSES["EXTERNAL"][0], "the flags of the reset before are gone"

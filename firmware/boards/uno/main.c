@@ -92,7 +92,6 @@ static void next_tick(void)
     while (step <= (uint16_t)(TCNT1 - here + SOONEST))
         step += period;
     OCR1A = (uint16_t)(here + step);
-    TIFR1 = _BV(OCF1A);
 }
 
 ISR(TIMER1_COMPA_vect)

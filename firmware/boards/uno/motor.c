@@ -20,7 +20,7 @@ void board_motor(hl_core *core, int16_t duty)
     cli(); /* direction and duty belong together, whoever else calls */
     if (duty == 0) {
         TCCR0A = FAST_PWM; /* the pin goes to its port's level, which is low */
-        OCR0B = 0;
+        OCR0B = 0; /* it is taken over at the carrier's next turn: connected again, the pin shall not begin with an old duty */
     } else {
         if (duty > 0)
             PORTB |= UNO_DIRECTION_PIN;
