@@ -63,9 +63,10 @@ def _what(taken, promise):
     """Say what a refused program takes."""
     method = taken.program.facts.get("method")
     name = f"{taken.name} with {method}" if method else taken.name
-    if taken.memory_problem:
-        return f"{name}: {taken.memory_problem}"
-    return f"{name}: {taken.in_words(promise)}"
+    if taken.memory_problem is None:
+        return f"{name}: {taken.in_words(promise)}"
+    late = taken.period and taken.T < taken.T_needed(promise)
+    return f"{name}: " + (f"{taken.in_words(promise)}, and it " if late else "") + taken.memory_problem
 
 
 def _slower(taken, promise):

@@ -193,6 +193,12 @@ class Bench:
         states = np.frombuffer(states, np.uint8)[None]
         return self._numbers(out, self.program.outputs), self._numbers(states, self.program.states)[0], cycles
 
+    def cycles_of(self, bits):
+        """Run a tick a row of parameters, inputs and states, given as 32 bits each; return the cycles."""
+        rows = np.ascontiguousarray(bits, "<u4").view(np.uint8)
+        arguments = (self.place, self.registers, self.outputs)
+        return self.cpu.rows("hl_tick", arguments, self.parameters, rows, self.outputs, 4)[1]
+
     def _numbers(self, rows, channels):
         slots = np.ascontiguousarray(rows).view("<u4")
         columns = [slots[:, k].copy().view("<f4" if c.type == "f32" else "<i4") for k, c in enumerate(channels)]

@@ -63,10 +63,10 @@ def double_pendulum():
 SCENES = (wall, mass_and_wall, cart_pole, pendulum, double_pendulum)
 
 
-def compiled(make, T=1e-3):
+def compiled(make, T=1e-3, **changed):
     """Return a scene's program for a board."""
     scene, options = make()
-    return hl.compile(scene, T=T, **options)
+    return hl.compile(scene, T=T, **{**options, **changed})
 
 
 def handle(ticks, T=1e-3, seed=1):

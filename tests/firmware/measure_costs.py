@@ -165,9 +165,15 @@ def one_tick(program, cpu):
     return int(Bench(program, cpu).run(np.zeros((2, len(program.inputs))))[2][-1])
 
 
+def one_init(program, cpu):
+    bench = Bench(program, cpu)
+    bench.run(np.zeros((1, len(program.inputs))))
+    return int(bench.init_cycles)
+
+
 def overheads(cpu):
     """Return what a tick costs that computes nothing, and what every output, state and move adds."""
-    found = {"tick": one_tick(plain(), cpu)}
+    found = {"tick": one_tick(plain(), cpu), "init": one_init(plain(), cpu)}
     for type in ("f32", "bool", "i32"):
         outputs = [one_tick(plain(outputs=(type,) * n), cpu) for n in (0, 1, 4)]
         states = [one_tick(plain(states=(type,) * n), cpu) for n in (0, 1, 4)]
@@ -205,8 +211,10 @@ def as_text(tables):
     for name, table in tables.items():
         rows = []
         for key, value in table.items():
-            inner = ",\n".join(f"   {json.dumps(k)}: {json.dumps(v)}" for k, v in value.items()) if isinstance(value, dict) else ""
-            rows.append(f"  {json.dumps(key)}: " + (f"{{\n{inner}\n  }}" if inner else json.dumps(value)))
+            text = json.dumps(value)
+            if isinstance(value, dict):
+                text = "{\n" + ",\n".join(f"   {json.dumps(k)}: {json.dumps(v)}" for k, v in value.items()) + "\n  }"
+            rows.append(f"  {json.dumps(key)}: {text}")
         boards.append(f" {json.dumps(name)}: {{\n" + ",\n".join(rows) + "\n }")
     return "{\n" + ",\n".join(boards) + "\n}\n"
 

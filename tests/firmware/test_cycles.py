@@ -1,0 +1,109 @@
+"""Cycles counted in emulation against what hapticlab.compiler.cost says: typical close, bound never passed."""
+
+import bare
+import cortex
+import numpy as np
+import pytest
+from bare import Avr, Bench
+from cortex import PROCESSORS, Cortex
+from five_scenes import SCENES, compiled, handle
+from measure_costs import EFFORT, as_values, awkward, awkward_bits, measure, overheads, program_of
+from random_programs import random_program, random_rows
+
+from hapticlab.compiler.bytecode import OPCODES
+from hapticlab.compiler.cost import TYPICAL_ERROR, cost, tables
+from hapticlab.compiler.fit import table
+
+BOARDS = ("uno", *PROCESSORS)
+TICKS = {"uno": 600}
+
+
+@pytest.fixture(scope="module", params=BOARDS)
+def processor(request):
+    reason = bare.missing() if request.param == "uno" else cortex.missing()
+    if reason:
+        pytest.skip(reason)
+    made = Avr() if request.param == "uno" else Cortex(request.param)
+    made.board = request.param
+    return made
+
+
+def awkward_rows(program, count, seed=1):
+    """Return bits for every parameter, input and state; a bool is 0 or 1 as whoever writes it makes sure."""
+    rng = np.random.default_rng(seed)
+    columns = []
+    for c in (*program.parameters, *program.inputs, *program.states):
+        bits = awkward_bits(rng, count)
+        columns.append(bits & 1 if c.type == "bool" else bits)
+    rows = np.stack(columns, axis=1)
+    same = rng.random(rows.shape) < 0.3  # operands that cancel
+    floats = [k for k, c in enumerate((*program.parameters, *program.inputs, *program.states)) if c.type == "f32"]
+    near = rows[:, [floats[0]]] ^ (1 << rng.integers(0, 3, rows.shape)).astype(np.uint32)
+    rows[:, floats] = np.where(same, near, rows)[:, floats]
+    return rows
+
+
+@pytest.mark.parametrize("hold", ["soh", "zoh"])
+@pytest.mark.parametrize("make", SCENES, ids=lambda make: make.__name__)
+def test_five_scenes_take_the_typical_cycles_and_never_more_than_the_bound(make, hold, processor):
+    program = compiled(make, hold=hold)
+    said = cost(program, processor.board)
+    bench = Bench(program, processor)
+    ticks = TICKS.get(processor.board, 40)
+    measured = bench.run(handle(ticks))[2]
+    median = float(np.median(measured))
+    assert abs(said.typical / median - 1) <= TYPICAL_ERROR, f"typical {said.typical}, measured median {median:g}"
+    worst = max(int(measured.max()), int(bench.cycles_of(awkward_rows(program, ticks)).max()))
+    print(f"\n{said.board.name} {program.name} ({hold}): median {median:g} typical {said.typical}, "
+          f"most found {worst} bound {said.bound} slack {said.bound / worst - 1:.0%}")  # fmt: skip
+    assert worst <= said.bound
+    assert bench.init_cycles <= said.first
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_random_program_passes_its_bound(seed, processor):
+    program = random_program(seed, ("f32",), 50, tuple(OPCODES))
+    said, bench = cost(program, processor.board), Bench(program, processor)
+    found = bench.cycles_of(awkward_rows(program, 200 if processor.board == "uno" else 10, seed))
+    assert found.max() <= said.bound
+    assert found.max() > said.bound / 4, "a bound that far away says nothing"
+    bench.run(random_rows(np.random.default_rng(seed), program.inputs, 1).T)
+    assert bench.init_cycles <= said.first
+
+
+@pytest.mark.parametrize("op", OPCODES)
+def test_no_operation_passes_its_bound_on_new_operands(op, processor):
+    """Other seeds than those the table was made with."""
+    around = tables()[processor.board]["overheads"]
+    bits = awkward(op, np.random.default_rng(77), 3000 if processor.board == "uno" else 100)
+    cycles = Bench(program_of(op), processor).run(as_values(op, bits), init=False)[2].astype(int)
+    assert (cycles - around["tick"] - around["output f32"]).max() <= 1.02 * tables()[processor.board]["operations"][op][1]
+
+
+def test_the_committed_table_is_what_is_measured(processor):
+    """A part of it, with a smaller search; ``python tests/firmware/measure_costs.py`` writes the whole."""
+    committed = tables()[processor.board]
+    found = overheads(processor)
+    assert found == committed["overheads"]
+    base = found["tick"] + found["output f32"]
+    usual, _, keep, _ = EFFORT[processor.board]
+    for op in ("neg", "add", "mul", "select", "floor", "sin"):
+        typical, worst = measure(Bench(program_of(op), processor), op, base, (usual, 300, keep, 1))
+        assert typical == committed["operations"][op][0], op
+        assert worst <= committed["operations"][op][1], op
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("make", SCENES, ids=lambda make: make.__name__)
+def test_bounds_hold_over_20_000_awkward_states(make, processor):
+    program = compiled(make)
+    count = 20_000 if processor.board == "uno" else 300
+    found = Bench(program, processor).cycles_of(awkward_rows(program, count, seed=9)).max()
+    assert found <= cost(program, processor.board).bound
+
+
+def test_print_what_fits():
+    """The table of the five scenes, for whoever reads the log."""
+    for board in BOARDS:
+        print("\n" + table([make() for make in SCENES], board))
+    assert "double pendulum" in table([SCENES[-1]()])
