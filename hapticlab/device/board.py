@@ -7,22 +7,21 @@ from dataclasses import replace
 import numpy as np
 
 from ..compiler.bytecode import encode
+from ..compiler.cost import BOARDS, cost
+from ..compiler.fit import fit
 from ..compiler.ir import Program
 from ..errors import LinkError, PaddleError, ParameterError
 from .exchange import Exchange
-from .greeting import introduction, say_hello, what_happened
-from .messages import FLAGS, OPTIONS, STATES
+from .greeting import explain_silence, introduction, say_hello, what_happened
+from .homing import home
+from .messages import OPTIONS, STATES
 from .paddle import Paddle
 from .progress import progress_bar
-from .recording import Recording
+from .recording import Recording, decimation
 from .serial import open_port
 from .timing import Timing
 from .upload import read_settings, upload
 
-#: part of the link that samples may take; state and requests need the rest
-SAMPLES_SHARE = 0.9
-#: bytes of a sample beside its numbers: tick, flags, frame
-SAMPLE_OVERHEAD = 11
 #: parameters in one SET
 MOST_AT_ONCE = 8
 #: seconds a board may be silent in a run before the host gives up
@@ -118,7 +117,11 @@ class SerialPaddle(Paddle):
             self._collect(ticks, bar)
         return self.stop(ticks=ticks)
 
-    def start(self, scene=None, *, every=None, force_max=math.inf, passive=False, **options):
+    def cost(self, scene, **options):
+        """Return what a scene or a program takes of this board: cycles, memory, share of the period; print it."""
+        return cost(self.program(scene, **options), self._kind)
+
+    def start(self, scene=None, *, every=None, force_max=math.inf, passive=False, check_fit=True, **options):
         """Start a scene and return at once; :meth:`set` changes it, :meth:`wait` lets it run, :meth:`stop` ends it.
 
         Parameters
@@ -130,15 +133,26 @@ class SerialPaddle(Paddle):
             A lower limit of force than the board's own, for this run [N].
         passive : bool
             Watch the handle with the motor off; needs no home.
+        check_fit : bool
+            Refuse a scene that takes longer than the period before it is sent; the board itself faults on one anyway.
+
+        Raises
+        ------
+        ProgramLimitError
+            With the share of the period it would take, and the rate, method or law that would fit.
         """
         if scene is not None:
-            self._load(self.program(scene, **options))
+            program = self.program(scene, **options)
+            if check_fit and not cost(program, self._kind).fits:
+                known = {} if isinstance(scene, Program) else {"T": self.T, "velocity": self.velocity}
+                fit(scene, self._kind, **known, **options)
+            self._load(program)
             self._scene = None if isinstance(scene, Program) else scene
         elif self._program is None:
             raise PaddleError("nothing is on the board yet; give a scene: paddle.start(scene)")
-        if not passive:
-            self._require_home()
-        every = self._every(every)
+        if not passive and self.settings is not None:
+            self.home()
+        every = decimation(self._program, self.exchange.port, every)
         self._recording = Recording(self._program, every)
         self.exchange.beating = True
         limit = min(float(force_max), 3e38)
@@ -165,7 +179,7 @@ class SerialPaddle(Paddle):
     def wait(self, seconds):
         """Let the scene run for so many seconds of the board's time."""
         recording = self._running()
-        self._collect(max(recording.last_tick, 0) + self.ticks(seconds), None)
+        self._collect(recording.last_tick + 1 + self.ticks(seconds), None)
 
     def stop(self, *, ticks=None):
         """Switch the motor off and return the Telemetry of the run."""
@@ -190,20 +204,7 @@ class SerialPaddle(Paddle):
         timeout : float
             How long that may take [s].
         """
-        if at is not None:
-            self.exchange.command("HOME", float(at))
-            return
-        if self._state_flag("HOMED"):
-            return
-        if self.settings is None:
-            raise PaddleError("the board has no calibration, so its stops tell nothing: run `hapticlab calibrate` first.")
-        print("Lead the handle slowly to one stop, then to the other, and let go: the board finds its position.")
-        if not self.exchange.wait(lambda: self._state_flag("HOMED"), timeout):
-            met = "more travel than was calibrated" if self._state_flag("TRAVEL_MISMATCH") else "not both stops"
-            raise PaddleError(
-                f"home: {met} within {timeout:g} s; lead the handle to both stops, or hold it in the middle and call "
-                "paddle.home(at=0.0). If it repeats, run `hapticlab calibrate`."
-            )
+        home(self.exchange, self.settings, at, timeout)
 
     def state(self):
         """Return the board's state as it is now: a dict of messages.STATE's fields."""
@@ -228,6 +229,12 @@ class SerialPaddle(Paddle):
 
     def __str__(self):
         return introduction(self.board, self.settings, self.T)
+
+    @property
+    def _kind(self):
+        """The board's name where its cost is known, else this computer's, whose time is not limited."""
+        name = self.board["board"].rstrip(b"\0").decode("ascii", "replace")
+        return name if name in BOARDS else "host"
 
     def _load(self, program):
         """Put a program and its parameters on the board; nothing runs until it is verified."""
@@ -258,21 +265,6 @@ class SerialPaddle(Paddle):
         rest = b"".join(bytes([k]) + np.float32(value).tobytes() for k, value in values.items())
         return self.exchange.command("SET", len(values), rest=rest)
 
-    def _every(self, every):
-        """Return the decimation: as asked, or as the link carries."""
-        channels = 2 + len(self._program.outputs)
-        port = self.exchange.port
-        rate = getattr(port, "bytes_per_second", port.baudrate / 10)
-        least = math.ceil((SAMPLE_OVERHEAD + 4 * channels) / self._program.T / (SAMPLES_SHARE * rate) - 1e-9)
-        if every is None:
-            return max(1, least)
-        if every < least or every != int(every) or every > 65535:
-            raise PaddleError(
-                f"every = {every}; at T = {self._program.T:g} s with {channels} numbers a sample this link carries one in "
-                f"{max(1, least)}: give a whole number from there on, watch fewer channels, or leave it out."
-            )
-        return int(every)
-
     def _running(self):
         if self._recording is None:
             raise PaddleError("nothing runs; start a scene first: paddle.start(scene)")
@@ -289,27 +281,10 @@ class SerialPaddle(Paddle):
                 PATIENCE + 500 * self._program.T,
             )
             if not came and recording.last_tick == before:
-                self._explain_silence()
+                explain_silence(self.exchange, self.url)
             if bar is not None:
                 bar.update(max(0, min(recording.last_tick + 1, ticks) - seen))
                 seen = max(seen, recording.last_tick + 1)
-
-    def _explain_silence(self):
-        state = self.exchange.refresh()
-        if state["session"] != self.exchange.session:
-            raise LinkError(
-                f"{self.url}: the board was reset while the scene ran, and its motor is off: a supply that falls too low "
-                "when the motor pulls, or its reset button. Check the supply, then connect again."
-            )
-        if state["state"] != STATES["FAULT"]:
-            raise LinkError(f"{self.url}: the board runs but sends no samples; connect again")
-
-    def _require_home(self):
-        if not self._state_flag("HOMED") and self.settings is not None:
-            self.home()
-
-    def _state_flag(self, name):
-        return bool(self.exchange.refresh()["flags"] & FLAGS[name])
 
     def _on_frame(self, frame):
         if self._recording is not None:

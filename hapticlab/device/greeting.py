@@ -53,3 +53,15 @@ def introduction(board, settings, T):
     calibrated = "nominal constants, not calibrated" if settings.is_nominal else f"calibrated {day[:4]}-{day[4:6]}-{day[6:]}"
     parts += [calibrated, f"|F| <= {min(settings.force_max, settings.force_full):.4g} N"]
     return ", ".join(parts if settings.checked else [*parts, "motor sign not checked: 0.5 N at most"])
+
+
+def explain_silence(exchange, url):
+    """Raise LinkError with the reason why a running board sends no samples, unless it stopped by a fault."""
+    state = exchange.refresh()
+    if state["session"] != exchange.session:
+        raise LinkError(
+            f"{url}: the board was reset while the scene ran, and its motor is off: a supply that falls too low when the "
+            "motor pulls, or its reset button. Check the supply, then connect again."
+        )
+    if state["state"] == STATES["RUN"]:
+        raise LinkError(f"{url}: the board runs but sends no samples; connect again")

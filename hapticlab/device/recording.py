@@ -1,12 +1,18 @@
 """Samples as they come from a board, and the Telemetry they make."""
 
+import math
 import struct
 
 import numpy as np
 
+from ..errors import PaddleError
 from ..records import Telemetry
 from .messages import FAULTS, SAMPLE_FLAGS
 
+#: part of the link that samples may take; state and requests need the rest
+SAMPLES_SHARE = 0.9
+#: bytes of a sample beside its numbers: tick, flags, frame
+SAMPLE_OVERHEAD = 11
 _NUMPY = {"f32": "<f4", "bool": "<i4", "i32": "<i4"}
 
 
@@ -55,6 +61,27 @@ class Recording:
             fault=fault_words(self.fault, T), saturated=flags["saturated"], gap=missing, overrun=flags["overrun"],
             changes=tuple(self.changes),
         )  # fmt: skip
+
+
+def decimation(program, port, every=None):
+    """Return the ticks from one sample to the next: as asked, or as few as the link carries.
+
+    Raises
+    ------
+    PaddleError
+        If it carries fewer than asked.
+    """
+    channels = 2 + len(program.outputs)
+    rate = getattr(port, "bytes_per_second", port.baudrate / 10)
+    least = max(1, math.ceil((SAMPLE_OVERHEAD + 4 * channels) / program.T / (SAMPLES_SHARE * rate) - 1e-9))
+    if every is None:
+        return least
+    if every < least or every != int(every) or every > 65535:
+        raise PaddleError(
+            f"every = {every}; at T = {program.T:g} s with {channels} numbers a sample this link carries one in {least}: "
+            "give a whole number from there on, watch fewer channels, or leave it out."
+        )
+    return int(every)
 
 
 def fault_words(fault, T=None):

@@ -45,7 +45,7 @@ def paddle(request):
     elif request.param == "emulated Uno":
         if missing():
             pytest.skip(missing())
-        with emulated_uno(hand=HAND) as board:
+        with emulated_uno(hand=HAND, T=2e-3) as board:
             yield board
     elif request.param.startswith("sim://"):
         mechanics = PADDLES[request.param.split()[1]]()
