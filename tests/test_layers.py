@@ -18,11 +18,13 @@ DOORS = {
     "llvmlite": {"compiler.llvm", "compiler.llvm_emit"},
     "scipy": {"analysis.matrix", "device.plant"},
     "matplotlib": {"analysis.plots"},
-    "serial": {"device.serial"},
+    "serial": {"device.serial", "device.urls.protocol_sim"},
     "ipywidgets": {"widgets.view"},
     "tqdm": {"device.progress"},
     "pytest": set(),
 }
+# modules that open their dependency at once, because nothing imports them but a function that has opened it already
+BEHIND_A_DOOR = {"compiler.llvm_emit", "device.urls.protocol_sim"}
 FUNCTION_LINES, MODULE_LINES = 60, 300
 
 
@@ -65,7 +67,7 @@ def faults(name, source, is_package=False):
             root, *inside = target.split(".")
             if root in DOORS and name not in DOORS[root]:
                 found.append(f"{name}:{node.lineno} opens {root}; its door is {sorted(DOORS[root]) or 'tests only'}")
-            if root in DOORS and node not in deferred and name != "compiler.llvm_emit":
+            if root in DOORS and node not in deferred and name not in BEHIND_A_DOOR:
                 found.append(f"{name}:{node.lineno} imports {root} at once; open it inside the function that needs it")
             if root != "hapticlab" or (layer, target) == ("cli", "hapticlab.__version__"):
                 continue
