@@ -39,6 +39,8 @@ def library():
     )
     shim = ctypes.CDLL(str(target))
     shutil.rmtree(folder)
+    shim.uno_adc.argtypes = (ctypes.c_void_p, ctypes.c_int, ctypes.c_uint16)
+    shim.uno_run.argtypes = (ctypes.c_void_p, ctypes.c_uint64)
     shim.uno_new.restype = ctypes.c_void_p
     shim.uno_memory.restype = ctypes.POINTER(ctypes.c_uint8)
     shim.uno_cycle.restype = shim.uno_overruns.restype = ctypes.c_uint64
@@ -63,6 +65,8 @@ class Uno:
 
     Attributes
     ----------
+    cycle : int
+        Cycles since it was made.
     memory : array of uint8
         Registers and RAM, live; what is written here goes past the hooks of registers.
     """
@@ -73,6 +77,7 @@ class Uno:
         self._uno = ctypes.c_void_p(self._shim.uno_new(flash, ctypes.c_uint32(len(flash)), int(carrier)))
         self.memory = np.ctypeslib.as_array(self._shim.uno_memory(self._uno), (RAM_END,))
         self.memory[RAM_BEGIN:] = PAINT
+        self.cycle = 0
         self.eeprom = eeprom
         self.reset(cause)
 
@@ -99,14 +104,11 @@ class Uno:
 
     def run_to(self, cycle):
         """Run to a cycle: the first instruction that ends there or behind it."""
-        if not self._shim.uno_run(self._uno, ctypes.c_uint64(cycle)):
+        going = self._shim.uno_run(self._uno, cycle)
+        self.cycle = self._shim.uno_cycle(self._uno)
+        if not going:
             at = self._shim.uno_pc(self._uno)
             raise RuntimeError(f"the processor stopped at address 0x{at:04x} after {self.now:.6f} s")
-
-    @property
-    def cycle(self):
-        """Cycles since it was made."""
-        return self._shim.uno_cycle(self._uno)
 
     @property
     def now(self):
@@ -115,7 +117,7 @@ class Uno:
 
     def adc(self, counts, channel=2):
         """Put a pin of the ADC at so many counts."""
-        self._shim.uno_adc(self._uno, channel, ctypes.c_uint16(int(counts)))
+        self._shim.uno_adc(self._uno, channel, int(counts))
 
     def pin(self, pin, level):
         """Drive D0 to D7."""
