@@ -90,6 +90,8 @@ class Telemetry:
         What stopped the motor, when and why.
     saturated, gap, overrun : array of bool, shape (N,)
         Samples whose force was limited, that follow a lost sample, whose step missed its period.
+    every : int
+        Periods from one row to the next; above 1 the link carried no more. ``T`` is then the time between rows.
     changes : tuple of (float, dict)
         What was set while it ran: the time [s] from which it holds, and the parameters, SI.
 
@@ -119,6 +121,7 @@ class Telemetry:
     saturated: np.ndarray | None = None
     gap: np.ndarray | None = None
     overrun: np.ndarray | None = None
+    every: int = 1
     changes: tuple = ()
 
     def __post_init__(self):
@@ -165,7 +168,7 @@ class Telemetry:
         """Write everything to a NumPy archive and return its path (``.npz`` is added where missing)."""
         path = Path(path)
         path = path if path.suffix == ".npz" else path.with_name(path.name + ".npz")
-        plain = ("T", "delay", "units", "paddle", "scene", "parameters", "fault", "changes")
+        plain = ("T", "delay", "units", "paddle", "scene", "parameters", "fault", "every", "changes")
         about = json.dumps({"order": list(self.channels), **{name: getattr(self, name) for name in plain}})
         arrays = {name: getattr(self, name) for name in ("t", "x", "v", "F", *FLAGS)}
         np.savez(path, about=np.array(about), **arrays, **{f"channel.{k}": a for k, a in self.channels.items()})
@@ -204,7 +207,12 @@ def _column(name, values, samples, type):
     return array
 
 
-def check_record(log, asker):
-    """Refuse what is no Telemetry, with the call that makes one."""
+def check_record(log, asker, whole=True):
+    """Refuse what is no Telemetry, with the call that makes one, and where it is to be whole one with lost samples."""
     if not isinstance(log, Telemetry):
         raise AnalysisError(f"{asker} of a {type(log).__name__}; needs a record, log = paddle.run(scene, duration=...)")
+    if whole and log.gap.any():
+        raise AnalysisError(
+            f"{asker}: {np.count_nonzero(log.gap)} times samples were lost, first before t = {log.t[np.argmax(log.gap)]:g} s; "
+            "needs every sample: run again, with fewer watched channels or a longer T"
+        )

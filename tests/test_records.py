@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
+from hapticlab.analysis.chatter import chatter
+from hapticlab.analysis.energy import energy
 from hapticlab.errors import AnalysisError
 from hapticlab.records import PaddleProfile, Telemetry
 
@@ -108,3 +110,25 @@ def test_a_list_of_names_and_a_scene_for_a_paddle_are_refused_in_words():
         hl.plot(log, ["x", "F"])
     with pytest.raises(AnalysisError, match="a Scene has no m; needs a paddle"):
         hl.stability_limit(hl.wall())
+
+
+def test_what_needs_every_sample_refuses_a_record_that_lost_some():
+    t = np.r_[np.arange(20), np.arange(25, 45)] * 1e-3
+    gap = np.arange(40) == 20
+    log = Telemetry(t=t, x=0 * t, v=0 * t, F=0 * t, T=1e-3, gap=gap)
+    for asker in (energy, chatter):
+        with pytest.raises(AnalysisError, match=r"1 times samples were lost, first before t = 0.025 s"):
+            asker(log)
+
+
+def test_energy_refuses_one_sample_in_three_and_a_saved_record_knows():
+    t = np.arange(40) * 3e-3
+    log = Telemetry(t=t, x=0 * t, v=0 * t, F=0 * t, T=3e-3, every=3, changes=[(0.03, {"k": 300})])
+    with pytest.raises(AnalysisError, match="one sample in 3"):
+        energy(log)
+
+
+def test_changes_and_decimation_survive_a_file(tmp_path):
+    log = Telemetry(t=[0], x=[0], v=[0], F=[0], T=3e-3, every=3, changes=[(0.03, {"k": 300})])
+    back = Telemetry.load(log.save(tmp_path / "log"))
+    assert back.every == 3 and back.changes == ((0.03, {"k": 300}),)

@@ -79,6 +79,11 @@ def energy(log):
     0.0012
     """
     check_record(log, "energy")
+    if log.every > 1:
+        raise AnalysisError(
+            f"energy: the record holds one sample in {log.every}, and the force between them is not known; "
+            "needs every sample: run with every=1, fewer watched channels or a longer T"
+        )
     x = np.asarray(log.channels.get("x_true", log.x), float)
     if len(x) < 2:
         raise AnalysisError(f"the record has {len(x)} sample(s); energy needs at least 2")

@@ -65,7 +65,7 @@ def plot(log, *names):
     >>> [axes.get_ylabel() for axes in plot(log, "x", "F").axes]
     ['handle position x [mm]', 'force F [N]']
     """
-    check_record(log, "plot")
+    check_record(log, "plot", whole=False)
     names = names or ("x", "F")
     if not all(isinstance(name, str) for name in names):
         raise AnalysisError(f'plot of {names}; needs names one by one, as in hl.plot(log, "x", "F")')

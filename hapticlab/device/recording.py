@@ -59,7 +59,7 @@ class Recording:
             paddle=paddle, scene=program.name,
             parameters={c.name: a for c, a in zip(program.parameters, program.values, strict=True)},
             fault=fault_words(self.fault, T), saturated=flags["saturated"], gap=missing, overrun=flags["overrun"],
-            changes=tuple(self.changes),
+            every=self.every, changes=tuple(self.changes),
         )  # fmt: skip
 
 
