@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from build_image import tool
 
 from hapticlab.device.intelhex import parse_hex
 
@@ -25,6 +26,10 @@ def missing():
         return "the emulator needs a C compiler called cc"
     if not Path("/usr/include/simavr/sim_avr.h").exists():
         return "the emulator needs simavr: apt-get install libsimavr-dev libelf-dev"
+    try:
+        tool("avr-gcc")
+    except SystemExit as problem:  # no toolchain, or another one
+        return str(problem)
     return None
 
 
