@@ -7,13 +7,6 @@
 
 enum { ARMED = 0xa5 };
 
-static int is_positive(float a)
-{
-    hl_slot s;
-    s.f = a;
-    return hl_is_finite(s) && a > 0.0f;
-}
-
 /* Whether every number is one that the loop can work with. */
 int hl_settings_valid(const hl_settings *s)
 {
@@ -21,23 +14,23 @@ int hl_settings_valid(const hl_settings *s)
     if (s->layout != HL_SETTINGS_HASH || s->crc != hl_crc32(0, (const uint8_t *)s, before_crc)) {
         return 0;
     }
-    /* a stop a kilometre away is no paddle's, and counts of it must fit 32 bits */
-    if (!is_positive(hl_absf(s->metres_per_count)) || !(s->travel_min < s->travel_max)) {
+#define REFUSE(name, low, high) \
+    if (!(s->name >= low && s->name <= high)) { \
+        return 0; \
+    }
+    HL_SETTING_RANGES(REFUSE)
+#undef REFUSE
+    const float step = hl_absf(s->metres_per_count);
+    if (!(step >= HL_METRES_PER_COUNT_MIN) || !(s->travel_min < s->travel_max)) {
         return 0;
     }
-    if (!(hl_absf(s->travel_min / s->metres_per_count) < 1e8f) || !(hl_absf(s->travel_max / s->metres_per_count) < 1e8f)) {
-        return 0;
-    }
-    if (!is_positive(s->force_full) || !is_positive(s->force_max) || !is_positive(s->force_continuous)) {
-        return 0;
-    }
-    if (!is_positive(s->heating_time) || s->heating_time < 1.0f || !is_positive(s->speed_max)) {
-        return 0;
+    if (!(hl_absf(s->travel_min / step) < HL_COUNTS_MAX) || !(hl_absf(s->travel_max / step) < HL_COUNTS_MAX)) {
+        return 0; /* sums of counts must fit 32 bits */
     }
     if ((s->motor_sign != 1 && s->motor_sign != -1) || s->motor_law > HL_MOTOR_SQRT) {
         return 0;
     }
-    return s->sensor == HL_SENSOR_QUADRATURE || (s->sensor == HL_SENSOR_MAGNETORESISTIVE && s->wrap >= 16 && s->wrap <= 4096);
+    return s->sensor == HL_SENSOR_QUADRATURE || (s->sensor == HL_SENSOR_MAGNETORESISTIVE && s->wrap >= HL_WRAP_MIN && s->wrap <= HL_WRAP_MAX);
 }
 
 void hl_settings_load(hl_core *core)
@@ -54,7 +47,8 @@ void hl_settings_load(hl_core *core)
     }
     core->duty_per_force = 1.0f / s->force_full;
     /* opening the port resets many boards, which then do not know how hot the motor is: take half of what it stands */
-    core->heat = 0.5f * s->force_continuous * s->force_continuous;
+    const float half = 0.5f * s->force_continuous * s->force_continuous;
+    core->heat = core->heat > half ? core->heat : half;
     hl_place_idle(core);
     hl_handle_lose(core);
     board_configure(core);

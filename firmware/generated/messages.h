@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #define HL_PROTOCOL 1
-#define HL_PROTOCOL_HASH 0xdd234a45UL
+#define HL_PROTOCOL_HASH 0xae44115cUL
 #define HL_SETTINGS_HASH 0xe1d4ada6UL
 #define HL_LARGEST_PAYLOAD 48
 #define HL_HOST_SILENCE_MS 100
@@ -137,6 +137,7 @@ enum {
     HL_RESULT_FAULT = 43,
     HL_RESULT_NOT_CALIBRATED = 44,
     HL_RESULT_CHANNELS = 45,
+    HL_RESULT_HOT = 46,
 };
 
 enum {
@@ -225,5 +226,24 @@ typedef struct {
     float coulomb; /* [N] Coulomb friction, for the computer's models */
     uint32_t crc; /* [1] CRC-32 of all before it */
 } hl_settings;
+
+#define HL_METRES_PER_COUNT_MIN 1e-12f
+#define HL_COUNTS_MAX 100000000.0f
+#define HL_WRAP_MIN 16
+#define HL_WRAP_MAX 4096
+
+/* X(name, lowest, highest) */
+#define HL_SETTING_RANGES(X) \
+    X(metres_per_count, -0.1f, 0.1f) \
+    X(travel_min, -1000.0f, 1000.0f) \
+    X(travel_max, -1000.0f, 1000.0f) \
+    X(force_full, 1e-06f, 1000000.0f) \
+    X(force_max, 1e-06f, 1000000.0f) \
+    X(force_continuous, 1e-06f, 1000000.0f) \
+    X(heating_time, 1.0f, 1000000.0f) \
+    X(speed_max, 1e-06f, 1000000.0f) \
+    X(m, 0.0f, 1000000.0f) \
+    X(b, 0.0f, 1000000.0f) \
+    X(coulomb, 0.0f, 1000000.0f)
 
 #endif

@@ -65,7 +65,13 @@ def _offsets():
 def _settings():
     """Return the settings as a struct: every member has 4 bytes, so that no compiler pads it."""
     rows = [f"    {C_TYPES[type]} {name}; /* [{unit}] {meaning} */" for type, name, unit, meaning in tables.SETTINGS]
-    return ["/* what survives power-off */", "typedef struct {", *rows, "} hl_settings;", ""]
+    ranges = [f"    X({name}, {low!r}f, {high!r}f) \\" for name, (low, high) in tables.SETTING_RANGES.items()]
+    return [
+        "/* what survives power-off */", "typedef struct {", *rows, "} hl_settings;", "",
+        f"#define HL_METRES_PER_COUNT_MIN {tables.METRES_PER_COUNT_MIN}f", f"#define HL_COUNTS_MAX {tables.COUNTS_MAX}f",
+        f"#define HL_WRAP_MIN {tables.WRAP_MIN}", f"#define HL_WRAP_MAX {tables.WRAP_MAX}", "",
+        "/* X(name, lowest, highest) */", "#define HL_SETTING_RANGES(X) \\", *ranges[:-1], ranges[-1].removesuffix(" \\"), "",
+    ]  # fmt: skip
 
 
 if __name__ == "__main__":

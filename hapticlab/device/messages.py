@@ -107,6 +107,7 @@ RESULTS = {
     "FAULT": (43, "a fault stands: read it, remove its cause, then paddle.clear()"),
     "NOT_CALIBRATED": (44, "the board has no calibration: run `hapticlab calibrate`"),
     "CHANNELS": (45, "more watched outputs, or inputs other than x, than the board passes on: watch fewer"),
+    "HOT": (46, "the motor is hot from earlier forces: let it cool for some minutes"),
 }
 
 #: number -> what it is, cause, cure; every one of them leaves the motor off
@@ -163,6 +164,15 @@ SETTINGS = (
     ("I", "crc", "1", "CRC-32 of all before it"),
 )
 SETTINGS_STRUCT = struct.Struct("<" + "".join(type for type, *_ in SETTINGS))
+#: of the settings: what the loop's numbers can hold, far beyond any paddle
+SETTING_RANGES = {
+    "metres_per_count": (-0.1, 0.1), "travel_min": (-1e3, 1e3), "travel_max": (-1e3, 1e3), "force_full": (1e-6, 1e6),
+    "force_max": (1e-6, 1e6), "force_continuous": (1e-6, 1e6), "heating_time": (1.0, 1e6), "speed_max": (1e-6, 1e6),
+    "m": (0.0, 1e6), "b": (0.0, 1e6), "coulomb": (0.0, 1e6),
+}  # fmt: skip
+METRES_PER_COUNT_MIN, COUNTS_MAX = 1e-12, 1e8
+#: counts of a magnetoresistive sensor
+WRAP_MIN, WRAP_MAX = 16, 4096
 
 #: the loop's own limits
 HOST_SILENCE_MS = 100
@@ -182,5 +192,6 @@ def table_hash():
     messages = [(name, m.number, m.fields, m.guarded, m.open) for name, m in MESSAGES.items()]
     numbers = [(name, row[0]) for table in (RESULTS, FAULTS, RESET_CAUSES) for name, row in table.items()]
     rest = (STATES, TARGETS, FLAGS, SAMPLE_FLAGS, OPTIONS, SENSORS, MOTOR_LAWS, SETTINGS)
+    rest += (SETTING_RANGES, METRES_PER_COUNT_MIN, COUNTS_MAX, WRAP_MIN, WRAP_MAX)
     limits = HOST_SILENCE_MS, UNCHECKED_FORCE_N, OVERRUNS_IN_A_ROW, OVERRUNS_PER_SECOND
     return zlib.crc32(repr((PROTOCOL, LARGEST_PAYLOAD, machine_hash(), messages, numbers, rest, limits)).encode())

@@ -5,8 +5,24 @@ import zlib
 from dataclasses import dataclass, fields, replace
 
 from ..errors import PaddleError
-from .messages import MOTOR_LAWS, SENSORS, SETTINGS, SETTINGS_STRUCT, settings_hash
+from .messages import (
+    COUNTS_MAX,
+    METRES_PER_COUNT_MIN,
+    MOTOR_LAWS,
+    SENSORS,
+    SETTING_RANGES,
+    SETTINGS,
+    SETTINGS_STRUCT,
+    WRAP_MAX,
+    WRAP_MIN,
+    settings_hash,
+)
 from .profiles import profile as named_profile
+
+_CHOICES = {
+    "ident": range(1 << 16), "date": range(1 << 32), "checked": (0, 1), "motor_law": tuple(MOTOR_LAWS.values()),
+    "motor_sign": (1, -1), "sensor": tuple(SENSORS.values()), "wrap": range(1 << 32),
+}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,12 +57,23 @@ class Settings:
     coulomb: float = 0.0
 
     def __post_init__(self):
-        for name in ("metres_per_count", "force_full", "force_max", "force_continuous", "heating_time", "speed_max"):
+        for name, (low, high) in SETTING_RANGES.items():
             value = getattr(self, name)
-            if not math.isfinite(value) or value == 0 or (value < 0 and name != "metres_per_count"):
-                raise PaddleError(f"{name} = {value:g}; a board's settings need a finite number > 0. Calibrate again.")
+            if not low <= value <= high:
+                raise PaddleError(f"{name} = {value:g}; a board's settings need {low:g} to {high:g}. Calibrate again.")
+        step = abs(self.metres_per_count)
+        if step < METRES_PER_COUNT_MIN:
+            raise PaddleError(f"metres_per_count = {self.metres_per_count:g}; needs {METRES_PER_COUNT_MIN:g} at least.")
         if not self.travel_min < self.travel_max:
             raise PaddleError(f"travel from {self.travel_min:g} to {self.travel_max:g} m; needs the lower stop first.")
+        counts = max(-self.travel_min, self.travel_max, key=abs) / step
+        if not abs(counts) < COUNTS_MAX:
+            raise PaddleError(f"a stop at {counts:g} counts; a board counts to {COUNTS_MAX:g}: use a coarser encoder.")
+        for name, allowed in _CHOICES.items():
+            if getattr(self, name) not in allowed:
+                raise PaddleError(f"{name} = {getattr(self, name)!r}; needs {_spoken(allowed)}.")
+        if self.sensor == SENSORS["MAGNETORESISTIVE"] and not WRAP_MIN <= self.wrap <= WRAP_MAX:
+            raise PaddleError(f"wrap = {self.wrap}; a magnetoresistive sensor needs {WRAP_MIN} to {WRAP_MAX} counts a half turn.")
 
     def to_bytes(self):
         """Return the record as a board keeps it, its CRC-32 at the end."""
@@ -91,6 +118,12 @@ _NOMINAL = {
         "speed_max": 2.0, "motor_law": MOTOR_LAWS["SQRT"], "sensor": SENSORS["MAGNETORESISTIVE"], "wrap": 920,
     },
 }  # fmt: skip
+
+
+def _spoken(allowed):
+    if isinstance(allowed, range):
+        return f"a whole number from {allowed[0]} to {allowed[-1]}"
+    return " or ".join(map(str, allowed))
 
 
 def nominal(profile, **changes):
