@@ -29,17 +29,18 @@ void hl_handle_limits(hl_core *core)
 /* The handle is at this position now. */
 void hl_handle_place(hl_core *core, float position)
 {
-    core->origin = core->counts - counts_of(core, position);
+    core->origin = hl_moved(counts_of(core, position), core->counts);
     core->homed = 1;
     core->mismatch = 0;
 }
 
-/* The position is not known any more. */
+/* The position is not known any more, nor is anything seen before. */
 void hl_handle_lose(hl_core *core)
 {
     core->homed = 0;
     core->mismatch = 0;
-    core->seen_min = core->seen_max = core->counts;
+    core->seen_min = INT32_MAX; /* the next tick begins both */
+    core->seen_max = INT32_MIN;
 }
 
 /* In IDLE: a handle led to both stops has told where it is. */
@@ -48,12 +49,12 @@ void hl_handle_watch(hl_core *core)
     const int32_t counts = core->counts;
     core->seen_min = counts < core->seen_min ? counts : core->seen_min;
     core->seen_max = counts > core->seen_max ? counts : core->seen_max;
-    const int32_t seen = core->seen_max - core->seen_min, allowed = core->limits.span / 32;
+    const int32_t seen = hl_moved(core->seen_min, core->seen_max), allowed = core->limits.span / 32;
     if (core->homed || !core->calibrated || seen < core->limits.span - allowed) {
         return;
     }
     /* the hand is still at the second stop when it turns back: wait for that, so that both ends are complete */
-    if (counts > core->seen_max - allowed || counts < core->seen_min + allowed) {
+    if (hl_moved(counts, core->seen_max) < allowed || hl_moved(core->seen_min, counts) < allowed) {
         return;
     }
     if (seen > core->limits.span + allowed) {
@@ -61,11 +62,11 @@ void hl_handle_watch(hl_core *core)
         return;
     }
     const float middle = 0.5f * (core->settings.travel_min + core->settings.travel_max);
-    core->origin = core->seen_min + seen / 2 - counts_of(core, middle);
+    core->origin = hl_moved(counts_of(core, middle) - seen / 2, core->seen_min);
     core->homed = 1;
 }
 
 float hl_handle_position(const hl_core *core, int32_t counts)
 {
-    return (float)(counts - core->origin) * core->settings.metres_per_count;
+    return (float)hl_moved(core->origin, counts) * core->settings.metres_per_count;
 }

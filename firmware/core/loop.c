@@ -5,13 +5,14 @@ void hl_core_fault(hl_core *core, uint8_t fault, float value)
 {
     board_motor(core, 0);
     if (fault == HL_FAULT_SENSOR || fault == HL_FAULT_OVER_TRAVEL) {
-        core->homed = 0; /* counts may have been missed */
+        hl_handle_lose(core); /* counts may have been missed: what was seen of the stops is worth nothing either */
     }
     if (core->state != HL_STATE_RUN) {
         return; /* nothing was running, or an earlier fault stands */
     }
     core->state = HL_STATE_FAULT;
     board_motor(core, 0); /* again: called outside the tick, a tick may have come between */
+    core->force = 0.0f;
     core->fault = fault;
     core->fault_tick = core->tick;
     core->fault_value = value;
@@ -38,20 +39,21 @@ static uint8_t is_unsafe(hl_core *core, uint16_t periods, int32_t before)
 {
     core->silent = core->heard || core->standalone ? 0 : (uint16_t)(core->silent + periods);
     core->heard = 0;
-    if (core->silent > core->silence) {
+    if (core->silent >= core->silence) {
         hl_core_fault(core, HL_FAULT_HOST_SILENT, 0.0f);
         return 1;
     }
     if (!core->calibrated || core->force_limit == 0.0f) {
         return 0; /* the motor is off: nothing to protect */
     }
-    const int32_t place = core->counts - core->origin;
+    const int32_t place = hl_moved(core->origin, core->counts);
     if (place < core->limits.lowest || place > core->limits.highest) {
         hl_core_fault(core, HL_FAULT_OVER_TRAVEL, core->x);
         return 1;
     }
-    const int32_t moved = core->counts > before ? core->counts - before : before - core->counts;
-    if (!core->first && moved > core->limits.speed * (int32_t)(periods ? periods : 1)) {
+    int32_t moved = hl_moved(before, core->counts);
+    moved = periods > 1 ? moved / (int32_t)periods : moved;
+    if (!core->first && (moved > core->limits.speed || moved < -core->limits.speed)) {
         hl_core_fault(core, HL_FAULT_OVER_SPEED, core->v);
         return 1;
     }
@@ -154,17 +156,17 @@ static void run(hl_core *core, uint16_t begin, int32_t before)
     if (is_late(core, begin)) {
         flags |= HL_SAMPLE_OVERRUN;
     }
-    record(core, outputs, flags);
-    core->first = 0;
     watch_overruns(core);
+    record(core, outputs, flags); /* with no force where one of them switched the motor off */
+    core->first = 0;
 }
 
 /* Without a host: a program kept in the store starts when the handle, led to both stops, rests in the middle for 1 s. */
 static void await_standalone(hl_core *core)
 {
-    const int32_t middle = (core->limits.lowest + core->limits.highest) / 2 + core->origin;
     const int32_t tenth = core->limits.span / 10;
-    const int32_t off = core->counts - middle, moved = core->counts - core->resting;
+    const int32_t off = hl_moved(core->origin, core->counts) - (core->limits.lowest + core->limits.highest) / 2;
+    const int32_t moved = hl_moved(core->resting, core->counts);
     const int32_t still = core->limits.span / 200 + 2;
     if (!core->homed || off > tenth || off < -tenth || moved > still || moved < -still) {
         core->resting = core->counts;

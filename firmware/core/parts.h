@@ -4,6 +4,12 @@
 
 #include "board.h"
 
+/* From one count to another; they have no bounds, so the difference may turn over, and is right again when they meet. */
+static inline int32_t hl_moved(int32_t from, int32_t to)
+{
+    return (int32_t)((uint32_t)to - (uint32_t)from);
+}
+
 /* store.c: what survives power-off */
 enum { HL_STORE_ARMED = 96, HL_STORE_SIZE = 97, HL_STORE_PROGRAM = 100 }; /* addresses; the settings are at 0 */
 int hl_settings_valid(const hl_settings *settings);

@@ -64,6 +64,9 @@ static uint8_t why_not(const hl_core *core, const hl_place *place, uint16_t ever
     if (options & HL_OPTION_PASSIVE) {
         return HL_OK;
     }
+    if (core->heat > core->settings.force_continuous * core->settings.force_continuous) {
+        return HL_RESULT_HOT;
+    }
     return !core->calibrated ? HL_RESULT_NOT_CALIBRATED : !core->homed ? HL_RESULT_NOT_HOMED : HL_OK;
 }
 
@@ -100,6 +103,7 @@ uint8_t hl_place_start(hl_core *core, uint8_t index, uint16_t every, uint8_t opt
     core->every = every;
     core->countdown = 1;
     core->tick = 0;
+    core->force = 0.0f;
     core->first = 1;
     core->silent = 0;
     core->late = 0;

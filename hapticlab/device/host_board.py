@@ -3,6 +3,7 @@
 import ctypes
 
 from ..compiler.native import load_library
+from .messages import FAULTS
 
 STORE_BYTES, DUTY_FULL, CLOCK_HZ = 4096, 32767, 1_000_000
 #: words of 16 bits: this computer holds programs of any size
@@ -17,6 +18,8 @@ class HostBoard:
     store : bytes
         What the memory that survives power-off holds; empty for a new board.
     reset_cause : int
+    slots : int
+        Places for programs: 2, or 1 as on a board of little memory.
 
     Examples
     --------
@@ -28,8 +31,8 @@ class HostBoard:
     [Frame(message='PONG', sequence=5, payload=b'*\\x00\\x00\\x00')]
     """
 
-    def __init__(self, store=b"", reset_cause=0):
-        self._library = _library()
+    def __init__(self, store=b"", reset_cause=0, slots=2):
+        self._library = _library(*([f"-DHL_SLOTS={slots}"] if slots != 2 else []))
         self._room = ctypes.create_string_buffer(65536)
         self._board = self._library.hl_host_new(store.ljust(STORE_BYTES, b"\xff"), reset_cause)
         if not self._board:
@@ -72,9 +75,13 @@ class HostBoard:
         """Flip bits of a byte of the active program, as a failing memory would."""
         self._library.hl_host_program(self._board)[at] ^= mask
 
+    def fail(self, fault):
+        """Let the board find a fault by itself, a name in FAULTS, as its sensor or its stack would."""
+        self._library.hl_host_fault(self._board, FAULTS[fault][0])
 
-def _library():
-    library = load_library(WORD_BITS)
+
+def _library(*flags):
+    library = load_library(WORD_BITS, *flags)
     board = ctypes.c_void_p
     library.hl_host_new.restype = board
     library.hl_host_new.argtypes = [ctypes.c_char_p, ctypes.c_uint8]
@@ -83,6 +90,7 @@ def _library():
     library.hl_host_transmit.argtypes = [board, ctypes.c_void_p, ctypes.c_uint32]
     library.hl_host_transmit.restype = ctypes.c_uint32
     library.hl_host_tick.argtypes = [board, ctypes.c_int32, ctypes.c_uint16, ctypes.c_uint16]
+    library.hl_host_fault.argtypes = [board, ctypes.c_int]
     library.hl_host_duty.argtypes = library.hl_host_period_us.argtypes = [board]
     library.hl_host_period_us.restype = ctypes.c_uint32
     library.hl_host_store.argtypes = library.hl_host_program.argtypes = [board]

@@ -33,9 +33,12 @@ def spring(K=None, T=1e-3, **options):
     return compile(scene if K is None else scene(k=K), T=T, velocity="backward_difference", **options)
 
 
-def fixed(law, T=1e-3, name="fixed"):
-    """A program without parameters: as a store keeps it."""
-    return compile(Scene(force=law, name=name), T=T, velocity="backward_difference", live=())
+def fixed(push=0.0, k=0.0, over=0.0):
+    """F = push + k x + over / x, a program without parameters: as a store keeps it."""
+    constants = parameters("push k over", units="N N/m N*m")
+    law = constants[0] + constants[1] * x(n) + (constants[2] / x(n) if over else 0)
+    values = {"push": push, "k": k} | ({"over": over} if over else {})
+    return compile(Scene(force=law, name="fixed")(**values), T=1e-3, velocity="backward_difference", live=())
 
 
 class Host:

@@ -4,7 +4,9 @@
 
 #define HL_BOARD_NAME "host"
 #define HL_ARENA_BYTES 32768
+#ifndef HL_SLOTS /* as on a board of little memory: 1 */
 #define HL_SLOTS 2
+#endif
 #define HL_CHANNELS 10
 #define HL_RING 64
 #define HL_CLOCK_HZ 1000000
