@@ -4,26 +4,24 @@ import math
 import zlib
 from dataclasses import replace
 
-import numpy as np
-
 from ..compiler.bytecode import encode
 from ..compiler.cost import BOARDS, cost
 from ..compiler.fit import fit
 from ..compiler.ir import Program
-from ..errors import LinkError, PaddleError, ParameterError
+from ..errors import LinkError, PaddleError
 from .exchange import Exchange
 from .greeting import explain_silence, introduction, say_hello, what_happened
 from .homing import home
+from .live import checked, in_portions, named_values, send
 from .messages import OPTIONS, STATES
 from .paddle import Paddle
 from .progress import progress_bar
 from .recording import Recording, decimation
 from .serial import open_port
+from .standalone import forget, keep
 from .timing import Timing
 from .upload import read_settings, upload
 
-#: parameters in one SET
-MOST_AT_ONCE = 8
 #: seconds a board may be silent in a run before the host gives up
 PATIENCE = 1.0
 
@@ -168,10 +166,9 @@ class SerialPaddle(Paddle):
         """
         if self._program is None:
             raise PaddleError("nothing is on the board yet; start a scene first: paddle.start(scene)")
-        names = [c.name for c in self._program.parameters]
-        scene, numbers = self._numbers(values, names)
-        tick = self._set({names.index(name): value for name, value in numbers.items()})
-        known = dict(zip(names, self._program.values, strict=True)) | numbers
+        scene, numbers = checked(self._program, self._scene, values)
+        tick = send(self.exchange, self._program, numbers)
+        known = named_values(self._program) | numbers
         self._program, self._scene = replace(self._program, values=tuple(known.values())), scene
         if self._recording is not None:
             self._recording.changes.append(((tick + 1) * self.T, numbers))
@@ -205,6 +202,17 @@ class SerialPaddle(Paddle):
             How long that may take [s].
         """
         home(self.exchange, self.settings, at, timeout)
+
+    def keep(self, scene, **options):
+        """Have the board keep a scene and run it without a computer; return what starts it. See standalone.keep."""
+        self._require_idle("keep")
+        self._program = self._scene = None  # the upload takes the place of what was loaded
+        return keep(self, scene, **options)
+
+    def forget(self):
+        """Have the board wait for a computer after power-on again."""
+        self._require_idle("forget")
+        forget(self)
 
     def state(self):
         """Return the board's state as it is now: a dict of messages.STATE's fields."""
@@ -243,27 +251,12 @@ class SerialPaddle(Paddle):
             self.stop()
         upload(self.exchange, "PROGRAM", data)
         self._program, self._crc = program, zlib.crc32(data[:-4])
-        indices = dict(enumerate(program.values))
-        for first in range(0, len(indices), MOST_AT_ONCE):
-            self._set({k: indices[k] for k in list(indices)[first : first + MOST_AT_ONCE]})
+        for some in in_portions(named_values(program)):
+            send(self.exchange, program, some)
 
-    def _numbers(self, values, names):
-        """Return the scene with the values bound, and the values in SI, checked."""
-        unknown = sorted(set(values) - set(names))
-        if unknown:
-            raise ParameterError(f"{unknown[0]} is no live parameter of {self._program.name}; it has {', '.join(names) or 'none'}.")
-        scene = self._scene and self._scene(**values)
-        numbers = {name: scene.values[name] if scene else float(value) for name, value in values.items()}
-        bad = [name for name, value in numbers.items() if not np.isfinite(np.float32(value))]
-        if bad:
-            raise ParameterError(f"{bad[0]} = {numbers[bad[0]]:g}; a board needs a finite float32, |{bad[0]}| < 3.4e38.")
-        return scene, numbers
-
-    def _set(self, values):
-        if len(values) > MOST_AT_ONCE:
-            raise ParameterError(f"{len(values)} parameters at once; a board takes {MOST_AT_ONCE} between two ticks: set fewer")
-        rest = b"".join(bytes([k]) + np.float32(value).tobytes() for k, value in values.items())
-        return self.exchange.command("SET", len(values), rest=rest)
+    def _require_idle(self, asked):
+        if self._recording is not None:
+            raise PaddleError(f"{asked}: a scene runs; end it first: paddle.stop()")
 
     def _running(self):
         if self._recording is None:
