@@ -19,9 +19,13 @@ from ..simulated import SimulatedPaddle
 
 
 class Serial(SerialBase):
-    """A port of a simulated board; see the module. ``paddle`` may be replaced before the first read."""
+    """A port of a simulated board; see the module. ``paddle`` may be replaced before the first read.
+
+    ``wiring`` is what lies between the board and its motor: 1 right, -1 swapped wires, 0 no supply.
+    """
 
     bytes_per_second = float("inf")
+    wiring = 1
 
     def open(self):
         self._at, pace = _parts(self.port)
@@ -33,12 +37,16 @@ class Serial(SerialBase):
         self.is_open = True
         self.put_on(None)
 
-    def put_on(self, paddle, x=0.0):
-        """Power the board anew, its core closed around this paddle, with the handle at x [m]."""
-        paddle, settings = _mechanics(self._at, paddle)
+    def put_on(self, paddle, x=0.0, *, settings=None, store=None):
+        """Power the board anew, its core closed around this paddle, with the handle at x [m].
+
+        ``settings`` are what sensor and motor really are, ``store`` what the board keeps of them: the same if None, and
+        nothing, as on a new board, if b"".
+        """
+        paddle, usual = _mechanics(self._at, paddle)
         with self._changed:
-            self.settings = settings.to_float32()
-            self.board = HostBoard(self.settings.to_bytes())
+            self.settings = (settings or usual).to_float32()
+            self.board = HostBoard(self.settings.to_bytes() if store is None else store)
             self.handle = Handle(paddle, x).with_period(self.board.period)
             self._per_metre = 1 / self.settings.metres_per_count
         if not self.lockstep and not hasattr(self, "_thread"):
@@ -93,7 +101,7 @@ class Serial(SerialBase):
             counts = round(self.handle.seen * self._per_metre)
         step = min(self.handle.paddle.delay, self.handle.paddle.T)
         duty = self.board.tick(counts, self.handle.t, step)
-        self.handle.step(-self.settings.force_of_duty(duty))  # the motor gives -F (Fig. 23.5)
+        self.handle.step(-self.wiring * self.settings.force_of_duty(duty))  # the motor gives -F (Fig. 23.5)
         self._heard += self.board.transmit()
 
     def _run_by_the_clock(self):
