@@ -2,18 +2,22 @@
 
 A verified program is its list of instructions, so its time is a sum. Every operation has two figures, in costs.json,
 which ``python tests/firmware/measure_costs.py`` measures and writes: what it takes with operands as scenes have them, and the
-most that was found with any operands at all, denormals and nan included.
+most that was found with any operands at all, denormals and nan included. A sine has a third, typical of angles beyond
+an eighth of a turn.
 """
 
 import functools
 import json
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from ..errors import ProgramError
+import numpy as np
+
+from ..errors import EngineMissingError, ProgramError
 from .bytecode import encode, instructions_of, layout, words_of
-from .ir import Program
+from .engine import load
+from .ir import Channel, Program
 
 COSTS = Path(__file__).with_name("costs.json")
 #: the typical figure is right to this part; a scene that leaves less than it free does not fit
@@ -74,8 +78,8 @@ class Cost:
     instructions, registers, bytes, outputs : int
         ``bytes`` as sent over the link.
     typical, bound : int
-        Cycles of one tick of the program: with operands as scenes have them (numbers from 0.01 to 100, angles mostly
-        within an eighth of a turn; beyond it a sine takes an Uno up to 2000 more), and the most with any operands.
+        Cycles of one tick of the program: with operands as scenes have them (numbers from 0.01 to 100, angles as in a
+        second of :func:`reference_motion`), and the most with any operands.
     first : int
         Cycles at most that the first tick takes besides, to make the first states.
     step : (int, int)
@@ -229,7 +233,7 @@ def cost(program, board="uno", *, every=1):
     outside = around["tick"] + states + size["tick_moves"] * around["move"]
     outside += sum(around[f"output {c.type}"] for c in program.outputs)
     first = around["init"] + states + size["init_moves"] * around["move"] + sum(of[op][1] for op in init)
-    typical = outside + sum(of[op][0] for op in tick)
+    typical = round(outside + sum(of[op][0] for op in tick) + _far_angles(program, of))
     worst = outside + sum(of[op][1] for op in tick)
     sample = table["sample_bytes"] + 4 * (size["outputs"] + OWN_CHANNELS)
     frame = tuple(math.ceil((fixed + each * sample) / every) for fixed, each in table["frame"])
@@ -237,6 +241,32 @@ def cost(program, board="uno", *, every=1):
         program.name, given, at.period_us * 1e-6, len(tick), *shape, typical, _promised(worst), _promised(first),
         tuple(table["step"]), frame, table["source"], program,
     )  # fmt: skip
+
+
+def reference_motion(ticks, T):
+    """Return a smooth motion of the handle, five sines of 4 mm each [m]; what a program's angles are looked at with."""
+    at = np.arange(ticks) * T
+    return 4e-3 * sum(np.sin(w * at + phase) for w, phase in ((3, 3.1), (7, 5.7), (11, 0.9), (17, 5.7), (29, 1.9)))
+
+
+def _far_angles(program, of):
+    """Return the cycles that sines and cosines take more, since some angles are beyond an eighth of a turn.
+
+    The machine of this computer runs the program for a second. Where it cannot, or a parameter has no value, none are.
+    """
+    turned = [i for i in program.tick.instructions if i.op in ("sin", "cos")]
+    if not turned or len(program.inputs) != 1 or any(v != v for v in program.values):
+        return 0
+    outputs = tuple(Channel(f"angle{k}") for k in range(len(turned)))
+    tick = replace(program.tick, outputs=tuple(i.args[0] for i in turned))
+    try:
+        machine = load(replace(program, tick=tick, outputs=outputs), "vm")
+    except EngineMissingError:
+        return 0
+    ticks = max(10, round(1 / program.T))
+    angles = machine.run(ticks, reference_motion(ticks, program.T)[:, None]).outputs[..., 0]
+    far = (np.abs(angles) > math.pi / 4).mean(axis=0)
+    return sum((of[i.op][2] - of[i.op][0]) * part for i, part in zip(turned, far, strict=True))
 
 
 def _promised(cycles):

@@ -22,7 +22,8 @@ def fit(scene, board="uno", *, every=1, promise=False, **options):
     Parameters
     ----------
     scene : Scene or Program
-        A program can only be offered a slower rate; of a scene the alternatives are compiled, when it does not fit.
+        A program can only be offered a slower rate or less telemetry. Of a scene that does not fit, alternatives are
+        compiled.
     board : str
         See :func:`~hapticlab.compiler.cost.cost`.
     every : int
@@ -53,7 +54,10 @@ def fit(scene, board="uno", *, every=1, promise=False, **options):
     taken = cost(compile(scene, **options) if is_scene else scene, board, every=every)
     if taken.promised if promise else taken.fits:
         return taken
-    offers = list(_offers(scene, taken, promise, every, options)) if is_scene else [_slower(taken, promise)]
+    if is_scene:
+        offers = _offers(scene, taken, promise, every, options)
+    else:
+        offers = [_seldom(taken, promise, every), _slower(taken, promise)]
     offers = [o for o in offers if o][:MOST_NAMED]
     cure = "; fits " + ", or ".join(offers) if offers else "; simplify the scene: nothing cheaper was found that fits"
     raise ProgramLimitError(_what(taken, promise) + cure)
@@ -85,7 +89,7 @@ def _period(taken, promise):
 
 def _offers(scene, taken, promise, every, options):
     """Yield what fits, in words: at the same rate what changes the motion least, then slower rates, fastest first."""
-    same, slower = [], []
+    same, slower = [_seldom(taken, promise, every)], []
     for words, other, changed in _cheaper(scene, options):
         try:
             found = cost(compile(other, **changed), taken.board, every=every)
@@ -108,6 +112,15 @@ def _offers(scene, taken, promise, every, options):
         if T not in rates:
             rates.add(T)
             yield words
+
+
+def _seldom(taken, promise, every):
+    """Return how seldom a sample may be sent for all the rest to fit, in words, or None."""
+    for ticks in (2, 5, 10):
+        found = cost(taken.program, taken.board, every=max(every, ticks))
+        if found.promised if promise else found.fits:
+            return f"with every={ticks} (a sample of telemetry in {ticks} ticks)"
+    return None
 
 
 def _fits_at(T, scene, options, board, every, promise):

@@ -62,7 +62,8 @@ def test_every_operation_has_its_figures_on_every_board():
         if board.hz:
             of = tables()[name]["operations"]
             assert set(of) == set(OPCODES)
-            assert all(0 < typical <= worst for typical, worst in of.values())
+            assert all(0 < typical <= worst for typical, worst, *_ in of.values())
+            assert all(of[op][0] < of[op][2] <= of[op][1] for op in ("sin", "cos"))
             assert ("modelled, not measured" in tables()[name]["source"]) == (name != "uno")
 
 
@@ -112,7 +113,7 @@ def offers(message):
     """Return the options that a refusal names, as keyword arguments."""
     given = []
     for words in message.split("; fits ")[1].split(", or "):
-        numbers = re.findall(r"(substeps)=(\d+)", words) + re.findall(r"(T) = ([\d.e-]+) s", words)
+        numbers = re.findall(r"(substeps|every)=(\d+)", words) + re.findall(r"(T) = ([\d.e-]+) s", words)
         made = {name: float(n) if name == "T" else int(n) for name, n in numbers}
         given.append({**dict(re.findall(r"(\w+)='(\w*)'", words)), **made})
     return given
@@ -154,7 +155,7 @@ def test_a_program_is_offered_a_rate_the_first_that_is_long_enough():
     program = hl.compile(scene, T=1e-3, **options)
     with pytest.raises(ProgramLimitError) as refusal:
         fit(program)
-    (offer,) = offers(str(refusal.value))
+    (offer,) = offers(str(refusal.value))  # without telemetry it would not fit either
     assert fit(hl.compile(scene, **options, **offer)).fits
     shorter = max(T for T in PERIODS if T < offer["T"])
     with pytest.raises(ProgramLimitError):
@@ -166,6 +167,16 @@ def test_a_law_of_the_book_is_offered_where_it_needs_fewer_samples():
     T = next(T * 1e-6 for T in range(1, 2000) if cost(hl.compile(zoh, T=T * 1e-6), every=20).fits)
     with pytest.raises(ProgramLimitError, match="fits .*with law='zoh'"):
         fit(ellis, T=T, every=20)
+
+
+def test_less_telemetry_is_offered_where_that_is_enough():
+    program = wall_program()
+    said = cost(program)
+    T = next(T * 1e-6 for T in range(300, 2000) if cost(replace(program, T=T * 1e-6), every=4).fits)
+    assert T < said.T_needed()
+    with pytest.raises(ProgramLimitError, match=r"fits with every=5 \(a sample of telemetry in 5 ticks\)"):
+        fit(replace(program, T=T))
+    assert fit(replace(program, T=T), every=5).fits
 
 
 def test_substeps_are_offered_back_before_anything_slower():

@@ -1,10 +1,15 @@
-"""Five scenes of growing cost, as a student writes them, and the motion of the handle that drives them."""
+"""Five scenes of growing cost, as a student writes them, and the motion of the handle that drives them.
+
+``python tests/firmware/five_scenes.py`` prints what of them fits which board.
+"""
 
 import numpy as np
 import sympy as sp
 
 import hapticlab as hl
 from hapticlab import t, v, x
+from hapticlab.compiler.cost import BOARDS
+from hapticlab.compiler.fit import table
 
 MOVE = 0.01  # how far the handle moves [m]
 
@@ -24,9 +29,9 @@ def mass_and_wall():
     return scene(m=0.1, b=2, K=400, k=50, k_w=1000, x_w=0.004), {"method": "semi_implicit_euler"}
 
 
-def cart_pole():
+def cart_pole(start=0.4):
     """Return a cart on a virtual coupler with a hanging pole."""
-    s, a = hl.coordinate("s", unit="m"), hl.coordinate("a", unit="rad", initial=0.4)
+    s, a = hl.coordinate("s", unit="m"), hl.coordinate("a", unit="rad", initial=start)
     M, m, l, g, K = hl.parameters("M m l g K", units="kg kg m m/s^2 N/m")
     F = K * (x(t) - s)
     along = (M + m) * s.diff(t, 2) + m * l * (sp.cos(a) * a.diff(t, 2) - sp.sin(a) * a.diff(t) ** 2)
@@ -35,9 +40,9 @@ def cart_pole():
     return scene(M=0.5, m=0.1, l=0.3, g=9.81, K=300), {"method": "semi_implicit_euler"}
 
 
-def pendulum():
+def pendulum(start=0.3):
     """Return a pendulum whose pivot is turned by the handle through a spring."""
-    q = hl.coordinate("q", unit="rad", initial=0.3)
+    q = hl.coordinate("q", unit="rad", initial=start)
     m, l, g, K, r = hl.parameters("m l g K r", units="kg m m/s^2 N*m m")
     torque = K * (x(t) / r - q)
     scene = hl.Scene(
@@ -46,9 +51,9 @@ def pendulum():
     return scene(m=0.05, l=0.2, g=9.81, K=0.1, r=0.05), {"method": "rk4"}
 
 
-def double_pendulum():
+def double_pendulum(start=0.3):
     """Return two equal links in absolute angles, the first turned by the handle through a spring."""
-    a, b = hl.coordinate("a", unit="rad", initial=0.3), hl.coordinate("b", unit="rad", initial=-0.2)
+    a, b = hl.coordinate("a", unit="rad", initial=start), hl.coordinate("b", unit="rad", initial=-0.2)
     m, l, g, K, r = hl.parameters("m l g K r", units="kg m m/s^2 N*m m")
     torque = K * (x(t) / r - a)
     cos, sin = sp.cos(a - b), sp.sin(a - b)
@@ -75,3 +80,8 @@ def handle(ticks, T=1e-3, seed=1):
     angle = np.array([3.0, 7.0, 11.0, 17.0, 29.0]) * (np.arange(ticks) * T)[:, None] + phase
     position = 0.4 * MOVE * np.sin(angle).sum(1)
     return np.round(position / 13e-6)[:, None] * 13e-6
+
+
+if __name__ == "__main__":
+    for board in (name for name, b in BOARDS.items() if b.hz):
+        print(table([make() for make in SCENES], board), end="\n\n")

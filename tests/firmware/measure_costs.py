@@ -2,6 +2,7 @@
 
     python tests/firmware/measure_costs.py            all boards
     python tests/firmware/measure_costs.py uno        one of them
+    python tests/firmware/measure_costs.py step       only the rest of a step and a telemetry frame, in seconds
 
 An operation's typical cost is the mean over operands as scenes have them. Its worst cost is the most that was found over
 awkward operands (denormals, cancellation, every distance of exponents, huge angles, infinities, nan) and by a search that
@@ -81,10 +82,16 @@ def typical(op, rng, count):
     if op in ("sqrt", "log", "exponent"):
         rows = np.abs(rows)
     if op in ("sin", "cos"):
-        rows = 0.5 * rng.normal(size=rows.shape)  # [rad], mostly within an eighth of a turn
+        rows = rng.uniform(-0.7, 0.7, rows.shape)  # [rad], within an eighth of a turn
     if op == "exp2i":
         rows = np.round(rng.normal(size=rows.shape) * 10)
     return np.column_stack([rows.astype(np.float32), np.zeros(count)])
+
+
+def far(count, rng):
+    """Return angles beyond an eighth of a turn, up to a turn [rad]."""
+    angles = rng.uniform(np.pi / 4, 2 * np.pi, count) * rng.choice([-1, 1], count)
+    return np.column_stack([angles.astype(np.float32), np.zeros(count)])
 
 
 MANTISSAS = (0, 1, 2, 0x400000, 0x7FFFFF, 0x7FFFFE, 0x555555, 0x2AAAAA, 0x3FFFFF, 0x7FF000, 0x000FFF, 0x3504F3, 0x490FDB)
@@ -192,16 +199,25 @@ def measured(board):
     for op in OPCODES:
         program = program_of(op)
         base = table["overheads"]["tick"] + table["overheads"]["output f32"]
-        table["operations"][op] = measure(Bench(program, cpu), op, base, EFFORT[board])
+        bench = Bench(program, cpu)
+        row = list(measure(bench, op, base, EFFORT[board]))
+        if op in ("sin", "cos"):
+            beyond = bench.run(far(EFFORT[board][0], np.random.default_rng(1)).astype(float), init=False)[2]
+            row.append(round(float(beyond.mean()) - base))
+        table["operations"][op] = row
         print(board, op, *table["operations"][op], flush=True)
     return table
 
 
 def main(boards):
     tables = json.loads(COSTS.read_text()) if COSTS.exists() else {}
-    for board in boards or PROCESSORS:
-        step = measure_step() if board == "uno" else {k: tables["uno"][k] for k in ("step", "frame", "sample_bytes")}
-        tables[board] = {**measured(board), **step}
+    for board in PROCESSORS:
+        if not boards or board in boards:
+            tables[board] = {**tables.get(board, {}), **measured(board)}
+    if not boards or "step" in boards:
+        step = measure_step()
+        for board in tables.values():
+            board.update(step)
     COSTS.write_text(as_text(tables))
 
 

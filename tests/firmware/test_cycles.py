@@ -4,18 +4,21 @@ import bare
 import cortex
 import numpy as np
 import pytest
-from bare import Avr, Bench
+from bare import Avr, Bench, avr_image, avr_tool, symbols
 from cortex import PROCESSORS, Cortex
 from five_scenes import SCENES, compiled, handle
 from measure_costs import EFFORT, as_values, awkward, awkward_bits, measure, overheads, program_of
 from random_programs import random_program, random_rows
+from whole_step import measure_step
 
+import hapticlab as hl
 from hapticlab.compiler.bytecode import OPCODES
 from hapticlab.compiler.cost import TYPICAL_ERROR, cost, tables
 from hapticlab.compiler.fit import table
 
 BOARDS = ("uno", *PROCESSORS)
-TICKS = {"uno": 600}
+needs_uno = pytest.mark.skipif(bool(bare.missing()), reason=str(bare.missing()))
+TICKS = {"uno": 600}  # else 40: unicorn is slower
 
 
 @pytest.fixture(scope="module", params=BOARDS)
@@ -60,6 +63,17 @@ def test_five_scenes_take_the_typical_cycles_and_never_more_than_the_bound(make,
     assert bench.init_cycles <= said.first
 
 
+@needs_uno
+@pytest.mark.parametrize("start", [1.2, 2.9])
+@pytest.mark.parametrize("make", SCENES[2:], ids=lambda make: make.__name__)
+def test_typical_cycles_hold_for_wide_angles_too(make, start):
+    """A pendulum let go near the top: its sines leave the first eighth of a turn, and take longer."""
+    scene, options = make(start)
+    program = hl.compile(scene, T=1e-3, **options)
+    median = float(np.median(Bench(program, Avr()).run(handle(1000))[2]))
+    assert abs(cost(program).typical / median - 1) <= TYPICAL_ERROR
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_no_random_program_passes_its_bound(seed, processor):
     program = random_program(seed, ("f32",), 50, tuple(OPCODES))
@@ -100,6 +114,26 @@ def test_bounds_hold_over_20_000_awkward_states(make, processor):
     count = 20_000 if processor.board == "uno" else 300
     found = Bench(program, processor).cycles_of(awkward_rows(program, count, seed=9)).max()
     assert found <= cost(program, processor.board).bound
+
+
+@needs_uno
+def test_the_rest_of_a_step_and_a_frame_are_what_the_table_says():
+    """The real image, in emulation; a change of the loop asks for a new table."""
+    found, committed = measure_step(), tables()["uno"]
+    assert found["step"][0] == pytest.approx(committed["step"][0], rel=0.05)
+    assert found["step"][1] <= 1.05 * committed["step"][1]
+    for size in (23, 43):
+        (fixed, each), (f, e) = found["frame"][0], committed["frame"][0]
+        assert fixed + each * size == pytest.approx(f + e * size, rel=0.1)
+
+
+@needs_uno
+def test_tables_stay_in_flash():
+    address = symbols(avr_tool("nm"), avr_image())
+    tables_of_the_machine = [name for name in address if name.startswith(("bodies", "signatures"))]
+    assert len(tables_of_the_machine) == 2
+    assert all(address[name] < 0x80_0000 for name in tables_of_the_machine)
+    assert "__do_copy_data" not in address, "constants of the machine are copied to RAM"
 
 
 def test_print_what_fits():
