@@ -91,6 +91,8 @@ def _offers(scene, taken, promise, every, options):
     """Yield what fits, in words: at the same rate what changes the motion least, then slower rates, fastest first."""
     same, slower = [_seldom(taken, promise, every)], []
     for words, other, changed in _cheaper(scene, options):
+        if any(named and words.startswith(named) for named in same):
+            continue  # a change more than one that is enough
         try:
             found = cost(compile(other, **changed), taken.board, every=every)
             T = taken.T if (found.promised if promise else found.fits) else _period(found, promise)
