@@ -1,7 +1,9 @@
 """A paddle on a board: scenes run in its firmware, and this computer sends, watches and records."""
 
 import math
+import threading
 import zlib
+from contextlib import suppress
 from dataclasses import replace
 
 from ..compiler.bytecode import encode
@@ -62,6 +64,7 @@ class SerialPaddle(Paddle):
         self.url, self.T = url, float(T)
         self.exchange = Exchange(open_port(url) if port is None else port, self._on_frame)
         self._recording = self._program = self._scene = None
+        self._setting = threading.Lock()
         try:
             self.board = say_hello(self.exchange, url, hello)
             self.settings = read_settings(self.exchange)
@@ -111,9 +114,13 @@ class SerialPaddle(Paddle):
             raise PaddleError("x, v: a handle on a board starts where it is; move it there, or use a SimulatedPaddle.")
         ticks = self.ticks(duration)
         self.start(scene, **options)
-        with progress_bar(ticks, progress) as bar:
-            self._collect(ticks, bar)
-        return self.stop(ticks=ticks)
+        try:
+            with progress_bar(ticks, progress) as bar:
+                self._collect(ticks, bar)
+            return self.stop(ticks=ticks)
+        except BaseException:  # a notebook's stop button too: the motor is not left running
+            self._abandon()
+            raise
 
     def cost(self, scene, **options):
         """Return what a scene or a program takes of this board: cycles, memory, share of the period; print it."""
@@ -151,10 +158,17 @@ class SerialPaddle(Paddle):
         if not passive and self.settings is not None:
             self.home()
         every = decimation(self._program, self.exchange.port, every)
-        self._recording = Recording(self._program, every)
-        self.exchange.beating = True
-        limit = min(float(force_max), 3e38)
-        self.exchange.command("START", self._crc, every, OPTIONS["PASSIVE"] if passive else 0, limit)
+        earlier, recording = self._recording, Recording(self._program, every)
+        self._recording, self.exchange.beating = recording, True
+        how = every, OPTIONS["PASSIVE"] if passive else 0, min(float(force_max), 3e38)
+        try:
+            self.exchange.command("START", self._crc, *how, then=recording.begin)
+        except LinkError as refusal:
+            if refusal.result is None:  # it may run, and only the answer was lost
+                self._abandon()
+            else:
+                self._recording, self.exchange.beating = earlier, earlier is not None
+            raise
 
     def set(self, **values):
         """Set parameters of the scene on the board, live, all of them between the same two ticks.
@@ -166,12 +180,13 @@ class SerialPaddle(Paddle):
         """
         if self._program is None:
             raise PaddleError("nothing is on the board yet; start a scene first: paddle.start(scene)")
-        scene, numbers = checked(self._program, self._scene, values)
-        tick = send(self.exchange, self._program, numbers)
-        known = named_values(self._program) | numbers
-        self._program, self._scene = replace(self._program, values=tuple(known.values())), scene
-        if self._recording is not None:
-            self._recording.changes.append(((tick + 1) * self.T, numbers))
+        with self._setting:  # two callers: what the board has last is what is known here
+            scene, numbers = checked(self._program, self._scene, values)
+            tick = send(self.exchange, self._program, numbers)
+            known = named_values(self._program) | numbers
+            self._program, self._scene = replace(self._program, values=tuple(known.values())), scene
+            if self._recording is not None:
+                self._recording.changes.append(((tick + 1) * self.T, numbers))
 
     def wait(self, seconds):
         """Let the scene run for so many seconds of the board's time."""
@@ -221,11 +236,8 @@ class SerialPaddle(Paddle):
     def close(self):
         """Stop the motor and give the port back."""
         try:
-            self.exchange.beating = False
             if self.exchange.broken is None:
-                self.exchange.command("STOP", tries=2)
-        except (LinkError, PaddleError):
-            pass  # the board stops its motor 100 ms after the last word
+                self._abandon()
         finally:
             self.exchange.close()
 
@@ -274,10 +286,16 @@ class SerialPaddle(Paddle):
                 PATIENCE + 500 * self._program.T,
             )
             if not came and recording.last_tick == before:
-                explain_silence(self.exchange, self.url)
+                recording.fault = recording.fault or explain_silence(self.exchange, self.url)
             if bar is not None:
                 bar.update(max(0, min(recording.last_tick + 1, ticks) - seen))
                 seen = max(seen, recording.last_tick + 1)
+
+    def _abandon(self):
+        """Motor off, and nothing recorded any more."""
+        self._recording, self.exchange.beating = None, False
+        with suppress(PaddleError):  # then the board stops its motor by itself, 100 ms after the last word
+            self.exchange.command("STOP", tries=4)
 
     def _on_frame(self, frame):
         if self._recording is not None:

@@ -47,7 +47,7 @@ class Exchange:
         self.state, self.broken, self.beating = None, None, False
         # guarded requests count by themselves: a board refuses one older than the last it obeyed
         self._sequences = {guarded: itertools.count(1) for guarded in (False, True)}
-        self._wanted = self._reply = self._beat_sequence = None
+        self._wanted = self._reply = self._then = self._beat_sequence = None
         port.timeout = HEARTBEAT / 2  # so that a silent board does not keep the reader from beating
         self._turn, self._news, self._closed = threading.Lock(), threading.Condition(), False
         self._last_sent = self.now()
@@ -56,10 +56,11 @@ class Exchange:
             self._thread = threading.Thread(target=self._read_for_ever, name=f"hapticlab {port.port}", daemon=True)
             self._thread.start()
 
-    def ask(self, message, *values, rest=b"", patience=PATIENCE, tries=TRIES):
+    def ask(self, message, *values, rest=b"", patience=PATIENCE, tries=TRIES, then=lambda: None):
         """Send a request until its reply comes; return the reply's Frame.
 
-        A repeat carries the same sequence number, so that a board obeys it once.
+        A repeat carries the same sequence number, so that a board obeys it once. ``then`` is called, between the frames
+        that came before the reply and those after it, if the board did what was asked.
 
         Raises
         ------
@@ -74,7 +75,7 @@ class Exchange:
             self._beat_sequence = None
             sequence = self._next_sequence(message)
             frame = encode(message, sequence, *values, rest=rest, session=self.session)
-            self._wanted, self._reply = (message, sequence & 255), None
+            self._wanted, self._reply, self._then = (message, sequence & 255), None, then
             for _ in range(tries):
                 self._send(frame)
                 if self._wait_until(lambda: self._reply is not None, patience):
@@ -151,6 +152,8 @@ class Exchange:
                 self.on_frame(frame)
             elif self._is_wanted(frame, known):
                 self._reply = frame
+                if not known.get("result"):
+                    self._then()
 
     def _is_wanted(self, frame, known):
         if self._wanted is None or frame.sequence != self._wanted[1]:
@@ -173,16 +176,16 @@ class Exchange:
             try:
                 data = read_available(self.port)
                 self._beat()
+                if data:
+                    with self._news:
+                        self._take(data)
+                        self._news.notify_all()
             except Exception as problem:  # whatever it was, those who wait must hear of it
                 if not self._closed:
                     self.broken = problem
                 with self._news:
                     self._news.notify_all()
                 return
-            if data:
-                with self._news:
-                    self._take(data)
-                    self._news.notify_all()
 
 
 #: which message answers which request, where it is not ACK

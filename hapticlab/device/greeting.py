@@ -1,5 +1,7 @@
 """The first words with a board: is it a paddle, does it speak this version, what did it go through."""
 
+import math
+
 from ..errors import LinkError
 from .messages import RESET_CAUSES, STATES, table_hash
 from .recording import fault_words
@@ -26,7 +28,8 @@ def say_hello(exchange, url, seconds):
     if said["table"] != table_hash():
         raise LinkError(
             f"{url}: the board's firmware {said['major']}.{said['minor']} speaks another version of the messages than "
-            "this package; flash the firmware that came with it: hapticlab flash"
+            "this package; flash the firmware that came with it: hapticlab flash",
+            "VERSION",
         )
     return said
 
@@ -56,12 +59,14 @@ def introduction(board, settings, T):
 
 
 def explain_silence(exchange, url):
-    """Raise LinkError with the reason why a running board sends no samples, unless it stopped by a fault."""
+    """Return the fault that keeps a running board from sending samples, or raise LinkError with another reason."""
     state = exchange.refresh()
     if state["session"] != exchange.session:
         raise LinkError(
             f"{url}: the board was reset while the scene ran, and its motor is off: a supply that falls too low when the "
             "motor pulls, or its reset button. Check the supply, then connect again."
         )
-    if state["state"] == STATES["RUN"]:
-        raise LinkError(f"{url}: the board runs but sends no samples; connect again")
+    if state["state"] == STATES["FAULT"]:  # and the report of it was lost on its way
+        return {"fault": state["fault"], "tick": state["tick"], "value": math.nan}
+    what = "runs but sends no samples" if state["state"] == STATES["RUN"] else "was told to stop by somebody else"
+    raise LinkError(f"{url}: the board {what}; connect again")

@@ -29,17 +29,24 @@ class Recording:
 
     def __init__(self, program, every):
         self.program, self.every = program, every
-        self.fault, self.last_tick, self.changes = None, -1, []
+        self.fault, self.last_tick, self.changes, self.begun = None, -1, [], False
         self._rows = []
         self._row = np.dtype([("tick", "<u4"), ("flags", "u1"), ("x", "<f4"), ("v", "<f4"), ("F", "<f4")] + [
             (f"channel.{c.name}", _NUMPY[c.type]) for c in program.outputs[1:]])  # fmt: skip
+
+    def begin(self):
+        """Take samples from here on: those that are still under way from an earlier run came before."""
+        self.begun = True
 
     def add(self, frame):
         """Take a SAMPLE or FAULTED frame."""
         if frame.message == "FAULTED":
             self.fault = frame.fields
         elif len(frame.payload) == self._row.itemsize:
-            (tick,) = struct.unpack_from("<I", frame.payload)
+            tick, flags = struct.unpack_from("<IB", frame.payload)
+            self.begun = self.begun or bool(flags & SAMPLE_FLAGS["FIRST"])
+            if not self.begun:
+                return
             if tick > self.last_tick or self.last_tick < 0:  # a repeat on the wire is no new sample
                 self._rows.append(frame.payload)
                 self.last_tick = tick
@@ -50,7 +57,7 @@ class Recording:
         rows = np.frombuffer(b"".join(self._rows), self._row)
         rows = rows if ticks is None else rows[rows["tick"] < ticks]
         tick = rows["tick"].astype(np.int64)
-        missing = np.diff(tick, prepend=tick[:1] - self.every) > self.every
+        missing = np.diff(tick, prepend=-self.every) > self.every
         flags = {name.lower(): rows["flags"] & bit > 0 for name, bit in SAMPLE_FLAGS.items()}
         columns = {c.name: rows[f"channel.{c.name}"].astype(float) for c in program.outputs[1:]}
         return Telemetry(
