@@ -148,9 +148,10 @@ class SerialPaddle(Paddle):
         """
         if scene is not None:
             program = self.program(scene, **options)
-            if check_fit and not cost(program, self._kind).fits:
+            sent = decimation(program, self.exchange.port, every)
+            if check_fit and not cost(program, self._kind, every=sent).fits:
                 known = {} if isinstance(scene, Program) else {"T": self.T, "velocity": self.velocity}
-                fit(scene, self._kind, **known, **options)
+                fit(scene, self._kind, every=sent, **known, **options)
             self._load(program)
             self._scene = None if isinstance(scene, Program) else scene
         elif self._program is None:
