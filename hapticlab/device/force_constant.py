@@ -54,7 +54,7 @@ def on_scale(paddle, person):
         grams = number(
             person,
             f"The motor presses with about {force / GRAVITY * 1e3:.0f} g. Tap the table; what does the scale show [g]?",
-            low=0,
+            low=-20000,
             high=20000,
         )
         _stop(paddle)
@@ -80,7 +80,7 @@ def with_weights(paddle, person):
             high=20000,
         )
         up, down = _lift(paddle, at_most)
-        person.say(f"It rises at {up:.3g} N and falls at {down:.3g} N, as the board reckons: friction {abs(up - down) / 2:.2g} N.")
+        person.say(f"It rises at {up:.3g} N, falls at {down:.3g} N, as the board reckons: friction {abs(up - down) / 2:.2g} N.")
         forces.append((up + down) / 2)
         newtons.append(grams * 1e-3 * GRAVITY)
         if person.choose("Another weight? Three tell the motor's law, too.", {"yes": "", "no": ""}) == "no":

@@ -73,7 +73,7 @@ def fit_force(duties, forces, law, *, intercept=True):
     other = next(name for name in fits if name != law)
     best = other if CLEARLY * fits[other][2] < fits[law][2] else law
     full, error, rms, rest = fits[best]
-    _require_growth(full, error, forces)
+    _require_growth(full, forces)
     allowed = max(POOR_PART * np.ptp(forces), POOR_N)
     if rms > allowed:
         worst = int(np.argmax(np.abs(rest)))
@@ -82,6 +82,7 @@ def fit_force(duties, forces, law, *, intercept=True):
             f"duty {duties[worst]:.2f} is {rest[worst]:+.2g} N off; tap the table before each reading, see that the handle "
             "touches nothing but the scale, and measure again."
         )
+    _require_sense(full, error)
     return ForceFit(full, error, best, {name: fit[2] for name, fit in fits.items()})
 
 
@@ -97,7 +98,7 @@ def _line(g, forces, intercept):
     return float(found[0]), float(np.sqrt(variance)), float(np.sqrt(np.mean(rest**2))), rest
 
 
-def _require_growth(full, error, forces):
+def _require_growth(full, forces):
     if np.ptp(forces) < POOR_N and full < 1:
         raise PaddleError(
             f"force: the same {np.mean(forces):.3g} N at every duty; the motor has no supply, or the handle does not press "
@@ -108,6 +109,9 @@ def _require_growth(full, error, forces):
             f"force: {full:.3g} N at full duty; it falls as the duty grows. The handle presses the other way: choose the other "
             "direction, or check the motor's sign."
         )
+
+
+def _require_sense(full, error):
     if not LEAST <= full <= MOST:
         raise PaddleError(f"force: {full:.3g} N at full duty; a paddle has {LEAST:g} to {MOST:g} N. Were grams typed?")
     if np.isfinite(error) and error > full / 5:

@@ -34,6 +34,8 @@ STIFFNESS = 50.0
 TOSSES, LASTS, BEFORE = 100, 0.06, 0.01
 #: c of the bound, and how often the result is looked at
 CLEAR, LOOKS = 5.5, 4
+#: |Z| from which the motor does something, though which way is not clear: by chance at most once in 45 looks
+SOME = 3.0
 #: terms are cut at so many times their median
 CUT = 3.0
 #: m; a handle that ranges over less was not moved
@@ -42,7 +44,10 @@ LEAST_MOTION = 2e-3
 
 @dataclass(frozen=True)
 class SignCheck:
-    """What the motor was seen to do: "right", "wrong", "unmoved" or "nothing"; Z, work [J] an interval, motion [m]."""
+    """What the motor was seen to do; Z, work [J] an interval, motion [m].
+
+    ``verdict`` is "right", "wrong", "unclear", "nothing" or, for a handle that nobody moved, "unmoved".
+    """
 
     verdict: str
     Z: float
@@ -55,6 +60,7 @@ class SignCheck:
         words = {
             "right": "the motor pulls the handle the way it is told",
             "wrong": "the motor pushes the handle the wrong way: its two wires are swapped",
+            "unclear": "the motor works, but its sign is not clear; go on, slowly and without letting go",
             "unmoved": f"the handle moved by {self.motion * 1e3:.1f} mm only; move it 10 to 20 mm from the middle and let go",
             "nothing": "the motor does nothing that can be told from the hand: check its supply, its plug and its wires; "
             "a handle that turns heavily, or is held fast, hides it too",
@@ -89,7 +95,12 @@ def judge(terms, signs, positions):
     size, motion = float(np.sqrt(np.sum(terms**2))), float(np.ptp(positions)) if len(positions) else 0.0
     Z = float(np.sum(signs * terms)) / size if size > 0 else 0.0
     work = float(np.mean(signs * terms)) if len(terms) else 0.0
-    verdict = "right" if Z >= CLEAR else "wrong" if Z <= -CLEAR else "unmoved" if motion < LEAST_MOTION else "nothing"
+    if abs(Z) >= CLEAR:
+        verdict = "right" if Z > 0 else "wrong"
+    elif motion < LEAST_MOTION:
+        verdict = "unmoved"
+    else:
+        verdict = "unclear" if abs(Z) >= SOME else "nothing"
     return SignCheck(verdict, Z, work, motion, len(terms))
 
 
