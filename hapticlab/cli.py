@@ -1,4 +1,4 @@
-"""The command line: `hapticlab demo` and `hapticlab run FILE.py`."""
+"""The command line: demo, run FILE.py, and with a paddle plugged in ports, doctor, flash and calibrate."""
 
 import argparse
 import json
@@ -10,9 +10,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from . import __version__
+from . import board_commands as board
 from . import demo as demonstration
 from .analysis.plots import plot
 from .compiler.methods import METHODS
+from .device.calibrate import STEPS
 from .errors import HapticlabError
 from .scenefile import describe, load_scene, report_of, run_scene
 
@@ -56,7 +58,7 @@ def demo(parser, options):
 
 
 def run(parser, options):
-    """Run a scene file."""
+    """Run a scene file, on its own paddle or on a board."""
     path = Path(options.file)
     if path.is_dir():
         parser.error(f"{path} is a folder, needs a file; give a Python file that defines scene = hl.Scene(...)")
@@ -71,12 +73,21 @@ def run(parser, options):
     except HapticlabError as problem:
         parser.error(str(problem))
     folder = _folder(options)
-    program, log = run_scene(file, **({"method": options.method} if options.method else {}))
-    facts = report_of(program, log)
+    compiling = {"method": options.method} if options.method else {}
+    if options.port is None:
+        program, log = run_scene(file, **compiling)
+        facts, loop = report_of(program, log), None
+    else:
+        try:
+            program, log, loop = board.run_on_board(file, options, **compiling)
+        except KeyboardInterrupt:
+            _complain("interrupted; the motor is off")
+            return INTERRUPTED
+        facts = report_of(program, log) | {"loop": board.timing_facts(loop)}
     figure, names = folder / f"{path.stem}.png", [name for name in file.scene.watch if name in log.channels]
     plot(log, "x", *names, "F").savefig(figure)
     files = {"figure": figure, "telemetry": log.to_csv(folder / f"{path.stem}.csv")}
-    _tell(options, facts, files, f"{log.paddle}\n{describe(facts)}")
+    _tell(options, facts, files, f"{log.paddle}\n{describe(facts)}" + (f"\nloop     {loop}" if loop else ""))
     return _complain(f"the run failed: {log.fault}") if log.fault else 0
 
 
@@ -137,7 +148,7 @@ def _parser():
     parser = argparse.ArgumentParser(prog="hapticlab", description="From an equation of motion to a felt virtual wall.")
     parser.add_argument("--version", action="version", version=f"hapticlab {__version__}")
     parser.set_defaults(command=None, parser=parser)
-    commands = parser.add_subparsers(title="commands", metavar="{demo,run}")
+    commands = parser.add_subparsers(title="commands", metavar="{demo,run,ports,doctor,flash,calibrate}")
     shared = argparse.ArgumentParser(add_help=False)
     shared.add_argument("--json", action="store_true", help="print the numbers, named with units, as JSON and nothing else")
     text = "show where the chapter's wall begins to chatter, and run a student's own equation of motion"
@@ -147,11 +158,35 @@ def _parser():
     text = "run a Python file that defines `scene`, and optionally `paddle` and `duration`"
     ran = commands.add_parser("run", parents=[shared], help=text, description=text)
     ran.add_argument("file", metavar="FILE.py")
-    ran.add_argument("--duration", type=float, metavar="SECONDS", help="simulated time [s]")
+    ran.add_argument("--port", metavar="URL", help="run on the board there, in place of the file's paddle")
+    ran.add_argument("--yes", action="store_true", help="do not ask before the motor moves")
+    ran.add_argument("--duration", type=float, metavar="SECONDS", help="how long to run [s]")
     ran.add_argument("--T", type=float, metavar="SECONDS", help="sampling period [s]")
     ran.add_argument("--method", choices=sorted(METHODS), help="integrator of the equations of motion (default: rk4)")
     ran.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
     ran.set_defaults(command=run, parser=ran)
     for one, folder in ((shown, "hapticlab-demo"), (ran, "hapticlab-run")):
         one.add_argument("--out", metavar="DIR", default=folder, help="where figure and telemetry go (default: %(default)s)")
+    _add_board_commands(commands, shared)
     return parser
+
+
+def _add_board_commands(commands, shared):
+    """Add what needs a board; each has its words, and the port where it has one."""
+    words = {
+        "ports": "list the serial ports, and which of them connect() asks",
+        "doctor": "walk from the cable to the motor and say what is wrong",
+        "flash": "write the firmware into an Arduino Uno over its bootloader",
+        "calibrate": "measure stops, motor sign and force constant, and store them on the board",
+    }
+    made = {}
+    for name, text in words.items():
+        parents = [shared] if name in ("ports", "doctor") else []
+        made[name] = commands.add_parser(name, parents=parents, help=text, description=text)
+        made[name].set_defaults(command=getattr(board, name), parser=made[name])
+        if name != "ports":
+            made[name].add_argument("--port", metavar="URL", help="by default the one known board that is plugged in")
+    made["doctor"].add_argument("--no-person", action="store_true", help="skip what needs somebody at the handle")
+    made["flash"].add_argument("--image", metavar="FILE.hex", help="by default the one that came with hapticlab")
+    made["calibrate"].add_argument("--only", choices=STEPS, help="this step alone")
+    made["calibrate"].add_argument("--yes", action="store_true", help="do not ask before the motor moves")

@@ -1,0 +1,100 @@
+"""What the command line does with a board: ports, doctor, flash, calibrate, and a scene run on it."""
+
+import json
+import sys
+from dataclasses import replace
+from datetime import date
+
+from .device.board import SerialPaddle
+from .device.calibrate import calibrate as calibrate_paddle
+from .device.connect import connect
+from .device.doctor import doctor as walk
+from .device.flash import flash as write_firmware
+from .device.person import Person, agrees
+from .device.serial import available_ports
+from .errors import PaddleError
+from .scenefile import run_scene
+
+#: a simulated board has no motor that could hurt, and its time stands still while a person thinks
+SIMULATED = "sim://"
+
+
+def ports(parser, options):
+    """List the serial ports of this computer."""
+    found = available_ports()
+    if options.json:
+        print(json.dumps([vars(port) for port in found], indent=1))
+        return 0
+    for port in found:
+        asked = "asked by connect()" if port.known else "left alone unless named: it may drive something else"
+        print(f"{port.device:<16} {port.known or port.description or 'unknown':<36} {asked}")
+    if not any(port.known for port in found):
+        print("no known board is plugged in; `hapticlab doctor` says what to look at", file=sys.stderr)
+    return 0
+
+
+def doctor(parser, options):
+    """Walk from the cable to the motor; 1 if anything is a fault."""
+    alone = options.no_person or options.json or not sys.stdin.isatty()
+    report = walk(options.port, None if alone else Person(), tell=(lambda check: None) if options.json else print)
+    if options.json:
+        print(json.dumps(report.records(), indent=1))
+    else:
+        print(str(report).splitlines()[-1] + ("; what needs a person at the handle was skipped" if alone else ""))
+    return report.exit_code
+
+
+def flash(parser, options):
+    """Write the firmware into an Uno."""
+    port = options.port or _only_port()
+    print(f"Writing the firmware into {port}; its motor is off meanwhile. Leave the cable in.", file=sys.stderr)
+    print(write_firmware(port, options.image))
+    return 0
+
+
+def calibrate(parser, options):
+    """Measure what a paddle is, with a person at it, and store it on the board."""
+    person = Person()
+    _agree(options, person, "The motor will pull the handle by 0.5 N at first, by up to 2 N after its sign is checked.")
+    with connect(options.port) if options.port is None else SerialPaddle(options.port) as paddle:
+        kept = calibrate_paddle(paddle, person, date=int(date.today().strftime("%Y%m%d")), only=options.only)
+    return 0 if kept is not None else 1
+
+
+def run_on_board(file, options, **compiling):
+    """Run a scene file on the board at options.port in place of its own paddle; return program, Telemetry and timing."""
+    T = file.paddle.T
+    _agree(options, Person(), f"The motor of {options.port} will move the handle for {file.duration:g} s; hold it lightly.")
+    with connect(options.port, T=T) as paddle:
+        program, log = run_scene(replace(file, paddle=paddle), **compiling)
+        return program, log, paddle.timing
+
+
+def timing_facts(timing):
+    """Return what the board measured of its own steps, as a dictionary for JSON."""
+    return {
+        "step_mean_s": timing.mean,
+        "step_worst_s": timing.worst,
+        "period_min_s": timing.period_min,
+        "period_max_s": timing.period_max,
+        "overruns": timing.overruns,
+        "lost": timing.lost,
+    }
+
+
+def _agree(options, person, what):
+    """Say what a motor will do, and go on only with a yes."""
+    if options.yes or (options.port or "").startswith(SIMULATED):
+        return
+    if not sys.stdin.isatty():
+        raise PaddleError(f"{what} Nobody can be asked here: give --yes")
+    if not agrees(person, f"{what} Go on?"):
+        raise PaddleError("nothing was done")
+
+
+def _only_port():
+    known = [port.device for port in available_ports() if port.known]
+    if len(known) != 1:
+        named = ", ".join(known) or "none"
+        raise PaddleError(f"known boards: {named}; say which port to write to: hapticlab flash --port PORT")
+    return known[0]
