@@ -141,9 +141,18 @@ class Uno:
         """Every change of D5, the latest 16384: cycles and levels. Of the PWM only with ``carrier``."""
         return self._events(1)
 
-    def _events(self, pin):
+    def samples(self):
+        """Cycles at which the ADC's conversions, the latest 16384, hold their input: 1.5 of its clocks after they begin."""
+        begun, prescaler = self._events(2)
+        return begun + 3 * prescaler // 2
+
+    def updates(self):
+        """Cycles of every write of the PWM's control, the latest 16384, whether the duty changed or not."""
+        return self._events(3)[0]
+
+    def _events(self, which):
         cycles, values = (ctypes.c_uint64 * LOG)(), (ctypes.c_int32 * LOG)()
-        count = self._shim.uno_events(self._uno, pin, cycles, values)
+        count = self._shim.uno_events(self._uno, which, cycles, values)
         return np.array(cycles[:count], dtype=np.int64), np.array(values[:count])
 
     def write(self, data):

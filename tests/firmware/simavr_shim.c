@@ -19,9 +19,10 @@ DEFINE_FIFO(uint8_t, uart_fifo);
 enum { QUEUE = 1 << 16, LOG = 1 << 14, VECTORS = 26, RX_BUFFER = 3 /* two bytes, and the shift register */ };
 enum { /* addresses of the ATmega328P's registers */
     PORTB = 0x25, DDRD = 0x2A, PORTD = 0x2B, EECR = 0x3F, TCCR0A = 0x44, TCCR0B = 0x45, OCR0B = 0x48, MCUSR = 0x54,
-    TIFR1 = 0x36, TIMSK1 = 0x6F, UCSR0A = 0xC0, UCSR0B = 0xC1, UBRR0L = 0xC4, UBRR0H = 0xC5
+    TIFR1 = 0x36, TIMSK1 = 0x6F, ADCSRA = 0x7A, UCSR0A = 0xC0, UCSR0B = 0xC1, UBRR0L = 0xC4, UBRR0H = 0xC5
 };
 enum { EEPE = 2, EEMPE = 4 }; /* bits of EECR */
+enum { ADEN = 0x80, ADSC = 0x40, ADPS = 7 }; /* of ADCSRA */
 
 typedef struct { uint64_t cycle; int32_t value; } event;
 typedef struct { uint64_t begin, count, total, worst; } cost;
@@ -36,6 +37,7 @@ typedef struct {
     uint64_t out_head, out_tail, out_free; /* out_free: when the line is idle again */
     uint64_t in_busy, overruns;
     event_log duty, pin;                   /* changes, the latest LOG of them */
+    event_log sample, update;              /* conversions begun; writes of the PWM's control, changes or not */
     cost costs[VECTORS];
     struct vector { struct uno *uno; int number; } vectors[VECTORS];
     avr_ioport_external_t driven;          /* pins of port D */
@@ -47,11 +49,15 @@ static void silent(avr_t *avr, const int level, const char *format, va_list argu
     (void)avr, (void)level, (void)format, (void)arguments;
 }
 
+static void append(event_log *log, uint64_t cycle, int32_t value)
+{
+    log->at[log->count++ % LOG] = (event){cycle, value};
+}
+
 static void note(event_log *log, uint64_t cycle, int32_t value)
 {
-    if (log->count && log->at[(log->count - 1) % LOG].value == value)
-        return;
-    log->at[log->count++ % LOG] = (event){cycle, value};
+    if (!log->count || log->at[(log->count - 1) % LOG].value != value)
+        append(log, cycle, value);
 }
 
 /* Signed duty of the motor, 0 to 255: what the pins D5 and D8 do, whatever the firmware means. */
@@ -94,6 +100,16 @@ static void on_motor(avr_t *avr, avr_io_addr_t address, uint8_t value, void *par
     uno *u = param;
     write_through(u, address, value);
     note(&u->duty, avr->cycle, uno_duty(u));
+    if (address == TCCR0A)
+        append(&u->update, avr->cycle, uno_duty(u));
+}
+
+static void on_conversion(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    uno *u = param;
+    if ((value & ADEN) && (value & ADSC))
+        append(&u->sample, avr->cycle, 1 << ((value & ADPS) ? value & ADPS : 1));
+    write_through(u, address, value);
 }
 
 static void on_pin(avr_irq_t *irq, uint32_t value, void *param)
@@ -190,6 +206,7 @@ static void hook_registers(uno *u, int carrier)
     for (int k = 0; k < 2; k++)
         hook(u, link[k], on_uart, 0);
     hook(u, EECR, on_store, 0);
+    hook(u, ADCSRA, on_conversion, 0);
     hook(u, TIMSK1, on_mask, 0);
 }
 
@@ -317,9 +334,9 @@ uint32_t uno_read(uno *u, uint8_t *bytes, uint32_t size)
 }
 
 /* Copy the latest events of one log, oldest first; returns how many. */
-uint32_t uno_events(uno *u, int pin, uint64_t *cycles, int32_t *values)
+uint32_t uno_events(uno *u, int which, uint64_t *cycles, int32_t *values)
 {
-    const event_log *log = pin ? &u->pin : &u->duty;
+    const event_log *const logs[] = {&u->duty, &u->pin, &u->sample, &u->update}, *log = logs[which];
     const uint64_t begin = log->count > LOG ? log->count - LOG : 0;
     for (uint64_t k = begin; k < log->count; k++) {
         cycles[k - begin] = log->at[k % LOG].cycle;
