@@ -10,6 +10,9 @@ from pathlib import Path
 
 from ..compiler.native import firmware_folder
 
+#: of udev, in firmware/udev
+RULES = "60-hapticlab.rules"
+
 
 def explain(url, baudrate, problem, ports):
     """Return the sentence and its cause for a port that did not open; ``ports`` are those there are."""
@@ -79,12 +82,12 @@ def _holder(device):
 def _modem_manager():
     if not sys.platform.startswith("linux"):
         return ""
-    return f". In the first seconds after plugging in it may be ModemManager, which {rules_file().name} keeps away"
+    return f". In the first seconds after plugging in it may be ModemManager, which {RULES} keeps away"
 
 
 def rules_file():
     """Return the udev rules: they let the user at the screen open the boards, and keep ModemManager away from them."""
-    return firmware_folder() / "udev" / "60-hapticlab.rules"
+    return firmware_folder() / "udev" / RULES
 
 
 def permission_cure():
