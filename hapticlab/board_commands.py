@@ -2,10 +2,10 @@
 
 import json
 import sys
+from contextlib import nullcontext, redirect_stdout
 from dataclasses import replace
 from datetime import date
 
-from .device.board import SerialPaddle
 from .device.calibrate import calibrate as calibrate_paddle
 from .device.connect import connect
 from .device.doctor import doctor as walk
@@ -36,7 +36,8 @@ def ports(parser, options):
 def doctor(parser, options):
     """Walk from the cable to the motor; 1 if anything is a fault."""
     alone = options.no_person or options.json or not sys.stdin.isatty()
-    report = walk(options.port, None if alone else Person(), tell=(lambda check: None) if options.json else print)
+    with _words_apart(options):
+        report = walk(options.port, None if alone else Person(), tell=print)
     if options.json:
         print(json.dumps(report.records(), indent=1))
     else:
@@ -56,16 +57,20 @@ def calibrate(parser, options):
     """Measure what a paddle is, with a person at it, and store it on the board."""
     person = Person()
     _agree(options, person, "The motor will pull the handle by 0.5 N at first, by up to 2 N after its sign is checked.")
-    with connect(options.port) if options.port is None else SerialPaddle(options.port) as paddle:
+    with connect(options.port) as paddle:
         kept = calibrate_paddle(paddle, person, date=int(date.today().strftime("%Y%m%d")), only=options.only)
     return 0 if kept is not None else 1
 
 
 def run_on_board(file, options, **compiling):
     """Run a scene file on the board at options.port in place of its own paddle; return program, Telemetry and timing."""
-    T = file.paddle.T
-    _agree(options, Person(), f"The motor of {options.port} will move the handle for {file.duration:g} s; hold it lightly.")
-    with connect(options.port, T=T) as paddle:
+    with _words_apart(options):
+        _agree(options, Person(), f"The motor of {options.port} will move the handle for {file.duration:g} s; hold it lightly.")
+        return _run_on_board(file, options.port, compiling)
+
+
+def _run_on_board(file, url, compiling):
+    with connect(url, T=file.paddle.T) as paddle:
         program, log = run_scene(replace(file, paddle=paddle), **compiling)
         return program, log, paddle.timing
 
@@ -80,6 +85,11 @@ def timing_facts(timing):
         "overruns": timing.overruns,
         "lost": timing.lost,
     }
+
+
+def _words_apart(options):
+    """Send what is told on the way to stderr where stdout is for JSON alone."""
+    return redirect_stdout(sys.stderr) if options.json else nullcontext()
 
 
 def _agree(options, person, what):

@@ -1,6 +1,7 @@
 """The command line as a user meets it: real processes, exit codes, what goes to stdout and what to stderr."""
 
 import csv
+import io
 import json
 import os
 import subprocess
@@ -9,9 +10,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import workbench
 
 import hapticlab as hl
-from hapticlab import cli
+from hapticlab import board_commands, cli
+from hapticlab.device.serial import Port
+from hapticlab.device.settings import nominal
 from hapticlab.scenefile import load_scene
 
 EXAMPLE = Path(hl.__file__).parent / "examples" / "mass_on_coupler.py"
@@ -333,3 +337,145 @@ def test_version_and_help(tmp_path):
         assert f"(default: hapticlab-{name})" in " ".join(told.split())
         assert f"hapticlab-{other}" not in told
     assert "run" in helped.stdout
+
+
+CONSTANT = (
+    "import hapticlab as hl\nf = hl.parameters('f', units='N')\n"
+    "scene, duration = hl.Scene(force=f + 0*hl.x(hl.n), name='constant')(f=0.02), 0.2\n"
+)
+
+
+@pytest.fixture
+def answering(monkeypatch):
+    """Somebody at the terminal, who types these lines."""
+
+    def types(*lines):
+        rest = iter(lines)
+        monkeypatch.setattr("builtins.input", lambda question: next(rest))
+        monkeypatch.setattr(sys, "stdin", type("Terminal", (), {"isatty": staticmethod(lambda: True)})())
+
+    return types
+
+
+def test_run_on_a_board_in_place_of_the_files_paddle(tmp_path):
+    done = command("run", EXAMPLE, "--port", "sim://hapkit", "--T", "5e-4", "--duration", "0.3", "--json", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    facts = json.loads(done.stdout)
+    assert facts["paddle"].startswith("host 0000, firmware")
+    assert (facts["samples"], facts["program"]["T_s"]) == (600, 5e-4)
+    assert facts["loop"]["period_max_s"] == 5e-4
+    assert nameless({**facts, "loop": {k: a for k, a in facts["loop"].items() if k not in ("overruns", "lost")}}) == []
+    assert all(Path(path).is_file() for path in facts["files"].values())
+    told = command("run", EXAMPLE, "--port", "sim://hapkit", "--duration", "0.3", folder=tmp_path)
+    assert "loop     step" in told.stdout
+
+
+@pytest.mark.parametrize(
+    ("url", "words"),
+    [
+        ("/dev/no-such-port", "no such port"),
+        ("sim://nobody", "no such paddle"),
+        ("socket://127.0.0.1:1", "nothing answers there"),
+        ("magic://x", "no port speaks 'magic'"),
+    ],
+)
+def test_a_board_that_is_not_there_is_one_sentence(tmp_path, url, words):
+    done = command("run", EXAMPLE, "--port", url, "--yes", folder=tmp_path)
+    assert done.returncode == 1
+    assert words in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1, done.stderr
+
+
+def test_a_motor_is_not_moved_unasked(tmp_path, monkeypatch, capsys, answering):
+    monkeypatch.setattr(board_commands, "connect", lambda *_, **__: pytest.fail("connected"))
+    monkeypatch.setattr(sys, "stdin", io.StringIO())
+    there = ["--out", str(tmp_path), "--port", "/dev/ttyACM0"]
+    for arguments in (["run", str(EXAMPLE), *there], ["calibrate"]):
+        assert cli.main(arguments) == 1
+        assert "Nobody can be asked here: give --yes" in capsys.readouterr().err
+    answering("no")
+    assert cli.main(["run", str(EXAMPLE), *there]) == 1
+    told = capsys.readouterr()
+    assert "The motor of /dev/ttyACM0 will move the handle for 3 s" in told.out
+    assert told.err == "hapticlab: nothing was done\n"
+
+
+def test_ctrl_c_leaves_the_motor_off_and_says_so(tmp_path, monkeypatch, capsys):
+    file, boards = tmp_path / "constant.py", []
+    file.write_text(CONSTANT)
+    connected = board_commands.connect
+
+    def interrupted(*arguments, **options):
+        paddle = connected(*arguments, **options)
+        wait = paddle.exchange.wait
+
+        def by_a_person(condition, seconds):
+            if paddle.exchange.port.board.duty == 0:
+                return wait(condition, 0.02)
+            boards.append((paddle.exchange.port.board, paddle.exchange.port.board.duty))
+            raise KeyboardInterrupt
+
+        paddle.exchange.wait = by_a_person
+        return paddle
+
+    monkeypatch.setattr(board_commands, "connect", interrupted)
+    assert cli.main(["run", str(file), "--port", "sim://hapkit", "--out", str(tmp_path)]) == 130
+    assert capsys.readouterr().err == "hapticlab: interrupted; the motor is off\n"
+    ((board, duty),) = boards
+    assert duty != 0
+    assert board.duty == 0
+
+
+def test_ports_says_which_are_asked(monkeypatch, capsys):
+    found = [Port("COM3", known="Arduino Uno R3"), Port("COM9", "a mill")]
+    monkeypatch.setattr(board_commands, "available_ports", lambda: found)
+    assert cli.main(["ports"]) == 0
+    uno, mill = capsys.readouterr().out.splitlines()
+    assert "Arduino Uno R3" in uno and "asked by connect()" in uno
+    assert "a mill" in mill and "left alone" in mill
+    assert cli.main(["ports", "--json"]) == 0
+    assert [port["device"] for port in json.loads(capsys.readouterr().out)] == ["COM3", "COM9"]
+
+
+def test_doctor_walks_without_a_board_and_with_one(capsys):
+    assert cli.main(["doctor", "--port", "/dev/no-such-port"]) == 1
+    assert "no such port" in capsys.readouterr().out
+    assert cli.main(["doctor", "--port", "sim://hapkit", "--no-person"]) == 0
+    told = capsys.readouterr().out
+    assert "ok         firmware" in told
+    assert "what needs a person at the handle was skipped" in told
+    assert cli.main(["doctor", "--port", "sim://hapkit", "--json"]) == 0
+    assert {check["state"] for check in json.loads(capsys.readouterr().out)} <= {"ok", "attention", "skipped"}
+
+
+def test_flash_takes_the_only_board_or_the_one_named(monkeypatch, capsys):
+    written, found = [], [Port("COM3", known="Arduino Uno R3"), Port("COM9", "a mill")]
+    monkeypatch.setattr(board_commands, "available_ports", lambda: found)
+    monkeypatch.setattr(board_commands, "write_firmware", lambda port, image: written.append((port, image)) or "written")
+    assert cli.main(["flash"]) == 0
+    assert cli.main(["flash", "--port", "COM9", "--image", "own.hex"]) == 0
+    assert written == [("COM3", None), ("COM9", "own.hex")]
+    assert capsys.readouterr().out == "written\nwritten\n"
+    found.append(Port("COM4", known="Arduino Uno R3"))
+    assert cli.main(["flash"]) == 1
+    assert "known boards: COM3, COM4; say which" in capsys.readouterr().err
+
+
+def test_calibrate_stores_what_the_person_agreed_to(monkeypatch, capsys):
+    paddle = workbench.paddle(store=nominal("hapkit", ident=9).to_bytes())
+    person = workbench.Scripted(paddle, workbench.STOPS | {"Store this": "yes", "Go on?": "yes"})
+    monkeypatch.setattr(board_commands, "connect", lambda port: paddle)
+    monkeypatch.setattr(board_commands, "Person", lambda: person)
+    monkeypatch.setattr(sys, "stdin", type("Terminal", (), {"isatty": staticmethod(lambda: True)})())
+    assert cli.main(["calibrate", "--only", "stops"]) == 0
+    assert paddle.settings.date >= 20261121
+    assert "The motor will pull the handle" in person.words
+    with pytest.raises(SystemExit) as wrong:
+        cli.main(["calibrate", "--only", "mass"])
+    assert wrong.value.code == 2
+
+
+def test_calibrate_on_a_simulated_board_tells_that_nobody_led_it(answering, capsys):
+    answering(*[""] * 4, *["right", "mm", "90"])
+    assert cli.main(["calibrate", "--port", "sim://hapkit", "--only", "stops"]) == 1
+    assert "a sweep has 50 at least" in capsys.readouterr().err

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import hapticlab as hl
-from hapticlab.cli import main
+from hapticlab.cli import _parser, main
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text("utf-8")
@@ -49,10 +49,26 @@ def test_ci_runs_what_readme_says(ending):
 
 
 def test_readme_command_of_a_scene_file_runs(tmp_path, capsys):
-    (command,) = (shlex.split(line) for line in "".join(blocks("sh")).splitlines() if "hapticlab run" in line)
+    (command,) = (shlex.split(line) for line in "".join(blocks("sh")).splitlines() if "run" in line and "--port" not in line)
     command = [str(ROOT / word) if word.endswith(".py") else word for word in command[1:]]
     assert main([*command, "--out", str(tmp_path)]) == 0
     assert "K = 500" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("line", [line for line in "".join(blocks("sh")).splitlines() if "&&" not in line])
+def test_readme_commands_are_understood(line):
+    program, *arguments = shlex.split(line)
+    assert Path(program).name == "hapticlab"
+    options = _parser().parse_args(arguments)
+    assert callable(options.command)
+
+
+def test_readme_runs_on_a_simulated_board(tmp_path, capsys):
+    (command,) = (shlex.split(line) for line in "".join(blocks("sh")).splitlines() if "run" in line and "--port" in line)
+    command = [str(ROOT / word) if word.endswith(".py") else word for word in command[1:]]
+    command[command.index("--port") + 1] = "sim://hapkit"
+    assert main([*command, "--duration", "0.2", "--out", str(tmp_path)]) == 0
+    assert "host 0000, firmware" in capsys.readouterr().out
 
 
 def test_public_names_are_documented_and_exist():

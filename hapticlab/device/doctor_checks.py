@@ -10,7 +10,8 @@ from ..errors import HapticlabError, LinkError, PaddleError, PortError
 from ..scene.scene import Scene
 from ..scene.symbols import n, parameters, x
 from .flash import find_bootloader
-from .messages import FLAGS, RESET_CAUSES, SENSORS, table_hash
+from .homing import state_flag
+from .messages import RESET_CAUSES, SENSORS, table_hash
 from .person import agrees
 from .serial import open_port
 from .sign_check import check_sign
@@ -172,7 +173,7 @@ def home(paddle, person):
     """Whether the board knows where the handle is, or learns it from both stops."""
     if paddle.settings is None:
         return Check("home", "skipped", "whether both stops are found: needs a calibration")
-    if paddle.state()["flags"] & FLAGS["HOMED"]:
+    if state_flag(paddle.exchange, "HOMED"):
         return Check("home", "ok", f"the position is known: x = {paddle.state()['x'] * 1e3:.2f} mm")
     if person is None:
         return Check("home", "skipped", "unknown since the last reset; leading the handle to both stops needs a person")
@@ -186,7 +187,7 @@ def home(paddle, person):
 def sign(paddle, person):
     """Whether the motor pulls the way it is told."""
     kept = paddle.settings
-    if kept is None or not paddle.state()["flags"] & FLAGS["HOMED"]:
+    if kept is None or not state_flag(paddle.exchange, "HOMED"):
         return Check("motor", "skipped", "its sign: needs a calibration and a known position")
     before = "checked, as the board keeps" if kept.checked else "not checked: 0.5 N at most"
     cure = "" if kept.checked else "run `hapticlab calibrate --only sign`"

@@ -1,7 +1,7 @@
 """Settings onto a board, never unasked: shown, agreed to, written, read back, compared."""
 
 from ..errors import LinkError, PaddleError
-from .messages import FLAGS
+from .homing import state_flag
 from .person import agrees
 from .upload import read_settings, upload
 
@@ -38,17 +38,14 @@ def store(paddle, settings):
 
 def lead_home(paddle, person):
     """Have the person lead the handle to both stops, until the board knows where it is."""
-    if _is_homed(paddle):
+    if state_flag(paddle.exchange, "HOMED"):
         return
     for _ in range(TRIES):
         person.ask("Lead the handle slowly to one stop, then to the other, back to the middle; then press Enter.")
-        if _is_homed(paddle):
+        if state_flag(paddle.exchange, "HOMED"):
             return
         person.say("The board has not seen both stops yet; once more, against each stop.")
-    if paddle.state()["flags"] & FLAGS["TRAVEL_MISMATCH"]:
+    if state_flag(paddle.exchange, "TRAVEL_MISMATCH"):
         raise PaddleError("the handle moved further than between the calibrated stops: calibrate the stops again")
     raise PaddleError("the handle did not reach both calibrated stops: free its way, or calibrate the stops again")
 
-
-def _is_homed(paddle):
-    return bool(paddle.state()["flags"] & FLAGS["HOMED"])
