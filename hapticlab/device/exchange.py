@@ -17,7 +17,7 @@ from .wire import Decoder, encode
 #: seconds; four heartbeats fit into the silence that a board takes for the host's end
 HEARTBEAT = HOST_SILENCE_MS / 4000
 #: seconds until a request is sent again, soon enough to break no silence, and how often. A board answers within 2 ms.
-PATIENCE, TRIES = 0.04, 25
+PATIENCE, TRIES = 0.03, 33
 
 
 class Exchange:
@@ -48,7 +48,7 @@ class Exchange:
         # guarded requests count by themselves: a board refuses one older than the last it obeyed
         self._sequences = {guarded: itertools.count(1) for guarded in (False, True)}
         self._wanted = self._reply = self._then = self._beat_sequence = None
-        port.timeout = HEARTBEAT / 2  # so that a silent board does not keep the reader from beating
+        port.timeout = HEARTBEAT / 4  # so that a silent board does not keep the reader from beating
         self._turn, self._news, self._closed = threading.Lock(), threading.Condition(), False
         self._last_sent = self.now()
         self._thread = None
@@ -71,7 +71,7 @@ class Exchange:
         """
         with self._turn:
             # a board takes one frame at a time: a heartbeat under way is answered first
-            self._wait_until(lambda: self._beat_sequence is None, HEARTBEAT)
+            self._wait_until(lambda: self._beat_sequence is None, HEARTBEAT / 2)
             self._beat_sequence = None
             sequence = self._next_sequence(message)
             frame = encode(message, sequence, *values, rest=rest, session=self.session)
@@ -151,7 +151,7 @@ class Exchange:
             if frame.message in ("SAMPLE", "FAULTED"):
                 self.on_frame(frame)
             elif self._is_wanted(frame, known):
-                self._reply = frame
+                self._reply, self._wanted = frame, None
                 if not known.get("result"):
                     self._then()
 

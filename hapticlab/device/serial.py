@@ -18,6 +18,8 @@ except ImportError:  # Windows
 
 #: pyserial looks for protocol_<scheme> in these packages
 HANDLERS = "hapticlab.device.urls"
+#: bytes that are worth waking a reader for at once: two samples
+ENOUGH = 64
 #: (vendor, product) of boards a paddle is built on, and of the USB bridges on their copies. Sources: boards.txt of
 #: ArduinoCore-avr (uno), the device tables of Linux's ch341.c, cp210x.c and ftdi_sio_ids.h.
 BOARDS = {
@@ -115,7 +117,12 @@ def read_available(port):
         If the device left.
     """
     with port_watched(port):
-        return port.read(max(1, port.in_waiting))
+        waiting = port.in_waiting
+        data = port.read(max(1, waiting))
+        while waiting == 1 and len(data) < ENOUGH:  # socket:// says 1 however many wait
+            waiting = port.in_waiting
+            data += port.read(waiting) if waiting else b""
+        return data
 
 
 @contextmanager

@@ -360,7 +360,8 @@ def test_100_ms_without_the_host_are_a_fault(T, ticks):
     stands(host, "HOST_SILENT")
 
 
-@pytest.mark.parametrize("noise", [b"\0" * 50, b"\x55" * 50 + b"\0", encode("STATUS", 1)[:-2] + b"\x01\0", encode("ACK", 1, 0, 0, 0)])
+@pytest.mark.parametrize("noise", [
+    b"\0" * 50, b"\x55" * 50 + b"\0", encode("STATUS", 1)[:-2] + b"\x01\0", encode("ACK", 1, 0, 0, 0)])  # fmt: skip
 def test_noise_is_no_host(noise):
     host = Host().running()
     for _ in range(101):
@@ -465,7 +466,7 @@ def test_a_program_damaged_in_memory_is_found(every):
     for at in range(0, size - 4, 5):
         host = Host().ready()
         host.start(every=every)
-        for k in range(at % 7):
+        for _ in range(at % 7):
             host.tick(500, beat=True)
         host.board.damage_program(at, 0x10)
         ticks = 0
