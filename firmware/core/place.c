@@ -98,6 +98,9 @@ uint8_t hl_place_start(hl_core *core, uint8_t index, uint16_t every, uint8_t opt
         limit = HL_UNCHECKED_FORCE_N;
     }
     core->force_limit = options & HL_OPTION_PASSIVE ? 0.0f : limit;
+    if (core->force_limit == 0.0f) {
+        board_motor(core, 0); /* a program may be running: its last force ends here, not with the next tick */
+    }
     core->active = index;
     core->channels = (uint8_t)(OWN_CHANNELS - 1 + place->program.count[HL_COUNT_OUTPUTS]);
     core->every = every;

@@ -247,6 +247,15 @@ def test_passive_never_drives_the_motor_and_needs_no_home():
     assert state_name(host.state()["state"]) == "RUN"
 
 
+def test_a_switch_to_passive_ends_the_force_at_once():
+    host = Host().running()
+    assert host.tick(500) != 0
+    host.load(fixed(1.0))
+    assert host.board.duty != 0
+    assert host.start(passive=1) == "OK"
+    assert host.board.duty == 0 and host.tick(500) == 0
+
+
 # ---------------------------------------------------------------- two places, one place
 
 

@@ -310,7 +310,7 @@ def check(what, report, out, model):
     if what == "WELCOME":
         assert [f.message for f in Decoder().feed(out)] == ["WELCOME"], "one hello was not enough"
     elif what == "silent":
-        assert state != RUN
+        assert state != RUN, "it runs without a host"
     elif what == "runs":
         assert state == RUN and duty > 0
         model.seen["recoveries"] += 1
