@@ -3,6 +3,7 @@
 from ..errors import PaddleError
 from ..scene.scene import Scene
 from ..scene.symbols import parameters
+from .attended import attended
 from .force_fit import duty_of, fit_force
 from .messages import MOTOR_LAWS, UNCHECKED_FORCE_N
 from .person import number
@@ -35,7 +36,8 @@ def measure_force(paddle, person):
         "How shall the force be measured?",
         {"scale": "the handle presses on a kitchen scale", "weight": "the handle lifts a hanging weight of known mass"},
     )
-    forces, newtons = on_scale(paddle, person) if how == "scale" else with_weights(paddle, person)
+    with attended(paddle):
+        forces, newtons = on_scale(paddle, person) if how == "scale" else with_weights(paddle, person)
     duties = [duty_of(force, settings, paddle.board["duty_full"]) for force in forces]
     found = fit_force(duties, newtons, law, intercept=how == "scale")
     return changed(settings, force_full=found.force_full, motor_law=MOTOR_LAWS[found.law]), found.words(law)

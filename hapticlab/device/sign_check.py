@@ -24,6 +24,7 @@ import numpy as np
 from ..errors import PaddleError
 from ..scene.scene import Scene
 from ..scene.symbols import n, parameters, x
+from .attended import attended
 from .messages import UNCHECKED_FORCE_N
 from .settings import changed
 from .stored import lead_home, offer
@@ -159,9 +160,10 @@ def _tugged(paddle, tosses):
     centre = paddle.state()["x"]
     k, x_0 = parameters("k x_0", units="N/m m")
     spring = Scene(force=k * (x(n) - x_0), name="a spring on and off")(k=0.0, x_0=centre)
-    paddle.start(spring, force_max=UNCHECKED_FORCE_N)
-    for on in tosses:
+    with attended(paddle):
+        paddle.start(spring, force_max=UNCHECKED_FORCE_N)
+        for on in tosses:
+            paddle.wait(LASTS)
+            paddle.set(k=STIFFNESS * on)
         paddle.wait(LASTS)
-        paddle.set(k=STIFFNESS * on)
-    paddle.wait(LASTS)
-    return paddle.stop()
+        return paddle.stop()

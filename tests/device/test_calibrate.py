@@ -280,6 +280,23 @@ class TestForce:
         assert kept_on_board(paddle) == CHECKED.to_float32()
         assert paddle.state()["state"] == 0
 
+    def test_ctrl_c_while_a_scale_is_read_leaves_the_motor_off(self):
+        paddle = bench.paddle(store=CHECKED.to_bytes())
+        duties = []
+
+        def leaves(person):
+            person.move(holding(0.0, k=5000), 0.2)
+            duties.append(paddle.exchange.port.board.duty)
+            if len(duties) == 3:
+                raise KeyboardInterrupt
+            return "0"
+
+        person = bench.Scripted(paddle, HOMING | on_a_scale() | {"what does the scale show": leaves})
+        with pytest.raises(KeyboardInterrupt):
+            calibrate(paddle, person, date=TODAY, only="force")
+        assert duties[-1] != 0
+        assert paddle.exchange.port.board.duty == 0
+
     def test_what_is_no_number_is_asked_again(self):
         paddle = bench.paddle(store=CHECKED.to_bytes(), force_full=6.0)
         typed, asked = iter(["abc", "1e9", "nan"]), scale()
