@@ -10,9 +10,10 @@ at such a place and velocity. With e_j = +1 where the spring was on and -1 where
 grows by the work the motor does on the handle, whatever a hand does at the same time: the tosses are fair and unknown
 before, so where the motor does nothing each term is as likely as its negative. Then Hoeffding's inequality bounds how
 often Z = W / sqrt(sum of (f_j delta_j)^2) passes a limit c by chance, P(Z >= c) <= exp(-c^2/2), for any motion, any
-hand, any mass and friction. At c = 5.5, looked at four times on both sides, that is two in a million. The bound holds
+hand, any mass and friction. At c = 5.5, looked at six times on both sides, that is three in a million. The bound holds
 for terms cut at three times their median, too, as the cut does not know the tosses: a stop hit hard counts no more
-than others.
+than others. A motor whose direction wire is off pushes one way only, right on one side of the middle and wrong on the
+other: so both sides have to agree, each with |Z| >= 2.5.
 """
 
 import random
@@ -34,9 +35,11 @@ STIFFNESS = 50.0
 #: tosses in a row, how long each lasts [s], and before each the stretch over which the velocity is taken [s]
 TOSSES, LASTS, BEFORE = 100, 0.06, 0.01
 #: c of the bound, and how often the result is looked at
-CLEAR, LOOKS = 5.5, 4
-#: |Z| from which the motor does something, though which way is not clear: by chance at most once in 45 looks
+CLEAR, LOOKS = 5.5, 6
+#: |Z| from which the motor does something, though which way is not clear: by chance at most once in 45 looks at all of them
 SOME = 3.0
+#: |Z| on either side of the middle
+SIDE = 2.5
 #: terms are cut at so many times their median
 CUT = 3.0
 #: m; a handle that ranges over less was not moved
@@ -47,7 +50,7 @@ LEAST_MOTION = 2e-3
 class SignCheck:
     """What the motor was seen to do; Z, work [J] an interval, motion [m].
 
-    ``verdict`` is "right", "wrong", "unclear", "nothing" or, for a handle that nobody moved, "unmoved".
+    ``verdict`` is "right", "wrong", "one way", "unclear", "nothing" or, for a handle that nobody moved, "unmoved".
     """
 
     verdict: str
@@ -61,7 +64,8 @@ class SignCheck:
         words = {
             "right": "the motor pulls the handle the way it is told",
             "wrong": "the motor pushes the handle the wrong way: its two wires are swapped",
-            "unclear": "the motor works, but its sign is not clear; go on, slowly and without letting go",
+            "one way": "the motor pushes one way only: check the wire of its direction (D8)",
+            "unclear": "the motor works, but its sign is not clear; go on, slowly, without letting go, on both sides",
             "unmoved": f"the handle moved by {self.motion * 1e3:.1f} mm only; move it 10 to 20 mm from the middle and let go",
             "nothing": "the motor does nothing that can be told from the hand: check its supply, its plug and its wires; "
             "a handle that turns heavily, or is held fast, hides it too",
@@ -72,7 +76,7 @@ class SignCheck:
 def measure_sign(paddle, person, *, seed=None):
     """Return the SignCheck of a homed paddle; no more than 0.5 N is asked of its motor."""
     tosses = random.Random(secrets.randbits(64) if seed is None else seed)
-    terms, signs, seen = np.zeros(0), np.zeros(0), np.zeros(0)
+    terms, signs, sides, seen = (np.zeros(0) for _ in range(4))
     for _ in range(LOOKS):
         lead_home(paddle, person)
         person.ask(
@@ -80,33 +84,42 @@ def measure_sign(paddle, person, *, seed=None):
             "one side, let go, to the other side, let go, and so on. The motor tugs with 0.5 N at most."
         )
         log = _tugged(paddle, [tosses.random() < 0.5 for _ in range(TOSSES)])
-        more, on = intervals(log)
-        terms, signs, seen = np.append(terms, more), np.append(signs, 2.0 * on - 1), np.append(seen, log.x)
-        found = judge(terms, signs, seen)
-        if found.verdict in ("right", "wrong"):
+        more, on, side = intervals(log)
+        terms, signs, sides = np.append(terms, more), np.append(signs, 2.0 * on - 1), np.append(sides, side)
+        seen = np.append(seen, log.x)
+        found = judge(terms, signs, sides, seen)
+        if found.verdict in ("right", "wrong", "one way"):
             return found
         person.say(f"Not clear yet: {log.fault or found}")
     return found
 
 
-def judge(terms, signs, positions):
-    """Return the SignCheck of terms f_j delta_j [J], signs e_j = 1 or -1, and all positions seen [m]."""
+def judge(terms, signs, sides, positions):
+    """Return the SignCheck of terms f_j delta_j [J], tosses e_j and sides of the middle (each 1 or -1), positions [m]."""
     most = CUT * float(np.median(np.abs(terms[terms != 0]))) if terms.any() else 0.0
     terms = np.clip(terms, -most, most)
-    size, motion = float(np.sqrt(np.sum(terms**2))), float(np.ptp(positions)) if len(positions) else 0.0
-    Z = float(np.sum(signs * terms)) / size if size > 0 else 0.0
+    Z, left, right = (_Z(terms[k], signs[k]) for k in (slice(None), sides < 0, sides > 0))
+    motion = float(np.ptp(positions)) if len(positions) else 0.0
     work = float(np.mean(signs * terms)) if len(terms) else 0.0
-    if abs(Z) >= CLEAR:
+    if abs(Z) >= CLEAR and min(left / Z, right / Z) * abs(Z) >= SIDE:
         verdict = "right" if Z > 0 else "wrong"
+    elif left * right < 0 and min(abs(left), abs(right)) >= CLEAR:
+        verdict = "one way"
     elif motion < LEAST_MOTION:
         verdict = "unmoved"
     else:
-        verdict = "unclear" if abs(Z) >= SOME else "nothing"
+        verdict = "unclear" if max(map(abs, (Z, left, right))) >= SOME else "nothing"
     return SignCheck(verdict, Z, work, motion, len(terms))
 
 
+def _Z(terms, signs):
+    """Return the sum of signed terms over the root of the sum of their squares."""
+    size = float(np.sqrt(np.sum(terms**2)))
+    return float(np.sum(signs * terms)) / size if size > 0 else 0.0
+
+
 def intervals(log):
-    """Return f_j delta_j [J] and whether the spring was on, for every interval of a recorded run."""
+    """Return f_j delta_j [J], whether the spring was on, and the side of the middle, for every interval of a run."""
     begun = np.array([t for t, change in log.changes if "k" in change])
     on = np.array([change["k"] > 0 for _, change in log.changes if "k" in change])
     last = log.t[-1] if len(log) else -1.0
@@ -114,14 +127,14 @@ def intervals(log):
     whole = (begun >= BEFORE) & (begun < ends) & (ends <= last)
     begun, ends, on = begun[whole], ends[whole], on[whole]
     if len(begun) == 0:
-        return np.zeros(0), on
+        return np.zeros(0), on, np.zeros(0)
     at, before, after = (np.interp(moment, log.t, log.x) for moment in (begun, begun - BEFORE, ends))
     coasting = (at - before) / BEFORE * (ends - begun)
     asked = -np.clip(STIFFNESS * (at - log.parameters["x_0"]), -UNCHECKED_FORCE_N, UNCHECKED_FORCE_N)
     known = np.column_stack([np.ones_like(at), asked, coasting])  # before the toss: a fit on it learns nothing of tosses
     further = after - at - coasting
     terms = asked * (further - known @ np.linalg.lstsq(known, further, rcond=None)[0])
-    return terms, on
+    return terms, on, -np.sign(asked)
 
 
 def check_sign(paddle, person, *, seed=None):

@@ -1,11 +1,12 @@
 """Calibration: a scripted person at a simulated paddle whose truth is known, stops, signs, scales, weights and nonsense."""
 
 import math
+from dataclasses import asdict
 
 import numpy as np
 import pytest
 import workbench as bench
-from workbench import HOMING, STOP, STOPS, at, flicking, holding, swaying
+from workbench import HOMING, STOP, STOPS, at, flicking, holding, holding_either_side, swaying
 
 from hapticlab.device import stored
 from hapticlab.device.calibrate import calibrate
@@ -131,7 +132,7 @@ class TestStored:
             calibrate(paddle, date=TODAY, only="mass")
 
 
-HANDS = {"flicks": flicking(), "sways": swaying(), "holds": holding(0.012, k=200, b=1)}
+HANDS = {"flicks": flicking(), "sways": swaying(), "holds": holding_either_side()}
 
 
 class TestSign:
@@ -164,25 +165,35 @@ class TestSign:
         logs = []
         stop, paddle.stop = paddle.stop, lambda: logs.append(stop()) or logs[-1]
         measure_sign(paddle, bench.Scripted(paddle, HOMING | tugged(flicking())), seed=1)
-        terms, _ = intervals(logs[0])
+        terms, _, sides = intervals(logs[0])
         random = np.random.default_rng(8)
-        Z = np.array([judge(terms, random.choice([-1.0, 1.0], len(terms)), logs[0].x).Z for _ in range(4000)])
+        Z = np.array([judge(terms, random.choice([-1.0, 1.0], len(terms)), sides, logs[0].x).Z for _ in range(4000)])
         assert len(terms) > 90 and np.count_nonzero(terms) > 50
         assert Z.std() == pytest.approx(1, abs=0.04)  # 4000 draws: the error of a deviation is 0.011
         for c in (1.5, 2.5, 3.5):
             assert np.mean(Z >= c) <= math.exp(-(c**2) / 2)
-        assert 2 * LOOKS * math.exp(-(CLEAR**2) / 2) < 3e-6
+        assert 2 * LOOKS * math.exp(-(CLEAR**2) / 2) < 4e-6
 
     def test_the_work_it_counts_is_the_motors(self):
         """Two hands' work cancels over fair tosses; what is left has the sign of the motor's force times its motion."""
-        terms, signs = np.full(40, 2e-3), np.ones(40)
-        assert judge(terms, signs, [0, 0.02]).Z == pytest.approx(math.sqrt(40))
-        assert judge(terms, -signs, [0, 0.02]).verdict == "wrong"
-        assert judge(terms, np.tile([1.0, -1.0], 20), [0, 0.02]).verdict == "nothing"
-        hit = np.append(np.tile(terms, 2), 1e3)  # a stop hit hard, once
-        assert judge(hit, np.append(np.tile(signs, 2), -1.0), [0, 0.02]).verdict == "right"
-        assert judge(terms, np.append(np.ones(30), -np.ones(10)), [0, 0.02]).verdict == "unclear"  # 20/sqrt(40) = 3.2
-        assert judge(np.zeros(0), np.zeros(0), []).verdict == "unmoved"
+        terms, signs, sides, moved = np.full(80, 2e-3), np.ones(80), np.tile([1.0, -1.0], 40), [0, 0.02]
+        assert judge(terms, signs, sides, moved).Z == pytest.approx(math.sqrt(80))
+        assert judge(terms, -signs, sides, moved).verdict == "wrong"
+        assert judge(terms, np.repeat([1.0, -1.0], 40), sides, moved).verdict == "nothing"
+        assert judge(terms, np.append(np.ones(55), -np.ones(25)), sides, moved).verdict == "unclear"  # 30/sqrt(80) = 3.4
+        assert judge(np.append(terms, 1e3), np.append(signs, -1.0), np.append(sides, 1), moved).verdict == "right"
+        assert judge(terms, signs, np.ones(80), moved).verdict == "unclear"  # nothing of the other side is known
+        assert judge(terms, sides, sides, moved).verdict == "one way"
+        assert judge(*np.zeros((4, 0))).verdict == "unmoved"
+
+    def test_a_missing_direction_wire_is_never_right(self):
+        """It looks right on one side of the middle, and wrong on the other."""
+        for hand in (holding(-0.012, k=200, b=1), holding_either_side()):
+            paddle = bench.paddle(store=KNOWN.to_bytes())
+            paddle.exchange.port.settings = bench.OneWay(**asdict(paddle.exchange.port.settings))
+            found = measure_sign(paddle, bench.Scripted(paddle, HOMING | tugged(hand)), seed=2)
+            assert found.verdict in ("one way", "unclear")
+        assert "D8" in str(found)
 
     def test_only_a_clear_result_lifts_the_limit(self):
         paddle = bench.paddle(store=KNOWN.to_bytes())

@@ -7,7 +7,7 @@ from hapticlab.device.board import SerialPaddle
 from hapticlab.device.handle import Handle
 from hapticlab.device.person import Person
 from hapticlab.device.serial import open_port
-from hapticlab.device.settings import nominal
+from hapticlab.device.settings import Settings, nominal
 from hapticlab.device.simulated import SimulatedPaddle
 from hapticlab.scene.scene import Scene
 from hapticlab.scene.symbols import parameters
@@ -45,6 +45,11 @@ def flicking(place=0.012, every=0.8, lasts=0.6, k=30.0, b=0.6):
         return k * ((place if turn % 2 else -place) - x) - b * v if phase < lasts else 0.0
 
     return hand
+
+
+def holding_either_side(place=0.012, lasts=1.7, k=120.0, b=3.0):
+    """A hand that holds the handle on one side, then on the other, and never lets go."""
+    return lambda t, x, v: k * ((place if t // lasts % 2 else -place) - x) - b * v
 
 
 def swaying(amplitude=0.015, period=1.3, k=80.0, b=1.0):
@@ -97,6 +102,13 @@ class Scripted(Person):
     @property
     def words(self):
         return "\n".join(self.said)
+
+
+class OneWay(Settings):
+    """A motor whose direction wire is off."""
+
+    def force_of_duty(self, duty):
+        return abs(super().force_of_duty(duty))
 
 
 def at(place):
