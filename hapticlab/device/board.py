@@ -22,7 +22,7 @@ from .recording import Recording, decimation
 from .serial import open_port
 from .standalone import forget, keep
 from .timing import Timing
-from .upload import read_settings, upload
+from .upload import check_room, read_settings, upload
 
 #: seconds a board may be silent in a run before the host gives up
 PATIENCE = 1.0
@@ -79,15 +79,7 @@ class SerialPaddle(Paddle):
         return "backward_difference"
 
     def accept(self, program):
-        low, high = self.board["period_min"] * 1e-6, self.board["period_max"] * 1e-6
-        if not low * (1 - 1e-9) <= program.T <= high * (1 + 1e-9):
-            raise PaddleError(f"T = {program.T:g} s; this board's timer does {low:g} to {high:g} s: connect(..., T={low:g})")
-        watched, room = len(program.outputs) - 1, self.board["channels"] - 3
-        if watched > room:
-            raise PaddleError(f"{program.name} watches {watched} channels; this board passes {room} on: watch fewer.")
-        odd = [c.name for c in program.parameters if c.type != "f32"]
-        if odd:
-            raise PaddleError(f"{program.name}: {odd[0]} is no float32; a board's parameters are: compile with dtype='float32'.")
+        check_room(self.board, program)
         return super().accept(program)
 
     def run(self, scene=None, *, duration, x=None, v=None, progress=True, **options):

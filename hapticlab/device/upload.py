@@ -2,6 +2,7 @@
 
 import zlib
 
+from ..errors import PaddleError
 from .messages import LARGEST_PAYLOAD, SETTINGS_STRUCT, TARGETS
 from .settings import Settings
 
@@ -27,6 +28,19 @@ def upload(exchange, target, data):
         exchange.command("DATA", offset, rest=data[offset : offset + PIECE])
     patience = {} if target == "PROGRAM" else {"patience": STORE_PATIENCE, "tries": 2}
     exchange.command("COMMIT", number, len(data), zlib.crc32(data), **patience)
+
+
+def check_room(board, program):
+    """Refuse a program whose period, watched channels or parameters a board cannot take; ``board`` is its WELCOME."""
+    low, high = board["period_min"] * 1e-6, board["period_max"] * 1e-6
+    if not low * (1 - 1e-9) <= program.T <= high * (1 + 1e-9):
+        raise PaddleError(f"T = {program.T:g} s; this board's timer does {low:g} to {high:g} s: connect(..., T={low:g})")
+    watched, room = len(program.outputs) - 1, board["channels"] - 3
+    if watched > room:
+        raise PaddleError(f"{program.name} watches {watched} channels; this board passes {room} on: watch fewer.")
+    odd = [c.name for c in program.parameters if c.type != "f32"]
+    if odd:
+        raise PaddleError(f"{program.name}: {odd[0]} is no float32; a board's parameters are: compile with dtype='float32'.")
 
 
 def read_settings(exchange):
