@@ -260,6 +260,13 @@ class TestForce:
         assert found.checked == 1
         assert ("not SQRT: the law is changed" in person.words) == (law == "LINEAR")
 
+    def test_the_scale_may_be_on_the_other_side(self):
+        paddle = bench.paddle(store=CHECKED.to_bytes(), force_full=6.0)
+        person = bench.Scripted(paddle, HOMING | YES | on_a_scale(direction=-1) | {"Which way does it press": "away"})
+        assert calibrate(paddle, person, date=TODAY, only="force").force_full == pytest.approx(6.0, rel=0.01)
+        with pytest.raises(PaddleError, match="presses the other way"):
+            calibrate(paddle, bench.Scripted(paddle, HOMING | YES | on_a_scale(direction=-1)), date=TODAY, only="force")
+
     def test_after_it_the_motor_gives_what_is_asked(self):
         paddle = bench.paddle(store=CHECKED.to_bytes(), force_full=5.3, motor_law=MOTOR_LAWS["LINEAR"])
         calibrate(paddle, bench.Scripted(paddle, HOMING | YES | on_a_scale()), date=TODAY, only="force")
