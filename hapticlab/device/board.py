@@ -273,10 +273,9 @@ class SerialPaddle(Paddle):
         recording, seen = self._recording, 0
         wanted = (ticks - 1) // recording.every * recording.every
         while recording.last_tick < wanted and recording.fault is None:
-            before = recording.last_tick
+            before, next_look = recording.last_tick, min(wanted, recording.last_tick + 500)
             came = self.exchange.wait(
-                lambda: recording.last_tick >= wanted or recording.last_tick >= before + 500 or recording.fault,
-                PATIENCE + 500 * self._program.T,
+                lambda enough=next_look: recording.last_tick >= enough or recording.fault, PATIENCE + 500 * self._program.T
             )
             if not came and recording.last_tick == before:
                 recording.fault = recording.fault or explain_silence(self.exchange, self.url)

@@ -46,7 +46,7 @@ def connect(port=None, *, T=1e-3, paddle=None, hello=3.0):
     if not hasattr(opened, "put_on"):
         if paddle is not None:
             opened.close()
-            raise PaddleError(f'paddle= is the mechanics of a simulated board, and {port} is none: connect("sim://hapkit", paddle=...)')
+            raise PaddleError(f'paddle= is for a simulated board, and {port} is none: connect("sim://hapkit", paddle=...)')
         return SerialPaddle(port, T=T, port=opened, hello=hello)
     if paddle is not None:
         opened.put_on(paddle)

@@ -44,8 +44,8 @@ def test_a_forgotten_scene_never_starts():
 
 def test_it_is_refused_where_it_would_not_be_safe():
     with hl.connect("sim://hapkit") as paddle:
+        paddle.start(SPRING(k=40))
         with pytest.raises(PaddleError, match="a scene runs; end it first"):
-            paddle.start(SPRING(k=40))
             paddle.keep(SPRING(k=40))
         paddle.stop()
         unchecked = nominal("hapkit", checked=0)

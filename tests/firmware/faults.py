@@ -3,16 +3,11 @@
 ``python tests/firmware/faults.py`` prints the table; test_faults.py holds it.
 """
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 
 import numpy as np
-
-sys.path[:0] = [str(Path(__file__).parent)]
-
 from build_image import symbols
 from emulated import emulated_uno, image
 from emulator import BROWN_OUT, CYCLES_PER_SECOND, EXTERNAL
