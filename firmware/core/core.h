@@ -75,7 +75,7 @@ typedef struct hl_core {
     hl_limits limits;
 
     /* the loop */
-    uint32_t tick;
+    uint32_t tick, set_tick; /* set_tick: the last before the parameters set last held */
     float x, v, force;
     float rate, force_limit, duty_per_force;
     uint16_t period_us, period_clocks, last_begin;

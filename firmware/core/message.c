@@ -195,6 +195,7 @@ static uint8_t set(hl_core *core, const uint8_t *payload, uint8_t count)
     for (uint8_t k = 0; k < values; k++) {
         place->registers[place->program.parameters + payload[1 + 5 * k]].f = hl_getf(payload + 2 + 5 * k);
     }
+    core->set_tick = core->tick;
     board_unlock(core);
     return HL_OK;
 }
@@ -308,7 +309,7 @@ static uint8_t obey_once(hl_core *core, uint8_t message, uint8_t sequence, const
 static uint8_t acknowledge(hl_core *core, uint8_t message, uint8_t result, uint8_t *to)
 {
     board_lock(core);
-    const uint32_t tick = core->tick;
+    const uint32_t tick = message == HL_MESSAGE_SET ? core->set_tick : core->tick;
     board_unlock(core);
     to[HL_AT_ACK_REQUEST] = message;
     to[HL_AT_ACK_RESULT] = result;

@@ -90,3 +90,13 @@ def test_it_introduces_itself_in_a_line():
     port.put_on(None, settings=kept)
     with SerialPaddle("sim://hapkit", port=port, T=5e-4) as paddle:
         assert str(paddle) == "host 3F2A, firmware 1.0, T = 0.5 ms, calibrated 2026-11-20, |F| <= 5 N"
+
+
+def test_a_simulated_handle_that_starts_elsewhere_is_where_it_is():
+    port = hl.device.serial.open_port("sim://hapkit")
+    port.put_on(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), x=0.0125)
+    with SerialPaddle("sim://hapkit", port=port) as paddle:
+        paddle.home(at=port.handle.x)
+        assert paddle.state()["x"] == pytest.approx(0.0125, abs=1e-7)
+        log = paddle.run(hl.Scene(force=hl.parameters("k", units="N/m") * hl.x(hl.n), name="spring")(k=10), duration=0.002)
+        assert log.x[0] == pytest.approx(0.0125, abs=1e-7) and log.F[0] == pytest.approx(0.125, abs=1e-6)

@@ -17,6 +17,9 @@ from ..profiles import PROFILES
 from ..settings import nominal, simulated
 from ..simulated import SimulatedPaddle
 
+#: of ticks that are late, made up for at once [s]
+LONGEST_BURST = 0.03
+
 
 class Serial(SerialBase):
     """A port of a simulated board; see the module. ``paddle`` may be replaced before the first read.
@@ -49,6 +52,7 @@ class Serial(SerialBase):
             self.board = HostBoard(self.settings.to_bytes() if store is None else store)
             self.handle = Handle(paddle, x).with_period(self.board.period)
             self._per_metre = 1 / self.settings.metres_per_count
+            self.board.tick(self._counts(), self.now())  # it has looked at its sensor before anybody asks
         if not self.lockstep and not hasattr(self, "_thread"):
             self._thread = threading.Thread(target=self._run_by_the_clock, name=self.port, daemon=True)
             self._thread.start()
@@ -96,18 +100,22 @@ class Serial(SerialBase):
         """One tick of the board, and what the handle does until the next."""
         if abs(self.board.period - self.handle.paddle.T) > 1e-9:
             self.handle = self.handle.with_period(self.board.period)
-        counts = self.handle.counts()
-        if counts is None:
-            counts = round(self.handle.seen * self._per_metre)
         step = min(self.handle.paddle.delay, self.handle.paddle.T)
-        duty = self.board.tick(counts, self.handle.t, step)
+        duty = self.board.tick(self._counts(), self.handle.t, step)
         self.handle.step(-self.wiring * self.settings.force_of_duty(duty))  # the motor gives -F (Fig. 23.5)
         self._heard += self.board.transmit()
+
+    def _counts(self):
+        """What the sensor reads now."""
+        counts = self.handle.counts()
+        return round(self.handle.seen * self._per_metre) if counts is None else counts
 
     def _run_by_the_clock(self):
         begun = time.monotonic() - self.now()
         while self.is_open:
             with self._changed:
+                # a computer that slept does not make up for it: in a burst nobody could say that he is there
+                begun = max(begun, time.monotonic() - self.now() - LONGEST_BURST)
                 while self.is_open and self.now() < time.monotonic() - begun:
                     self._tick()
                 self._changed.notify_all()
