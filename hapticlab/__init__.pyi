@@ -8,7 +8,9 @@ from .analysis.stability import stability_limit
 from .analysis.sweep import sweep
 from .compiler.lower import compile
 from .device.board import SerialPaddle
+from .device.calibrate import calibrate
 from .device.connect import connect
+from .device.doctor import doctor
 from .device.hand import Hand
 from .device.paddle import Paddle
 from .device.profiles import profile
@@ -57,11 +59,13 @@ __all__ = [
     "T",
     "Telemetry",
     "UnitsError",
+    "calibrate",
     "chatter",
     "compile",
     "connect",
     "coordinate",
     "delay",
+    "doctor",
     "energy",
     "force_filter",
     "n",

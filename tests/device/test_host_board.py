@@ -486,6 +486,23 @@ def test_a_program_damaged_in_memory_is_found(every):
         stands(host, "BAD_PROGRAM")
 
 
+def test_a_constant_damaged_in_its_register_is_found():
+    """It is copied there once, from bytes that stay whole."""
+    program = fixed(push=0.5, k=2.0)
+    size = len(encode_program(program, word_bits=16))
+    register = -(-size // 4) * 4  # the first constant's, behind the bytes
+    host = Host().ready()
+    assert host.load(program) == "OK" and host.start() == "OK"
+    host.tick(500, beat=True)
+    host.board.damage_program(register, 0x10)
+    ticks = 0
+    while state_name(host.state()["state"]) == "RUN":
+        host.tick(500)
+        ticks += 1
+    assert ticks <= 2 * math.ceil(size / 8) + 2
+    stands(host, "BAD_PROGRAM")
+
+
 def test_a_sensor_that_fails_takes_the_position_with_it_and_what_it_saw_of_the_stops():
     host = Host()
     host.hello()
