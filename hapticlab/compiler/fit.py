@@ -171,6 +171,7 @@ def table(scenes, board="uno", periods=(1e-3, 2e-3)):
         Each with its options of :func:`hapticlab.compile`.
     """
     given = board_named(board)
+    source = ""
     lines = [f"{given.name:<30} {'instr.':>6} {'typical':>8} {'bound':>8} {'bytes':>6}" + _heads(periods)]
     for scene, options in scenes:
         costs = [cost(compile(scene, **{**options, "T": T}), given) for T in periods]
@@ -178,7 +179,8 @@ def table(scenes, board="uno", periods=(1e-3, 2e-3)):
         answers = [("promised" if c.promised else "yes" if c.fits else "no") + f" {c.share:.0%}" for c in costs]
         line = f"{c.name:<30} {c.instructions:>6} {c.typical:>8} {c.bound:>8} {c.arena:>6}"
         lines.append(line + "".join(f"{a:>16}" for a in answers))
-    return "\n".join(lines)
+        source = c.source
+    return "\n".join([*lines, source])
 
 
 def _heads(periods):
