@@ -204,8 +204,9 @@ def test_where_nothing_fits_the_refusal_says_so():
 def test_the_table_has_a_line_a_scene_and_a_column_a_rate():
     text = table([make() for make in SCENES], periods=(1e-3, 2e-3, 4e-3))
     lines = text.splitlines()
-    assert len(lines) == 1 + len(SCENES)
+    assert len(lines) == 1 + len(SCENES) + 1 and lines[-1] == "measured in emulation"
     assert re.findall(r"\d+ Hz", lines[0]) == ["1000 Hz", "500 Hz", "250 Hz"]
-    wall, double = lines[1], lines[-1]
+    wall, double = lines[1], lines[-2]
     assert wall.count("promised") == 3 and "promised" not in double
+    assert table([SCENES[0]()], "cortex-m4f").splitlines()[-1].startswith("modelled, not measured")
     assert isinstance(cost(hl.compile(pendulum()[0], T=1e-3)), Cost)
