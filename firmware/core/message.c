@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+enum { CRC_BYTES = 4 }; /* at the end of programs and settings */
+
 #define FIRMWARE_MAJOR 1
 #define FIRMWARE_MINOR 0
 
@@ -109,7 +111,10 @@ static uint8_t begin(hl_core *core, const uint8_t *payload)
         return HL_RESULT_BUSY;
     }
     const uint16_t store = HL_STORE_BYTES - HL_STORE_PROGRAM;
-    if (size == 0 || size > HL_ARENA_BYTES || (target == HL_TARGET_STANDALONE && size > store)) {
+    if (size <= CRC_BYTES) {
+        return HL_SIZE;
+    }
+    if (size > HL_ARENA_BYTES || (target == HL_TARGET_STANDALONE && size > store)) {
         return HL_RESULT_TOO_LARGE;
     }
     core->loading = (uint8_t)((core->active + 1) % HL_SLOTS);
@@ -151,7 +156,8 @@ static uint8_t commit(hl_core *core, const uint8_t *payload)
         return HL_RESULT_BUSY;
     }
     core->announced = 0;
-    if (hl_crc32(0, place->arena.bytes, size) != hl_get32(payload + HL_AT_COMMIT_CRC)) {
+    /* of all but the last 4 bytes, which are this very number: with them, every upload of one length has the same CRC-32 */
+    if (hl_crc32(0, place->arena.bytes, (uint16_t)(size - CRC_BYTES)) != hl_get32(payload + HL_AT_COMMIT_CRC)) {
         return HL_CRC;
     }
     if (core->target == HL_TARGET_SETTINGS) {

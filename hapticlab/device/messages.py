@@ -12,7 +12,7 @@ A frame is COBS (Cheshire and Baker, 1999) ended by a zero byte, around ::
 
 Numbers are little endian. Guarded are the requests that can move the motor: a frame left over from another session or from
 long ago, or damaged where CRC-16 does not see it, moves nothing. STOP is guarded so that no START sent before it is obeyed
-after it; it stops the motor whatever its guard says. HELLO with a new number begins a session: nothing runs, nothing is loaded.
+after it; it stops the motor whatever its guard says. COMMIT names the CRC-32 that the upload ends with. HELLO with a new number begins a session: nothing runs, nothing is loaded.
 """
 
 import struct

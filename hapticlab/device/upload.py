@@ -15,7 +15,8 @@ STORE_PATIENCE = 6.0
 def upload(exchange, target, data):
     """Send bytes to a target, "PROGRAM", "SETTINGS" or "STANDALONE"; the board verifies before it takes them into use.
 
-    Every piece has its place, so that repeats and reorder do no harm; a missing piece fails the CRC-32 of the whole.
+    Every piece has its place, so that repeats and reorder do no harm; a missing piece fails the CRC-32 of the whole. That
+    is the one that data ends with: a CRC-32 over data and its own CRC-32 is the same for all data of one length.
 
     Raises
     ------
@@ -27,7 +28,7 @@ def upload(exchange, target, data):
     for offset in range(0, len(data), PIECE):
         exchange.command("DATA", offset, rest=data[offset : offset + PIECE])
     patience = {} if target == "PROGRAM" else {"patience": STORE_PATIENCE, "tries": 2}
-    exchange.command("COMMIT", number, len(data), zlib.crc32(data), **patience)
+    exchange.command("COMMIT", number, len(data), zlib.crc32(data[:-4]), **patience)
 
 
 def check_room(board, program):

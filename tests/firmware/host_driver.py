@@ -94,7 +94,7 @@ class Host:
         sent = damage(data) if damage else data
         for offset in range(0, len(sent), PIECE):
             assert self.ask("DATA", offset, rest=sent[offset : offset + PIECE]) == "OK"
-        return self.ask("COMMIT", TARGETS[target], len(data), zlib.crc32(data))
+        return self.ask("COMMIT", TARGETS[target], len(data), zlib.crc32(data[:-4]))
 
     def set(self, **values):
         """Set parameters by index, _0=...: several at once."""

@@ -73,7 +73,7 @@ class Talk:
         self.send("BEGIN", TARGETS["SETTINGS"], len(data))
         for at in range(0, len(data), PIECE):
             self.send("DATA", at, rest=data[at : at + PIECE])
-        self.send("COMMIT", TARGETS["SETTINGS"], len(data), zlib.crc32(data))
+        self.send("COMMIT", TARGETS["SETTINGS"], len(data), zlib.crc32(data[:-4]))
 
     def hello(self):
         self.session = self.rng.getrandbits(31) + 1
@@ -146,7 +146,7 @@ class Talk:
             if self.noise:
                 self.ticks(1)
         self.said.commits[self.number + 1] = self.hashes[which]
-        self.send("COMMIT", 0, len(data), zlib.crc32(data))
+        self.send("COMMIT", 0, len(data), zlib.crc32(data[:-4]))
         return struct.unpack("<I", data[-4:])[0]
 
     def set(self):
