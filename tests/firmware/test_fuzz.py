@@ -237,9 +237,10 @@ class Model:
         assert obeyed >= self.obeyed, "an older request was obeyed after a newer one"
         said = self.sessions.get(session, Said())
         self.before = self.most if ticked else max(self.before, self.most)  # what a switch finds stays until the tick
-        if obeyed != self.obeyed and obeyed in said.starts and state == RUN and accepted(out, obeyed):
-            self.start, self.last_set = obeyed, 0
-            self.seen["starts"] += 1
+        for number in range(self.obeyed + 1, obeyed + 1):  # one piece of the line may hold a START and what follows it
+            if number in said.starts and state == RUN and accepted(out, number):
+                self.start, self.last_set = number, 0
+                self.seen["starts"] += 1
         self.obeyed = obeyed
         if state == RUN:
             assert self.start is not None, "it runs, and nobody in this session said START"
