@@ -9,6 +9,8 @@
 /* bytes of the largest frame: version and message, sequence, payload, guard, CRC-16; COBS adds one, and the end one */
 #define HL_FRAME_BYTES (2 + HL_LARGEST_PAYLOAD + 4 + 2)
 #define HL_WIRE_BYTES (HL_FRAME_BYTES + 2)
+/* how often the handle is looked at while nothing runs */
+#define HL_IDLE_PERIOD_US 1000
 #if 5 + 4 * HL_CHANNELS > HL_LARGEST_PAYLOAD
 #error "a sample of HL_CHANNELS numbers is larger than HL_LARGEST_PAYLOAD"
 #endif
@@ -36,13 +38,14 @@ typedef struct {
 /* What the tick has measured of itself, in counts of board_clock; begun anew with every start. */
 typedef struct {
     uint16_t period_min, period_max, step_last, step_worst, overruns;
-    uint32_t step_sum;
+    uint32_t step_sum, steps; /* both are halved before the sum turns over */
 } hl_timing;
 
 /* Limits of the handle as counts, so that the tick compares whole numbers. */
 typedef struct {
     int32_t lowest, highest; /* beyond them is over-travel */
     int32_t speed;           /* counts a tick */
+    int32_t alias;           /* counts from sample to sample, beyond them the sensor may have turned over unseen */
     int32_t span;            /* between the stops */
 } hl_limits;
 
@@ -70,12 +73,14 @@ typedef struct hl_core {
     uint8_t calibrated, homed, mismatch, armed, standalone;
 
     /* the handle */
-    int32_t counts, origin;    /* position = (counts - origin) * settings.metres_per_count */
+    int32_t counts, before;    /* at this tick, at the one before */
+    int32_t origin;            /* position = (counts - origin) * settings.metres_per_count */
     int32_t seen_min, seen_max; /* since the position became unknown */
     hl_limits limits;
 
     /* the loop */
-    uint32_t tick, set_tick; /* set_tick: the last before the parameters set last held */
+    uint32_t tick;
+    int32_t set_tick; /* set_tick: the last one before the parameters that were set last, -1: none */
     float x, v, force;
     float rate, force_limit, duty_per_force;
     uint16_t period_us, period_clocks, last_begin;
@@ -83,7 +88,7 @@ typedef struct hl_core {
     uint16_t every, countdown; /* decimation */
     uint16_t silent, silence;  /* ticks since the host was heard, and how many are too many */
     volatile uint8_t heard, ran;
-    uint8_t late;              /* overruns in a row */
+    uint8_t late, was_late;    /* overruns in a row; the step before was one */
     uint16_t late_second, second;
     float heat, heat_sum, heat_gain;
     uint8_t heat_ticks;

@@ -12,6 +12,14 @@ static int32_t counts_of(const hl_core *core, float metres)
     return whole(metres / core->settings.metres_per_count);
 }
 
+/* The speed limit in counts a period; one count of noise either way is no motion. */
+int32_t hl_handle_speed(const hl_core *core, uint16_t period_us)
+{
+    const hl_settings *s = &core->settings;
+    const int32_t speed = whole(hl_absf(s->speed_max / s->metres_per_count) * (float)period_us * 1e-6f);
+    return speed < 2 ? 2 : speed;
+}
+
 /* Put the limits of settings and period into counts. */
 void hl_handle_limits(hl_core *core)
 {
@@ -22,8 +30,9 @@ void hl_handle_limits(hl_core *core)
     core->limits.span = high - low;
     core->limits.lowest = low - margin;
     core->limits.highest = high + margin;
-    const int32_t speed = whole(hl_absf(s->speed_max / s->metres_per_count) * (float)core->period_us * 1e-6f);
-    core->limits.speed = speed < 2 ? 2 : speed; /* one count of noise either way is no motion */
+    core->limits.speed = hl_handle_speed(core, core->period_us);
+    /* half a turn of the magnet is `wrap` counts, and half of that either way looks alike: an eighth is kept as margin */
+    core->limits.alias = s->sensor == HL_SENSOR_QUADRATURE ? INT32_MAX : (int32_t)s->wrap * 3 / 8;
 }
 
 /* The handle is at this position now. */
@@ -41,6 +50,13 @@ void hl_handle_lose(hl_core *core)
     core->mismatch = 0;
     core->seen_min = INT32_MAX; /* the next tick begins both */
     core->seen_max = INT32_MIN;
+}
+
+/* Whether the sensor may have turned over between two samples without a trace. */
+uint8_t hl_handle_aliased(const hl_core *core, int32_t before)
+{
+    const int32_t moved = hl_moved(before, core->counts);
+    return moved > core->limits.alias || moved < -core->limits.alias;
 }
 
 /* In IDLE: a handle led to both stops has told where it is. */

@@ -4,7 +4,7 @@
 void hl_core_fault(hl_core *core, uint8_t fault, float value)
 {
     board_motor(core, 0);
-    if (fault == HL_FAULT_SENSOR || fault == HL_FAULT_OVER_TRAVEL) {
+    if (fault == HL_FAULT_SENSOR || fault == HL_FAULT_OVER_TRAVEL || hl_handle_aliased(core, core->before)) {
         hl_handle_lose(core); /* counts may have been missed: what was seen of the stops is worth nothing either */
     }
     if (core->state != HL_STATE_RUN) {
@@ -35,12 +35,16 @@ static uint16_t measure(hl_core *core, uint16_t begin)
 }
 
 /* What stops the loop before the scene runs: host, position, speed. */
-static uint8_t is_unsafe(hl_core *core, uint16_t periods, int32_t before)
+static uint8_t is_unsafe(hl_core *core, uint16_t periods)
 {
     core->silent = core->heard || core->standalone ? 0 : (uint16_t)(core->silent + periods);
     core->heard = 0;
     if (core->silent >= core->silence) {
         hl_core_fault(core, HL_FAULT_HOST_SILENT, 0.0f);
+        return 1;
+    }
+    if (!core->first && hl_handle_aliased(core, core->before)) {
+        hl_core_fault(core, HL_FAULT_OVER_SPEED, core->v); /* with the motor off too: the position is lost */
         return 1;
     }
     if (!core->calibrated || core->force_limit == 0.0f) {
@@ -51,7 +55,7 @@ static uint8_t is_unsafe(hl_core *core, uint16_t periods, int32_t before)
         hl_core_fault(core, HL_FAULT_OVER_TRAVEL, core->x);
         return 1;
     }
-    int32_t moved = hl_moved(before, core->counts);
+    int32_t moved = hl_moved(core->before, core->counts);
     moved = periods > 1 ? moved / (int32_t)periods : moved;
     if (!core->first && (moved > core->limits.speed || moved < -core->limits.speed)) {
         hl_core_fault(core, HL_FAULT_OVER_SPEED, core->v);
@@ -91,14 +95,25 @@ static uint8_t is_late(hl_core *core, uint16_t begin)
     t->step_last = step;
     t->step_worst = step > t->step_worst ? step : t->step_worst;
     t->step_sum += step;
-    if (step <= core->period_clocks) {
-        core->late = 0;
-        return 0;
+    t->steps++;
+    if (t->step_sum > UINT32_C(0x7fffffff)) {
+        t->step_sum /= 2;
+        t->steps /= 2;
     }
-    t->overruns++;
-    core->late++;
-    core->late_second++;
-    return 1;
+    return step > core->period_clocks;
+}
+
+/* A step that missed its period, by itself or by what came after its clock was read: then the grid lost a tick. */
+static void count_late(hl_core *core, uint8_t late)
+{
+    if (late) {
+        core->timing.overruns++;
+        core->late++;
+        core->late_second++;
+    } else {
+        core->late = 0;
+    }
+    core->was_late = late;
 }
 
 static void watch_overruns(hl_core *core)
@@ -132,15 +147,19 @@ static int compute(hl_core *core, hl_slot *outputs)
     return 1;
 }
 
-static void run(hl_core *core, uint16_t begin, int32_t before)
+static void run(hl_core *core, uint16_t begin)
 {
     hl_slot outputs[HL_CHANNELS];
     const uint16_t periods = measure(core, begin);
+    const uint8_t skipped = periods > 1 && !core->was_late;
     const float x = hl_handle_position(core, core->counts);
     core->tick += periods;
     core->v = core->first ? 0.0f : (x - core->x) * core->rate;
+    if (periods > 1) {
+        core->v /= (float)periods; /* the scene's own difference takes one period, and its sample says so */
+    }
     core->x = x;
-    if (is_unsafe(core, periods, before) || !compute(core, outputs)) {
+    if (is_unsafe(core, periods) || !compute(core, outputs)) {
         return;
     }
     uint8_t flags = core->first ? HL_SAMPLE_FIRST : 0;
@@ -153,9 +172,14 @@ static void run(hl_core *core, uint16_t begin, int32_t before)
     core->force = force;
     board_motor(core, hl_duty(core, -force));
     hl_heat(core, force);
-    if (is_late(core, begin)) {
+    const uint8_t late = is_late(core, begin);
+    if (late || skipped) {
         flags |= HL_SAMPLE_OVERRUN;
     }
+    if (skipped) {
+        count_late(core, 1); /* the step before, which nobody counted */
+    }
+    count_late(core, late);
     watch_overruns(core);
     record(core, outputs, flags); /* with no force where one of them switched the motor off */
     core->first = 0;
@@ -181,6 +205,12 @@ static void await_standalone(hl_core *core)
 
 static void idle(hl_core *core)
 {
+    if (hl_handle_aliased(core, core->before)) {
+        hl_handle_lose(core);
+    }
+    if (core->period_us != HL_IDLE_PERIOD_US) {
+        hl_place_idle(core); /* after a fault */
+    }
     hl_handle_watch(core);
     hl_heat(core, 0.0f);
     if (core->standalone && core->state == HL_STATE_IDLE) {
@@ -191,11 +221,11 @@ static void idle(hl_core *core)
 void hl_core_tick(hl_core *core)
 {
     const uint16_t begin = board_clock(core);
-    const int32_t before = core->counts;
+    core->before = core->counts;
     core->counts = board_counts(core);
     core->ran = 1;
     if (core->state == HL_STATE_RUN) {
-        run(core, begin, before);
+        run(core, begin);
     } else {
         idle(core);
         core->last_begin = begin;

@@ -13,10 +13,10 @@ enum { CRC_BYTES = 4 }; /* at the end of programs and settings */
 /* Whatever runs or was loaded belongs to an earlier session. */
 static void begin_session(hl_core *core, uint32_t session)
 {
+    core->standalone = 0; /* before the stop: a tick may come between */
     hl_stop(core);
     core->session = session;
     core->obeyed = 0;
-    core->standalone = 0;
     core->announced = 0;
     for (uint8_t k = 0; k < HL_SLOTS; k++) {
         core->places[k].size = 0;
@@ -80,7 +80,7 @@ static uint8_t state_of(hl_core *core, uint8_t *to)
     hl_put16(to + HL_AT_STATE_PERIOD_MAX, t.period_max);
     hl_put16(to + HL_AT_STATE_STEP_LAST, t.step_last);
     hl_put16(to + HL_AT_STATE_STEP_WORST, t.step_worst);
-    hl_put32(to + HL_AT_STATE_STEP_SUM, t.step_sum);
+    hl_put16(to + HL_AT_STATE_STEP_MEAN, t.steps ? (uint16_t)(t.step_sum / t.steps) : 0);
     hl_put16(to + HL_AT_STATE_OVERRUNS, t.overruns);
     hl_put16(to + HL_AT_STATE_LOST, lost);
     hl_put16(to + HL_AT_STATE_DAMAGED, core->damaged);
@@ -157,7 +157,7 @@ static uint8_t commit(hl_core *core, const uint8_t *payload)
     }
     core->announced = 0;
     /* of all but the last 4 bytes, which are this very number: with them, every upload of one length has the same CRC-32 */
-    if (hl_crc32(0, place->arena.bytes, (uint16_t)(size - CRC_BYTES)) != hl_get32(payload + HL_AT_COMMIT_CRC)) {
+    if (hl_crc32(0, place->arena.bytes, (uint16_t)(size - CRC_BYTES)) != hl_get32(payload + HL_AT_COMMIT_LAST_CRC)) {
         return HL_CRC;
     }
     if (core->target == HL_TARGET_SETTINGS) {
@@ -201,7 +201,7 @@ static uint8_t set(hl_core *core, const uint8_t *payload, uint8_t count)
     for (uint8_t k = 0; k < values; k++) {
         place->registers[place->program.parameters + payload[1 + 5 * k]].f = hl_getf(payload + 2 + 5 * k);
     }
-    core->set_tick = core->tick;
+    core->set_tick = core->first ? -1 : (int32_t)core->tick;
     board_unlock(core);
     return HL_OK;
 }
@@ -315,11 +315,11 @@ static uint8_t obey_once(hl_core *core, uint8_t message, uint8_t sequence, const
 static uint8_t acknowledge(hl_core *core, uint8_t message, uint8_t result, uint8_t *to)
 {
     board_lock(core);
-    const uint32_t tick = message == HL_MESSAGE_SET ? core->set_tick : core->tick;
+    const int32_t tick = message == HL_MESSAGE_SET ? core->set_tick : (int32_t)core->tick;
     board_unlock(core);
     to[HL_AT_ACK_REQUEST] = message;
     to[HL_AT_ACK_RESULT] = result;
-    hl_put32(to + HL_AT_ACK_TICK, tick);
+    hl_put32(to + HL_AT_ACK_TICK, (uint32_t)tick);
     return HL_AT_ACK_TICK + 4;
 }
 

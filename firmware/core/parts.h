@@ -23,6 +23,8 @@ uint8_t hl_load_standalone(hl_core *core);
 void hl_handle_limits(hl_core *core);
 void hl_handle_place(hl_core *core, float position);
 void hl_handle_lose(hl_core *core);
+int32_t hl_handle_speed(const hl_core *core, uint16_t period_us);
+uint8_t hl_handle_aliased(const hl_core *core, int32_t before);
 void hl_handle_watch(hl_core *core);
 float hl_handle_position(const hl_core *core, int32_t counts); /* [m] */
 

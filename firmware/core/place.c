@@ -61,6 +61,9 @@ static uint8_t why_not(const hl_core *core, const hl_place *place, uint16_t ever
     if (period < HL_PERIOD_MIN_US || period > HL_PERIOD_MAX_US || every == 0 || !hl_is_finite(limit) || force_max < 0.0f) {
         return HL_RESULT_RANGE;
     }
+    if (core->calibrated && hl_handle_speed(core, (uint16_t)period) > core->limits.alias) {
+        return HL_RESULT_ALIAS; /* the sensor is read once a step: what turns over between two reads cannot be told */
+    }
     if (options & HL_OPTION_PASSIVE) {
         return HL_OK;
     }
@@ -110,6 +113,7 @@ uint8_t hl_place_start(hl_core *core, uint8_t index, uint16_t every, uint8_t opt
     core->first = 1;
     core->silent = 0;
     core->late = 0;
+    core->was_late = 0;
     core->late_second = 0;
     core->head = core->tail = 0;
     core->lost = 0;
@@ -125,7 +129,7 @@ uint8_t hl_place_start(hl_core *core, uint8_t index, uint16_t every, uint8_t opt
 /* Watch the handle at 1 kHz until a program brings its own period. */
 void hl_place_idle(hl_core *core)
 {
-    set_period(core, 1000);
+    set_period(core, HL_IDLE_PERIOD_US);
 }
 
 /* Motor off and IDLE; a fault stays until it is cleared. */
@@ -135,6 +139,7 @@ void hl_stop(hl_core *core)
     board_motor(core, 0);
     if (core->state == HL_STATE_RUN) {
         core->state = HL_STATE_IDLE;
+        hl_place_idle(core);
     }
     board_unlock(core);
 }

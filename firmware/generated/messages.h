@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #define HL_PROTOCOL 1
-#define HL_PROTOCOL_HASH 0xae44115cUL
+#define HL_PROTOCOL_HASH 0x78269460UL
 #define HL_SETTINGS_HASH 0xe1d4ada6UL
 #define HL_LARGEST_PAYLOAD 48
 #define HL_HOST_SILENCE_MS 100
@@ -32,7 +32,7 @@
     X(ACK, 16, 6, 0, 0) \
     X(WELCOME, 17, 32, 0, 0) \
     X(PONG, 18, 4, 0, 0) \
-    X(STATE, 19, 45, 0, 0) \
+    X(STATE, 19, 43, 0, 0) \
     X(BYTES, 20, 2, 0, 1) \
     X(SAMPLE, 21, 5, 0, 1) \
     X(FAULTED, 22, 9, 0, 0)
@@ -71,7 +71,7 @@ enum {
     HL_AT_DATA_OFFSET = 0, /* uint16_t */
     HL_AT_COMMIT_TARGET = 0, /* uint8_t */
     HL_AT_COMMIT_SIZE = 1, /* uint16_t */
-    HL_AT_COMMIT_CRC = 3, /* uint32_t */
+    HL_AT_COMMIT_LAST_CRC = 3, /* uint32_t */
     HL_AT_START_CRC = 0, /* uint32_t */
     HL_AT_START_EVERY = 4, /* uint16_t */
     HL_AT_START_OPTIONS = 6, /* uint8_t */
@@ -81,7 +81,7 @@ enum {
     HL_AT_ARM_ARMED = 0, /* uint8_t */
     HL_AT_ACK_REQUEST = 0, /* uint8_t */
     HL_AT_ACK_RESULT = 1, /* uint8_t */
-    HL_AT_ACK_TICK = 2, /* uint32_t */
+    HL_AT_ACK_TICK = 2, /* int32_t */
     HL_AT_WELCOME_TABLE = 0, /* uint32_t */
     HL_AT_WELCOME_BOARD = 4, /* bytes */
     HL_AT_WELCOME_IDENT = 12, /* uint16_t */
@@ -110,10 +110,10 @@ enum {
     HL_AT_STATE_PERIOD_MAX = 29, /* uint16_t */
     HL_AT_STATE_STEP_LAST = 31, /* uint16_t */
     HL_AT_STATE_STEP_WORST = 33, /* uint16_t */
-    HL_AT_STATE_STEP_SUM = 35, /* uint32_t */
-    HL_AT_STATE_OVERRUNS = 39, /* uint16_t */
-    HL_AT_STATE_LOST = 41, /* uint16_t */
-    HL_AT_STATE_DAMAGED = 43, /* uint16_t */
+    HL_AT_STATE_STEP_MEAN = 35, /* uint16_t */
+    HL_AT_STATE_OVERRUNS = 37, /* uint16_t */
+    HL_AT_STATE_LOST = 39, /* uint16_t */
+    HL_AT_STATE_DAMAGED = 41, /* uint16_t */
     HL_AT_BYTES_OFFSET = 0, /* uint16_t */
     HL_AT_SAMPLE_TICK = 0, /* uint32_t */
     HL_AT_SAMPLE_FLAGS = 4, /* uint8_t */
@@ -137,6 +137,7 @@ enum {
     HL_RESULT_FAULT = 43,
     HL_RESULT_NOT_CALIBRATED = 44,
     HL_RESULT_CHANNELS = 45,
+    HL_RESULT_ALIAS = 47,
     HL_RESULT_HOT = 46,
 };
 

@@ -11,8 +11,11 @@ A frame is COBS (Cheshire and Baker, 1999) ended by a zero byte, around ::
     CRC-16                2 bytes: CCITT, initial value 0xffff, of all before it
 
 Numbers are little endian. Guarded are the requests that can move the motor: a frame left over from another session or from
-long ago, or damaged where CRC-16 does not see it, moves nothing. STOP is guarded so that no START sent before it is obeyed
-after it; it stops the motor whatever its guard says. COMMIT names the CRC-32 that the upload ends with. HELLO with a new number begins a session: nothing runs, nothing is loaded.
+long ago, or damaged where CRC-16 does not see it, moves nothing. STOP is guarded so that no START sent before it is
+obeyed after it; it stops the motor whatever its guard says. COMMIT names the CRC-32 that the upload ends with. HELLO with a
+new number begins a session: nothing runs, nothing is loaded.
+
+A change of what a message means needs another name of a field at least, so that the table hash changes with it.
 """
 
 import struct
@@ -62,14 +65,14 @@ MESSAGES = {
     "READ": Message(4, fields("H offset, B count")),
     "BEGIN": Message(5, fields("B target, H size")),
     "DATA": Message(6, fields("H offset"), open=True),
-    "COMMIT": Message(7, fields("B target, H size, I crc"), guarded=True),
+    "COMMIT": Message(7, fields("B target, H size, I last_crc"), guarded=True),
     "START": Message(8, fields("I crc, H every, B options, f force_max"), guarded=True),
     "STOP": Message(9, guarded=True),
     "SET": Message(10, fields("B count"), guarded=True, open=True),
     "HOME": Message(11, fields("f position"), guarded=True),
     "CLEAR": Message(12, guarded=True),
     "ARM": Message(13, fields("B armed"), guarded=True),
-    "ACK": Message(16, fields("B request, B result, I tick")),
+    "ACK": Message(16, fields("B request, B result, i tick")),
     "WELCOME": Message(
         17,
         fields(
@@ -82,7 +85,7 @@ MESSAGES = {
         19,
         fields(
             "I session, B state, B fault, B flags, I tick, i counts, f x, f force, f heat, H period_min, H period_max, "
-            "H step_last, H step_worst, I step_sum, H overruns, H lost, H damaged"
+            "H step_last, H step_worst, H step_mean, H overruns, H lost, H damaged"
         ),
     ),
     "BYTES": Message(20, fields("H offset"), open=True),
@@ -107,6 +110,8 @@ RESULTS = {
     "FAULT": (43, "a fault stands: read it, remove its cause, then paddle.clear()"),
     "NOT_CALIBRATED": (44, "the board has no calibration: run `hapticlab calibrate`"),
     "CHANNELS": (45, "more watched outputs, or inputs other than x, than the board passes on: watch fewer"),
+    "ALIAS": (47, "at this period the sensor's magnet could make half a turn unseen below the speed limit: a shorter T, "
+              "a lower speed_max (calibrate), or a quadrature encoder"),
     "HOT": (46, "the motor is hot from earlier forces: let it cool for some minutes"),
 }
 

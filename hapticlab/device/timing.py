@@ -15,10 +15,9 @@ class Timing:
     """
 
     def __init__(self, state, clock_hz, T):
-        steps = max(1, state["tick"] + 1)
         self.T = T
         self.period_min, self.period_max = (state[name] / clock_hz for name in ("period_min", "period_max"))
-        self.worst, self.mean = state["step_worst"] / clock_hz, state["step_sum"] / steps / clock_hz
+        self.worst, self.mean = state["step_worst"] / clock_hz, state["step_mean"] / clock_hz
         self.overruns, self.lost, self.damaged = state["overruns"], state["lost"], state["damaged"]
 
     @property
@@ -32,3 +31,5 @@ class Timing:
             f"({100 * self.load:.0f} %); period {self.period_min * 1e6:.1f} to {self.period_max * 1e6:.1f} us; "
             f"{self.overruns} overruns, {self.lost} samples lost"
         )
+
+    __repr__ = __str__

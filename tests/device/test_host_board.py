@@ -11,6 +11,7 @@ from host_driver import Host, fault_name, fixed, result_name, settings, spring, 
 from hapticlab.compiler.bytecode import encode as encode_program
 from hapticlab.compiler.lower import compile
 from hapticlab.device.host_board import HostBoard
+from hapticlab.device.messages import SENSORS
 from hapticlab.device.recording import fault_words
 from hapticlab.device.wire import encode
 from hapticlab.scene.scene import Scene
@@ -471,12 +472,77 @@ def test_overruns_are_counted_flagged_and_a_fault_when_they_repeat(late, after):
             break
     if after is None:
         assert k == 899 and host.state()["overruns"] == 18
-        assert host.state()["step_worst"] == 1500 and host.state()["step_sum"] == 18 * 1500 + 882 * 200
+        assert host.state()["step_worst"] == 1500 and host.state()["step_mean"] == (18 * 1500 + 882 * 200) // 900
     else:
         assert k + 1 == after
         stands(host, "OVERRUN", after - 1)
     flags = [bool(f.payload[4] & 2) for f in host.samples]
     assert flags == [bool(late[k % len(late)]) for k in range(len(flags))]
+
+
+def test_a_tick_that_the_grid_lost_is_an_overrun_and_leaves_the_velocity_right():
+    """A step a little shorter than its period, whose end comes after the next point of the grid."""
+    host = Host().running(_0=0.0)
+    for k in range(6):
+        host.tick(100 * k, step=0.2e-3, beat=True)
+    host.t += 1e-3  # one tick is lost, and the handle goes on
+    host.tick(700, step=0.2e-3, beat=True)
+    host.tick(800, step=0.2e-3, beat=True)
+    rows = [struct.unpack_from("<IBff", f.payload) for f in host.samples]
+    assert [tick for tick, *_ in rows] == [0, 1, 2, 3, 4, 5, 7, 8]
+    assert [bool(flags & 2) for _, flags, *_ in rows] == [False] * 6 + [True, False]
+    assert [v for *_, v in rows][1:] == pytest.approx([1.0] * 7, rel=1e-5)  # 100 counts of 10 um in 1 ms
+    assert host.state()["overruns"] == 1
+
+
+def test_a_value_set_before_the_first_tick_holds_from_the_first_tick():
+    host = Host().ready()
+    host.start()
+    (reply,) = host.give(host.frame("SET", 1, rest=b"\0" + struct.pack("<f", 3.0)))
+    assert reply.fields["result"] == 0 and reply.fields["tick"] == -1
+    host.tick(0)
+    (reply,) = host.give(host.frame("SET", 1, rest=b"\0" + struct.pack("<f", 4.0)))
+    assert reply.fields["tick"] == 0
+
+
+MAGNET = dict(sensor=SENSORS["MAGNETORESISTIVE"], wrap=920, metres_per_count=12.8e-6)
+
+
+@pytest.mark.parametrize("T, result", [(1e-3, "OK"), (2.2e-3, "OK"), (2.3e-3, "ALIAS"), (10e-3, "ALIAS")])
+def test_a_period_in_which_the_magnet_could_turn_over_unseen_is_refused(T, result):
+    """At 2 m/s 345 counts, 3/8 of 920, take 2.208 ms."""
+    host = Host(**MAGNET).ready()
+    assert host.load(spring(K=1.0, T=T)) == "OK" and host.set(_0=1.0) == "OK" and host.start() == result
+    quadrature = Host().ready()
+    assert quadrature.load(spring(K=1.0, T=T)) == "OK" and quadrature.set(_0=1.0) == "OK" and quadrature.start() == "OK"
+
+
+@pytest.mark.parametrize("moved, lost", [(345, False), (346, True), (-345, False), (-346, True)])
+def test_a_magnet_that_may_have_turned_over_unseen_takes_the_position_with_it(moved, lost):
+    host = Host(**MAGNET).ready()
+    assert host.has("HOMED")
+    host.tick(moved)
+    assert host.has("HOMED") is not lost
+    running = Host(speed_max=4.416, **MAGNET).running(_0=0.0)
+    running.tick(0, beat=True)
+    running.tick(moved, beat=True)
+    assert state_name(running.state()["state"]) == ("FAULT" if lost else "RUN")
+    assert running.has("HOMED") is not lost
+
+
+def test_after_a_run_and_after_a_fault_the_handle_is_watched_every_millisecond_again():
+    host = Host().ready()
+    host.load(spring(T=5e-3))
+    host.set(_0=1.0)
+    host.start()
+    assert host.board.period == 5e-3
+    host.ask("STOP")
+    assert host.board.period == 1e-3
+    host.start()
+    host.tick(0)
+    host.board.fail("SENSOR")
+    host.tick(0)
+    assert host.board.period == 1e-3
 
 
 @pytest.mark.parametrize("every", [1, 3])

@@ -15,6 +15,7 @@ from five_scenes import pendulum
 
 import hapticlab as hl
 from hapticlab import n, x
+from hapticlab.device.messages import SENSORS
 from hapticlab.device.settings import nominal
 
 T = 1e-3
@@ -83,8 +84,9 @@ def nothing(paddle):
     """The scene itself is the fault."""
 
 
-#: travel so short that a handle beyond it is still within half a turn of the sensor's magnet
-SHORT = {"travel_min": -0.006, "travel_max": 0.006, "speed_max": 100.0}
+#: a handle thrown beyond a short travel, with an encoder: it has no speed at which it turns over unseen
+SHORT = {"travel_min": -0.006, "travel_max": 0.006, "speed_max": 100.0, "metres_per_count": 1e-4,
+         "sensor": SENSORS["QUADRATURE"]}  # fmt: skip
 #: at 0.9 N a motor that stands 0.8 N is too hot when 0.81 - (0.81 - h) exp(-t / 1 s) passes 0.64, in N^2; h is what was
 #: left of the half that a board takes for granted after a reset, at most 0.32: between 1.06 and 1.57 s
 HOT = {"force_continuous": 0.8, "heating_time": 1.0, "force_max": 0.9}

@@ -9,6 +9,7 @@ from five_scenes import cart_pole, double_pendulum, mass_and_wall, pendulum, wal
 import hapticlab as hl
 from hapticlab.compiler.engine import load
 from hapticlab.device.paddle import Paddle
+from hapticlab.device.settings import nominal
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 # a hand that moves the handle over 8 mm and lets it swing; the scenes' periods are those that an Uno has time for, and
@@ -21,7 +22,8 @@ METHODS = {double_pendulum: "semi_implicit_euler"}
 def run(make, ticks, T):
     scene, options = make()
     options = options | ({"method": METHODS[make]} if make in METHODS else {})
-    with emulated_uno(HAND, T=T) as paddle:
+    slow = nominal("hapkit", checked=1, ident=1, date=20261120, speed_max=1.0)  # at 4 ms the sensor allows no more
+    with emulated_uno(HAND, T=T, settings=slow) as paddle:
         program = Paddle.program(paddle, scene, **options)
         log = paddle.run(program, duration=ticks * T)
         return program, log, paddle.settings.force_max, paddle.timing
