@@ -91,7 +91,7 @@ def led_firmware(board):
 def force_error(start):
     """Return how far the force is off the wall's law on the staircase, at most [N]."""
     with start() as board:
-        return np.abs(FULL * (staircase(board) / 255) ** 2 - wall_force()).max()
+        return np.abs(FULL * (staircase(board) / 256) ** 2 - wall_force()).max()
 
 
 def measure_sketch(every, millis, seconds):

@@ -99,7 +99,7 @@ def staircase(board):
     board.loop.handle = Led(lambda t: LEVELS[min(int(t / HOLD), len(LEVELS) - 1)])
     board.wait(len(LEVELS) * HOLD)
     ends = np.round(np.arange(1, len(LEVELS)) * HOLD / STEP).astype(int) - 1
-    return np.rint(255 * np.sqrt(np.abs(np.array(board.loop.handle.forces)[ends]) / FULL))
+    return np.rint(256 * np.sqrt(np.abs(np.array(board.loop.handle.forces)[ends]) / FULL))
 
 
 def wall_force():

@@ -90,7 +90,7 @@ class ClosedLoop:
 
     def force(self):
         """The motor's force at the handle now [N], along growing x."""
-        part = self.board.duty / 255
+        part = self.board.duty / 256
         return self.motor_sign * self.force_full * (part * abs(part) if self.law == SQRT else part)
 
     @classmethod

@@ -130,7 +130,7 @@ class Uno:
 
     @property
     def duty(self):
-        """Duty of the motor from its pins, -255 to 255, positive with D8 high."""
+        """Duty of the motor from its pins, -256 to 256, positive with D8 high."""
         return self._shim.uno_duty(self._uno)
 
     def duties(self):

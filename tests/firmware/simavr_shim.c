@@ -60,7 +60,7 @@ static void note(event_log *log, uint64_t cycle, int32_t value)
         append(log, cycle, value);
 }
 
-/* Signed duty of the motor, 0 to 255: what the pins D5 and D8 do, whatever the firmware means. */
+/* Signed duty of the motor in 256ths: what the pins D5 and D8 do, whatever the firmware means. */
 int uno_duty(uno *u)
 {
     const uint8_t *r = u->avr->data;
@@ -68,9 +68,9 @@ int uno_duty(uno *u)
     if (!(r[DDRD] & 0x20))
         return 0;
     if (!(r[TCCR0A] & 0x20))
-        duty = r[PORTD] & 0x20 ? 255 : 0;
+        duty = r[PORTD] & 0x20 ? 256 : 0;
     else if (r[TCCR0B] & 7)
-        duty = r[TCCR0A] & 0x10 ? 255 - r[OCR0B] : r[OCR0B];
+        duty = r[TCCR0A] & 0x10 ? 255 - r[OCR0B] : r[OCR0B] + 1;
     return r[PORTB] & 1 ? duty : -duty;
 }
 

@@ -69,7 +69,7 @@ def test_the_motor_is_off_before_memory_is_initialised(start, image):
     assert list(board.duties()[1]) == [0] and board.duty == 0
 
 
-@pytest.mark.parametrize("duty", [1, 3, 100, 254, 255, -1, -100, -255])
+@pytest.mark.parametrize("duty", [1, 4, 100, 255, 256, -1, -100, -256])
 def test_the_motor_follows_its_duty(start, duty):
     board = start(carrier=True)
     board.probe["duty"] = duty
@@ -77,12 +77,12 @@ def test_the_motor_follows_its_duty(start, duty):
     assert board.duty == duty
     cycles, levels = board.edges()
     rises, falls = cycles[levels == 1], cycles[levels == 0]
-    if 3 <= abs(duty) < 255:  # at 255 the pin stays high
+    if 4 <= abs(duty) < 256:  # at 256 the pin stays high
         # simavr moves a pin between two instructions, of 4 cycles at most: a shorter pulse would vanish
         periods = np.round((rises[2:] - rises[2]) / 256)
         assert len(rises) > 100 and np.ptp(rises[2:] - rises[2] - 256 * periods) <= 4, "not 62.5 kHz"
         high = falls[falls > rises[2]][: len(rises) - 3] - rises[2:-1]
-        assert np.all(np.abs(high - (abs(duty) + 1)) <= 4) and abs(np.mean(high) - abs(duty) - 1) < 2, high[:9]
+        assert np.all(np.abs(high - abs(duty)) <= 4) and abs(np.mean(high) - abs(duty)) < 2, high[:9]
     board.probe["duty"] = 0
     board.run(0.002)
     assert board.duty == 0 and not board.at(PORTD) & 0x20
@@ -90,7 +90,7 @@ def test_the_motor_follows_its_duty(start, duty):
 
 def test_direction_changes_with_the_motor_running(start):
     board = start()
-    for duty in (200, -200, 50, -255, 0):
+    for duty in (200, -200, 50, -256, 0):
         board.probe["duty"] = duty
         board.run(0.002)
         assert board.duty == duty

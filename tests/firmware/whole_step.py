@@ -1,8 +1,10 @@
-"""What a control step and a telemetry frame take on the Uno beside the scene: the real image, in the emulator.
+"""What a control step, a telemetry frame and a request take on the Uno beside the scene: the real image, in the emulator.
 
-The tick's interrupt is timed from its call to the end of its return, what interrupts it included; the machine's own cycles on
-the same samples, counted by :mod:`bare`, are taken off. A frame is what hl_core_poll takes to send a sample, and an
-interrupt for every byte.
+The tick's interrupt is timed from its call to the end of its return, in ticks that nothing interrupts; the machine's own
+cycles on the same samples, counted by :mod:`bare`, are taken off. The most is the longest of these ticks, and for the
+floats of the step what awkward operands take more than its own: of duty and heat searched in the image, of position and
+velocity from the table of operations. A frame is what hl_core_poll takes to send a sample, an answer what it takes
+to answer STATUS or SET; an interrupt comes with every byte.
 """
 
 import tempfile
@@ -17,24 +19,29 @@ from five_scenes import compiled, mass_and_wall, wall
 from uno_port import offer
 
 import hapticlab as hl
+from hapticlab.compiler.cost import SEARCH_MARGIN, tables
 from hapticlab.device.settings import nominal
+from hapticlab.device.wire import decode, encode
 
 TICKS = 400
 OVERHEAD = 11  # bytes of a sample's frame beside its numbers
+RARELY = 17  # ticks a sample, coprime with the 16 of the heat: a tick of both is among those watched
+REGISTER_20 = 20  # where the first four bytes after a pointer are given to a function
 
 
 class Watched(PaddleHandle):
-    """A handle that notes the cycles of every tick, and memory as it is just after some of them."""
+    """A handle that notes the cycles of every tick, those that nothing interrupted, and memory just after some of them."""
 
     def __init__(self, paddle):
         super().__init__(paddle)
-        self.board, self.last, self.ticks, self.snapshots = None, (0, 0.0), [], []
+        self.board, self.last, self.bytes, self.ticks, self.snapshots = None, (0, 0.0), 0, [], []
 
     def step(self, force, seconds):
         if self.board is not None:
             count, mean, _ = self.board.cost(TIMER1_COMPA)
             if count == self.last[0] + 1:
-                self.ticks.append(round(count * mean - self.last[1]))
+                before, self.bytes = self.bytes, sum(self.board.cost(v)[0] for v in (USART_UDRE, USART_RX))
+                self.ticks.append((round(count * mean - self.last[1]), self.bytes == before))
                 if len(self.ticks) % 5 == 0:
                     self.snapshots.append(self.board.memory[RAM_BEGIN:].tobytes())
             self.last = count, count * mean
@@ -42,7 +49,7 @@ class Watched(PaddleHandle):
 
 
 def watched_run(image, program, every=1):
-    """Run on the emulated Uno; return the cycles of the last ticks, the samples, memory after ticks, costs of interrupts."""
+    """Run on the emulated Uno; return the handle, the samples, costs of interrupts and the last requests' frames."""
     kept = replace(nominal("hapkit"), checked=1)
     with Uno(image, eeprom=kept.to_bytes()) as board:
         hand = hl.Hand(m=0.1, b=2, k=200, push=1.5)
@@ -52,8 +59,20 @@ def watched_run(image, program, every=1):
             handle.board = board
             log = paddle.run(program, duration=TICKS * 1e-3, every=every, progress=False, check_fit=False)
             handle.board = None
+            requests = [encode("STATUS", 0)] + [set_frame(paddle.exchange, n) for n in (1, 8)]
         assert log.fault is None, log.fault
-        return handle.ticks, log, handle.snapshots, [board.cost(v)[2] for v in (USART_UDRE, USART_RX)]
+        return handle, log, [board.cost(v)[2] for v in (USART_UDRE, USART_RX)], requests
+
+
+def set_frame(exchange, count):
+    """Return a SET of the first parameter, ``count`` times, as the board would obey it next."""
+    rest = count * (b"\0" + np.float32(123.4).tobytes())
+    return encode("SET", exchange._next_sequence("SET"), count, rest=rest, session=exchange.session)
+
+
+def quiet(handle):
+    """Return the cycles of the ticks that nothing interrupted; the first are still idle, the last idle again."""
+    return np.array([cycles for cycles, alone in handle.ticks[20:-20] if alone])
 
 
 def frame_cycles(elf, snapshots, channels):
@@ -69,31 +88,79 @@ def frame_cycles(elf, snapshots, channels):
     return size, float(np.median(found))
 
 
+def answer_cycles(elf, snapshots, request):
+    """Return the most cycles that hl_core_poll takes to answer a request, and the bytes of the answer."""
+    cpu, found, sizes = Avr(elf), [], []
+    core, ring = cpu.place("uno_core"), cpu.place("tx")
+    for memory in snapshots:
+        cpu.write(RAM_BEGIN, memory)
+        for byte in request:
+            cpu.call("hl_core_byte", core, byte)
+        head = cpu.read(cpu.place("tx_head"), 1)[0]
+        cycles = cpu.call("hl_core_poll", core)[1]
+        size = (cpu.read(cpu.place("tx_head"), 1)[0] - head) % 256
+        frame = decode(bytes(cpu.read(ring + (head + k) % 128, 1)[0] for k in range(size - 1))) if size else None
+        if frame is not None and frame.message in ("ACK", "STATE"):
+            assert frame.message == "STATE" or frame.fields["result"] == 0
+            found.append(cycles)
+            sizes.append(size)
+    assert found, "no poll answered"
+    return max(found), max(sizes)
+
+
+def awkward_more(elf, snapshots):
+    """Return what duty and heat take at most with any force within 10 N, beyond their most with one of 1.234 N."""
+    from measure_costs import awkward_bits  # which imports this module
+
+    cpu, rng, more = Avr(elf), np.random.default_rng(3), 0
+    core = cpu.place("uno_core")
+    usual = np.full((64, 1), 1.234, np.float32).view(np.uint8)
+    for name in ("hl_duty", "hl_heat"):
+        worst = [0, 0]
+        for memory in snapshots[10:-10:2]:
+            bits = awkward_bits(rng, 4000)
+            force = bits.view(np.float32)
+            awkward = bits[np.abs(np.where(np.isfinite(force), force, 99)) <= 10][:640, None].view(np.uint8)
+            for k, rows in enumerate((usual, awkward)):
+                cpu.write(RAM_BEGIN, memory)
+                worst[k] = max(worst[k], int(cpu.rows(name, (core,), REGISTER_20, rows, 24, 2)[1].max()))
+        more += max(0, worst[1] - worst[0])
+    of = tables()["uno"]["operations"]  # x = counts * metres_per_count, v = (x - x_before) * rate, |F| < limit
+    return more + sum(of[op][1] - of[op][0] for op in ("itof", "mul", "sub", "mul", "lt", "lt"))
+
+
+def watching(channels):
+    """Return the mass and wall that shows so many states more."""
+    scene, options = mass_and_wall()
+    z = next(iter(scene.explicit().coordinates))
+    shown = {f"z{k}": k * z for k in range(1, channels + 1)}
+    return hl.compile(hl.Scene(scene.force, scene.eom, shown, scene.values, "watching"), T=1e-3, **options)
+
+
 def measure_step():
-    """Return ``step`` (typical, most) and ``frame`` ((fixed, per byte) typical and most) in cycles."""
+    """Return the table's entries on the loop and the link, in cycles."""
     with tempfile.TemporaryDirectory() as folder:
         elf, image = build("uno", folder)
-        steps, frames, cpu = [], [], Avr()
-        for make in (wall, mass_and_wall):
-            program = compiled(make)
-            ticks, log, snapshots, (udre, rx) = watched_run(image, program)
+        typical, most, frames, cpu = [], [], [], Avr()
+        for program in (compiled(wall), compiled(mass_and_wall), watching(5)):
+            handle, log, _, requests = watched_run(image, program, every=RARELY)
             machine = np.median(Bench(program, cpu).run(log.x[:, None])[2])
-            quiet = watched_run(image, program, every=20)[0]  # most ticks without a byte on its way
-            # the first ticks are still idle, the last idle again
-            steps.append((np.median(quiet[-TICKS + 20 : -20]) - machine, max(ticks[-TICKS + 20 : -20]) - machine))
-            frames.append(frame_cycles(elf, snapshots, channels=3))
-        scene, options = mass_and_wall()
-        z = next(iter(scene.explicit().coordinates))
-        watching = hl.Scene(scene.force, scene.eom, {"z": z, "z2": 2 * z, "z3": 3 * z}, scene.values, "watching")
-        _, _, snapshots, _ = watched_run(image, hl.compile(watching, T=1e-3, **options))
-        longer = frame_cycles(elf, snapshots, channels=6)
-    shorter = frames[0]
-    per_byte = (longer[1] - shorter[1]) / (longer[0] - shorter[0])
-    fixed = max(cycles - per_byte * size for size, cycles in frames) + udre  # one interrupt more finds nothing to send
-    frame = round(fixed), round(per_byte + udre, 1)
+            typical.append(np.median(quiet(handle)) - machine)
+            most.append(max(quiet(handle)) - machine)
+        more = awkward_more(elf, handle.snapshots)
+        answers = [answer_cycles(elf, handle.snapshots, request) for request in requests]
+        for channels in (0, 3):
+            handle, _, (udre, rx), _ = watched_run(image, watching(channels))
+            frames.append(frame_cycles(elf, handle.snapshots, 3 + channels))
+    (status, state), (one, ack), (eight, _) = answers
+    each = (eight - one) / 7
+    per_byte = (frames[1][1] - frames[0][1]) / (frames[1][0] - frames[0][0])
     return {
-        "step": [round(np.mean([s[0] for s in steps])), round(max(s[1] for s in steps))],
-        "frame": [list(frame), list(frame)], "sample_bytes": OVERHEAD, "received_byte": round(rx),
+        "step": [round(np.mean(typical[:2])), round((max(most) + more) * (1 + SEARCH_MARGIN))],
+        "frame": [round(frames[0][1] - per_byte * frames[0][0]), round(per_byte, 1)],
+        "answers": {"STATUS": [status, state], "SET": [round(one - each), round(each), ack]},
+        "sample_bytes": OVERHEAD, "sent_byte": round(udre), "received_byte": round(rx),
+        "debug": [list(map(float,typical)), list(map(float,most)), more],
     }  # fmt: skip
 
 

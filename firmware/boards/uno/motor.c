@@ -26,7 +26,7 @@ void board_motor(hl_core *core, int16_t duty)
             PORTB |= UNO_DIRECTION_PIN;
         else
             PORTB &= (uint8_t)~UNO_DIRECTION_PIN;
-        OCR0B = (uint8_t)(duty > 0 ? duty : -duty);
+        OCR0B = (uint8_t)((duty > 0 ? duty : -duty) - 1); /* fast PWM is high for one clock more than it says */
         TCCR0A = PWM_CONNECTED;
     }
     SREG = interrupts;
