@@ -1,9 +1,10 @@
 """Programs and settings onto a board, in pieces, whole or not at all."""
 
+import math
 import zlib
 
 from ..errors import PaddleError
-from .messages import LARGEST_PAYLOAD, SETTINGS_STRUCT, TARGETS
+from .messages import LARGEST_PAYLOAD, SENSORS, SETTINGS_STRUCT, TARGETS
 from .settings import Settings
 
 #: of one piece; the offset takes two bytes
@@ -31,11 +32,26 @@ def upload(exchange, target, data):
     exchange.command("COMMIT", number, len(data), zlib.crc32(data[:-4]), **patience)
 
 
-def check_room(board, program):
-    """Refuse a program whose period, watched channels or parameters a board cannot take; ``board`` is its WELCOME."""
-    low, high = board["period_min"] * 1e-6, board["period_max"] * 1e-6
+def check_room(board, settings, program):
+    """Refuse a program whose period, watched channels or parameters a board cannot take.
+
+    Parameters
+    ----------
+    board : dict
+        Its WELCOME.
+    settings : Settings or None
+    program : Program
+    """
+    low, high, why = board["period_min"] * 1e-6, board["period_max"] * 1e-6, ""
+    if settings is not None and settings.sensor == SENSORS["MAGNETORESISTIVE"]:
+        # the sensor is read once a period; 3/8 of its counts a period are what the firmware still tells from a turn over
+        unseen = 0.375 * settings.wrap * abs(settings.metres_per_count) / settings.speed_max
+        if high > unseen:
+            high = math.floor(unseen * 1e6) * 1e-6
+            why = f", as its magnet must not turn over unseen at speed_max = {settings.speed_max:g} m/s"
     if not low * (1 - 1e-9) <= program.T <= high * (1 + 1e-9):
-        raise PaddleError(f"T = {program.T:g} s; this board's timer does {low:g} to {high:g} s: connect(..., T={low:g})")
+        nearer = low if program.T < low else high
+        raise PaddleError(f"T = {program.T:g} s; this board does {low:g} to {high:g} s{why}: take T={nearer:g}")
     watched, room = len(program.outputs) - 1, board["channels"] - 3
     if watched > room:
         raise PaddleError(f"{program.name} watches {watched} channels; this board passes {room} on: watch fewer.")
