@@ -42,7 +42,7 @@ def _explain_url(url, problem):
             "url",
         )
     if isinstance(problem, ValueError) or any(w in str(problem) for w in ("debug|info", "not supported between")):
-        return f"{url}: not a port's address ({problem}); write it as in socket://host:port", "url"
+        return f"{url}: not a port's address; write it as in socket://host:port", "url"
     return f"{url}: nothing answers there ({problem}); start what should, or check the address", "refused"
 
 

@@ -1,6 +1,6 @@
 """Serial ports, opened in one place: which there are, and what is wrong when one does not open.
 
-The only module that opens pyserial, of which it asks what its successors have too: ``serial_for_url``, ``read``,
+The only module that opens pyserial (which opens ``urls``), of which it asks what its successors have too: ``serial_for_url``, ``read``,
 ``write``, ``in_waiting``, ``close`` and ``comports``.
 """
 
@@ -93,6 +93,8 @@ def open_port(url, *, baudrate=500000, timeout=0.05):
     """
     import serial
 
+    if not isinstance(url, str) or not url:
+        raise PortError(f'{url!r} is no port; needs its name or address as text: "COM3", "/dev/ttyACM0", "sim://hapkit"', "url")
     if HANDLERS not in serial.protocol_handler_packages:
         serial.protocol_handler_packages.append(HANDLERS)
     try:

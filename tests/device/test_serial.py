@@ -277,3 +277,9 @@ def test_the_udev_rules_are_for_the_same_boards():
 def test_a_port_error_keeps_its_cause_when_it_travels():
     error = pickle.loads(pickle.dumps(PortError("COM3 is taken", "busy")))
     assert (str(error), error.cause) == ("COM3 is taken", "busy")
+
+
+@pytest.mark.parametrize("url", ["", 5, b"COM3", None])
+def test_what_is_no_address(url):
+    with pytest.raises(PortError, match="is no port; needs its name or address as text"):
+        open_port(url)

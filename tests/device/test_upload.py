@@ -7,8 +7,9 @@ from host_driver import fixed, settings, spring
 from hapticlab.compiler.bytecode import encode
 from hapticlab.device.exchange import Exchange
 from hapticlab.device.messages import LARGEST_PAYLOAD, TARGETS
-from hapticlab.device.upload import PIECE, read_settings, upload
-from hapticlab.errors import LinkError
+from hapticlab.device.settings import nominal
+from hapticlab.device.upload import PIECE, check_room, read_settings, upload
+from hapticlab.errors import LinkError, PaddleError
 
 
 def talking(**judges):
@@ -70,3 +71,25 @@ def test_a_board_without_settings_has_none():
     exchange.port.put_on(None, store=b"")
     exchange.ask("HELLO", exchange.session)
     assert read_settings(exchange) is None
+
+
+UNO = {"period_min": 250, "period_max": 10_000, "channels": 8}
+
+
+@pytest.mark.parametrize(
+    ("T", "kept", "words"),
+    [
+        (20e-3, settings(), r"T = 0.02 s; this board does 0.00025 to 0.01 s: take T=0.01"),
+        (1e-4, settings(), r"T = 0.0001 s; this board does 0.00025 to 0.01 s: take T=0.00025"),
+        # 3/8 of 920 counts of 12.8 um at 2 m/s: 2.208 ms
+        (4e-3, nominal("hapkit"), r"does 0.00025 to 0.002208 s, as its magnet .* speed_max = 2 m/s: take T=0.002208"),
+    ],
+)
+def test_a_period_the_board_cannot_do_is_refused_with_the_nearest_it_can(T, kept, words):
+    with pytest.raises(PaddleError, match=words):
+        check_room(UNO, kept, spring(K=1.0, T=T))
+
+
+def test_a_period_it_can_do_passes():
+    check_room(UNO, nominal("hapkit"), spring(K=1.0, T=2e-3))
+    check_room(UNO, None, spring(K=1.0, T=10e-3))
