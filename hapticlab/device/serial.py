@@ -1,7 +1,7 @@
 """Serial ports, opened in one place: which there are, and what is wrong when one does not open.
 
-The only module that opens pyserial (which opens ``urls``), of which it asks what its successors have too: ``serial_for_url``, ``read``,
-``write``, ``in_waiting``, ``close`` and ``comports``.
+The only module that opens pyserial, which opens ``urls``. It asks of it what its successors have too: ``serial_for_url``,
+``read``, ``write``, ``in_waiting``, ``close`` and ``comports``.
 """
 
 import re
