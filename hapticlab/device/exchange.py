@@ -1,15 +1,16 @@
 """Requests and replies over one open port, with one reader.
 
 On a real port a thread reads, and keeps the board's watchdog fed. A port in virtual time (``lockstep``) has no thread:
-whoever waits reads, so that the same calls give the same run.
+whoever waits reads, so that the same calls give the same run; time passes for that thread alone, and others are refused.
 """
 
 import itertools
 import secrets
 import threading
 import time
+from contextlib import contextmanager, suppress
 
-from ..errors import LinkError
+from ..errors import LinkError, PaddleError
 from .messages import HOST_SILENCE_MS, MESSAGES, RESULTS
 from .serial import port_watched, read_available
 from .wire import Decoder, encode
@@ -28,7 +29,8 @@ class Exchange:
     port : serial object
         Of open_port.
     on_frame : callable
-        Called with every Frame that is no reply: samples, fault reports. In the reader's thread, so it only stores.
+        Called with every Frame that is no reply: samples, fault reports. In the reader's thread, so it only stores. The
+        thread keeps alive whatever this refers to: never a paddle, whose motor would then run on when nobody holds it.
 
     Attributes
     ----------
@@ -50,6 +52,7 @@ class Exchange:
         self._wanted = self._reply = self._then = self._beat_sequence = None
         port.timeout = HEARTBEAT / 4  # so that a silent board does not keep the reader from beating
         self._turn, self._news, self._closed = threading.Lock(), threading.Condition(), False
+        self._waiting = None  # the thread for which virtual time passes
         self._last_sent = self.now()
         self._thread = None
         if not self.lockstep:
@@ -68,8 +71,11 @@ class Exchange:
             If nothing came back.
         PortError
             If the port failed.
+        PaddleError
+            If time is virtual, and another thread waits.
         """
         with self._turn:
+            self._require_my_time()
             # a board takes one frame at a time: a heartbeat under way is answered first
             self._wait_until(lambda: self._beat_sequence is None, HEARTBEAT / 2)
             self._beat_sequence = None
@@ -100,7 +106,25 @@ class Exchange:
 
     def wait(self, condition, seconds):
         """Read until condition() holds; return whether it did within so many seconds of the port's time."""
-        return self._wait_until(condition, seconds, beat=True)
+        with self._my_time():
+            return self._wait_until(condition, seconds, beat=True)
+
+    def give(self, on_frame=None):
+        """Give samples and fault reports to another than before, or to nobody."""
+        with self._news:
+            self.on_frame = on_frame or (lambda frame: None)
+            self._news.notify_all()
+
+    def hang_up(self):
+        """Say STOP, to whoever may hear it, and close. Waits for no answer: a garbage collector may call it anywhere."""
+        self.beating = False
+        with suppress(Exception):  # then the board stops its motor by itself, 100 ms after the last word
+            if self._turn.acquire(timeout=HEARTBEAT):
+                try:
+                    self._send(encode("STOP", self._next_sequence("STOP"), session=self.session))
+                finally:
+                    self._turn.release()
+        self.close()
 
     def close(self):
         """End the reader and close the port; the board goes silent-host by itself."""
@@ -108,6 +132,27 @@ class Exchange:
         if self._thread is not None and self._thread is not threading.current_thread():
             self._thread.join(2)
         self.port.close()
+
+    @contextmanager
+    def _my_time(self):
+        """On a port in virtual time nobody else may ask or wait meanwhile: they would let each other's time pass."""
+        if not self.lockstep:
+            yield
+            return
+        with self._turn:
+            self._require_my_time()
+            before, self._waiting = self._waiting, threading.get_ident()
+        try:
+            yield
+        finally:
+            self._waiting = before
+
+    def _require_my_time(self):
+        if self._waiting not in (None, threading.get_ident()):
+            raise PaddleError(
+                f"{self.port.port}: time is virtual here and passes for the thread that waits; another thread waits now. "
+                "Ask between its waits, or let time pass by itself: sim://hapkit?pace=real"
+            )
 
     def _next_sequence(self, message):
         return next(self._sequences[MESSAGES[message].guarded])

@@ -39,11 +39,16 @@ def what_happened(exchange, url, reset_cause):
     told = []
     if reset_cause in (RESET_CAUSES["BROWN_OUT"][0], RESET_CAUSES["WATCHDOG"][0]):
         told.append(f"{url}: the board was reset by {next(t for n, t in RESET_CAUSES.values() if n == reset_cause)}")
+    return told + cleared(exchange, url)
+
+
+def cleared(exchange, url):
+    """Clear a standing fault; return the sentence that tells it, in a list that is empty where none stood."""
     state = exchange.refresh()
-    if state["state"] == STATES["FAULT"]:
-        told.append(f"{url}: a fault stood: {fault_words(state)}")
-        exchange.command("CLEAR")
-    return told
+    if state["state"] != STATES["FAULT"]:
+        return []
+    exchange.command("CLEAR")
+    return [f"{url}: a fault stood: {fault_words(state)}"]
 
 
 def introduction(board, settings, T):
@@ -61,6 +66,11 @@ def introduction(board, settings, T):
 def explain_silence(exchange, url):
     """Return the fault that keeps a running board from sending samples, or raise LinkError with another reason."""
     state = exchange.refresh()
+    if state["session"] not in (0, exchange.session):
+        raise LinkError(
+            f"{url}: another program said hello to the board while the scene ran, which ended it: the board is that "
+            "program's now. End it (another notebook, another user of the same socket), then connect again."
+        )
     if state["session"] != exchange.session:
         raise LinkError(
             f"{url}: the board was reset while the scene ran, and its motor is off: a supply that falls too low when the "

@@ -9,6 +9,8 @@ LOOK_AGAIN = 0.05  # [s]
 def home(exchange, settings, at=None, timeout=60.0):
     """Tell the board that the handle is at a position [m], or have it led to both stops within timeout [s].
 
+    A simulated handle is led back to the middle, at rest: no hand is there to lead it to the stops.
+
     Raises
     ------
     PaddleError
@@ -21,6 +23,10 @@ def home(exchange, settings, at=None, timeout=60.0):
         return
     if settings is None:
         raise PaddleError("the board has no calibration, so its stops tell nothing: run `hapticlab calibrate` first.")
+    if hasattr(exchange.port, "lead"):
+        exchange.port.lead(0.0)
+        exchange.command("HOME", 0.0)
+        return
     print("Lead the handle slowly to one stop, then to the other, and back: the board finds its position.")
     deadline = exchange.now() + timeout
     while exchange.now() < deadline:

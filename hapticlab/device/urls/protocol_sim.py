@@ -57,6 +57,12 @@ class Serial(SerialBase):
             self._thread = threading.Thread(target=self._run_by_the_clock, name=self.port, daemon=True)
             self._thread.start()
 
+    def lead(self, x):
+        """Put the handle to x [m], at rest, as a hand would; the board's sensor has seen it there."""
+        with self._changed:
+            self.handle.x, self.handle.v = float(x), 0.0
+            self.board.tick(self._counts(), self.now())
+
     def close(self):
         self.is_open = False
 
