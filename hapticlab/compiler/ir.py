@@ -48,11 +48,13 @@ class Instruction:
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """A named, typed number with a unit: a parameter, an input, a state or an output."""
+    """A named, typed number with a unit: a parameter, an input, a state or an output; a parameter lies in low to high."""
 
     name: str
     unit: str = "1"
     type: str = "f32"
+    low: float = -math.inf
+    high: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)

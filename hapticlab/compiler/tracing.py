@@ -65,7 +65,7 @@ class Tracing:
         return Program(
             name=name,
             inputs=inputs,
-            parameters=tuple(Channel(p.name, p.unit, self.real) for p in named),
+            parameters=tuple(Channel(p.name, p.unit, self.real, p.low, p.high) for p in named),
             states=tuple(states[k][0] for k in alive),
             outputs=tuple(channel for channel, _ in outputs),
             init=_renumbered(init, order),

@@ -2,34 +2,34 @@
 
 import math
 import threading
-import zlib
+import weakref
 from contextlib import suppress
 from dataclasses import replace
 
-from ..compiler.bytecode import encode
 from ..compiler.cost import BOARDS, cost
 from ..compiler.fit import fit
 from ..compiler.ir import Program
-from ..errors import LinkError, PaddleError
+from ..errors import PaddleError
 from .exchange import Exchange
-from .greeting import explain_silence, introduction, say_hello, what_happened
+from .greeting import cleared, introduction, say_hello, what_happened
 from .homing import home
-from .live import checked, in_portions, named_values, send
+from .live import checked, named_values, send
 from .messages import OPTIONS, STATES
 from .paddle import Paddle
 from .progress import progress_bar
-from .recording import Recording, decimation
+from .recording import decimation, fault_words
+from .running import begin, collect, is_refusal
 from .serial import open_port
 from .standalone import forget, keep
 from .timing import Timing
-from .upload import check_room, read_settings, upload
-
-#: seconds a board may be silent in a run before the host gives up
-PATIENCE = 1.0
+from .upload import check_room, read_settings
 
 
 class SerialPaddle(Paddle):
     """A paddle whose firmware runs the scene; made by :func:`hapticlab.connect`.
+
+    The motor goes off when :meth:`run` or :meth:`wait` is interrupted, when the paddle is closed, and when nothing refers to
+    it any more. A scene begun by :meth:`start` runs as long as this computer's program lives and holds the paddle.
 
     Parameters
     ----------
@@ -62,16 +62,18 @@ class SerialPaddle(Paddle):
 
     def __init__(self, url, *, T=1e-3, port=None, hello=3.0):
         self.url, self.T = url, float(T)
-        self.exchange = Exchange(open_port(url) if port is None else port, self._on_frame)
-        self._recording = self._program = self._scene = None
-        self._setting = threading.Lock()
+        self.exchange = Exchange(open_port(url) if port is None else port)
+        self._recording = self._program = self._crc = None
+        self._lock = threading.RLock()  # two threads: what the board has last is what is known here
+        # the exchange holds its recording and never the paddle, which is so collected; at exit this is called too
+        self._end = weakref.finalize(self, self.exchange.hang_up)
         try:
             self.board = say_hello(self.exchange, url, hello)
             self.settings = read_settings(self.exchange)
             for sentence in what_happened(self.exchange, url, self.board["reset_cause"]):
                 print(sentence)
         except BaseException:
-            self.exchange.close()
+            self._end()
             raise
 
     @property
@@ -79,7 +81,7 @@ class SerialPaddle(Paddle):
         return "backward_difference"
 
     def accept(self, program):
-        check_room(self.board, program)
+        check_room(self.board, self.settings, program)
         return super().accept(program)
 
     def run(self, scene=None, *, duration, x=None, v=None, progress=True, **options):
@@ -105,13 +107,14 @@ class SerialPaddle(Paddle):
         if x is not None or v is not None:
             raise PaddleError("x, v: a handle on a board starts where it is; move it there, or use a SimulatedPaddle.")
         ticks = self.ticks(duration)
-        self.start(scene, **options)
         try:
+            self.start(scene, **options)
             with progress_bar(ticks, progress) as bar:
-                self._collect(ticks, bar)
+                collect(self, ticks, bar)
             return self.stop(ticks=ticks)
-        except BaseException:  # a notebook's stop button too: the motor is not left running
-            self._abandon()
+        except BaseException as problem:  # a notebook's stop button too: the motor is not left running
+            if not is_refusal(problem):
+                self._abandon()
             raise
 
     def cost(self, scene, **options):
@@ -138,29 +141,18 @@ class SerialPaddle(Paddle):
         ProgramLimitError
             With the share of the period it would take, and the rate, method or law that would fit.
         """
-        if scene is not None:
-            program = self.program(scene, **options)
-            sent = decimation(program, self.exchange.port, every)
-            if check_fit and not cost(program, self._kind, every=sent).fits:
-                known = {} if isinstance(scene, Program) else {"T": self.T, "velocity": self.velocity}
-                fit(scene, self._kind, every=sent, **known, **options)
-            self._load(program)
-            self._scene = None if isinstance(scene, Program) else scene
-        elif self._program is None:
-            raise PaddleError("nothing is on the board yet; give a scene: paddle.start(scene)")
-        if not passive and self.settings is not None:
-            self.home()
-        every = decimation(self._program, self.exchange.port, every)
-        earlier, recording = self._recording, Recording(self._program, every)
-        self._recording, self.exchange.beating = recording, True
-        how = every, OPTIONS["PASSIVE"] if passive else 0, min(float(force_max), 3e38)
+        if not force_max >= 0:
+            raise PaddleError(f"force_max = {force_max} N; needs force_max >= 0 N. passive=True runs with the motor off.")
         try:
-            self.exchange.command("START", self._crc, *how, then=recording.begin)
-        except LinkError as refusal:
-            if refusal.result is None:  # it may run, and only the answer was lost
+            program = self._checked(scene, every, check_fit, options)
+            self.clear()
+            if not passive and self.settings is not None:
+                self.home()
+            with self._lock:
+                begin(self, program, every, OPTIONS["PASSIVE"] if passive else 0, min(float(force_max), 3e38))
+        except BaseException as problem:  # after START it may run, and only the answer was lost
+            if not is_refusal(problem):
                 self._abandon()
-            else:
-                self._recording, self.exchange.beating = earlier, earlier is not None
             raise
 
     def set(self, **values):
@@ -171,33 +163,47 @@ class SerialPaddle(Paddle):
         ParameterError
             For an unknown name, a bad value, or more than 8 at once.
         """
-        if self._program is None:
-            raise PaddleError("nothing is on the board yet; start a scene first: paddle.start(scene)")
-        with self._setting:  # two callers: what the board has last is what is known here
-            scene, numbers = checked(self._program, self._scene, values)
+        with self._lock:
+            if self._program is None:
+                raise PaddleError("nothing is on the board yet; start a scene first: paddle.start(scene)")
+            numbers = checked(self._program, values)
             tick = send(self.exchange, self._program, numbers)
             known = named_values(self._program) | numbers
-            self._program, self._scene = replace(self._program, values=tuple(known.values())), scene
+            self._program = replace(self._program, values=tuple(known.values()))
             if self._recording is not None:
                 self._recording.changes.append(((tick + 1) * self.T, numbers))
 
     def wait(self, seconds):
-        """Let the scene run for so many seconds of the board's time."""
+        """Let the scene run for so many seconds of the board's time; interrupted, the motor is off, and stop() gives the log."""
         recording = self._running()
-        self._collect(recording.last_tick + 1 + self.ticks(seconds), None)
+        try:
+            collect(self, recording.last_tick + 1 + self.ticks(seconds), None)
+        except BaseException as problem:
+            if not is_refusal(problem):
+                self._motor_off()
+            raise
+        if recording.fault is not None:
+            print(f"{self.url}: {fault_words(recording.fault, self.T)}")
 
     def stop(self, *, ticks=None):
         """Switch the motor off and return the Telemetry of the run."""
-        recording = self._running()
-        self.exchange.command("STOP")
-        self.exchange.beating = False
-        state = self.exchange.refresh()
-        self._recording = None
-        if state["state"] == STATES["FAULT"]:
-            recording.fault = recording.fault or {"fault": state["fault"], "tick": state["tick"], "value": math.nan}
-            self.exchange.command("CLEAR")
-        self.timing = Timing(state, self.board["clock_hz"], self.T)
-        return recording.telemetry(ticks=ticks, delay=self.timing.mean, paddle=str(self))
+        with self._lock:
+            recording = self._running()
+            self.exchange.command("STOP")
+            self.exchange.beating = False
+            state = self.exchange.refresh()
+            if state["state"] == STATES["FAULT"]:
+                recording.fault = recording.fault or {"fault": state["fault"], "tick": state["tick"], "value": math.nan}
+                self.exchange.command("CLEAR")
+            self._record(None)
+            self.timing = Timing(state, self.board["clock_hz"], self.T)
+            return recording.telemetry(ticks=ticks, delay=self.timing.mean, paddle=str(self))
+
+    def clear(self):
+        """Say which fault stands, if one does, and clear it: the board takes a scene again. The motor stays off."""
+        for sentence in cleared(self.exchange, self.url):
+            self.exchange.beating = False  # what ran had ended
+            print(sentence)
 
     def home(self, at=None, *, timeout=60.0):
         """Tell the board where the handle is; it forgets with every reset, and gives no force until it knows.
@@ -205,7 +211,8 @@ class SerialPaddle(Paddle):
         Parameters
         ----------
         at : float, optional
-            The handle is held at this position [m], now. Without it the handle is to be led to both stops, by hand.
+            The handle is held at this position [m], now. Without it the handle is to be led to both stops, by hand; a
+            simulated one (``sim://``) has no hand, and is put to the middle, at rest.
         timeout : float
             How long that may take [s].
         """
@@ -213,14 +220,16 @@ class SerialPaddle(Paddle):
 
     def keep(self, scene, **options):
         """Have the board keep a scene and run it without a computer; return what starts it. See standalone.keep."""
-        self._require_idle("keep")
-        self._program = self._scene = None  # the upload takes the place of what was loaded
-        return keep(self, scene, **options)
+        with self._lock:
+            self._require_idle("keep")
+            self._program = None  # the upload takes the place of what was loaded
+            return keep(self, scene, **options)
 
     def forget(self):
         """Have the board wait for a computer after power-on again."""
-        self._require_idle("forget")
-        forget(self)
+        with self._lock:
+            self._require_idle("forget")
+            forget(self)
 
     def state(self):
         """Return the board's state as it is now: a dict of messages.STATE's fields."""
@@ -228,11 +237,12 @@ class SerialPaddle(Paddle):
 
     def close(self):
         """Stop the motor and give the port back."""
-        try:
-            if self.exchange.broken is None:
-                self._abandon()
-        finally:
-            self.exchange.close()
+        with self._lock:
+            try:
+                if self.exchange.broken is None:
+                    self._abandon()
+            finally:
+                self._end()
 
     def __enter__(self):
         return self
@@ -249,15 +259,18 @@ class SerialPaddle(Paddle):
         name = self.board["board"].rstrip(b"\0").decode("ascii", "replace")
         return name if name in BOARDS else "host"
 
-    def _load(self, program):
-        """Put a program and its parameters on the board; nothing runs until it is verified."""
-        data = encode(program, word_bits=8 * self.board["word_bytes"])
-        if self._recording is not None and self.board["slots"] == 1:
-            self.stop()
-        upload(self.exchange, "PROGRAM", data)
-        self._program, self._crc = program, zlib.crc32(data[:-4])
-        for some in in_portions(named_values(program)):
-            send(self.exchange, program, some)
+    def _checked(self, scene, every, check_fit, options):
+        """Return the program of a scene that fits the board, or None for the one that is there."""
+        if scene is None:
+            if self._program is None:
+                raise PaddleError("nothing is on the board yet; give a scene: paddle.start(scene)")
+            return None
+        program = self.program(scene, **options)
+        sent = decimation(program, self.exchange.port, every)
+        if check_fit and not cost(program, self._kind, every=sent).fits:
+            known = {} if isinstance(scene, Program) else {"T": self.T, "velocity": self.velocity}
+            fit(scene, self._kind, every=sent, **known, **options)
+        return program
 
     def _require_idle(self, asked):
         if self._recording is not None:
@@ -268,28 +281,17 @@ class SerialPaddle(Paddle):
             raise PaddleError("nothing runs; start a scene first: paddle.start(scene)")
         return self._recording
 
-    def _collect(self, ticks, bar):
-        """Read until so many ticks are recorded, or a fault."""
-        recording, seen = self._recording, 0
-        wanted = (ticks - 1) // recording.every * recording.every
-        while recording.last_tick < wanted and recording.fault is None:
-            before, next_look = recording.last_tick, min(wanted, recording.last_tick + 500)
-            came = self.exchange.wait(
-                lambda enough=next_look: recording.last_tick >= enough or recording.fault, PATIENCE + 500 * self._program.T
-            )
-            if not came and recording.last_tick == before:
-                recording.fault = recording.fault or explain_silence(self.exchange, self.url)
-            if bar is not None:
-                bar.update(max(0, min(recording.last_tick + 1, ticks) - seen))
-                seen = max(seen, recording.last_tick + 1)
+    def _record(self, recording):
+        """Give what the board says to a recording, or to none."""
+        self._recording = recording
+        self.exchange.give(recording and recording.add)
 
     def _abandon(self):
         """Motor off, and nothing recorded any more."""
-        self._recording, self.exchange.beating = None, False
+        self._record(None)
+        self._motor_off()
+
+    def _motor_off(self):
+        self.exchange.beating = False
         with suppress(PaddleError):  # then the board stops its motor by itself, 100 ms after the last word
             self.exchange.command("STOP", tries=4)
-
-    def _on_frame(self, frame):
-        if self._recording is not None:
-            self._recording.add(frame)
-

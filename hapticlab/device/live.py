@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..errors import ParameterError
+from ..scene.parameters import Parameter
 
 #: parameters in one SET
 MOST_AT_ONCE = 8
@@ -13,8 +14,8 @@ def named_values(program):
     return {c.name: value for c, value in zip(program.parameters, program.values, strict=True)}
 
 
-def checked(program, scene, values):
-    """Return the scene with the values bound, and the values in SI.
+def checked(program, values):
+    """Return the values in SI, each within what its parameter was declared to be.
 
     Raises
     ------
@@ -27,13 +28,13 @@ def checked(program, scene, values):
         raise ParameterError(f"{unknown[0]} is no live parameter of {program.name}; it has {', '.join(names) or 'none'}.")
     if len(values) > MOST_AT_ONCE:
         raise ParameterError(f"{len(values)} parameters at once; a board takes {MOST_AT_ONCE} between two ticks: set fewer")
-    scene = scene and scene(**values)
-    numbers = {name: scene.values[name] if scene else float(value) for name, value in values.items()}
+    declared = {c.name: Parameter(c.name, c.unit, c.low, c.high) for c in program.parameters}
+    numbers = {name: declared[name].check(value) for name, value in values.items()}
     with np.errstate(over="ignore"):
         bad = [name for name, value in numbers.items() if not np.isfinite(np.float32(value))]
     if bad:
         raise ParameterError(f"{bad[0]} = {numbers[bad[0]]:g}; a board needs a finite float32, |{bad[0]}| < 3.4e38.")
-    return scene, numbers
+    return numbers
 
 
 def send(exchange, program, numbers):

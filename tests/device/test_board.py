@@ -121,7 +121,7 @@ def test_a_damaged_upload_leaves_the_old_scene_running(monkeypatch):
     with paddle() as board:
         board.start(LEAN(k=10, push=0.1))
         board.wait(0.05)
-        monkeypatch.setattr("hapticlab.device.board.upload", damaged)
+        monkeypatch.setattr("hapticlab.device.running.upload", damaged)
         with pytest.raises(LinkError, match="CRC"):
             board.start(LEAN(k=20, push=-0.1))
         assert state_of(board) == "RUN"
