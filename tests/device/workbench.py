@@ -32,8 +32,8 @@ class StoppedHandle(Handle):
         return other
 
 
-def holding(place, k=300.0, b=3.0):
-    """A hand that holds the handle at a place [m]."""
+def holding(place, k=300.0, b=20.0):
+    """A hand that holds the handle at a place [m], and leads it there at 1.4 m/s at most: slower than its magnet turns over."""
     return lambda t, x, v: k * (place - x) - b * v
 
 
