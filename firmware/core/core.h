@@ -33,6 +33,7 @@ typedef struct {
     hl_slot *registers;
     uint32_t crc;  /* the program's own, its last 4 bytes */
     uint16_t size; /* of its bytes; 0 while nothing verified is here */
+    uint32_t sum;  /* of its parameters' bits as they were set, for the audit */
 } hl_place;
 
 /* What the tick has measured of itself, in counts of board_clock; begun anew with every start. */

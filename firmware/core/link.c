@@ -86,7 +86,8 @@ static void send_sample(hl_core *core)
     finish(core, HL_MESSAGE_SAMPLE, core->sent++, (uint8_t)(HL_AT_SAMPLE_FLAGS + 1 + 4 * core->channels));
 }
 
-/* The bytes of the running program are still those that were verified, and so are its constants in the registers. */
+/* The bytes of the running program are still those that were verified, its constants in the registers too, and its
+ * parameters those that were set. */
 static void audit(hl_core *core)
 {
     const hl_place *place = &core->places[core->active];
@@ -101,7 +102,8 @@ static void audit(hl_core *core)
         return;
     }
     const uint16_t constants = (uint16_t)(4u * place->program.count[HL_COUNT_CONSTANTS]);
-    if (core->audit_crc != place->crc || memcmp(place->registers, place->arena.bytes + HL_HEADER_BYTES, constants) != 0) {
+    if (core->audit_crc != place->crc || memcmp(place->registers, place->arena.bytes + HL_HEADER_BYTES, constants) != 0
+        || hl_place_sum(place) != place->sum) {
         hl_core_fault(core, HL_FAULT_BAD_PROGRAM, 0.0f);
     }
     core->audit_at = 0;

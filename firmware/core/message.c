@@ -203,6 +203,7 @@ static uint8_t set(hl_core *core, const uint8_t *payload, uint8_t count)
     }
     core->set_tick = core->first ? -1 : (int32_t)core->tick;
     board_unlock(core);
+    place->sum = hl_place_sum(place);
     return HL_OK;
 }
 

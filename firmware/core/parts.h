@@ -31,6 +31,7 @@ float hl_handle_position(const hl_core *core, int32_t counts); /* [m] */
 /* place.c: programs */
 uint8_t hl_place_verify(hl_place *place, uint16_t size);
 uint8_t hl_place_start(hl_core *core, uint8_t index, uint16_t every, uint8_t options, float force_max);
+uint32_t hl_place_sum(const hl_place *place);
 void hl_place_idle(hl_core *core);
 void hl_stop(hl_core *core);
 

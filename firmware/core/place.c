@@ -29,9 +29,20 @@ uint8_t hl_place_verify(hl_place *place, uint16_t size)
     for (uint16_t k = 0; k < n[HL_COUNT_PARAMETERS]; k++) {
         place->registers[place->program.parameters + k].f = HL_NAN;
     }
+    place->sum = hl_place_sum(place);
     place->crc = hl_get32(place->arena.bytes + size - 4);
     place->size = size;
     return HL_OK;
+}
+
+/* The sum of the parameters' bits, rotated so that two that change places are not the same. */
+uint32_t hl_place_sum(const hl_place *place)
+{
+    uint32_t sum = 0;
+    for (uint16_t k = 0; k < place->program.count[HL_COUNT_PARAMETERS]; k++) {
+        sum = (sum << 1 | sum >> 31) + (uint32_t)place->registers[place->program.parameters + k].i;
+    }
+    return sum;
 }
 
 static int has_values(const hl_place *place)

@@ -9,6 +9,7 @@ import pytest
 from host_driver import Host, fault_name, fixed, result_name, settings, spring, state_name
 
 from hapticlab.compiler.bytecode import encode as encode_program
+from hapticlab.compiler.bytecode import layout
 from hapticlab.compiler.lower import compile
 from hapticlab.device.host_board import HostBoard
 from hapticlab.device.messages import SENSORS
@@ -565,13 +566,15 @@ def test_a_program_damaged_in_memory_is_found(every):
         stands(host, "BAD_PROGRAM")
 
 
-def test_a_constant_damaged_in_its_register_is_found():
-    """It is copied there once, from bytes that stay whole."""
-    program = fixed(push=0.5, k=2.0)
-    size = len(encode_program(program, word_bits=16))
-    register = -(-size // 4) * 4  # the first constant's, behind the bytes
+@pytest.mark.parametrize("live", [False, True])
+def test_a_constant_or_a_parameter_damaged_in_its_register_is_found(live):
+    """They are put there once, and the bytes of the program stay whole."""
+    program = spring() if live else fixed(push=0.5, k=2.0)
+    data = encode_program(program, word_bits=16)
+    size, constants = len(data), layout(data).size["constants"]
+    register = -(-size // 4) * 4 + (4 * constants if live else 0)  # behind the bytes: constants, then parameters
     host = Host().ready()
-    assert host.load(program) == "OK" and host.start() == "OK"
+    assert host.load(program) == "OK" and (not live or host.set(_0=50.0) == "OK") and host.start() == "OK"
     host.tick(500, beat=True)
     host.board.damage_program(register, 0x10)
     ticks = 0
