@@ -16,7 +16,8 @@ from ..errors import EngineMissingError
 from . import toolchain
 
 PACKAGE = Path(__file__).resolve().parents[1]
-CURE = 'do: pip install ziglang, or use engine="interpreter"'
+INSTEAD = 'engine="interpreter" runs without it, and hl.SimulatedPaddle stands in for sim://'
+CURE = f"install a C compiler, or do: pip install ziglang; {INSTEAD}"
 
 
 @functools.cache
@@ -84,8 +85,8 @@ def _make_folder(folder):
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise EngineMissingError(
-            f'engine "vm" keeps its library in {folder}, which is not to be written ({error.strerror}); '
-            'set XDG_CACHE_HOME to a folder of yours, or use engine="interpreter"'
+            f"the firmware's library is kept in {folder}, which is not to be written ({error.strerror}); "
+            f"set XDG_CACHE_HOME to a folder of yours; {INSTEAD}"
         ) from error
 
 
