@@ -30,11 +30,14 @@ class Person:
             raise PaddleError("nobody answers here; run this in a terminal, with a person at the paddle") from None
 
     def choose(self, question, options):
-        """Return the key of one of the options, a dict {key: meaning}."""
+        """Return the key of one of the options, a dict {key: meaning}; the first letter is enough where it tells."""
         self.say("\n".join([question, *(f"  {key:<8} {meaning}" for key, meaning in options.items())]))
-        while (answer := self.ask(f"[{'/'.join(options)}]?").lower()) not in options:
-            self.say(f"{answer!r} is none of {', '.join(options)}")
-        return answer
+        while True:
+            typed = self.ask(f"[{'/'.join(options)}]?").lower()
+            meant = [key for key in options if typed in (key, key[0])]
+            if len(meant) == 1:
+                return meant[0]
+            self.say(f"{typed!r} is none of {', '.join(options)}")
 
 
 def agrees(person, question):

@@ -40,9 +40,16 @@ def test_a_number_may_have_a_comma(typing, capsys):
     assert told == ["'' is no number", "inf: needs a number from 5 to 1000", "2000: needs a number from 5 to 1000"]
 
 
-def test_only_yes_is_yes(typing):
-    assert agrees(typing("yes"), "Store this?") is True
-    assert agrees(typing("y", "", "no"), "Store this?") is False
+@pytest.mark.parametrize(("typed", "meant"), [("yes", True), ("Y", True), ("no", False), ("n", False)])
+def test_yes_and_no_may_be_a_letter(typing, typed, meant):
+    assert agrees(typing("", "ye", "1", typed), "Store this?") is meant
+
+
+def test_a_letter_that_two_options_begin_with_is_asked_again(typing, capsys):
+    options = {"wall": "", "weight": "", "away": ""}
+    assert typing("w", "weight").choose("Which?", options) == "weight"
+    assert "'w' is none of wall, weight, away" in capsys.readouterr().out
+    assert typing("a").choose("Which?", options) == "away"
 
 
 def test_nobody_there_is_told(typing):
