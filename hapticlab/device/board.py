@@ -18,7 +18,7 @@ from .messages import OPTIONS, STATES
 from .paddle import Paddle
 from .progress import progress_bar
 from .recording import decimation, fault_words
-from .running import begin, collect, is_refusal
+from .running import begin, collect, guarded
 from .serial import open_port
 from .standalone import forget, keep
 from .timing import Timing
@@ -65,16 +65,16 @@ class SerialPaddle(Paddle):
         self.exchange = Exchange(open_port(url) if port is None else port)
         self._recording = self._program = self._crc = None
         self._lock = threading.RLock()  # two threads: what the board has last is what is known here
-        # the exchange holds its recording and never the paddle, which is so collected; at exit this is called too
-        self._end = weakref.finalize(self, self.exchange.hang_up)
         try:
             self.board = say_hello(self.exchange, url, hello)
             self.settings = read_settings(self.exchange)
             for sentence in what_happened(self.exchange, url, self.board["reset_cause"]):
                 print(sentence)
         except BaseException:
-            self._end()
+            self.exchange.close()
             raise
+        # the exchange holds a recording and never the paddle, so that a dropped paddle ends; at exit this is called too
+        self._end = weakref.finalize(self, self.exchange.hang_up)
 
     @property
     def velocity(self):
@@ -107,15 +107,11 @@ class SerialPaddle(Paddle):
         if x is not None or v is not None:
             raise PaddleError("x, v: a handle on a board starts where it is; move it there, or use a SimulatedPaddle.")
         ticks = self.ticks(duration)
-        try:
+        with guarded(self._abandon):
             self.start(scene, **options)
             with progress_bar(ticks, progress) as bar:
                 collect(self, ticks, bar)
             return self.stop(ticks=ticks)
-        except BaseException as problem:  # a notebook's stop button too: the motor is not left running
-            if not is_refusal(problem):
-                self._abandon()
-            raise
 
     def cost(self, scene, **options):
         """Return what a scene or a program takes of this board: cycles, memory, share of the period; print it."""
@@ -143,17 +139,13 @@ class SerialPaddle(Paddle):
         """
         if not force_max >= 0:
             raise PaddleError(f"force_max = {force_max} N; needs force_max >= 0 N. passive=True runs with the motor off.")
-        try:
+        with guarded(self._abandon):
             program = self._checked(scene, every, check_fit, options)
             self.clear()
             if not passive and self.settings is not None:
                 self.home()
             with self._lock:
                 begin(self, program, every, OPTIONS["PASSIVE"] if passive else 0, min(float(force_max), 3e38))
-        except BaseException as problem:  # after START it may run, and only the answer was lost
-            if not is_refusal(problem):
-                self._abandon()
-            raise
 
     def set(self, **values):
         """Set parameters of the scene on the board, live, all of them between the same two ticks.
@@ -163,7 +155,7 @@ class SerialPaddle(Paddle):
         ParameterError
             For an unknown name, a bad value, or more than 8 at once.
         """
-        with self._lock:
+        with self._lock, guarded(self._motor_off):
             if self._program is None:
                 raise PaddleError("nothing is on the board yet; start a scene first: paddle.start(scene)")
             numbers = checked(self._program, values)
@@ -176,12 +168,8 @@ class SerialPaddle(Paddle):
     def wait(self, seconds):
         """Let the scene run for so many seconds of the board's time; interrupted, the motor is off, and stop() gives the log."""
         recording = self._running()
-        try:
+        with guarded(self._motor_off):
             collect(self, recording.last_tick + 1 + self.ticks(seconds), None)
-        except BaseException as problem:
-            if not is_refusal(problem):
-                self._motor_off()
-            raise
         if recording.fault is not None:
             print(f"{self.url}: {fault_words(recording.fault, self.T)}")
 
@@ -189,8 +177,8 @@ class SerialPaddle(Paddle):
         """Switch the motor off and return the Telemetry of the run."""
         with self._lock:
             recording = self._running()
+            self.exchange.beating = False  # first: whatever happens to STOP, the motor goes off
             self.exchange.command("STOP")
-            self.exchange.beating = False
             state = self.exchange.refresh()
             if state["state"] == STATES["FAULT"]:
                 recording.fault = recording.fault or {"fault": state["fault"], "tick": state["tick"], "value": math.nan}

@@ -1,6 +1,7 @@
 """A scene on a board from START until enough is recorded; what is refused leaves everything as it was."""
 
 import zlib
+from contextlib import contextmanager
 
 from ..compiler.bytecode import encode
 from ..errors import HapticlabError, LinkError, PaddleError, PortError
@@ -30,14 +31,14 @@ def begin(paddle, program, every, options, force_max):
         paddle._record(new)
         paddle.exchange.beating = True
         paddle.exchange.command("START", paddle._crc, new.every, options, force_max, then=new.begin)
-    except LinkError as refusal:
-        if refusal.result is not None:
+    except HapticlabError as problem:
+        if is_refusal(problem):
             paddle._record(recording)
             paddle.exchange.beating = ran
             if ran and paddle._program is not loaded[0]:
+                paddle._program, paddle._crc = loaded
                 # a BEGIN that nothing follows empties the place that was loaded: SET means the one that runs again
                 paddle.exchange.command("BEGIN", TARGETS["PROGRAM"], SMALLEST)
-                paddle._program, paddle._crc = loaded
         raise
 
 
@@ -67,6 +68,17 @@ def collect(paddle, ticks, bar):
         if bar is not None:
             bar.update(max(0, min(recording.last_tick + 1, ticks) - seen))
             seen = max(seen, recording.last_tick + 1)
+
+
+@contextmanager
+def guarded(give_up):
+    """Give up where anything but a refusal ends what is done inside: an interrupt by the keyboard, a port that fails."""
+    try:
+        yield
+    except BaseException as problem:
+        if not is_refusal(problem):
+            give_up()
+        raise
 
 
 def is_refusal(problem):
