@@ -2,7 +2,7 @@
 
 from dataclasses import asdict, dataclass
 
-from ..errors import HapticlabError, PortError
+from ..errors import HapticlabError
 from . import doctor_checks as checks
 from .board import SerialPaddle
 from .port_faults import permission_cure
@@ -29,6 +29,8 @@ class Report:
     def __str__(self):
         counted = ", ".join(f"{count} {s}" for s in STATES if (count := sum(c.state == s for c in self.checks)))
         return "\n".join([*map(str, self.checks), counted])
+
+    __repr__ = __str__  # what a notebook shows
 
 
 def doctor(url=None, person=None, *, tell=lambda check: None):
@@ -72,8 +74,9 @@ def _walk(url, person):
         return
     try:
         port = open_port(url)
-    except PortError as problem:
-        yield checks.Check("port", "fault", f"{url} does not open ({problem.cause})", str(problem))
+    except HapticlabError as problem:  # sim:// has reasons of its own: no such paddle, no library
+        cause = getattr(problem, "cause", None)
+        yield checks.Check("port", "fault", f"{url} does not open" + (f" ({cause})" if cause else ""), str(problem))
         return
     yield checks.Check("port", "ok", f"{url} opens")
     paddle = None

@@ -52,14 +52,12 @@ def firmware(port, url, connected):
         return [Check("firmware", "fault", "the port failed", str(problem))], None
     except LinkError as problem:
         return [_other_firmware(url, problem)], None
-    said = paddle.board
-    name = said["board"].rstrip(b"\0").decode("ascii", "replace")
-    same = f"{name}, firmware {said['major']}.{said['minor']}, messages {table_hash():08x} as here"
-    return [Check("firmware", "ok", same), _reset_cause(said["reset_cause"])], paddle
+    same = f"messages {table_hash():08x} as here; {paddle}"
+    return [Check("firmware", "ok", same), _reset_cause(paddle.board["reset_cause"])], paddle
 
 
 def _other_firmware(url, problem):
-    if "another version" in str(problem):
+    if problem.result == "VERSION":
         return Check("firmware", "fault", "hapticlab firmware of another version", str(problem))
     if "://" in url or not _bootloader_answers(url):
         return Check("firmware", "fault", "no paddle answers, no bootloader either", str(problem))
@@ -98,7 +96,8 @@ def settings(paddle):
     words = f"{abs(kept.metres_per_count) * 1e6:.4g} um a count, {sensor}, force_full = {kept.force_full:.4g} N"
     if kept.is_nominal:
         return Check("settings", "attention", f"nominal: {words}", "run `hapticlab calibrate`: nothing was measured here")
-    return Check("settings", "ok", f"{words}, calibrated {kept.date}")
+    day = str(kept.date)
+    return Check("settings", "ok", f"{words}, calibrated {day[:4]}-{day[4:6]}-{day[6:]}")
 
 
 def latency(paddle):
@@ -120,7 +119,8 @@ def _latency_cure(median):
         return "use a USB socket of the computer itself, no hub; walls run on the board and do not feel it"
     where = {
         "win32": "Device Manager > Ports > properties > Port Settings > Advanced > Latency Timer: 1 ms",
-        "linux": "echo 1 | sudo tee /sys/bus/usb-serial/devices/ttyUSB*/latency_timer",
+        "linux": "it was asked for less when the port was opened, and its driver did not follow: "
+        "echo 1 | sudo tee /sys/bus/usb-serial/devices/ttyUSB*/latency_timer",
     }.get(sys.platform, "the FTDI driver of the system sets it; Apple's own has 1 ms to 16 ms by its version")
     return f"an FTDI adapter waits 16 ms by default: {where}. Walls run on the board and do not feel it"
 

@@ -15,7 +15,7 @@ from hapticlab.device.doctor import doctor
 from hapticlab.device.serial import Port
 from hapticlab.device.settings import nominal
 from hapticlab.device.simulated import SimulatedPaddle
-from hapticlab.errors import LinkError, PortError
+from hapticlab.errors import EngineMissingError, LinkError, PortError
 
 KNOWN = nominal("hapkit", metres_per_count=2 * STOP / 7000, travel_min=-STOP, travel_max=STOP, date=20261120)
 UNO = Port("/dev/ttyACM0", "", 0x2341, 0x0043, "A1", "Arduino Uno R3")
@@ -69,6 +69,19 @@ class TestPorts:
         assert f"/dev/ttyACM0 does not open ({cause})" in str(report)
         assert "do this" in report.checks[1].cure
 
+    def test_a_simulated_paddle_that_is_none(self):
+        report = doctor("sim://xx")
+        assert states(report) == {"computer": "ok", "port": "fault"}
+        assert report.checks[1].found == "sim://xx does not open"
+        assert "sim://hapkit" in report.checks[1].cure
+
+    def test_a_simulated_paddle_without_its_library(self, monkeypatch):
+        def missing(url):
+            raise EngineMissingError("found no cc; install one")
+
+        monkeypatch.setattr(walk, "open_port", missing)
+        assert doctor("sim://hapkit").checks[1].cure == "found no cc; install one"
+
     def test_a_real_port_that_is_missing(self):
         report = doctor("/dev/no-such-port")
         assert report.exit_code == 1
@@ -115,6 +128,8 @@ class TestFirmware:
         report = doctor("sim://hapkit")
         assert states(report)["firmware"] == "fault"
         assert "hapticlab firmware of another version" in str(report)
+        other = LinkError("a board's own words, which hold another version", "BUSY")
+        assert "no paddle answers" in checks._other_firmware("loop://", other).found
         assert "hapticlab flash" in str(report)
 
     @pytest.mark.parametrize(
@@ -142,6 +157,8 @@ class TestBoard:
         }  # fmt: skip
         assert str(report).count("needs a person") == 2
         assert report.records()[0]["name"] == "computer"
+        assert repr(report) == str(report)
+        assert "as here; host 0000, firmware 1." in str(report)
 
     def test_a_new_board_is_watched_all_the_same(self):
         report = on(bench.paddle())
@@ -159,6 +176,7 @@ class TestBoard:
         assert states(report)["sensor"] == states(report)["home"] == "ok"
         # between its stops the handle makes 7000 counts, 7.6 turns of 920
         assert "7000 counts from end to end, 7.6 turns of 920" in str(report)
+        assert "calibrated 2026-11-20" in report.checks[0].found
         assert "not checked: 0.5 N at most" in str(report)
 
     def test_a_sensor_that_does_not_follow(self):
