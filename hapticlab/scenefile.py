@@ -14,7 +14,7 @@ from .compiler.ir import Program
 from .device.hand import Hand
 from .device.paddle import Paddle
 from .device.simulated import SimulatedPaddle
-from .errors import PaddleError, SceneError
+from .errors import AnalysisError, PaddleError, SceneError
 from .scene.scene import Scene
 
 
@@ -91,9 +91,12 @@ def report_of(program: Program, log):
     """Return what a run showed as a dictionary for JSON.
 
     A number's name ends in its unit; counts (samples, instructions, substeps, contacts) have none, and the units of the
-    parameters stand beside them under ``units``. None is a number that does not exist, such as a rate without a swing.
+    parameters stand beside them under ``units``. None is a number that does not exist, such as a rate without a swing,
+    and an analysis that this record does not allow: ``left_open`` says why.
     """
-    found, port = chatter(log) if len(log) >= 32 and not log.fault else None, energy(log) if not log.fault else None
+    found, port = (_judged(question, log) for question in (chatter, energy))
+    left_open = {name: str(a) for name, a in (("chatter", found), ("energy", port)) if isinstance(a, AnalysisError)}
+    found, port = (None if isinstance(a, AnalysisError) else a for a in (found, port))
     return {
         "scene": log.scene,
         "parameters": log.parameters,
@@ -121,8 +124,17 @@ def report_of(program: Program, log):
             "contacts": port.contacts,
             "words": str(port),
         },
+        "left_open": left_open,
         "fault": log.fault,
     }  # fmt: skip
+
+
+def _judged(question, log):
+    """Return the answer of an analysis, None for a run that failed, or why this record does not allow it."""
+    try:
+        return None if log.fault else question(log)
+    except AnalysisError as problem:
+        return problem
 
 
 def finite(number):
@@ -142,10 +154,10 @@ def describe(report):
     ]
     if report["fault"]:
         return "\n".join([*lines, f"fault    {report['fault']}"])
-    chatter_words = report["chatter"]["words"] if report["chatter"] else "the run is too short to tell; 32 samples at least"
+    words = {name: report[name]["words"] if report[name] else report["left_open"][name] for name in ("chatter", "energy")}
     return "\n".join([
         *lines,
-        f"chatter  {chatter_words}",
-        f"energy   {report['energy']['words']}",
+        f"chatter  {words['chatter']}",
+        f"energy   {words['energy']}",
         f"force    at most {report['peak_force_N']:.4g} N",
     ])  # fmt: skip
