@@ -3,8 +3,8 @@
 import json
 import sys
 from contextlib import nullcontext, redirect_stdout
-from dataclasses import replace
 from datetime import date
+from functools import partial
 
 from .device.calibrate import calibrate as calibrate_paddle
 from .device.connect import connect
@@ -12,10 +12,10 @@ from .device.doctor import doctor as walk
 from .device.flash import flash as write_firmware
 from .device.person import Person, agrees
 from .device.serial import available_ports
+from .device.simulated import SimulatedPaddle
 from .errors import PaddleError
-from .scenefile import run_scene
 
-#: a simulated board has no motor that could hurt, and its time stands still while a person thinks
+#: a simulated board has no motor that could hurt and no handle that a person could lead
 SIMULATED = "sim://"
 
 
@@ -35,7 +35,7 @@ def ports(parser, options):
 
 def doctor(parser, options):
     """Walk from the cable to the motor; 1 if anything is a fault."""
-    alone = options.no_person or options.json or not sys.stdin.isatty()
+    alone = options.no_person or options.json or _is_simulated(options.port) or not sys.stdin.isatty()
     with _words_apart(options):
         report = walk(options.port, None if alone else Person(), tell=print)
     if options.json:
@@ -48,13 +48,14 @@ def doctor(parser, options):
 def flash(parser, options):
     """Write the firmware into an Uno."""
     port = options.port or _only_port()
-    print(f"Writing the firmware into {port}; its motor is off meanwhile. Leave the cable in.", file=sys.stderr)
-    print(write_firmware(port, options.image))
+    print(write_firmware(port, options.image, tell=partial(print, file=sys.stderr)))
     return 0
 
 
 def calibrate(parser, options):
     """Measure what a paddle is, with a person at it, and store it on the board."""
+    if _is_simulated(options.port):
+        raise PaddleError(f"{options.port} has no handle to lead; calibrate a board that is plugged in")
     person = Person()
     _agree(options, person, "The motor will pull the handle by 0.5 N at first, by up to 2 N after its sign is checked.")
     with connect(options.port) as paddle:
@@ -63,16 +64,19 @@ def calibrate(parser, options):
 
 
 def run_on_board(file, options, **compiling):
-    """Run a scene file on the board at options.port in place of its own paddle; return program, Telemetry and timing."""
+    """Run a scene file on the board at options.port; return program, Telemetry and timing.
+
+    The file's paddle is the mechanics of a simulated board; on another it is not used.
+    """
     with _words_apart(options):
-        _agree(options, Person(), f"The motor of {options.port} will move the handle for {file.duration:g} s; hold it lightly.")
-        return _run_on_board(file, options.port, compiling)
-
-
-def _run_on_board(file, url, compiling):
-    with connect(url, T=file.paddle.T) as paddle:
-        program, log = run_scene(replace(file, paddle=paddle), **compiling)
-        return program, log, paddle.timing
+        moves = f"The motor of {options.port} will move the handle for {file.duration:g} s; hold it lightly."
+        _agree(options, Person(), moves)
+        mechanics = file.paddle if _is_simulated(options.port) and isinstance(file.paddle, SimulatedPaddle) else None
+        with connect(options.port, T=file.paddle.T, paddle=mechanics) as paddle:
+            if mechanics is None:
+                print(f"The scene file's paddle is not used, but for its T = {paddle.T:g} s: {options.port} has its own.")
+            log = paddle.run(file.scene, duration=file.duration, every=options.every, **compiling)
+            return paddle.program(file.scene, **compiling), log, paddle.timing
 
 
 def timing_facts(timing):
@@ -87,6 +91,10 @@ def timing_facts(timing):
     }
 
 
+def _is_simulated(port):
+    return (port or "").startswith(SIMULATED)
+
+
 def _words_apart(options):
     """Send what is told on the way to stderr where stdout is for JSON alone."""
     return redirect_stdout(sys.stderr) if options.json else nullcontext()
@@ -94,7 +102,7 @@ def _words_apart(options):
 
 def _agree(options, person, what):
     """Say what a motor will do, and go on only with a yes."""
-    if options.yes or (options.port or "").startswith(SIMULATED):
+    if options.yes or _is_simulated(options.port):
         return
     if not sys.stdin.isatty():
         raise PaddleError(f"{what} Nobody can be asked here: give --yes")

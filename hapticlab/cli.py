@@ -59,6 +59,8 @@ def demo(parser, options):
 
 def run(parser, options):
     """Run a scene file, on its own paddle or on a board."""
+    if options.port is None and (options.yes or options.every):
+        parser.error(f"{'--yes' if options.yes else '--every'} is for a board; name its port with --port")
     path = Path(options.file)
     if path.is_dir():
         parser.error(f"{path} is a folder, needs a file; give a Python file that defines scene = hl.Scene(...)")
@@ -81,7 +83,7 @@ def run(parser, options):
         try:
             program, log, loop = board.run_on_board(file, options, **compiling)
         except KeyboardInterrupt:
-            _complain("interrupted; the motor is off")
+            _complain("interrupted; the motor is off. No samples are kept: a run is written at its end, after --duration")
             return INTERRUPTED
         facts = report_of(program, log) | {"loop": board.timing_facts(loop)}
     figure, names = folder / f"{path.stem}.png", [name for name in file.scene.watch if name in log.channels]
@@ -116,6 +118,12 @@ def _changed(file, options):
     duration = file.duration if options.duration is None else options.duration
     paddle.ticks(duration)
     return replace(file, scene=file.scene(**dict(options.set or [])), paddle=paddle, duration=duration)
+
+
+def _whole(text):
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number of ticks; needs a whole number from 1 on")
+    return int(text)
 
 
 def _setting(text):
@@ -158,8 +166,9 @@ def _parser():
     text = "run a Python file that defines `scene`, and optionally `paddle` and `duration`"
     ran = commands.add_parser("run", parents=[shared], help=text, description=text)
     ran.add_argument("file", metavar="FILE.py")
-    ran.add_argument("--port", metavar="URL", help="run on the board there, in place of the file's paddle")
+    ran.add_argument("--port", metavar="URL", help="run on the board there; behind sim:// is the file's paddle")
     ran.add_argument("--yes", action="store_true", help="do not ask before the motor moves")
+    ran.add_argument("--every", type=_whole, metavar="N", help="have the board send one sample in N ticks")
     ran.add_argument("--duration", type=float, metavar="SECONDS", help="how long to run [s]")
     ran.add_argument("--T", type=float, metavar="SECONDS", help="sampling period [s]")
     ran.add_argument("--method", choices=sorted(METHODS), help="integrator of the equations of motion (default: rk4)")

@@ -368,6 +368,49 @@ def test_run_on_a_board_in_place_of_the_files_paddle(tmp_path):
     assert all(Path(path).is_file() for path in facts["files"].values())
     told = command("run", EXAMPLE, "--port", "sim://hapkit", "--duration", "0.3", folder=tmp_path)
     assert "loop     step" in told.stdout
+    assert "paddle is not used" not in told.stdout
+
+
+def test_the_files_own_paddle_is_what_a_simulated_board_moves(tmp_path, capsys):
+    """A push of 2 N against a spring of 100 N/m rests at 20 mm; the paddle that sim:// has of itself has no hand."""
+    file = tmp_path / "pushed.py"
+    file.write_text(
+        "import hapticlab as hl\nscene = hl.wall()(k=100, x_o=0)\nduration = 2.0\n"
+        "paddle = hl.SimulatedPaddle(m=0.05, b=2.0, T=2e-3, hand=hl.Hand(push=2.0))\n"
+    )
+    there = ["--port", "sim://hapkit", "--out", str(tmp_path), "--json"]
+    assert cli.main(["run", str(file), *there]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["program"]["T_s"] == 2e-3
+    assert facts["chatter"]["rest_m"] == pytest.approx(0.02, rel=1e-3)
+    assert facts["left_open"] == {}
+    assert cli.main(["run", str(file), *there, "--every", "5"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert (facts["samples"], facts["duration_s"], facts["energy"]) == (200, 2.0, None)
+    assert "one sample in 5" in facts["left_open"]["energy"]
+
+
+def test_on_another_board_the_files_paddle_is_not_used_and_that_is_said(tmp_path, monkeypatch, capsys):
+    simulated = board_commands.connect
+    monkeypatch.setattr(board_commands, "connect", lambda port, T, paddle: simulated("sim://hapkit", T=T, paddle=paddle))
+    assert cli.main(["run", str(EXAMPLE), "--port", "COM3", "--yes", "--duration", "0.1", "--out", str(tmp_path)]) == 0
+    told = "The scene file's paddle is not used, but for its T = 0.001 s: COM3 has its own.\n"
+    assert told in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("option", [("--yes",), ("--every", "5")])
+def test_what_is_for_a_board_needs_one(capsys, option):
+    with pytest.raises(SystemExit) as wrong:
+        cli.main(["run", str(EXAMPLE), *option])
+    assert wrong.value.code == 2
+    assert f"{option[0]} is for a board; name its port with --port" in capsys.readouterr().err
+
+
+def test_a_number_of_ticks_is_whole(capsys):
+    for text in ("0", "-2", "1.5", "all"):
+        with pytest.raises(SystemExit):
+            cli.main(["run", str(EXAMPLE), "--port", "sim://hapkit", f"--every={text}"])
+        assert f"{text!r} is no number of ticks" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -420,7 +463,8 @@ def test_ctrl_c_leaves_the_motor_off_and_says_so(tmp_path, monkeypatch, capsys):
 
     monkeypatch.setattr(board_commands, "connect", interrupted)
     assert cli.main(["run", str(file), "--port", "sim://hapkit", "--out", str(tmp_path)]) == 130
-    assert capsys.readouterr().err == "hapticlab: interrupted; the motor is off\n"
+    told = capsys.readouterr().err
+    assert told.startswith("hapticlab: interrupted; the motor is off. No samples are kept")
     ((board, duty),) = boards
     assert duty != 0
     assert board.duty == 0
@@ -446,16 +490,30 @@ def test_doctor_walks_without_a_board_and_with_one(capsys):
     assert "what needs a person at the handle was skipped" in told
     assert cli.main(["doctor", "--port", "sim://hapkit", "--json"]) == 0
     assert {check["state"] for check in json.loads(capsys.readouterr().out)} <= {"ok", "attention", "skipped"}
+    assert cli.main(["doctor", "--port", "sim://xx", "--json"]) == 1
+    assert [check["state"] for check in json.loads(capsys.readouterr().out)] == ["ok", "fault"]
+
+
+def test_doctor_asks_nobody_to_move_a_simulated_handle(answering, capsys):
+    answering()  # whoever is asked finds no line to type
+    assert cli.main(["doctor", "--port", "sim://hapkit"]) == 0
+    assert "what needs a person at the handle was skipped" in capsys.readouterr().out
 
 
 def test_flash_takes_the_only_board_or_the_one_named(monkeypatch, capsys):
     written, found = [], [Port("COM3", known="Arduino Uno R3"), Port("COM9", "a mill")]
     monkeypatch.setattr(board_commands, "available_ports", lambda: found)
-    monkeypatch.setattr(board_commands, "write_firmware", lambda port, image: written.append((port, image)) or "written")
+
+    def writes(port, image, tell):
+        tell(port)
+        written.append((port, image))
+        return "written"
+
+    monkeypatch.setattr(board_commands, "write_firmware", writes)
     assert cli.main(["flash"]) == 0
     assert cli.main(["flash", "--port", "COM9", "--image", "own.hex"]) == 0
     assert written == [("COM3", None), ("COM9", "own.hex")]
-    assert capsys.readouterr().out == "written\nwritten\n"
+    assert capsys.readouterr() == ("written\nwritten\n", "COM3\nCOM9\n")
     found.append(Port("COM4", known="Arduino Uno R3"))
     assert cli.main(["flash"]) == 1
     assert "known boards: COM3, COM4; say which" in capsys.readouterr().err
@@ -475,7 +533,8 @@ def test_calibrate_stores_what_the_person_agreed_to(monkeypatch, capsys):
     assert wrong.value.code == 2
 
 
-def test_calibrate_on_a_simulated_board_tells_that_nobody_led_it(answering, capsys):
-    answering(*[""] * 4, *["right", "mm", "90"])
+def test_calibrate_refuses_a_simulated_board(answering, capsys):
+    answering()
     assert cli.main(["calibrate", "--port", "sim://hapkit", "--only", "stops"]) == 1
-    assert "a sweep has 50 at least" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert told == "hapticlab: sim://hapkit has no handle to lead; calibrate a board that is plugged in\n"

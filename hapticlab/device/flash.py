@@ -63,7 +63,7 @@ class VerificationError(PaddleError):
     """A byte reads back as another than was written."""
 
 
-def flash(port, image=None, *, progress=True):
+def flash(port, image=None, *, progress=True, tell=lambda sentence: None):
     """Write a firmware image into an Uno and compare every byte; the board then starts it.
 
     Parameters
@@ -74,6 +74,8 @@ def flash(port, image=None, *, progress=True):
         The one that comes with the package if None.
     progress : bool
         Show a bar if it lasts longer than two seconds.
+    tell : callable
+        Called with a sentence when board and image are known to fit, just before anything is written.
 
     Returns
     -------
@@ -93,6 +95,7 @@ def flash(port, image=None, *, progress=True):
         bootloader = find_bootloader(opened)
         check_fits(content, bootloader, path.name)
         check_chip(opened)
+        tell(f"Writing {path.name} into {port}; its motor is off meanwhile. Leave the cable in.")
         _write_and_verify(opened, content, progress)
     finally:
         opened.close()

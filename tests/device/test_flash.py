@@ -105,9 +105,10 @@ def talk(monkeypatch):
 
 
 def test_all_pages_are_written_and_the_first_comes_last(talk, image):
-    peer = Peer()
+    peer, told = Peer(), []
     line = talk(peer)
-    done = flash("test://", image)
+    done = flash("test://", image, tell=lambda sentence: told.append((sentence, len(peer.written))))
+    assert told == [("Writing image.hex into test://; its motor is off meanwhile. Leave the cable in.", 0)]
     assert peer.content() == IMAGE.ljust(1024, b"\xff")
     assert [at for at, _ in peer.written] == [0, *range(128, 1024, 128), 0]
     assert peer.written[0] == (0, STAND_STILL) and peer.written[-1] == (0, IMAGE[:128])
@@ -128,7 +129,7 @@ def test_stand_still_is_a_jump_to_itself():
 def test_no_bootloader(talk, image):
     line = talk(Peer(), rate=None)
     with pytest.raises(PortError, match="test://: no bootloader answers.*reset button") as caught:
-        flash("test://", image)
+        flash("test://", image, tell=pytest.fail)
     assert caught.value.cause == "silent"
     assert line.rates == (115200, 57600) and line.lines == (False, True) * 6
 
@@ -232,7 +233,7 @@ def test_an_image_that_is_none_never_reaches_the_board(talk, tmp_path, content, 
     if content is not None:
         path.write_bytes(content)
     with pytest.raises(PaddleError, match=words):
-        flash("test://", path)
+        flash("test://", path, tell=pytest.fail)
     assert line.lines == ()
 
 
