@@ -28,6 +28,14 @@ def test_readme_python_runs(capsys):
     printed = capsys.readouterr().out
     assert "200 N/m" in printed  # 2 b/T of this paddle, Eq. (23.10)
     assert "200.067 N/m" in printed  # its eigenvalues: 2 b/T (1 + b T/(6 m)), within 1e-6
+    # 2 N over 10 mm and on into 150 N/m: without damping 75 d^2 = 2 (0.01 + d), so 150 d = 5.16 N
+    assert "at most 5.1 N" in printed
+    assert names["felt"].F.max() > 0
+
+
+def test_readme_has_lines_that_fit_a_page_and_looks_before_it_pulls():
+    assert [line for line in README.splitlines() if len(line) > 125 and line[:1] != "|"] == []
+    assert README.index("hapticlab flash\n") < README.index("hapticlab doctor\n") < README.index("hapticlab calibrate\n")
 
 
 def test_readme_begins_with_the_two_commands():
