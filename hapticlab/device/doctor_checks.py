@@ -94,6 +94,8 @@ def settings(paddle):
         return Check("settings", "attention", "none: this board gives no force", "run `hapticlab calibrate`")
     sensor = next(name for name, k in SENSORS.items() if k == kept.sensor).lower()
     words = f"{abs(kept.metres_per_count) * 1e6:.4g} um a count, {sensor}, force_full = {kept.force_full:.4g} N"
+    if kept.is_nominal and paddle.url.startswith("sim://"):
+        return Check("settings", "ok", f"as simulated: {words}")
     if kept.is_nominal:
         return Check("settings", "attention", f"nominal: {words}", "run `hapticlab calibrate`: nothing was measured here")
     day = str(kept.date)

@@ -152,13 +152,19 @@ class TestBoard:
         assert report.exit_code == 0
         assert tuple(told) == report.checks
         assert states(report) == {
-            "computer": "ok", "port": "ok", "firmware": "ok", "reset": "ok", "settings": "attention", "latency": "ok",
+            "computer": "ok", "port": "ok", "firmware": "ok", "reset": "ok", "settings": "ok", "latency": "ok",
             "loop": "ok", "link": "ok", "noise": "ok", "sensor": "skipped", "home": "skipped", "motor": "skipped",
         }  # fmt: skip
         assert str(report).count("needs a person") == 2
         assert report.records()[0]["name"] == "computer"
         assert repr(report) == str(report)
         assert "as here; host 0000, firmware 1." in str(report)
+
+    def test_nominal_settings_are_to_be_measured_but_for_a_simulated_board(self):
+        paddle = bench.paddle(store=nominal("hapkit").to_bytes())
+        assert (checks.settings(paddle).state, checks.settings(paddle).cure) == ("ok", "")
+        paddle.url = "COM3"
+        assert "hapticlab calibrate" in checks.settings(paddle).cure
 
     def test_a_new_board_is_watched_all_the_same(self):
         report = on(bench.paddle())
