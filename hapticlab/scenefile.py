@@ -94,9 +94,7 @@ def report_of(program: Program, log):
     parameters stand beside them under ``units``. None is a number that does not exist, such as a rate without a swing,
     and an analysis that this record does not allow: ``left_open`` says why.
     """
-    found, port = (_judged(question, log) for question in (chatter, energy))
-    left_open = {name: str(a) for name, a in (("chatter", found), ("energy", port)) if isinstance(a, AnalysisError)}
-    found, port = (None if isinstance(a, AnalysisError) else a for a in (found, port))
+    (found, no_chatter), (port, no_energy) = _judged(chatter, log), _judged(energy, log)
     return {
         "scene": log.scene,
         "parameters": log.parameters,
@@ -124,17 +122,17 @@ def report_of(program: Program, log):
             "contacts": port.contacts,
             "words": str(port),
         },
-        "left_open": left_open,
+        "left_open": {name: why for name, why in (("chatter", no_chatter), ("energy", no_energy)) if why},
         "fault": log.fault,
     }  # fmt: skip
 
 
 def _judged(question, log):
-    """Return the answer of an analysis, None for a run that failed, or why this record does not allow it."""
+    """Return the answer of an analysis, and why this record does not allow one; neither of a run that failed."""
     try:
-        return None if log.fault else question(log)
+        return None if log.fault else question(log), None
     except AnalysisError as problem:
-        return problem
+        return None, str(problem).removeprefix(f"{question.__name__}: ")
 
 
 def finite(number):
