@@ -3,21 +3,20 @@
 A verified program is its list of instructions, so its time is a sum. Every operation has two figures, in costs.json,
 which ``python tests/firmware/measure_costs.py`` measures and writes: what it takes with operands as scenes have them, and the
 most that was found with any operands at all, denormals and nan included. A sine has a third, typical of angles beyond
-an eighth of a turn.
+an eighth of a turn. The rest of a step was measured in the same way; what the link takes is in traffic.py.
 """
 
 import functools
 import json
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
-from ..errors import EngineMissingError, ProgramError
+from ..errors import ProgramError
+from .angles import far_angles
 from .bytecode import encode, instructions_of, layout, words_of
-from .engine import load
-from .ir import Channel, Program
+from .ir import Program
+from .traffic import Traffic
 
 COSTS = Path(__file__).with_name("costs.json")
 #: the typical figure is right to this part; a scene that leaves less than it free does not fit
@@ -79,13 +78,18 @@ class Cost:
         ``bytes`` as sent over the link.
     typical, bound : int
         Cycles of one tick of the program: with operands as scenes have them (numbers from 0.01 to 100, angles as in a
-        second of :func:`reference_motion`), and the most with any operands.
+        second of :func:`~hapticlab.compiler.angles.reference_motion`), and the most with any operands.
     first : int
         Cycles at most that the first tick takes besides, to make the first states.
-    step : (int, int)
-        Cycles of the rest of a control step: sensor, position, safety, motor, record; typical and most.
-    frame : (int, int)
-        Cycles to send one tick's telemetry, a share ``1/every`` of a frame; typical and most.
+    step : (int, int, int)
+        Cycles of the rest of a control step: sensor, position, safety, motor, record. Typical; the most that was measured
+        in motion, and 8 us to set the next tick; the bound: that, what awkward operands were found to add, and 2 %.
+    traffic : Traffic
+        What the link takes.
+    late : int
+        Cycles by which a step may begin late, while the loop holds it off to copy numbers of one tick.
+    edges : float
+        Cycles a second of an encoder's interrupts; 0 unless ``edges_per_second`` was given.
     source : str
         How the figures were found.
     """
@@ -100,8 +104,10 @@ class Cost:
     typical: int
     bound: int
     first: int = 0
-    step: tuple = (0, 0)
-    frame: tuple = (0, 0)
+    step: tuple = (0, 0, 0)
+    traffic: Traffic = field(default_factory=Traffic)
+    late: int = 0
+    edges: float = 0.0
     source: str = "time is not limited"
     program: Program | None = field(default=None, repr=False, compare=False)
 
@@ -116,19 +122,24 @@ class Cost:
         return self.board.hz and self.board.hz * self.T
 
     @property
+    def frame(self):
+        """Typical cycles of one tick's telemetry: a share 1/every of a frame."""
+        return math.ceil(self.traffic.telemetry / self.traffic.every)
+
+    @property
     def share(self):
-        """Typical part of the period that everything takes: scene, rest of the step, telemetry."""
-        return self._sum(self.typical, 0) / self.period if self.period else 0.0
+        """Typical part of the period that everything takes: scene, rest of the step, telemetry, edges."""
+        return (self.typical + self.step[0] + self.frame) / self.period + self.edges / self.board.hz if self.period else 0.0
 
     @property
     def fits(self):
-        """Whether the typical time fits with its error, and the memory too."""
-        return self.memory_problem is None and (self.period is None or self.T >= self.T_needed())
+        """Whether, with operands as scenes have them, no step is late and no sample lost while parameters are set."""
+        return self.memory_problem is None and self._holds(self.T)
 
     @property
     def promised(self):
-        """Whether no step is late, whatever the operands are."""
-        return self.memory_problem is None and (self.period is None or self.T >= self.T_needed(promise=True))
+        """Whether it fits, and no step is late whatever the operands are."""
+        return self.memory_problem is None and self._holds(self.T, promise=True)
 
     @property
     def memory_problem(self):
@@ -140,26 +151,48 @@ class Cost:
             return f"a sample of {self.board.name} has room for {self.board.channels - 3} watched channels; watch {over} fewer"
         return None
 
-    def T_needed(self, promise=False):
-        """Return the shortest period [s] that holds everything typically, and with ``promise`` every step at its most.
+    def longest(self, promise=False, T=None):
+        """Return the most cycles of one step at this period, or another, all that interrupts it included.
 
-        Telemetry is sent between steps: it can wait for one that is long, but not for all.
+        Typically the scene takes its typical time, the rest its most in motion, while a sample is sent and the largest SET
+        comes or is obeyed; or the scene takes :data:`TYPICAL_ERROR` more, in a step where no SET comes. With ``promise``
+        all is at its bound, in the first tick too, and both lines of the link are full.
         """
-        typical = self._sum(self.typical * (1 + TYPICAL_ERROR), 0)
-        longest = self.bound + self.step[1] if promise else 0
-        return max(typical, longest) / self.board.hz
+        T = self.T if T is None else T
+        if promise:
+            step = self.bound + self.step[2] + self.traffic.interrupts(T, self.first) + self.late
+        else:
+            step = self.typical + self.step[1] + self.traffic.usual_interrupts(T, self.late)
+            step = max(step, self.typical * (1 + TYPICAL_ERROR) + self.step[0] + self.frame)
+        return math.ceil(step + self.edges * T)
 
-    def _sum(self, scene, which):
-        return scene + self.step[which] + self.frame[which]
+    def _holds(self, T, promise=False):
+        """Whether a period [s] is long enough for each step, and for telemetry and answers between steps."""
+        if not self.board.hz:
+            return True
+        free = (self.board.hz - self.edges) * T - self.typical - self.step[0]
+        enough = all(self.longest(p, T) <= self.board.hz * T for p in {False, promise})
+        return enough and self.traffic.leaves_room(free, T)
+
+    def T_needed(self, promise=False):
+        """Return the shortest period [s] that fits, and with ``promise`` holds every step at its most."""
+        low, high = 0.0, 1e-3
+        while not self._holds(high, promise) and high < 1e3:
+            high *= 2
+        while high - low > 1e-9:
+            middle = (low + high) / 2
+            low, high = (low, middle) if self._holds(middle, promise) else (middle, high)
+        return high
 
     def in_words(self, promise=False):
         """Return what part of the period a program that does not fit would take."""
         cycles = self.bound if promise else self.typical
-        rest = self.step[promise] + (0 if promise else self.frame[0])
+        rest, needed = self.longest(promise) - cycles, self.T_needed(promise)
         return (
             f"{cycles / self.board.hz * 1e3:.2g} ms of a {self.T * 1e3:g} ms period on {self.board.name} "
-            f"({cycles / self.period:.0%}, {'promised bound' if promise else 'typical'}), beside "
-            f"{rest / self.board.hz * 1e3:.2g} ms for the rest of the step{'' if promise else ' and telemetry'}"
+            f"({cycles / self.period:.0%}, {'promised bound' if promise else 'typical'}), beside up to "
+            f"{rest / self.board.hz * 1e3:.2g} ms for the rest of the step and what the link interrupts it for; "
+            f"with telemetry it needs T >= {needed * 1e3:.3g} ms"
         )
 
     def __str__(self):
@@ -168,12 +201,15 @@ class Cost:
             f"{self.registers} registers in {self.arena} of {self.board.arena} bytes"
         ]
         if self.period:
-            longest = (self.bound + self.step[1]) / self.period
+            encoder = f"{self.edges:.0f} cycles a second" if self.edges else "none counted"
             lines += [
                 f"  scene      {self.typical} cycles, at most {self.bound}; the first tick up to {self.first} more",
-                f"  step       {self.step[0]} cycles, at most {self.step[1]}: sensor, safety, motor, record",
-                f"  telemetry  {self.frame[0]} cycles, at most {self.frame[1]}",
-                f"  together   {self.share:.0%} of {self.T * 1e3:g} ms; a step at most {longest:.0%}",
+                f"  step       {self.step[0]} cycles, {self.step[1]} seen in motion, at most {self.step[2]}: sensor, safety, "
+                "motor, record",
+                f"  link       {self.frame} cycles of telemetry; up to {math.ceil(self.traffic.interrupts(self.T))} interrupt one step",
+                f"  encoder    {encoder} for edges of a quadrature encoder",
+                f"  together   {self.share:.0%} of {self.T * 1e3:g} ms; a step up to {self.longest() / self.period:.0%}, at "
+                f"most {self.longest(True) / self.period:.0%}",
                 f"  {self.verdict}; {self.source}",
             ]
         return "\n".join(lines)
@@ -188,7 +224,7 @@ class Cost:
         return "does not fit"
 
 
-def cost(program, board="uno", *, every=1):
+def cost(program, board="uno", *, every=1, edges_per_second=0.0):
     """Return what a program takes of a board.
 
     Parameters
@@ -199,6 +235,9 @@ def cost(program, board="uno", *, every=1):
         The Uno was measured in emulation, the Cortexes are modelled.
     every : int
         Ticks per telemetry sample, >= 1.
+    edges_per_second : float
+        Of a quadrature encoder at the handle's greatest speed, >= 0: each interrupts a step. A magnetoresistive sensor has
+        none.
 
     Returns
     -------
@@ -219,6 +258,8 @@ def cost(program, board="uno", *, every=1):
     given = board_named(board)
     if not (isinstance(every, int) and every >= 1):
         raise ProgramError(f"every = {every!r}; needs a whole number of ticks per sample, at least 1")
+    if not edges_per_second >= 0:
+        raise ProgramError(f"edges_per_second = {edges_per_second!r}; needs a number of edges, at least 0")
     data = encode(program, word_bits=given.word_bits)
     at = layout(data)
     size = at.size
@@ -233,44 +274,15 @@ def cost(program, board="uno", *, every=1):
     outside = around["tick"] + states + size["tick_moves"] * around["move"]
     outside += sum(around[f"output {c.type}"] for c in program.outputs)
     first = around["init"] + states + size["init_moves"] * around["move"] + sum(of[op][1] for op in init)
-    typical = round(outside + sum(of[op][0] for op in tick) + _far_angles(program, of))
+    typical = round(outside + sum(of[op][0] for op in tick) + far_angles(program, of))
     worst = outside + sum(of[op][1] for op in tick)
-    sample = table["sample_bytes"] + 4 * (size["outputs"] + OWN_CHANNELS)
-    frame = tuple(math.ceil((fixed + each * sample) / every) for fixed, each in table["frame"])
+    bounds = [math.ceil(cycles * (1 + SEARCH_MARGIN)) for cycles in (worst, first)]
+    channels = size["outputs"] + OWN_CHANNELS
+    traffic = Traffic.of(table, channels=channels, parameters=len(program.parameters), every=every)
     return Cost(
-        program.name, given, at.period_us * 1e-6, len(tick), *shape, typical, _promised(worst), _promised(first),
-        tuple(table["step"]), frame, table["source"], program,
+        program.name, given, at.period_us * 1e-6, len(tick), *shape, typical, *bounds,
+        tuple(table["step"]), traffic, table["late"], table["edge"] * edges_per_second, table["source"], program,
     )  # fmt: skip
-
-
-def reference_motion(ticks, T):
-    """Return a smooth motion of the handle, five sines of 4 mm each [m]; what a program's angles are looked at with."""
-    at = np.arange(ticks) * T
-    return 4e-3 * sum(np.sin(w * at + phase) for w, phase in ((3, 3.1), (7, 5.7), (11, 0.9), (17, 5.7), (29, 1.9)))
-
-
-def _far_angles(program, of):
-    """Return the cycles that sines and cosines take more, since some angles are beyond an eighth of a turn.
-
-    The machine of this computer runs the program for a second. Where it cannot, or a parameter has no value, none are.
-    """
-    turned = [i for i in program.tick.instructions if i.op in ("sin", "cos")]
-    if not turned or len(program.inputs) != 1 or any(v != v for v in program.values):
-        return 0
-    outputs = tuple(Channel(f"angle{k}") for k in range(len(turned)))
-    tick = replace(program.tick, outputs=tuple(i.args[0] for i in turned))
-    try:
-        machine = load(replace(program, tick=tick, outputs=outputs), "vm")
-    except EngineMissingError:
-        return 0
-    ticks = max(10, round(1 / program.T))
-    angles = machine.run(ticks, reference_motion(ticks, program.T)[:, None]).outputs[..., 0]
-    far = (np.abs(angles) > math.pi / 4).mean(axis=0)
-    return sum((of[i.op][2] - of[i.op][0]) * part for i, part in zip(turned, far, strict=True))
-
-
-def _promised(cycles):
-    return math.ceil(cycles * (1 + SEARCH_MARGIN))
 
 
 def board_named(name):

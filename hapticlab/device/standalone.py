@@ -1,6 +1,9 @@
 """A scene that a board keeps over power-off and runs without a computer."""
 
 from ..compiler.bytecode import encode
+from ..compiler.cost import BOARDS
+from ..compiler.fit import fit
+from ..compiler.ir import Program
 from ..errors import PaddleError
 from .upload import STORE_PATIENCE, upload
 
@@ -26,6 +29,8 @@ def keep(paddle, scene, **options):
     ------
     PaddleError
         If a scene runs, or the motor's sign was never checked.
+    ProgramLimitError
+        If a step could be late, with whatever operands: nobody is there to see that it was.
     LinkError
         If it does not fit the board's store.
 
@@ -42,6 +47,10 @@ def keep(paddle, scene, **options):
             "run `hapticlab calibrate` first."
         )
     program = paddle.program(scene, live=(), **options)
+    name = paddle.board["board"].rstrip(b"\0").decode("ascii", "replace")
+    if name in BOARDS:  # of others the time is not known
+        known = {} if isinstance(scene, Program) else {"T": paddle.T, "velocity": paddle.velocity, "live": (), **options}
+        fit(scene, name, promise=True, **known)
     upload(paddle.exchange, "STANDALONE", encode(program, word_bits=8 * paddle.board["word_bytes"]))
     paddle.exchange.command("ARM", 1, patience=STORE_PATIENCE, tries=2)
     return GESTURE

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import hapticlab as hl
 from hapticlab.device.host_board import HostBoard
 from hapticlab.device.settings import nominal
-from hapticlab.errors import LinkError, PaddleError
+from hapticlab.errors import LinkError, PaddleError, ProgramLimitError
 
 SPRING = hl.Scene(force=hl.parameters("k", units="N/m") * hl.x(hl.n), name="spring")
 T = 1e-3
@@ -52,6 +53,19 @@ def test_it_is_refused_where_it_would_not_be_safe():
         paddle.settings = unchecked
         with pytest.raises(PaddleError, match="the motor's sign was not checked"):
             paddle.keep(SPRING(k=40))
+
+
+def test_a_scene_that_could_be_late_is_not_kept():
+    """Nobody stands by to see an overrun; of a board whose speed is not known nothing is said."""
+    slow = sum(hl.parameters("A", units="N") * sp.sin(j * hl.x(hl.n) / hl.parameters("x_o", units="m")) for j in range(1, 9))
+    scene = hl.Scene(force=slow, name="eight sines")(A=0.1, x_o=0.05)
+    with hl.connect("sim://hapkit") as paddle:
+        paddle.board["board"] = b"uno\0\0\0\0\0"
+        with pytest.raises(ProgramLimitError, match=r"eight sines: .* of a 1 ms period on uno .*promised bound.*; fits at T = "):
+            paddle.keep(scene)
+        assert "both stops" in paddle.keep(hl.Scene(force=0.1 * hl.parameters("k", units="N/m") * hl.x(hl.n), name="s")(k=1))
+        paddle.board["board"] = b"due\0\0\0\0\0"
+        assert "both stops" in paddle.keep(scene)
 
 
 def test_too_large_for_the_store_is_the_boards_word():

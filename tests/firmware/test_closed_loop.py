@@ -15,7 +15,7 @@ pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 # a hand that moves the handle over 8 mm and lets it swing; the scenes' periods are those that an Uno has time for, and
 # its memory holds the double pendulum with one evaluation a step, not with four
 HAND = hl.Hand(m=0.05, b=3, k=400, intent=lambda t: 0.004 * np.sin(9 * t) + 0.003 * np.sin(31 * t))
-SCENES = {wall: 1e-3, mass_and_wall: 1e-3, cart_pole: 2e-3, pendulum: 2e-3, double_pendulum: 4e-3}
+SCENES = {wall: 1e-3, mass_and_wall: 1.25e-3, cart_pole: 2e-3, pendulum: 2e-3, double_pendulum: 4e-3}
 METHODS = {double_pendulum: "semi_implicit_euler"}
 
 

@@ -26,6 +26,9 @@ from hapticlab.device.wire import decode, encode
 TICKS = 400
 OVERHEAD = 11  # bytes of a sample's frame beside its numbers
 RARELY = 17  # ticks a sample, coprime with the 16 of the heat: a tick of both is among those watched
+SOONEST = 16 * 8  # cycles before its end in which a step has to set the next tick, main.c
+LATE_T = 0.807e-3  # [s], no multiple of the 50 us in which the host looks
+EDGE = 95  # cycles of an encoder's interrupt at most
 REGISTER_20 = 20  # where the first four bytes after a pointer are given to a function
 
 
@@ -89,8 +92,8 @@ def frame_cycles(elf, snapshots, channels):
 
 
 def answer_cycles(elf, snapshots, request):
-    """Return the most cycles that hl_core_poll takes to answer a request, and the bytes of the answer."""
-    cpu, found, sizes = Avr(elf), [], []
+    """Return the most cycles that hl_core_poll takes to answer a request."""
+    cpu, found = Avr(elf), []
     core, ring = cpu.place("uno_core"), cpu.place("tx")
     for memory in snapshots:
         cpu.write(RAM_BEGIN, memory)
@@ -103,9 +106,8 @@ def answer_cycles(elf, snapshots, request):
         if frame is not None and frame.message in ("ACK", "STATE"):
             assert frame.message == "STATE" or frame.fields["result"] == 0
             found.append(cycles)
-            sizes.append(size)
     assert found, "no poll answered"
-    return max(found), max(sizes)
+    return max(found)
 
 
 def awkward_more(elf, snapshots):
@@ -129,38 +131,56 @@ def awkward_more(elf, snapshots):
     return more + sum(of[op][1] - of[op][0] for op in ("itof", "mul", "sub", "mul", "lt", "lt"))
 
 
-def watching(channels):
-    """Return the mass and wall that shows so many states more."""
-    scene, options = mass_and_wall()
-    z = next(iter(scene.explicit().coordinates))
-    shown = {f"z{k}": k * z for k in range(1, channels + 1)}
-    return hl.compile(hl.Scene(scene.force, scene.eom, shown, scene.values, "watching"), T=1e-3, **options)
+def latest(image, values):
+    """Return by how many cycles a tick was late at most while SETs came, one at every phase of the period."""
+    kept = replace(nominal("hapkit"), checked=1)
+    program, worst = compiled(wall, T=LATE_T), 0
+    with Uno(image, eeprom=kept.to_bytes()) as board:
+        handle = PaddleHandle(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand(m=0.1, b=2, k=200)))
+        with hl.connect(offer("late", ClosedLoop.of(kept, board, handle)), T=LATE_T) as paddle:
+            paddle.home(at=0.0)
+            paddle.start(program, every=20, check_fit=False)
+            for k in range(250):
+                paddle.exchange.command("SET", values, rest=values * (b"\0" + np.float32(150).tobytes()))
+                paddle.exchange.wait(lambda: False, LATE_T * (2 + k * 0.382))
+            assert paddle.stop().fault is None
+            timing = paddle.timing
+            worst = max(timing.period_max - timing.T, timing.T - timing.period_min)
+    return worst * 16e6
+
+
+def springs(channels):
+    """Return a spring that shows so many more of its products: its time hardly depends on its numbers."""
+    k, x = hl.parameters("k", units="N/m"), hl.x(hl.n)
+    shown = {f"F{j}": k * x * (j + 1) for j in range(1, channels + 1)}
+    return hl.compile(hl.Scene(k * x, watch=shown, name="springs")(k=20), T=1e-3)
 
 
 def measure_step():
     """Return the table's entries on the loop and the link, in cycles."""
     with tempfile.TemporaryDirectory() as folder:
         elf, image = build("uno", folder)
-        typical, most, frames, cpu = [], [], [], Avr()
-        for program in (compiled(wall), compiled(mass_and_wall), watching(5)):
+        typical, frames, cpu = [], [], Avr()
+        for program in (compiled(wall), compiled(mass_and_wall), springs(5)):
             handle, log, _, requests = watched_run(image, program, every=RARELY)
             machine = np.median(Bench(program, cpu).run(log.x[:, None])[2])
             typical.append(np.median(quiet(handle)) - machine)
-            most.append(max(quiet(handle)) - machine)
+        most = max(quiet(handle)) - machine  # springs: with every channel, in a tick of heat and record
+        late = max(latest(image, values) for values in (1, 8))
         more = awkward_more(elf, handle.snapshots)
         answers = [answer_cycles(elf, handle.snapshots, request) for request in requests]
         for channels in (0, 3):
-            handle, _, (udre, rx), _ = watched_run(image, watching(channels))
+            handle, _, (udre, rx), _ = watched_run(image, springs(channels))
             frames.append(frame_cycles(elf, handle.snapshots, 3 + channels))
-    (status, state), (one, ack), (eight, _) = answers
+    status, one, eight = answers
     each = (eight - one) / 7
     per_byte = (frames[1][1] - frames[0][1]) / (frames[1][0] - frames[0][0])
     return {
-        "step": [round(np.mean(typical[:2])), round((max(most) + more) * (1 + SEARCH_MARGIN))],
+        "step": [round(np.mean(typical[:2])), round(most) + SOONEST, SOONEST + round((most + more) * (1 + SEARCH_MARGIN))],
         "frame": [round(frames[0][1] - per_byte * frames[0][0]), round(per_byte, 1)],
-        "answers": {"STATUS": [status, state], "SET": [round(one - each), round(each), ack]},
+        "answers": {"STATUS": [status], "SET": [round(one - each), round(each)]},
         "sample_bytes": OVERHEAD, "sent_byte": round(udre), "received_byte": round(rx),
-        "debug": [list(map(float,typical)), list(map(float,most)), more],
+        "late": round(late), "edge": EDGE,
     }  # fmt: skip
 
 
