@@ -166,7 +166,10 @@ class SerialPaddle(Paddle):
                 self._recording.changes.append(((tick + 1) * self.T, numbers))
 
     def wait(self, seconds):
-        """Let the scene run for so many seconds of the board's time; interrupted, the motor is off, and stop() gives the log."""
+        """Let the scene run for so many seconds of the board's time, or until a fault, which is told.
+
+        Interrupted, it switches the motor off; :meth:`stop` returns what was recorded until then.
+        """
         recording = self._running()
         with guarded(self._motor_off):
             collect(self, recording.last_tick + 1 + self.ticks(seconds), None)
