@@ -110,7 +110,7 @@ def test_the_stack_fits(image):
 
 @pytest.mark.parametrize("make", FITS, ids=lambda make: make.__name__)
 def test_the_stack_keeps_its_bound(connect, image, make):
-    T = 1e-3 if make in SCENES[:2] else 2e-3
+    T = 1e-3 if make in SCENES[:1] else 2e-3
     paddle, loop = connect(T=T)
     paddle.home(at=0.0)
     log = paddle.run(compiled(make, T), duration=0.25, progress=False)
