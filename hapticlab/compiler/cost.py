@@ -201,12 +201,12 @@ class Cost:
             f"{self.registers} registers in {self.arena} of {self.board.arena} bytes"
         ]
         if self.period:
+            most = math.ceil(self.traffic.interrupts(self.T))
             encoder = f"{self.edges:.0f} cycles a second" if self.edges else "none counted"
             lines += [
                 f"  scene      {self.typical} cycles, at most {self.bound}; the first tick up to {self.first} more",
-                f"  step       {self.step[0]} cycles, {self.step[1]} seen in motion, at most {self.step[2]}: sensor, safety, "
-                "motor, record",
-                f"  link       {self.frame} cycles of telemetry; up to {math.ceil(self.traffic.interrupts(self.T))} interrupt one step",
+                f"  step       {self.step[0]} cycles, {self.step[1]} in motion, at most {self.step[2]}: sensor, motor, record",
+                f"  link       {self.frame} cycles of telemetry; up to {most} interrupt one step",
                 f"  encoder    {encoder} for edges of a quadrature encoder",
                 f"  together   {self.share:.0%} of {self.T * 1e3:g} ms; a step up to {self.longest() / self.period:.0%}, at "
                 f"most {self.longest(True) / self.period:.0%}",
@@ -251,7 +251,7 @@ def cost(program, board="uno", *, every=1, edges_per_second=0.0):
     --------
     >>> import hapticlab as hl
     >>> from hapticlab.compiler.cost import cost
-    >>> taken = cost(hl.compile(hl.wall()(k=150, x_o=0.01), T=1e-3))
+    >>> taken = cost(hl.compile(hl.wall()(k=150, x_o=0.01), T=2e-3))
     >>> taken.fits, taken.promised, taken.arena
     (True, True, 136)
     """
