@@ -12,6 +12,7 @@ from ..compiler.ir import Program
 from ..errors import PaddleError
 from .exchange import Exchange
 from .greeting import cleared, introduction, say_hello, what_happened
+from .hand import require
 from .homing import home
 from .live import checked, named_values, send
 from .messages import OPTIONS, STATES
@@ -22,7 +23,7 @@ from .running import begin, collect, guarded
 from .serial import open_port
 from .standalone import forget, keep
 from .timing import Timing
-from .upload import check_room, read_settings
+from .upload import check_period, check_room, read_settings
 
 
 class SerialPaddle(Paddle):
@@ -61,12 +62,13 @@ class SerialPaddle(Paddle):
     """
 
     def __init__(self, url, *, T=1e-3, port=None, hello=3.0):
-        self.url, self.T = url, float(T)
+        self.url, self.T = url, require("T", T, "s", "a paddle", above=0)
         self.exchange = Exchange(open_port(url) if port is None else port)
         self._recording = self._program = self._crc = None
         self._lock = threading.RLock()  # two threads: what the board has last is what is known here
         try:
             self.board = say_hello(self.exchange, url, hello)
+            check_period(self.board, T)
             self.settings = read_settings(self.exchange)
             for sentence in what_happened(self.exchange, url, self.board["reset_cause"]):
                 print(sentence)
@@ -137,15 +139,15 @@ class SerialPaddle(Paddle):
         ProgramLimitError
             With the share of the period it would take, and the rate, method or law that would fit.
         """
-        if not force_max >= 0:
-            raise PaddleError(f"force_max = {force_max} N; needs force_max >= 0 N. passive=True runs with the motor off.")
+        if force_max != math.inf:
+            force_max = require("force_max", force_max, "N", "a run", "passive=True runs with the motor off.", low=0)
         with guarded(self._abandon):
             program = self._checked(scene, every, check_fit, options)
             self.clear()
             if not passive and self.settings is not None:
                 self.home()
             with self._lock:
-                begin(self, program, every, OPTIONS["PASSIVE"] if passive else 0, min(float(force_max), 3e38))
+                begin(self, program, every, OPTIONS["PASSIVE"] if passive else 0, min(force_max, 3e38))
 
     def set(self, **values):
         """Set parameters of the scene on the board, live, all of them between the same two ticks.
@@ -241,14 +243,16 @@ class SerialPaddle(Paddle):
     def __exit__(self, *failure):
         self.close()
 
+    def __repr__(self):
+        return f"<SerialPaddle {self.url}: {self}>"
+
     def __str__(self):
         return introduction(self.board, self.settings, self.T)
 
     @property
     def _kind(self):
         """The board's name where its cost is known, else this computer's, whose time is not limited."""
-        name = self.board["board"].rstrip(b"\0").decode("ascii", "replace")
-        return name if name in BOARDS else "host"
+        return self.board["board"] if self.board["board"] in BOARDS else "host"
 
     def _checked(self, scene, every, check_fit, options):
         """Return the program of a scene that fits the board, or None for the one that is there."""

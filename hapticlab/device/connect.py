@@ -5,9 +5,10 @@ from contextlib import suppress
 from ..errors import LinkError, PaddleError, PortError
 from .board import SerialPaddle
 from .serial import available_ports, open_port
+from .simulated import SimulatedPaddle
 
 
-def connect(port=None, *, T=1e-3, paddle=None, hello=3.0):
+def connect(port=None, *, T=None, paddle=None, hello=3.0):
     """Connect to a paddle and return it; use it in a ``with``, which leaves the motor off whatever happens.
 
     Parameters
@@ -15,8 +16,8 @@ def connect(port=None, *, T=1e-3, paddle=None, hello=3.0):
     port : str, optional
         ``COM3``, ``/dev/ttyACM0``, ``sim://hapkit``, ``socket://host:port``, any URL of pyserial. Without it the ports
         whose USB numbers are of a known kind of board are asked, and only one that answers as a paddle is taken.
-    T : float
-        Sampling period [s], whole microseconds within the board's range.
+    T : float, optional
+        Sampling period [s], whole microseconds within the board's range; 1 ms, or that of ``paddle``.
     paddle : SimulatedPaddle, optional
         The mechanics behind a ``sim://`` port.
     hello : float
@@ -38,6 +39,11 @@ def connect(port=None, *, T=1e-3, paddle=None, hello=3.0):
     ...     print(paddle)
     host 0000, firmware 1.0, T = 1 ms, nominal constants, not calibrated, |F| <= 3.3 N
     """
+    if paddle is not None and not isinstance(paddle, SimulatedPaddle):
+        raise PaddleError(f"paddle = {paddle!r}; needs a SimulatedPaddle, the mechanics of a simulated board.")
+    if paddle is not None and T not in (None, paddle.T):
+        raise PaddleError(f"T = {T} s, and the paddle has T = {paddle.T:g} s; give one of them.")
+    T = T if T is not None else paddle.T if paddle is not None else 1e-3
     if port is None:
         if paddle is not None:
             raise PaddleError('paddle= is the mechanics of a simulated board: connect("sim://hapkit", paddle=...)')

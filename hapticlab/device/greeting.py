@@ -31,7 +31,7 @@ def say_hello(exchange, url, seconds):
             "this package; flash the firmware that came with it: hapticlab flash",
             "VERSION",
         )
-    return said
+    return said | {"board": said["board"].rstrip(b"\0").decode("ascii", "replace")}
 
 
 def what_happened(exchange, url, reset_cause):
@@ -53,8 +53,7 @@ def cleared(exchange, url):
 
 def introduction(board, settings, T):
     """Return a paddle in one line: board, firmware, period, calibration, limit."""
-    name = board["board"].rstrip(b"\0").decode("ascii", "replace")
-    parts = [f"{name} {board['ident']:04X}", f"firmware {board['major']}.{board['minor']}", f"T = {T * 1e3:g} ms"]
+    parts = [f"{board['board']} {board['ident']:04X}", f"firmware {board['major']}.{board['minor']}", f"T = {T * 1e3:g} ms"]
     if settings is None:
         return ", ".join([*parts, "not calibrated: gives no force (run `hapticlab calibrate`)"])
     day = str(settings.date)

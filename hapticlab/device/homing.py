@@ -1,6 +1,7 @@
 """Where the handle is: a board forgets with every reset, and gives no force until it knows."""
 
 from ..errors import PaddleError
+from .hand import require
 from .messages import FLAGS
 
 LOOK_AGAIN = 0.05  # [s]
@@ -16,13 +17,19 @@ def home(exchange, settings, at=None, timeout=60.0):
     PaddleError
         If the stops were not met, or lie further apart than was calibrated.
     """
-    if at is not None:
-        exchange.command("HOME", float(at))
-        return
-    if state_flag(exchange, "HOMED"):
+    if at is None and state_flag(exchange, "HOMED"):
         return
     if settings is None:
         raise PaddleError("the board has no calibration, so its stops tell nothing: run `hapticlab calibrate` first.")
+    if at is not None:
+        at = require("at", at, "m", "a position")
+        if not settings.travel_min <= at <= settings.travel_max:
+            raise PaddleError(
+                f"at = {at:g} m; the handle's travel is {settings.travel_min:g} to {settings.travel_max:g} m. "
+                "Hold it within, or calibrate its stops again."
+            )
+        exchange.command("HOME", at)
+        return
     if hasattr(exchange.port, "lead"):
         exchange.port.lead(0.0)
         exchange.command("HOME", 0.0)

@@ -47,7 +47,7 @@ def keep(paddle, scene, **options):
             "run `hapticlab calibrate` first."
         )
     program = paddle.program(scene, live=(), **options)
-    name = paddle.board["board"].rstrip(b"\0").decode("ascii", "replace")
+    name = paddle.board["board"]
     if name in BOARDS:  # of others the time is not known
         known = {} if isinstance(scene, Program) else {"T": paddle.T, "velocity": paddle.velocity, "live": (), **options}
         fit(scene, name, promise=True, **known)

@@ -42,6 +42,17 @@ def check_room(board, settings, program):
     settings : Settings or None
     program : Program
     """
+    check_period(board, program.T, settings)
+    watched, room = len(program.outputs) - 1, board["channels"] - 3
+    if watched > room:
+        raise PaddleError(f"{program.name} watches {watched} channels; this board passes {room} on: watch fewer.")
+    odd = [c.name for c in program.parameters if c.type != "f32"]
+    if odd:
+        raise PaddleError(f"{program.name}: {odd[0]} is no float32; a board's parameters are: compile with dtype='float32'.")
+
+
+def check_period(board, T, settings=None):
+    """Refuse a period [s] that the board's timer cannot do, or, by its settings, its sensor; name the nearest it can."""
     low, high, why = board["period_min"] * 1e-6, board["period_max"] * 1e-6, ""
     if settings is not None and settings.sensor == SENSORS["MAGNETORESISTIVE"]:
         # the sensor is read once a period; 3/8 of its counts a period are what the firmware still tells from a turn over
@@ -49,15 +60,9 @@ def check_room(board, settings, program):
         if high > unseen:
             high = math.floor(unseen * 1e6) * 1e-6
             why = f", as its magnet must not turn over unseen at speed_max = {settings.speed_max:g} m/s"
-    if not low * (1 - 1e-9) <= program.T <= high * (1 + 1e-9):
-        nearer = low if program.T < low else high
-        raise PaddleError(f"T = {program.T:g} s; this board does {low:g} to {high:g} s{why}: take T={nearer:g}")
-    watched, room = len(program.outputs) - 1, board["channels"] - 3
-    if watched > room:
-        raise PaddleError(f"{program.name} watches {watched} channels; this board passes {room} on: watch fewer.")
-    odd = [c.name for c in program.parameters if c.type != "f32"]
-    if odd:
-        raise PaddleError(f"{program.name}: {odd[0]} is no float32; a board's parameters are: compile with dtype='float32'.")
+    if not low * (1 - 1e-9) <= T <= high * (1 + 1e-9):
+        nearer = low if T < low else high
+        raise PaddleError(f"T = {T:g} s; this board does {low:g} to {high:g} s{why}: take T={nearer:g}")
 
 
 def read_settings(exchange):

@@ -100,3 +100,33 @@ def test_a_simulated_handle_that_starts_elsewhere_is_where_it_is():
         assert paddle.state()["x"] == pytest.approx(0.0125, abs=1e-7)
         log = paddle.run(hl.Scene(force=hl.parameters("k", units="N/m") * hl.x(hl.n), name="spring")(k=10), duration=0.002)
         assert log.x[0] == pytest.approx(0.0125, abs=1e-7) and log.F[0] == pytest.approx(0.125, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: hl.connect("sim://hapkit", T="a"), "T = 'a'; a paddle needs T > 0, a number in s"),
+        (lambda: hl.connect("sim://hapkit", T=0), "T = 0 s; a paddle needs T > 0"),
+        (lambda: hl.connect("sim://hapkit", T=1), "T = 1 s; this board does 5e-05 to 0.03 s: take T=0.03"),
+        (lambda: hl.connect("sim://hapkit", paddle=5), "paddle = 5; needs a SimulatedPaddle"),
+        (lambda: hl.connect("sim://hapkit?pce=real"), r"pce is no option of a simulated board.*pace=real"),
+        (lambda: hl.connect("sim://hapkit/x"), "x is no option"),
+        (
+            lambda: hl.connect("sim://hapkit", T=1e-3, paddle=hl.SimulatedPaddle(m=1, b=1, T=2e-3)),
+            "T = 0.001 s, and the paddle has T = 0.002 s; give one of them",
+        ),
+    ],
+)
+def test_wrong_arguments_are_refused_in_words(call, words):
+    with pytest.raises(PaddleError, match=words):
+        call()
+
+
+def test_a_paddle_brings_its_period_and_wrong_values_name_the_range():
+    with hl.connect("sim://hapkit", paddle=hl.SimulatedPaddle(m=1, b=1, T=2e-3)) as paddle:
+        assert paddle.T == 2e-3 and repr(paddle).startswith("<SerialPaddle sim://hapkit: host 0000, firmware 1.0, T = 2 ms")
+        with pytest.raises(PaddleError, match=r"at = 10 m; the handle's travel is -0.5 to 0.5 m"):
+            paddle.home(at=10)
+        for wrong, words in ((-1, "force_max = -1 N; a run needs force_max >= 0"), ("2 N", "force_max = '2 N'; a run needs")):
+            with pytest.raises(PaddleError, match=words):
+                paddle.start(hl.wall()(k=1, x_o=0), force_max=wrong)

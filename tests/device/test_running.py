@@ -148,7 +148,7 @@ def test_few_samples_are_waited_for(board):
 
 @pytest.mark.parametrize("force_max", [-1, float("nan"), -1e-9])
 def test_a_limit_that_is_none_is_refused_here(board, force_max):
-    with pytest.raises(PaddleError, match="needs force_max >= 0 N"):
+    with pytest.raises(PaddleError, match="a run needs force_max >= 0"):
         board.start(LEAN(k=10, push=0.1), force_max=force_max)
     assert board.state()["state"] == STATES["IDLE"]
 

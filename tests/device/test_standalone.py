@@ -60,11 +60,11 @@ def test_a_scene_that_could_be_late_is_not_kept():
     slow = sum(hl.parameters("A", units="N") * sp.sin(j * hl.x(hl.n) / hl.parameters("x_o", units="m")) for j in range(1, 9))
     scene = hl.Scene(force=slow, name="eight sines")(A=0.1, x_o=0.05)
     with hl.connect("sim://hapkit") as paddle:
-        paddle.board["board"] = b"uno\0\0\0\0\0"
+        paddle.board["board"] = "uno"
         with pytest.raises(ProgramLimitError, match=r"eight sines: .* of a 1 ms period on uno .*promised bound.*; fits at T = "):
             paddle.keep(scene)
         assert "both stops" in paddle.keep(hl.Scene(force=0.1 * hl.parameters("k", units="N/m") * hl.x(hl.n), name="s")(k=1))
-        paddle.board["board"] = b"due\0\0\0\0\0"
+        paddle.board["board"] = "due"
         assert "both stops" in paddle.keep(scene)
 
 

@@ -135,7 +135,11 @@ class Serial(SerialBase):
 
 def _parts(url):
     parts = urlsplit(url)
-    return parts.netloc, parse_qs(parts.query).get("pace", ["virtual"])[0]
+    options = parse_qs(parts.query, keep_blank_values=True)
+    unknown = sorted(set(options) - {"pace"}) + [part for part in parts.path.split("/") if part]
+    if unknown:
+        raise PaddleError(f"{url}: {unknown[0]} is no option of a simulated board; there is pace=real: sim://hapkit?pace=real")
+    return parts.netloc, options.get("pace", ["virtual"])[0]
 
 
 def _mechanics(at, paddle):
