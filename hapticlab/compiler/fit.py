@@ -16,7 +16,7 @@ PERIODS = (0.5e-3, 1e-3, 1.25e-3, 2e-3, 2.5e-3, 4e-3, 5e-3, 8e-3, 10e-3)
 MOST_NAMED = 3
 
 
-def fit(scene, board="uno", *, every=1, promise=False, **options):
+def fit(scene, board="uno", *, every=1, edges_per_second=0.0, promise=False, **options):
     """Return the cost of a scene or a program on a board, or refuse it and name what would fit.
 
     Parameters
@@ -28,6 +28,8 @@ def fit(scene, board="uno", *, every=1, promise=False, **options):
         See :func:`~hapticlab.compiler.cost.cost`.
     every : int
         Ticks per telemetry sample.
+    edges_per_second : float
+        See :func:`~hapticlab.compiler.cost.cost`.
     promise : bool
         Ask for the bound that holds for any operands, not for the typical time and its error of 10 %.
     **options
@@ -50,14 +52,14 @@ def fit(scene, board="uno", *, every=1, promise=False, **options):
     >>> fit(hl.wall()(k=150, x_o=0.01), T=1e-3).fits
     True
     """
-    is_scene = isinstance(scene, Scene)
-    taken = cost(compile(scene, **options) if is_scene else scene, board, every=every)
+    is_scene, beside = isinstance(scene, Scene), {"every": every, "edges_per_second": edges_per_second}
+    taken = cost(compile(scene, **options) if is_scene else scene, board, **beside)
     if taken.promised if promise else taken.fits:
         return taken
     if is_scene:
-        offers = _offers(scene, taken, promise, every, options)
+        offers = _offers(scene, taken, promise, beside, options)
     else:
-        offers = [_seldom(taken, promise, every), _slower(taken, promise)]
+        offers = [_seldom(taken, promise, beside), _slower(taken, promise)]
     offers = [o for o in offers if o][:MOST_NAMED]
     cure = "; fits " + ", or ".join(offers) if offers else "; simplify the scene: nothing cheaper was found that fits"
     raise ProgramLimitError(_what(taken, promise) + cure)
@@ -87,18 +89,18 @@ def _period(taken, promise):
     return next(long_enough, None)
 
 
-def _offers(scene, taken, promise, every, options):
+def _offers(scene, taken, promise, beside, options):
     """Yield what fits, in words: at the same rate what changes the motion least, then slower rates, fastest first."""
-    same, slower = [_seldom(taken, promise, every)], []
+    same, slower = [_seldom(taken, promise, beside)], []
     for words, other, changed in _cheaper(scene, options):
         if any(named and words.startswith(named) for named in same):
             continue  # a change more than one that is enough
         try:
-            found = cost(compile(other, **changed), taken.board, every=every)
+            found = cost(compile(other, **changed), taken.board, **beside)
             T = taken.T if (found.promised if promise else found.fits) else _period(found, promise)
             if found.memory_problem or T is None:
                 continue
-            if T != found.T and not _fits_at(T, other, changed, taken.board, every, promise):
+            if T != found.T and not _fits_at(T, other, changed, taken.board, beside, promise):
                 continue
         except HapticlabError:
             continue
@@ -116,17 +118,17 @@ def _offers(scene, taken, promise, every, options):
             yield words
 
 
-def _seldom(taken, promise, every):
+def _seldom(taken, promise, beside):
     """Return how seldom a sample may be sent for all the rest to fit, in words, or None."""
     for ticks in (2, 5, 10):
-        found = cost(taken.program, taken.board, every=max(every, ticks))
+        found = cost(taken.program, taken.board, **beside | {"every": max(beside["every"], ticks)})
         if found.promised if promise else found.fits:
             return f"with every={ticks} (a sample of telemetry in {ticks} ticks)"
     return None
 
 
-def _fits_at(T, scene, options, board, every, promise):
-    found = cost(compile(scene, **{**options, "T": T}), board, every=every)
+def _fits_at(T, scene, options, board, beside, promise):
+    found = cost(compile(scene, **{**options, "T": T}), board, **beside)
     return found.promised if promise else found.fits
 
 

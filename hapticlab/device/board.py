@@ -15,7 +15,7 @@ from .greeting import cleared, introduction, say_hello, what_happened
 from .hand import require
 from .homing import home
 from .live import checked, named_values, send
-from .messages import OPTIONS, STATES
+from .messages import OPTIONS, SENSORS, STATES
 from .paddle import Paddle
 from .progress import progress_bar
 from .recording import decimation, fault_words
@@ -117,7 +117,7 @@ class SerialPaddle(Paddle):
 
     def cost(self, scene, **options):
         """Return what a scene or a program takes of this board: cycles, memory, share of the period; print it."""
-        return cost(self.program(scene, **options), self._kind)
+        return cost(self.program(scene, **options), **self._board())
 
     def start(self, scene=None, *, every=None, force_max=math.inf, passive=False, check_fit=True, **options):
         """Start a scene and return at once; :meth:`set` changes it, :meth:`wait` lets it run, :meth:`stop` ends it.
@@ -249,10 +249,11 @@ class SerialPaddle(Paddle):
     def __str__(self):
         return introduction(self.board, self.settings, self.T)
 
-    @property
-    def _kind(self):
-        """The board's name where its cost is known, else this computer's, whose time is not limited."""
-        return self.board["board"] if self.board["board"] in BOARDS else "host"
+    def _board(self):
+        """What cost() asks: the board, "host" where its time is not known, and the most edges of its encoder in a second."""
+        s, name = self.settings, self.board["board"]
+        edges = s.speed_max / abs(s.metres_per_count) if s is not None and s.sensor == SENSORS["QUADRATURE"] else 0.0
+        return {"board": name if name in BOARDS else "host", "edges_per_second": edges}
 
     def _checked(self, scene, every, check_fit, options):
         """Return the program of a scene that fits the board, or None for the one that is there."""
@@ -262,9 +263,9 @@ class SerialPaddle(Paddle):
             return None
         program = self.program(scene, **options)
         sent = decimation(program, self.exchange.port, every)
-        if check_fit and not cost(program, self._kind, every=sent).fits:
+        if check_fit and not cost(program, every=sent, **self._board()).fits:
             known = {} if isinstance(scene, Program) else {"T": self.T, "velocity": self.velocity}
-            fit(scene, self._kind, every=sent, **known, **options)
+            fit(scene, every=sent, **self._board(), **known, **options)
         return program
 
     def _require_idle(self, asked):

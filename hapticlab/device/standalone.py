@@ -1,7 +1,6 @@
 """A scene that a board keeps over power-off and runs without a computer."""
 
 from ..compiler.bytecode import encode
-from ..compiler.cost import BOARDS
 from ..compiler.fit import fit
 from ..compiler.ir import Program
 from ..errors import PaddleError
@@ -47,10 +46,8 @@ def keep(paddle, scene, **options):
             "run `hapticlab calibrate` first."
         )
     program = paddle.program(scene, live=(), **options)
-    name = paddle.board["board"]
-    if name in BOARDS:  # of others the time is not known
-        known = {} if isinstance(scene, Program) else {"T": paddle.T, "velocity": paddle.velocity, "live": (), **options}
-        fit(scene, name, promise=True, **known)
+    known = {} if isinstance(scene, Program) else {"T": paddle.T, "velocity": paddle.velocity, "live": (), **options}
+    fit(scene, promise=True, **paddle._board(), **known)
     upload(paddle.exchange, "STANDALONE", encode(program, word_bits=8 * paddle.board["word_bytes"]))
     paddle.exchange.command("ARM", 1, patience=STORE_PATIENCE, tries=2)
     return GESTURE

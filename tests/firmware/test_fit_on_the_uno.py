@@ -13,6 +13,7 @@ from five_scenes import SCENES, cart_pole, mass_and_wall, pendulum, wall
 import hapticlab as hl
 from hapticlab.compiler.cost import cost
 from hapticlab.compiler.fit import fit
+from hapticlab.device.messages import SENSORS
 from hapticlab.device.settings import nominal
 from hapticlab.errors import ProgramLimitError
 
@@ -167,3 +168,14 @@ def test_edges_of_an_encoder_are_part_of_the_step():
         T = whole_us(cost(hl.compile(scene, T=T), edges_per_second=edges).T_needed(promise=True))
     _, measured = holds(scene, options, T, 1, settings=kept, hand=fast)
     assert 10_000 < measured <= edges
+
+
+def test_an_encoders_edges_are_counted_where_there_is_one():
+    """As many as the speed limit allows: 2 m/s over 12.8 um are 156 250 in a second, of 95 cycles each."""
+    costs = []
+    for sensor in ("MAGNETORESISTIVE", "QUADRATURE"):
+        with emulated_uno(settings=nominal("hapkit", checked=1, ident=1, sensor=SENSORS[sensor])) as paddle:
+            costs.append(paddle.cost(wall()[0]))
+    without, edges = costs
+    assert (without.edges, edges.edges) == (0.0, pytest.approx(95 * 2 / 12.8e-6, rel=0.05))
+    assert edges.T_needed() > 2 * without.T_needed() and "none counted" in str(without)
