@@ -548,22 +548,27 @@ def test_after_a_run_and_after_a_fault_the_handle_is_watched_every_millisecond_a
     assert host.board.period == 1e-3
 
 
+def is_found(host, at, size):
+    """Damage a byte of a running program's place: two passes of the audit at the most, and it is a fault."""
+    host.board.damage_program(at, 0x10)
+    ticks = 0
+    while state_name(host.state()["state"]) == "RUN":
+        host.tick(500)
+        ticks += 1
+    assert ticks <= 2 * math.ceil(size / 8) + 2
+    stands(host, "BAD_PROGRAM")
+
+
 @pytest.mark.parametrize("every", [1, 3])
 def test_a_program_damaged_in_memory_is_found(every):
-    """The audit looks at 8 bytes a tick at least: two passes of the program at the most."""
+    """The audit looks at 8 bytes a tick at least."""
     size = len(encode_program(spring(), word_bits=16))
     for at in range(0, size - 4, 5):
         host = Host().ready()
         host.start(every=every)
         for _ in range(at % 7):
             host.tick(500, beat=True)
-        host.board.damage_program(at, 0x10)
-        ticks = 0
-        while state_name(host.state()["state"]) == "RUN":
-            host.tick(500)
-            ticks += 1
-        assert ticks <= 2 * math.ceil(size / 8) + 2
-        stands(host, "BAD_PROGRAM")
+        is_found(host, at, size)
 
 
 @pytest.mark.parametrize("live", [False, True])
@@ -576,13 +581,7 @@ def test_a_constant_or_a_parameter_damaged_in_its_register_is_found(live):
     host = Host().ready()
     assert host.load(program) == "OK" and (not live or host.set(_0=50.0) == "OK") and host.start() == "OK"
     host.tick(500, beat=True)
-    host.board.damage_program(register, 0x10)
-    ticks = 0
-    while state_name(host.state()["state"]) == "RUN":
-        host.tick(500)
-        ticks += 1
-    assert ticks <= 2 * math.ceil(size / 8) + 2
-    stands(host, "BAD_PROGRAM")
+    is_found(host, register, size)
 
 
 def test_a_sensor_that_fails_takes_the_position_with_it_and_what_it_saw_of_the_stops():
