@@ -129,16 +129,22 @@ def _latency_cure(median):
 
 def loop_and_link(paddle):
     """Watch the loop for two seconds with the motor off; return its Check and the link's."""
+    before = _damaged(paddle)  # the first hello of a board that has just been reset comes to it in part
     log = _watch(paddle, LOOP)
     timing, expected = paddle.timing, round(LOOP / paddle.T)
     jitter = max(timing.period_max - timing.T, timing.T - timing.period_min)
     bad = timing.overruns or jitter > JITTER * timing.T
     loop = Check("loop", "attention" if bad else "ok", str(timing), "report this with the board's name" if bad else "")
     missing = int(np.sum(log.gap)) if log.gap is not None else 0
-    damaged = timing.damaged + paddle.exchange.decoder.damaged
+    damaged = _damaged(paddle) - before
     words = f"{len(log)} samples of {expected // round(log.T / paddle.T)}, {missing} gaps, {timing.lost} lost, {damaged} damaged"
     cure = "another cable, short, away from the motor's wires; no hub" if missing or damaged or timing.lost else ""
     return [loop, Check("link", "attention" if cure else "ok", words, cure)]
+
+
+def _damaged(paddle):
+    """Damaged frames so far, both ways."""
+    return paddle.state()["damaged"] + paddle.exchange.decoder.damaged
 
 
 def sensor_at_rest(paddle):
