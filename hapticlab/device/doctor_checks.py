@@ -11,7 +11,7 @@ from ..scene.scene import Scene
 from ..scene.symbols import n, parameters, x
 from .flash import find_bootloader
 from .homing import state_flag
-from .messages import RESET_CAUSES, SENSORS, table_hash
+from .messages import RESET_CAUSES, SENSORS, row_of, table_hash
 from .person import agrees
 from .serial import open_port
 from .sign_check import check_sign
@@ -81,7 +81,7 @@ def _bootloader_answers(url):
 
 
 def _reset_cause(number):
-    name, meaning = next(((k, text) for k, (code, text) in RESET_CAUSES.items() if code == number), ("?", "unknown"))
+    name, meaning = row_of(RESET_CAUSES, number) or ("?", "unknown")
     if name in ("BROWN_OUT", "WATCHDOG"):
         return Check("reset", "attention", f"the last reset was {name}", meaning)
     return Check("reset", "ok", f"last reset: {meaning}")

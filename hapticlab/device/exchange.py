@@ -11,7 +11,7 @@ import time
 from contextlib import contextmanager, suppress
 
 from ..errors import LinkError, PaddleError
-from .messages import HOST_SILENCE_MS, MESSAGES, RESULTS
+from .messages import HOST_SILENCE_MS, MESSAGES, RESULTS, row_of
 from .serial import port_watched, read_available
 from .wire import Decoder, encode
 
@@ -238,4 +238,4 @@ _ANSWERS = {"HELLO": ("WELCOME",), "PING": ("PONG",), "STATUS": ("STATE",), "REA
 
 
 def _result(number):
-    return next(((name, text) for name, (n, text) in RESULTS.items() if n == number), (f"result {number}", "unknown"))
+    return row_of(RESULTS, number) or (f"result {number}", "unknown")

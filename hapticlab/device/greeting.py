@@ -3,7 +3,7 @@
 import math
 
 from ..errors import LinkError
-from .messages import RESET_CAUSES, STATES, table_hash
+from .messages import RESET_CAUSES, STATES, row_of, table_hash
 from .recording import fault_words
 
 #: seconds between two hellos: opening the port has reset many a board, whose bootloader listens first
@@ -38,7 +38,7 @@ def what_happened(exchange, url, reset_cause):
     """Return sentences about what the board went through before this hello, and clear a standing fault."""
     told = []
     if reset_cause in (RESET_CAUSES["BROWN_OUT"][0], RESET_CAUSES["WATCHDOG"][0]):
-        told.append(f"{url}: the board was reset by {next(t for n, t in RESET_CAUSES.values() if n == reset_cause)}")
+        told.append(f"{url}: the board was reset by {row_of(RESET_CAUSES, reset_cause)[1]}")
     return told + cleared(exchange, url)
 
 

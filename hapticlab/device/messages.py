@@ -187,6 +187,11 @@ UNCHECKED_FORCE_N = 0.5
 OVERRUNS_IN_A_ROW, OVERRUNS_PER_SECOND = 4, 20
 
 
+def row_of(table, number):
+    """Return the name and the words of the row with a number, of RESULTS, FAULTS or RESET_CAUSES; None for no such row."""
+    return next(((name, *words) for name, (known, *words) in table.items() if known == number), None)
+
+
 def settings_hash():
     """Return the CRC-32 of the settings' table."""
     return zlib.crc32(repr(SETTINGS).encode())

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import PaddleError
 from ..records import Telemetry
-from .messages import FAULTS, SAMPLE_FLAGS
+from .messages import FAULTS, SAMPLE_FLAGS, row_of
 
 #: part of the link that samples may take; state and requests need the rest
 SAMPLES_SHARE = 0.9
@@ -95,6 +95,6 @@ def fault_words(fault, T=None):
     """Return a fault's name, time, cause and cure in words, or None for no fault."""
     if fault is None:
         return None
-    name, cause, cure = next(((n, c, h) for n, (k, c, h) in FAULTS.items() if k == fault["fault"]), ("UNKNOWN", "", ""))
+    name, cause, cure = row_of(FAULTS, fault["fault"]) or ("UNKNOWN", "", "")
     when = f"tick {fault['tick']}" + (f" (t = {fault['tick'] * T:g} s)" if T else "")
     return f"{when}: {name}: {cause}; the motor is off from there on. {cure[:1].upper()}{cure[1:]}."
