@@ -1,0 +1,207 @@
+"""Contacts of a scene: a gap, the law that acts where it closes, and Coulomb friction."""
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ..errors import SceneError, SignalError
+from .cases import when
+from .checks import agree_with, applied, check_symbols
+from .contact_laws import EVENT_LAWS, FORCE_LAWS, gap_units
+from .symbols import lag_of, t, v, x
+from .units import dimension_of, si_name
+from .written import check_name, expression
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Two bodies, or a body and the handle, that cannot pass each other.
+
+    Parameters
+    ----------
+    gap : expression [m], or [rad] for a joint that stops
+        >= 0 apart, 0 in touch; of coordinates, parameters, t and the handle x(t).
+    law : penalty, hunt_crossley, impulse, micro_impulse or rigid
+    name : str
+        Names the contact in messages and records; two contacts of a scene need two names.
+    slip : expression [m/s]
+        Tangential velocity of the surfaces on each other, linear in rates; for a law with friction mu.
+
+    Attributes
+    ----------
+    force : expression [N]
+        Normal force, never negative. For a force law an expression of the gap and its rate; for an event law the
+        reaction found while the scene runs, zero in free flight (an impulse is not a force and not in it).
+
+    Raises
+    ------
+    SceneError, UnitsError, SignalError
+
+    Examples
+    --------
+    A ball on a table of stiffness k:
+
+    >>> import hapticlab as hl
+    >>> q = hl.coordinate("q", unit="m"); k = hl.parameters("k", units="N/m")
+    >>> hl.Contact(q, hl.penalty(k=k), name="table").force
+    Piecewise((Max(0, -k*q(t)), q(t) <= 0), (0, True))
+    """
+
+    gap: sp.Expr
+    law: object
+    name: str = "contact"
+    slip: sp.Expr = sp.S.Zero
+
+    def __post_init__(self):
+        check_name(self.name, "contact")
+        gap, slip = expression(self.gap, f"{self.name}: gap"), expression(self.slip, f"{self.name}: slip")
+        object.__setattr__(self, "gap", gap)
+        object.__setattr__(self, "slip", slip)
+        if not isinstance(self.law, FORCE_LAWS + EVENT_LAWS):
+            raise SceneError(f"{self.name}: law = {self.law!r}; needs penalty, hunt_crossley, impulse, micro_impulse or rigid")
+        _check_gap(gap, self.name)
+        gap_units(gap, f"{self.name}: gap")
+        self.law.check(gap, self.name)
+        mu = getattr(self.law, "mu", sp.S.Zero)
+        if mu != 0 and slip == 0:
+            raise SceneError(f"{self.name}: friction mu = {mu} needs a direction; give slip=, the tangential velocity [m/s]")
+        if slip != 0:
+            _check_slip(slip, self.name)
+            if not hasattr(self.law, "mu"):
+                cure = "add hl.friction(slip=..., F_c=mu*contact.force) beside the contact"
+                raise SceneError(f"{self.name}: a {type(self.law).__name__} has no friction of its own; {cure}")
+
+    @property
+    def is_force(self):
+        """True for a law that is an expression of the state; False for one of impulses and reactions."""
+        return isinstance(self.law, FORCE_LAWS)
+
+    @property
+    def unit(self):
+        """Unit of the force: N, or N*m where the gap is an angle."""
+        return gap_units(self.gap, self.name)[0]
+
+    @property
+    def force(self):
+        """The normal force [N], an expression."""
+        if not self.is_force:
+            return reaction(self.name, self.unit)
+        from .derivative import Rate
+
+        return when(self.gap <= 0, self.law.force(self.gap, Rate(self.gap)))
+
+    def generalized_force(self, q):
+        """Return what the contact does to a coordinate q, or to the handle x(t): force times dgap/dq."""
+        from .derivative import Partial
+
+        return self.force * Partial(self.gap, q)
+
+
+@dataclass(frozen=True, kw_only=True)
+class friction:
+    """Coulomb friction between two surfaces that slip on each other.
+
+    Sliding: F_c against the slip. Sticking: whatever keeps the slip at zero, up to F_s. Sticking is a mode with its own
+    reaction, entered where the slip crosses zero and left where the reaction passes F_s, so it holds still, which a
+    steep tanh cannot do.
+
+    Parameters
+    ----------
+    slip : expression [m/s]
+        Relative velocity, linear in rates; of coordinates' rates and the handle's v(t).
+    F_c : Parameter or expression [N], >= 0
+        Sliding friction; ``mu * contact.force`` for dry friction at a contact.
+    F_s : Parameter or expression [N], optional
+        Breakaway force, >= F_c; F_c unless given.
+    stick_speed : Parameter or expression [m/s], optional
+        Replaces sticking by a steep line: the force is F_c slip/stick_speed up to that speed. An ordinary force, for
+        every method; it creeps where it should stick.
+    name : str
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> q = hl.coordinate("q", unit="m"); F_c, v_s = hl.parameters("F_c v_s", units="N m/s")
+    >>> hl.friction(slip=q.diff(hl.t), F_c=F_c, stick_speed=v_s).force
+    F_c*Max(-1, Min(1, Derivative(q(t), t)/v_s))
+    """
+
+    slip: sp.Expr
+    F_c: sp.Expr
+    F_s: sp.Expr = None
+    stick_speed: sp.Expr = None
+    name: str = "friction"
+
+    def __post_init__(self):
+        check_name(self.name, "friction")
+        for part in ("slip", "F_c", "F_s", "stick_speed"):
+            given = getattr(self, part)
+            if given is not None:
+                object.__setattr__(self, part, expression(given, f"{self.name}: {part}"))
+        if self.F_s is not None and self.stick_speed is not None:
+            raise SceneError(f"{self.name}: stick_speed replaces sticking, so there is no breakaway force F_s; leave one out")
+        if self.F_s is None:
+            object.__setattr__(self, "F_s", self.F_c)
+        if self.slip == 0:
+            raise SceneError(f"{self.name}: slip = 0; needs the relative velocity of the surfaces, such as q.diff(t)")
+        _check_slip(self.slip, self.name)
+        unit = self.unit
+        for part in ("F_c", "F_s"):
+            if getattr(self, part).is_number and getattr(self, part) < 0:
+                raise SceneError(f"{self.name}: {part} = {getattr(self, part)}; friction opposes the slip: needs {part} >= 0")
+            agree_with(getattr(self, part), unit, f"{self.name}, {part}")
+        if self.F_c.is_number and self.F_s.is_number and self.F_s < self.F_c:
+            raise SceneError(f"{self.name}: F_s = {self.F_s} < F_c = {self.F_c}; breaking away takes at least the sliding force")
+        if self.stick_speed is not None:
+            agree_with(self.stick_speed, si_name(dimension_of(self.slip, self.name)), f"{self.name}, stick_speed")
+
+    @property
+    def is_force(self):
+        """True with a ``stick_speed``: then the force is an expression of the state."""
+        return self.stick_speed is not None
+
+    @property
+    def unit(self):
+        """Unit of the force: N, or N*m where the slip is an angular velocity."""
+        return "N" if si_name(dimension_of(self.slip, self.name)) == "m/s" else "N*m"
+
+    @property
+    def force(self):
+        """The friction force [N] against the slip, an expression."""
+        if not self.is_force:
+            return reaction(self.name, self.unit)
+        return self.F_c * sp.Max(-1, sp.Min(1, self.slip / self.stick_speed))
+
+    def generalized_force(self, q):
+        """Return what the friction does to a coordinate q, or to the handle x(t): -force times dslip/dq'."""
+        from .derivative import Partial
+
+        return -self.force * Partial(self.slip, v(t) if q == x(t) else q.diff(t))
+
+
+def reaction(name, unit):
+    """Return the leaf that stands for a reaction found while the scene runs."""
+    return sp.Function(name, real=True, unit=unit, role="reaction")(t)
+
+
+def _check_gap(gap, name):
+    check_symbols([gap])
+    moving = applied([gap], "coordinate", "handle")
+    if not moving:
+        raise SceneError(f"{name}: gap = {gap} holds no coordinate and not x(t), so nothing can close it")
+    for sample in applied([gap], "handle", "signal"):
+        if lag_of(sample) is not None:
+            raise SignalError(f"{name}: gap holds the sample {sample}; a contact sees the handle between samples too: x(t)")
+    if gap.atoms(sp.Derivative) or gap.has(v(t)):
+        raise SceneError(f"{name}: gap = {gap} holds a velocity; a gap is a distance, of positions alone")
+
+
+def _check_slip(slip, name):
+    check_symbols([slip])
+    rates = [*slip.atoms(sp.Derivative), *({v(t)} & slip.atoms(v))]
+    if not rates:
+        raise SceneError(f"{name}: slip = {slip} holds no velocity; needs a relative velocity such as q.diff(t) - v(t)")
+    dummies = {rate: sp.Dummy() for rate in rates}
+    plain = slip.xreplace(dummies)
+    if any(plain.diff(a, b) != 0 for a in dummies.values() for b in dummies.values()):
+        raise SceneError(f"{name}: slip = {slip} is not linear in the velocities; a relative velocity is")
