@@ -44,15 +44,16 @@ def _same(a, b):
     return a.id == b.id if isinstance(a, Value) and isinstance(b, Value) else a is b or a == b
 
 
-def _zero(a):
+def is_zero(a):
+    """Tell whether a value is the constant zero: a structural zero, known before anything runs."""
     return (a.constant if isinstance(a, Value) else a) == 0
 
 
-def _less_product(a, b, c):
-    """Return a - b * c, untouched where the product is a structural zero."""
-    if _zero(b) or _zero(c):
+def less_product(a, b, c):
+    """Return a - b * c, a itself where the product is a structural zero."""
+    if is_zero(b) or is_zero(c):
         return a
-    return -(b * c) if _zero(a) else a - b * c
+    return -(b * c) if is_zero(a) else a - b * c
 
 
 def _ldl(M, f):
@@ -60,23 +61,23 @@ def _ldl(M, f):
     L = [[None] * N for _ in range(N)]
     d, inverse, y = [], [], list(f)
     for j in range(N):
-        scaled = [L[j][k] * d[k] if not _zero(L[j][k]) else L[j][k] for k in range(j)]
+        scaled = [L[j][k] * d[k] if not is_zero(L[j][k]) else L[j][k] for k in range(j)]
         pivot = M[j][j]
         for k in range(j):
-            pivot = _less_product(pivot, scaled[k], L[j][k])
+            pivot = less_product(pivot, scaled[k], L[j][k])
         d.append(pivot)
         inverse.append(1.0 / pivot)
         for i in range(j + 1, N):
             entry = M[i][j]
             for k in range(j):
-                entry = _less_product(entry, L[i][k], scaled[k])
-            L[i][j] = entry if _zero(entry) else entry * inverse[j]
+                entry = less_product(entry, L[i][k], scaled[k])
+            L[i][j] = entry if is_zero(entry) else entry * inverse[j]
         for k in range(j):
-            y[j] = _less_product(y[j], L[j][k], y[k])
+            y[j] = less_product(y[j], L[j][k], y[k])
     a = [y[j] * inverse[j] for j in range(N)]
     for j in reversed(range(N)):
         for i in range(j + 1, N):
-            a[j] = _less_product(a[j], L[i][j], a[i])
+            a[j] = less_product(a[j], L[i][j], a[i])
     return a
 
 
@@ -88,25 +89,25 @@ def _lu(M, f):
             rows[j], rows[i] = _larger_first(rows[j], rows[i], j)
         inverse.append(1.0 / rows[j][j])
         for i in range(j + 1, N):
-            if _zero(rows[i][j]):
+            if is_zero(rows[i][j]):
                 continue
             factor = rows[i][j] * inverse[j]
             for k in range(j + 1, N + 1):
-                rows[i][k] = _less_product(rows[i][k], factor, rows[j][k])
+                rows[i][k] = less_product(rows[i][k], factor, rows[j][k])
     a = [None] * N
     for j in reversed(range(N)):
         total = rows[j][N]
         for k in range(j + 1, N):
-            total = _less_product(total, rows[j][k], a[k])
+            total = less_product(total, rows[j][k], a[k])
         a[j] = total * inverse[j]
     return a
 
 
 def _larger_first(upper, lower, j):
     """Return the two rows, the one whose entry j is larger first; before j they are zero by now and not looked at."""
-    if _zero(lower[j]):
+    if is_zero(lower[j]):
         return upper, lower
-    if _zero(upper[j]):
+    if is_zero(upper[j]):
         return lower, upper
     swap = abs(upper[j]) < abs(lower[j])
     pairs = list(zip(upper[j:], lower[j:], strict=True))
