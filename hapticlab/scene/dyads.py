@@ -1,0 +1,293 @@
+"""Solve one or two loop equations in closed form: a length, an angle, or a dyad (RRR, RRP, RPR) of two unknowns.
+
+Each is at most a quadratic in the field's own terms: ``A cos(beta) + B sin(beta) + C = 0`` has the two solutions that a
+loop has assemblies, and the initial state chooses between them. Norton, *Design of Machinery*, ch. 4.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+
+class NotClosed(Exception):
+    """These equations are not among the forms that are solved here."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """One dependent coordinate, as an expression of the drivers and of the coordinates solved before it.
+
+    Attributes
+    ----------
+    coordinate : sympy expression
+    value : sympy expression
+    cos, sin : sympy expression or None
+        Of an angle, without the angle itself: what is cheaper than the cosine of an arc tangent.
+    margin : sympy expression
+        1 where the solution is best determined, 0 where two assemblies meet, negative where the loop cannot close.
+    """
+
+    coordinate: sp.Expr
+    value: sp.Expr
+    margin: sp.Expr = sp.S.One
+    cos: sp.Expr = None
+    sin: sp.Expr = None
+
+
+_EVALUATE = {
+    sp.Add: lambda *a: sum(a), sp.Mul: lambda *a: math.prod(a), sp.Pow: lambda a, b: np.power(a + 0.0, b),
+    sp.sin: np.sin, sp.cos: np.cos, sp.tan: np.tan, sp.atan: np.arctan, sp.atan2: np.arctan2, sp.asin: np.arcsin,
+    sp.acos: np.arccos, sp.exp: np.exp, sp.log: np.log, sp.Abs: np.abs, sp.tanh: np.tanh,
+}  # fmt: skip
+
+
+def number(expr, at):
+    """Return an expression as a float or an array, ``at`` holding what its symbols and functions of time are."""
+    if expr in at:
+        return at[expr]
+    if expr.is_number:
+        return float(expr)
+    if expr.func not in _EVALUATE:
+        raise NotClosed(f"{expr} has no closed form")
+    return _EVALUATE[expr.func](*(number(a, at) for a in expr.args))
+
+
+class Equations:
+    """Reads equations as polynomials in unknown lengths and in cosines and sines of unknown angles.
+
+    Parameters
+    ----------
+    start : dict
+        Every symbol and function of time -> its initial value [SI], the unknown's too: it chooses the assembly.
+    generic : dict
+        The same for a state that is nothing in particular: what vanishes there vanishes everywhere.
+    """
+
+    def __init__(self, start, generic):
+        self.start, self.generic = start, generic
+
+    def zero(self, expr):
+        """Tell whether an expression vanishes identically."""
+        parts = [abs(number(part, self.generic)) for part in sp.Add.make_args(sp.sympify(expr))]
+        return abs(number(expr, self.generic)) <= 1e-11 * max(parts)
+
+    def terms(self, expr, unknown, angles=None):
+        """Return {monomial: coefficient}; a monomial is a tuple of unknown lengths, cosines and sines.
+
+        ``angles`` collects the unknown angles, so that several equations are written in the same ones.
+        """
+        found = self._terms(expr, unknown, {} if angles is None else angles)
+        for atom in {a for monomial in found for a in monomial if isinstance(a, sp.cos)}:
+            # of cos^2 + sin^2 nothing is left but its coefficient
+            twin, square = sp.sin(atom.args[0]), found.get((atom, atom))
+            if square is not None and (twin, twin) in found and self.zero(square - found[twin, twin]):
+                del found[atom, atom], found[twin, twin]
+                found[()] = found.get((), sp.S.Zero) + square
+        return {monomial: c for monomial, c in found.items() if not self.zero(c)}
+
+    def _terms(self, expr, unknown, angles):
+        if not expr.has(*unknown):
+            return {(): expr}
+        if expr in unknown:
+            return {(expr,): sp.S.One}
+        if isinstance(expr, sp.Add):
+            total = {}
+            for part in expr.args:
+                for monomial, c in self._terms(part, unknown, angles).items():
+                    total[monomial] = total.get(monomial, sp.S.Zero) + c
+            return total
+        if isinstance(expr, sp.Mul):
+            return self._times(expr.args, unknown, angles)
+        if isinstance(expr, sp.Pow) and expr.exp == 2:
+            return self._times((expr.base, expr.base), unknown, angles)
+        if isinstance(expr, (sp.cos, sp.sin)):
+            return _of_angle(expr, unknown, angles)
+        raise NotClosed(f"{expr} is neither a length nor the cosine or sine of an angle")
+
+    def _times(self, factors, unknown, angles):
+        total = {(): sp.S.One}
+        for factor in factors:
+            other = self._terms(factor, unknown, angles)
+            product = {}
+            for a, c in total.items():
+                for b, d in other.items():
+                    key = tuple(sorted((*a, *b), key=sp.default_sort_key))
+                    product[key] = product.get(key, sp.S.Zero) + c * d
+            total = product
+        if any(len(monomial) > 2 for monomial in total):
+            raise NotClosed("the equation is of third degree")
+        return total
+
+    # one equation, one unknown
+
+    def alone(self, expr, q):
+        """Return the step that solves ``expr = 0`` for q."""
+        found = self.terms(expr, {q})
+        if set(found) <= {(q,), ()} and (q,) in found:
+            return self._linear(q, found[q,], found.get((), sp.S.Zero))
+        if set(found) <= {(q, q), (q,), ()}:
+            return self._quadratic(q, *(found.get(m, sp.S.Zero) for m in ((q, q), (q,), ())))
+        angle = _angle_in(found)
+        return self._of(angle, q, self._circle(angle, found))
+
+    def _linear(self, q, slope, rest):
+        # a slope that moves is judged by its size at the start
+        margin = sp.S.One if not _moves(slope) else slope**2 / number(slope, self.start) ** 2
+        return Step(q, -rest / slope, margin)
+
+    def _quadratic(self, q, a, b, c):
+        if a == 0:
+            raise NotClosed(f"{q} drops out")
+        inside = b**2 - 4 * a * c
+        size = b**2 + 4 * sp.Abs(a * c) if b != 0 else number(inside, self.start)
+        side = 1 if 2 * number(a, self.start) * self.start[q] + number(b, self.start) >= 0 else -1
+        return Step(q, (side * sp.sqrt(inside) - b) / (2 * a), inside / size)
+
+    def _circle(self, angle, found):
+        """Return (cos, sin, margin) of an angle with A cos + B sin + C = 0."""
+        cos, sin = sp.cos(angle), sp.sin(angle)
+        if not set(found) <= {(cos,), (sin,), ()}:
+            raise NotClosed(f"{angle} does not enter as A cos + B sin + C")
+        A, B, C = (found.get(m, sp.S.Zero) for m in ((cos,), (sin,), ()))
+        size = A**2 + B**2
+        inside = size - C**2
+        beta = number(angle, self.start)
+        # the derivative of A cos + B sin at the solution is +- the root
+        side = 1 if number(B, self.start) * math.cos(beta) - number(A, self.start) * math.sin(beta) >= 0 else -1
+        root = side * sp.sqrt(inside)
+        return (B * root - A * C) / size, (-A * root - B * C) / size, inside / size
+
+    def _of(self, angle, q, solution):
+        """Return the step of a coordinate from the cosine and sine of an angle, q or -q and what is known beside it."""
+        cos, sin, margin = solution
+        sign = -1 if angle.coeff(q) == -1 else 1
+        rest = sp.expand(angle - sign * q)
+        if rest.has(q):
+            raise NotClosed(f"{angle} is not {q} beside known angles")
+        if rest == 0:
+            return Step(q, _atan2(sign * sin, cos, self.start[q]), margin, cos, sign * sin)
+        return Step(q, sign * (_atan2(sin, cos, number(angle, self.start)) - rest), margin)
+
+    # two equations, two unknowns
+
+    def pair(self, first, second, p, q):
+        """Return the two steps that solve ``first = second = 0`` for p and q."""
+        angles = {}
+        found = [self.terms(e, {p, q}, angles) for e in (first, second)]
+        angles = list(angles.values())
+        lengths = [u for u in (p, q) if any(u in m for f in found for m in f)]
+        if len(angles) == 2 and not lengths:
+            return self._rrr(found, angles, (p, q))
+        if len(angles) == 1 and len(lengths) == 1:
+            length = lengths[0]
+            other = q if length == p else p
+            bilinear = any(len(m) == 2 for f in found for m in f)
+            return (self._rpr if bilinear else self._rrp)(found, angles[0], other, length)
+        if not angles and all(len(m) < 2 for f in found for m in f):
+            return self._two_lengths(found, p, q)
+        raise NotClosed("not a dyad")
+
+    def _two_lengths(self, found, p, q):
+        (a, b, c), (d, e, f) = ([row.get(m, sp.S.Zero) for m in ((p,), (q,), ())] for row in found)
+        both = a * e - b * d
+        first = self._linear(p, both, e * c - b * f)
+        return first, Step(q, (d * c - a * f) / both)
+
+    def _rrr(self, found, angles, unknown):
+        """Two links: the second turns the first's end onto a circle about the other pivot."""
+        first, last = sorted(angles, key=lambda a: sum(map(a.has, unknown)))
+        of_links = {(kind(angle),) for kind in (sp.cos, sp.sin) for angle in angles}
+        if not all(set(f) <= of_links | {()} for f in found) or all(map(first.has, unknown)):
+            raise NotClosed("the angles are multiplied with each other")
+        (pc, ps), (qc, qs) = self._link(found, last), self._link(found, first)
+        rest = [f.get((), sp.S.Zero) for f in found]
+        cos, sin = sp.cos(first), sp.sin(first)
+        circle = {
+            (cos,): 2 * (qc[0] * rest[0] + qc[1] * rest[1]),
+            (sin,): 2 * (qs[0] * rest[0] + qs[1] * rest[1]),
+            (): qc[0] ** 2 + qc[1] ** 2 + rest[0] ** 2 + rest[1] ** 2 - pc[0] ** 2 - pc[1] ** 2,
+        }
+        size = pc[0] ** 2 + pc[1] ** 2
+        arm = [qc[k] * cos + qs[k] * sin + rest[k] for k in (0, 1)]
+        turned = [-(link[0] * arm[0] + link[1] * arm[1]) / size for link in (pc, ps)]
+        p, q = unknown if first.has(unknown[0]) else unknown[::-1]
+        return self._of(first, p, self._circle(first, circle)), self._of(last, q, (*turned, sp.S.One))
+
+    def _link(self, found, angle):
+        """Return the two coefficients (of x and y) of cos and of sin; they are those of a link that turns, or refused."""
+        c, s = ([f.get((kind(angle),), sp.S.Zero) for f in found] for kind in (sp.cos, sp.sin))
+        if not (self.zero(c[0] ** 2 + c[1] ** 2 - s[0] ** 2 - s[1] ** 2) and self.zero(c[0] * s[0] + c[1] * s[1])):
+            raise NotClosed(f"{angle} does not turn a rigid link")
+        return c, s
+
+    def _rrp(self, found, angle, q, length):
+        """A slider on a line that does not turn with the angle: the length is eliminated first."""
+        k = [f.pop((length,), sp.S.Zero) for f in found]
+        monomials = set(found[0]) | set(found[1])
+        across = {m: k[0] * found[1].get(m, sp.S.Zero) - k[1] * found[0].get(m, sp.S.Zero) for m in monomials}
+        turned = self._of(angle, q, self._circle(angle, across))
+        rest = [sp.Add(*(c * sp.Mul(*m) for m, c in f.items())) for f in found]
+        return turned, Step(length, -(k[0] * rest[0] + k[1] * rest[1]) / (k[0] ** 2 + k[1] ** 2))
+
+    def _rpr(self, found, angle, q, length):
+        """A slider on a line that turns with the angle: the distance is known, and so the length."""
+        cos, sin = sp.cos(angle), sp.sin(angle)
+        keys = {(): "rest", (cos,): "c", (sin,): "s"}
+        keys |= {tuple(sorted((length, a), key=sp.default_sort_key)): kind for a, kind in ((cos, "C"), (sin, "S"))}
+        if not all(set(f) <= set(keys) for f in found):
+            raise NotClosed("the slide has a part that does not turn")
+        by = {name: [f.get(m, sp.S.Zero) for f in found] for m, name in keys.items()}
+        C, S, c, s, e = (by[name] for name in ("C", "S", "c", "s", "rest"))
+        turn = 1 if self.zero(S[0] + C[1]) and self.zero(S[1] - C[0]) else -1
+        if not all(self.zero(b[0] + turn * a[1]) and self.zero(b[1] - turn * a[0]) for a, b in ((C, S), (c, s))):
+            raise NotClosed(f"{angle} does not turn a rigid link")
+        slide = self._quadratic(
+            length, C[0] ** 2 + C[1] ** 2, 2 * (C[0] * c[0] + C[1] * c[1]),
+            c[0] ** 2 + c[1] ** 2 - e[0] ** 2 - e[1] ** 2,
+        )  # fmt: skip
+        arm = [C[j] * length + c[j] for j in (0, 1)]
+        size = e[0] ** 2 + e[1] ** 2
+        turned = (
+            -(e[0] * arm[0] + e[1] * arm[1]) / size,
+            -turn * (e[1] * arm[0] - e[0] * arm[1]) / size,
+            sp.S.One,
+        )
+        return slide, self._of(angle, q, turned)
+
+
+def _moves(expr):
+    """Tell whether an expression holds more than parameters."""
+    return bool(expr.atoms(sp.Function)) or any(s.name == "t" for s in expr.free_symbols)
+
+
+def _angle_in(found):
+    angles = {a.args[0] for monomial in found for a in monomial if isinstance(a, (sp.cos, sp.sin))}
+    if len(angles) != 1:
+        raise NotClosed("no single angle is unknown")
+    return angles.pop()
+
+
+def _of_angle(expr, unknown, angles):
+    """Return the terms of cos or sin of an unknown angle, in the first angle met that differs from it by known ones."""
+    parts = sp.Add.make_args(sp.expand(expr.args[0]))
+    own = sp.Add(*(part for part in parts if part.has(*unknown)))
+    if any(not (part / u).is_number for part in sp.Add.make_args(own) for u in unknown if part.has(u)):
+        raise NotClosed(f"{expr} is not of an angle")
+    sign = -1 if own.could_extract_minus_sign() else 1
+    angle = angles.setdefault(sign * own, sp.expand(sign * expr.args[0]))
+    known = sp.expand(expr.args[0] - sign * angle)
+    cos, sin = sp.cos(angle), sp.sin(angle)
+    if isinstance(expr, sp.cos):
+        both = {(cos,): sp.cos(known), (sin,): -sign * sp.sin(known)}
+    else:
+        both = {(cos,): sp.sin(known), (sin,): sign * sp.cos(known)}
+    return {m: c for m, c in both.items() if c != 0}
+
+
+def _atan2(sin, cos, near):
+    """Return the angle with this sine and cosine that lies nearest a value; its cut is as far from there as it can be."""
+    quarter = round(near / (math.pi / 2))
+    y, x = [(sin, cos), (-cos, sin), (-sin, -cos), (cos, -sin)][quarter % 4]
+    return sp.atan2(y, x) + quarter * sp.pi / 2

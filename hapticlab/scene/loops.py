@@ -1,0 +1,190 @@
+"""Embed holonomic constraints in closed form: which coordinates drive, and each other one as an expression of those.
+
+A loop that is solved so cannot drift apart: its constraint holds to rounding, whatever the integrator does. The loops are
+solved one dyad after another (:mod:`hapticlab.scene.dyads`), with the drivers that close them over their whole range.
+"""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from ..errors import SceneError
+from .closing import Open, check_range, declared_range, is_coordinate, name, names, shown, values, wraps
+from .dyads import Equations, NotClosed, number
+from .symbols import v
+
+#: initial values that are written with seven digits agree with the constraint
+AGREEING = 1e-6
+#: drivers tried before a loop is left to other methods
+ATTEMPTS = 40
+
+
+@dataclass(frozen=True)
+class Embedding:
+    """Holonomic constraints, solved.
+
+    Attributes
+    ----------
+    drivers : tuple of coordinates
+        What remains free.
+    steps : tuple of Step
+        The dependent coordinates, each in terms of the drivers and of those before it.
+    wraps : frozenset of coordinates
+        Angles that jump by a turn somewhere on the range: their cosine and sine may be used, the angle itself not.
+    """
+
+    drivers: tuple
+    steps: tuple
+    wraps: frozenset = frozenset()
+
+    def __str__(self):
+        lines = [f"driven by {names(self.drivers) or 'the handle'}"]
+        return "\n".join([*lines, *(f"{name(s.coordinate)} = {s.value}" for s in self.steps)])
+
+
+def is_holonomic(constraint):
+    """Tell whether a constraint holds positions and time alone."""
+    return not constraint.has(sp.Derivative, v)
+
+
+def embed(constraints, coordinates, start):
+    """Return the :class:`Embedding` of holonomic constraints.
+
+    Parameters
+    ----------
+    constraints : sequence of expressions
+        Each is zero.
+    coordinates : sequence of coordinates
+        A declared range is the range that is checked; an angle without one is checked over a turn.
+    start : dict
+        Every coordinate, parameter, x(t) and t -> its value at the start [SI].
+
+    Raises
+    ------
+    NotClosed
+        No choice of drivers gives a closed form that is known here and holds over the range.
+    SceneError
+        The start is off a constraint; or the loops cannot close over a range that was declared.
+
+    Examples
+    --------
+    >>> import hapticlab as hl, sympy as sp
+    >>> L = hl.parameters("L", units="m")
+    >>> phi, z = hl.coordinate("phi", unit="rad"), hl.coordinate("z", unit="m")
+    >>> print(embed([z - L * sp.sin(phi)], [phi, z], {L: 0.1, phi: 0.0, z: 0.0}))
+    driven by phi
+    z = L*sin(phi(t))
+    """
+    drivers, steps, wraps = [], [], set()
+    for group, held in _groups(constraints, coordinates):
+        found = _embed_group(group, held, start) if group else Embedding(held, ())
+        drivers += found.drivers
+        steps += found.steps
+        wraps |= found.wraps
+    return Embedding(tuple(q for q in coordinates if q in drivers), tuple(steps), frozenset(wraps))
+
+
+def _groups(constraints, coordinates):
+    """Yield (constraints, coordinates) that have nothing to do with each other."""
+    groups = [([], (q,)) for q in coordinates]
+    for constraint in constraints:
+        joined = [g for g in groups if constraint.has(*g[1])]
+        if not joined:
+            raise SceneError(f"{constraint} = 0 holds no coordinate, so it constrains nothing; leave it out")
+        groups = [g for g in groups if g not in joined]
+        groups.append((sum((g[0] for g in joined), [constraint]), sum((g[1] for g in joined), ())))
+    order = list(constraints)
+    return [(sorted(group, key=order.index), held) for group, held in groups]
+
+
+def _embed_group(constraints, coordinates, start):
+    free = len(coordinates) - len(constraints)
+    if free < 0:
+        raise NotClosed("there are more constraints than coordinates")
+    equations = Equations(start, _generic(start))
+    choices = sorted(
+        itertools.combinations(coordinates, free),
+        key=lambda drivers: sum(map(math.isinf, (declared_range(q)[1] for q in drivers))),
+    )
+    reasons, refused, declared = [], [], 0
+    for drivers in choices[:ATTEMPTS]:
+        given = bool(drivers) and not any(math.isinf(declared_range(q)[1]) for q in drivers)
+        declared += given
+        try:
+            sources = _staged(equations, constraints, [q for q in coordinates if q not in drivers])
+            check_range(drivers, sources, start)
+        except NotClosed as reason:
+            reasons.append(str(reason))
+            refused += [reason] if given and isinstance(reason, Open) else []
+            continue
+        _check_start(constraints, sources, start)
+        return Embedding(drivers, tuple(step for step, _ in sources), wraps(drivers, sources, start))
+    if declared and len(refused) == declared:
+        raise SceneError(f"{refused[0]}. Declare the range it moves in, or change its lengths")
+    raise NotClosed("; ".join(list(dict.fromkeys(reasons))[:3]) or "no driver was found")
+
+
+def _staged(equations, constraints, unknown):
+    """Return [(step, its constraints)]: one unknown of one constraint at a time, else two of two."""
+    left, open_, found = list(constraints), list(unknown), []
+    while left:
+        held = {c: [q for q in open_ if c.has(q)] for c in left}
+        group, solved = _next(equations, left, held)
+        found += [(step, group) for step in solved]
+        left = [c for c in left if c not in group]
+        open_ = [q for q in open_ if q not in {step.coordinate for step in solved}]
+    return found
+
+
+def _next(equations, left, held):
+    reason = NotClosed("the equations cannot be taken one or two at a time")
+    for c in left:
+        if not held[c]:
+            raise NotClosed(f"{c} = 0 is left when all else is solved")
+        if len(held[c]) == 1:
+            try:
+                return (c,), (equations.alone(c, held[c][0]),)
+            except NotClosed as why:
+                reason = why
+    for c, d in itertools.combinations(left, 2):
+        both = list(dict.fromkeys(held[c] + held[d]))
+        if len(both) == 2:
+            try:
+                return (c, d), equations.pair(c, d, *both)
+            except NotClosed as why:
+                reason = why
+    raise reason
+
+
+def _check_start(constraints, sources, start):
+    """Refuse a start off the constraints, with the values to take."""
+    off = [c for c in constraints if not _agrees(c, start)]
+    if not off:
+        return
+    at = dict(start)
+    for step, _ in sources:
+        at[step.coordinate] = float(number(step.value, at))
+    moving = [q for q in start if is_coordinate(q) and any(c.has(q) for c in off)]
+    residuals = ", ".join(f"{float(number(c, start)):.3g}" for c in off)
+    wanted = ", ".join(
+        f"initial={at[step.coordinate]!r} for {name(step.coordinate)}"
+        for step, _ in sources
+        if abs(at[step.coordinate] - start[step.coordinate]) > AGREEING
+    )
+    raise SceneError(
+        f"the start {values(moving, start)} is off the constraint {shown(off)}: the left side is {residuals}. Take {wanted}"
+    )
+
+
+def _agrees(constraint, start):
+    terms = [abs(float(number(part, start))) for part in sp.Add.make_args(constraint)]
+    return abs(float(number(constraint, start))) <= AGREEING * sum(terms)
+
+
+def _generic(start):
+    """Return values that are nothing in particular."""
+    generator = np.random.default_rng(5)
+    return {s: float(value * generator.uniform(0.9, 1.1) + generator.uniform(0.01, 0.1)) for s, value in start.items()}
