@@ -87,7 +87,7 @@ def with_friction(W, c, N, u, slip, e, mu):
 
     Newton's restitution and Coulomb's law of impulses (Whittaker; Brach 1991): the impulse that stops the slip if the
     cone holds it, else mu p against the slip. Where slip and approach are coupled (c != 0) the pair can gain energy
-    (Kane, 1984; Stronge, 1990): then the restitution is lowered, down to none, until it does not.
+    (Kane, 1984; Stronge, 1990): an impact that would gain any goes without restitution.
 
     Parameters
     ----------
