@@ -11,7 +11,7 @@ from .solve import is_zero
 from .trace import maximum, minimum, select
 
 
-def sequential(W, u, e, touching=None, sweeps=None):
+def sequential(W, u, e, touching=None, sweeps=None, rubs=None):
     """Return (p, u_after): one contact after the other, in sweeps to and fro over the list, each by its own restitution.
 
     A contact that approaches gets u+ = -e u-, its neighbours feel it, and so on. Along a chain of k contacts k sweeps
@@ -20,13 +20,15 @@ def sequential(W, u, e, touching=None, sweeps=None):
 
     Parameters
     ----------
-    W : list of lists, shape (k, k)
-    u : list, shape (k,)
-        Gap rates before, < 0 approaching.
+    W : list of lists, one row for each gap, then for each slip
+    u : list, one per row
+        Gap rates before, < 0 approaching; slips.
     e : list, shape (k,)
+        One per gap.
     touching : list of bool or Value, shape (k,), optional
     sweeps : int, optional
         k unless given.
+    rubs : dict contact -> (row of its slip, mu), optional
 
     Examples
     --------
@@ -36,19 +38,27 @@ def sequential(W, u, e, touching=None, sweeps=None):
     >>> sequential([[2.0, -1.0], [-1.0, 2.0]], [-1.0, 0.0], [1.0, 1.0])
     ([1.0, 1.0], [0.0, 1.0])
     """
-    k = len(u)
+    k, rubs = len(e), rubs or {}
     touching = touching or [True] * k
-    p, u = [0.0] * k, list(u)
+    p, u = [0.0] * len(u), list(u)
     for sweep in range(sweeps or k):
         for i in range(k) if sweep % 2 == 0 else reversed(range(k)):
             meets = touching[i] & (u[i] < 0.0)
-            blow = select(meets, (1.0 + e[i]) * -u[i] / W[i][i], 0.0)
-            p[i] = p[i] + blow
-            for j in range(k):
-                if not is_zero(W[i][j]):
-                    # exactly -e u at the contact itself: a rounded zero would count as an approach
-                    u[j] = select(meets, -(e[i] * u[i]), u[i]) if j == i else u[j] + W[j][i] * blow
+            blows = {i: (1.0 + e[i]) * -u[i] / W[i][i]}
+            if i in rubs:
+                j, mu = rubs[i]
+                blows = dict(zip((i, j), with_friction(W[i][i], W[i][j], W[j][j], u[i], u[j], e[i], mu), strict=True))
+            # exactly -e u where nothing rubs: a rounded zero would count as an approach
+            exact = {} if i in rubs else {i: select(meets, -(e[i] * u[i]), u[i])}
+            for a, blow in blows.items():
+                blow = select(meets, blow, 0.0)
+                p[a] = p[a] + blow
+                u = [exact[j] if j in exact else _plus(u[j], W[j][a], blow) for j in range(len(u))]
     return p, u
+
+
+def _plus(a, w, blow):
+    return a if is_zero(w) else a + w * blow
 
 
 def simultaneous(W, u, e, touching=None, names=None):
