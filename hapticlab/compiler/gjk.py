@@ -1,0 +1,111 @@
+"""The distance of two convex cores by Gilbert, Johnson and Keerthi (1988), with a fixed number of iterations.
+
+Each iteration looks for the corner of the Minkowski difference B - A that lies furthest towards the origin, and keeps
+the nearer of the two edges it makes with the corners known; in the plane two corners are enough. After the first two,
+every new corner lies on the chain between them, so :func:`enough` iterations always do, and usually far fewer.
+
+The distance is never negative: in overlap it means nothing, and the sign must come from elsewhere. For two polygons
+:mod:`hapticlab.compiler.faces` costs less (its own pass over the edges is what the depth needs in any case): a box on a
+box in 385 instructions where 6 iterations take 1 050. This is for cores that a radius widens, with many corners.
+"""
+
+import sympy as sp
+from sympy.core.symbol import Str
+
+from ..scene.closest_points import PARTS, ClosestPoints
+from .faces import SAME_POINT, closest, core, distinct, dot, less, minus, moved, pick, relative, turned
+from .trace import clip, maximum, select, sqrt
+
+
+def enough(A, B):
+    """Return a number of iterations after which two cores, wherever they are, are at their distance.
+
+    The proof asks for one iteration a corner. Of a million random placements of random polygons the worst needed the
+    numbers of tests/compiler/test_gjk.py, which grow as the logarithm of the corners; two more are taken.
+    """
+    corners = len(distinct(A)) + len(distinct(B))
+    return min(corners, 4 + corners.bit_length())
+
+
+def distance(A, B, iterations=None):
+    """Return (distance, normal, point of B) of two cores apart, as :func:`hapticlab.compiler.faces.closest` does.
+
+    Parameters
+    ----------
+    A, B : Core
+    iterations : int, optional
+        :func:`enough` unless given.
+    """
+    pose = relative(A, B)
+    placed = [(p, moved(pose, p)) for p in distinct(B)]
+    w = _support(A, placed, (pose[0], pose[1]))
+    one, two, p = w, w, w[0]
+    for _ in range(iterations or enough(A, B)):
+        w = _support(A, placed, p)
+        # a corner no nearer to the origin along p than p itself: p is the closest point
+        further = dot(p, w[0]) < dot(p, p)
+        (q, d_q), (r, d_r) = _nearest(one[0], w[0]), _nearest(two[0], w[0])
+        first = d_q < d_r
+        closer = further & (select(first, d_q, d_r) < dot(p, p))
+        one = pick(closer, pick(first, one, two), one)
+        two = pick(closer, w, two)
+        p = pick(closer, pick(first, q, r), p)
+    return _measured(A, B, one, two)
+
+
+def _support(A, placed, towards):
+    """Return (B - A, corner of A, corner of B) furthest against a direction; corners in their own frames."""
+    (a, *others), b = distinct(A), placed[0]
+    most, least = dot(towards, a), dot(towards, b[1])
+    for p in others:
+        height = dot(towards, p)
+        higher = most < height
+        most, a = select(higher, height, most), pick(higher, p, a)
+    for p in placed[1:]:
+        height = dot(towards, p[1])
+        lower = height < least
+        least, b = select(lower, height, least), pick(lower, p, b)
+    return less(b[1], a), a, b[0]
+
+
+def _nearest(p, q):
+    """Return the point of the segment from p to q that is closest to the origin, and the square of its distance."""
+    along = less(q, p)
+    part = clip(-dot(p, along) / maximum(dot(along, along), SAME_POINT), 0.0, 1.0)
+    point = p[0] + part * along[0], p[1] + part * along[1]
+    return point, dot(point, point)
+
+
+def _measured(A, B, one, two):
+    """Take the distance of the chosen corners again, so that only it depends on where the bodies are."""
+    pose = relative(A, B)
+    p, q = (less(moved(pose, w[2]), w[1]) for w in (one, two))
+    along = less(q, p)
+    length = maximum(dot(along, along), SAME_POINT)
+    part = -dot(p, along) / length
+    corner = (part <= 0.0) | (1.0 <= part)
+    part = clip(part, 0.0, 1.0)
+    end = pick(1.0 <= part, q, p)
+    square = sqrt(length)
+    across = (along[1] / square, -along[0] / square)
+    height = dot(across, p)
+    # the normal of an edge of B - A points from A to B where the edge is
+    across = pick(height < 0.0, minus(across), across)
+    far = sqrt(maximum(dot(end, end), SAME_POINT))
+    gap = select(corner, far, abs(height))
+    normal = pick(corner, (end[0] / far, end[1] / far), across)
+    b = one[2][0] + part * (two[2][0] - one[2][0]), one[2][1] + part * (two[2][1] - one[2][1])
+    return gap, turned(A, normal), moved((B.x, B.y, B.c, B.s), b)
+
+
+def trace(translator, node):
+    """Return the value of a :class:`~hapticlab.scene.gaps.ClosestPoints`; its other parts are known from then on."""
+    A, B, method, label, _ = node.args
+    cores = []
+    for corners, x, y, angle in (A, B):
+        placed = (translator(expr) for expr in (x, y, sp.cos(angle), sp.sin(angle)))
+        cores.append(core([tuple(map(translator, p)) for p in corners], *placed))
+    gap, normal, point = closest(*cores) if method.name == "faces" else distance(*cores)
+    for part, value in zip(PARTS, (gap, *normal, *point), strict=True):
+        translator.known[ClosestPoints(A, B, method, label, Str(part))] = value
+    return translator.known[node]

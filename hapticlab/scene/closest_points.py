@@ -1,0 +1,33 @@
+"""Where two convex cores are closest, as one word that the compiler turns into arithmetic."""
+
+import sympy as sp
+
+#: what a ClosestPoints gives, and its unit
+PARTS = {"distance": "m", "normal_x": "1", "normal_y": "1", "point_x": "m", "point_y": "m"}
+
+
+class ClosestPoints(sp.Expr):
+    """One of the facts about where two convex cores are closest: their distance, the normal or the point.
+
+    The arguments are the two cores, each ``Tuple(corners, x, y, angle)``, the method, what it prints as, and the part.
+    """
+
+    is_commutative = True
+    is_real = True
+    is_number = False
+
+    @property
+    def part(self):
+        """A key of PARTS."""
+        return self.args[4].name
+
+    @property
+    def unit(self):
+        """Unit of the part."""
+        return PARTS[self.part]
+
+    def _sympystr(self, printer):
+        return f"{self.part}({self.args[3].name})"
+
+    def _latex(self, printer):
+        return rf"\mathrm{{{self.part}}}\left(\text{{{self.args[3].name}}}\right)".replace("_", r"\_")
