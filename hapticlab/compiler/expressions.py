@@ -5,9 +5,11 @@ import operator
 import sympy as sp
 
 from ..errors import ProgramError, ProgramLimitError
+from ..scene.amount import Amount
+from ..scene.closest_points import ClosestPoints
 from ..scene.symbols import delay
 from ..scene.units import fixed
-from . import trace
+from . import gjk, trace
 from .constants import check_product, entering
 from .phase import angle_of
 from .trace import Value, maximum, minimum, select
@@ -211,6 +213,8 @@ _RULES = (
     (sp.Piecewise, Translator._cases),
     (sp.core.relational.Relational, Translator._relation),
     ((sp.And, sp.Or, sp.Not, sp.Xor, sp.ITE), Translator._logic),
+    (Amount, lambda translator, expr: translator(expr.value)),
+    (ClosestPoints, gjk.trace),
 )
 _LOGIC = {
     sp.And: _fold(operator.and_), sp.Or: _fold(operator.or_), sp.Not: operator.invert,
