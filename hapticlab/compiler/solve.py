@@ -58,20 +58,17 @@ def less_product(a, b, c):
 
 def _ldl(M, f):
     N = len(f)
-    L = [[None] * N for _ in range(N)]
-    d, inverse, y = [], [], list(f)
+    L, LD = ([[None] * N for _ in range(N)] for _ in range(2))  # entries divided by their pivot, and not yet
+    inverse, y = [], list(f)
     for j in range(N):
-        scaled = [L[j][k] * d[k] if not is_zero(L[j][k]) else L[j][k] for k in range(j)]
-        pivot = M[j][j]
-        for k in range(j):
-            pivot = less_product(pivot, scaled[k], L[j][k])
-        d.append(pivot)
-        inverse.append(1.0 / pivot)
-        for i in range(j + 1, N):
+        for i in range(j, N):
             entry = M[i][j]
             for k in range(j):
-                entry = less_product(entry, L[i][k], scaled[k])
-            L[i][j] = entry if is_zero(entry) else entry * inverse[j]
+                entry = less_product(entry, L[i][k], LD[j][k])
+            LD[i][j] = entry
+        inverse.append(1.0 / LD[j][j])
+        for i in range(j + 1, N):
+            L[i][j] = LD[i][j] if is_zero(LD[i][j]) else LD[i][j] * inverse[j]
         for k in range(j):
             y[j] = less_product(y[j], L[j][k], y[k])
     a = [y[j] * inverse[j] for j in range(N)]
