@@ -1,0 +1,152 @@
+"""Masses, springs and dampers behind the handle: a mass-spring-damper, two masses, the tuned absorber."""
+
+import math
+
+import sympy as sp
+
+from ..scene.laws import virtual_coupler
+from ..scene.scene import Scene
+from ..scene.symbols import coordinate, n, parameters, t, x
+from .sketch import Sketch
+
+
+def coupler(z):
+    """Return the force K (x - z) + b_c (x' - z') of a virtual coupler from the handle to a body at z, Fig. 23.4.
+
+    K = 200 N/m and b_c = 0.1 N s/m: with T = 1 ms passive on a paddle with b >= K T/2 + b_c = 0.2 N s/m, and a few
+    hundredths more for the estimated velocity that the body sees.
+    """
+    K, b_c = parameters("K b_c", units="N/m N*s/m", values=(200, 0.1))
+    return virtual_coupler(z, K=K, b=b_c)
+
+
+def mass_spring_damper():
+    """Mass-spring-damper behind a virtual coupler: m z'' + b z' + k z = F_c, F_c = K (x - z) + b_c (x' - z').
+
+    One feels a spring when moving slowly, next to nothing near sqrt(k/m) = 5 Hz, and a mass beyond. Held still, the
+    handle transmits the ringing of the mass on k and K together, sqrt((k + K)/m).
+
+    Teaches natural frequency, damping ratio and impedance; any textbook of system dynamics, such as K. Ogata, *System
+    Dynamics*, ch. 8. On an Uno: semi-implicit Euler at 800 Hz.
+
+    Returns
+    -------
+    Scene
+        With m, b, k of the body, K, b_c of the coupler; z starts at the handle.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> scene = hl.library.mass_spring_damper()(k=250)
+    >>> (scene.values["k"] / scene.values["m"]) ** 0.5
+    50.0
+    """
+    z = coordinate("z", unit="m", initial=x(n))
+    m, b, k = parameters("m b k", units="kg N*s/m N/m", values=(0.1, 0.1, 100))
+    F_c = coupler(z)
+    return Scene(
+        force=F_c, eom=[sp.Eq(m * z.diff(t, 2), F_c - k * z - b * z.diff(t))], watch=[z], name="mass-spring-damper"
+    )
+
+
+def draw_mass_spring_damper(axes, *, x=0.015, z=0.01, **_):
+    """Draw the mass to the right of the handle, its spring and damper to the wall."""
+    s = Sketch(axes, -0.075, 0.135, -0.032, 0.032)
+    left, wall, half = z + 0.05, 0.115, 9 * s.u
+    s.handle(x)
+    s.pair((x, 0), (left - half, 0))
+    s.block((left, 0), 18, 12, "$m$")
+    s.pair((left + half, 0), (wall, 0), "$k,\\ b$")
+    s.ground((wall, 9 * s.u), (wall, -9 * s.u), depth=-1.5)
+    s.coordinate("$z$", z, -11 * s.u, origin=0.05)
+
+
+def two_masses():
+    """Two masses joined by a spring, the first behind a virtual coupler: m_1 z_1'' = F_c - F_k, m_2 z_2'' = F_k.
+
+    F_k = k (z_1 - z_2) + b (z_1' - z_2'). Pushed slowly the handle carries both masses; shaken at the antiresonance
+    sqrt(k/m_2) = 3.6 Hz the second mass holds the first still; let go, they ring against each other with
+    sqrt(k (1/m_1 + 1/m_2)) while their centre moves on.
+
+    Teaches modes, the rigid-body mode, resonance and antiresonance (non-collocated control); J. P. Den Hartog,
+    *Mechanical Vibrations*, ch. 3. On an Uno: semi-implicit Euler at 500 Hz.
+
+    Returns
+    -------
+    Scene
+        With m_1, m_2, k, b, and K, b_c of the coupler; both masses start at the handle.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> p = hl.library.two_masses().values
+    >>> round((p["k"] * (1 / p["m_1"] + 1 / p["m_2"])) ** 0.5, 6)
+    38.729833
+    """
+    z_1, z_2 = (coordinate(name, unit="m", initial=x(n)) for name in ("z_1", "z_2"))
+    m_1, m_2, k, b = parameters("m_1 m_2 k b", units="kg kg N/m N*s/m", values=(0.05, 0.1, 50, 0.02))
+    F_c, F_k = coupler(z_1), k * (z_1 - z_2) + b * (z_1.diff(t) - z_2.diff(t))
+    eom = [sp.Eq(m_1 * z_1.diff(t, 2), F_c - F_k), sp.Eq(m_2 * z_2.diff(t, 2), F_k)]
+    return Scene(force=F_c, eom=eom, watch=[z_1, z_2], name="two masses")
+
+
+def draw_two_masses(axes, *, x=0.012, z_1=0.008, z_2=0.015, **_):
+    """Draw both masses in a row to the right of the handle."""
+    s = Sketch(axes, -0.055, 0.155, -0.032, 0.032)
+    first, second, half = z_1 + 0.052, z_2 + 0.112, 7 * s.u
+    s.handle(x)
+    s.pair((x, 0), (first - half, 0))
+    s.block((first, 0), 14, 12, "$m_1$")
+    s.pair((first + half, 0), (second - half, 0), "$k,\\ b$")
+    s.block((second, 0), 14, 12, "$m_2$")
+    s.coordinate("$z_1$", z_1, -11 * s.u, origin=0.052)
+    s.coordinate("$z_2$", z_2, -11 * s.u, origin=0.112)
+
+
+def tuned_absorber():
+    """Tuned vibration absorber: a machine shaken by F_0 sin(Omega t), a small mass m_2 on k_2 hung on it.
+
+    m_1 z_1'' = F_0 sin(Omega t) - k_1 z_1 - b_1 z_1' - F_2 + F_c, m_2 z_2'' = F_2, F_2 = k_2 (z_1 - z_2) + b_2 (...).
+    One feels the machine through a virtual coupler. Where Omega = sqrt(k_2/m_2) the buzz in the handle dies: m_2 swings
+    with F_0/k_2 and its spring cancels the excitation, whatever the hand does. Detune Omega by 20 % and it is back.
+
+    Teaches the absorber's null, the two resonances beside it, and why b_2 > 0 trades the null for width; J. P. Den
+    Hartog, *Mechanical Vibrations*, sec. 3.2. On an Uno: semi-implicit Euler at 400 Hz.
+
+    Returns
+    -------
+    Scene
+        With m_1, b_1, k_1, m_2, b_2, k_2, F_0, Omega [rad/s], and K, b_c of the coupler. Tuned as it comes.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> p = hl.library.tuned_absorber().values
+    >>> p["Omega"] == (p["k_2"] / p["m_2"]) ** 0.5
+    True
+    """
+    z_1, z_2 = coordinate("z_1", unit="m"), coordinate("z_2", unit="m")
+    m_1, b_1, k_1 = parameters("m_1 b_1 k_1", units="kg N*s/m N/m", values=(0.15, 0.3, 150))
+    m_2, b_2, k_2 = parameters("m_2 b_2 k_2", units="kg N*s/m N/m", values=(0.03, 0, 30))
+    F_0, Omega = parameters("F_0 Omega", units="N rad/s", values=(0.3, math.sqrt(30 / 0.03)), ranges=[None, (0, 500)])
+    F_c, F_2 = coupler(z_1), k_2 * (z_1 - z_2) + b_2 * (z_1.diff(t) - z_2.diff(t))
+    F_1 = F_0 * sp.sin(Omega * t) - k_1 * z_1 - b_1 * z_1.diff(t)
+    eom = [sp.Eq(m_1 * z_1.diff(t, 2), F_1 - F_2 + F_c), sp.Eq(m_2 * z_2.diff(t, 2), F_2)]
+    return Scene(force=F_c, eom=eom, watch=[z_1, z_2], name="tuned absorber")
+
+
+def draw_tuned_absorber(axes, *, x=0.0, z_1=0.0, z_2=0.008, **_):
+    """Draw the machine on its springs beside the handle, the absorber on the machine."""
+    s = Sketch(axes, -0.07, 0.14, -0.04, 0.055)
+    u, main, small, wall = s.u, z_1 + 0.055, z_2 + 0.095, 0.115
+    s.handle(x)
+    s.pair((x, 0), (main - 8 * u, 0))
+    s.block((main, 4 * u), 16, 22, "$m_1$")
+    s.arrow((main, 23 * u), (main + 9 * u, 23 * u), r"$F_0\,\sin\,\Omega t$", right=8.5, up=0)
+    s.line((main, 15 * u), (main, 23 * u), width=1.0)
+    s.pair((main + 8 * u, 10 * u), (small - 5 * u, 10 * u), "$k_2,\\ b_2$")
+    s.block((small, 10 * u), 10, 9, "$m_2$")
+    s.pair((main + 8 * u, -3.5 * u), (wall, -3.5 * u), "$k_1,\\ b_1$")
+    s.ground((wall, 3 * u), (wall, -10 * u), depth=-1.5)
+    s.coordinate("$z_1$", z_1, -11 * u, origin=0.055)
+    s.coordinate("$z_2$", z_2, 19 * u, origin=0.095)

@@ -1,0 +1,102 @@
+"""What the library holds: each scene with its picture, the settings it is meant for, and what a paddle must have."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+
+from ..errors import SceneError
+from ..records import PaddleProfile
+from . import bodies, surfaces
+
+#: the paddle that the default values are made for
+NOMINAL = PaddleProfile(
+    "library", m=0.05, b=0.3, force_max=5.0, T=1e-3, source="round numbers of a one-axis paddle with +-50 mm of travel"
+)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One scene of the library.
+
+    Attributes
+    ----------
+    scene : callable -> Scene
+        ``hl.library.<name>``.
+    draw : callable (axes, *, x, ...)
+        Draws the mechanism in a state.
+    b : float
+        Damping at the handle [N s/m] that makes it passive for any hand with ``options``.
+    options : dict
+        Of hapticlab.compile, for a computer.
+    uno : dict or None
+        Of hapticlab.compile, T [s] among them, for an Arduino Uno; None where it does not fit.
+    stored : float
+        Energy that it holds at the start and can give [J].
+    """
+
+    scene: callable
+    draw: callable
+    b: float
+    options: dict = field(default_factory=lambda: {"method": "rk4", "T": NOMINAL.T})
+    uno: dict | None = None
+    stored: float = 0.0
+
+    @property
+    def name(self):
+        """The scene's name in the library."""
+        return self.scene.__name__
+
+    @property
+    def title(self):
+        """What it is, in one line."""
+        return self.scene.__doc__.splitlines()[0]
+
+    def __str__(self):
+        rate = f"{1 / self.uno['T']:.0f} Hz" if self.uno else "does not fit"
+        return f"{self.name}: {self.title}\n  passive on a paddle with b >= {self.b:g} N s/m; on an Uno: {rate}"
+
+
+class Catalogue(Mapping):
+    """Name -> :class:`Entry`; printing it lists them."""
+
+    def __init__(self, entries):
+        self._entries = {entry.name: entry for entry in entries}
+
+    def __getitem__(self, name):
+        if name not in self._entries:
+            raise SceneError(unknown(name, self._entries))
+        return self._entries[name]
+
+    def __contains__(self, name):
+        return name in self._entries
+
+    def __iter__(self):
+        return iter(self._entries)
+
+    def __len__(self):
+        return len(self._entries)
+
+    def __str__(self):
+        return "\n".join(map(str, self.values()))
+
+
+def unknown(name, known):
+    """Say that the library has no such scene, and which come near."""
+    near = get_close_matches(str(name), known, 3, 0.5) or list(known)
+    return f"the library has no scene {name!r}; did you mean {' or '.join(near)}?"
+
+
+def _uno(method, rate):
+    return {"method": method, "T": 1 / rate}
+
+
+SEMI = "semi_implicit_euler"
+CATALOGUE = Catalogue((
+    Entry(bodies.mass_spring_damper, bodies.draw_mass_spring_damper, 0.25, uno=_uno(SEMI, 800)),
+    Entry(bodies.two_masses, bodies.draw_two_masses, 0.25, uno=_uno(SEMI, 500)),
+    Entry(bodies.tuned_absorber, bodies.draw_tuned_absorber, 0.25, uno=_uno(SEMI, 400)),
+    Entry(surfaces.detents, surfaces.draw_detents, 0.19, uno=_uno(SEMI, 1000)),
+    Entry(surfaces.texture, surfaces.draw_texture, 0.28, uno=_uno(SEMI, 800)),
+    Entry(surfaces.virtual_fixture, surfaces.draw_virtual_fixture, 0.2, uno=_uno(SEMI, 1000)),
+    Entry(surfaces.buckling_beam, surfaces.draw_buckling_beam, 0.17, uno=_uno(SEMI, 1000)),
+))  # fmt: skip
