@@ -1,8 +1,10 @@
 """The public names and where they live; __init__.py loads each on first use (SPEC 1)."""
 
+from . import library
 from .analysis.chatter import chatter
 from .analysis.energy import energy
 from .analysis.passivity import passivity_limit
+from .analysis.pictures import picture
 from .analysis.plots import plot
 from .analysis.stability import stability_limit
 from .analysis.sweep import sweep
@@ -68,9 +70,11 @@ __all__ = [
     "doctor",
     "energy",
     "force_filter",
+    "library",
     "n",
     "parameters",
     "passivity_limit",
+    "picture",
     "plot",
     "predicted_sample",
     "profile",

@@ -11,8 +11,8 @@ import hapticlab
 
 PACKAGE = Path(hapticlab.__file__).parent
 LAYERS = (
-    "errors", "records", "scene", "compiler", "device", "analysis", "course", "widgets", "scenefile", "board_commands", "demo",
-    "cli",
+    "errors", "records", "scene", "library", "compiler", "device", "analysis", "course", "widgets", "scenefile",
+    "board_commands", "demo", "cli",
 )  # fmt: skip
 OUTSIDE = {"__init__", "__main__"}  # the public names, and `python -m hapticlab`: above every layer
 # dependency -> the only modules that may open it
