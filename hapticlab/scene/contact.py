@@ -8,7 +8,7 @@ from ..errors import SceneError, SignalError
 from .cases import when
 from .checks import agree_with, applied, check_symbols
 from .contact_laws import EVENT_LAWS, FORCE_LAWS, gap_units
-from .symbols import lag_of, t, v, x
+from .symbols import lag_of, n, t, v, x
 from .units import dimension_of, si_name
 from .written import check_name, expression
 
@@ -89,6 +89,13 @@ class Contact:
         from .derivative import Rate
 
         return when(self.gap <= 0, self.law.force(self.gap, Rate(self.gap)))
+
+    @property
+    def impulse(self):
+        """The sum of the normal impulses since the last sample [N s], found while the scene runs; zero of a force law."""
+        if self.is_force:
+            return sp.S.Zero
+        return sp.Function(f"{self.name}_impulse", real=True, unit=f"{self.unit}*s", role="impulse", contact=self.name)(n)
 
     def generalized_force(self, q):
         """Return what the contact does to a coordinate q, or to the handle x(t): force times dgap/dq."""
@@ -181,7 +188,7 @@ class friction:
 
 def reaction(name, unit):
     """Return the leaf that stands for a reaction found while the scene runs."""
-    return sp.Function(name, real=True, unit=unit, role="reaction")(t)
+    return sp.Function(name, real=True, unit=unit, role="reaction", contact=name)(t)
 
 
 def _check_gap(gap, name):
