@@ -7,7 +7,8 @@ import sympy as sp
 from ..errors import SceneError, SignalError
 from .cases import when
 from .checks import agree_with, applied, check_symbols
-from .contact_laws import EVENT_LAWS, FORCE_LAWS, gap_units
+from .contact_laws import EVENT_LAWS, FORCE_LAWS
+from .force_laws import gap_units
 from .symbols import lag_of, n, t, v, x
 from .units import dimension_of, si_name
 from .written import check_name, expression

@@ -1,0 +1,157 @@
+"""Contact laws that are forces over a time: the penalty spring and damper, and Hunt and Crossley's; chapter section 23.5.2."""
+
+import math
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ..errors import SceneError
+from .checks import agree_with
+from .units import dimension, dimension_of, fixed
+from .written import expression
+
+#: exponent of two spheres, or a sphere on a plane
+HERTZ = sp.Rational(3, 2)
+#: what a gap is measured in -> units of force, stiffness, damping and speed
+_OF_GAP = {
+    dimension("m"): ("N", "N/m", "N*s/m", "m/s"),
+    (): ("N*m", "N*m/rad", "N*m*s/rad", "rad/s"),
+}
+
+
+def gap_units(gap, where):
+    """Return the units of force, stiffness, damping and speed that belong to a gap in m, or in rad."""
+    units = _OF_GAP.get(dimension_of(gap, where))
+    if units is None:
+        raise SceneError(f"{where}: a gap is a distance in m, or an angle in rad; {gap} is neither")
+    return units
+
+
+@dataclass(frozen=True, kw_only=True)
+class penalty:
+    """Penalty contact: a spring and a damper act on the penetration, and never pull.
+
+    N = max(0, k d - b dgap/dt) where the gap is closed, with the penetration d = -gap. With b > 0 the force jumps at
+    touch, which costs an explicit method its order; :class:`hunt_crossley` has no jump. A contact lasts
+    pi sqrt(m/k) with the effective mass m; explicit methods need ten steps in that time.
+
+    Parameters
+    ----------
+    k : Parameter or expression [N/m], >= 0
+    b : Parameter or expression [N s/m], >= 0
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k = hl.parameters("k", units="N/m")
+    >>> hl.penalty(k=k)
+    penalty(k=k, b=0)
+    """
+
+    k: sp.Expr
+    b: sp.Expr = 0
+
+    def __post_init__(self):
+        take(self, k="stiffness", b="damping")
+
+    def check(self, gap, where):
+        """Refuse constants whose units do not belong to the gap."""
+        _, stiffness, damping, _ = gap_units(gap, where)
+        agree_with(self.k, stiffness, f"{where}, k")
+        agree_with(self.b, damping, f"{where}, b")
+
+    def force(self, gap, rate):
+        """Return the normal force of a gap that changes at a rate."""
+        return sp.Max(0, -self.k * gap - self.b * rate)
+
+    def stored(self, gap):
+        """Return the energy in the spring."""
+        return self.k * sp.Max(0, -gap) ** 2 / 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class hunt_crossley:
+    """Hunt-Crossley contact: N = k d^n (1 + c dd/dt), never pulling, with the penetration d = -gap.
+
+    Hunt and Crossley, *Coefficient of restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42 (1975)
+    440-445: their lambda = 3/2 alpha k is k c here, and their restitution e = 1 - alpha v is e = 1 - 2/3 c v to first
+    order in the approach speed v, for every mass, stiffness and exponent. :meth:`restitution` is exact. The force starts
+    and ends at zero, unlike that of a damper, and the energy lost grows as v cubed. Hertz: n = 3/2 for spheres.
+
+    Parameters
+    ----------
+    k : Parameter or expression [N/m^n], >= 0
+    c : Parameter or expression [s/m], >= 0
+    exponent : fraction
+        n >= 1; 3/2 unless given. With a whole n the force is a polynomial in d.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k, c = hl.parameters("k c", units="N/m^1.5 s/m")
+    >>> hl.hunt_crossley(k=k, c=c)
+    hunt_crossley(k=k, c=c, exponent=3/2)
+    """
+
+    k: sp.Expr
+    c: sp.Expr
+    exponent: sp.Rational = HERTZ
+
+    def __post_init__(self):
+        take(self, k="stiffness", c="damping factor")
+        exponent = fixed(expression(self.exponent, "exponent"))
+        if not (exponent.is_Rational and exponent >= 1):
+            raise SceneError(f"exponent = {self.exponent}; needs a fraction n >= 1, such as 3/2 for spheres (Hertz)")
+        object.__setattr__(self, "exponent", exponent)
+
+    def check(self, gap, where):
+        """Refuse constants whose units do not belong to the gap."""
+        force, _, _, speed = gap_units(gap, where)
+        agree_with(self.k * gap**self.exponent, force, f"{where}, k gap^{self.exponent}")
+        agree_with(1 / self.c if self.c != 0 else 0, speed, f"{where}, 1/c")
+
+    def force(self, gap, rate):
+        """Return the normal force of a gap that changes at a rate."""
+        # the factor alone is held at zero: where it is negative the contact would pull
+        return self.k * sp.Max(0, -gap) ** self.exponent * sp.Max(0, 1 - self.c * rate)
+
+    def stored(self, gap):
+        """Return the energy in the spring."""
+        return self.k * sp.Max(0, -gap) ** (self.exponent + 1) / (self.exponent + 1)
+
+    @staticmethod
+    def restitution(cv):
+        """Return e for c times the approach speed v, exact: with y = c e v, y + ln(1 - y) = ln(1 + c v) - c v.
+
+        From m v dv/dd = -k d^n (1 + c v), which separates: the energy of the entry and of the exit reach the same
+        depth. Mass, stiffness and exponent cancel.
+
+        Examples
+        --------
+        >>> import hapticlab as hl
+        >>> round(hl.hunt_crossley.restitution(0.3), 9)
+        0.832869792
+        """
+        if cv < 1e-4:  # where the two sides cancel, their series
+            return 1.0 - 2.0 / 3.0 * cv + 4.0 / 9.0 * cv**2
+        target = math.log1p(cv) - cv
+        y = cv / (1.0 + cv)
+        for _ in range(60):
+            y -= (y + math.log1p(-y) - target) * (1.0 - y) / -y
+            y = min(max(y, 1e-16), 1.0 - 1e-16)
+        return y / cv
+
+
+def take(law, **words):
+    """Keep the constants of a law as expressions; refuse a negative number."""
+    for name, word in words.items():
+        expr = expression(getattr(law, name), name)
+        if expr.is_number and expr < 0:
+            fed = "friction opposes the slip" if name == "mu" else "a negative one feeds energy to the user"
+            raise SceneError(f"{name} = {shown(expr)}; a contact needs a {word} {name} >= 0: {fed}")
+        object.__setattr__(law, name, expr)
+
+
+def shown(number):
+    """Return a number as a message has it."""
+    return f"{float(number):g}"
