@@ -45,6 +45,10 @@ class Builder:
             ids = tuple(sorted(ids))
         return self._number((op, ids, type), Instruction(op, ids, type))
 
+    def identify(self, op, operand, value):
+        """From now on take ``value`` for ``op(operand)``: a result that is known already, at less cost."""
+        self._known.setdefault((op, (operand.id,), value.type), value.id)
+
     def inline(self, block, **leaves):
         """Copy a block in, its leaves replaced: ``inline(block, param=[...], input=[...], state=[...])``.
 
@@ -168,6 +172,8 @@ class Value:
 
     def __or__(self, other):
         return self._with("or", other)
+
+    __rand__, __ror__ = __and__, __or__  # of a plain bool on the left
 
     def __invert__(self):
         return self.builder.emit("not", self)
