@@ -21,17 +21,17 @@ def check_range(drivers, sources, start):
     Parameters
     ----------
     drivers : tuple of coordinates
-    sources : list of (Step, tuple of its constraints)
+    sources : list of (constraints, steps)
     start : dict
     """
-    if not any(step.margin.atoms(sp.Function) for step, _ in sources):
+    if not any(step.margin.atoms(sp.Function) for _, steps in sources for step in steps):
         return
     for q in drivers:
         if _limits(q, start) is None:
             raise NotClosed(f"{name(q)} has no declared range on which to check that the loop closes")
     margin, which, worst = _closest(drivers, sources, start)
     where = ", ".join(f"{name(q)} = {value:.4g}" for q, value in zip(drivers, worst, strict=True))
-    loop = shown(sources[which][1])
+    loop = shown([group for group, steps in sources for _ in steps][which])
     if margin < -CLOSEST:
         raise Open(f"{loop} cannot close at {where}{_where_it_closes(drivers, sources, start)}")
     if margin < CLOSEST:
@@ -80,7 +80,7 @@ def _margins(drivers, sources, start, points):
     at = {**start, **dict(zip(drivers, points.T, strict=True))}
     rows = []
     with np.errstate(all="ignore"):
-        for step, _ in sources:
+        for step in [step for _, steps in sources for step in steps]:
             margin = np.broadcast_to(np.asarray(number(step.margin, at), float), len(points))
             # what follows a step that cannot close is not looked at
             rows.append(np.where(np.isnan(margin), np.inf if rows and (rows[-1] < 0).any() else -1.0, margin))
@@ -96,7 +96,7 @@ def wraps(drivers, sources, start):
             continue
         at = {**start, q: np.linspace(*_limits(q, start), 721)}
         with np.errstate(all="ignore"):
-            for step, _ in sources:
+            for step in [step for _, steps in sources for step in steps]:
                 at[step.coordinate] = value = number(step.value, at)
                 if is_angle(step.coordinate) and np.any(np.abs(np.diff(np.atleast_1d(value))) > math.pi):
                     found.add(step.coordinate)

@@ -30,15 +30,21 @@ class Embedding:
     ----------
     drivers : tuple of coordinates
         What remains free.
-    steps : tuple of Step
-        The dependent coordinates, each in terms of the drivers and of those before it.
+    groups : tuple of (constraints, steps)
+        One constraint that solves one coordinate, or two that solve two, in terms of the drivers and of the groups
+        before.
     wraps : frozenset of coordinates
         Angles that jump by a turn somewhere on the range: their cosine and sine may be used, the angle itself not.
     """
 
     drivers: tuple
-    steps: tuple
+    groups: tuple
     wraps: frozenset = frozenset()
+
+    @property
+    def steps(self):
+        """The dependent coordinates in order, each a :class:`~hapticlab.scene.dyads.Step`."""
+        return tuple(step for _, steps in self.groups for step in steps)
 
     def __str__(self):
         lines = [f"driven by {names(self.drivers) or 'the handle'}"]
@@ -78,13 +84,13 @@ def embed(constraints, coordinates, start):
     driven by phi
     z = L*sin(phi(t))
     """
-    drivers, steps, wraps = [], [], set()
+    drivers, groups, wrapping = [], [], set()
     for group, held in _groups(constraints, coordinates):
         found = _embed_group(group, held, start) if group else Embedding(held, ())
         drivers += found.drivers
-        steps += found.steps
-        wraps |= found.wraps
-    return Embedding(tuple(q for q in coordinates if q in drivers), tuple(steps), frozenset(wraps))
+        groups += found.groups
+        wrapping |= found.wraps
+    return Embedding(tuple(q for q in coordinates if q in drivers), tuple(groups), frozenset(wrapping))
 
 
 def _groups(constraints, coordinates):
@@ -121,19 +127,19 @@ def _embed_group(constraints, coordinates, start):
             refused += [reason] if given and isinstance(reason, Open) else []
             continue
         _check_start(constraints, sources, start)
-        return Embedding(drivers, tuple(step for step, _ in sources), wraps(drivers, sources, start))
+        return Embedding(drivers, tuple(sources), wraps(drivers, sources, start))
     if declared and len(refused) == declared:
         raise SceneError(f"{refused[0]}. Declare the range it moves in, or change its lengths")
     raise NotClosed("; ".join(list(dict.fromkeys(reasons))[:3]) or "no driver was found")
 
 
 def _staged(equations, constraints, unknown):
-    """Return [(step, its constraints)]: one unknown of one constraint at a time, else two of two."""
+    """Return [(constraints, steps)]: one unknown of one constraint at a time, else two of two."""
     left, open_, found = list(constraints), list(unknown), []
     while left:
         held = {c: [q for q in open_ if c.has(q)] for c in left}
         group, solved = _next(equations, left, held)
-        found += [(step, group) for step in solved]
+        found.append((group, solved))
         left = [c for c in left if c not in group]
         open_ = [q for q in open_ if q not in {step.coordinate for step in solved}]
     return found
@@ -165,13 +171,14 @@ def _check_start(constraints, sources, start):
     if not off:
         return
     at = dict(start)
-    for step, _ in sources:
+    steps = [step for _, solved in sources for step in solved]
+    for step in steps:
         at[step.coordinate] = float(number(step.value, at))
     moving = [q for q in start if is_coordinate(q) and any(c.has(q) for c in off)]
     residuals = ", ".join(f"{float(number(c, start)):.3g}" for c in off)
     wanted = ", ".join(
         f"initial={at[step.coordinate]!r} for {name(step.coordinate)}"
-        for step, _ in sources
+        for step in steps
         if abs(at[step.coordinate] - start[step.coordinate]) > AGREEING
     )
     raise SceneError(
