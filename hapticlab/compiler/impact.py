@@ -141,7 +141,7 @@ def _coulomb(W, c, N, u, slip, e, mu):
 
 
 def dissipated(u, after, p):
-    """Return the energy that normal impulses took [J]: -sum p (u- + u+)/2, exact for any of the laws (Thomson and Tait).
+    """Return the energy that each impulse took [J]: -p (u- + u+)/2, exact in sum for any of the laws (Thomson and Tait).
 
     For one contact it is 1/2 (1 - e^2) u^2 / W, with 1/W the effective mass.
 
@@ -149,12 +149,9 @@ def dissipated(u, after, p):
     --------
     >>> from hapticlab.compiler.impact import dissipated
     >>> dissipated([-2.0], [1.0], [3.0])
-    1.5
+    [1.5]
     """
-    total = 0.0
-    for before, now, impulse in zip(u, after, p, strict=True):
-        total = total - 0.5 * impulse * (before + now)
-    return total
+    return [-0.5 * impulse * (before + now) for before, now, impulse in zip(u, after, p, strict=True)]
 
 
 def rests(u_after, acceleration, period, rest_speed=None):

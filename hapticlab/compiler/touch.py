@@ -48,14 +48,14 @@ class Struck:
         Rates of the rows after.
     resting : list, shape (k,)
         Contacts that stay closed, held by their reactions from now on.
-    lost : Value or float
+    lost : list, one per row
         Energy dissipated [J].
     """
 
     p: list
     u: list
     resting: list
-    lost: object
+    lost: list
 
 
 def strike(W, u, b, touching, laws, period, order="sequential"):
@@ -84,7 +84,7 @@ def strike(W, u, b, touching, laws, period, order="sequential"):
     >>> from hapticlab.compiler.touch import Law, strike
     >>> fast = strike([[2.0]], [-3.0], [-9.81], [True], [Law("floor", 0.5)], 1e-3)
     >>> fast.u, fast.resting, fast.lost
-    ([1.5], [False], 1.6875)
+    ([1.5], [False], [1.6875])
     >>> slow = strike([[2.0]], [-3e-3], [-9.81], [True], [Law("floor", 0.5)], 1e-3)
     >>> slow.u, slow.resting
     ([0.0], [True])

@@ -9,7 +9,7 @@ from .cases import when
 from .checks import agree_with, applied, check_symbols
 from .contact_laws import EVENT_LAWS, FORCE_LAWS
 from .force_laws import gap_units
-from .symbols import lag_of, n, t, v, x
+from .symbols import lag_of, t, v, x
 from .units import dimension_of, si_name
 from .written import check_name, expression
 
@@ -94,9 +94,23 @@ class Contact:
     @property
     def impulse(self):
         """The sum of the normal impulses since the last sample [N s], found while the scene runs; zero of a force law."""
+        return self._met("impulse", f"{self.unit}*s")
+
+    @property
+    def impact_loss(self):
+        """The energy that impacts have dissipated so far [J]; zero of a force law."""
+        return self._met("impact_loss", "J")
+
+    @property
+    def impact_work(self):
+        """The work that handle and moving surfaces have done in impacts so far [J]; zero of a force law."""
+        return self._met("impact_work", "J")
+
+    def _met(self, role, unit):
+        """Return the leaf of what impacts add up to."""
         if self.is_force:
             return sp.S.Zero
-        return sp.Function(f"{self.name}_impulse", real=True, unit=f"{self.unit}*s", role="impulse", contact=self.name)(n)
+        return sp.Function(f"{self.name}_{role}", real=True, unit=unit, role=role, contact=self.name)(t)
 
     def generalized_force(self, q):
         """Return what the contact does to a coordinate q, or to the handle x(t): force times dgap/dq."""
