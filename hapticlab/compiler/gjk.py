@@ -4,9 +4,10 @@ Each iteration looks for the corner of the Minkowski difference B - A that lies 
 the nearer of the two edges it makes with the corners known; in the plane two corners are enough. After the first two,
 every new corner lies on the chain between them, so :func:`enough` iterations always do, and usually far fewer.
 
-The distance is never negative: in overlap it means nothing, and the sign must come from elsewhere. For two polygons
-:mod:`hapticlab.compiler.faces` costs less (its own pass over the edges is what the depth needs in any case): a box on a
-box in 385 instructions where 6 iterations take 1 050. This is for cores that a radius widens, with many corners.
+The distance is never negative: in overlap it means nothing. :mod:`hapticlab.compiler.faces` gives the depth too, and
+costs less up to 16 corners each: 393 instructions against 1106 for a box on a box, 3613 against 3646 for 16 corners,
+12 221 against 7171 for 32. (Every corner against every edge: 863, 12 767 and 50 111.) So this is for cores of many
+corners that a radius widens.
 """
 
 import sympy as sp
@@ -20,8 +21,9 @@ from .trace import clip, maximum, select, sqrt
 def enough(A, B):
     """Return a number of iterations after which two cores, wherever they are, are at their distance.
 
-    The proof asks for one iteration a corner. Of a million random placements of random polygons the worst needed the
-    numbers of tests/compiler/test_gjk.py, which grow as the logarithm of the corners; two more are taken.
+    The proof asks for one iteration a corner. The worst of a million random placements of polygons round, flat and
+    thin took 5 iterations for 4 corners each, 8 for 8 and 16, and 10 for 32, which grows as the logarithm; this is at
+    least one more. Were it too few, the result would be the distance of two points of the bodies: never too small.
     """
     corners = len(distinct(A)) + len(distinct(B))
     return min(corners, 4 + corners.bit_length())
