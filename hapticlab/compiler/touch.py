@@ -6,11 +6,12 @@ handle feels the impulse -sum p_i d(row i)/dx.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from .complementarity import complementarity, dot, reactions
+from .complementarity import complementarity, dot, reactions, response
 from .impact import dissipated, micro_rebound, sequential, simultaneous
-from .trace import maximum, select
+from .solve import solve
+from .trace import Value, maximum, select
 
 
 @dataclass(frozen=True)
@@ -123,20 +124,86 @@ def release(W, b, resting, names=None):
 def micro_impulses(W, u, b, gaps, laws, envelopes, step):
     """Return (p, u_after) of the micro-impulses at the end of a step; Mirtich and Canny (1995).
 
-    One after the other, as :func:`~hapticlab.compiler.impact.sequential`, each contact by
-    :func:`~hapticlab.compiler.impact.micro_rebound` with the acceleration that its reaction would cancel.
+    All at once: each contact within its envelope is to leave at least as
+    :func:`~hapticlab.compiler.impact.micro_rebound` says, with the acceleration that its reaction would cancel.
     """
-    k = len(laws)
+    names = [law.name for law in laws]
     near = [gap < envelope for gap, envelope in zip(gaps, envelopes, strict=True)]
-    pressed = complementarity(W, b, near, [law.name for law in laws])
-    p, rates = [0.0] * k, list(u)
-    for sweep in range(k):
-        for i in range(k) if sweep % 2 == 0 else reversed(range(k)):
-            pulled = -(W[i][i] * pressed[i])
-            blow = (micro_rebound(gaps[i], rates[i], laws[i].e, envelopes[i], pulled, step) - rates[i]) / W[i][i]
-            p[i] = p[i] + blow
-            rates = [rate + W[j][i] * blow for j, rate in enumerate(rates)]
-    return p, rates
+    pressed = complementarity(W, b, near, names)
+    aims = [
+        maximum(micro_rebound(gap, rate, law.e, envelope, -(W[i][i] * push), step), 0.0)
+        for i, (gap, rate, law, envelope, push) in enumerate(zip(gaps, u, laws, envelopes, pressed, strict=True))
+    ]
+    q = [rate - select(rate < 0.0, aim, 0.0) for rate, aim in zip(u, aims, strict=True)]
+    p = complementarity(W, q, near, names)
+    return p, _rates(W, u, p)
+
+
+@dataclass(frozen=True)
+class Impacts:
+    """The impacts of a motion, for a stepper that has located them: what ``Stepper`` takes as ``impact``.
+
+    Attributes
+    ----------
+    laws : list of Law, shape (k,)
+    order : {"sequential", "simultaneous"}
+    M, f : lists of Value over the motion's leaves
+        M a = f in free flight, without reactions.
+    rows : list of lists of Value
+        d gap / d q of the k contacts, then d slip / d q' of those with friction.
+    rates : list of Value, one per row
+        Gap rates and slips, with what handle and time add.
+    biases : list of Value, shape (k,)
+        Second derivative of each gap but for J a.
+    gaps : list of Value, shape (k,)
+    w : list of Value
+        Leaves of the rates of the coordinates.
+    place : list of int, shape (k,)
+        Where each contact stands among the motion's reactions.
+    period : float
+    near : float
+        A gap below this [m] takes part in the impact of another.
+    definite : bool
+    """
+
+    laws: list
+    order: str
+    M: list
+    f: list
+    rows: list
+    rates: list
+    biases: list
+    gaps: list
+    w: list
+    place: list
+    period: float
+    near: float = 1e-9
+    definite: bool = True
+
+    def __call__(self, at, fired, held):
+        """Return (w, held) after the contacts fired, beside those that rest or touch already."""
+        w, held, _ = self.struck(at, fired, held)
+        return w, held
+
+    def struck(self, at, fired, held):
+        """Return (w, held, :class:`Struck`)."""
+        k = len(self.laws)
+        touching = [fired[i] | held[i] | (at(gap) <= self.near) for i, gap in zip(self.place, self.gaps, strict=True)]
+        M = [[at(m) for m in row] for row in self.M]
+        rows = [[at(j) for j in row] for row in self.rows]
+        free = solve(M, [at(f) for f in self.f], self.definite)
+        W, P = response(M, rows, self.definite)
+        b = [dot(row, free) + at(bias) for row, bias in zip(rows, self.biases, strict=False)]
+        laws = [
+            replace(law, **{part: at(value) for part, value in vars(law).items() if isinstance(value, Value)})
+            for law in self.laws
+        ]
+        found = strike(W, [at(rate) for rate in self.rates], b, touching, laws, self.period, self.order)
+        w = [at(rate) + dot(found.p, [column[i] for column in P]) for i, rate in enumerate(self.w)]
+        modes = list(held)
+        for i in range(k):
+            modes[self.place[i]] = found.resting[i]
+        return w, modes, found
 
 
 def _slow(rate, acceleration, rest_speed, period):
