@@ -6,7 +6,7 @@ handle feels the impulse -sum p_i d(row i)/dx.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from .complementarity import complementarity, dot, reactions, response
 from .impact import dissipated, micro_rebound, sequential, simultaneous
@@ -164,6 +164,9 @@ class Impacts:
     near : float
         A gap below this [m] takes part in the impact of another.
     definite : bool
+    sums : dict (role, contact) -> Value
+        What the impacts of the steps traced so far add up to: role ``impulse`` [N s], ``impact_loss`` [J], and
+        ``impact_work`` [J], the work of what drives a surface. Cleared by who starts a period.
     """
 
     laws: list
@@ -180,14 +183,24 @@ class Impacts:
     near: float = 1e-9
     definite: bool = True
 
-    def __call__(self, at, fired, held):
-        """Return (w, held) after the contacts fired, beside those that rest or touch already."""
-        w, held, _ = self.struck(at, fired, held)
-        return w, held
+    sums: dict = field(default_factory=dict)
 
-    def struck(self, at, fired, held):
-        """Return (w, held, :class:`Struck`)."""
-        k = len(self.laws)
+    def __call__(self, at, fired, held):
+        """Return (w, held) after the contacts fired, beside those that rest or touch already; add to ``sums``."""
+        w, modes, found, driven = self._struck(at, fired, held)
+        any_fired = False
+        for here in fired:
+            any_fired = here | any_fired
+        for i, law in enumerate(self.laws):
+            rows = [i] if law.slip is None else [i, law.slip]
+            work = [-(found.p[row] * driven[row]) for row in rows]
+            amounts = {"impulse": found.p[i], "impact_loss": sum(found.lost[row] for row in rows), "impact_work": sum(work)}
+            for role, amount in amounts.items():
+                self.sums[role, i] = self.sums.get((role, i), 0.0) + select(any_fired, amount, 0.0)
+        return w, modes
+
+    def _struck(self, at, fired, held):
+        """Return (w, held, :class:`Struck`, the part of each row's rate that handle and time drive)."""
         touching = [fired[i] | held[i] | (at(gap) <= self.near) for i, gap in zip(self.place, self.gaps, strict=True)]
         M = [[at(m) for m in row] for row in self.M]
         rows = [[at(j) for j in row] for row in self.rows]
@@ -198,12 +211,14 @@ class Impacts:
             replace(law, **{part: at(value) for part, value in vars(law).items() if isinstance(value, Value)})
             for law in self.laws
         ]
-        found = strike(W, [at(rate) for rate in self.rates], b, touching, laws, self.period, self.order)
-        w = [at(rate) + dot(found.p, [column[i] for column in P]) for i, rate in enumerate(self.w)]
+        u, w = [at(rate) for rate in self.rates], [at(rate) for rate in self.w]
+        driven = [rate - dot(row, w) for rate, row in zip(u, rows, strict=True)]
+        found = strike(W, u, b, touching, laws, self.period, self.order)
+        w = [rate + dot(found.p, [column[i] for column in P]) for i, rate in enumerate(w)]
         modes = list(held)
-        for i in range(k):
-            modes[self.place[i]] = found.resting[i]
-        return w, modes, found
+        for i, place in enumerate(self.place):
+            modes[place] = found.resting[i]
+        return w, modes, found, driven
 
 
 def _slow(rate, acceleration, rest_speed, period):
