@@ -67,3 +67,15 @@ class Handle:
         if self.velocity == "backward_difference":
             velocity = velocity + acceleration * (self.T / 2)
         return position + (velocity + acceleration * (tau / 2)) * tau, velocity + acceleration * tau
+
+    def polynomial(self):
+        """Return x(t) and v(t) after the sample as ``hold`` sees them, each as value, rate, ... at the sample: two lists."""
+        position, velocity = self.sample(x), self.sample(v)
+        if self.hold == "zoh":
+            return [position], [velocity]
+        if self.hold == "foh":
+            return [position, velocity], [velocity]
+        acceleration = (velocity - self.sample(v, 1)) * (1 / self.T)
+        if self.velocity == "backward_difference":
+            velocity = velocity + acceleration * (self.T / 2)
+        return [position, velocity, acceleration], [velocity, acceleration]

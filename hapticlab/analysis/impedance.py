@@ -1,0 +1,130 @@
+"""What a scene is at its port: the impedance Z = F/v of its equations of motion, linearised, in continuous time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from ..compiler.coefficients import Coefficients
+from ..errors import AnalysisError, ParameterError
+from ..scene.scene import Scene
+from ..scene.symbols import delay, lag_of, n, t, v, x
+
+#: the handle as a force sees it at the sample, and as an equation of motion sees it
+SEEN = ((x(t), x(n)), (v(t), v(n)))
+
+
+@dataclass(frozen=True)
+class Port:
+    """(M s^2 + C s + K) z = -(K_x + s C_x) x and F = (k + s c) x + (K_F + s C_F) z, in numbers.
+
+    Attributes
+    ----------
+    coordinates : tuple of sympy expressions, shape (N,)
+    M, C, K : array of shape (N, N)
+    Kx, Cx, KF, CF : array of shape (N,)
+    k, c : float
+        Force of the handle's own position and velocity [N/m], [N s/m].
+    """
+
+    coordinates: tuple
+    M: np.ndarray
+    C: np.ndarray
+    K: np.ndarray
+    Kx: np.ndarray
+    Cx: np.ndarray
+    KF: np.ndarray
+    CF: np.ndarray
+    k: float
+    c: float
+
+    def impedance(self, frequency):
+        """Return Z = F/v [N s/m] at frequencies > 0 [Hz], complex, shape as given."""
+        s = 2j * np.pi * np.asarray(frequency, float)
+        S = np.reshape(s, (-1, 1, 1))
+        z = -np.linalg.solve(S * S * self.M + S * self.C + self.K, (self.Kx + S[:, 0] * self.Cx)[..., None])[..., 0]
+        F = self.k + S[:, 0, 0] * self.c + ((self.KF + S[:, 0] * self.CF) * z).sum(axis=1)
+        return (F / S[:, 0, 0]).reshape(np.shape(s))
+
+
+def impedance(scene, frequency):
+    """Impedance Z = F/v at the handle [N s/m], of the scene linearised about its start with the handle at x = 0.
+
+    A mass at the handle would have Z = m s, a spring k/s, a damper b, at s = 2 pi j frequency. Continuous: without the
+    sampling that a program adds.
+
+    Parameters
+    ----------
+    scene : Scene
+        Every parameter bound; of the present sample and its equations of motion, without memory of past samples.
+    frequency : float or array
+        [Hz], > 0.
+
+    Returns
+    -------
+    complex array of the shape of ``frequency``
+
+    Raises
+    ------
+    AnalysisError, ParameterError
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k, b = hl.parameters("k b", units="N/m N*s/m", values=(200, 3))
+    >>> complex(impedance(hl.Scene(force=k * hl.x(hl.n) + b * hl.v(hl.n)), 1 / (2 * np.pi)).round(9))
+    (3-200j)
+    """
+    frequency = np.asarray(frequency, float)
+    if not (np.isfinite(frequency).all() and (frequency > 0).all()):
+        raise AnalysisError(f"frequency = {frequency} Hz; an impedance needs finite frequencies > 0")
+    return port_of(scene).impedance(frequency)
+
+
+def port_of(scene, linear=False):
+    """Return the :class:`Port` of a scene, linearised about its start; ``linear`` refuses one that is not."""
+    if not isinstance(scene, Scene):
+        raise AnalysisError(f"{scene!r} is not a scene; needs hl.Scene(force=...)")
+    unbound = sorted(set(scene.parameters) - set(scene.values))
+    if unbound:
+        raise ParameterError(f"{', '.join(unbound)} has no value; bind it: scene({unbound[0]}=...)")
+    form = scene.explicit()
+    _check_memory(scene, form)
+    found, rows = Coefficients(form, scene.values, 1e-3), range(len(form.coordinates))
+    form = found.form
+    why = linear and (found.slope_moves(form.force, "in the force") or next(filter(None, map(found.why_not, rows)), None))
+    if why:
+        raise AnalysisError(f"{scene.name}: {why}; a reduction needs springs and dampers that are linear")
+    N, of_second = len(form.coordinates), np.array([order == 2 for order in form.orders], bool)
+
+    def slopes(expr, variables):
+        return np.array([found.at_start(found.of(expr, variable)) for variable in variables])
+
+    rates = [q.diff(t) for q in form.coordinates]
+    inertia = np.array([[found.at_start(m) for m in row] for row in form.M]).reshape(N, N)
+    C, K = (np.array([slopes(f, of) for f in form.f]).reshape(N, N) for of in (rates, form.coordinates))
+    by_handle = np.array([slopes(f, (x(t), v(t), x(n), v(n))) for f in form.f]).reshape(N, 4)
+    own = [slopes(form.force, seen).sum() for seen in SEEN]
+    return Port(
+        form.coordinates,
+        inertia * of_second,
+        inertia * ~of_second - C * of_second,
+        -K,
+        -by_handle[:, 0] - by_handle[:, 2],
+        -by_handle[:, 1] - by_handle[:, 3],
+        slopes(form.force, form.coordinates),
+        slopes(form.force, rates) * of_second,
+        *own,
+    )
+
+
+def _check_memory(scene, form):
+    """Refuse what belongs to the samples of a program, and has no impedance in continuous time."""
+    for expr in (form.force, *form.f):
+        for f in expr.atoms(sp.Function):
+            role = getattr(type(f), "role", None)
+            if isinstance(f, delay) or role == "signal" or (role == "handle" and lag_of(f)):
+                raise AnalysisError(
+                    f"{scene.name}: {f} remembers samples, so the scene has no impedance in continuous time; "
+                    "needs a force of x(n), v(n) and coordinates"
+                )

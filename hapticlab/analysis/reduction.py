@@ -1,0 +1,216 @@
+"""A scene of fewer masses that feels the same at the handle: offered, measured, never taken without a word."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..compiler.lower import compile
+from ..errors import AnalysisError
+from ..scene.scene import Scene
+from .impedance import port_of
+from .limit import check_number
+from .masses import modal, network_of, scene_of
+from .moments import candidates
+from .reduction_plot import plot_reduction
+
+#: below what a hand tells from another force, 7 to 10 %
+TOLERANCE = 0.05
+#: frequencies at which two impedances are compared, besides those of their resonances
+POINTS = 400
+#: no frequency nearer to a resonance than this part of it is compared: without damping the impedance there is infinite
+BESIDE = 5e-3
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """A reduced scene and how far it is from the full one; printing it shows both.
+
+    Attributes
+    ----------
+    scene, full : Scene
+        The reduced scene runs like any other. What the full one watched is not in it.
+    masses : int
+        Of the reduced scene.
+    band : (float, float)
+        [Hz]
+    tolerance : float
+    frequency : array, shape (P,)
+        [Hz], over the band.
+    impedance, full_impedance : complex array, shape (P,)
+        At the handle, F/v [N s/m].
+    error : array, shape (P,)
+        ``|Z_reduced - Z| / |Z + Z_hand + Z_paddle|``: the part by which the motion of handle and hand changes.
+    within : bool
+        Whether the largest error is below the tolerance.
+    tried : tuple of (int, float)
+        Masses and largest error of all that were looked at.
+    """
+
+    scene: Scene
+    full: Scene
+    masses: int
+    band: tuple
+    tolerance: float
+    frequency: np.ndarray = field(repr=False)
+    impedance: np.ndarray = field(repr=False)
+    full_impedance: np.ndarray = field(repr=False)
+    error: np.ndarray = field(repr=False)
+    tried: tuple = ()
+
+    @property
+    def largest(self):
+        """The largest error over the band."""
+        return float(self.error.max())
+
+    @property
+    def within(self):
+        return self.largest <= self.tolerance
+
+    def below(self, frequency):
+        """Return the largest error up to a frequency [Hz]."""
+        return float(self.error[self.frequency <= frequency * (1 + 1e-12)].max())
+
+    def instructions(self, T=1e-3):
+        """Return the instructions a tick of (the full, the reduced) scene, each compiled with its parameters fixed."""
+        return tuple(len(compile(scene, T=T, live=())) for scene in (self.full, self.scene))
+
+    def plot(self):
+        """Draw both impedances and the error over the band; return a figure."""
+        return plot_reduction(self)
+
+    def __str__(self):
+        before, after = self.instructions()
+        high = self.band[1]
+        lines = [
+            f"{self.full.name}: {len(self.full.coordinates)} masses replaced by {self.masses}, "
+            f"{before} instructions by {after}",
+            *(f"  {p.name:<6} {self.scene.values[p.name]:.6g} {p.unit}" for p in self.scene.parameters.values()),
+            "  up to [Hz]  |Z_r - Z|/|Z + hand + paddle|",
+            *(f"  {f:>10.4g}  {self.below(f):.2g}" for f in (high / 8, high / 4, high / 2, high) if f > self.band[0]),
+            f"  {'within' if self.within else 'past'} the tolerance of {self.tolerance:.3g} over {self.band[0]:g} to {high:g} Hz",
+        ]
+        return "\n".join(lines)
+
+
+def reduction(scene, paddle, *, band=(0.1, 20.0), masses=None, tolerance=TOLERANCE, accept=False):
+    """Offer a scene of fewer masses whose impedance at the handle is the same within a tolerance over a band.
+
+    Second-order and structure-preserving: the reduced scene has masses, springs and dampers whose energies are those of
+    the full one seen through fewer motions, so it is passive where that is (:mod:`hapticlab.analysis.moments`).
+
+    Parameters
+    ----------
+    scene : Scene
+        Linear, passive, of masses, springs and dampers that the handle moves; every parameter bound.
+    paddle : SimulatedPaddle or any object with m [kg], b [N s/m] and hand
+        In parallel with the scene. Its mass and hand decide what part of the impedance is the scene's.
+    band : (float, float)
+        Lowest and highest frequency [Hz], 0 < low < high.
+    masses : int, optional
+        Of the reduced scene; by default the fewest that are within the tolerance.
+    tolerance : float
+        Largest ``|Z_reduced - Z| / |Z + Z_hand + Z_paddle|``.
+    accept : bool
+        Take ``masses`` though they are past the tolerance.
+
+    Returns
+    -------
+    Reduction
+
+    Raises
+    ------
+    AnalysisError
+        The scene is not linear, not passive or has no masses to spare; nothing is within the tolerance.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> import hapticlab as hl
+    >>> import sympy as sp
+    >>> y, z = hl.coordinate("y", unit="m"), hl.coordinate("z", unit="m")
+    >>> k, m = hl.parameters("k m", units="N/m kg", values=(2000, 0.02))
+    >>> F, between = k * (hl.x(hl.t) - y), k * (y - z)
+    >>> eom = [sp.Eq(m * y.diff(hl.t, 2), F - between), sp.Eq(m * z.diff(hl.t, 2), between)]
+    >>> paddle = SimpleNamespace(m=0.05, b=0.1, hand=None)
+    >>> offer = reduction(hl.Scene(force=F, eom=eom), paddle, band=(0.1, 10), tolerance=0.01)
+    >>> offer.masses, {name: round(value, 6) for name, value in offer.scene.values.items()}
+    (1, {'k_1': 1600.0, 'm_1': 0.04})
+    """
+    low, high = _band(band)
+    tolerance = check_number("tolerance", tolerance, "", "needs a part > 0, such as 0.05", lambda a: a > 0)
+    network = network_of(scene, port_of(scene, linear=True))
+    N = len(network.mass)
+    wanted = _wanted(scene, masses, N)
+    offers = []
+    for count in wanted:
+        offers.append(_best(scene, network, paddle, (low, high), tolerance, count))
+        if offers[-1].within:
+            break
+    tried = tuple((offer.masses, offer.largest) for offer in offers)
+    best = offers[-1]
+    if best.within or (accept and masses is not None):
+        return Reduction(**{**vars(best), "tried": tried})
+    shown = ", ".join(f"{error:.2g} with {count}" for count, error in tried)
+    cure = (
+        "accept=True takes it all the same" if masses is not None else "masses=..., accept=True takes one all the same"
+    )
+    raise AnalysisError(
+        f"{scene.name}: past the tolerance of {tolerance:g} over {low:g} to {high:g} Hz: {shown} masses; "
+        f"ask a narrower band, or {cure}"
+    )
+
+
+def _best(scene, network, paddle, band, tolerance, count):
+    """Return the offer of ``count`` masses that is nearest over the band."""
+    unit = network.of_unit_masses
+    frequency = _frequencies(network, band)
+    Z = network.impedance(frequency)
+    whole = np.abs(Z + _of_paddle(paddle, frequency))
+    rate = 2 * np.pi * np.sqrt(band[0] * band[1])  # time in which the band is of order one
+    best = None
+    for stiffness, damping, V in candidates(unit.stiffness / rate**2, unit.damping / rate, count):
+        reduced = modal(stiffness * rate**2, damping * rate, np.einsum("ji,abj->abi", V, unit.start))
+        error = np.abs(reduced.impedance(frequency) - Z) / whole
+        if best is None or error.max() < best[0].max():
+            best = error, reduced
+    error, reduced = best
+    name = f"{scene.name} with {count} mass{'es' * (count > 1)}"
+    return Reduction(
+        scene_of(reduced, name), scene, count, band, tolerance, frequency, reduced.impedance(frequency), Z, error
+    )
+
+
+def _frequencies(network, band):
+    """Return frequencies [Hz] over the band, both sides of every resonance among them; at one Z may be infinite."""
+    beside = [f * side for f in network.resonances for side in (1 - BESIDE, 1 + BESIDE)]
+    grid = [f for f in np.geomspace(*band, POINTS) if not np.isclose(f, network.resonances, rtol=BESIDE).any()]
+    return np.unique([*grid, *(f for f in beside if band[0] <= f <= band[1])])
+
+
+def _of_paddle(paddle, frequency):
+    """Return the impedance of handle and hand [N s/m]."""
+    hand, s = getattr(paddle, "hand", None), 2j * np.pi * frequency
+    Z = paddle.m * s + paddle.b
+    return Z if hand is None else Z + hand.m * s + hand.b + hand.k / s
+
+
+def _band(band):
+    try:
+        low, high = map(float, band)
+    except (TypeError, ValueError):
+        raise AnalysisError(f"band = {band!r}; needs (low, high) in Hz, such as (0.1, 20)") from None
+    if not 0 < low < high < np.inf:
+        raise AnalysisError(f"band = {band!r} Hz; needs 0 < low < high")
+    return low, high
+
+
+def _wanted(scene, masses, N):
+    if masses is None:
+        if N < 2:
+            raise AnalysisError(f"{scene.name} has {N} mass; there is none to spare")
+        return range(1, N)
+    if isinstance(masses, bool) or not (isinstance(masses, int) and 0 < masses < N):
+        raise AnalysisError(
+            f"masses = {masses!r}; {scene.name} has {N}, a reduction has at least 1 and fewer than that"
+        )
+    return [masses]

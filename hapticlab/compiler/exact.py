@@ -1,0 +1,152 @@
+"""``method="exact"``: linear equations of motion advanced by their matrix exponential, constants of the program."""
+
+import numpy as np
+
+from ..errors import ProgramError
+from .coefficients import Coefficients, linear_rows
+from .dependence import Dependence, part_of
+from .ir import Channel
+
+#: what a method's name begins with, where its linear parts are taken exactly; the rest follows a plus sign
+EXACT = "exact"
+
+
+def exact_and_rest(method):
+    """Split "exact" or "exact+rk4" into (True, the other method's name or None), any other into (False, itself)."""
+    if not isinstance(method, str) or method.split("+")[0] != EXACT:
+        return False, method
+    _, plus, rest = method.partition("+")
+    return True, rest if plus else None
+
+
+class Exact:
+    """The linear equations of a scene on their way into a program.
+
+    Parameters
+    ----------
+    tracing : Tracing
+    linear : Linear
+    read : collection of sympy expressions
+        The states that are read at the sample: by the force, by what is watched, by other equations.
+    start : callable state -> Value
+        A state at the first sample, in the init block.
+    channel : callable state -> Channel
+    """
+
+    def __init__(self, tracing, linear, read, start, channel):
+        self.tracing, self.linear = tracing, linear
+        self.states = {s: k for k, s in enumerate(linear.states)}
+        self.space = _cheaper(linear, [self.states[s] for s in self.states if s in read], tracing.T)
+        first, back = [start(s) for s in self.states], np.linalg.inv(self.space.V)
+        self._keys = list(self.states) if self.space.is_plain else [f"mode {k}" for k in range(1, 1 + len(self.states))]
+        self.now = [
+            tracing.state(
+                key, channel(key) if self.space.is_plain else Channel(key, "1", tracing.real), _sum(row, first)
+            )
+            for key, row in zip(self._keys, back, strict=True)
+        ]
+        self._at = {}
+
+    def state(self, s):
+        """Return a state at the sample."""
+        return _sum(self.space.V[self.states[s]], self.now)
+
+    def advance(self, motion, rest):
+        """Give every state its value at the next sample.
+
+        Parameters
+        ----------
+        motion : (list, list) of Value
+            Of x(t) and v(t): value, rate and second rate at the sample.
+        rest : list of Value
+            What stays the same over the period in each equation.
+        """
+        self.motion, self.rest = motion, rest
+        for key, value in zip(self._keys, self._moved(self.tracing.T), strict=True):
+            self.tracing.set_next(key, value)
+
+    def at(self, tau):
+        """Return {state: value} at tau [s] after the sample."""
+        if tau not in self._at:
+            moved = self._moved(tau) if tau else self.now
+            self._at[tau] = {s: _sum(row, moved) for s, row in zip(self.states, self.space.V, strict=True)}
+        return self._at[tau]
+
+    def _moved(self, tau):
+        """Return what the program keeps, at tau [s] after the sample."""
+        space, effects = self.space, {}  # value -> its effect on all of them
+        Phi, Psi = space.over(tau)
+
+        def add(value, effect):
+            if value.constant != 0:
+                effects[value.id] = value, effect + effects.get(value.id, (value, 0.0))[1]
+
+        for k, value in enumerate(self.now):
+            # w + (Phi - 1) w keeps the digits of a small change, and those of float32 constants
+            add(value, Phi[:, k] - np.eye(len(Phi))[k])
+        for column, powers in enumerate(self.motion):
+            for k, value in enumerate(powers):
+                add(value, Psi[k] @ space.inputs[:, column])
+        for k, value in enumerate(self.rest):
+            add(value, Psi[0] @ space.rest[:, k])
+        values, table = [value for value, _ in effects.values()], [effect for _, effect in effects.values()]
+        return [
+            value + _sum(row, values)
+            for value, row in zip(self.now, np.reshape(table, (-1, len(self.now))).T, strict=True)
+        ]
+
+
+def _sum(row, values):
+    """Return the sum of row[k] * values[k], without what is zero."""
+    total = None
+    for factor, value in zip(row, values, strict=True):
+        if factor:
+            part = value * float(factor)
+            total = part if total is None else total + part
+    return values[0].builder.const(0.0) if total is None else total
+
+
+def _cheaper(linear, read, T):
+    """Return the Space that takes fewer products a period, where the states of these numbers are read."""
+    plain, modes = linear.space, linear.modes
+    if modes is None:
+        return plain
+    products = [np.count_nonzero(space.over(T)[0] - np.eye(len(space.A))) for space in (plain, modes)]
+    return modes if products[1] + np.count_nonzero(modes.V[read]) < products[0] else plain
+
+
+def linear_part(scene, form, constants, T, rest):
+    """Return (Linear, the form of the other equations); refuse what ``method="exact"`` cannot take, with the reason.
+
+    Equations that neither the force nor a channel depends on are in neither.
+
+    Parameters
+    ----------
+    constants : dict name -> float
+        Parameters that are constants of the program.
+    rest : str or None
+        The method for what is not linear.
+
+    Raises
+    ------
+    ProgramError
+    """
+    form = part_of(form, Dependence(form).needed)
+    coefficients = Coefficients(form, constants, T)
+    rows, reasons = linear_rows(coefficients)
+    names = ", ".join(type(form.coordinates[k]).__name__ for k in rows)
+    if reasons and not rows:
+        raise ProgramError(
+            f"{scene.name}: {next(iter(reasons.values()))}; nothing is left for method='exact', use 'rk4'"
+        )
+    if reasons and rest is None:
+        why = next(iter(reasons.values()))
+        raise ProgramError(f"{scene.name}: {why}; method='exact+rk4' takes {names} exactly and the rest by rk4")
+    live = coefficients.live(rows)
+    if live:
+        keep = " ".join(sorted(set(scene.parameters) - set(live) - set(constants)))
+        raise ProgramError(
+            f"{scene.name}: method='exact' makes constants of the motion of {names}, and {', '.join(live)} of it may be set "
+            f"while it runs; fix what it is made of, hl.compile(..., method='exact', live={keep!r})"
+        )
+    return coefficients.linear(rows), part_of(form, list(reasons))

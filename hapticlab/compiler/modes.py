@@ -1,0 +1,133 @@
+"""The modes that declared ranges exclude: a condition that always or never holds over them is not compared at run time."""
+
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from ..scene.cases import Piecewise
+
+
+@dataclass(frozen=True)
+class Decision:
+    """A condition or a choice that the declared ranges decide.
+
+    Attributes
+    ----------
+    what : sympy expression
+        The relation, ``Max``, ``Min`` or ``Abs`` as written.
+    becomes : sympy expression
+        True, False, or what is left of it.
+    why : str
+        The ranges it follows from.
+    """
+
+    what: sp.Basic
+    becomes: sp.Basic
+    why: str
+
+
+def decide(expr, ranges, found=None, keep=()):
+    """Return an expression without the modes that the ranges exclude.
+
+    Parameters
+    ----------
+    expr : sympy expression
+    ranges : Ranges
+    found : dict, optional
+        Takes what was decided: written expression -> :class:`Decision`.
+    keep : collection of sympy expressions
+        Of these, nothing is decided.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> from hapticlab.compiler.ranges import Ranges
+    >>> k, d = hl.parameters("k d", units="N/m m", ranges=((0, 200), (0.01, 0.02)))
+    >>> decide(hl.when(d > 0.03, k * d, k), Ranges())
+    k
+    """
+    found = {} if found is None else found
+    changed = {}
+    for node in sp.preorder_traversal(expr):
+        if isinstance(node, (sp.Piecewise, sp.Max, sp.Min, sp.Abs)) and node not in keep:
+            decided = _without_excluded(node, ranges, found, keep)
+            if decided != node:
+                changed[node] = decided
+    before = None
+    while changed and expr != before:  # what is left of a choice may hold another
+        before, expr = expr, expr.xreplace(changed)
+    return expr
+
+
+def _without_excluded(node, ranges, found, keep):
+    if isinstance(node, sp.Piecewise):
+        return _cases_left(node, ranges, found, keep)
+    if isinstance(node, sp.Abs):
+        low, high = ranges(node.args[0])
+        if low < 0 < high:
+            return node
+        left = node.args[0] if low >= 0 else -node.args[0]
+        return _noted(node, left, [node.args[0]], ranges, found)
+    bounds = {a: ranges(a) for a in node.args}
+    top = isinstance(node, sp.Max)
+    best = max(low for low, _ in bounds.values()) if top else min(high for _, high in bounds.values())
+    left = [a for a, (low, high) in bounds.items() if (high >= best if top else low <= best)]
+    if len(left) == len(node.args):
+        return node
+    return _noted(node, type(node)(*left), node.args, ranges, found)
+
+
+def _cases_left(node, ranges, found, keep):
+    left = []
+    for value, condition in node.args:
+        holds = None if condition in keep else ranges.decided(condition)
+        if holds is not None and condition != sp.true:
+            _noted(condition, sp.true if holds else sp.false, _sides(condition), ranges, found)
+        if holds is not False:
+            left.append((value, sp.true if holds else condition))
+        if holds:
+            break
+    if left == [tuple(case.args) for case in node.args]:
+        return node
+    return left[0][0] if left[0][1] == sp.true else Piecewise(*left)
+
+
+def _sides(condition):
+    return [side for r in condition.atoms(sp.core.relational.Relational) for side in r.args]
+
+
+def _noted(what, becomes, sides, ranges, found):
+    shown = (f"{s} in [{ranges(s)[0]:g}, {ranges(s)[1]:g}]" for s in sides if not s.is_number)
+    found[what] = Decision(what, becomes, ", ".join(shown))
+    return becomes
+
+
+def without_excluded(form, ranges, keep=()):
+    """Return (form, decisions): an explicit form without the modes that the ranges exclude, and what was decided.
+
+    Parameters
+    ----------
+    form : ExplicitForm
+    ranges : Ranges
+    keep : collection of sympy expressions
+        Conditions of which nothing is decided.
+
+    Returns
+    -------
+    form : ExplicitForm
+    decisions : dict written expression -> Decision
+    """
+    found = {}
+
+    def left(expr):
+        return decide(expr, ranges, found, keep)
+
+    made = replace(
+        form,
+        M=tuple(tuple(map(left, row)) for row in form.M),
+        f=tuple(map(left, form.f)),
+        updates={y: left(expr) for y, expr in form.updates.items()},
+        force=left(form.force),
+        watch={name: left(expr) for name, expr in form.watch.items()},
+    )
+    return (made, found) if found else (form, found)
