@@ -92,7 +92,9 @@ def port_of(scene, linear=False):
     _check_memory(scene, form)
     found, rows = Coefficients(form, scene.values, 1e-3), range(len(form.coordinates))
     form = found.form
-    why = linear and (found.slope_moves(form.force, "in the force") or next(filter(None, map(found.why_not, rows)), None))
+    why = linear and (
+        found.slope_moves(form.force, "in the force") or next(filter(None, map(found.why_not, rows)), None)
+    )
     if why:
         raise AnalysisError(f"{scene.name}: {why}; a reduction needs springs and dampers that are linear")
     N, of_second = len(form.coordinates), np.array([order == 2 for order in form.orders], bool)

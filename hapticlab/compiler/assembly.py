@@ -79,18 +79,24 @@ class Assembly:
             return None
         return left[:, -1]
 
-    def weakest(self):
-        """Return (relative singular value, configuration) where the constraints come closest to losing a rank."""
-        free = len(self.start) - self.look(self.start[:, None])[1].shape[0]
-        if free <= 0:
-            return float(self._weakness(self.start[:, None])[0]), self.start
-        walked = self._walked(free).reshape(len(self.start), -1)
-        values = self._weakness(walked)
-        best = np.argsort(values)[:8]
-        return self._narrowed(walked[:, best], values[best])
+    @cached_property
+    def reached(self):
+        """Configurations the mechanism can reach, shape (n, many); the start alone where nothing can move."""
+        free = len(self.start) - len(self._rows)
+        return self._walked(free).reshape(len(self.start), -1) if free > 0 else self.start[:, None]
 
-    def _weakness(self, q):
-        sizes = np.linalg.svd(self.jacobian(q), compute_uv=False)
+    def weakest(self, columns=slice(None)):
+        """Return (relative singular value, configuration) where the constraints come closest to losing a rank.
+
+        ``columns`` picks coordinates, when the others are held.
+        """
+        values = self.weakness(self.reached, columns)
+        best = np.argsort(values)[:8]
+        return self._narrowed(self.reached[:, best], values[best], columns)
+
+    def weakness(self, q, columns=slice(None)):
+        """Return the relative singular value at each configuration, shape (lanes,)."""
+        sizes = np.linalg.svd(self.jacobian(q)[:, :, columns], compute_uv=False)
         return sizes[:, -1] / np.maximum(sizes[:, 0], 1.0)
 
     def _along(self, q, headings):
@@ -123,7 +129,7 @@ class Assembly:
         sizes = np.linalg.norm(np.moveaxis(J, 2, 0)[:, : len(g)] * self.scale, axis=2).T
         return np.all(np.abs(g) <= 1e-6 * np.where(sizes > 0, sizes, 1.0), axis=0)
 
-    def _narrowed(self, q, value):
+    def _narrowed(self, q, value, columns):
         """Walk on from the weakest configurations, in ever smaller steps, to where they are weakest."""
         generator = np.random.default_rng(7)
         lanes, stride, ways = q.shape[1], np.full(q.shape[1], STRIDE), 4
@@ -133,7 +139,7 @@ class Assembly:
             from_ = np.tile(q, (1, ways))
             along = self._along(from_, heading.reshape(-1, len(q))).T * np.tile(stride, ways)
             tried = self.closest(from_ + self.scale[:, None] * along, times=3)
-            values = np.where(self._lies_on(tried), self._weakness(tried), np.inf).reshape(ways, lanes)
+            values = np.where(self._lies_on(tried), self.weakness(tried, columns), np.inf).reshape(ways, lanes)
             best = np.argmin(values, axis=0)
             found = values[best, np.arange(lanes)]
             better = found < value

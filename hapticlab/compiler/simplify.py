@@ -18,7 +18,7 @@ EVALUATE = {
 def simplify(builder, op, operands, type):
     """Return a value that is the same number at less cost, or None."""
     constants = [o.constant for o in operands]
-    if op in EVALUATE and all(c is not None for c in constants):
+    if None not in constants and op in EVALUATE:
         with np.errstate(all="ignore"):
             arguments = [NUMPY_TYPE[o.type](c) for o, c in zip(operands, constants, strict=True)]
             return builder.const(EVALUATE[op](*arguments).item(), type)

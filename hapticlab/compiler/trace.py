@@ -22,7 +22,7 @@ class Builder:
     def const(self, value, type=None):
         """Return the constant, rounded to its type."""
         type = type or ("bool" if isinstance(value, (bool, np.bool_)) else self.real)
-        rounded = NUMPY_TYPE[type](value).item()
+        rounded = value if type == "f64" and value.__class__ is float else NUMPY_TYPE[type](value).item()
         # the sign of zero and every nan are told apart by repr, which equality is not able to do
         return self._number(("const", type, repr(rounded)), Instruction("const", (), type, value=rounded))
 
@@ -40,9 +40,9 @@ class Builder:
         simpler = simplify(self, op, operands, type)
         if simpler is not None:
             return simpler
-        ids = tuple(o.id for o in operands)
-        if op in COMMUTATIVE:
-            ids = tuple(sorted(ids))
+        ids = tuple([o.id for o in operands])
+        if op in COMMUTATIVE and ids[0] > ids[1]:
+            ids = ids[::-1]
         return self._number((op, ids, type), Instruction(op, ids, type))
 
     def identify(self, op, operand, value):
@@ -79,15 +79,16 @@ class Builder:
         return v if isinstance(v, Value) else self.const(v)
 
     def _number(self, key, instruction):
-        if key not in self._known:
+        number = self._known.get(key)
+        if number is None:
+            number = self._known[key] = len(self.instructions)
             self.instructions.append(instruction)
-            self._known[key] = len(self.instructions) - 1
-        return self.result(self._known[key])
+        return Value(self, number, self.instructions[number].type)
 
     def _result_type(self, op, operands):
         result = OPERATIONS[op][1]
         if result == "R":
-            reals = {o.type for o in operands} & set(REAL_TYPES)
+            reals = {o.type for o in operands}.intersection(REAL_TYPES)
             if len(reals) != 1:
                 raise ProgramError(f"{op} of {', '.join(o.type for o in operands)}: cast one of them first")
             return reals.pop()

@@ -54,7 +54,10 @@ def test_the_fitted_mass_of_the_measured_chain():
     assert error(offer.scene.values["k_1"], 5) < 0.0006
 
 
-@pytest.mark.parametrize("options", [{}, {"b": 0.05}, {"b": 2.0}, {"ground": 500}, {"b": 0.1, "ground": 300, "uneven": True}], ids=str)
+UNEVEN = {"b": 0.1, "ground": 300, "uneven": True}
+
+
+@pytest.mark.parametrize("options", [{}, {"b": 0.05}, {"b": 2.0}, {"ground": 500}, UNEVEN], ids=str)
 def test_two_masses_for_four(options):
     offer = reduction(chain(4, **options), HELD, band=(0.1, 10), masses=2)
     assert offer.largest < 0.002
@@ -77,7 +80,7 @@ def test_reductions_are_passive(options, masses):
 def test_moments_are_those_of_the_full_chain():
     """Near s = 0 the force is a power series in s, of which the reduced scene shares the first terms."""
     full = network_of(chain(5, ground=200), port_of(chain(5, ground=200))).of_unit_masses
-    stiffness, damping, _ = next(candidates(full.stiffness / 900, full.damping / 30, 2))
+    stiffness, _, _ = next(candidates(full.stiffness / 900, full.damping / 30, 2))
 
     def series(K, terms):
         z, found = -np.linalg.solve(K[1:, 1:], K[1:, 0]), [K[0, 0]]
@@ -124,7 +127,9 @@ def test_starts_are_carried_over():
     rigid = reduction(chain(4, start=x(n)), BARE, band=(0.1, 10), masses=2).scene
     log = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(rigid, duration=0.02, x=0.01, progress=False)
     assert abs(log.F).max() < 1e-5
-    moved = reduction(chain(4, start=hl.parameters("z_0", units="m", values=0.002)), BARE, band=(0.1, 10), masses=1).scene
+    moved = reduction(
+        chain(4, start=hl.parameters("z_0", units="m", values=0.002)), BARE, band=(0.1, 10), masses=1
+    ).scene
     assert moved.values["r_1_0"] == pytest.approx(0.002)
 
 
@@ -140,7 +145,9 @@ def test_order_by_tolerance_and_the_printout():
 
 
 def test_what_is_refused():
-    with pytest.raises(AnalysisError, match=r"past the tolerance of 0.05 over 0.1 to 100 Hz: .* with 1, .* with 3 masses"):
+    with pytest.raises(
+        AnalysisError, match=r"past the tolerance of 0.05 over 0.1 to 100 Hz: .* with 1, .* with 3 masses"
+    ):
         reduction(chain(4), HELD, band=(0.1, 100))
     with pytest.raises(AnalysisError, match="accept=True takes it"):
         reduction(chain(4), HELD, band=(0.1, 100), masses=1)
@@ -173,4 +180,6 @@ def test_scenes_that_are_no_network_of_masses():
     with pytest.raises(AnalysisError, match=r"bent: k.*size\*sin.* is not linear"):
         reduction(hl.Scene(force=k * (x(t) - turn), eom=bent, name="bent"), HELD)
     with pytest.raises(AnalysisError, match=r"bent: .*Piecewise.* in the force is not linear"):
-        reduction(hl.Scene(force=hl.when(x(t) > z, pull), eom=[sp.Eq(m * z.diff(t, 2), pull), second], name="bent"), HELD)
+        reduction(
+            hl.Scene(force=hl.when(x(t) > z, pull), eom=[sp.Eq(m * z.diff(t, 2), pull), second], name="bent"), HELD
+        )
