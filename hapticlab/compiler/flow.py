@@ -1,0 +1,179 @@
+"""The motion over one piece of a step, as polynomials of theta = tau/h: the series of the accelerations in given modes."""
+
+from dataclasses import dataclass
+from math import factorial
+
+from .complementarity import reactions
+from .guards import Leaves, Reaction, freeze
+from .taylor import Series, minus, times
+from .trace import Value, select
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Accelerations as a graph over leaves of its own, comparisons replaced by modes.
+
+    Attributes
+    ----------
+    builder : Builder
+        The one the motion is traced in, and advanced in.
+    q, w, s : list of Value
+        Leaves: positions, their rates, and first-order states.
+    tau : Value
+        Leaf: time since the sample.
+    a, ds : list of Value
+        Derivatives of w and of s.
+    guards : list of Guard
+    reactions : list of Reaction
+    """
+
+    builder: object
+    q: list
+    w: list
+    s: list
+    tau: Value
+    a: list
+    ds: list
+    guards: list
+    reactions: list
+
+    @property
+    def smooth(self):
+        """True where one series holds for the whole step."""
+        return not (self.guards or self.reactions)
+
+
+def motion_of(builder, rates, second, first=0, events=None):
+    """Trace ``rates(tau, q, w, s) -> (a, ds)`` once, over leaves, and return it as a :class:`Motion`.
+
+    Parameters
+    ----------
+    builder : Builder
+    rates : callable
+    second, first : int
+        How many coordinates of second and of first order.
+    events : callable ``(tau, q, w, s, new) -> list of Reaction``, optional
+        Contacts and frictions beside the comparisons; called before ``rates``, so that these may use their leaves.
+    """
+    new = Leaves(builder)
+    q, w = [new() for _ in range(second)], [new() for _ in range(second)]
+    s, tau = [new() for _ in range(first)], new()
+    given = events(tau, q, w, s, new) if events else []
+    a, ds = ([v if isinstance(v, Value) else builder.const(v) for v in part] for part in rates(tau, q, w, s))
+    parts = [part for r in given for part in (r.measure, r.free, r.inside)]
+    leaves = [*q, *w, *s, tau, *(r.leaf for r in given), *(r.side for r in given if r.side is not None)]
+    values, guards, found = freeze(builder, [*a, *ds, *parts], leaves, [*w, *s], new)
+    parts = iter(values[len(a) + len(ds) :])
+    given = [Reaction(r.leaf, next(parts), r.level, next(parts), next(parts), r.lean, r.side) for r in given]
+    return Motion(builder, q, w, s, tau, values[: len(a)], values[len(a) : len(a) + len(ds)], guards, [*given, *found])
+
+
+class Flow:
+    """The series of a motion from a state, in modes that hold from there on.
+
+    Parameters
+    ----------
+    motion : Motion
+    tau : Value or float
+        Time since the sample at the start.
+    state : (q, w, s)
+        Lists of values.
+    modes : dict leaf -> Value
+        What the guards' leaves and the reactions' sides are.
+    h : float
+        The unit of theta [s].
+    number : callable position -> value, optional
+        What parameters and samples are; traced values of the motion's builder, by default.
+    """
+
+    def __init__(self, motion, tau, state, modes, h, number=None):
+        self.motion, self.h = motion, h
+        leaves = [
+            [*zip(part, values, strict=True)]
+            for part, values in zip((motion.q, motion.w, motion.s), state, strict=True)
+        ]
+        rows = {leaf.id: [value] for group in leaves for leaf, value in group}
+        for leaf, w in zip(motion.q, state[1], strict=True):
+            rows[leaf.id].append(times(h, w))
+        rows[motion.tau.id] = [tau, h] + [0.0] * 40
+        rows |= {leaf.id: [value] + [0.0] * 40 for leaf, value in modes.items()}
+        rows |= {r.leaf.id: [] for r in motion.reactions}
+        self.series = Series(motion.builder.instructions, rows, number or motion.builder.result)
+        self.held = []
+
+    def at(self, value):
+        """Return what a value of the motion is at the start."""
+        return self.series.of(value, 0)[0]
+
+    def grow(self, order):
+        """Make the state known to theta**order."""
+        for k in range(order):
+            if self.motion.reactions and k:
+                self._set(k, self._solved(self._left(k, [0.0] * len(self.held))))
+            self._grow_once(k)
+
+    def of(self, value, order):
+        """Return the coefficients 0 to order of a value of the motion."""
+        return self.series.of(value, order)
+
+    def state(self):
+        """Return the coefficients of (q, w, s)."""
+        motion, known = self.motion, self.series.known
+        return tuple([known[leaf.id] for leaf in group] for group in (motion.q, motion.w, motion.s))
+
+    def _grow_once(self, k):
+        motion, series = self.motion, self.series
+        series.upto([rate.id for rate in (*motion.a, *motion.ds)], k)
+        known, step = series.known, self.h / (k + 1)
+        for leaf, rate in zip((*motion.w, *motion.s), (*motion.a, *motion.ds), strict=True):
+            known[leaf.id].append(times(step, known[rate.id][k]))
+        for leaf, rate in zip(motion.q, motion.w, strict=True):
+            known[leaf.id].append(times(self.h / (k + 2), known[rate.id][k + 1]))
+
+    # the reactions: at every order they enter what they must satisfy linearly, with the same slopes
+
+    def begin(self):
+        """Find out how the reactions act, before :meth:`hold` says which are held."""
+        n = len(self.motion.reactions)
+        self._start = self.series.lengths()
+        self._rest = self._left(0, [0.0] * n)
+        ones = [self._left(0, [1.0 if j == i else 0.0 for j in range(n)]) for i in range(n)]
+        # for free and for held: row i, column j says how residual i changes with reaction j
+        self._slopes = [[[minus(one[i][m], self._rest[i][m]) for one in ones] for i in range(n)] for m in (0, 1)]
+
+    def hold(self, held):
+        """Find the reactions at the start, these ones held."""
+        self.held = held
+        self.series.cut(self._start)
+        self._set(0, self._solved(self._rest))
+
+    def slope(self, i):
+        """Return how the rate of measure i changes with its own reaction."""
+        return self._slopes[1][i][i]
+
+    def _set(self, k, values):
+        for r, value in zip(self.motion.reactions, values, strict=True):
+            self.series.known[r.leaf.id].append(value)
+
+    def _left(self, k, trial):
+        """Return [(free, held)]: what each reaction leaves unsatisfied at order k with trial values; forget the trial."""
+        series, motion = self.series, self.motion
+        start = series.lengths()
+        self._set(k, trial)
+        self._grow_once(k)
+        left = []
+        for r, value in zip(motion.reactions, trial, strict=True):
+            free = minus(value, series.of(r.free, k)[k])
+            scale = factorial(k + r.level) / factorial(k) / self.h**r.level
+            left.append((free, times(scale, series.of(r.measure, k + r.level)[k + r.level])))
+        series.cut(start)
+        return left
+
+    def _solved(self, left):
+        held, n = self.held, len(self.held)
+        rows = [[_either(held[i], self._slopes[1][i][j], self._slopes[0][i][j]) for j in range(n)] for i in range(n)]
+        return reactions(rows, [_either(held[i], *left[i][::-1]) for i in range(n)], [True] * n)
+
+
+def _either(held, a, b):
+    return a if a is b else select(held, a, b)

@@ -1,0 +1,213 @@
+"""A step that finds the events inside it: pieces of closed motion between the crossings of its guards.
+
+The step has a fixed number of pieces, one more than the events it can locate, so its work is the same at every tick. In
+each the motion is a polynomial; the earliest crossing of all guards ends it, its mode changes there, and the rest of the
+step goes on from that state. A step whose events outnumber its pieces goes on without locating, and says so.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from . import trace
+from .crossing import first_crossing, horner
+from .flow import Flow
+from .taylor import product, times, zero
+from .trace import select
+
+#: two crossings closer than this part of a piece happen at once
+TOGETHER = {"f64": 1e-14, "f32": 1e-6}
+
+
+@dataclass(frozen=True)
+class _Now:
+    """Where a step stands: the state and modes at the start of a piece, and the part of the step that is left."""
+
+    tau: object
+    state: tuple
+    sides: list
+    flags: list
+    held: list
+    just: list
+    left: object
+
+
+class Stepper:
+    """Advances a motion by one step, events located.
+
+    Parameters
+    ----------
+    motion : Motion
+    h : float
+        Step [s].
+    order : int
+        Of the series.
+    events : int
+        Most events located within a step.
+    impact : callable ``(at, fired, held) -> (w, held)``, optional
+        What happens where contacts close: ``at(value)`` gives any value of the motion at that instant, ``fired`` tells
+        for each reaction whether it is one of those; returns the rates after, and which reactions are held from then on.
+    number : callable position -> value, optional
+        See :class:`~hapticlab.compiler.flow.Flow`.
+    """
+
+    def __init__(self, motion, h, order, events, impact=None, number=None):
+        self.motion, self.h, self.order = motion, h, order
+        self.events = 0 if motion.smooth else events
+        self.impact, self.number = impact, number
+
+    def step(self, tau, state, held=()):
+        """Return (state, held, unlocated) at tau + h; ``unlocated`` is true where an event was left out."""
+        now = self._start(tau, state, list(held))
+        for piece in range(self.events + 1):
+            flow, now = self._flow(now)
+            guards = [first_crossing(self._scaled(p, now.left), just) for p, just in self._guards(flow, now)]
+            if piece < self.events:
+                now = self._advanced(flow, now, guards)
+        return self._moved(flow, now, now.left), now.held, _any(found for _, found in guards)
+
+    def _start(self, tau, state, held):
+        motion = self.motion
+        now = _Now(tau, state, [], [], held, [np.False_] * (len(motion.guards) + len(motion.reactions)), 1.0)
+        flags, sides = self._truths(tau, state)
+        return replace(now, flags=flags, sides=sides)
+
+    def _truths(self, tau, state):
+        """Return the flag of every guard, and the side of every slip, as the comparisons have them."""
+        motion, modes, flags = self.motion, {}, []
+        for g in motion.guards:
+            flow = Flow(motion, tau, state, modes, self.h, self.number)
+            first, second = flow.at(g.first), flow.at(g.second)
+            flags.append(trace.floor(first) if g.kind == "floor" else first < second if g.strict else first <= second)
+            modes[g.leaf] = flags[-1]
+        flow = Flow(motion, tau, state, modes, self.h, self.number)
+        return flags, [None if r.side is None else 0.0 < flow.at(r.measure) for r in motion.reactions]
+
+    def _flow(self, now):
+        """Return the motion from here on, and which reactions are held: those tried whose limits allow it."""
+        flow = self._fresh(now)
+        if self.motion.reactions:
+            flow.begin()
+            flow.hold(now.held)
+            held, sides = self._allowed(flow, now)
+            base = len(self.motion.guards)
+            just = [(j | was) & ~is_ for j, was, is_ in zip(now.just[base:], now.held, held, strict=True)]
+            now = replace(now, held=held, sides=sides, just=[*now.just[:base], *just])
+            flow = self._fresh(now)
+            flow.begin()
+            flow.hold(held)
+        flow.grow(self.order)
+        return flow, now
+
+    def _fresh(self, now):
+        modes = {g.leaf: flag for g, flag in zip(self.motion.guards, now.flags, strict=True)}
+        modes |= {r.side: s for r, s in zip(self.motion.reactions, now.sides, strict=True) if s is not None}
+        return Flow(self.motion, now.tau, now.state, modes, self.h, self.number)
+
+    def _allowed(self, flow, now):
+        held, sides = [], []
+        for i, (r, wanted, side) in enumerate(zip(self.motion.reactions, now.held, now.sides, strict=True)):
+            allowed = wanted & (0.0 <= flow.at(r.inside))
+            if side is not None:
+                holds = flow.slope(i) < 0.0
+                allowed = allowed & holds
+                side = _if(wanted & ~allowed, _if(holds, 0.0 < flow.at(r.lean), ~side), side)
+            held.append(allowed)
+            sides.append(side)
+        return held, sides
+
+    def _guards(self, flow, now):
+        """Yield each guard as (coefficients, which are not negative before its event; starts at zero)."""
+        motion, order, just = self.motion, self.order, iter(now.just)
+        for g, flag in zip(motion.guards, now.flags, strict=True):
+            p = flow.of(g.measure, order)
+            if g.kind == "floor":
+                square = [product(p, p, k) for k in range(order + 1)]
+                yield [0.25 - square[0], *(times(-1.0, c) for c in square[1:])], next(just)
+            else:
+                yield [_signed(flag, c) for c in p], next(just)
+        for r, held, side in zip(motion.reactions, now.held, now.sides, strict=True):
+            apart, inside = flow.of(r.measure, order), [*flow.of(r.inside, order - 1), 0.0]
+            if side is not None:
+                apart = [_signed(~side, c) for c in apart]
+            yield (
+                [a if zero(a) and zero(b) else select(held, b, a) for a, b in zip(apart, inside, strict=True)],
+                next(just),
+            )
+
+    def _scaled(self, p, left):
+        """Return the coefficients on the part of the step that is left, as [0, 1]."""
+        scaled, power = [p[0]], left
+        for c in p[1:]:
+            scaled.append(times(power, c))
+            power = power * left
+        return scaled
+
+    def _moved(self, flow, now, theta):
+        return tuple([horner(p, theta) for p in part] for part in flow.state())
+
+    def _advanced(self, flow, now, guards):
+        """Return where the step stands at the earliest of the crossings found, its mode changed."""
+        motion, base = self.motion, len(self.motion.guards)
+        earliest = 1.0
+        for place, _ in guards:
+            earliest = trace.minimum(place, earliest)
+        fired = [(place <= earliest + TOGETHER[motion.builder.real]) & found for place, found in guards]
+        theta = earliest * now.left
+        state = self._moved(flow, now, theta)
+        flags = [
+            self._toggled(g, flow, theta, flag, f) for g, flag, f in zip(motion.guards, now.flags, fired, strict=False)
+        ]
+        held, sides, just = [], [], fired[:base]
+        for r, was, side, f in zip(motion.reactions, now.held, now.sides, fired[base:], strict=True):
+            released = f & was
+            if side is not None:
+                side = _if(released, 0.0 < horner(flow.of(r.lean, self.order - 1), theta), side)
+                held.append((was & ~f) | (f & ~was))
+                just.append(f)
+            else:
+                held.append(was & ~f)
+                just.append(f)
+            sides.append(side)
+        now = _Now(now.tau + self.h * theta, state, sides, flags, held, just, now.left * (1.0 - earliest))
+        return self._struck(now, fired) if self.impact else now
+
+    def _toggled(self, guard, flow, theta, flag, fired):
+        if guard.kind == "floor":
+            step = select(0.0 < horner(flow.of(guard.measure, self.order), theta), 1.0, -1.0)
+            return select(fired, flag + step, flag)
+        return _if(fired, ~flag, flag)
+
+    def _struck(self, now, fired):
+        """Let the contacts that closed act on the rates; modes that look at rates are looked up again."""
+        base = len(self.motion.guards)
+        closed = [f if r.level == 2 else np.False_ for r, f in zip(self.motion.reactions, fired[base:], strict=True)]
+        any_closed = _any(closed)
+        w, held = self.impact(self._fresh(now).at, closed, now.held)
+        w = [select(any_closed, new, old) for new, old in zip(w, now.state[1], strict=True)]
+        held = [_if(any_closed, new, old) for new, old in zip(held, now.held, strict=True)]
+        state = now.state[0], w, now.state[2]
+        flags, sides = self._truths(now.tau, state)
+        renewed = [select(any_closed & ~f, new, old) if g.kind == "floor" else _if(any_closed & ~f, new, old)
+                   for g, f, new, old in zip(self.motion.guards, fired, flags, now.flags, strict=False)]  # fmt: skip
+        sides = [
+            None if s is None else _if(any_closed & ~h, s, old)
+            for s, old, h in zip(sides, now.sides, held, strict=True)
+        ]
+        return replace(now, state=state, held=held, flags=renewed, sides=sides)
+
+
+def _signed(negative, c):
+    return c if zero(c) else select(negative, -c, c)
+
+
+def _if(condition, a, b):
+    """Choose between conditions, as select does between numbers."""
+    return (condition & a) | (~condition & b)
+
+
+def _any(conditions):
+    total = np.False_
+    for c in conditions:
+        total = c | total
+    return total
