@@ -12,6 +12,7 @@ import mpmath
 import sympy as sp
 
 from ..errors import MassError, SceneError
+from .aliases import definitions, substituted
 from .symbols import Parameter, T, delay, t
 
 
@@ -69,7 +70,14 @@ def explicit_form(scene):
     """
     updates = {e.lhs: e.rhs for e in scene.eom if getattr(type(e.lhs), "role", None) == "signal"}
     equations = [e for e in scene.eom if e.lhs not in updates]
-    coordinates = scene.coordinates
+    known, equations = definitions(equations, scene.coordinates)
+
+    def put(expr):
+        return substituted(expr, known)
+
+    equations = [sp.Eq(*map(put, e.args), evaluate=False) for e in equations] if known else equations
+    updates = {y: put(expr) for y, expr in updates.items()}
+    coordinates = tuple(q for q in scene.coordinates if q not in known)
     _check_signals(equations)
     orders = tuple(_order(q, equations) for q in coordinates)
     if len(equations) != len(coordinates):
@@ -81,7 +89,8 @@ def explicit_form(scene):
     rows = [_affine(e.lhs - e.rhs, unknowns, e) for e in equations]
     M = [tuple(coefficients.get(a, sp.S.Zero) for a in unknowns) for coefficients, _ in rows]
     M, f = _in_order(M, [-rest for _, rest in rows], coordinates)
-    form = ExplicitForm(coordinates, orders, tuple(M), tuple(f), updates, scene.force, dict(scene.watch))
+    watch = {name: put(expr) for name, expr in scene.watch.items()}
+    form = ExplicitForm(coordinates, orders, tuple(M), tuple(f), updates, put(scene.force), watch)
     return replace(form, definite=_check_mass(form, scene.values))
 
 
