@@ -110,27 +110,28 @@ def _embed_group(constraints, coordinates, start):
     free = len(coordinates) - len(constraints)
     if free < 0:
         raise NotClosed("there are more constraints than coordinates")
-    equations = Equations(start, _generic(start))
-    choices = sorted(
-        itertools.combinations(coordinates, free),
-        key=lambda drivers: sum(map(math.isinf, (declared_range(q)[1] for q in drivers))),
-    )
-    reasons, refused, declared = [], [], 0
-    for drivers in choices[:ATTEMPTS]:
-        given = bool(drivers) and not any(math.isinf(declared_range(q)[1]) for q in drivers)
-        declared += given
+    equations, reasons = Equations(start, _generic(start)), []
+    choices = list(itertools.combinations(coordinates, free))
+    ranged = [drivers for drivers in choices if drivers and all(map(_has_range, drivers))]
+    for drivers in (ranged + [drivers for drivers in choices if drivers not in ranged])[:ATTEMPTS]:
+        # a declared range is a demand: another driver that never gets there is no answer to it
+        if len(reasons) == len(ranged) > 0 and all(isinstance(reason, Open) for reason in reasons):
+            break
         try:
             sources = _staged(equations, constraints, [q for q in coordinates if q not in drivers])
             check_range(drivers, sources, start)
         except NotClosed as reason:
-            reasons.append(str(reason))
-            refused += [reason] if given and isinstance(reason, Open) else []
+            reasons.append(reason)
             continue
         _check_start(constraints, sources, start)
         return Embedding(drivers, tuple(sources), wraps(drivers, sources, start))
-    if declared and len(refused) == declared:
-        raise SceneError(f"{refused[0]}. Declare the range it moves in, or change its lengths")
-    raise NotClosed("; ".join(list(dict.fromkeys(reasons))[:3]) or "no driver was found")
+    if ranged and all(isinstance(reason, Open) for reason in reasons[: len(ranged)]):
+        raise SceneError(f"{reasons[0]}. Declare the range it moves in, or change its lengths")
+    raise NotClosed("; ".join(list(dict.fromkeys(map(str, reasons)))[:3]) or "no driver was found")
+
+
+def _has_range(q):
+    return not any(map(math.isinf, declared_range(q)))
 
 
 def _staged(equations, constraints, unknown):

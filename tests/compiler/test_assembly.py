@@ -44,7 +44,7 @@ def test_a_grashof_linkage_has_none():
     d = 0.09 - 0.03 * np.exp(1j * turn)
     along = (0.1**2 - 0.08**2 + np.abs(d) ** 2) / (2 * np.abs(d))
     arm = d / np.abs(d) * (along + 1j * np.sqrt(0.1**2 - along**2))
-    weakness = mechanism._weakness(np.array([turn, np.angle(arm), np.angle(arm - d)]))
+    weakness = mechanism.weakness(np.array([turn, np.angle(arm), np.angle(arm - d)]))
     assert value == pytest.approx(weakness.min(), rel=1e-5)
     assert value > 0.1
 
