@@ -14,7 +14,7 @@ from .trace import Value, maximum, minimum, select
 
 #: contacts that act on each other at once: 2^4 = 16 sets
 MOST_TOGETHER = 4
-#: a pivot below this part of its diagonal entry belongs to a contact that repeats another
+#: a pivot below this part of its diagonal entry is a rounded zero: its contact repeats another
 SINGULAR = {"f64": 1e-9, "f32": 1e-4}
 #: how far a candidate may violate its inequalities, of the largest term
 TOLERANCE = {"f64": 1e-12, "f32": 3e-6}
@@ -84,7 +84,7 @@ def complementarity(W, q, touching=None, names=None):
             named = ", ".join(names[i] for i in island) if names else f"{len(island)} contacts"
             raise SceneError(
                 f"{named} act on each other at once; needs at most {MOST_TOGETHER} for exact reactions (every set of them "
-                "is tried); use order='sequential' for their impacts, or a penalty or hunt_crossley law for some"
+                "is tried); give some of them a penalty or hunt_crossley law"
             )
         part = _enumerate([[W[i][j] for j in island] for i in island], [q[i] for i in island], [touching[i] for i in island])
         for i, value in zip(island, part, strict=True):
@@ -117,7 +117,7 @@ def _enumerate(W, q, touching):
     for _, violation in tried[1:]:
         least = minimum(least, violation)
     # rounding alone may leave none within the tolerance: then the best of them
-    allowed = maximum(least, size * TOLERANCE[_real(W, q)])
+    allowed = maximum(least, size * TOLERANCE[real_of(W, q)])
     share = [select(violation <= allowed, 1.0, 0.0) for _, violation in tried]
     count = _sum(share)
     return [_sum([weight * p[i] for weight, (p, _) in zip(share, tried, strict=True) if not is_zero(p[i])]) / count
@@ -143,7 +143,7 @@ def _solve_active(W, q, active):
     n = len(active)
     A = [[W[i][j] for j in active] for i in active]
     L, inverse, y, regular = [[0.0] * n for _ in range(n)], [], [-q[i] for i in active], True
-    least = SINGULAR[_real(W, q)]
+    least = SINGULAR[real_of(W, q)]
     for j in range(n):
         pivot = A[j][j]
         for m in range(j):
@@ -187,7 +187,7 @@ def reactions(A, b, active):
         + [select(active[i], -b[i], 0.0)]
         for i in range(k)
     ]
-    least = SINGULAR[_real(A, b)]
+    least = SINGULAR[real_of(A, b)]
     inverse = []
     for j in range(k):
         sound = least * abs(A[j][j]) < abs(rows[j][j])
@@ -230,7 +230,7 @@ def constrained(M, f, J, bias, active, definite=True, directions=None):
     return a, N
 
 
-def _real(*given):
+def real_of(*given):
     """Return the real type of the first traced value, f64 for plain numbers."""
     flat = (item for part in given for row in part for item in (row if isinstance(row, list) else [row]))
     return next((item.type for item in flat if isinstance(item, Value)), "f64")

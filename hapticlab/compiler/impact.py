@@ -6,8 +6,8 @@ beforehand.
 """
 
 from ..errors import SceneError
-from .complementarity import complementarity, dot
-from .solve import is_zero
+from .complementarity import SINGULAR, complementarity, dot, real_of
+from .solve import is_zero, same
 from .trace import maximum, minimum, select
 
 
@@ -16,7 +16,7 @@ def sequential(W, u, e, touching=None, sweeps=None, rubs=None):
 
     A contact that approaches gets u+ = -e u-, its neighbours feel it, and so on. Along a chain of k contacts k sweeps
     bring a blow from either end to the other: Newton's cradle of k + 1 balls. What still approaches then, among unequal
-    masses, is left to the caller: u_after < 0 there.
+    masses, is left to :func:`closed`: u_after < 0 there.
 
     Parameters
     ----------
@@ -64,8 +64,8 @@ def _plus(a, w, blow):
 def simultaneous(W, u, e, touching=None, names=None):
     """Return (p, u_after): all contacts at once, 0 <= p, u+ >= -e u-, and p > 0 only where they are equal (Moreau 1988).
 
-    Exact, and whatever the order of the contacts. With one e for all it never gains energy. A contact that was leaving
-    and is struck closed again is met by a second round.
+    Exact, and whatever the order of the contacts. With one e for all it never gains energy; with several it may, and then
+    the least of them serves for all. A contact that was leaving and is struck closed again stays closed.
 
     Parameters
     ----------
@@ -83,13 +83,31 @@ def simultaneous(W, u, e, touching=None, names=None):
     >>> [round(value, 9) for value in (*p, *u)]
     [1.333333333, 0.666666667, 1.0, 0.0]
     """
-    total = [0.0] * len(u)
-    for _ in range(2 if len(u) > 1 else 1):
-        q = [rate + ratio * rate for rate, ratio in zip(u, e, strict=True)]
-        p = complementarity(W, q, touching, names)
-        u = [rate + dot(row, p) for rate, row in zip(u, W, strict=True)]
-        total = [a + b for a, b in zip(total, p, strict=True)]
-    return total, u
+    p, after = _at_once(W, u, e, touching, names)
+    if any(not same(e[0], other) for other in e[1:]):
+        least = e[0]
+        for other in e[1:]:
+            least = minimum(least, other)
+        gains = sum(dissipated(u, after, p)) < -SINGULAR[real_of(W)] * dot(p, [abs(rate) for rate in u])
+        careful, _ = _at_once(W, u, [least] * len(e), touching, names)
+        p = [select(gains, low, value) for low, value in zip(careful, p, strict=True)]
+        after = _after(W, u, p)
+    return (p, after) if len(u) == 1 else closed(W, p, after, touching, names)
+
+
+def _at_once(W, u, e, touching, names):
+    p = complementarity(W, [rate + ratio * rate for rate, ratio in zip(u, e, strict=True)], touching, names)
+    return p, _after(W, u, p)
+
+
+def closed(W, p, u, touching=None, names=None):
+    """Return (p, u_after) with what still approaches after an impact brought to rest on each other: then u_after >= 0."""
+    more = complementarity(W, u, touching, names)
+    return [a + b for a, b in zip(p, more, strict=True)], _after(W, u, more)
+
+
+def _after(W, u, p):
+    return [rate + dot(row, p) for rate, row in zip(u, W, strict=True)]
 
 
 def with_friction(W, c, N, u, slip, e, mu):
@@ -117,9 +135,10 @@ def with_friction(W, c, N, u, slip, e, mu):
     """
     p, s = _coulomb(W, c, N, u, slip, e, mu)
     if not is_zero(c):
-        lost = -(p * u + s * slip + 0.5 * (W * p * p + 2.0 * c * p * s + N * s * s))
+        gained = p * u + s * slip + 0.5 * (W * p * p + 2.0 * c * p * s + N * s * s)
+        gains = SINGULAR[real_of([W, u])] * p * abs(u) < gained
         plastic = _coulomb(W, c, N, u, slip, 0.0, mu)
-        p, s = (select(lost < 0.0, low, value) for low, value in zip(plastic, (p, s), strict=True))
+        p, s = (select(gains, low, value) for low, value in zip(plastic, (p, s), strict=True))
     meets = u < 0.0
     return select(meets, p, 0.0), select(meets, s, 0.0)
 
@@ -152,28 +171,6 @@ def dissipated(u, after, p):
     [1.5]
     """
     return [-0.5 * impulse * (before + now) for before, now, impulse in zip(u, after, p, strict=True)]
-
-
-def rests(u_after, acceleration, period, rest_speed=None):
-    """Tell whether a contact stays closed after an impact: its rebound would be back within the period, or is slow.
-
-    A flight that starts with u and is pulled back by a constant a lasts 2 u/a. Resting below a T/2 leaves at most two
-    impacts in a period, where bouncing alone would have no end (Zeno).
-
-    Parameters
-    ----------
-    u_after : Value or float
-        Gap rate after the impact.
-    acceleration : Value or float
-        Second derivative of the gap in free flight, < 0 closing.
-    period : float
-    rest_speed : Value or float, optional
-        The law's; it counts where it is larger.
-    """
-    bound = acceleration * (-0.5 * period)
-    if rest_speed is not None:
-        bound = maximum(bound, rest_speed)
-    return (acceleration < 0.0) & (u_after < bound)
 
 
 def check_rest_speed(rest_speed, acceleration, T, name):

@@ -35,11 +35,11 @@ def solve(M, f, definite=False):
     [2.0, 1.0]
     """
     N = len(f)
-    symmetric = all(_same(M[i][j], M[j][i]) for i in range(N) for j in range(i))
+    symmetric = all(same(M[i][j], M[j][i]) for i in range(N) for j in range(i))
     return _ldl(M, f) if definite and symmetric else _lu(M, f)
 
 
-def _same(a, b):
+def same(a, b):
     """Tell whether two entries are the same value: value numbering has made equal expressions one."""
     return a.id == b.id if isinstance(a, Value) and isinstance(b, Value) else a is b or a == b
 

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, field, replace
 
 from .complementarity import complementarity, dot, reactions, response
-from .impact import dissipated, micro_rebound, sequential, simultaneous
+from .impact import closed, dissipated, micro_rebound, sequential, simultaneous
 from .solve import solve
 from .trace import Value, maximum, select
 
@@ -96,10 +96,13 @@ def strike(W, u, b, touching, laws, period, order="sequential"):
     if order == "sequential":
         rubs = {i: (law.slip, law.mu) for i, law in enumerate(laws) if law.slip is not None}
         p, after = sequential(W, u, e, touching, rubs=rubs)
+        if k > 1 or rubs:
+            head, _ = closed(gaps, p[:k], after[:k], touching, names)
+            p = [*head, *p[k:]]
     else:
         p, _ = simultaneous(gaps, u[:k], e, touching, names)
         p = [*p, *[0.0] * (len(u) - k)]
-        after = _rates(W, u, p)
+    after = _rates(W, u, p)
     pressed = complementarity(gaps, b[:k], touching, names)
     slow = [
         here & _slow(after[i], gaps[i][i] * push, law.rest_speed, period)

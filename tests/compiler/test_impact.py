@@ -8,7 +8,6 @@ from hapticlab.compiler.impact import (
     check_rest_speed,
     dissipated,
     micro_rebound,
-    rests,
     sequential,
     simultaneous,
     with_friction,
@@ -71,7 +70,7 @@ def on_the_floor(law, masses, velocities, e):
     """A stack on a floor: the first gap is that of the lowest body."""
     J = [[1.0, 0.0], [-1.0, 1.0]]
     W, P = response(np.diag(masses).tolist(), J)
-    p, after = law(W, [float(np.dot(row, velocities)) for row in J], [e, e])
+    p, _ = law(W, [float(np.dot(row, velocities)) for row in J], [e, e])
     return np.array(velocities) + np.array(P).T @ p, p
 
 
@@ -116,7 +115,20 @@ def test_one_contact_loses_its_share_of_the_effective_mass():
 def test_a_leaving_contact_that_is_struck_closed_is_met_again():
     """Body 1 leaves the floor slowly; body 2 falls on it: after the first round it would enter the floor."""
     after, _ = on_the_floor(simultaneous, [0.1, 1.0], [0.01, -3.0], 0.5)
-    assert after[0] >= -1e-15 and after[1] - after[0] >= -1e-15
+    assert after[0] >= -1e-14 and after[1] - after[0] >= -1e-14
+
+
+@pytest.mark.parametrize("several", [False, True])
+def test_simultaneous_impacts_of_any_bodies_gain_nothing_and_enter_nothing(several):
+    """Dense W of three contacts, some leaving; one restitution for all, or one each."""
+    generator = np.random.default_rng(5)
+    for _ in range(300):
+        A, u = generator.normal(size=(3, 4)), generator.normal(size=3).tolist()
+        e = generator.uniform(0, 1, 3).tolist() if several else [generator.uniform(0, 1)] * 3
+        W = (A @ A.T).tolist()
+        p, after = simultaneous(W, u, e)
+        assert min(p) >= -1e-12 and min(after) > -1e-9
+        assert sum(dissipated(u, after, p)) > -1e-9
 
 
 @pytest.mark.parametrize("mu, expected", [(0.1, "slides"), (0.6, "sticks")])
@@ -153,6 +165,14 @@ def test_a_rod_that_strikes_with_friction_obeys_the_cone_and_gains_nothing(seed)
     assert p * u + s * slip + 0.5 * (W * p**2 + 2 * c * p * s + N * s**2) <= 1e-12
 
 
+def test_elastic_impacts_stay_elastic_beside_others():
+    """No rounding makes of a loss of zero a gain: e = 1 is kept where a contact of e = 0.5 takes no part, or mu = 0."""
+    W = [[3.0, 0.7], [0.7, 2.1]]
+    for u in (-0.1, -0.37, -1.9):
+        assert simultaneous(W, [u, 5.0], [1.0, 0.5])[1][0] == pytest.approx(-u, rel=1e-14)
+        assert with_friction(3.0, 0.7, 2.1, u, 0.4, 1.0, 0.0) == pytest.approx((-2 * u / 3.0, 0.0), rel=1e-14)
+
+
 def test_the_traced_lines_do_what_the_numbers_do():
     masses, e = [0.4, 0.1, 0.3], 0.7
     M, J = chain(masses)
@@ -177,34 +197,6 @@ def test_nothing_happens_to_what_does_not_touch_or_leaves():
     for law in (sequential, simultaneous):
         assert law(W, [-1.0, 0.5], [0.5, 0.5], [False, True])[0] == [0.0, 0.0]
     assert with_friction(1.0, 0.2, 2.0, 0.5, 1.0, 0.5, 0.3) == (0.0, 0.0)
-
-
-@pytest.mark.parametrize("speed", [None, 0.02])
-def test_a_bouncing_ball_meets_the_floor_at_most_twice_a_period(speed):
-    """Until it rests; a bounce of e = 0.8 has infinitely many impacts in 1.3 s otherwise."""
-    g, T, e = 9.81, 1e-3, 0.8
-    q, w, resting, count = 0.1, 0.0, False, 0
-    for tick in range(2000):
-        left, here = T, 0
-        while left > 0 and not resting:
-            touch = (w + np.sqrt(w * w + 2 * g * q)) / g
-            if touch > left:
-                q, w, left = q + w * left - g * left**2 / 2, w - g * left, 0
-                break
-            left, here = left - touch, here + 1
-            q, w = 0.0, e * (g * touch - w)
-            resting = bool(rests(w, -g, T, speed))
-        count = max(count, here)
-        if resting:
-            break
-    assert resting and 1 <= count <= 2
-    # the bounces in closed form: flights of 2 e^k v/g, up to the first that is shorter than the bound
-    v, bound, when = np.sqrt(2 * g * 0.1), max(g * T / 2, speed or 0), np.sqrt(0.2 / g)
-    k = 1
-    while e**k * v >= bound:
-        when += 2 * e**k * v / g
-        k += 1
-    assert abs(tick * T - when) <= T
 
 
 def test_a_rest_speed_that_leaves_too_many_impacts_is_refused():
