@@ -1,0 +1,180 @@
+"""Pairs that cannot meet are left out, and only those."""
+
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+from placements import values
+
+import hapticlab as hl
+from hapticlab.compiler.pairs import Contacts, _sweep, contacts_between, numbers, possible_pairs
+from hapticlab.errors import SceneError
+from hapticlab.scene.amount import Amount
+from hapticlab.scene.contact_laws import impulse, rigid
+from hapticlab.scene.force_laws import penalty
+from hapticlab.scene.gaps import gap
+from hapticlab.scene.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, ground
+
+t = hl.t
+
+
+def ranged(name, low, high, unit="m", initial=None):
+    start = (low + high) / 2 if initial is None else initial
+    return hl.coordinate(name, unit=unit, range=(low, high), initial=Amount(start, unit) if unit == "m" else start)
+
+
+def crowd(seed, count=7):
+    """Bodies of all kinds, each in a region and a turn of its own."""
+    generator = np.random.default_rng(seed)
+    kinds = [Circle(0.2), Box(0.4, 0.2), Capsule(0.5, 0.1), Segment(0.5), Polygon([(0, 0), (0.5, 0.1), (0.1, 0.4)])]
+    bodies, coordinates = [], []
+    for k in range(count):
+        x, y = generator.uniform(-1, 1, 2)
+        spread = generator.uniform(0.05, 0.4)
+        q = [
+            ranged(f"x{k}", x - spread, x + spread), ranged(f"y{k}", y - spread, y + spread),
+            ranged(f"a{k}", *sorted(generator.uniform(-3, 3, 2)), unit="rad"),
+        ]  # fmt: skip
+        shape = kinds[generator.integers(len(kinds))]
+        if k % 3 == 2:  # an arm, whose length cannot change
+            bodies.append(shape.at(x=Amount(x, "m") + Amount(spread, "m") * sp.cos(q[2]), y=q[1], angle=q[2], name=f"b{k}"))
+        else:
+            bodies.append(shape.at(x=q[0], y=q[1], angle=q[2], name=f"b{k}"))
+        coordinates += q
+    plane = HalfPlane().at(y=-0.8, angle=float(generator.uniform(-1, 1)), name="plane")
+    return [*bodies, plane], coordinates
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_left_out_never_meets(seed):
+    bodies, coordinates = crowd(seed)
+    pairs = possible_pairs(bodies)
+    named = {b.name: b for b in bodies}
+    generator = np.random.default_rng(seed)
+    at = {q: generator.uniform(type(q).low, type(q).high, 2000) for q in coordinates}
+    for q in coordinates:  # corners of the ranges too
+        at[q][:100] = generator.choice([type(q).low, type(q).high], 100)
+    for d in pairs.dropped:
+        assert values([gap(named[d.first], named[d.second])], at)[0].min() > 0, d
+    assert len(pairs.kept) + len(pairs.dropped) == len(bodies) * (len(bodies) - 1) / 2
+    assert len(pairs.dropped) > 1 and len(pairs.kept) > 2
+    # of the pairs that are kept most do meet: the boxes are not much too large
+    meet = [values([gap(a, b)], at)[0].min() < 0.1 for a, b in pairs.kept]
+    assert np.mean(meet) > 0.4
+
+
+def test_sweep_finds_what_every_pair_compared_finds():
+    generator = np.random.default_rng(4)
+    corners = generator.uniform(0, 10, (200, 2))
+    sides = generator.uniform(0, 0.8, (200, 2))
+    boxes = {k: tuple((low, low + side) for low, side in zip(corners[k], sides[k], strict=True)) for k in range(200)}
+
+    def meet(a, b):
+        return all(one[0] <= other[1] and other[0] <= one[1] for one, other in zip(boxes[a], boxes[b], strict=True))
+
+    every = {frozenset((a, b)) for a in boxes for b in range(a) if meet(a, b)}
+    assert _sweep(boxes) == every and len(every) > 50
+
+
+def test_reasons_are_in_words_and_ranges_are_recorded():
+    q, p, a = ranged("q", 0, 1), ranged("p", 2.5, 3), hl.coordinate("a", unit="rad")
+    half = Amount(0.5, "m")
+    bodies = [
+        ground(), Circle(0.1).at(x=q, y=0.5, name="left"), Circle(0.1).at(x=p, y=0.5, name="right"),
+        Circle(0.1).at(x=q + half, y=0.5, name="ahead"), Box(0.1, 0.1).at(x=5, y=0.5, angle=a, name="post"),
+        Box(1, 1).at(x=9, name="block"),
+    ]  # fmt: skip
+    pairs = possible_pairs(bodies, ignore=["block"])
+    why = {(d.first, d.second): d.why for d in pairs.dropped}
+    assert why["left", "right"] == "left stays within -0.1 <= x <= 1.1 m, right within 2.4 <= x <= 3.1 m"
+    assert why["ground", "left"] == "ground stays within y <= 0 m, left within 0.4 <= y <= 0.6 m"
+    assert why["left", "ahead"] == "their origins stay at least 0.5 m apart, and they reach 0.2 m"
+    assert why["post", "block"] == "ignored" and why["ground", "block"] == "ignored"
+    assert pairs.kept == ()
+    assert pairs.ranges == {q: (0.0, 1.0), p: (2.5, 3.0)}
+
+
+def test_without_a_range_nothing_is_left_out():
+    free, q = hl.coordinate("free", unit="m"), ranged("q", 0, 1)
+    pairs = possible_pairs([Circle(0.1).at(x=free, name="one"), Circle(0.1).at(x=q, name="other")])
+    assert len(pairs.kept) == 1 and not pairs.dropped
+    r = hl.parameters("r", units="m", ranges=(0, 0.5), values=0.01)
+    pairs = possible_pairs([Circle(r).at(x=2, name="one"), Circle(0.1).at(x=q, name="other")])
+    assert pairs.dropped  # up to 0.5 m, whatever it is now
+    pairs = possible_pairs([Circle(r).at(x=1.4, name="one"), Circle(0.1).at(x=q, name="other")])
+    assert pairs.kept
+
+
+def test_the_handle_has_a_range_too():
+    q = ranged("q", 0.5, 1)
+    bodies = [Circle(0.1).at(x=hl.x(t), name="tip"), Circle(0.1).at(x=q, name="ball")]
+    assert possible_pairs(bodies).kept
+    assert not possible_pairs(bodies, handle=(-0.1, 0.1)).kept
+
+
+def test_contacts_carry_gap_slip_name_and_law():
+    y, a = ranged("y", 0, 1), hl.coordinate("a", unit="rad")
+    k = hl.parameters("k", units="N/m")
+    box = Box(0.2, 0.1).at(x=0.3, y=y, angle=a, name="box")
+    (contact,) = contacts = contacts_between([box, ground()], law=penalty(k=k))
+    assert contact.name == "ground_box" and contact.law.k == k
+    at = {y: 0.2, a: 0.3, y.diff(t): 0.5, a.diff(t): -1.1}
+    low = 0.2 - 0.1 * math.sin(0.3) - 0.05 * math.cos(0.3)
+    assert values([contact.gap], at)[0] == pytest.approx(low, rel=1e-14)
+    corner = np.array([-0.1, -0.05]) @ np.array([[math.cos(0.3), math.sin(0.3)], [-math.sin(0.3), math.cos(0.3)]])
+    assert values([contacts.places[contact.name].slip], at)[0] == pytest.approx(-1.1 * corner[1], rel=1e-13)
+    four = contacts_between([ground(), box], law=lambda one, other: rigid(), corners=True)
+    assert [c.name for c in four] == [f"ground_box_{k}" for k in (1, 2, 3, 4)]
+    assert values([four[0].gap], at)[0] == pytest.approx(low, rel=1e-14)
+    assert isinstance(four, Contacts) and isinstance(four + four, tuple)
+    (rough,) = contacts_between([ground(), box], law=impulse(e=0.5, mu=0.3))
+    assert rough.slip == contacts.places["ground_box"].slip and contact.slip == 0
+
+
+def test_bodies_that_start_in_each_other():
+    z = hl.coordinate("z", unit="m", initial=Amount(0.097, "m"))
+    ball = Circle(0.1).at(y=z, name="ball")
+    with pytest.raises(SceneError, match="ground and ball start 0.003 m in each other"):
+        contacts_between([ground(), ball], law=rigid())
+    assert not contacts_between([ground(), ball], law=rigid(), ignore=[("ball", "ground")])
+    r = hl.parameters("r", units="m", ranges=(0, 1))
+    bodies = [ground(), Circle(r).at(y=z, name="ball")]
+    assert len(contacts_between(bodies, law=rigid())) == 1  # r has no value yet
+    with pytest.raises(SceneError, match="start 0.103 m in each other"):
+        contacts_between(bodies, law=rigid(), values={"r": 0.2})
+    # in touch is no overlap
+    assert contacts_between([ground(), Circle(0.097).at(y=z, name="ball")], law=rigid())
+
+
+def test_numbers_at_the_first_sample():
+    a = hl.coordinate("a", unit="rad", initial=0.3, rate=2)
+    z = hl.coordinate("z", unit="m", initial=hl.x(hl.n) + Amount(0.5, "m"))
+    k = hl.parameters("k", units="1", values=3)
+    assert numbers([k * sp.sin(a), z, a.diff(t)], {}) == pytest.approx([3 * math.sin(0.3), 0.5, 2.0], rel=1e-15)
+    assert numbers([hl.parameters("m", units="kg") * k], {}) is None
+
+
+def test_thin_bodies_and_speeds():
+    q = hl.coordinate("q", unit="m", initial=Amount(1, "m"))
+    sheet, wire = Segment(1).at(angle=1.5, name="sheet"), Segment(0.1).at(x=q, name="wire")
+    with pytest.warns(UserWarning, match="sheet and wire have no thickness"):
+        contacts_between([sheet, wire], law=rigid())
+    found = contacts_between([sheet, Circle("1 mm").at(x=q, name="bead")], law=rigid())
+    assert found.speeds(1e-3) == {"sheet_bead": pytest.approx(2.0)}
+    assert "1 contacts: sheet_bead" in str(found)
+
+
+@pytest.mark.parametrize(
+    ("make", "word"),
+    [
+        (lambda a, b: possible_pairs([a, b], ignore=["c"]), "c: no such body"),
+        (lambda a, b: contacts_between([a, a], law=rigid()), "two bodies are called one"),
+        (lambda a, b: contacts_between([a, Circle(1)], law=rigid()), "no shape in its place"),
+        (lambda a, b: contacts_between([a, b], law=3), "law = 3"),
+    ],
+)
+def test_refused(make, word):
+    q = hl.coordinate("q", unit="m", initial=Amount(3, "m"))
+    with pytest.raises(SceneError, match=word):
+        make(Circle(1).at(name="one"), Circle(1).at(x=q, name="other"))
