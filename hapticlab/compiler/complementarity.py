@@ -108,6 +108,8 @@ def islands(W):
 def _enumerate(W, q, touching):
     """Try every active set; return the mean of the solutions."""
     k = len(q)
+    if k == 1:
+        return [select(touching[0] & (q[0] < 0.0), -q[0] / W[0][0], 0.0)]
     size = 0.0
     for value, here in zip(q, touching, strict=True):
         size = maximum(size, select(here, abs(value), 0.0))
