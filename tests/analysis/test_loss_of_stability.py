@@ -18,10 +18,11 @@ DURATION = 20.0
 def growth(scene, paddle, K, **options):
     """Return the growth rates [1/s]; a run that overflowed, and so ended in a fault, has grown without bound."""
     rates = hl.sweep(scene, paddle, metric="growth", duration=DURATION, progress=False, k=K, **options).values
-    for lane in np.flatnonzero(np.isnan(rates)):
-        at = {"x": options["x"], "k": K[lane]}
-        faulted = np.isnan(hl.sweep(scene, paddle, metric="peak_force", duration=DURATION, progress=False, **at).values)
-        rates[lane] = np.inf if faulted else np.nan
+    unknown = np.isnan(rates)
+    if unknown.any():
+        at = {"x": options["x"], "k": K[unknown]}
+        peaks = hl.sweep(scene, paddle, metric="peak_force", duration=DURATION, progress=False, **at).values
+        rates[unknown] = np.where(np.isnan(peaks), np.inf, np.nan)  # where it faulted there is no peak
     return rates
 
 

@@ -1,5 +1,6 @@
 """A sweep's points against the same points run alone and measured from their stored traces."""
 
+import functools
 import math
 
 import numpy as np
@@ -26,9 +27,13 @@ FULL = SimulatedPaddle(
 K = np.array([60.0, 150.0, 420.0, 1300.0])
 
 
-def traces(paddle, metric, k, duration=0.8, **start):
+@functools.cache  # one run serves every metric
+def run(paddle, k, duration=0.8):
+    return paddle.run(wall()(k=k, x_o=0.002), duration=duration, progress=False)
+
+
+def traces(log, metric):
     """Measure a stored trace in whole-array arithmetic, apart from the compiled measures."""
-    log = paddle.run(wall()(k=k, x_o=0.002), duration=duration, progress=False, **start)
     true = log.channels.get("x_true", log.x)
     quarter = len(true) // 4
     before, after = (largest_swing(true, log.T, len(true) - end, quarter) for end in (2 * quarter, quarter))
@@ -55,19 +60,19 @@ def largest_swing(x, T, start, length):
 @pytest.mark.parametrize("metric", ["growth", "contacts", "energy", "peak_force"])
 def test_metrics_match_the_stored_traces(paddle, metric):
     swept = sweep(wall()(x_o=0.002), paddle, duration=0.8, metric=metric, progress=False, k=K)
-    expected = [traces(paddle, metric, k) for k in K]
+    expected = [traces(run(paddle, k), metric) for k in K]
     # a trace without encoder holds x in single precision, and a spline bends at contact where the handle moves on parabolas
     np.testing.assert_allclose(swept.values, expected, rtol=5e-3 if metric == "growth" else 1e-5, atol=1e-7)
 
 
 def test_chatter_is_the_sustained_amplitude():
     swept = sweep(wall()(x_o=0.002), PUSHED, duration=20.0, progress=False, k=K)
-    logs = [PUSHED.run(wall()(k=k, x_o=0.002), duration=20.0, progress=False) for k in K]
+    logs = [run(PUSHED, k, 20.0) for k in K]
     found = [chatter(log) for log in logs]
     assert [c.state for c in found] == ["none", "none", "chatter", "chatter"] or found[1].state == "decaying"
     assert (swept.values[:2] == 0).all()  # 200 N/m is where Eq. (23.10) ends
     np.testing.assert_allclose(swept.values[2:], [c.amplitude for c in found[2:]], rtol=2e-2)
-    np.testing.assert_allclose(swept.values[2:], [traces(PUSHED, "chatter", k, 20.0) for k in K[2:]], rtol=1e-4)
+    np.testing.assert_allclose(swept.values[2:], [traces(log, "chatter") for log in logs[2:]], rtol=1e-4)
 
 
 def test_motion_within_one_count_is_no_chatter():
