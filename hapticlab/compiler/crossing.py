@@ -14,6 +14,8 @@ from .trace import Value, equal, maximum, select, sqrt
 
 #: Newton steps for the bend, where a few digits do; for the minimum; for the root
 STEPS = {"f64": (2, 3, 5), "f32": (1, 2, 4)}
+#: the same where the motion turns by a tenth of a radian at most, so that a parabola is nearly right
+FEWER_STEPS = {"f64": (1, 2, 4), "f32": (1, 1, 2)}
 
 
 def horner(p, x):
@@ -34,7 +36,7 @@ def degree(p):
     return max((k for k, c in enumerate(p) if not zero(c)), default=0)
 
 
-def first_crossing(p, starts_at_zero=False):
+def first_crossing(p, starts_at_zero=False, steps=None):
     """Return where p first goes from positive to negative within [0, 1], and whether it does.
 
     Parameters
@@ -43,6 +45,8 @@ def first_crossing(p, starts_at_zero=False):
         p(0) >= 0; a negative one is taken for the rounding of a zero. A root at 0 that p leaves upwards is divided out.
     starts_at_zero : bool, traced condition or array
         p(0) is known to be a root, whatever rounding left of it.
+    steps : dict type -> (bend, minimum, root), optional
+        Newton steps: STEPS unless given.
 
     Returns
     -------
@@ -52,9 +56,9 @@ def first_crossing(p, starts_at_zero=False):
     Examples
     --------
     >>> import numpy as np
-    >>> place, found = first_crossing([np.float64(c) for c in (2.0, -9.0, 12.0, -4.0)])
+    >>> place, found = first_crossing([np.float64(c) for c in (1.0, -3.0, 0.0, 1.0)])
     >>> round(float(place), 12), bool(found)
-    (0.292893218813, True)
+    (0.347296355334, True)
     """
     n = degree(p)
     if n == 0:
@@ -63,7 +67,7 @@ def first_crossing(p, starts_at_zero=False):
     start = maximum(select(starts_at_zero, 0.0 * p[1], p[0]) if starts_at_zero is not False else p[0], 0.0)
     p = [start, *p[1 : n + 1]]
     with np.errstate(all="ignore"):  # numbers divide by zero as every engine does; what comes of it is not selected
-        place, found = _of_parabola(*p, *[0.0] * (2 - n)) if n <= 2 else _of_polynomial(p)
+        place, found = _of_parabola(*p, *[0.0] * (2 - n)) if n <= 2 else _of_polynomial(p, steps or STEPS)
     return select(found, place, 1.0), found
 
 
@@ -77,10 +81,10 @@ def _of_parabola(c, b, a):
     return place, within & ((b < 0.0) & (0.0 <= inside) | (0.0 <= b) & (a < 0.0))
 
 
-def _of_polynomial(p):
+def _of_polynomial(p, steps):
     at_zero = equal(p[0], 0.0)
     q = [select(at_zero, below, above) for above, below in zip(p, [*p[1:], 0.0], strict=True)]
-    steps = STEPS[next((c.type for c in q if isinstance(c, Value)), "f64")]
+    steps = steps[next((c.type for c in q if isinstance(c, Value)), "f64")]
     first, second = derivative(q), derivative(derivative(q))
     bend = _bend(second, steps[0])
     slopes = q[1], horner(first, bend), horner(first, 1.0)

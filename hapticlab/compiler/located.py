@@ -49,19 +49,23 @@ class Stepper:
         for each reaction whether it is one of those; returns the rates after, and which reactions are held from then on.
     number : callable position -> value, optional
         See :class:`~hapticlab.compiler.flow.Flow`.
+    steps : dict, optional
+        Newton steps of a crossing: see :func:`~hapticlab.compiler.crossing.first_crossing`.
     """
 
-    def __init__(self, motion, h, order, events, impact=None, number=None):
+    def __init__(self, motion, h, order, events, impact=None, number=None, steps=None):
         self.motion, self.h, self.order = motion, h, order
         self.events = 0 if motion.smooth else events
-        self.impact, self.number = impact, number
+        self.impact, self.number, self.steps = impact, number, steps
 
     def step(self, tau, state, held=()):
         """Return (state, held, unlocated) at tau + h; ``unlocated`` is true where an event was left out."""
         now = self._start(tau, state, list(held))
         for piece in range(self.events + 1):
             flow, now = self._flow(now)
-            guards = [first_crossing(self._scaled(p, now.left), just) for p, just in self._guards(flow, now)]
+            guards = [
+                first_crossing(self._scaled(p, now.left), just, self.steps) for p, just in self._guards(flow, now)
+            ]
             if piece < self.events:
                 now = self._advanced(flow, now, guards)
         return self._moved(flow, now, now.left), now.held, _any(found for _, found in guards)

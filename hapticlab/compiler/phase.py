@@ -28,7 +28,7 @@ class Clock:
 
     count: callable
     T: float
-    after: float = 0.0
+    after: float | Value = 0.0
 
 
 def frequency(angle):
@@ -61,6 +61,8 @@ def reduced_angle(f, clock, type):
     count = clock.count()
     high = floor(count / size)
     total = _fraction(high, turns * size, type) + _fraction(count - high * size, turns, type)
+    if isinstance(clock.after, Value):  # followed as a series over the step: no turns are taken off what moves
+        return _centred(total) * (2 * math.pi) + f * clock.after * (2 * math.pi)
     if clock.after:
         total = total + f * clock.after
     return _centred(total) * (2 * math.pi)
@@ -86,8 +88,5 @@ def angle_of(translator, expr):
     f, rest = frequency(expr) if clock else (sp.S.Zero, expr)
     if f == 0:
         return translator(expr)
-    value = float(f) if f.is_number else translator(f)
-    if isinstance(value, Value) and value.constant is not None:
-        value = value.constant
-    angle = reduced_angle(value, clock, translator.builder.real)
+    angle = clock.angle(translator, f)
     return angle if rest == 0 else angle + translator(rest)

@@ -1,4 +1,4 @@
-"""How fast a motion can turn, mode by mode: what sets the order of its series, and the steps that a contact needs."""
+"""How fast a motion can turn, mode by mode: what sets the order of its series and the longest step."""
 
 import itertools
 import math
@@ -10,8 +10,6 @@ from .ir import LEAVES
 from .taylor import AT_ONCE, Series
 from .trace import reachable
 
-#: steps of an explicit method in one contact: with ten a penalty bounce returns its energy to 0.4 %, with three to 18 %
-STEPS_PER_CONTACT = 10
 #: orders of the series: for linear motions what the truncation asks for, else what also serves products and functions
 ORDERS = {"f64": (6, 16), "f32": (4, 9)}
 #: modes looked at: all combinations of up to this many cases, then one case changed at a time
@@ -132,21 +130,6 @@ def order_for(omega_h, real, linear):
     return max(low, order)
 
 
-def contact_frequency(motion, at, number):
-    """Return the largest frequency [rad/s] at which a case of positions, such as a penalty wall, holds what touches it."""
-    n, largest = len(motion.q), 0.0
-    for modes in modes_of(motion):
-        for g in motion.guards:
-            if g.kind == "side" and modes[g.leaf]:
-                both = (
-                    jacobian(motion, modes | {g.leaf: np.bool_(b)}, at, number)[n : 2 * n, :n] for b in (True, False)
-                )
-                change = np.subtract(*both)
-                if np.isfinite(change).all() and change.any():
-                    largest = max(largest, *np.sqrt(abs(np.linalg.eigvals(change))))
-    return float(largest)
-
-
 def is_linear(motion):
     """Tell whether the motion of every mode is linear in its state, the handle and time."""
     instructions = motion.builder.instructions
@@ -167,14 +150,3 @@ def is_linear(motion):
             if not linear.get(i.op, False):
                 return False
     return True
-
-
-def check_contacts(omega, T, substeps, method, name):
-    """Refuse an explicit method that has fewer than ten steps in the pi/omega that a contact lasts."""
-    needed = math.ceil(STEPS_PER_CONTACT * omega * T / math.pi - 1e-9)
-    if substeps < needed:
-        raise ProgramError(
-            f"{name}: a contact lasts pi/omega = {1e3 * math.pi / omega:.3g} ms, {math.pi * substeps / (omega * T):.2g} steps of "
-            f"{1e3 * T / substeps:g} ms; {method} needs {STEPS_PER_CONTACT}: take substeps={needed}, or method='taylor', which "
-            "finds the instants of touch"
-        )

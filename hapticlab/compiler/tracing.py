@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from ..scene.symbols import v, x
 from .ir import Block, Channel, Program
+from .stiffness import numbers
 from .trace import Builder
 
 
@@ -36,6 +37,13 @@ class Tracing:
     def set_next(self, key, value):
         """Give a state the value it has at the next tick."""
         self._states[key][2] = value
+
+    def at_start(self, values):
+        """Return what the leaves of the tick are at the first sample, x = 0: dict (op, index) -> float; nan unbound."""
+        given = {("param", k): values.get(p.name, float("nan")) for k, p in enumerate(self.parameters)}
+        given |= {("input", 0): 0.0, ("input", 1): 0.0}
+        number = numbers(self.init.instructions, given)
+        return given | {("state", k): number(first.id) for k, (_, first, _) in enumerate(self._states.values())}
 
     def complete(self):
         """Trace the next values still waiting, and those they ask for."""

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from hapticlab.compiler.crossing import first_crossing
+from hapticlab.compiler.crossing import FEWER_STEPS, first_crossing
 from hapticlab.compiler.engine import load
 from hapticlab.compiler.ir import Block, Channel, Program
 from hapticlab.compiler.trace import Builder, select
@@ -87,6 +87,22 @@ def test_two_frequencies_whose_second_derivative_changes_sign_once():
             assert expected is None or abs(place - expected) < 1e-12
             tried += 1
     assert tried > 300
+
+
+def test_fewer_steps_do_where_the_motion_hardly_turns():
+    found_some = 0
+    for p in guards(3, 500):
+        slow = p * 0.1 ** np.arange(ORDER + 1)
+        slow[0] = min(slow[0], 0.9 * abs(slow[1]))
+        place, found = first_crossing([np.float64(c) for c in slow], steps=FEWER_STEPS)
+        expected = first_of_roots(slow)
+        # a double root is found to the square root of the rounding
+        slope = abs(np.polyval(np.polyder(slow[::-1]), place)) / abs(slow[1])
+        assert found == (expected is not None) or slope < 1e-6
+        if found and expected is not None:
+            assert abs(place - expected) * slope < 1e-13
+            found_some += 1
+    assert found_some > 50
 
 
 @pytest.mark.parametrize(

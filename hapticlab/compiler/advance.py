@@ -1,0 +1,110 @@
+"""Advance a scene by ``method="taylor"``: the series of its motion, events located, the order chosen and the step checked."""
+
+from dataclasses import dataclass
+
+from ..errors import ProgramError
+from .crossing import FEWER_STEPS, STEPS
+from .flow import motion_of
+from .guards import check_smooth
+from .ir import Channel
+from .located import Stepper
+from .stiffness import check_step, frequency, is_linear, numbers, order_for
+from .trace import select
+
+#: most located events of a step: what touches may leave within it, and something else may happen too
+_EVENTS = (2, 3)
+
+
+@dataclass(frozen=True)
+class Taylor:
+    """The motion over a step as a Taylor series, with the instants located at which its equations change.
+
+    Where the motion between events is linear, it is the closed form to rounding; elsewhere its error is that of the
+    order. Walls, contacts, friction and every other case of the state end the series at the instant where they change.
+
+    Parameters
+    ----------
+    order : int, 2..20, optional
+        Of the series. Chosen from the fastest part of the motion and the real type, unless given.
+    events : int, 1..8, optional
+        Most events located in a step; a step of one more is finished without locating, and counted in the output
+        ``unlocated``. 2 for one or two surfaces, 3 for more, unless given.
+
+    Examples
+    --------
+    >>> from hapticlab.compiler.advance import Taylor
+    >>> Taylor(order=1)
+    Traceback (most recent call last):
+    hapticlab.errors.ProgramError: order = 1; needs a whole number in 2..20
+    """
+
+    order: int = None
+    events: int = None
+    name = "taylor"
+
+    def __post_init__(self):
+        for name, given, low, high in (("order", self.order, 2, 20), ("events", self.events, 1, 8)):
+            if given is not None and (type(given) is not int or not low <= given <= high):
+                raise ProgramError(f"{name} = {given!r}; needs a whole number in {low}..{high}")
+
+
+def advance(method, tracing, rates, groups, h, substeps, values, name, contacts=None, impact=None):
+    """Trace one period of a motion; return (groups, facts, unlocated) with the state after it.
+
+    Parameters
+    ----------
+    method : Taylor
+    tracing : Tracing
+    rates : callable ``(tau, q, w, s) -> (a, ds)``
+    groups : (q, w, s)
+        The state at the sample, lists of values.
+    h : float
+        Step [s].
+    substeps : int
+    values : dict name -> float
+        Of parameters, for the order and the longest step.
+    name : str
+        Of the scene, for messages.
+    contacts : callable, optional
+        See :func:`~hapticlab.compiler.flow.motion_of`.
+    impact : callable ``(motion) -> impact``, optional
+        Makes the impact of :class:`~hapticlab.compiler.located.Stepper` for the motion.
+
+    Returns
+    -------
+    groups : (q, w, s)
+    facts : dict
+        Order, events and omega, for the listing.
+    unlocated : Value or None
+        Steps of this period that left an event out; None where there is none to locate.
+    """
+    builder, real = tracing.tick, tracing.real
+    motion = motion_of(builder, rates, len(groups[0]), len(groups[2]), contacts)
+    check_smooth(motion, name)
+    number = numbers(builder.instructions, tracing.at_start(values))
+    omega = frequency(motion, [tuple([number(v.id) for v in part] for part in groups)], number)
+    check_step(omega, h * substeps, substeps, name)
+    order = method.order or order_for(omega * h, real, is_linear(motion))
+    surfaces = len(motion.guards) + len(motion.reactions)
+    events = method.events or _EVENTS[surfaces > 2]
+    steps = FEWER_STEPS if omega * h <= 0.05 and is_linear(motion) else STEPS
+    stepper = Stepper(motion, h, order, events, impact and impact(motion), steps=steps)
+    held = [_held(tracing, k) for k in range(len(motion.reactions))]
+    now, missed = held, None
+    for step in range(substeps):
+        groups, now, left_out = stepper.step(builder.const(step * h), groups, now)
+        count = select(left_out, builder.const(1.0), 0.0)
+        missed = count if missed is None else missed + count
+    for k, value in enumerate(now):
+        tracing.set_next(("held", k), value)
+    facts = (
+        {"order": order}
+        | ({} if motion.smooth else {"events": events})
+        | ({"omega": float(f"{omega:.4g}")} if omega > 0 else {})
+    )
+    return groups, facts, None if motion.smooth else missed
+
+
+def _held(tracing, k):
+    """Return whether reaction k is held: sticking, or at rest; a motion starts free."""
+    return tracing.state(("held", k), Channel(f"held({k})", "1", "bool"), tracing.init.const(False))
