@@ -3,7 +3,8 @@
 import numpy as np
 
 from ..errors import ProgramError
-from .coefficients import Coefficients, linear_rows
+from .channels import channel_of
+from .coefficients import HANDLE, Coefficients, leaves, linear_rows
 from .dependence import Dependence, part_of
 from .ir import Channel
 
@@ -24,26 +25,37 @@ class Exact:
 
     Parameters
     ----------
-    tracing : Tracing
-    linear : Linear
-    read : collection of sympy expressions
-        The states that are read at the sample: by the force, by what is watched, by other equations.
-    start : callable state -> Value
-        A state at the first sample, in the init block.
-    channel : callable state -> Channel
+    lowering : the scene's lowering
+        Its tracing, its handle, and what translates expressions.
+    form : ExplicitForm
+    rest : str or None
+        The method for what is not linear.
+
+    Attributes
+    ----------
+    others : ExplicitForm
+        What is not linear.
+    left_out : tuple of str
+        Coordinates that neither the force nor a channel depends on.
     """
 
-    def __init__(self, tracing, linear, read, start, channel):
-        self.tracing, self.linear = tracing, linear
+    def __init__(self, lowering, form, rest):
+        self.lowering, self.tracing, constants = lowering, lowering.tracing, lowering.folded
+        linear, self.others = linear_part(lowering.scene, form, constants, self.tracing.T, rest)
+        self.constant_parts = [form.f[form.coordinates.index(q)] for q in linear.coordinates]
+        kept = {*linear.coordinates, *self.others.coordinates}
+        self.left_out = tuple(type(q).__name__ for q in form.coordinates if q not in kept)
         self.states = {s: k for k, s in enumerate(linear.states)}
-        self.space = _cheaper(linear, [self.states[s] for s in self.states if s in read], tracing.T)
-        first, back = [start(s) for s in self.states], np.linalg.inv(self.space.V)
-        self._keys = list(self.states) if self.space.is_plain else [f"mode {k}" for k in range(1, 1 + len(self.states))]
+        other = [form.force, *form.watch.values(), *form.updates.values(), *self.others.f, *sum(self.others.M, ())]
+        read = set().union(*map(leaves, other))
+        self.space = _cheaper(linear, [k for s, k in self.states.items() if s in read], self.tracing.T)
+        first, back = [lowering.first_of(s) for s in self.states], np.linalg.inv(self.space.V)
+        plain, real = self.space.is_plain, self.tracing.real
+        self._keys = list(self.states) if plain else [f"mode {k}" for k in range(1, 1 + len(self.states))]
+        channels = [channel_of(key, real) if plain else Channel(key, "1", real) for key in self._keys]
         self.now = [
-            tracing.state(
-                key, channel(key) if self.space.is_plain else Channel(key, "1", tracing.real), _sum(row, first)
-            )
-            for key, row in zip(self._keys, back, strict=True)
+            self.tracing.state(key, channel, _sum(row, first))
+            for key, channel, row in zip(self._keys, channels, back, strict=True)
         ]
         self._at = {}
 
@@ -51,17 +63,13 @@ class Exact:
         """Return a state at the sample."""
         return _sum(self.space.V[self.states[s]], self.now)
 
-    def advance(self, motion, rest):
-        """Give every state its value at the next sample.
-
-        Parameters
-        ----------
-        motion : (list, list) of Value
-            Of x(t) and v(t): value, rate and second rate at the sample.
-        rest : list of Value
-            What stays the same over the period in each equation.
-        """
-        self.motion, self.rest = motion, rest
+    def advance(self):
+        """Give every state its value at the next sample."""
+        lowering, zero = self.lowering, self.tracing.tick.const(0.0)
+        still = dict.fromkeys((*self.states, *HANDLE), zero)
+        translate = lowering.translator(lambda leaf: still[leaf] if leaf in still else lowering.at_sample(leaf))
+        self.rest = list(map(translate, self.constant_parts))  # what stays the same over the period
+        self.motion = lowering.handle.polynomial()
         for key, value in zip(self._keys, self._moved(self.tracing.T), strict=True):
             self.tracing.set_next(key, value)
 

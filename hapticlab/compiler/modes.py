@@ -4,7 +4,9 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from ..errors import ParameterError
 from ..scene.cases import Piecewise
+from .ranges import Ranges
 
 
 @dataclass(frozen=True)
@@ -131,3 +133,24 @@ def without_excluded(form, ranges, keep=()):
         watch={name: left(expr) for name, expr in form.watch.items()},
     )
     return (made, found) if found else (form, found)
+
+
+def excluded(scene, T, live, undecided=()):
+    """Return (form, decisions) of :func:`without_excluded` for a scene whose ``live`` parameters alone may change."""
+    return without_excluded(scene.explicit(), Ranges(folded(scene, live), T), undecided)
+
+
+def folded(scene, live):
+    """Return name -> value of the parameters that become constants: none where ``live`` is None."""
+    if live is None:
+        return {}
+    strangers = set(live) - set(scene.parameters)
+    if strangers:
+        raise ParameterError(
+            f"live: {', '.join(sorted(strangers))} is not a parameter; {', '.join(scene.parameters)} are"
+        )
+    fixed = set(scene.parameters) - set(live)
+    unbound = sorted(fixed - set(scene.values))
+    if unbound:
+        raise ParameterError(f"{', '.join(unbound)} is not live, so it needs a value: scene({unbound[0]}=...)")
+    return {name: scene.values[name] for name in fixed}
