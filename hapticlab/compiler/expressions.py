@@ -7,6 +7,7 @@ import sympy as sp
 from ..errors import ProgramError, ProgramLimitError
 from ..scene.amount import Amount
 from ..scene.closest_points import ClosestPoints
+from ..scene.derivative import Partial, Rate
 from ..scene.symbols import delay
 from ..scene.units import fixed
 from . import gjk, trace
@@ -30,10 +31,13 @@ class Translator:
         What t is, for angles that time drives.
     bound : dict name -> float, optional
         The values of live parameters, with which their products must stay numbers of the real type.
+    graph : Graph, optional
+        Where derivatives are taken.
     """
 
-    def __init__(self, builder, leaf, clock=None, bound=None):
+    def __init__(self, builder, leaf, clock=None, bound=None, graph=None):
         self.builder, self.leaf, self.clock, self.bound = builder, leaf, clock, bound or {}
+        self.graph, self.copied = graph, {}
         self.known = {}
 
     def __call__(self, expr):
@@ -73,6 +77,10 @@ class Translator:
 
     def _of_angle(self, expr):
         return _FUNCTIONS[type(expr)](angle_of(self, expr.args[0]))
+
+    def _derivative(self, expr):
+        value = self.graph.derivative(expr)
+        return value if value.builder is self.builder else self.graph.copy(value, self, self.copied)
 
     def _sum(self, expr):
         total = None
@@ -206,6 +214,7 @@ def _atan2(y, x):
 
 
 _RULES = (
+    ((Partial, Rate), Translator._derivative),
     (sp.Add, Translator._sum),
     ((sp.sin, sp.cos, sp.tan), Translator._of_angle),
     (sp.Mul, Translator._product),

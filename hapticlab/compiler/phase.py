@@ -30,6 +30,13 @@ class Clock:
     T: float
     after: float | Value = 0.0
 
+    def angle(self, translator, f):
+        """Return 2 pi f t less its whole turns [rad], f an expression of parameters and numbers."""
+        value = float(f) if f.is_number else translator(f)
+        if isinstance(value, Value) and value.constant is not None:
+            value = value.constant
+        return reduced_angle(value, self, translator.builder.real)
+
 
 def frequency(angle):
     """Return (f, rest) with angle = 2 pi f t + rest, f [1/s] of parameters and numbers alone; f is 0 without time.

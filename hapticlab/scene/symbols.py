@@ -1,11 +1,12 @@
 """The words a scene is written in: x(n), x(t), v(t), parameters, coordinates, signals, when and delay."""
 
 import copyreg
+import math
 
 import sympy as sp
 from sympy.core.function import AppliedUndef, UndefinedFunction
 
-from ..errors import SignalError
+from ..errors import SceneError, SignalError
 from .cases import when
 from .parameters import Parameter, T, parameters
 from .units import dimension
@@ -19,7 +20,7 @@ t = sp.Symbol("t")
 n = sp.Symbol("n", integer=True)
 
 
-def coordinate(name, *, unit, initial=0, rate=0):
+def coordinate(name, *, unit, initial=0, rate=0, range=(-math.inf, math.inf)):
     """Declare a generalized coordinate q(t) of the virtual environment.
 
     Parameters
@@ -31,6 +32,9 @@ def coordinate(name, *, unit, initial=0, rate=0):
     initial, rate : number or expression
         Value and rate at the first sample; may use parameters and x(n), so that a body can start at the handle.
         A coordinate with an equation of first order starts with its value alone.
+    range : (low, high)
+        Where the coordinate stays, in SI. Contact pairs, cases and ranks are decided over it when a scene is compiled,
+        and a coordinate that leaves it while running is a fault: the motor goes off.
 
     Returns
     -------
@@ -46,7 +50,18 @@ def coordinate(name, *, unit, initial=0, rate=0):
     check_name(name, "coordinate")
     dimension(unit)
     start = {"initial": expression(initial, f"initial of {name}"), "rate": expression(rate, f"rate of {name}")}
+    if not _is_range(range):
+        raise SceneError(f"{name}: range = {range!r}; needs (low, high) in {unit} with low < high, such as (-0.05, 0.05)")
+    start |= {"low": float(range[0]), "high": float(range[1])}
     return sp.Function(name, real=True, unit=unit, role="coordinate", **start)(t)
+
+
+def _is_range(given):
+    try:
+        low, high = map(float, given)
+    except (TypeError, ValueError):
+        return False
+    return low < high
 
 
 class _Sampled:
@@ -163,6 +178,12 @@ class x(_HandleSignal):
 
     def fdiff(self, argindex=1):
         return v(self.args[0])
+
+
+class acceleration(_HandleSignal):
+    """Acceleration of the handle [m/s^2], which no sample holds: a program estimates it, (v(n) - v(n-1))/T."""
+
+    unit = "m/s^2"
 
 
 class delay(sp.Function):

@@ -170,6 +170,9 @@ def dimension_of(expr, where):
     if isinstance(expr, sp.Derivative):
         order = sum(count for _, count in expr.variable_count)
         return _times(dimension_of(expr.expr, where), _power(dimension("s"), Fraction(-order)))
+    if hasattr(expr, "per"):
+        whole, part = dimension_of(expr.args[0], where), dimension_of(expr.per, where)
+        return None if whole is None else _times(whole, _power(part or (), Fraction(-1)))
     if isinstance(expr, (BooleanFunction, BooleanAtom)):
         for a in expr.args:
             dimension_of(a, where)

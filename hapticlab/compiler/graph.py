@@ -1,0 +1,172 @@
+"""Expressions of a scene as one value-numbered graph over their variables: differentiated, evaluated, copied.
+
+A Lagrangian differentiated in symbols repeats its parts with every derivative. Here it is translated once, each of its
+parts a numbered value, and differentiated in numbered values: the gradient by the reverse sweep, everything after that by
+forward sweeps (Griewank and Walther, *Evaluating Derivatives*, ch. 3). Parts that are equal are one value, so what
+derivatives share is computed once.
+"""
+
+import numpy as np
+import sympy as sp
+
+from ..scene.derivative import Partial, Rate
+from ..scene.symbols import Parameter, acceleration, t, v, x
+from .constants import entering
+from .differentiate import Gradient, Tangent
+from .expressions import Translator
+from .ir import LEAVES
+from .simplify import EVALUATE
+from .trace import Builder, reachable
+
+NUMPY = EVALUATE | {
+    "sin": np.sin, "cos": np.cos, "exp": np.exp, "log": np.log, "atan": np.arctan, "tanh": np.tanh,
+}  # fmt: skip
+
+
+class driven(sp.Function):
+    """The angle 2 pi f t that time drives, less whole turns; a variable of a graph."""
+
+    nargs = 1
+    is_real = True
+    role = "driven"
+
+
+class Graph:
+    """The graph of a scene's expressions, in float64, its variables the inputs of one block.
+
+    Variables are parameters, T, t, x(t), v(t), coordinates and their rates, samples and delays: whatever a translator
+    asks for. Each is one input, so that a derivative by it is what it says.
+
+    Parameters
+    ----------
+    fixed : dict name -> float
+        Parameters that are constants.
+    embedded : dict coordinate -> expression
+        Coordinates that are functions of others, by a constraint solved in closed form.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> from hapticlab.compiler.graph import Graph
+    >>> from hapticlab.scene.derivative import Partial
+    >>> z = hl.coordinate("z", unit="m")
+    >>> float(Graph().evaluate([Partial(z**3, z)], {z: 2.0})[0])
+    12.0
+    """
+
+    def __init__(self, fixed=None, embedded=None):
+        self.fixed, self.embedded = dict(fixed or {}), dict(embedded or {})
+        self.builder = Builder("f64")
+        self.variables = {}  # expression -> number of its input
+        self.translator = Translator(self.builder, self._leaf, clock=self, graph=self)
+        self._gradients, self._tangents = {}, {}
+
+    def __call__(self, expr):
+        """Return the value of an expression in the graph."""
+        return self.translator(expr)
+
+    def variable(self, expr):
+        """Return the input that stands for a variable."""
+        return self.builder.leaf("input", self.variables.setdefault(expr, len(self.variables)), "f64")
+
+    def angle(self, translator, f):
+        """Return the input that stands for the angle 2 pi f t."""
+        return self.variable(driven(f))
+
+    def derivative(self, expr):
+        """Return the value of a :class:`Partial` or a :class:`Rate`."""
+        inner = self(expr.args[0])
+        if isinstance(expr, Rate):
+            return self._tangent("rate", self._rate_of)(inner)
+        at = self.variable(expr.variable).id if expr.variable not in self.embedded else None
+        if at is None:
+            raise ValueError(f"{expr.variable} is a function of other coordinates; differentiate by those")
+        if isinstance(expr.args[0], (Partial, Rate)):
+            return self._tangent(at, lambda number: 1.0 if number == at else 0.0)(inner)
+        if inner.id not in self._gradients:
+            self._gradients[inner.id] = Gradient(inner)
+        return self._gradients[inner.id](at)
+
+    def _tangent(self, key, seed):
+        return self._tangents.setdefault(key, Tangent(self.builder, seed))
+
+    def _rate_of(self, number):
+        """Return how the input that is instruction ``number`` changes along the motion."""
+        expr = list(self.variables)[self.builder.instructions[number].index]
+        if isinstance(expr, driven):
+            return self(2 * sp.pi * expr.args[0])
+        if expr == t:
+            return 1.0
+        if isinstance(expr, (x, v)) and expr.args == (t,):
+            return self.variable({x: v, v: acceleration}[type(expr)](t))
+        return self(expr.diff(t)) if getattr(type(expr), "role", None) == "coordinate" else 0.0
+
+    def _leaf(self, expr):
+        if isinstance(expr, Parameter) and expr.name in self.fixed:
+            return self.builder.const(self.fixed[expr.name])
+        if expr in self.embedded:
+            return self(self.embedded[expr])
+        if isinstance(expr, sp.Derivative) and expr.expr in self.embedded:
+            rate = self.embedded[expr.expr]
+            for _ in range(expr.derivative_count):
+                rate = Rate(rate)
+            return self(rate)
+        return self.variable(expr)
+
+    def evaluate(self, exprs, at):
+        """Return the numbers of expressions, one array each, of the shape that the variables' arrays have together.
+
+        Parameters
+        ----------
+        exprs : sequence of expressions
+        at : dict variable -> float or array
+            A variable that is missing is an error.
+        """
+        wanted = [self(expr).id for expr in exprs]
+        variables, done = list(self.variables), {}
+        with np.errstate(all="ignore"):
+            for k in reachable(self.builder.instructions, wanted):
+                i = self.builder.instructions[k]
+                if i.op == "const":
+                    done[k] = i.value
+                elif i.op == "input":
+                    done[k] = at[variables[i.index]]
+                else:
+                    done[k] = NUMPY[i.op](*(done[a] for a in i.args))
+        return [np.asarray(done[k], float) for k in wanted]
+
+    def variables_of(self, exprs):
+        """Return the variables that expressions depend on."""
+        reached = reachable(self.builder.instructions, [self(expr).id for expr in exprs])
+        numbers = {i.index for i in (self.builder.instructions[k] for k in reached) if i.op == "input"}
+        return [expr for expr, number in self.variables.items() if number in numbers]
+
+    def copy(self, value, translator, known):
+        """Return a value of the graph in a translator's builder, its variables what they are to the translator.
+
+        ``known`` (dict) remembers what has been copied for this translator.
+        """
+        builder, variables = translator.builder, list(self.variables)
+        for k in _missing(self.builder.instructions, value.id, known):
+            i = self.builder.instructions[k]
+            if i.op == "const":
+                real = i.type not in LEAVES and i.type == "f64"
+                known[k] = builder.const(entering(i.value, builder.real, f"{i.value:g}")) if real else builder.const(i.value)
+            elif i.op == "input":
+                expr = variables[i.index]
+                angle = isinstance(expr, driven)
+                known[k] = translator.clock.angle(translator, expr.args[0]) if angle else translator(expr)
+            else:
+                known[k] = builder.emit(i.op, *(known[a] for a in i.args))
+        return known[value.id]
+
+
+def _missing(instructions, wanted, known):
+    """Return, in order, what a result needs and is not known yet."""
+    seen, stack = set(), [wanted]
+    while stack:
+        k = stack.pop()
+        if k not in seen and k not in known:
+            seen.add(k)
+            stack.extend(instructions[k].args)
+    return sorted(seen)
