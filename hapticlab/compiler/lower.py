@@ -1,16 +1,22 @@
 """Lower a scene to a program: the sample is taken, the force computed from it, then the equations of motion advance."""
 
+from functools import partial
+
 import sympy as sp
 
 from ..errors import ParameterError, ProgramError, SceneError
 from ..scene.scene import Scene
 from ..scene.symbols import Parameter, T, delay, lag_of, n, t, v, x
 from ..scene.units import unit_of
+from .advance import Taylor, advance
+from .channels import channel_of, short
 from .constants import entering
+from .exact import EXACT, Exact, exact_and_rest
 from .expressions import Translator
 from .handle import HOLDS, VELOCITIES, Handle
 from .ir import Channel
 from .methods import METHODS
+from .modes import excluded, folded
 from .options import choice, live_names, period, steps
 from .phase import Clock
 from .solve import solve
@@ -39,7 +45,11 @@ def compile(
     Parameters
     ----------
     scene : Scene
-    method : {"euler", "semi_implicit_euler", "verlet", "heun", "rk4"}
+    method : {"euler", "semi_implicit_euler", "verlet", "heun", "rk4", "taylor", "exact", "exact+rk4", ...}
+        "taylor" locates the instants at which walls, contacts and friction change the motion; between them it is exact
+        to rounding where the motion is linear. :class:`~hapticlab.compiler.advance.Taylor` sets its order and events.
+        "exact" advances linear equations of motion by their matrix exponential, whose constants it makes of parameters
+        that are not ``live``: no step error at any stiffness. With "+rk4" rk4 takes what is not linear.
     T : float
         Sampling period [s], > 0.
     substeps : int
@@ -73,13 +83,23 @@ def compile(
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"{scene!r} is not a scene; write hl.compile(hl.Scene(force=...), T=1e-3)")
-    choice("method", method, METHODS)
+    return lowered(scene, method, T, substeps, hold, dtype, velocity, live)
+
+
+def lowered(scene, method, T, substeps, hold, dtype, velocity, live, undecided=()):
+    """Return the program of a scene; of the conditions in ``undecided``, declared ranges decide nothing."""
+    exact, other = exact_and_rest(method)
+    if not isinstance(other, Taylor) and (not exact or other is not None):
+        choice("method", other, (*METHODS, Taylor.name, *([] if exact else [EXACT])))
     choice("hold", hold, HOLDS)
     choice("dtype", dtype, REAL_OF)
     choice("velocity", velocity, VELOCITIES)
     T, substeps, live = period(T), steps(substeps), live_names(live)
     try:
-        return _Lowering(scene, METHODS[method], T, substeps, hold, dtype, velocity, live).program()
+        form, _ = excluded(scene, T, live, undecided)
+        other = Taylor() if other == Taylor.name else other
+        other = other if isinstance(other, Taylor) else METHODS.get(other)
+        return _Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live).program()
     except RecursionError:
         raise ProgramError(
             f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals, "
@@ -90,10 +110,11 @@ def compile(
 class _Lowering:
     """One scene on its way to a program."""
 
-    def __init__(self, scene, method, T, substeps, hold, dtype, velocity, live):
-        self.scene, self.form = scene, scene.explicit()
+    def __init__(self, scene, form, exact, method, T, substeps, hold, dtype, velocity, live):
+        self.scene, self.form, self.exact = scene, form, None
         self.method, self.substeps = method, substeps
-        self.facts = {"method": method.name, "substeps": substeps, "hold": hold, "velocity": velocity, "dtype": dtype}
+        names = "+".join([EXACT] * exact + ([method.name] if method else []))
+        self.facts = {"method": names, "substeps": substeps, "hold": hold, "velocity": velocity, "dtype": dtype}
         if not self.form.coordinates:
             self.facts = {"velocity": velocity, "dtype": dtype}
         parameters = tuple(scene.parameters.values())
@@ -101,10 +122,13 @@ class _Lowering:
         for value, text in ((T, "T"), (1 / T, "1/T with T"), (T / substeps, "T/substeps with T")):
             entering(value, REAL_OF[dtype], f"{text} = {T:g} s", ParameterError)
         self.handle = Handle(self.tracing, velocity, hold)
-        self.folded = _folded(scene, live)
+        self.folded = folded(scene, live)
         self.at_start = Translator(self.tracing.init, self._leaf_at_start, bound=scene.values)
-        self.at_sample = self._translator(self._leaf_at_sample)
+        self.at_sample = self.translator(self._leaf_at_sample)
         self.resolving, self.resolved = [], set()
+        if exact and form.coordinates:
+            self.exact = Exact(self, form, method and method.name)
+            self.form = self.exact.others
 
     def program(self):
         """Trace the tick in the order it runs."""
@@ -113,16 +137,19 @@ class _Lowering:
         units = self.scene.watch_units
         for name, expr in self.form.watch.items():
             outputs.append((Channel(name, units[name], real), self._real(self.at_sample(expr))))
-        self._advance()
+        unlocated = self._advance()
+        if unlocated is not None:
+            outputs.append((Channel("unlocated", "1", real), unlocated))
         self.tracing.complete()
         unused = [str(sample) for sample in self.form.updates if sample not in self.resolved]
+        unused += self.exact.left_out if self.exact else ()
         program = self.tracing.finish(self.scene.name, outputs, self.scene.values, self.facts, unused)
         for channel, value in zip(program.parameters, program.values, strict=True):
             if value == value:
                 self._entering(channel.name, value)
         return program
 
-    def _translator(self, leaf, after=0.0):
+    def translator(self, leaf, after=0.0):
         """Return what translates expressions of the tick, ``after`` [s] after the sample."""
         return Translator(self.tracing.tick, leaf, Clock(self._tick_count, self.tracing.T, after), self.scene.values)
 
@@ -175,7 +202,7 @@ class _Lowering:
             return self.handle.sample(kind, lag_of(leaf) or 0)
         if isinstance(leaf, delay):
             argument = leaf.args[0]
-            channel = Channel(_short(leaf), unit_of(argument), tracing.real)
+            channel = Channel(short(leaf), unit_of(argument), tracing.real)
             return tracing.state(leaf, channel, self.at_start(argument), lambda: self.at_sample(argument))
         if isinstance(leaf, sp.Derivative) or kind.role == "coordinate":
             return self._coordinate_state(leaf)
@@ -207,37 +234,50 @@ class _Lowering:
 
     def _coordinate_state(self, leaf):
         """Return q or q' as it is at the sample."""
+        if self.exact and leaf in self.exact.states:
+            return self.exact.state(leaf)
         q, order = (leaf.expr, leaf.derivative_count) if isinstance(leaf, sp.Derivative) else (leaf, 0)
         if order >= self.form.orders[self.form.coordinates.index(q)]:
             raise SceneError(
                 f"{leaf} is what the equations of motion solve for; the force and what is watched may use "
                 f"{type(q).__name__} and lower derivatives"
             )
-        kind = type(q)
-        name, unit = (kind.__name__, kind.unit) if order == 0 else (f"d{kind.__name__}/dt", _rate_unit(kind.unit))
-        start = self.at_start(kind.initial if order == 0 else kind.rate)
-        return self.tracing.state(leaf, Channel(name, unit, self.tracing.real), start)
+        return self.tracing.state(leaf, channel_of(leaf, self.tracing.real), self.first_of(leaf))
+
+    def first_of(self, state):
+        """Return q or q' at the first sample."""
+        return self.at_start(type(state.expr).rate if isinstance(state, sp.Derivative) else type(state).initial)
 
     # one period of the equations of motion
 
     def _advance(self):
         form = self.form
+        if self.exact:
+            self.exact.advance()
         second = [q for q, order in zip(form.coordinates, form.orders, strict=True) if order == 2]
         first = [q for q, order in zip(form.coordinates, form.orders, strict=True) if order == 1]
         names = [*second, *(q.diff(t) for q in second), *first]
         if not names:
-            return
+            return None
         groups = (second, names[len(second) : 2 * len(second)], first)
         state = tuple([self._coordinate_state(q) for q in group] for group in groups)
-        h = self.tracing.T / self.substeps
-        for step in range(self.substeps):
-            state = self.method.step(lambda tau, *at: self._rates(names, tau, *at), step * h, state, h)
+        h, unlocated = self.tracing.T / self.substeps, None
+        rates = partial(self._rates, names)
+        if isinstance(self.method, Taylor):
+            state, facts, unlocated = advance(
+                self.method, self.tracing, rates, state, h, self.substeps, self.scene.values, self.scene.name
+            )
+            self.facts |= facts
+        else:
+            for step in range(self.substeps):
+                state = self.method.step(rates, step * h, state, h)
         for name, value in zip(names, [value for group in state for value in group], strict=True):
             self.tracing.set_next(name, value)
+        return unlocated
 
     def _rates(self, names, tau, q, w, s):
         """Return the accelerations and first-order rates at tau after the sample."""
-        held = dict(zip(names, [*q, *w, *s], strict=True))
+        held = dict(zip(names, [*q, *w, *s], strict=True)) | (self.exact.at(tau) if self.exact else {})
         handle = dict(zip((x(t), v(t)), self.handle.motion(tau), strict=True))
 
         def leaf(expr):
@@ -247,34 +287,10 @@ class _Lowering:
                 return handle[expr]
             return self.at_sample(expr) + tau if expr == t else self.at_sample(expr)
 
-        translate = self._translator(leaf, tau)
+        translate = self.translator(leaf, tau)
         M = [[translate(m) for m in row] for row in self.form.M]
         solution = solve(M, [translate(f) for f in self.form.f], self.form.definite)
         by_order = {2: [], 1: []}
         for rate, order in zip(solution, self.form.orders, strict=True):
             by_order[order].append(rate)
         return by_order[2], by_order[1]
-
-
-def _short(expr):
-    """Return an expression as a name that fits a line of the listing."""
-    text = str(expr)
-    return text if len(text) <= 24 else f"{text[:20]}..."
-
-
-def _rate_unit(unit):
-    return "1/s" if unit == "1" else f"{unit}/s"
-
-
-def _folded(scene, live):
-    """Return the values of parameters that become constants."""
-    if live is None:
-        return {}
-    strangers = set(live) - set(scene.parameters)
-    if strangers:
-        raise ParameterError(f"live: {', '.join(sorted(strangers))} is not a parameter; {', '.join(scene.parameters)} are")
-    fixed = set(scene.parameters) - set(live)
-    unbound = sorted(fixed - set(scene.values))
-    if unbound:
-        raise ParameterError(f"{', '.join(unbound)} is not live, so it needs a value: scene({unbound[0]}=...)")
-    return {name: scene.values[name] for name in fixed}
