@@ -101,13 +101,29 @@ def _measured(A, B, one, two):
 
 
 def trace(translator, node):
-    """Return the value of a :class:`~hapticlab.scene.gaps.ClosestPoints`; its other parts are known from then on."""
-    A, B, method, label, _ = node.args
-    cores = []
-    for corners, x, y, angle in (A, B):
-        placed = (translator(expr) for expr in (x, y, sp.cos(angle), sp.sin(angle)))
-        cores.append(core([tuple(map(translator, p)) for p in corners], *placed))
-    gap, normal, point = closest(*cores) if method.name == "faces" else distance(*cores)
+    """Return the value of a :class:`~hapticlab.scene.closest_points.ClosestPoints`; its other parts are known then."""
+    first, second, method, label, _ = node.args
+    A, B = _cores(translator, first), _cores(translator, second)
+    measure = closest if method.name == "faces" else distance
+    found = [measure(a, b) for a in A for b in B] if A else _above(translator, first, B)
+    least = found[0]
+    for other in found[1:]:
+        least = pick(other[0] < least[0], other, least)
+    gap, normal, point = least
     for part, value in zip(PARTS, (gap, *normal, *point), strict=True):
-        translator.known[ClosestPoints(A, B, method, label, Str(part))] = value
+        translator.known[ClosestPoints(first, second, method, label, Str(part))] = value
     return translator.known[node]
+
+
+def _cores(translator, body):
+    cores, x, y, angle = body
+    placed = [translator(expr) for expr in (x, y, sp.cos(angle), sp.sin(angle))]
+    return [core([tuple(map(translator, p)) for p in corners], *placed) for corners in cores]
+
+
+def _above(translator, plane, cores):
+    """Return (height, normal, point) of each corner above a half-plane."""
+    _, x, y, angle = plane
+    x, y, c, s = (translator(expr) for expr in (x, y, sp.cos(angle), sp.sin(angle)))
+    points = [moved((B.x, B.y, B.c, B.s), p) for B in cores for p in distinct(B)]
+    return [(dot((-s, c), less(p, (x, y))), (-s, c), p) for p in points]

@@ -18,15 +18,10 @@ from ..scene.checks import applied
 from ..scene.contact import Contact
 from ..scene.gaps import closest
 from ..scene.gaps import corners as corners_of
-from ..scene.parameters import Parameter
 from ..scene.shapes import HalfPlane, Placed
-from ..scene.symbols import n, t, x
-from .elementary import expand
-from .expressions import Translator
-from .interpreter import evaluate
-from .ir import Block, Program
+from ..scene.symbols import t, x
+from .first_sample import numbers
 from .ranges import Ranges
-from .trace import Builder
 
 #: how deep [m] bodies may start in each other: a rounding of where they were put
 TOUCHING = 1e-9
@@ -132,7 +127,6 @@ def contacts_between(bodies, *, law, ignore=(), handle=(-math.inf, math.inf), co
         a, b = (b, a) if isinstance(b.shape, HalfPlane) else (a, b)
         each = corners and isinstance(a.shape, HalfPlane)
         found = corners_of(a, b) if each else (closest(a, b, method=method),)
-        _check_apart(a, b, found, values or {})
         for k, c in enumerate(found, 1):
             name = f"{a.name}_{b.name}" + (f"_{k}" if len(found) > 1 else "")
             slip = c.slip if getattr(law_here, "mu", 0) != 0 else sp.S.Zero
@@ -145,6 +139,7 @@ def contacts_between(bodies, *, law, ignore=(), handle=(-math.inf, math.inf), co
                     "speed; give one of them a radius, such as hl.Capsule",
                     stacklevel=2,
                 )
+    check_apart(made, values or {})
     return Contacts(made, pairs.dropped, pairs.ranges, thickness, places)
 
 
@@ -254,36 +249,22 @@ def _checked(bodies):
     return bodies
 
 
-def _check_apart(a, b, found, values):
-    """Refuse bodies that start in each other; a parameter without a value leaves it open."""
-    depth = -min(numbers([c.gap for c in found], values) or [0.0])
-    if depth > TOUCHING:
-        raise SceneError(
-            f"{a.name} and {b.name} start {depth:.4g} m in each other; start them apart (initial=), or let the pair pass: "
-            f"ignore=[('{a.name}', '{b.name}')]"
-        )
+def check_apart(contacts, values):
+    """Refuse contacts whose bodies start in each other; a parameter without a value leaves it open.
 
-
-def numbers(expressions, values):
-    """Return what expressions are at the first sample as floats, or None where a parameter has no value."""
-    builder, at = Builder("f64"), []
-
-    def start(leaf):
-        if isinstance(leaf, Parameter):
-            return values.get(leaf.name, leaf.value)
-        if leaf in (n, t) or getattr(type(leaf), "role", None) == "handle":
-            return 0.0
-        initial = type(leaf.expr).rate if isinstance(leaf, sp.Derivative) else type(leaf).initial
-        return (numbers([initial], values) or [math.nan])[0]
-
-    def leaf(expr):
-        at.append((float(start(expr)), builder.leaf("input", len(at), "f64")))
-        return at[-1][1]
-
-    outputs = list(map(Translator(builder, leaf), expressions))
-    program = Program("numbers", (), (), (), (), Block(), builder.block(outputs), 1.0)
-    found, _ = evaluate(expand(program).tick, input=[value for value, _ in at])
-    return None if any(math.isnan(value) for value, _ in at) else [float(f) for f in found]
+    Parameters
+    ----------
+    contacts : sequence of Contact
+    values : dict name -> number
+        Parameters; else their declared values.
+    """
+    for contact in contacts:
+        depth = -(numbers([contact.gap], values) or [0.0])[0]
+        if depth > TOUCHING:
+            raise SceneError(
+                f"{contact.name}: the bodies start {depth:.4g} m in each other; start them apart (initial=), or leave the "
+                "pair out: ignore=[(one, other)]"
+            )
 
 
 class _Ranges(Ranges):

@@ -1,4 +1,4 @@
-"""Where two convex cores are closest, as one word that the compiler turns into arithmetic."""
+"""Where two bodies are closest, as one word that the compiler turns into arithmetic."""
 
 import sympy as sp
 
@@ -7,9 +7,10 @@ PARTS = {"distance": "m", "normal_x": "1", "normal_y": "1", "point_x": "m", "poi
 
 
 class ClosestPoints(sp.Expr):
-    """One of the facts about where two convex cores are closest: their distance, the normal or the point.
+    """One of the facts about where two bodies' cores are closest: their distance, the normal or the point.
 
-    The arguments are the two cores, each ``Tuple(corners, x, y, angle)``, the method, what it prints as, and the part.
+    The arguments are the two bodies, each ``Tuple(cores, x, y, angle)``, the method, what it prints as, and the part. A
+    half-plane, which comes first, has no cores.
     """
 
     is_commutative = True
@@ -25,6 +26,10 @@ class ClosestPoints(sp.Expr):
     def unit(self):
         """Unit of the part."""
         return PARTS[self.part]
+
+    def _eval_derivative(self, symbol):
+        # taken on the compiler's graph, hapticlab.scene.derivative.Partial; in symbols it stays as it is
+        return sp.Derivative(self, symbol, evaluate=False) if symbol in self.free_symbols else sp.S.Zero
 
     def _sympystr(self, printer):
         return f"{self.part}({self.args[3].name})"

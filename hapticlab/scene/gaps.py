@@ -11,7 +11,7 @@ import sympy as sp
 from sympy.core.symbol import Str
 
 from ..errors import SceneError
-from .cases import Piecewise, when
+from .cases import when
 from .closest_points import PARTS, ClosestPoints
 from .shapes import Box, Capsule, Circle, HalfPlane, Placed, Segment
 
@@ -107,54 +107,35 @@ def corners(a, b):
 
 def _closest(a, b, method):
     """Return (distance, normal, point); a half-plane comes first, and a disc second."""
-    if isinstance(a.shape, HalfPlane):
-        return _least(_above(a, b))
     if isinstance(a.shape, Circle):
         return _discs(a, b)
+    above = _above(a, b) if isinstance(a.shape, HalfPlane) else ()
+    if len(above) == 1:
+        return above[0]
     radii = a.shape.radius + b.shape.radius
     if method == "gjk" and radii == 0:
         raise SceneError(
             f"{a.name} and {b.name}: gjk gives no negative distance, so nothing would be felt; give one of them a radius, "
             "or take method='faces'"
         )
-    found = []
-    for core in a.shape.cores:
-        for other in b.shape.cores:
-            known = {part: _fact(a, core, b, other, method, part) for part in PARTS}
-            normal = known["normal_x"], known["normal_y"]
-            r = b.shape.radius
-            point = known["point_x"] - r * normal[0], known["point_y"] - r * normal[1]
-            found.append((known["distance"] - radii, normal, point))
-    distance, normal, point = _least(found)
+    known = {part: ClosestPoints(_cores(a), _cores(b), Str(method), Str(f"{a.name}, {b.name}"), Str(part)) for part in PARTS}
+    normal, r = (known["normal_x"], known["normal_y"]), b.shape.radius
+    point = known["point_x"] - r * normal[0], known["point_y"] - r * normal[1]
+    if above:
+        return _extreme(sp.Min, [height for height, _, _ in above]), normal, point
     if isinstance(b.shape, Circle) and isinstance(a.shape, (Box, Capsule, Segment)):
-        distance = _from_disc(a, b)
-    return distance, normal, point
+        return _from_disc(a, b), normal, point
+    return known["distance"] - radii, normal, point
 
 
-def _fact(a, core, b, other, method, part):
-    placed = (sp.Tuple(sp.Tuple(*(sp.Tuple(*p) for p in c)), s.x, s.y, s.angle) for s, c in ((a, core), (b, other)))
-    return ClosestPoints(*placed, Str(method), Str(f"{a.name}, {b.name}"), Str(part))
-
-
-def _least(found):
-    """Return the one of several closest points whose distance is least."""
-    if len(found) == 1:
-        return found[0]
-    distances = [distance for distance, _, _ in found]
-    least = [sp.Le(d, _extreme(sp.Min, distances[k + 1 :]), evaluate=False) for k, d in enumerate(distances[:-1])] + [sp.true]
-
-    def of_least(values):
-        if all(value == values[0] for value in values):
-            return values[0]
-        return Piecewise(*zip(values, least, strict=True))
-
-    normal, point = (tuple([of_least([f[i][k] for f in found]) for k in (0, 1)]) for i in (1, 2))
-    return _extreme(sp.Min, distances), normal, point
+def _cores(body):
+    cores = () if isinstance(body.shape, HalfPlane) else body.shape.cores
+    return sp.Tuple(sp.Tuple(*(sp.Tuple(*(sp.Tuple(*p) for p in core)) for core in cores)), body.x, body.y, body.angle)
 
 
 def _extreme(kind, values):
     # not evaluated: SymPy would compare every two of them, in symbols
-    return kind(*values, evaluate=False) if len(values) > 1 else values[0]
+    return kind(*values, evaluate=False)
 
 
 def _above(a, b):

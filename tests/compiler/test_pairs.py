@@ -8,7 +8,8 @@ import sympy as sp
 from placements import values
 
 import hapticlab as hl
-from hapticlab.compiler.pairs import Contacts, _sweep, contacts_between, numbers, possible_pairs
+from hapticlab.compiler.first_sample import numbers
+from hapticlab.compiler.pairs import Contacts, _sweep, check_apart, contacts_between, possible_pairs
 from hapticlab.errors import SceneError
 from hapticlab.scene.amount import Amount
 from hapticlab.scene.contact_laws import impulse, rigid
@@ -135,16 +136,30 @@ def test_contacts_carry_gap_slip_name_and_law():
 def test_bodies_that_start_in_each_other():
     z = hl.coordinate("z", unit="m", initial=Amount(0.097, "m"))
     ball = Circle(0.1).at(y=z, name="ball")
-    with pytest.raises(SceneError, match="ground and ball start 0.003 m in each other"):
+    with pytest.raises(SceneError, match="ground_ball: the bodies start 0.003 m in each other"):
         contacts_between([ground(), ball], law=rigid())
     assert not contacts_between([ground(), ball], law=rigid(), ignore=[("ball", "ground")])
     r = hl.parameters("r", units="m", ranges=(0, 1))
     bodies = [ground(), Circle(r).at(y=z, name="ball")]
-    assert len(contacts_between(bodies, law=rigid())) == 1  # r has no value yet
+    later = contacts_between(bodies, law=rigid())  # r has no value yet
+    check_apart(later, {"r": 0.05})
+    with pytest.raises(SceneError, match="ground_ball: the bodies start 0.903 m in each other"):
+        check_apart(later, {"r": 1.0})
     with pytest.raises(SceneError, match="start 0.103 m in each other"):
         contacts_between(bodies, law=rigid(), values={"r": 0.2})
     # in touch is no overlap
     assert contacts_between([ground(), Circle(0.097).at(y=z, name="ball")], law=rigid())
+
+
+def test_polygons_that_rub():
+    """A law with friction takes the slip of two polygons, linear in the rates as it must be."""
+    x, y, a = (ranged(name, -1, 1, unit) for name, unit in (("x1", "m"), ("y1", "m"), ("a1", "rad")))
+    hook = Polygon([(-1, -1), (0.5, -1), (0.5, -0.8), (-0.8, -0.8), (-0.8, 0.5), (-1, 0.5)]).at(name="hook")
+    bodies = [hook, Box(0.3, 0.2).at(x=x, y=y, angle=a, name="box")]
+    (contact,) = contacts_between(bodies, law=impulse(e=0.5, mu=0.3))
+    at = {x: 0.1, y: 0.2, a: 0.3, x.diff(t): 0.5, y.diff(t): -0.2, a.diff(t): 2.0}
+    one, two = (values([contact.slip], at | {q.diff(t): s * at[q.diff(t)] for q in (x, y, a)})[0] for s in (1, 3))
+    assert two == pytest.approx(3 * one, rel=1e-13) and abs(one) > 0.1
 
 
 def test_numbers_at_the_first_sample():
