@@ -6,12 +6,11 @@ handle feels the impulse -sum p_i d(row i)/dx.
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 
-from .complementarity import complementarity, dot, reactions, response
+from .complementarity import complementarity, dot, reactions
 from .impact import closed, dissipated, micro_rebound, sequential, simultaneous
-from .solve import solve
-from .trace import Value, maximum, select
+from .trace import maximum, select
 
 
 @dataclass(frozen=True)
@@ -140,88 +139,6 @@ def micro_impulses(W, u, b, gaps, laws, envelopes, step):
     q = [rate - select(rate < 0.0, aim, 0.0) for rate, aim in zip(u, aims, strict=True)]
     p = complementarity(W, q, near, names)
     return p, _rates(W, u, p)
-
-
-@dataclass(frozen=True)
-class Impacts:
-    """The impacts of a motion, for a stepper that has located them: what ``Stepper`` takes as ``impact``.
-
-    Attributes
-    ----------
-    laws : list of Law, shape (k,)
-    order : {"sequential", "simultaneous"}
-    M, f : lists of Value over the motion's leaves
-        M a = f in free flight, without reactions.
-    rows : list of lists of Value
-        d gap / d q of the k contacts, then d slip / d q' of those with friction.
-    rates : list of Value, one per row
-        Gap rates and slips, with what handle and time add.
-    biases : list of Value, shape (k,)
-        Second derivative of each gap but for J a.
-    gaps : list of Value, shape (k,)
-    w : list of Value
-        Leaves of the rates of the coordinates.
-    place : list of int, shape (k,)
-        Where each contact stands among the motion's reactions.
-    period : float
-    near : float
-        A gap below this [m] takes part in the impact of another.
-    definite : bool
-    sums : dict (role, contact) -> Value
-        What the impacts of the steps traced so far add up to: role ``impulse`` [N s], ``impact_loss`` [J], and
-        ``impact_work`` [J], the work of what drives a surface. Cleared by who starts a period.
-    """
-
-    laws: list
-    order: str
-    M: list
-    f: list
-    rows: list
-    rates: list
-    biases: list
-    gaps: list
-    w: list
-    place: list
-    period: float
-    near: float = 1e-9
-    definite: bool = True
-
-    sums: dict = field(default_factory=dict)
-
-    def __call__(self, at, fired, held):
-        """Return (w, held) after the contacts fired, beside those that rest or touch already; add to ``sums``."""
-        w, modes, found, driven = self._struck(at, fired, held)
-        any_fired = False
-        for here in fired:
-            any_fired = here | any_fired
-        for i, law in enumerate(self.laws):
-            rows = [i] if law.slip is None else [i, law.slip]
-            work = [-(found.p[row] * driven[row]) for row in rows]
-            amounts = {"impulse": found.p[i], "impact_loss": sum(found.lost[row] for row in rows), "impact_work": sum(work)}
-            for role, amount in amounts.items():
-                self.sums[role, i] = self.sums.get((role, i), 0.0) + select(any_fired, amount, 0.0)
-        return w, modes
-
-    def _struck(self, at, fired, held):
-        """Return (w, held, :class:`Struck`, the part of each row's rate that handle and time drive)."""
-        touching = [fired[i] | held[i] | (at(gap) <= self.near) for i, gap in zip(self.place, self.gaps, strict=True)]
-        M = [[at(m) for m in row] for row in self.M]
-        rows = [[at(j) for j in row] for row in self.rows]
-        free = solve(M, [at(f) for f in self.f], self.definite)
-        W, P = response(M, rows, self.definite)
-        b = [dot(row, free) + at(bias) for row, bias in zip(rows, self.biases, strict=False)]
-        laws = [
-            replace(law, **{part: at(value) for part, value in vars(law).items() if isinstance(value, Value)})
-            for law in self.laws
-        ]
-        u, w = [at(rate) for rate in self.rates], [at(rate) for rate in self.w]
-        driven = [rate - dot(row, w) for rate, row in zip(u, rows, strict=True)]
-        found = strike(W, u, b, touching, laws, self.period, self.order)
-        w = [rate + dot(found.p, [column[i] for column in P]) for i, rate in enumerate(w)]
-        modes = list(held)
-        for i, place in enumerate(self.place):
-            modes[place] = found.resting[i]
-        return w, modes, found, driven
 
 
 def _slow(rate, acceleration, rest_speed, period):

@@ -8,6 +8,7 @@ from ..errors import SceneError, SignalError
 from .cases import when
 from .checks import agree_with, applied, check_symbols
 from .contact_laws import EVENT_LAWS, FORCE_LAWS
+from .derivative import Partial, Rate
 from .force_laws import gap_units
 from .symbols import lag_of, t, v, x
 from .units import dimension_of, si_name
@@ -26,7 +27,8 @@ class Contact:
     name : str
         Names the contact in messages and records; two contacts of a scene need two names.
     slip : expression [m/s]
-        Tangential velocity of the surfaces on each other, linear in rates; for a law with friction mu.
+        Tangential velocity of the surfaces on each other, linear in rates; for a law with friction mu in its impacts. Friction
+        of a body that stays in touch is ``hl.friction(slip=..., F_c=mu*contact.force)`` beside the contact.
 
     Attributes
     ----------
@@ -62,6 +64,11 @@ class Contact:
             raise SceneError(f"{self.name}: law = {self.law!r}; needs penalty, hunt_crossley, impulse, micro_impulse or rigid")
         _check_gap(gap, self.name)
         gap_units(gap, f"{self.name}: gap")
+        if not self.is_force and not applied([gap], "coordinate"):
+            raise SceneError(
+                f"{self.name}: gap = {gap} holds the handle alone, which no impulse can turn round; put a body behind a "
+                "virtual coupler, or take a penalty, hunt_crossley, or hl.proxy_wall"
+            )
         self.law.check(gap, self.name)
         mu = getattr(self.law, "mu", sp.S.Zero)
         if mu != 0 and slip == 0:
@@ -87,8 +94,6 @@ class Contact:
         """The normal force [N], an expression."""
         if not self.is_force:
             return reaction(self.name, self.unit)
-        from .derivative import Rate
-
         return when(self.gap <= 0, self.law.force(self.gap, Rate(self.gap)))
 
     @property
@@ -106,6 +111,11 @@ class Contact:
         """The work that handle and moving surfaces have done in impacts so far [J]; zero of a force law."""
         return self._met("impact_work", "J")
 
+    @property
+    def rub(self):
+        """The tangential force of an impact [N]: a leaf along which a program pushes in the instant, else zero."""
+        return sp.Function(f"{self.name}_rub", real=True, unit=self.unit, role="rub", contact=self.name)(t)
+
     def _met(self, role, unit):
         """Return the leaf of what impacts add up to."""
         if self.is_force:
@@ -113,10 +123,14 @@ class Contact:
         return sp.Function(f"{self.name}_{role}", real=True, unit=unit, role=role, contact=self.name)(t)
 
     def generalized_force(self, q):
-        """Return what the contact does to a coordinate q, or to the handle x(t): force times dgap/dq."""
-        from .derivative import Partial
+        """Return what the contact does to a coordinate q, or to the handle x(t): force times dgap/dq.
 
-        return self.force * Partial(self.gap, q)
+        With friction in its impacts, the leaf ``rub`` along dslip/dq' too, zero at all other times.
+        """
+        normal = self.force * Partial(self.gap, q)
+        if self.slip == 0:
+            return normal
+        return normal + self.rub * Partial(self.slip, v(t) if q == x(t) else q.diff(t))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,8 +210,6 @@ class friction:
 
     def generalized_force(self, q):
         """Return what the friction does to a coordinate q, or to the handle x(t): -force times dslip/dq'."""
-        from .derivative import Partial
-
         return -self.force * Partial(self.slip, v(t) if q == x(t) else q.diff(t))
 
 

@@ -10,9 +10,12 @@ from scipy.optimize import brentq
 from hapticlab.compiler.engine import load
 from hapticlab.compiler.flow import motion_of
 from hapticlab.compiler.guards import contact
+from hapticlab.compiler.impact import with_friction
+from hapticlab.compiler.impacts import impacts_of
 from hapticlab.compiler.ir import Channel, Program
 from hapticlab.compiler.located import Stepper
-from hapticlab.compiler.touch import Impacts, Law, micro_impulses, release, strike
+from hapticlab.compiler.taylor import Series
+from hapticlab.compiler.touch import Law, micro_impulses, release, strike
 from hapticlab.compiler.trace import Builder, cos, select, sin
 
 G, T = 9.81, 1e-3
@@ -25,13 +28,8 @@ def run(masses, forces, rows, laws, start, ticks, *, spring=0.0, plate=None, ord
     """
     b, n, k, reactions = Builder("f64"), len(masses), len(rows), []
 
-    def moving(time):
-        """Return position, velocity and acceleration of the plate."""
-        if plate is None:
-            return b.const(0.0), b.const(0.0), b.const(0.0)
-        a, omega, phase = plate
-        angle = omega * time + phase
-        return a * sin(angle), a * omega * cos(angle), -a * omega**2 * sin(angle)
+    def plate_at(time):
+        return plate[0] * sin(plate[1] * time + plate[2]) if plate else b.const(0.0)
 
     def dot(row, values):
         total = b.const(0.0)
@@ -40,29 +38,20 @@ def run(masses, forces, rows, laws, start, ticks, *, spring=0.0, plate=None, ord
         return total
 
     clock = b.leaf("state", 2 * n + k, "f64")
-    made = {}
 
     def touches(tau, q, w, s, new):
-        made["plate"] = moving(clock + tau)
-        made["gaps"] = [dot(row, q) for row in rows]
-        made["gaps"][0] = made["gaps"][0] - made["plate"][0]
-        reactions[:] = [contact(gap, new()) for gap in made["gaps"]]
+        gaps = [dot(row, q) for row in rows]
+        gaps[0] = gaps[0] - plate_at(clock + tau)
+        reactions[:] = [contact(gap, new()) for gap in gaps]
         return reactions
 
     def rates(tau, q, w, s):
         pushed = [dot([row[i] for row in rows], [r.leaf for r in reactions]) for i in range(n)]
-        made["forces"] = [force - spring * z for force, z in zip(forces, q, strict=True)]
-        return [(force + push) * (1 / mass) for force, push, mass in zip(made["forces"], pushed, masses, strict=True)], []
+        total = [force - spring * z + push for force, z, push in zip(forces, q, pushed, strict=True)]
+        return [force * (1 / mass) for force, mass in zip(total, masses, strict=True)], []
 
     motion = motion_of(b, rates, n, events=touches)
-    constants = [[b.const(masses[i] if i == j else 0.0) for j in range(n)] for i in range(n)]
-    J = [[b.const(c) for c in row] for row in rows]
-    zero, (_, velocity, acceleration) = [b.const(0.0)] * (k - 1), made["plate"]
-    gap_rates = [dot(row, motion.w) for row in rows]
-    impacts = Impacts(
-        laws, order, constants, made["forces"], J, [gap_rates[0] - velocity, *gap_rates[1:]],
-        [-acceleration, *zero], made["gaps"], motion.w, list(range(k)), T,
-    )  # fmt: skip
+    impacts = impacts_of(motion, laws, list(range(k)), T, order)
     stepper = Stepper(motion, T, 12 if plate or spring else 4, events, impact=impacts)
     q, w = ([b.leaf("state", half * n + i, "f64") for i in range(n)] for half in (0, 1))
     held = [0.5 < b.leaf("state", 2 * n + i, "f64") for i in range(k)]
@@ -276,6 +265,45 @@ def test_a_juggled_ball_gets_from_the_plate_what_its_impacts_lose():
     speed = G * 2 * np.pi / omega * (1 - e) / (2 * (1 + e))
     one = 0.03 * (2 * rebound) * speed  # impulse m 2 v by the plate's speed
     assert ran.work[-1] == pytest.approx(3 * one, rel=1e-6)
+
+
+def test_what_an_impact_needs_is_traced_from_the_motion():
+    """A rod that falls on its end with friction: J, M^-1 J^T, rates and second derivatives, against those by hand."""
+    b, mass, half, angle, spin = Builder("f64"), 0.5, 0.4, 0.6, 1.3
+    inertia, leaves = mass * half**2 / 3, {}
+
+    def touches(tau, q, w, s, new):
+        leaves.update(push=new(), rub=new())
+        return [contact(q[1] - half * sin(q[2]), leaves["push"])]
+
+    def slip(q, w):
+        return w[0] + half * sin(q[2]) * w[2]
+
+    def rates(tau, q, w, s):
+        push, rub = leaves["push"], leaves["rub"]
+        turn = (half * sin(q[2]) * rub - half * cos(q[2]) * push) * (1 / inertia)
+        return [rub * (1 / mass), push * (1 / mass) - G, turn], []
+
+    motion = motion_of(b, rates, 3, events=touches)
+    law = Law("floor", 0.5, slip=1, mu=0.3)
+    impacts = impacts_of(motion, [law], [0], T, slips=[slip(motion.q, motion.w)], rubs=[leaves["rub"]])
+    state = [0.0, half * np.sin(angle), angle], [0.4, -2.0, spin]
+    values = {leaf.id: np.float64(value) for part, group in zip(state, (motion.q, motion.w), strict=True)
+              for leaf, value in zip(group, part, strict=True)}  # fmt: skip
+
+    def at(value):
+        series = Series(b.instructions, {k: [v] for k, v in values.items()}, lambda p: b.instructions[p].value)
+        return float(series.of(value, 0)[0])
+
+    c, s = half * np.cos(angle), half * np.sin(angle)
+    assert [[at(v) for v in row] for row in impacts.rows] == [[0, 1, pytest.approx(-c)], [1, 0, pytest.approx(s)]]
+    assert at(impacts.rates[0]) == pytest.approx(-2.0 - c * spin) and at(impacts.biases[0]) == pytest.approx(s * spin**2)
+    (w, (resting,)), before = impacts(at, [True], [False]), state[1]
+    W, cross, N = 1 / mass + c**2 / inertia, -c * s / inertia, 1 / mass + s**2 / inertia
+    p, rub = with_friction(W, cross, N, -2.0 - c * spin, 0.4 + s * spin, 0.5, 0.3)
+    assert w == pytest.approx([0.4 + rub / mass, -2.0 + p / mass, spin + (s * rub - c * p) / inertia], rel=1e-12)
+    lost = 0.5 * (mass * before[0] ** 2 + mass * 4 + inertia * spin**2 - mass * (w[0] ** 2 + w[1] ** 2) - inertia * w[2] ** 2)
+    assert impacts.sums["impact_loss", 0] == pytest.approx(lost, rel=1e-12) and not resting
 
 
 def test_an_instant_leaves_no_gap_under_what_rests():

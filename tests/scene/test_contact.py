@@ -32,6 +32,7 @@ E = hl.parameters("e", units="1", values=0.8, ranges=(0, 1))
     (lambda: Contact(sp.Integer(1) * K / K, rigid()), r"gap = 1 holds no coordinate and not x\(t\), so nothing can close it"),
     (lambda: Contact(Q.diff(t), rigid(), "stop"), r"stop: gap = .* holds a velocity; a gap is a distance"),
     (lambda: Contact(Q, 3), r"law = 3; needs penalty, hunt_crossley, impulse, micro_impulse or rigid"),
+    (lambda: Contact(-x(t), impulse(e=E), "wall"), r"wall: gap = -x\(t\) holds the handle alone, .* hl.proxy_wall"),
     (lambda: Contact(Q, impulse(e=E, mu=MU)), r"friction mu = mu needs a direction; give slip="),
     (lambda: Contact(Q, penalty(k=K), slip=v(t)), r"a penalty has no friction of its own; add hl.friction\(slip=..., F_c=mu"),
     (lambda: friction(slip=Q.diff(t) ** 2, F_c=F_C), r"slip = .* is not linear in the velocities"),
