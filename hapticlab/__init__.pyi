@@ -33,7 +33,12 @@ from .errors import (
     UnitsError,
 )
 from .records import PaddleProfile, Telemetry
+from .scene.contact import Contact, friction
+from .scene.contact_laws import impulse, micro_impulse, rigid
+from .scene.felt import felt_impulse, pulse_time
+from .scene.force_laws import hunt_crossley, penalty
 from .scene.laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
+from .scene.proxy import proxy_curve, proxy_wall
 from .scene.scene import Scene
 from .scene.symbols import T, coordinate, delay, n, parameters, signal, t, v, when, x
 
@@ -41,6 +46,7 @@ __version__: str
 
 __all__ = [
     "AnalysisError",
+    "Contact",
     "EngineMissingError",
     "Hand",
     "HapticlabError",
@@ -69,15 +75,25 @@ __all__ = [
     "delay",
     "doctor",
     "energy",
+    "felt_impulse",
     "force_filter",
+    "friction",
+    "hunt_crossley",
+    "impulse",
     "library",
+    "micro_impulse",
     "n",
     "parameters",
     "passivity_limit",
+    "penalty",
     "picture",
     "plot",
     "predicted_sample",
     "profile",
+    "proxy_curve",
+    "proxy_wall",
+    "pulse_time",
+    "rigid",
     "signal",
     "stability_limit",
     "sweep",
