@@ -6,30 +6,35 @@ import sympy as sp
 
 from ..scene.parameters import Parameter
 from ..scene.symbols import n, t
-from .elementary import expand
-from .expressions import Translator
-from .interpreter import evaluate
-from .ir import Block, Program
-from .trace import Builder
+from .graph import Graph
 
 
 def numbers(expressions, values):
-    """Return what expressions are at the first sample as floats, or None where a parameter has no value."""
-    builder, at = Builder("f64"), []
+    """Return expressions at the first sample as floats, or None where a parameter has no value.
 
-    def start(leaf):
-        if isinstance(leaf, Parameter):
-            return values.get(leaf.name, leaf.value)
-        if leaf in (n, t) or getattr(type(leaf), "role", None) == "handle":
-            return 0.0
-        initial = type(leaf.expr).rate if isinstance(leaf, sp.Derivative) else type(leaf).initial
-        return (numbers([initial], values) or [math.nan])[0]
+    Parameters
+    ----------
+    expressions : sequence of expressions
+    values : dict name -> number
+        Parameters; else their declared values. The handle is taken to rest at 0.
 
-    def leaf(expr):
-        at.append((float(start(expr)), builder.leaf("input", len(at), "f64")))
-        return at[-1][1]
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k, a = hl.parameters("k a", units="N/m m", values=(None, 0.1))
+    >>> q = hl.coordinate("q", unit="m", initial=a)
+    >>> numbers([k * q], {"k": 30}), numbers([k * q], {})
+    ([3.0], None)
+    """
+    graph = Graph()
+    at = {variable: _start(variable, values) for variable in graph.variables_of(expressions)}
+    return None if any(map(math.isnan, at.values())) else [float(e) for e in graph.evaluate(expressions, at)]
 
-    outputs = list(map(Translator(builder, leaf), expressions))
-    program = Program("numbers", (), (), (), (), Block(), builder.block(outputs), 1.0)
-    found, _ = evaluate(expand(program).tick, input=[value for value, _ in at])
-    return None if any(math.isnan(value) for value, _ in at) else [float(f) for f in found]
+
+def _start(variable, values):
+    if isinstance(variable, Parameter):
+        return float(values.get(variable.name, variable.value))
+    if variable in (n, t) or getattr(type(variable), "role", None) == "handle":
+        return 0.0
+    initial = type(variable.expr).rate if isinstance(variable, sp.Derivative) else type(variable).initial
+    return (numbers([initial], values) or [math.nan])[0]

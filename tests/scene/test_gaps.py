@@ -9,9 +9,13 @@ import sympy as sp
 from placements import convex, outlines, poses, signed_distance, values
 
 import hapticlab as hl
+from hapticlab.compiler.graph import Graph
+from hapticlab.compiler.trace import reachable
 from hapticlab.errors import SceneError
 from hapticlab.scene.amount import Amount
-from hapticlab.scene.gaps import ClosestPoints, closest, corners, gap
+from hapticlab.scene.closest_points import ClosestPoints
+from hapticlab.scene.derivative import Partial, Rate
+from hapticlab.scene.gaps import closest, corners, gap
 from hapticlab.scene.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, ground
 from hapticlab.scene.units import unit_of
 
@@ -94,6 +98,62 @@ def test_gap_changes_as_the_closest_points_move(one, other):
         smooth = np.abs((late - g) - (g - early)) < 1e-4 * h  # no other features within h
         assert smooth.mean() > 0.95
         assert np.abs(arm - (late - early) / (2 * h))[smooth].max() < 2e-6, (one, other, q)
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("circle", "circle"), ("circle", "box"), ("box", "half-plane"), ("box", "box"), ("capsule", "polygon"),
+        ("rounded", "segment"),
+    ],
+)  # fmt: skip
+def test_derivatives_on_the_graph(one, other):
+    """First derivatives by closed form; second ones, which hold how the normal turns, by differences of the first."""
+    at, (a, b) = placed(5, count=200), pair(one, other)
+    found, Q = closest(a, b), [*B, *A]
+    graph, generator = Graph(), np.random.default_rng(6)
+    at |= {q.diff(t): generator.uniform(-1, 1, 200) for q in Q}
+    n_x, n_y, p_x, p_y = values([*found.normal, *found.point], at)
+    arms = [n_x, n_y, n_y * (p_x - at[B[0]]) - n_x * (p_y - at[B[1]])]
+    arms += [-n_x, -n_y, -(n_y * (p_x - at[A[0]]) - n_x * (p_y - at[A[1]]))]
+    rate, second = Rate(found.gap), Rate(Rate(found.gap))
+    *partials, r, r_t = graph.evaluate([*(Partial(found.gap, q) for q in Q), rate, second], at)
+    assert max(np.abs(partial - arm).max() for partial, arm in zip(partials, arms, strict=True)) < 1e-13
+    assert np.abs(r - sum(arm * at[q.diff(t)] for arm, q in zip(arms, Q, strict=True))).max() < 1e-13
+    h = 1e-5
+    late, early = (graph.evaluate([rate], at | {q: at[q] + side * h * at[q.diff(t)] for q in Q})[0] for side in (1, -1))
+    # where the closest features do not change within h, and are not so close that the normal turns within it
+    smooth = (np.abs(late - early) < 1e3 * h * 10) & (np.abs(late - 2 * r + early) < 1e-6)
+    assert smooth.mean() > 0.95
+    assert np.median(np.abs(r_t - (late - early) / (2 * h))[smooth]) < 1e-10
+    assert np.quantile(np.abs(r_t - (late - early) / (2 * h))[smooth], 0.9) < 1e-7
+
+
+def test_boxes_stacked_edge_on_edge_push_straight_up():
+    """Corners coincide and edges are parallel: the normal and its derivatives are those of the edges all the same."""
+    a, b = pair("box", "box")
+    g = gap(a, b)
+    x = np.array([0.0, 0.3, -0.999, 0.0, 0.0])
+    up = np.array([0.6, 0.6, 0.6, 0.6 + 1e-9, 0.6 - 1e-9])
+    for turn in (0.0, 0.3):
+        c, s = np.cos(turn), np.sin(turn)
+        at = dict(zip([*A, *B], [0.1, 0.2, turn, 0.1 + c * x - s * up, 0.2 + s * x + c * up, turn], strict=True))
+        found, n_x, n_y = Graph().evaluate([g, Partial(g, B[0]), Partial(g, B[1])], at)
+        assert np.abs(found - (up - 0.6)).max() < 1e-15
+        assert np.abs(n_x + s).max() < 1e-12 and np.abs(n_y - c).max() < 1e-12
+
+
+def test_the_gradient_of_polygons_costs_the_same_for_any_number_of_corners():
+    """Corners are chosen by comparisons, so only the chosen ones are differentiated."""
+    cost = []
+    for many in (4, 8, 12):
+        graph = Graph()
+        shape = Polygon(convex(np.random.default_rng(2), many))
+        a, b = shape.at(x=A[0], y=A[1], angle=A[2]), shape.at(x=B[0], y=B[1], angle=B[2])
+        wanted = [gap(a, b), *(Partial(gap(a, b), q) for q in (*A, *B))]
+        whole, alone = (reachable(graph.builder.instructions, [graph(e).id for e in es]) for es in (wanted, wanted[:1]))
+        cost.append(len(whole) - len(alone))
+    assert max(cost) - min(cost) <= 12 and max(cost) < 170, cost
 
 
 @pytest.mark.parametrize(("one", "other"), PAIRS)
