@@ -42,6 +42,16 @@ class Motion:
         """True where one series holds for the whole step."""
         return not (self.guards or self.reactions)
 
+    @property
+    def stops(self):
+        """The rates that stand still while a reaction holds: dict position in (w, s) -> number of the reaction."""
+        found = {}
+        for k, r in enumerate(self.reactions):
+            i = self.builder.instructions[r.measure.id]
+            slip = i.args[0] if i.op == "neg" else r.measure.id
+            found |= {n: k for n, leaf in enumerate((*self.w, *self.s)) if r.level == 1 and leaf.id == slip}
+        return found
+
 
 def motion_of(builder, rates, second, first=0, events=None):
     """Trace ``rates(tau, q, w, s) -> (a, ds)`` once, over leaves, and return it as a :class:`Motion`.
@@ -110,7 +120,7 @@ class Flow:
         for k in range(order):
             if self.motion.reactions and k:
                 self._set(k, self._solved(self._left(k, [0.0] * len(self.held))))
-            self._grow_once(k)
+            self._grow_once(k, self.motion.stops)
 
     def of(self, value, order):
         """Return the coefficients 0 to order of a value of the motion."""
@@ -121,12 +131,15 @@ class Flow:
         motion, known = self.motion, self.series.known
         return tuple([known[leaf.id] for leaf in group] for group in (motion.q, motion.w, motion.s))
 
-    def _grow_once(self, k):
+    def _grow_once(self, k, stops=()):
         motion, series = self.motion, self.series
         series.upto([rate.id for rate in (*motion.a, *motion.ds)], k)
         known, step = series.known, self.h / (k + 1)
-        for leaf, rate in zip((*motion.w, *motion.s), (*motion.a, *motion.ds), strict=True):
-            known[leaf.id].append(times(step, known[rate.id][k]))
+        for n, (leaf, rate) in enumerate(zip((*motion.w, *motion.s), (*motion.a, *motion.ds), strict=True)):
+            next = times(step, known[rate.id][k])
+            if n in stops:  # at rest to the last bit, whatever rounding leaves of its reaction
+                next = select(self.held[stops[n]], 0.0, next)
+            known[leaf.id].append(next)
         for leaf, rate in zip(motion.q, motion.w, strict=True):
             known[leaf.id].append(times(self.h / (k + 2), known[rate.id][k + 1]))
 

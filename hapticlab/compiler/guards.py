@@ -97,8 +97,8 @@ def check_smooth(motion, name):
         while instructions[a].op == "neg":
             a = instructions[a].args[0]
         inner = instructions[a]
-        on_edge = inner.op == "select" and zero in inner.args[1:] or frozenset((a, zero)) in edges
-        if on_edge or inner.op == "sub" and frozenset(inner.args) in edges:
+        on_edge = (inner.op == "select" and zero in inner.args[1:]) or frozenset((a, zero)) in edges
+        if on_edge or (inner.op == "sub" and frozenset(inner.args) in edges):
             raise ProgramError(
                 f"{name}: a broken power of what is zero at touch, such as d**(3/2), has no Taylor series there; "
                 "method='taylor' takes whole exponents: exponent=1 or 2, or use method='rk4' with ten substeps a contact"
@@ -161,12 +161,20 @@ class _Freezing:
             key, sense = self._surface_of(i.args[0])
             return key, None if key is None else not sense
         if i.op in ("lt", "le") and p in self.moves:
-            return (min(i.args), max(i.args)), i.args[0] < i.args[1]
+            return self._ordered(*i.args)
         return None, None
 
-    def _sign_of(self, p):
-        """Return (key, sense) of the comparison a < 0 that |a| hides."""
-        return (min(p, self.zero), max(p, self.zero)), p < self.zero
+    def _ordered(self, a, b):
+        """Return (key, sense) of a < b: the same key for all ways to write one surface, 0 < -u and u - v < 0 too."""
+        while self.zero in (a, b):
+            i = self.instructions[a if b == self.zero else b]
+            if i.op == "neg":
+                a, b = (self.zero, i.args[0]) if b == self.zero else (i.args[0], self.zero)
+            elif i.op == "sub":
+                a, b = i.args if b == self.zero else i.args[::-1]
+            else:
+                break
+        return (min(a, b), max(a, b)), a < b
 
     def _surfaces(self):
         found, conditions = {}, {}
@@ -175,9 +183,11 @@ class _Freezing:
             if p not in self.moves:
                 continue
             if i.op in ("lt", "le"):
-                found.setdefault(self._surface_of(p)[0], _Surface(i.op, i.args))
+                key, sense = self._surface_of(p)
+                found.setdefault(key, _Surface(i.op, key if sense else key[::-1]))
             elif i.op == "abs":
-                found.setdefault(self._sign_of(i.args[0])[0], _Surface("lt", (i.args[0], self.zero)))
+                key, sense = self._ordered(i.args[0], self.zero)
+                found.setdefault(key, _Surface("lt", key if sense else key[::-1]))
             elif i.op == "floor":
                 found[p] = _Surface(i.op, i.args)
             for place, a in enumerate(i.args):
@@ -189,7 +199,7 @@ class _Freezing:
             cases = [self.instructions[p] for p in users if p is not None and self.instructions[p].op == "select"]
             found[key].in_logic = None in users
             # the two cases of a Max or Min are equal on its surface: nothing to slide along
-            found[key].cases = [c for c in cases if {*c.args[1:]} != {*key}]
+            found[key].cases = [c for c in cases if self._ordered(*c.args[1:])[0] != key]
         return found
 
     def _slides(self, key):
@@ -221,7 +231,7 @@ class _Freezing:
             return self._leaf(p)
         args = [self.rewritten(a, assumed) for a in i.args]
         if i.op == "abs":
-            return self._either(*self._sign_of(i.args[0]), lambda _: -args[0], lambda _: args[0], assumed)
+            return self._either(*self._ordered(i.args[0], self.zero), lambda _: -args[0], lambda _: args[0], assumed)
         return self.builder.emit(i.op, *args, type=i.type) if args else self.builder.result(p)
 
     def _case(self, i, assumed):

@@ -96,7 +96,12 @@ class Stepper:
             held, sides = self._allowed(flow, now)
             base = len(self.motion.guards)
             just = [(j | was) & ~is_ for j, was, is_ in zip(now.just[base:], now.held, held, strict=True)]
-            now = replace(now, held=held, sides=sides, just=[*now.just[:base], *just])
+            q, w, s = now.state
+            rates = [*w, *s]
+            for n, k in self.motion.stops.items():
+                rates[n] = select(held[k], 0.0, rates[n])
+            state = q, rates[: len(w)], rates[len(w) :]
+            now = replace(now, state=state, held=held, sides=sides, just=[*now.just[:base], *just])
             flow = self._fresh(now)
             flow.begin()
             flow.hold(held)

@@ -1,0 +1,149 @@
+"""method="taylor" of whole scenes: against rk4 in the limit, closed forms, and what it refuses."""
+
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+from scipy.integrate import solve_ivp
+
+import hapticlab as hl
+from hapticlab.compiler.advance import Taylor
+from hapticlab.compiler.engine import load
+from hapticlab.errors import ProgramError
+
+T = 1e-3
+
+
+def drop(k=2000.0, b=1.5, law=lambda q, k, b: hl.when(q <= 0, sp.Max(0, -k * q - b * q.diff(hl.t)))):
+    """A ball of 50 g above a penalty floor."""
+    m, g, start, u = hl.parameters("m g q_0 u", units="kg m/s^2 m N/m", values=(0.05, 9.81, 0.05, 1.0))
+    k, b = hl.parameters("k b", units="N/m N*s/m", values=(k, b))
+    q = hl.coordinate("q", unit="m", initial=start)
+    return hl.Scene(u * q, [sp.Eq(m * q.diff(hl.t, 2), law(q, k, b) - m * g)], watch={"w": q.diff(hl.t)})
+
+
+def run(scene, ticks, x=None, **options):
+    program = hl.compile(scene, T=options.pop("T", T), **options)
+    rows = np.zeros((ticks, 1)) if x is None else x[:, None]
+    return program, load(program).run(ticks, rows).outputs[:, :, 0]
+
+
+def test_a_penalty_floor_is_found_and_rk4_comes_to_it():
+    program, exact = run(drop(), 300, method="taylor", dtype="float64")
+    assert [c.name for c in program.outputs] == ["F", "w", "unlocated"] and not exact[:, 2].any()
+    errors = []
+    for substeps in (16, 64):
+        _, rk4 = run(drop(), 300, method="rk4", substeps=substeps, dtype="float64")
+        errors.append(abs(rk4[:, 0] - exact[:, 0]).max())
+    # the jump of the damper at touch leaves rk4 first order
+    assert errors[1] < 0.5 * errors[0] and 1e-7 < errors[1] < 3e-5
+
+
+def test_float32_engines_give_the_same_bits():
+    program, llvm = run(drop(), 200, method="taylor")
+    for engine in ("interpreter", "vm"):
+        try:
+            other = load(program, engine)
+        except Exception as missing:
+            if type(missing).__name__ != "EngineMissingError":
+                raise
+            continue
+        np.testing.assert_array_equal(other.run(200, np.zeros((200, 1))).outputs[:, :, 0], llvm)
+
+
+def test_friction_written_as_a_sign_sticks():
+    m, F_c, k = hl.parameters("m F_c k", units="kg N N/m", values=(0.2, 0.8, 300.0))
+    q = hl.coordinate("q", unit="m")
+    t, x, v, n = hl.t, hl.x, hl.v, hl.n
+    coupling = k * (x(t) - q)
+    scene = hl.Scene(
+        k * (x(n) - q), [sp.Eq(m * q.diff(t, 2), coupling - F_c * sp.sign(q.diff(t)))], watch={"q": q, "w": q.diff(t)}
+    )
+    # 2 mm of the handle pull with 0.6 N: not enough; 6 mm with 1.8 N
+    x = np.concatenate([np.full(50, 0.002), np.full(300, 0.006)])
+    program, out = run(scene, 350, x, method="taylor", dtype="float64", hold="zoh")
+    q, w = out[:, 1], out[:, 2]
+    assert not q[:51].any() and not w[:51].any()
+    assert any(c.type == "bool" for c in program.states)
+    # half a swing about (k x - F)/k, then it rests where the spring is below F
+    omega = math.sqrt(300 / 0.2)
+    centre = 0.006 - 0.8 / 300
+    s = np.minimum(T * (np.arange(350) - 50), math.pi / omega).clip(0)
+    np.testing.assert_allclose(q, centre * (1 - np.cos(omega * s)), rtol=0, atol=1e-14)
+    assert not w[60 + math.ceil(math.pi / omega / T) :].any()
+    assert not out[:, 3].any()
+
+
+@pytest.mark.parametrize("hold", ["zoh", "foh", "soh"])
+def test_a_smooth_scene_is_what_rk4_comes_to(hold):
+    m, l, g, k, B, f, A = hl.parameters(
+        "m l g k B f A", units="kg m m/s^2 N/m N*s/m Hz N*m", values=(0.1, 0.2, 9.81, 40.0, 0.3, 31.0, 0.02)
+    )
+    rad = hl.parameters("r_0", units="rad", values=0.7)
+    q = hl.coordinate("q", unit="rad", initial=rad)
+    t, x, v, n = hl.t, hl.x, hl.v, hl.n
+    pull = k * (x(t) - l * sp.sin(q)) + B * (v(t) - l * sp.cos(q) * q.diff(t))
+    motor = A * sp.sin(2 * sp.pi * f * t)
+    scene = hl.Scene(
+        k * (x(n) - l * sp.sin(q)),
+        [sp.Eq(m * l**2 * q.diff(t, 2), l * sp.cos(q) * pull - m * g * l * sp.sin(q) + motor)],
+        watch={"q": q},
+    )
+    handle = 0.02 * np.sin(2 * np.pi * 3.3 * T * np.arange(400))
+    _, exact = run(scene, 400, handle, method="taylor", dtype="float64", hold=hold)
+    errors = [
+        abs(run(scene, 400, handle, method="rk4", substeps=s, dtype="float64", hold=hold)[1] - exact).max()
+        for s in (2, 4)
+    ]
+    assert errors[1] < errors[0] / 12 and errors[1] < 1e-8  # fourth order, towards it
+
+
+def test_a_free_scene_agrees_with_dop853():
+    a, start = hl.parameters("a r_0", units="1/s^2 rad", values=(30.0, 2.0))
+    q = hl.coordinate("q", unit="rad", initial=start)
+    t = hl.t
+    u = hl.parameters("u", units="N/rad", values=1.0)
+    scene = hl.Scene(u * q, [sp.Eq(q.diff(t, 2), -a * sp.sin(q))])
+    _, out = run(scene, 500, method="taylor", T=5e-3, dtype="float64")
+    times = 5e-3 * np.arange(500)
+    exact = solve_ivp(
+        lambda t, y: [y[1], -30 * math.sin(y[0])], (0, 2.5), [2.0, 0.0], "DOP853", times, rtol=2.3e-14, atol=1e-14
+    )
+    np.testing.assert_allclose(out[:, 0], exact.y[0], rtol=0, atol=2e-12)
+
+
+def test_order_and_events_are_chosen_or_given():
+    program = hl.compile(drop(), method="taylor", T=T, dtype="float64")
+    assert program.facts["method"] == "taylor" and program.facts["events"] == 2
+    assert program.facts["omega"] == pytest.approx(math.sqrt(2000 / 0.05), rel=1e-3)
+    softer = hl.compile(drop(k=20.0, b=0.01), method="taylor", T=T, dtype="float64")
+    assert softer.facts["order"] < program.facts["order"] and len(softer) < len(program)
+    given = hl.compile(drop(), method=Taylor(order=4, events=1), T=T)
+    assert given.facts["order"] == 4 and given.facts["events"] == 1
+    with pytest.raises(ProgramError, match="events = 9"):
+        Taylor(events=9)
+
+
+def test_a_step_too_long_is_refused_with_the_substeps_it_needs():
+    stiff = drop(k=1e6)  # omega = 4472/s: the contact lasts 0.7 ms
+    with pytest.raises(ProgramError, match=r"omega = 4472 rad/s.*substeps=5"):
+        hl.compile(stiff, method="taylor", T=T)
+    assert hl.compile(stiff, method="taylor", T=T, substeps=5, dtype="float64").facts["omega"] == 4472
+
+
+def test_a_broken_power_is_refused_where_it_starts_from_zero():
+    c = hl.parameters("c", units="N/m^1.5", values=5e5)
+    hertz = drop(law=lambda q, k, b: hl.when(q <= 0, c * sp.Max(0, -q) ** sp.Rational(3, 2)))
+    with pytest.raises(ProgramError, match="broken power"):
+        hl.compile(hertz, method="taylor", T=T)
+
+
+def test_nothing_is_added_where_nothing_switches():
+    k, m, start, u = hl.parameters("k m q_0 u", units="N/m kg m N/m", values=(20.0, 0.1, 0.02, 1.0))
+    q = hl.coordinate("q", unit="m", initial=start)
+    spring = hl.Scene(u * q, [sp.Eq(m * q.diff(hl.t, 2), -k * q)])
+    program, out = run(spring, 400, method="taylor", dtype="float64")
+    assert [c.name for c in program.outputs] == ["F"] and "events" not in program.facts
+    np.testing.assert_allclose(out[:, 0], 0.02 * np.cos(math.sqrt(200) * T * np.arange(400)), rtol=0, atol=3e-16 * 400)
+    assert len(program) < 1.5 * len(hl.compile(spring, method="rk4", T=T, dtype="float64"))
