@@ -48,7 +48,7 @@ class Taylor:
                 raise ProgramError(f"{name} = {given!r}; needs a whole number in {low}..{high}")
 
 
-def advance(method, tracing, rates, groups, h, substeps, values, name, contacts=None, impact=None):
+def advance(method, tracing, rates, groups, h, substeps, values, name, contacts=None, impact=None, after=None):
     """Trace one period of a motion; return (groups, facts, unlocated) with the state after it.
 
     Parameters
@@ -69,6 +69,8 @@ def advance(method, tracing, rates, groups, h, substeps, values, name, contacts=
         See :func:`~hapticlab.compiler.flow.motion_of`.
     impact : callable ``(motion) -> impact``, optional
         Makes the impact of :class:`~hapticlab.compiler.located.Stepper` for the motion.
+    after : callable ``(reactions)``, optional
+        Is given the values of the motion's reactions at the end of the period.
 
     Returns
     -------
@@ -97,6 +99,8 @@ def advance(method, tracing, rates, groups, h, substeps, values, name, contacts=
         missed = count if missed is None else missed + count
     for k, value in enumerate(now):
         tracing.set_next(("held", k), value)
+    if after:
+        after(stepper.reactions(builder.const(substeps * h), groups, now))
     facts = (
         {"order": order}
         | ({} if motion.smooth else {"events": events})
