@@ -1,0 +1,150 @@
+"""The contacts of a scene in a program: reactions that a stepper locates, impacts, and what a force may know of them."""
+
+from ..errors import ProgramError, SceneError
+from ..scene.contact import friction
+from ..scene.contact_laws import micro_impulse, rigid
+from ..scene.derivative import Partial, Rate
+from .complementarity import dot, response
+from .guards import contact, coulomb
+from .impacts import impacts_of
+from .ir import Channel
+from .touch import Law, micro_impulses
+
+#: what an expression may ask of a contact -> unit, and whether it adds up over the run or starts anew at each sample
+SUMS = {"impulse": False, "impact_loss": True, "impact_work": True}
+
+
+class Contacts:
+    """The contacts with laws of an instant and the frictions that stick, of one program.
+
+    Parameters
+    ----------
+    elements : sequence of Contact and friction
+        Those whose force is an expression are left out: they are in the equations of motion.
+    tracing : Tracing
+    constant : callable expression -> Value
+        Of parameters alone.
+    at : callable (tau, q, w, s) -> translator
+        What expressions are inside a step. It asks :attr:`leaves` for the reactions.
+    """
+
+    def __init__(self, elements, tracing, constant, at):
+        elements = [e for e in elements if not e.is_force]
+        _check_names(elements)
+        self.frictions = [e for e in elements if isinstance(e, friction)]
+        contacts = [e for e in elements if not isinstance(e, friction)]
+        self.hovering = [c for c in contacts if isinstance(c.law, micro_impulse)]
+        self.contacts = [c for c in contacts if not isinstance(c.law, micro_impulse)]
+        self.tracing, self.constant, self.at = tracing, constant, at
+        self.order = _order(self.contacts)
+        self.leaves = {}
+        self.impacts = None
+
+    @property
+    def located(self):
+        """True where events have to be located: then the method must be taylor."""
+        return bool(self.contacts or self.frictions)
+
+    def check(self, method):
+        """Refuse a method that cannot locate what the scene needs located."""
+        if self.located and method.name != "taylor":
+            names = ", ".join(e.name for e in (*self.contacts, *self.frictions))
+            raise ProgramError(
+                f"method = {method.name!r}: {names} needs its events located inside the step, which is method='taylor'; at the "
+                "end of a step instead, every bounce is wrong by the order of the step. For other methods take penalty, "
+                "hunt_crossley or micro_impulse, and friction with a stick_speed"
+            )
+
+    # the two callables of a stepper
+
+    def reactions(self, tau, q, w, s, new):
+        """Return the Reactions of a motion, in the order contacts, then frictions."""
+        self.leaves = {e.force: new() for e in (*self.contacts, *self.frictions)}
+        rubbing = [c for c in self.contacts if c.law.mu != 0]
+        self.rubs = [new() for _ in rubbing]
+        self.leaves |= {c.rub: rub for c, rub in zip(rubbing, self.rubs, strict=True)}
+        translate = self.at(tau, q, w, s)
+        self.slips = [translate(c.slip) for c in rubbing]
+        made = [contact(translate(c.gap), self.leaves[c.force]) for c in self.contacts]
+        for f in self.frictions:
+            made.append(coulomb(new, translate(f.slip), translate(f.F_c), translate(f.F_s), self.leaves[f.force]))
+        return made
+
+    def impact(self, motion):
+        """Return the Impacts of a motion, or None where nothing strikes."""
+        if not self.contacts:
+            return None
+        k, rubbing, laws = len(self.contacts), [c for c in self.contacts if c.law.mu != 0], []
+        for c in self.contacts:
+            slip = k + rubbing.index(c) if c in rubbing else None
+            speed = float("inf") if isinstance(c.law, rigid) else c.law.rest_speed
+            speed = self.constant(speed) if speed is not None and not isinstance(speed, float) else speed
+            laws.append(Law(c.name, self.constant(c.law.e), speed, slip, self.constant(c.law.mu)))
+        self.impacts = impacts_of(motion, laws, list(range(k)), self.tracing.T, self.order, self.slips, self.rubs)
+        return self.impacts
+
+    # micro-impulses, at the end of a step of any method
+
+    def hover(self, tau, state, M, f, coordinates, h, definite):
+        """Return the rates after the micro-impulses at the end of a step; M and f as they are there.
+
+        ``coordinates`` are those of the rates w, in order.
+        """
+        q, w, s = state
+        if not self.hovering:
+            return w
+        translate = self.at(tau, q, w, s)
+        J = [[translate(Partial(c.gap, coordinate)) for coordinate in coordinates] for c in self.hovering]
+        W, P = response(M, J, definite)
+        gaps = [translate(c.gap) for c in self.hovering]
+        b = [dot(f, column) + translate(Rate(Rate(c.gap))) for column, c in zip(P, self.hovering, strict=True)]
+        laws = [Law(c.name, self.constant(c.law.e)) for c in self.hovering]
+        envelopes = [self.constant(c.law.envelope) for c in self.hovering]
+        p, _ = micro_impulses(W, [translate(Rate(c.gap)) for c in self.hovering], b, gaps, laws, envelopes, h)
+        for c, blow in zip(self.hovering, p, strict=True):
+            self._count(c, "impulse", blow)
+        return [rate + dot(p, [column[i] for column in P]) for i, rate in enumerate(w)]
+
+    # what the force, the difference equations and the watched channels may know at a sample
+
+    def at_sample(self, expr):
+        """Return a reaction, or what impacts added up to, as a state that the step before this sample has set."""
+        kind, tracing = type(expr), self.tracing
+        if kind.role == "rub":
+            return tracing.tick.const(0.0)
+        channel = Channel(kind.__name__, kind.unit, tracing.real)
+        return tracing.state(expr, channel, tracing.init.const(0.0))
+
+    def finish(self, reactions):
+        """Set the states that :meth:`at_sample` gave: ``reactions`` are those at the end of the period."""
+        elements = (*self.contacts, *self.frictions)
+        known = {e.force: value for e, value in zip(elements, reactions, strict=True)}
+        for i, c in enumerate(self.contacts):
+            for role, adds_up in SUMS.items():
+                leaf, amount = getattr(c, role), self.impacts.sums.get((role, i), self.tracing.tick.const(0.0))
+                known[leaf] = self.at_sample(leaf) + amount if adds_up else amount
+        for leaf, value in known.items():
+            self.at_sample(leaf)
+            self.tracing.set_next(leaf, value)
+
+
+def _check_names(elements):
+    names = [e.name for e in elements]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice:
+        raise SceneError(f"two contacts are called {twice}; give each a name of its own, name='...'")
+
+
+def _order(contacts):
+    orders = {c.law.order for c in contacts if not isinstance(c.law, rigid)} or {"simultaneous"}
+    if len(orders) > 1:
+        named = "; ".join(f"{c.name}: {c.law.order}" for c in contacts if not isinstance(c.law, rigid))
+        raise SceneError(f"{named}: the impacts of a scene are all sequential, or all simultaneous; choose one order")
+    (order,) = orders
+    rubbing = [c.name for c in contacts if c.law.mu != 0]
+    if rubbing and order == "simultaneous" and len(contacts) > 1:
+        raise SceneError(
+            f"{rubbing[0]}: friction in impacts at several contacts at once has no unique outcome; take order='sequential', "
+            "or mu = 0"
+        )
+    return order
