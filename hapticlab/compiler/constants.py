@@ -54,7 +54,7 @@ def is_ordinary(value, type):
     return float(np.finfo(NUMPY_TYPE[type]).tiny) <= abs(value) < math.inf
 
 
-def check_product(expr, value, known, bound):
+def check_product(expr, value, known, bound, settled=None):
     """Refuse what parameters alone make, and the program's arithmetic turns into zero or infinity where it is neither.
 
     Parameters
@@ -66,19 +66,31 @@ def check_product(expr, value, known, bound):
         Values of the symbols in it.
     bound : dict name -> float
         The values of live parameters.
+    settled : dict sympy expression -> bool, optional
+        Remembers, from one call to the next, which expressions parameters alone make.
     """
     if (
         value.type not in DTYPE
         or not expr.args
         or (value.constant is not None and is_ordinary(value.constant, value.type))
+        or not _settled(expr, known, bound, {} if settled is None else settled)
     ):
-        return
-    numbers = {}
-    for s in expr.free_symbols:
-        constant = known[s].constant if s in known else None
-        numbers[s] = bound.get(s.name) if constant is None else constant
-    if any(number is None for number in numbers.values()):
         return  # samples, states, time, and what has no value yet
+    numbers = {s: _number_of(s, known, bound) for s in expr.free_symbols}
     exact = expr.xreplace({s: sp.Float(number) for s, number in numbers.items()}).evalf()
     if exact.is_Float and exact.is_finite:
         entering(exact, value.type, f"{expr} = {str(sp.Float(exact, 3)).lower()}")
+
+
+def _number_of(symbol, known, bound):
+    """Return the number that a symbol is, or None."""
+    constant = known[symbol].constant if symbol in known else None
+    return bound.get(symbol.name) if constant is None else constant
+
+
+def _settled(expr, known, bound, remembered):
+    """Tell whether every symbol of an expression is a number."""
+    if expr not in remembered:
+        one = _number_of(expr, known, bound) is not None if expr.is_Symbol else None
+        remembered[expr] = all(_settled(a, known, bound, remembered) for a in expr.args) if one is None else one
+    return remembered[expr]

@@ -38,7 +38,7 @@ class Translator:
     def __init__(self, builder, leaf, clock=None, bound=None, graph=None):
         self.builder, self.leaf, self.clock, self.bound = builder, leaf, clock, bound or {}
         self.graph, self.copied = graph, {}
-        self.known = {}
+        self.known, self.settled = {}, {}
 
     def __call__(self, expr):
         """Return the value of an expression."""
@@ -50,7 +50,7 @@ class Translator:
                     "keep M and f apart (never invert or expand symbolically) or take a smaller model"
                 )
             self.known[expr] = self._translate(expr)
-            check_product(expr, self.known[expr], self.known, self.bound)
+            check_product(expr, self.known[expr], self.known, self.bound, self.settled)
         return self.known[expr]
 
     def _translate(self, expr):

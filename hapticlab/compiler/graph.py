@@ -11,12 +11,13 @@ import sympy as sp
 
 from ..scene.derivative import Partial, Rate
 from ..scene.symbols import Parameter, acceleration, t, v, x
+from .algebra import Algebra
 from .constants import entering
 from .differentiate import Gradient, Tangent
 from .expressions import Translator
 from .ir import LEAVES
 from .simplify import EVALUATE
-from .trace import Builder, reachable
+from .trace import reachable
 
 NUMPY = EVALUATE | {
     "sin": np.sin, "cos": np.cos, "exp": np.exp, "log": np.log, "atan": np.arctan, "tanh": np.tanh,
@@ -56,7 +57,7 @@ class Graph:
 
     def __init__(self, fixed=None, embedded=None):
         self.fixed, self.embedded = dict(fixed or {}), dict(embedded or {})
-        self.builder = Builder("f64")
+        self.builder = Algebra("f64")
         self.variables = {}  # expression -> number of its input
         self.translator = Translator(self.builder, self._leaf, clock=self, graph=self)
         self._gradients, self._tangents = {}, {}
