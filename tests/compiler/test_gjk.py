@@ -9,7 +9,7 @@ from hapticlab.compiler import gjk
 from hapticlab.compiler.faces import closest, core
 from hapticlab.compiler.trace import Builder, clip, maximum, minimum, select, sqrt
 
-N = 1500
+N = 1000
 #: coordinates are up to 3 m: a few roundings of them
 ROUNDING = 4e-15
 FIXED = np.random.default_rng(7)
@@ -106,9 +106,9 @@ NEEDED = {2: 3, 3: 4, 4: 5, 8: 8, 16: 8, 32: 10}
 @pytest.mark.parametrize("corners", NEEDED)
 def test_iterations_of_gjk(corners):
     generator = np.random.default_rng(corners)
-    for flat in (1.0, 0.3, 0.02):
+    for flat in (1.0, 0.02):
         A, B = ([BAR, BAR] if corners == 2 else [convex(generator, corners, flat) for _ in "AB"])
-        needed, enough = worst(A, B, generator, 1500)
+        needed, enough = worst(A, B, generator, 1000)
         assert needed <= NEEDED[corners] <= enough <= 2 * corners
 
 

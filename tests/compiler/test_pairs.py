@@ -47,7 +47,7 @@ def crowd(seed, count=7):
     return [*bodies, plane], coordinates
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(3))
 def test_what_is_left_out_never_meets(seed):
     bodies, coordinates = crowd(seed)
     pairs = possible_pairs(bodies)

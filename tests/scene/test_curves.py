@@ -24,7 +24,7 @@ ph = hl.coordinate("ph", unit="rad", initial=1.4, rate=Amount(-2.6, "rad/s"))
 FREE = [sp.Eq(body.diff(t, 2), 0) for body in (th, ph, q)]
 CAM = Curve(lambda u: (a * sp.cos(u), b * sp.sin(u)))
 EGG = Curve(lambda u: (c * sp.cos(u), d * sp.sin(u)))
-DENSE = np.linspace(0, 2 * np.pi, 4000, endpoint=False)
+DENSE = np.linspace(0, 2 * np.pi, 3000, endpoint=False)
 
 
 def run(scene, ticks, T=1e-3, **options):
@@ -52,17 +52,17 @@ def two_ellipses():
     watch = {"d": tracked.gap, "rate_1": tracked.rate, "u": u, "w": w, "th": th, "ph": ph, "q": q}
     watch |= {"p_x": tracked.point[0], "p_y": tracked.point[1], "n_x": tracked.normal[0], "s": tracked.slip}
     scene = hl.Scene(force=k * tracked.gap, eom=[*FREE, *tracked.eom], watch=watch)
-    return tracked, run(scene, 3000)
+    return tracked, run(scene, 1500)
 
 
 def test_two_ellipses_that_turn(two_ellipses):
     _, log = two_ellipses
-    for k in range(0, 3000, 150):
+    for k in range(0, 1500, 150):
         cam, egg = ellipse(0.1, 0.05, (0, 0, log["th"][k])), ellipse(0.04, 0.08, (log["q"][k], 0.02, log["ph"][k]))
-        # the polygon of 4000 points lies within 0.1 (pi/4000)^2/2 = 3e-8 m of its ellipse
-        assert log["d"][k] == pytest.approx(distance(cam, egg), abs=1e-7)
-        assert shapely.distance(shapely.Polygon(egg), shapely.Point(log["p_x"][k], log["p_y"][k])) < 1e-7
-    assert np.ptp(log["d"]) > 0.1 and np.ptp(log["u"]) > 0.5
+        # the polygon of 3000 points lies within 0.1 (pi/3000)^2/2 = 6e-8 m of its ellipse
+        assert log["d"][k] == pytest.approx(distance(cam, egg), abs=1.2e-7)
+        assert shapely.distance(shapely.Polygon(egg), shapely.Point(log["p_x"][k], log["p_y"][k])) < 1.2e-7
+    assert np.ptp(log["d"]) > 0.05 and np.ptp(log["u"]) > 0.3
 
 
 def test_it_stays_on_the_minimum(two_ellipses):
