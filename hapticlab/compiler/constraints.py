@@ -9,7 +9,7 @@ import math
 import numpy as np
 import sympy as sp
 
-from ..errors import SceneError
+from ..errors import MassError, SceneError
 from ..scene.closing import declared_range, is_angle, name, names, shown, values
 from ..scene.dyads import NotClosed
 from ..scene.loops import AGREEING, embed, is_holonomic
@@ -25,8 +25,9 @@ MOST_CHOICES = 200
 
 
 def enforcement(
-    constraints, coordinates, start, *, enforce="auto", alpha=None, M=None, method=None, h=None, real="f64", used=()
-):
+    constraints, coordinates, start, *, enforce="auto", alpha=None, M=None, definite=None, method=None, h=None, real="f64",
+    used=(),
+):  # fmt: skip
     """Return (what enforces the constraints, notes that say why).
 
     Parameters
@@ -39,8 +40,10 @@ def enforcement(
     enforce : {"auto", "embed", "kkt", "baumgarte", "numeric"}
     alpha : float [1/s], optional
         Of Baumgarte's feedback; half of what is stable unless given.
-    M : array, shape (N, N)
+    M : array, shape (N, N), optional
         Mass matrix at the start.
+    definite : bool, optional
+        Whether it is symmetric and positive definite everywhere; else it is looked at here.
     method, h : Method and its step [s]
     real : {"f64", "f32"}
     used : sequence of expressions
@@ -57,7 +60,8 @@ def enforcement(
     positions = [g for g in constraints if is_holonomic(g)]
     assembly = _assembly(constraints, coordinates, start)
     _check_independent(assembly, constraints, positions, coordinates)
-    definite = _definite(M)
+    definite = _definite(M) if definite is None else definite
+    weight = 0.0 if definite or M is None else _weight(M, assembly, coordinates)
     reason = "a constraint of rates has none" if len(positions) < len(constraints) else ""
     if enforce in ("auto", "embed") and not reason:
         try:
@@ -75,7 +79,6 @@ def enforcement(
         followers = _followers(assembly, positions, constraints, coordinates, real)
         note = f"{names(followers)} follow by Newton's method, {len(positions)} unknowns"
         return Partitioned(coordinates, constraints, followers, definite), (note,)
-    weight = 0.0 if definite or M is None else _weight(M, assembly)
     if enforce == "baumgarte":
         alpha = largest_feedback(method) / h / 2 if alpha is None else alpha
         check_feedback(alpha, method, h)
@@ -245,7 +248,17 @@ def _definite(M):
     return bool(np.linalg.eigvalsh(M / np.outer(size, size))[0] > 1e-9)
 
 
-def _weight(M, assembly):
+def _weight(M, assembly, coordinates):
     """Return the factor of J^T J beside M: of the size of the masses that there are."""
     J = assembly.look(assembly.start[:, None])[1][:, :, 0]
-    return float(np.trace(np.asarray(M, float)) / max(np.sum(J**2), math.ulp(0.0))) or 1.0
+    weight = float(np.trace(np.asarray(M, float)) / max(np.sum(J**2), math.ulp(0.0))) or 1.0
+    whole = np.asarray(M, float) + weight * J.T @ J
+    size = np.sqrt(np.abs(np.diag(whole)))
+    values, directions = np.linalg.eigh(whole / np.outer(size, size)) if np.all(size > 0) else ([0.0], (size == 0)[:, None])
+    if not values[0] > 1e-9:
+        loose = names(p for p, c in zip(coordinates, directions[:, 0], strict=True) if abs(c) > 1e-6)
+        raise MassError(
+            f"singular mass: neither masses nor constraints determine the acceleration of {loose} (a massless direction); "
+            "give it a mass"
+        )
+    return weight

@@ -11,7 +11,7 @@ from hapticlab import t
 from hapticlab.compiler.constraints import enforcement
 from hapticlab.compiler.enforcing import Closed, Multipliers, Partitioned
 from hapticlab.compiler.methods import METHODS
-from hapticlab.errors import SceneError
+from hapticlab.errors import MassError, SceneError
 
 theta, phi = hl.coordinate("theta", unit="rad"), hl.coordinate("phi", unit="rad")
 s, X, Y = (hl.coordinate(name, unit="m") for name in ("s", "X", "Y"))
@@ -76,6 +76,8 @@ def test_a_massless_coordinate_is_given_the_constraints_weight():
     assert massive.weight == 0
     massless, _ = enforcement(SLIDER_CRANK, COORDINATES, start(), enforce="kkt", M=np.diag([0, 0.1, 2e-5]))
     assert massless.weight > 0
+    with pytest.raises(MassError, match="neither masses nor constraints determine the acceleration of Y"):
+        enforcement((X - s,), (X, Y, s), {X: 0.1, Y: 0.0, s: 0.1}, enforce="kkt", M=np.diag([0.1, 0.0, 0.1]))
 
 
 @pytest.mark.parametrize("enforce", ["auto", "kkt", "numeric"])
