@@ -6,7 +6,7 @@ is a velocity (Coulomb friction, F sign(v)), neither case may hold: the motion s
 of both that keeps it there (Filippov, *Differential Equations with Discontinuous Righthand Sides*, 1988).
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ..errors import ProgramError
 from .trace import Value, reachable, select
@@ -29,7 +29,8 @@ class Leaves:
 class Guard:
     """A surface of the motion. ``kind`` says which mode its leaf holds.
 
-    ``"side"``: a bool, first < second. ``"floor"``: the whole number below ``first``.
+    ``"side"``: a bool, first < second. ``"floor"``: the whole number below ``first``. In modes listed in ``idle``, as
+    (leaf, value), the motion does not depend on it.
     """
 
     kind: str
@@ -37,6 +38,7 @@ class Guard:
     second: Value
     leaf: Value
     strict: bool = True
+    idle: tuple = ()
 
     @property
     def measure(self):
@@ -135,7 +137,33 @@ def freeze(builder, targets, moving, rates, new):
     for p in frozen.order:
         frozen.rewritten(p, frozenset())
     done = [frozen.rewritten(target.id, frozenset()) for target in targets]
-    return done, frozen.guards, frozen.reactions
+    return done, [replace(g, idle=_idle(g, frozen, done)) for g in frozen.guards], frozen.reactions
+
+
+def _idle(guard, frozen, targets):
+    """Return the (leaf, value) of other guards that hide this one: a wall that only pushes, while it is not touched."""
+    others = [g for g in frozen.guards if g is not guard]
+    parts = [part for g in others for part in (g.first, g.second)]
+    parts += [part for r in frozen.reactions for part in (r.measure, r.free, r.inside)]
+    seen = [v.id for v in (*targets, *parts)]
+    cases = ((g.leaf, value) for g in others if g.kind == "side" for value in (False, True))
+    return tuple(case for case in cases if guard.leaf.id not in _reached_in(frozen.instructions, seen, *case))
+
+
+def _reached_in(instructions, positions, leaf, value):
+    """Return what some positions depend on where a bool leaf has a value."""
+    reached, stack = set(), list(positions)
+    while stack:
+        p = stack.pop()
+        if p in reached:
+            continue
+        reached.add(p)
+        i = instructions[p]
+        condition, holds = (i.args[0], value) if i.op == "select" else (None, value)
+        if condition is not None and instructions[condition].op == "not":
+            condition, holds = instructions[condition].args[0], not value
+        stack.extend([i.args[1 if holds else 2]] if condition == leaf.id else i.args)
+    return reached
 
 
 class _Freezing:

@@ -12,7 +12,7 @@ import numpy as np
 from . import trace
 from .crossing import first_crossing, horner
 from .flow import Flow
-from .taylor import product, times, zero
+from .taylor import ZERO, product, times, zero
 from .trace import select
 
 #: two crossings closer than this part of a piece happen at once
@@ -64,11 +64,17 @@ class Stepper:
         for piece in range(self.events + 1):
             flow, now = self._flow(now)
             guards = [
-                first_crossing(self._scaled(p, now.left), just, self.steps) for p, just in self._guards(flow, now)
+                self._crossing(p, just, idle, now.left)
+                for (p, just), idle in zip(self._guards(flow, now), self._idles(now), strict=True)
             ]
             if piece < self.events:
                 now = self._advanced(flow, now, guards)
         return self._moved(flow, now, now.left), now.held, _any(found for _, found in guards)
+
+    def reactions(self, tau, state, held):
+        """Return what the reactions are at a state, with those held that are."""
+        flow, _ = self._flow(self._start(tau, state, list(held)))
+        return [flow.at(r.leaf) for r in self.motion.reactions]
 
     def _start(self, tau, state, held):
         motion = self.motion
@@ -163,47 +169,78 @@ class Stepper:
             earliest = trace.minimum(place, earliest)
         fired = [(place <= earliest + TOGETHER[motion.builder.real]) & found for place, found in guards]
         theta = earliest * now.left
-        state = self._moved(flow, now, theta)
-        flags = [
-            self._toggled(g, flow, theta, flag, f) for g, flag, f in zip(motion.guards, now.flags, fired, strict=False)
-        ]
-        held, sides, just = [], [], fired[:base]
+        state, tau = self._moved(flow, now, theta), now.tau + self.h * theta
+        flags = self._toggled(flow, now, theta, fired)
+        if any(g.idle for g in motion.guards):  # a guard that did nothing is looked up where it may be needed again
+            truths, _ = self._truths(tau, state)
+            flags = [
+                self._chosen(g, self._idle(g, now), true, flag)
+                for g, true, flag in zip(motion.guards, truths, flags, strict=True)
+            ]
+        held, sides = [], []
         for r, was, side, f in zip(motion.reactions, now.held, now.sides, fired[base:], strict=True):
-            released = f & was
-            if side is not None:
-                side = _if(released, 0.0 < horner(flow.of(r.lean, self.order - 1), theta), side)
-                held.append((was & ~f) | (f & ~was))
-                just.append(f)
-            else:
+            if side is None:  # a contact that closes is held if its impact says so
                 held.append(was & ~f)
-                just.append(f)
+            else:  # a slip that comes to zero is tried; one that breaks away goes where it leans
+                held.append((was & ~f) | (f & ~was))
+                side = _if(f & was, 0.0 < horner(flow.of(r.lean, self.order - 1), theta), side)
             sides.append(side)
-        now = _Now(now.tau + self.h * theta, state, sides, flags, held, just, now.left * (1.0 - earliest))
-        return self._struck(now, fired) if self.impact else now
+        later = _Now(tau, state, sides, flags, held, fired, now.left * (1.0 - earliest))
+        return self._struck(now, later, fired) if self.impact else later
 
-    def _toggled(self, guard, flow, theta, flag, fired):
-        if guard.kind == "floor":
-            step = select(0.0 < horner(flow.of(guard.measure, self.order), theta), 1.0, -1.0)
-            return select(fired, flag + step, flag)
-        return _if(fired, ~flag, flag)
+    def _toggled(self, flow, now, theta, fired):
+        """Return the flags after the crossings."""
+        flags = []
+        for g, flag, f in zip(self.motion.guards, now.flags, fired, strict=False):
+            if g.kind == "floor":
+                step = select(0.0 < horner(flow.of(g.measure, self.order), theta), 1.0, -1.0)
+                flags.append(select(f, flag + step, flag))
+            else:
+                flags.append(_if(f, ~flag, flag))
+        return flags
 
-    def _struck(self, now, fired):
+    def _crossing(self, p, just, idle, left):
+        place, found = first_crossing(self._scaled(p, left), just, self.steps)
+        return (place, found) if idle is None else (select(idle, 1.0, place), ~idle & found)
+
+    def _idles(self, now):
+        """Yield for each guard and reaction whether it may be left alone, None where it may not."""
+        for g in self.motion.guards:
+            yield self._idle(g, now) if g.idle else None
+        yield from (None for _ in self.motion.reactions)
+
+    def _idle(self, guard, now):
+        """Tell whether the motion does not depend on a guard in the present modes."""
+        flags = {g.leaf: flag for g, flag in zip(self.motion.guards, now.flags, strict=True)}
+        return _any(flags[leaf] if value else ~flags[leaf] for leaf, value in guard.idle)
+
+    def _chosen(self, guard, condition, a, b):
+        return select(condition, a, b) if guard.kind == "floor" else _if(condition, a, b)
+
+    def _struck(self, before, now, fired):
         """Let the contacts that closed act on the rates; modes that look at rates are looked up again."""
-        base = len(self.motion.guards)
-        closed = [f if r.level == 2 else np.False_ for r, f in zip(self.motion.reactions, fired[base:], strict=True)]
-        any_closed = _any(closed)
+        motion, base = self.motion, len(self.motion.guards)
+        closed = [
+            f & ~was if r.level == 2 else np.False_
+            for r, f, was in zip(motion.reactions, fired[base:], before.held, strict=True)
+        ]
+        struck = _any(closed)
         w, held = self.impact(self._fresh(now).at, closed, now.held)
-        w = [select(any_closed, new, old) for new, old in zip(w, now.state[1], strict=True)]
-        held = [_if(any_closed, new, old) for new, old in zip(held, now.held, strict=True)]
+        w = [select(struck, new, old) for new, old in zip(w, now.state[1], strict=True)]
         state = now.state[0], w, now.state[2]
         flags, sides = self._truths(now.tau, state)
-        renewed = [select(any_closed & ~f, new, old) if g.kind == "floor" else _if(any_closed & ~f, new, old)
-                   for g, f, new, old in zip(self.motion.guards, fired, flags, now.flags, strict=False)]  # fmt: skip
-        sides = [
-            None if s is None else _if(any_closed & ~h, s, old)
-            for s, old, h in zip(sides, now.sides, held, strict=True)
+        flags = [
+            self._chosen(g, struck & ~f, new, old)
+            for g, f, new, old in zip(motion.guards, fired, flags, now.flags, strict=False)
         ]
-        return replace(now, state=state, held=held, flags=renewed, sides=sides)
+        after, speed = self._fresh(replace(now, state=state)), _size(w)
+        for i, r in enumerate(motion.reactions):
+            if r.side is not None:  # a slip that an impact stopped is tried, one that it set off is let go
+                stopped = abs(after.at(r.measure)) <= 100 * TOGETHER[motion.builder.real] * speed
+                held[i] = stopped
+                sides[i] = _if(struck, sides[i], now.sides[i])
+        held = [_if(struck, new, old) for new, old in zip(held, now.held, strict=True)]
+        return replace(now, state=state, held=held, flags=flags, sides=sides)
 
 
 def _signed(negative, c):
@@ -213,6 +250,13 @@ def _signed(negative, c):
 def _if(condition, a, b):
     """Choose between conditions, as select does between numbers."""
     return (condition & a) | (~condition & b)
+
+
+def _size(values):
+    total = ZERO
+    for value in values:
+        total = total + abs(value)
+    return total
 
 
 def _any(conditions):

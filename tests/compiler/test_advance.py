@@ -55,7 +55,7 @@ def test_float32_engines_give_the_same_bits():
 def test_friction_written_as_a_sign_sticks():
     m, F_c, k = hl.parameters("m F_c k", units="kg N N/m", values=(0.2, 0.8, 300.0))
     q = hl.coordinate("q", unit="m")
-    t, x, v, n = hl.t, hl.x, hl.v, hl.n
+    t, x, n = hl.t, hl.x, hl.n
     coupling = k * (x(t) - q)
     scene = hl.Scene(
         k * (x(n) - q), [sp.Eq(m * q.diff(t, 2), coupling - F_c * sp.sign(q.diff(t)))], watch={"q": q, "w": q.diff(t)}
