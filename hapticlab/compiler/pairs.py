@@ -16,9 +16,9 @@ from ..errors import SceneError
 from ..scene.amount import number_of
 from ..scene.checks import applied
 from ..scene.contact import Contact
-from ..scene.gaps import closest
+from ..scene.gaps import check_placed, closest
 from ..scene.gaps import corners as corners_of
-from ..scene.shapes import HalfPlane, Placed
+from ..scene.shapes import HalfPlane
 from ..scene.symbols import t, x
 from .first_sample import numbers
 from .ranges import Ranges
@@ -240,8 +240,7 @@ def _reach(body, ranges):
 def _checked(bodies):
     bodies = tuple(bodies)
     for body in bodies:
-        if not isinstance(body, Placed):
-            raise SceneError(f"{body!r} is no shape in its place; write hl.Circle(0.01).at(x=..., y=..., name='ball')")
+        check_placed(body)
     names = [b.name for b in bodies]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice:

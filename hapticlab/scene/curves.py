@@ -49,6 +49,8 @@ class Curve(Shape):
     >>> cam = Curve(lambda u: (a * sp.cos(u), b * sp.sin(u))).at(name="cam")
     """
 
+    tracked = True
+
     def __init__(self, points, period=2 * sp.pi):
         self.u = Parameter("(u)", "1")
         try:
@@ -80,7 +82,7 @@ class Tracked:
     gap : expression [m]
         Signed distance, negative in overlap; right while the overlap is less deep than the curves bend.
     rate : expression [m/s]
-        Of the gap.
+        Of the gap. A law with a damper takes it as it is: ``law.force(tracked.gap, tracked.rate)``.
     normal, point : (x, y)
         Unit vector out of the first curve, and the closest point [m] of the second.
     slip : expression [m/s]

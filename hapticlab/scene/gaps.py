@@ -84,8 +84,7 @@ def gap(a, b, *, method="faces"):
 def closest(a, b, *, method="faces"):
     """Return the :class:`Closest` of two placed shapes; see :func:`gap`."""
     for body in (a, b):
-        if not isinstance(body, Placed):
-            raise SceneError(f"{body!r} is no shape in its place; write hl.Circle(0.01).at(x=..., y=...)")
+        check_placed(body)
     if method not in METHODS:
         raise SceneError(f"method = {method!r}; needs one of {', '.join(METHODS)}")
     if isinstance(b.shape, HalfPlane) or (isinstance(a.shape, Circle) and not isinstance(b.shape, Circle)):
@@ -96,6 +95,14 @@ def closest(a, b, *, method="faces"):
     else:
         distance, normal, point = _closest(a, b, method)
     return Closest(a, b, distance, normal, point)
+
+
+def check_placed(body):
+    """Refuse what is no shape in its place, and a curve, whose gap takes equations of its own."""
+    if not isinstance(body, Placed):
+        raise SceneError(f"{body!r} is no shape in its place; write hl.Circle(0.01).at(x=..., y=..., name='ball')")
+    if body.shape.tracked:
+        raise SceneError(f"{body.name} is a curve, whose closest point is followed by an equation of motion: hl.track")
 
 
 def corners(a, b):

@@ -28,6 +28,8 @@ class Shape:
 
     cores = (POINT,)
     radius = ZERO
+    #: its closest points are found by following them, not by a formula
+    tracked = False
 
     def at(self, *, x=0, y=0, angle=0, name=None):
         """Place the shape.

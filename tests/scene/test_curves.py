@@ -13,6 +13,7 @@ from hapticlab.compiler import engine
 from hapticlab.errors import SceneError, UnitsError
 from hapticlab.scene.amount import Amount
 from hapticlab.scene.curves import Curve, track
+from hapticlab.scene.gaps import gap
 from hapticlab.scene.shapes import Box, Circle, ground
 from hapticlab.scene.units import unit_of
 
@@ -158,6 +159,7 @@ def test_a_cam_is_felt():
         (lambda: track(CAM.at(), EGG.at(x=q / 4)), "touch or start in each other|no minimum"),
         (lambda: track(CAM.at(), Box(1, 1).at(x=q)), "takes a Curve"),
         (lambda: track(CAM.at(), ground()), "takes a Curve"),
+        (lambda: gap(CAM.at(name="cam"), Circle(0).at(x=q)), "cam is a curve"),
         (lambda: track(CAM, CAM.at()), "no shape in its place"),
         (lambda: track(CAM.at(), Circle(hl.parameters("r", units="m", ranges=(0, 1))).at(x=q)), "without a value"),
         (lambda: Curve(lambda u: a * u), "gives \\(x, y\\)"),
