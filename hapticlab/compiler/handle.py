@@ -50,6 +50,10 @@ class Handle:
             return tracing.input(tracing.tick, signal)
         return (self.sample(x) - self.sample(x, 1)) * (1 / self.T)
 
+    def acceleration(self):
+        """Return the acceleration of the handle at the sample, as estimated: (v(n) - v(n-1))/T."""
+        return (self.sample(v) - self.sample(v, 1)) * (1 / self.T)
+
     def first(self, signal):
         """Return x or v at the first sample, in the init block."""
         if signal is x or self.velocity == "measured":

@@ -1,25 +1,26 @@
 """Lower a scene to a program: the sample is taken, the force computed from it, then the equations of motion advance."""
 
-from functools import partial
+from dataclasses import replace
 
 import sympy as sp
 
 from ..errors import ParameterError, ProgramError, SceneError
 from ..scene.scene import Scene
-from ..scene.symbols import Parameter, T, delay, lag_of, n, t, v, x
+from ..scene.symbols import Parameter, T, acceleration, delay, lag_of, n, t, v, x
 from ..scene.units import unit_of
-from .advance import Taylor, advance
+from .advance import Taylor
 from .channels import channel_of, short
 from .constants import entering
+from .dynamics import Dynamics
 from .exact import EXACT, Exact, exact_and_rest
 from .expressions import Translator
+from .graph import Graph
 from .handle import HOLDS, VELOCITIES, Handle
 from .ir import Channel
 from .methods import METHODS
 from .modes import excluded, folded
 from .options import choice, live_names, period, steps
 from .phase import Clock
-from .solve import solve
 from .trace import cast
 from .tracing import Tracing
 
@@ -123,12 +124,14 @@ class _Lowering:
             entering(value, REAL_OF[dtype], f"{text} = {T:g} s", ParameterError)
         self.handle = Handle(self.tracing, velocity, hold)
         self.folded = folded(scene, live)
-        self.at_start = Translator(self.tracing.init, self._leaf_at_start, bound=scene.values)
+        self.graph = Graph(self.folded)
+        self.at_start = Translator(self.tracing.init, self._leaf_at_start, bound=scene.values, graph=self.graph)
         self.at_sample = self.translator(self._leaf_at_sample)
         self.resolving, self.resolved = [], set()
         if exact and form.coordinates:
             self.exact = Exact(self, form, method and method.name)
             self.form = self.exact.others
+        self.dynamics = Dynamics(self, self.form, method, substeps)
 
     def program(self):
         """Trace the tick in the order it runs."""
@@ -147,11 +150,12 @@ class _Lowering:
         for channel, value in zip(program.parameters, program.values, strict=True):
             if value == value:
                 self._entering(channel.name, value)
-        return program
+        return replace(program, notes=(*program.notes, *self.dynamics.notes)) if self.dynamics.notes else program
 
     def translator(self, leaf, after=0.0):
         """Return what translates expressions of the tick, ``after`` [s] after the sample."""
-        return Translator(self.tracing.tick, leaf, Clock(self._tick_count, self.tracing.T, after), self.scene.values)
+        clock = Clock(self._tick_count, self.tracing.T, after)
+        return Translator(self.tracing.tick, leaf, clock, self.scene.values, self.graph)
 
     def _entering(self, name, value):
         return entering(value, self.tracing.real, f"{name} = {value:g}", ParameterError)
@@ -182,6 +186,8 @@ class _Lowering:
             return self.tracing.init.const(0.0)
         if kind in (x, v):
             return self.handle.first(kind)
+        if kind is acceleration or not hasattr(kind, "initial") and kind.role not in ("coordinate", "signal"):
+            return self.tracing.init.const(0.0)  # reactions and what impacts add up to: nothing has happened yet
         if isinstance(leaf, delay):
             return self.at_start(leaf.args[0])
         if isinstance(leaf, sp.Derivative):
@@ -200,12 +206,16 @@ class _Lowering:
             return count if leaf == n else count * tracing.T
         if kind in (x, v):
             return self.handle.sample(kind, lag_of(leaf) or 0)
+        if kind is acceleration:
+            return self.handle.acceleration()
         if isinstance(leaf, delay):
             argument = leaf.args[0]
             channel = Channel(short(leaf), unit_of(argument), tracing.real)
             return tracing.state(leaf, channel, self.at_start(argument), lambda: self.at_sample(argument))
         if isinstance(leaf, sp.Derivative) or kind.role == "coordinate":
             return self._coordinate_state(leaf)
+        if kind.role != "signal":
+            return self.dynamics.leaf_at_sample(leaf)
         lag = lag_of(leaf)
         if lag == 0:
             return self._resolve(leaf, self.at_sample)
@@ -236,12 +246,19 @@ class _Lowering:
         """Return q or q' as it is at the sample."""
         if self.exact and leaf in self.exact.states:
             return self.exact.state(leaf)
+        follows = self.dynamics.leaf_at_sample(leaf) if leaf not in self.dynamics.states else None
+        if follows is not None:
+            return follows
         q, order = (leaf.expr, leaf.derivative_count) if isinstance(leaf, sp.Derivative) else (leaf, 0)
         if order >= self.form.orders[self.form.coordinates.index(q)]:
             raise SceneError(
                 f"{leaf} is what the equations of motion solve for; the force and what is watched may use "
                 f"{type(q).__name__} and lower derivatives"
             )
+        return self.state(leaf)
+
+    def state(self, leaf):
+        """Return a state of the equations of motion as it is at the sample."""
         return self.tracing.state(leaf, channel_of(leaf, self.tracing.real), self.first_of(leaf))
 
     def first_of(self, state):
@@ -251,46 +268,10 @@ class _Lowering:
     # one period of the equations of motion
 
     def _advance(self):
-        form = self.form
         if self.exact:
             self.exact.advance()
-        second = [q for q, order in zip(form.coordinates, form.orders, strict=True) if order == 2]
-        first = [q for q, order in zip(form.coordinates, form.orders, strict=True) if order == 1]
-        names = [*second, *(q.diff(t) for q in second), *first]
-        if not names:
-            return None
-        groups = (second, names[len(second) : 2 * len(second)], first)
-        state = tuple([self._coordinate_state(q) for q in group] for group in groups)
-        h, unlocated = self.tracing.T / self.substeps, None
-        rates = partial(self._rates, names)
-        if isinstance(self.method, Taylor):
-            state, facts, unlocated = advance(
-                self.method, self.tracing, rates, state, h, self.substeps, self.scene.values, self.scene.name
-            )
-            self.facts |= facts
-        else:
-            for step in range(self.substeps):
-                state = self.method.step(rates, step * h, state, h)
-        for name, value in zip(names, [value for group in state for value in group], strict=True):
-            self.tracing.set_next(name, value)
+        values, facts, unlocated = self.dynamics.advance()
+        self.facts |= facts
+        for state, value in zip(self.dynamics.states, values, strict=True):
+            self.tracing.set_next(state, value)
         return unlocated
-
-    def _rates(self, names, tau, q, w, s):
-        """Return the accelerations and first-order rates at tau after the sample."""
-        held = dict(zip(names, [*q, *w, *s], strict=True)) | (self.exact.at(tau) if self.exact else {})
-        handle = dict(zip((x(t), v(t)), self.handle.motion(tau), strict=True))
-
-        def leaf(expr):
-            if expr in held:
-                return held[expr]
-            if expr in handle:
-                return handle[expr]
-            return self.at_sample(expr) + tau if expr == t else self.at_sample(expr)
-
-        translate = self.translator(leaf, tau)
-        M = [[translate(m) for m in row] for row in self.form.M]
-        solution = solve(M, [translate(f) for f in self.form.f], self.form.definite)
-        by_order = {2: [], 1: []}
-        for rate, order in zip(solution, self.form.orders, strict=True):
-            by_order[order].append(rate)
-        return by_order[2], by_order[1]

@@ -20,12 +20,17 @@ def applied(expressions, *roles):
 
 
 def equations(eom):
-    """Return the equations as a tuple; refuse what is none, and a signal that is not defined once, at n."""
-    listed = (eom,) if isinstance(eom, (str, sp.Basic)) or not hasattr(eom, "__iter__") else tuple(eom)
+    """Return the equations and models as a tuple; refuse what is none, and a signal that is not defined once, at n."""
+    is_one = isinstance(eom, (str, sp.Basic)) or is_model(eom) or not hasattr(eom, "__iter__")
+    listed = (eom,) if is_one else tuple(eom)
     defined = set()
     for equation in listed:
+        if is_model(equation):
+            continue
         if not isinstance(equation, sp.Eq):
-            raise SceneError(f"eom holds {equation!r}; needs equations, sp.Eq(left side, right side)")
+            raise SceneError(
+                f"eom holds {equation!r}; needs equations, sp.Eq(left side, right side), or hl.lagrange(...)"
+            )
         left = equation.lhs
         for side in equation.args:
             expression(side, "a side of an equation")
@@ -35,6 +40,16 @@ def equations(eom):
                 raise SceneError(f"two equations define {left}; keep one, or give the other signal its own name")
             defined.add(left)
     return listed
+
+
+def is_model(entry):
+    """Tell whether an entry of ``eom`` is a model, of :func:`~hapticlab.scene.mechanics.lagrange`, and no equation."""
+    return hasattr(entry, "written")
+
+
+def written_in(eom):
+    """Return every expression of equations of motion: the sides of equations, and what models are made of."""
+    return [expr for entry in eom for expr in (entry.written if is_model(entry) else entry.args)]
 
 
 def _check_defines(left, equation):

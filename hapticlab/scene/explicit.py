@@ -4,16 +4,14 @@
 equations; the compiler emits the solution as an unrolled LDL^T.
 """
 
-import math
-import random
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-import mpmath
 import sympy as sp
 
 from ..errors import MassError, SceneError
 from .aliases import definitions, substituted
-from .symbols import Parameter, T, delay, t
+from .mechanics import Mechanics
+from .symbols import t
 
 
 @dataclass(frozen=True)
@@ -30,9 +28,8 @@ class ExplicitForm:
     updates : dict y(n) -> expression
     force : sympy expression [N]
     watch : dict name -> expression
-    definite : bool
-        M was symmetric and of one sign at every configuration looked at: the initial state and others over a turn of
-        every angle, with parameters at their bound values. Then it may be factored without pivoting.
+    models : tuple of Mechanics
+        The models among the equations of motion, with their constraints and contacts.
     """
 
     coordinates: tuple
@@ -42,7 +39,7 @@ class ExplicitForm:
     updates: dict
     force: sp.Expr
     watch: dict
-    definite: bool = False
+    models: tuple = ()
 
     def __str__(self):
         lines = [f"F = {self.force}"]
@@ -68,30 +65,60 @@ def explicit_form(scene):
         A highest derivative enters nonlinearly, a signal does not stand alone on the left of its equation, or a
         coordinate of first order is given an initial rate.
     """
-    updates = {e.lhs: e.rhs for e in scene.eom if getattr(type(e.lhs), "role", None) == "signal"}
-    equations = [e for e in scene.eom if e.lhs not in updates]
-    known, equations = definitions(equations, scene.coordinates)
+    models = tuple(e for e in scene.eom if isinstance(e, Mechanics))
+    written = [e for e in scene.eom if not isinstance(e, Mechanics)]
+    updates = {e.lhs: e.rhs for e in written if getattr(type(e.lhs), "role", None) == "signal"}
+    modelled = [q for model in models for q in model.coordinates]
+    _check_models(modelled)
+    equations = [e for e in written if e.lhs not in updates]
+    known, equations = definitions(equations, [q for q in scene.coordinates if q not in modelled])
 
     def put(expr):
         return substituted(expr, known)
 
     equations = [sp.Eq(*map(put, e.args), evaluate=False) for e in equations] if known else equations
     updates = {y: put(expr) for y, expr in updates.items()}
-    coordinates = tuple(q for q in scene.coordinates if q not in known)
     _check_signals(equations)
-    orders = tuple(_order(q, equations) for q in coordinates)
-    if len(equations) != len(coordinates):
-        named = ", ".join(type(q).__name__ for q in coordinates) or "none"
-        raise MassError(
-            f"{len(equations)} equations of motion for {len(coordinates)} coordinates ({named}); give one for each"
-        )
-    unknowns = tuple(q.diff(t, order) for q, order in zip(coordinates, orders, strict=True))
+    own = tuple(q for q in scene.coordinates if q not in known and q not in modelled)
+    if len(equations) != len(own):
+        named = ", ".join(type(q).__name__ for q in own) or "none"
+        for q in own:
+            _order(q, equations)  # names the one that has no equation
+        raise MassError(f"{len(equations)} equations of motion for {len(own)} coordinates ({named}); give one for each")
+    orders = {q: _order(q, equations) for q in own}
+    orders |= {q: order for model in models for q, order in zip(model.coordinates, model.orders, strict=True)}
+    coordinates = tuple(q for q in scene.coordinates if q in orders)
+    M, f = _rows(equations, own, coordinates, orders)
+    for model in models:
+        for q, row, right in zip(model.coordinates, model.M, model.f, strict=True):
+            entries = dict(zip(model.coordinates, row, strict=True))
+            M[q], f[q] = tuple(put(entries.get(p, sp.S.Zero)) for p in coordinates), put(right)
+    return ExplicitForm(
+        coordinates,
+        tuple(orders[q] for q in coordinates),
+        tuple(M[q] for q in coordinates),
+        tuple(f[q] for q in coordinates),
+        updates,
+        put(scene.force),
+        {name: put(expr) for name, expr in scene.watch.items()},
+        models,
+    )
+
+
+def _rows(equations, own, coordinates, orders):
+    """Return two dicts, coordinate -> row of M and coordinate -> right side, of the equations as written."""
+    unknowns = [q.diff(t, orders[q]) for q in coordinates]
     rows = [_affine(e.lhs - e.rhs, unknowns, e) for e in equations]
     M = [tuple(coefficients.get(a, sp.S.Zero) for a in unknowns) for coefficients, _ in rows]
-    M, f = _in_order(M, [-rest for _, rest in rows], coordinates)
-    watch = {name: put(expr) for name, expr in scene.watch.items()}
-    form = ExplicitForm(coordinates, orders, tuple(M), tuple(f), updates, put(scene.force), watch)
-    return replace(form, definite=_check_mass(form, scene.values))
+    M, f = _in_order(M, [-rest for _, rest in rows], [coordinates.index(q) for q in own], coordinates)
+    return dict(zip(own, M, strict=True)), dict(zip(own, f, strict=True))
+
+
+def _check_models(modelled):
+    twice = next((q for q in modelled if modelled.count(q) > 1), None)
+    if twice is not None:
+        name = type(twice).__name__
+        raise SceneError(f"two Lagrangians move {name}; add the energies and give one hl.lagrange(L_1 + L_2)")
 
 
 def _order(q, equations):
@@ -150,18 +177,18 @@ def _affine(expr, unknowns, equation):
     )
 
 
-def _in_order(M, f, coordinates):
+def _in_order(M, f, columns, coordinates):
     """Put each equation on the row of a coordinate it determines, so that pivots lie on the diagonal.
 
-    The rows are kept where the student's order already does. Otherwise: a maximum matching of equations to unknowns.
+    ``columns`` are those of the coordinates that have equations of their own. The rows are kept where the student's
+    order already does; otherwise: a maximum matching of equations to unknowns.
     """
-    N = len(coordinates)
-    if all(M[k][k] != 0 for k in range(N)):
+    if all(M[row][column] != 0 for row, column in enumerate(columns)):
         return M, f
-    row_of = [None] * N
+    row_of = dict.fromkeys(columns)
 
     def place(row, tried):
-        for column in range(N):
+        for column in columns:
             if M[row][column] != 0 and column not in tried:
                 tried.add(column)
                 if row_of[column] is None or place(row_of[column], tried):
@@ -169,105 +196,9 @@ def _in_order(M, f, coordinates):
                     return True
         return False
 
-    if not all(place(row, set()) for row in range(N)):
-        missing = next((type(q).__name__ for q, row in zip(coordinates, row_of, strict=True) if row is None), "?")
+    if not all(place(row, set()) for row in range(len(columns))):
+        missing = next((type(coordinates[column]).__name__ for column, row in row_of.items() if row is None), "?")
         raise MassError(
             f"singular mass: no equation is left to determine {missing}; each coordinate needs an equation of its own"
         )
-    return [M[row] for row in row_of], [f[row] for row in row_of]
-
-
-def _check_mass(form, values):
-    """Tell whether the mass matrix is definite; refuse one that is singular at three generic configurations."""
-    configurations = _configurations(form, values)
-    generic = [M for M in (_mass_at(form, next(configurations)) for _ in range(3)) if M]
-    if all(map(_singular, generic)) and generic:
-        _, _, directions = mpmath.svd_r(mpmath.matrix(_balanced(generic[-1])))
-        worst = directions[len(form.M) - 1, :]
-        names = [type(q).__name__ for q, c in zip(form.coordinates, worst, strict=True) if abs(c) > 1e-6]
-        raise MassError(
-            f"singular mass: the equations do not determine the accelerations of {' and '.join(names)} "
-            "(a massless direction, or an equation that repeats another); give each its own mass or equation"
-        )
-    return (
-        len(generic) == 3
-        and all(map(_definite, generic))
-        and all(_definite(_mass_at(form, at)) for at in configurations)
-    )
-
-
-def _configurations(form, values):
-    """Yield what every symbol of M is: three times generic, at the initial state, then over a turn of every angle."""
-    symbols = set().union(*(_variables(m) for row in form.M for m in row))
-    starts = {s: _start(s) for s in symbols}
-    symbols = sorted(symbols.union(*map(_variables, starts.values())), key=str)
-    bound = {s: sp.Float(values[s.name]) for s in symbols if isinstance(s, Parameter) and s.name in values}
-    bound[T] = sp.Float(1e-3)
-    generator = random.Random(23)
-
-    def sample(most=None):
-        ranges = ((0.5, 1.5) if most is None or isinstance(s, Parameter) else (-most, most) for s in symbols)
-        return {s: sp.Float(generator.uniform(*limits)) for s, limits in zip(symbols, ranges, strict=True)} | bound
-
-    for _ in range(3):
-        yield sample()
-    at = {s: value if isinstance(s, Parameter) else sp.S.Zero for s, value in sample().items()}
-    yield at | {s: start.xreplace(at) for s, start in starts.items()}
-    for _ in range(5):
-        yield sample(most=3.0)
-
-
-def _variables(expr):
-    """Return what a number can be put in place of: symbols, coordinates, their rates, samples and delays."""
-    functions = expr.atoms(sp.Function, sp.Derivative)
-    return expr.free_symbols | {
-        f for f in functions if hasattr(type(f), "role") or isinstance(f, (sp.Derivative, delay))
-    }
-
-
-def _start(symbol):
-    """Return the initial value of a variable; the handle and time start at zero, a parameter is what it is."""
-    if isinstance(symbol, sp.Derivative):
-        return getattr(type(symbol.expr), "rate", sp.S.Zero)
-    return symbol if isinstance(symbol, Parameter) else getattr(type(symbol), "initial", sp.S.Zero)
-
-
-def _mass_at(form, at):
-    """Return M as floats, or None where it is not real and finite."""
-    known = {}
-    for m in {m for row in form.M for m in row}:
-        number = m.xreplace(at).evalf()
-        if not (number.is_Float or number.is_Rational):
-            return None
-        known[m] = float(number)
-    return [[known[m] for m in row] for row in form.M] if all(map(math.isfinite, known.values())) else None
-
-
-def _singular(M):
-    singular_values = mpmath.svd_r(mpmath.matrix(_balanced(M)), compute_uv=False)
-    return singular_values[len(M) - 1] <= 1e-10 * singular_values[0]
-
-
-def _definite(M):
-    """Tell whether M is symmetric and its pivots, of entries scaled to a unit diagonal, have one sign and are not small."""
-    if not M or not all(row[k] * M[0][0] > 0 for k, row in enumerate(M)):
-        return False
-    N = len(M)
-    sign = math.copysign(1.0, M[0][0])
-    S = [[sign * m / math.sqrt(M[i][i] * M[j][j]) for j, m in enumerate(row)] for i, row in enumerate(M)]
-    if any(abs(S[i][j] - S[j][i]) > 1e-12 for i in range(N) for j in range(i)):
-        return False
-    for j in range(N):
-        if S[j][j] < 1e-6:
-            return False
-        for i in range(j + 1, N):
-            factor = S[i][j] / S[j][j]
-            S[i] = [a - factor * b for a, b in zip(S[i], S[j], strict=True)]
-    return True
-
-
-def _balanced(M):
-    """Scale rows and columns to their largest entries, so that grams beside kilograms are not taken for nothing."""
-    rows = [max(map(abs, row)) or 1.0 for row in M]
-    columns = [max(map(abs, column)) or 1.0 for column in zip(*M, strict=True)]
-    return [[m / math.sqrt(r * c) for m, c in zip(row, columns, strict=True)] for row, r in zip(M, rows, strict=True)]
+    return [M[row_of[column]] for column in columns], [f[row_of[column]] for column in columns]

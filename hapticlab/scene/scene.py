@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 
 from ..errors import ParameterError, SceneError
-from .checks import applied, check_symbols, check_units, equations, named, parameters_in
+from .checks import applied, check_symbols, check_units, equations, is_model, named, parameters_in, written_in
 from .explicit import explicit_form
 from .frozen import Frozen
 from .units import unit_of
@@ -22,7 +22,7 @@ class Scene:
     force : sympy expression
         F_e [N], the force on the environment, positive into the wall (Eq. 23.1); the motor applies -F_e. A power whose
         exponent is no fixed fraction, such as a parameter, runs as exp(exponent*log(base)): its base must be positive.
-    eom : sequence of sympy.Eq
+    eom : sequence of sympy.Eq, or models of :func:`~hapticlab.scene.mechanics.lagrange`
         Equations of motion of the coordinates, linear in the highest derivatives, and difference equations
         ``Eq(y(n), ...)`` of signals.
     watch : sequence of expressions or names, or dict name -> expression
@@ -65,11 +65,12 @@ class Scene:
     def _check(self):
         _set(self, "eom", equations(self.eom))
         _set(self, "force", expression(self.force, "force"))
-        written = [self.force, *(side for e in self.eom for side in e.args)]
+        written = [self.force, *written_in(self.eom)]
         _set(self, "watch", Frozen(named(self.watch, applied(written, "coordinate"))))
         check_symbols(self._expressions())
         known = self.parameters
-        check_units(self.force, self.eom, self.watch, applied(self._expressions(), "coordinate", "signal"))
+        plain = [e for e in self.eom if not is_model(e)]
+        check_units(self.force, plain, self.watch, applied(self._expressions(), "coordinate", "signal"))
         if not isinstance(self.values, Mapping):
             raise ParameterError(f"values = {self.values!r}; needs a dict, such as values={{'k': 150}}")
         defaults = {p.name: p.value for p in known.values() if p.value == p.value}
@@ -101,7 +102,7 @@ class Scene:
 
     def _expressions(self):
         """Return everything written, and the starts of all that moves in it; a start may use what starts itself."""
-        found = [self.force, *(side for e in self.eom for side in e.args), *self.watch.values()]
+        found = [self.force, *written_in(self.eom), *self.watch.values()]
         started, kinds = set(), {type(q) for q in applied(found, "coordinate", "signal")}
         while kinds - started:
             fresh = sorted(kinds - started, key=str)
@@ -113,12 +114,13 @@ class Scene:
 
     def __str__(self):
         lines = [f"scene {self.name}", f"  F = {self.force}"]
-        lines += [f"  {e.lhs} = {e.rhs}" for e in self.eom]
+        lines += [f"  {e}" if is_model(e) else f"  {e.lhs} = {e.rhs}" for e in self.eom]
         shown = (f"{p.name} = {self.values.get(p.name, '?')} {p.unit}" for p in self.parameters.values())
         return "\n".join([*lines, "  " + (", ".join(shown) or "no parameters")])
 
     def _repr_latex_(self):
-        rows = [f"F_e = {sp.latex(self.force)}", *(sp.latex(e) for e in self.eom)]
+        shown = [part for e in self.eom for part in (e.equations if is_model(e) else (e,))]
+        rows = [f"F_e = {sp.latex(self.force)}", *map(sp.latex, shown)]
         return "$\\displaystyle \\begin{array}{l}" + r" \\ ".join(rows) + "\\end{array}$"
 
 

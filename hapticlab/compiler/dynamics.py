@@ -1,0 +1,179 @@
+"""The equations of motion of a scene at one instant of a step, as traced values: M a = f, constraints, contacts."""
+
+from functools import partial
+
+import numpy as np
+import sympy as sp
+
+from ..errors import MassError, ParameterError, SceneError
+from ..scene.symbols import acceleration, t, v, x
+from .advance import Taylor, advance
+from .constraints import enforcement
+from .contacts import Contacts
+from .first_sample import numbers
+from .mass import is_definite, start_of
+from .solve import solve
+
+
+class Dynamics:
+    """What moves between two samples.
+
+    Parameters
+    ----------
+    lowering : the scene's lowering
+        Its tracing, its handle, and what translates expressions.
+    form : ExplicitForm
+    method : Method or Taylor
+    substeps : int
+
+    Attributes
+    ----------
+    second, first : tuple of coordinates
+        Those that are integrated: with their rates, and by a given rate.
+    notes : tuple of str
+        How constraints are kept.
+    """
+
+    def __init__(self, lowering, form, method, substeps):
+        self.lowering, self.form, self.method, self.substeps = lowering, form, method, substeps
+        self.h = lowering.tracing.T / substeps
+        constraints = [g for model in form.models for g in model.constraints]
+        try:
+            self.definite = is_definite(form, lowering.scene.values, lowering.graph)
+        except MassError:
+            if not constraints:
+                raise
+            self.definite = False  # a constraint may carry what has no mass of its own
+        self.enforced, self.notes = self._enforced(constraints) if constraints else (None, ())
+        kept = self.enforced.coordinates if self.enforced else ()
+        orders = dict(zip(form.coordinates, form.orders, strict=True))
+        self.others = tuple(q for q in form.coordinates if q not in kept)
+        driven, following = (self.enforced.second, self.enforced.first) if self.enforced else ((), ())
+        self.second = (*driven, *(q for q in self.others if orders[q] == 2))
+        self.first = (*following, *(q for q in self.others if orders[q] == 1))
+        self.states = (*self.second, *(q.diff(t) for q in self.second), *self.first)
+        elements = [c for model in form.models for c in model.contacts]
+        self.contacts = Contacts(elements, lowering.tracing, lowering.at_sample, self.at)
+        if form.coordinates:
+            self.contacts.check(method)
+        self._now = None
+
+    def _enforced(self, constraints):
+        form, lowering = self.form, self.lowering
+        model = next(m for m in form.models if m.constraints)
+        coordinates = tuple(q for m in form.models if m.constraints for q in m.coordinates)
+        start = self._start()
+        M = lowering.graph.evaluate([m for row in self._part(coordinates)[0] for m in row], start)
+        return enforcement(
+            constraints, coordinates, start, enforce=model.enforce, alpha=model.alpha,
+            M=np.reshape(M, (len(coordinates), -1)), method=self.method, h=self.h, real=lowering.tracing.real,
+            used=[form.force, *form.watch.values(), *(e for m in form.models for e in m.written)],
+        )  # fmt: skip
+
+    def _start(self):
+        """Return what every variable is at the first sample: variable -> float."""
+        scene = self.lowering.scene
+        unbound = [p.name for p in scene.parameters.values() if p.name not in scene.values]
+        if unbound:
+            raise ParameterError(f"{', '.join(unbound)} needs a value to check the constraints: scene({unbound[0]}=...)")
+        moving = [*self.form.coordinates, *(q.diff(t) for q in self.form.coordinates)]
+        start = dict(zip(moving, numbers([start_of(s) for s in moving], scene.values), strict=True))
+        start |= {p: scene.values[name] for name, p in scene.parameters.items()}
+        return start | {x(t): 0.0, v(t): 0.0, acceleration(t): 0.0, t: 0.0}
+
+    def _part(self, coordinates):
+        """Return the rows of M and f of some coordinates; they must not hold accelerations of the others."""
+        form, at = self.form, [self.form.coordinates.index(q) for q in coordinates]
+        for k in at:
+            held = [type(q).__name__ for q, m in zip(form.coordinates, form.M[k], strict=True) if m != 0 and q not in coordinates]
+            if held:
+                name = type(form.coordinates[k]).__name__
+                raise SceneError(
+                    f"the equation of {name} holds the acceleration of {held[0]}, which a constraint determines; "
+                    f"put {name} into the same hl.lagrange(...)"
+                )
+        return [[form.M[k][j] for j in at] for k in at], [form.f[k] for k in at]
+
+    def at(self, tau, q, w, s):
+        """Return what translates expressions at ``tau`` [s] after the sample, in the state (q, w, s)."""
+        lowering, exact = self.lowering, self.lowering.exact
+        held = dict(zip(self.states, [*q, *w, *s], strict=True)) | (exact.at(tau) if exact else {})
+        held |= dict(zip((x(t), v(t)), lowering.handle.motion(tau), strict=True)) | self.contacts.leaves
+
+        def leaf(expr):
+            if expr in held:
+                return held[expr]
+            follows = instant.leaf(expr) if instant else None
+            if follows is not None:
+                return follows
+            return lowering.at_sample(expr) + tau if expr == t else lowering.at_sample(expr)
+
+        translate = lowering.translator(leaf, tau)
+        instant = self.enforced.instant(translate) if self.enforced else None
+        translate.instant = instant
+        return translate
+
+    def rates(self, tau, q, w, s):
+        """Return (a, ds): the accelerations of ``second`` and the rates of ``first``."""
+        translate = self.at(tau, q, w, s)
+        a, ds = self.enforced.rates(translate.instant, *self._values(translate)) if self.enforced else ([], [])
+        M, f = self._part(self.others) if self.enforced else (self.form.M, self.form.f)
+        solution = solve([list(map(translate, row)) for row in M], list(map(translate, f)), self.definite) if f else []
+        found = dict(zip(self.others, solution, strict=True))
+        return [*a, *(found[q] for q in self.second if q in found)], [*ds, *(found[q] for q in self.first if q in found)]
+
+    def _values(self, translate):
+        M, f = self._part(self.enforced.coordinates)
+        return [list(map(translate, row)) for row in M], list(map(translate, f))
+
+    def settled(self, tau, state):
+        """Return the state with the constraints met again, once a period."""
+        if not self.enforced:
+            return state
+
+        def at(state):
+            translate = self.at(tau, *state)
+            return translate.instant, self._values(translate)[0]
+
+        n2, n1 = len(self.enforced.second), len(self.enforced.first)
+        q, w, s = state
+        met = self.enforced.settle(lambda part: at(self._whole(part, state)), (q[:n2], w[:n2], s[:n1]))
+        return self._whole(met, state)
+
+    @staticmethod
+    def _whole(part, state):
+        return tuple([*own, *rest[len(own) :]] for own, rest in zip(part, state, strict=True))
+
+    def leaf_at_sample(self, expr):
+        """Return a coordinate that others determine, or a reaction, at the sample; None for anything else."""
+        role = getattr(type(expr), "role", None)
+        if role in ("reaction", "impulse", "impact_loss", "impact_work", "rub") and not hasattr(type(expr), "constraint"):
+            return self.contacts.at_sample(expr)
+        if not self.enforced:
+            return None
+        if self._now is None:
+            self._now = self.enforced.instant(self.lowering.at_sample)
+        if role == "reaction":
+            found = self.enforced.reactions(self._now, *self._values(self.lowering.at_sample))
+            return found[type(expr).constraint]
+        return self._now.leaf(expr)
+
+    def advance(self):
+        """Trace one period; return (values of ``states`` after it, facts, count of unlocated steps or None)."""
+        lowering, tracing = self.lowering, self.lowering.tracing
+        if not self.states:
+            return [], {}, None
+        second = [lowering.state(q) for q in self.second]
+        groups = (second, [lowering.state(q.diff(t)) for q in self.second], [lowering.state(q) for q in self.first])
+        facts, unlocated = {}, None
+        if isinstance(self.method, Taylor):
+            contacts = partial(self.contacts.reactions) if self.contacts.located else None
+            groups, facts, unlocated = advance(
+                self.method, tracing, self.rates, groups, self.h, self.substeps, lowering.scene.values,
+                lowering.scene.name, contacts=contacts, impact=self.contacts.impact if contacts else None,
+            )  # fmt: skip
+        else:
+            for step in range(self.substeps):
+                groups = self.method.step(self.rates, step * self.h, groups, self.h)
+        groups = self.settled(tracing.T, groups)
+        return [value for group in groups for value in group], facts, unlocated
