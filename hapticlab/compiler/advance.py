@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from ..errors import ProgramError
 from .crossing import FEWER_STEPS, STEPS
 from .flow import motion_of
-from .guards import check_smooth
 from .ir import Channel
 from .located import Stepper
-from .stiffness import check_step, frequency, is_linear, numbers, order_for
+from .stiffness import check_size, check_smooth, check_step, frequency, is_linear, numbers, order_for
 from .trace import select
 
 #: most located events of a step: what touches may leave within it, and something else may happen too
@@ -95,6 +94,7 @@ def advance(method, tracing, rates, groups, h, substeps, values, name, contacts=
     now, missed = held, None
     for step in range(substeps):
         groups, now, left_out = stepper.step(builder.const(step * h), groups, now)
+        check_size(motion, builder, name)
         count = select(left_out, builder.const(1.0), 0.0)
         missed = count if missed is None else missed + count
     for k, value in enumerate(now):

@@ -8,7 +8,6 @@ of both that keeps it there (Filippov, *Differential Equations with Discontinuou
 
 from dataclasses import dataclass, field, replace
 
-from ..errors import ProgramError
 from .trace import Value, reachable, select
 
 
@@ -84,27 +83,6 @@ def coulomb(new, slip, F_c, F_s, leaf):
 def contact(gap, leaf):
     """Return the Reaction of a contact: zero apart, what keeps the gap closed at rest."""
     return Reaction(leaf, gap, 2, leaf.builder.const(0.0, leaf.type), leaf)
-
-
-def check_smooth(motion, name):
-    """Refuse a root or logarithm that starts from zero on a surface: it has no Taylor series there."""
-    instructions = motion.builder.instructions
-    edges = {frozenset((g.first.id, g.second.id)) for g in motion.guards if g.kind == "side"}
-    zero = motion.builder.const(0.0, motion.builder.real).id
-    for p in reachable(instructions, [rate.id for rate in (*motion.a, *motion.ds)]):
-        i = instructions[p]
-        if i.op not in ("sqrt", "log"):
-            continue
-        a = i.args[0]
-        while instructions[a].op == "neg":
-            a = instructions[a].args[0]
-        inner = instructions[a]
-        on_edge = (inner.op == "select" and zero in inner.args[1:]) or frozenset((a, zero)) in edges
-        if on_edge or (inner.op == "sub" and frozenset(inner.args) in edges):
-            raise ProgramError(
-                f"{name}: a broken power of what is zero at touch, such as d**(3/2), has no Taylor series there; "
-                "method='taylor' takes whole exponents: exponent=1 or 2, or use method='rk4' with ten substeps a contact"
-            )
 
 
 @dataclass

@@ -1,17 +1,19 @@
-"""How fast a motion can turn, mode by mode: what sets the order of its series and the longest step."""
+"""What a motion must be for its series: slow enough for its step, smooth in every mode, and of a size that runs."""
 
 import itertools
 import math
 
 import numpy as np
 
-from ..errors import ProgramError
+from ..errors import ProgramError, ProgramLimitError
 from .ir import LEAVES
 from .taylor import AT_ONCE, Series
 from .trace import reachable
 
 #: orders of the series: for linear motions what the truncation asks for, else what also serves products and functions
 ORDERS = {"f64": (6, 16), "f32": (4, 9)}
+#: of the builder of a tick, those that nothing needs included
+MOST_INSTRUCTIONS = 200_000
 #: modes looked at: all combinations of up to this many cases, then one case changed at a time
 _MOST_COMBINED = 6
 
@@ -150,3 +152,35 @@ def is_linear(motion):
             if not linear.get(i.op, False):
                 return False
     return True
+
+
+def check_size(motion, builder, name):
+    """Refuse a motion with more surfaces than a program can follow."""
+    if len(builder.instructions) > MOST_INSTRUCTIONS:
+        surfaces = len(motion.guards) + len(motion.reactions)
+        raise ProgramLimitError(
+            f"{name}: method='taylor' follows {surfaces} surfaces (cases, Max, Min, contacts) through every piece of a step, "
+            f"which is more than {MOST_INSTRUCTIONS} instructions; needs fewer of them, a lower order or fewer events: "
+            "method=Taylor(order=6, events=1), or method='rk4' with substeps"
+        )
+
+
+def check_smooth(motion, name):
+    """Refuse a root or logarithm that starts from zero on a surface: it has no Taylor series there."""
+    instructions = motion.builder.instructions
+    edges = {frozenset((g.first.id, g.second.id)) for g in motion.guards if g.kind == "side"}
+    zero = motion.builder.const(0.0, motion.builder.real).id
+    for p in reachable(instructions, [rate.id for rate in (*motion.a, *motion.ds)]):
+        i = instructions[p]
+        if i.op not in ("sqrt", "log"):
+            continue
+        a = i.args[0]
+        while instructions[a].op == "neg":
+            a = instructions[a].args[0]
+        inner = instructions[a]
+        on_edge = (inner.op == "select" and zero in inner.args[1:]) or frozenset((a, zero)) in edges
+        if on_edge or (inner.op == "sub" and frozenset(inner.args) in edges):
+            raise ProgramError(
+                f"{name}: a broken power of what is zero at touch, such as d**(3/2), has no Taylor series there; "
+                "method='taylor' takes whole exponents: exponent=1 or 2, or use method='rk4' with ten substeps a contact"
+            )
