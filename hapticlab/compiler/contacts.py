@@ -6,6 +6,7 @@ from ..scene.contact_laws import micro_impulse, rigid
 from ..scene.derivative import Partial, Rate
 from .complementarity import dot, response
 from .guards import contact, coulomb
+from .impact import dissipated
 from .impacts import impacts_of
 from .ir import Channel
 from .touch import Law, micro_impulses
@@ -37,8 +38,9 @@ class Contacts:
         self.contacts = [c for c in contacts if not isinstance(c.law, micro_impulse)]
         self.tracing, self.constant, self.at = tracing, constant, at
         self.order = _order(self.contacts)
-        self.leaves = {}
-        self.impacts = None
+        # a contact that hovers has no reaction inside a step
+        self.leaves = {c.force: tracing.tick.const(0.0) for c in self.hovering}
+        self.impacts, self.sums = None, {}
 
     @property
     def located(self):
@@ -59,7 +61,7 @@ class Contacts:
 
     def reactions(self, tau, q, w, s, new):
         """Return the Reactions of a motion, in the order contacts, then frictions."""
-        self.leaves = {e.force: new() for e in (*self.contacts, *self.frictions)}
+        self.leaves |= {e.force: new() for e in (*self.contacts, *self.frictions)}
         rubbing = [c for c in self.contacts if c.law.mu != 0]
         self.rubs = [new() for _ in rubbing]
         self.leaves |= {c.rub: rub for c, rub in zip(rubbing, self.rubs, strict=True)}
@@ -91,18 +93,19 @@ class Contacts:
         ``coordinates`` are those of the rates w, in order.
         """
         q, w, s = state
-        if not self.hovering:
-            return w
-        translate = self.at(tau, q, w, s)
-        J = [[translate(Partial(c.gap, coordinate)) for coordinate in coordinates] for c in self.hovering]
+        translate, contacts = self.at(tau, q, w, s), self.hovering
+        J = [[translate(Partial(c.gap, coordinate)) for coordinate in coordinates] for c in contacts]
         W, P = response(M, J, definite)
-        gaps = [translate(c.gap) for c in self.hovering]
-        b = [dot(f, column) + translate(Rate(Rate(c.gap))) for column, c in zip(P, self.hovering, strict=True)]
-        laws = [Law(c.name, self.constant(c.law.e)) for c in self.hovering]
-        envelopes = [self.constant(c.law.envelope) for c in self.hovering]
-        p, _ = micro_impulses(W, [translate(Rate(c.gap)) for c in self.hovering], b, gaps, laws, envelopes, h)
-        for c, blow in zip(self.hovering, p, strict=True):
-            self._count(c, "impulse", blow)
+        u, gaps = ([translate(part) for part in parts] for parts in zip(*((Rate(c.gap), c.gap) for c in contacts), strict=True))
+        b = [dot(f, column) + translate(Rate(Rate(c.gap))) for column, c in zip(P, contacts, strict=True)]
+        laws = [Law(c.name, self.constant(c.law.e)) for c in contacts]
+        envelopes = [self.constant(c.law.envelope) for c in contacts]
+        p, after = micro_impulses(W, u, b, gaps, laws, envelopes, h)
+        driven = [rate - dot(row, w) for rate, row in zip(u, J, strict=True)]
+        work = [-(blow * rate) for blow, rate in zip(p, driven, strict=True)]
+        for role, amounts in zip(SUMS, (p, dissipated(u, after, p), work), strict=True):
+            for c, amount in zip(contacts, amounts, strict=True):
+                self.sums[c, role] = self.sums[c, role] + amount if (c, role) in self.sums else amount
         return [rate + dot(p, [column[i] for column in P]) for i, rate in enumerate(w)]
 
     # what the force, the difference equations and the watched channels may know at a sample
@@ -115,14 +118,17 @@ class Contacts:
         channel = Channel(kind.__name__, kind.unit, tracing.real)
         return tracing.state(expr, channel, tracing.init.const(0.0))
 
-    def finish(self, reactions):
-        """Set the states that :meth:`at_sample` gave: ``reactions`` are those at the end of the period."""
-        elements = (*self.contacts, *self.frictions)
-        known = {e.force: value for e, value in zip(elements, reactions, strict=True)}
-        for i, c in enumerate(self.contacts):
+    def finish(self, reactions=()):
+        """Set the states that :meth:`at_sample` gave: ``reactions`` are those at the end of the period, if any are located."""
+        known = dict(zip((e.force for e in (*self.contacts, *self.frictions)), reactions, strict=True))
+        if self.impacts:
+            self.sums |= {(self.contacts[i], role): amount for (role, i), amount in self.impacts.sums.items()}
+        for c in (*self.contacts, *self.hovering):
             for role, adds_up in SUMS.items():
-                leaf, amount = getattr(c, role), self.impacts.sums.get((role, i), self.tracing.tick.const(0.0))
+                leaf, amount = getattr(c, role), self.sums.get((c, role), self.tracing.tick.const(0.0))
                 known[leaf] = self.at_sample(leaf) + amount if adds_up else amount
+        for c in self.hovering:
+            known[c.force] = self.sums[c, "impulse"] * (1 / self.tracing.T)
         for leaf, value in known.items():
             self.at_sample(leaf)
             self.tracing.set_next(leaf, value)
