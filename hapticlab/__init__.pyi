@@ -38,6 +38,7 @@ from .scene.contact_laws import impulse, micro_impulse, rigid
 from .scene.felt import felt_impulse, pulse_time
 from .scene.force_laws import hunt_crossley, penalty
 from .scene.laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
+from .scene.mechanics import Mechanics, lagrange
 from .scene.proxy import proxy_curve, proxy_wall
 from .scene.scene import Scene
 from .scene.symbols import T, coordinate, delay, n, parameters, signal, t, v, when, x
@@ -52,6 +53,7 @@ __all__ = [
     "HapticlabError",
     "LinkError",
     "MassError",
+    "Mechanics",
     "Paddle",
     "PaddleError",
     "PaddleProfile",
@@ -80,6 +82,7 @@ __all__ = [
     "friction",
     "hunt_crossley",
     "impulse",
+    "lagrange",
     "library",
     "micro_impulse",
     "n",

@@ -186,7 +186,7 @@ class _Lowering:
             return self.tracing.init.const(0.0)
         if kind in (x, v):
             return self.handle.first(kind)
-        if kind is acceleration or not hasattr(kind, "initial") and kind.role not in ("coordinate", "signal"):
+        if kind is acceleration or getattr(kind, "role", "signal") not in ("coordinate", "signal"):
             return self.tracing.init.const(0.0)  # reactions and what impacts add up to: nothing has happened yet
         if isinstance(leaf, delay):
             return self.at_start(leaf.args[0])
@@ -194,7 +194,8 @@ class _Lowering:
             return self.at_start(type(leaf.expr).rate)
         if kind.role == "signal" and lag_of(leaf) == 0:
             return self._resolve(leaf, self.at_start)
-        return self.at_start(kind.initial)
+        # the handle's acceleration, reactions and what impacts add up to start at zero
+        return self.at_start(getattr(kind, "initial", sp.S.Zero))
 
     def _leaf_at_sample(self, leaf):
         common = self._common(self.tracing.tick, leaf)

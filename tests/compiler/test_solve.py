@@ -8,7 +8,9 @@ from scipy.integrate import solve_ivp
 import hapticlab as hl
 from hapticlab import n, t, x
 from hapticlab.compiler.engine import load
+from hapticlab.compiler.graph import Graph
 from hapticlab.compiler.interpreter import evaluate
+from hapticlab.compiler.mass import is_definite
 from hapticlab.compiler.solve import solve
 from hapticlab.compiler.trace import Builder
 
@@ -178,7 +180,7 @@ def test_equations_that_need_pivots_follow_scipy(name, dtype, tolerance):
     eom, coordinates, start, accelerations = MOTIONS[name]
     N, ticks = len(start), 12
     scene = hl.Scene(force=0 * k * x(n), eom=eom, watch={f"y{j}": q for j, q in enumerate(coordinates)})
-    assert not scene.explicit().definite
+    assert not is_definite(scene.explicit(), scene.values, Graph())
     program = hl.compile(scene, "rk4", T=STEP, dtype=dtype, substeps=4)
     computed = load(program).run(ticks, np.full(ticks, STILL)).outputs[:, 1:, 0]
     times = STEP * np.arange(ticks)
@@ -193,7 +195,11 @@ def test_equations_that_need_pivots_follow_scipy(name, dtype, tolerance):
 
 def test_a_definite_mass_is_recognised_and_any_other_is_not():
     pair = [sp.Eq(m * ww + m / 2 * zz, -K * w), sp.Eq(m / 2 * ww + m * zz, -K * z)]
-    definite = lambda eom, **values: hl.Scene(force=0 * k * x(n), eom=eom, values=values).explicit().definite  # noqa: E731
+
+    def definite(eom, **values):
+        scene = hl.Scene(force=0 * k * x(n), eom=eom, values=values)
+        return is_definite(scene.explicit(), scene.values, Graph())
+
     assert definite(pair)
     assert definite([sp.Eq(-e.lhs, -e.rhs) for e in pair])  # negative definite
     assert not definite([pair[0], sp.Eq(-pair[1].lhs, -pair[1].rhs)])  # not symmetric
