@@ -7,6 +7,7 @@ import sympy as sp
 
 from ..compiler.coefficients import Coefficients
 from ..errors import AnalysisError, ParameterError
+from ..scene.derivative import Partial
 from ..scene.scene import Scene
 from ..scene.symbols import delay, lag_of, n, t, v, x
 
@@ -91,7 +92,6 @@ def port_of(scene, linear=False):
     form = scene.explicit()
     _check_memory(scene, form)
     found, rows = Coefficients(form, scene.values, 1e-3), range(len(form.coordinates))
-    form = found.form
     why = linear and (
         found.slope_moves(form.force, "in the force") or next(filter(None, map(found.why_not, rows)), None)
     )
@@ -99,14 +99,17 @@ def port_of(scene, linear=False):
         raise AnalysisError(f"{scene.name}: {why}; a reduction needs springs and dampers that are linear")
     N, of_second = len(form.coordinates), np.array([order == 2 for order in form.orders], bool)
 
-    def slopes(expr, variables):
-        return np.array([found.at_start(found.of(expr, variable)) for variable in variables])
+    def at_start(exprs, *shape):
+        return np.reshape(found.numbers(exprs, scene.values), shape)
+
+    def slopes(exprs, variables):
+        return at_start([Partial(e, variable) for e in exprs for variable in variables], len(exprs), len(variables))
 
     rates = [q.diff(t) for q in form.coordinates]
-    inertia = np.array([[found.at_start(m) for m in row] for row in form.M]).reshape(N, N)
-    C, K = (np.array([slopes(f, of) for f in form.f]).reshape(N, N) for of in (rates, form.coordinates))
-    by_handle = np.array([slopes(f, (x(t), v(t), x(n), v(n))) for f in form.f]).reshape(N, 4)
-    own = [slopes(form.force, seen).sum() for seen in SEEN]
+    inertia = at_start([m for row in form.M for m in row], N, N)
+    C, K = slopes(form.f, rates), slopes(form.f, form.coordinates)
+    by_handle = slopes(form.f, (x(t), v(t), x(n), v(n)))
+    own = [slopes([form.force], seen).sum() for seen in SEEN]
     return Port(
         form.coordinates,
         inertia * of_second,
@@ -114,8 +117,8 @@ def port_of(scene, linear=False):
         -K,
         -by_handle[:, 0] - by_handle[:, 2],
         -by_handle[:, 1] - by_handle[:, 3],
-        slopes(form.force, form.coordinates),
-        slopes(form.force, rates) * of_second,
+        slopes([form.force], form.coordinates)[0],
+        slopes([form.force], rates)[0] * of_second,
         *own,
     )
 

@@ -1,11 +1,12 @@
 """Slopes of equations of motion, and whether they stay the same while a scene runs."""
 
-from dataclasses import replace
-
 import numpy as np
 import sympy as sp
 
+from ..scene.derivative import Partial
 from ..scene.symbols import Parameter, T, delay, t, v, x
+from .dependence import blocks, coupled
+from .graph import Graph, driven
 from .linear import Linear, states_of
 
 #: the handle as an equation of motion sees it
@@ -13,37 +14,32 @@ HANDLE = (x(t), v(t))
 
 
 class Coefficients:
-    """Derivatives of a form's expressions, with what they hold.
+    """Slopes of a form's expressions, taken on the shared graph, with what they depend on.
 
     Parameters
     ----------
     form : ExplicitForm
     constants : dict name -> float
         Parameters whose value cannot change while it runs.
+    T : float
+        Sampling period [s].
     """
 
     def __init__(self, form, constants, T):
-        self.form, self.T = worked_out(form), T
-        self.constants = dict(constants)
+        self.form, self.T, self.graph = form, T, Graph(constants)
         self.states = states_of(form.coordinates, form.orders)
-        self._known = {}
-
-    def of(self, expr, variable):
-        """Return the derivative of an expression."""
-        key = expr, variable
-        if key not in self._known:
-            self._known[key] = derivative(expr, variable)
-        return self._known[key]
 
     def why_not(self, k):
         """Return why equation k is not linear with constant coefficients, or None."""
         form, name = self.form, type(self.form.coordinates[k]).__name__
+        if any(form.coordinates[k] in model.coordinates for model in coupled(form)):
+            return f"{name} is held by a constraint or a contact of an instant, which M and f do not tell"
         for m in form.M[k]:
             moving = self._moving(m)
             if moving:
-                return f"the inertia {m} of {name} changes with {moving}"
+                return f"the inertia {_short(m)} of {name} changes with {moving}"
         why = self.slope_moves(form.f[k], f"in the equation of {name}")
-        if why is None and t in leaves(form.f[k]):
+        if why is None and any(s == t or isinstance(s, driven) for s in self.graph.variables_of([form.f[k]])):
             why = f"t drives the equation of {name} between two samples"
         return why
 
@@ -51,42 +47,40 @@ class Coefficients:
         """Return which term of an expression is not linear in states and handle, or None."""
         for term in sp.Add.make_args(expr):
             for variable in (*self.states, *HANDLE):
-                moving = self._moving(self.of(term, variable))
+                moving = self._moving(Partial(term, variable))
                 if moving:
                     return f"{_short(term)} {where} is not linear: its slope changes with {moving}"
         return None
 
     def _moving(self, expr):
         """Return what changes while it runs in a coefficient, as text, or nothing."""
-        return ", ".join(sorted(str(leaf) for leaf in leaves(expr) if not isinstance(leaf, Parameter)))
+        return ", ".join(sorted(str(s) for s in self.graph.variables_of([expr]) if not isinstance(s, Parameter)))
 
     def sees(self, k):
         """Return the equations whose states enter equation k, in order."""
         of = {s: s.expr if isinstance(s, sp.Derivative) else s for s in self.states}
-        seen = {of[leaf] for e in (*self.form.M[k], self.form.f[k]) for leaf in leaves(e) if leaf in of}
+        seen = {of[s] for s in self.graph.variables_of([*self.form.M[k], self.form.f[k]]) if s in of}
         return [j for j, q in enumerate(self.form.coordinates) if q in seen]
 
-    def number(self, expr):
-        """Return a coefficient as a float."""
-        values = {p: sp.Float(self.T if p == T else self.constants[p.name]) for p in expr.atoms(Parameter)}
-        return float(expr.xreplace(values))
+    def numbers(self, exprs, values=None):
+        """Return expressions as floats: at the start, with the handle at x = 0, where they depend on the state."""
+        at = {s: self._start(s, values or {}) for s in self.graph.variables_of(exprs)}
+        return [float(number) for number in self.graph.evaluate(exprs, at)]
 
-    def at_start(self, expr):
-        """Return an expression as a float, at the initial state with the handle at x = 0."""
-        for _ in range(9):  # a start may be written with another
-            starts = {leaf: _start(leaf) for leaf in leaves(expr) if not isinstance(leaf, Parameter)}
-            if not starts:
-                break
-            expr = expr.xreplace(starts)
-        return self.number(expr)
+    def _start(self, variable, values):
+        if isinstance(variable, Parameter):
+            return self.T if variable == T else values[variable.name]
+        if isinstance(variable, sp.Derivative):
+            return self.numbers([type(variable.expr).rate], values)[0]
+        return self.numbers([getattr(type(variable), "initial", sp.S.Zero)], values)[0]
 
     def live(self, rows):
         """Return the names of parameters that would have to be constants for these equations, in order."""
         form, found = self.form, set()
         for k in rows:
-            parts = [*form.M[k], *(self.of(form.f[k], var) for var in (*self.states, *HANDLE))]
-            found |= {p.name for e in parts for p in e.atoms(Parameter) if p != T}
-        return sorted(found - set(self.constants))
+            parts = [*form.M[k], *(Partial(form.f[k], variable) for variable in (*self.states, *HANDLE))]
+            found |= {p.name for p in self.graph.variables_of(parts) if isinstance(p, Parameter) and p != T}
+        return sorted(found)
 
     def linear(self, rows):
         """Return the :class:`Linear` of these equations, which are closed and linear."""
@@ -95,37 +89,16 @@ class Coefficients:
         coordinates, orders = tuple(form.coordinates[k] for k in rows), tuple(form.orders[k] for k in rows)
         states = states_of(coordinates, orders)
 
-        def numbers(table):
-            return np.array([[self.number(e) for e in row] for row in table], float).reshape(len(rows), -1)
+        def table(entries):
+            return np.reshape(self.numbers(entries), (len(rows), -1))
 
         return Linear(
             coordinates,
             orders,
-            numbers([[form.M[i][j] for j in rows] for i in rows]),
-            numbers([[self.of(form.f[i], s) for s in states] for i in rows]),
-            numbers([[self.of(form.f[i], h) for h in HANDLE] for i in rows]),
+            table([form.M[i][j] for i in rows for j in rows]),
+            table([Partial(form.f[i], state) for i in rows for state in states]),
+            table([Partial(form.f[i], handle) for i in rows for handle in HANDLE]),
         )
-
-
-def worked_out(form):
-    """Return a form whose derivatives are worked out in symbols."""
-    return replace(
-        form,
-        M=tuple(tuple(m.doit() if _has_derivative(m) else m for m in row) for row in form.M),
-        f=tuple(f.doit() if _has_derivative(f) else f for f in form.f),
-        force=form.force.doit() if _has_derivative(form.force) else form.force,
-    )
-
-
-def _has_derivative(expr):
-    return any(hasattr(e, "_worked_out") for e in sp.preorder_traversal(expr))
-
-
-def derivative(expr, variable):
-    """Return the partial derivative of an expression, its other leaves held."""
-    held = {leaf: sp.Dummy(real=True) for leaf in leaves(expr)}
-    back = {dummy: leaf for leaf, dummy in held.items()}
-    return expr.xreplace(held).diff(held[variable]).xreplace(back) if variable in held else sp.S.Zero
 
 
 def leaves(expr):
@@ -140,36 +113,18 @@ def leaves(expr):
     return found
 
 
-def _start(leaf):
-    if isinstance(leaf, sp.Derivative):
-        return type(leaf.expr).rate
-    return getattr(type(leaf), "initial", sp.S.Zero)
-
-
 def _short(term):
     text = str(term)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def blocks(form):
-    """Return the groups of equations that share a mass matrix block, as lists of rows."""
-    N = len(form.coordinates)
-    group = list(range(N))
-    for i in range(N):
-        for j in range(N):
-            if form.M[i][j] != 0 and group[i] != group[j]:
-                old, new = group[j], group[i]
-                group = [new if g == old else g for g in group]
-    return [[k for k in range(N) if group[k] == g] for g in sorted(set(group))]
-
-
 def linear_rows(coefficients):
-    """Return (rows, reasons): the equations that are linear by themselves, and why each other is not.
+    """Return (rows, reasons): the equations that are linear by themselves, and why each other is not, causes first.
 
     Equations of one mass matrix block go together; one that sees a state which is not linear is not linear itself.
     """
     form, reasons = coefficients.form, {}
-    groups = blocks(form)
+    groups = blocks(form, coefficients.graph)
     for rows in groups:
         why = next((why for why in map(coefficients.why_not, rows) if why), None)
         reasons |= {k: why for k in rows if why}
@@ -184,4 +139,4 @@ def linear_rows(coefficients):
                 why = f"{names[1]}, which is not linear, drives {names[0]} between two samples"
                 reasons |= dict.fromkeys(rows, why)
                 settled = False
-    return [k for k in range(len(form.coordinates)) if k not in reasons], dict(sorted(reasons.items()))
+    return [k for k in range(len(form.coordinates)) if k not in reasons], reasons

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ..scene.symbols import delay
-from .coefficients import blocks, leaves
+from .graph import Graph
 
 FORCE = "F"
 
@@ -11,11 +11,14 @@ FORCE = "F"
 class Dependence:
     """The graph of a form's names: each coordinate and signal, :data:`FORCE`, and each watched channel.
 
-    Accelerations that one mass matrix block couples depend on all that enters its equations.
+    Accelerations that one block of the mass matrix, a constraint or an instantaneous contact couples depend on all that
+    enters their equations.
 
     Parameters
     ----------
     form : ExplicitForm
+    graph : Graph, optional
+        Of its expressions.
 
     Attributes
     ----------
@@ -23,36 +26,38 @@ class Dependence:
         What each depends on directly. Channels are called ``"watch y"``.
     """
 
-    def __init__(self, form):
-        self.form, self.on = form, {FORCE: self._moving(form.force)}
-        for name, expr in form.watch.items():
-            self.on[f"watch {name}"] = self._moving(expr)
+    def __init__(self, form, graph=None):
+        self.form, self.graph = form, graph or Graph()
         self.channels = tuple(f"watch {name}" for name in form.watch)
         self.coordinates = {type(q).__name__: q for q in form.coordinates}
         self.signals = {type(y).__name__: y for y in form.updates}
-        for rows in blocks(form):
+        self.on = {FORCE: self._moving([form.force])}
+        for channel, expr in zip(self.channels, form.watch.values(), strict=True):
+            self.on[channel] = self._moving([expr])
+        for rows in blocks(form, self.graph):
             parts = [e for k in rows for e in (*form.M[k], form.f[k])]
-            needed = set().union(*map(self._moving, parts))
-            for k in rows:
-                name = type(form.coordinates[k]).__name__
-                mates = {type(form.coordinates[j]).__name__ for j in rows}
-                self.on[name] = (needed | mates) - {name}
+            names = [type(form.coordinates[k]).__name__ for k in rows]
+            parts += [c for model in coupled(form) if _holds(model, form, rows) for c in _held(model)]
+            needed = self._moving(parts).union(names)
+            self.on |= {name: needed - {name} for name in names}
         for y, expr in form.updates.items():
             name = type(y).__name__
-            self.on[name] = self._moving(expr) - {name}
+            self.on[name] = self._moving([expr]) - {name}
 
-    @staticmethod
-    def _moving(expr):
-        """Return the names of coordinates and signals in an expression, those inside delays and derivatives too."""
-        found, stack = set(), list(leaves(expr))
+    def _moving(self, exprs):
+        """Return the names of coordinates and signals that expressions depend on, also through delays and reactions."""
+        found, stack = set(), self.graph.variables_of(exprs)
         while stack:
             leaf = stack.pop()
+            role = getattr(type(leaf), "role", None)
             if isinstance(leaf, delay):
-                stack += leaves(leaf.args[0])
+                stack += self.graph.variables_of(leaf.args)
             elif leaf.is_Derivative:
                 stack.append(leaf.expr)
-            elif getattr(type(leaf), "role", None) in ("coordinate", "signal"):
+            elif role in ("coordinate", "signal"):
                 found.add(type(leaf).__name__)
+            elif hasattr(type(leaf), "contact"):
+                found |= {type(q).__name__ for model in coupled(self.form) for q in model.coordinates}
         return found
 
     def paths(self, *roots):
@@ -93,6 +98,35 @@ class Dependence:
                 left = [o for o in left if o not in near]
             groups.append(group)
         return groups
+
+
+def coupled(form):
+    """Return the models whose coordinates are held together by more than M and f: constraints, contacts of an instant."""
+    return [model for model in form.models if model.constraints or not all(c.is_force for c in model.contacts)]
+
+
+def _held(model):
+    """Return what holds the coordinates of a model together."""
+    gaps = [getattr(c, part) for c in model.contacts for part in ("gap", "slip") if hasattr(c, part)]
+    return [*model.constraints, *gaps]
+
+
+def _holds(model, form, rows):
+    return any(form.coordinates[k] in model.coordinates for k in rows)
+
+
+def blocks(form, graph):
+    """Return the groups of equations that are solved together, as lists of rows."""
+    N = len(form.coordinates)
+    group = list(range(N))
+    tied = [(i, j) for i in range(N) for j in range(N) if i != j and graph(form.M[i][j]).constant != 0]
+    for model in coupled(form):
+        rows = [form.coordinates.index(q) for q in model.coordinates if q in form.coordinates]
+        tied += [(rows[0], j) for j in rows[1:]]
+    for i, j in tied:
+        old, new = group[j], group[i]
+        group = [new if g == old else g for g in group]
+    return [[k for k in range(N) if group[k] == g] for g in sorted(set(group))]
 
 
 def part_of(form, rows):

@@ -157,4 +157,4 @@ def linear_part(scene, form, constants, T, rest):
             f"{scene.name}: method='exact' makes constants of the motion of {names}, and {', '.join(live)} of it may be set "
             f"while it runs; fix what it is made of, hl.compile(..., method='exact', live={keep!r})"
         )
-    return coefficients.linear(rows), part_of(form, list(reasons))
+    return coefficients.linear(rows), part_of(form, sorted(reasons))

@@ -50,11 +50,28 @@ def decide(expr, ranges, found=None, keep=()):
     """
     found = {} if found is None else found
     changed = {}
-    for node in sp.preorder_traversal(expr):
-        if isinstance(node, (sp.Piecewise, sp.Max, sp.Min, sp.Abs)) and node not in keep:
+    for node in _choices([expr]):
+        if node not in keep:
             decided = _without_excluded(node, ranges, found, keep)
             if decided != node:
                 changed[node] = decided
+    return _put(expr, changed)
+
+
+def _choices(exprs):
+    """Return what may be decided in expressions; a part that many share, such as a Lagrangian, is looked at once."""
+    seen, stack, found = set(), list(exprs), []
+    while stack:
+        e = stack.pop()
+        if e not in seen:
+            seen.add(e)
+            stack += e.args
+            if isinstance(e, (sp.Piecewise, sp.Max, sp.Min, sp.Abs)):
+                found.append(e)
+    return found
+
+
+def _put(expr, changed):
     before = None
     while changed and expr != before:  # what is left of a choice may hold another
         before, expr = expr, expr.xreplace(changed)
@@ -119,20 +136,23 @@ def without_excluded(form, ranges, keep=()):
     form : ExplicitForm
     decisions : dict written expression -> Decision
     """
-    found = {}
-
-    def left(expr):
-        return decide(expr, ranges, found, keep)
-
+    found, changed = {}, {}
+    exprs = [form.force, *form.f, *(m for row in form.M for m in row), *form.updates.values(), *form.watch.values()]
+    for node in _choices(exprs):
+        decided = node if node in keep else _without_excluded(node, ranges, found, keep)
+        if decided != node:
+            changed[node] = decided
+    if not changed:
+        return form, {}
     made = replace(
         form,
-        M=tuple(tuple(map(left, row)) for row in form.M),
-        f=tuple(map(left, form.f)),
-        updates={y: left(expr) for y, expr in form.updates.items()},
-        force=left(form.force),
-        watch={name: left(expr) for name, expr in form.watch.items()},
+        M=tuple(tuple(_put(m, changed) for m in row) for row in form.M),
+        f=tuple(_put(f, changed) for f in form.f),
+        updates={y: _put(expr, changed) for y, expr in form.updates.items()},
+        force=_put(form.force, changed),
+        watch={name: _put(expr, changed) for name, expr in form.watch.items()},
     )
-    return (made, found) if found else (form, found)
+    return made, found
 
 
 def excluded(scene, T, live, undecided=()):

@@ -1,0 +1,87 @@
+"""The report of what a scene requires, as text and as a table for a notebook."""
+
+from dataclasses import dataclass, field
+
+from ..scene.scene import Scene
+from .ir import Program
+
+
+@dataclass(frozen=True)
+class Item:
+    """One thing that is kept, left out or offered.
+
+    Attributes
+    ----------
+    kind : str
+        state, signal, parameter, mode, pair, velocity, linear, view
+    name : str
+    why : str
+    saves : int or None
+        Instructions a tick, as the difference of two compiled programs; None where nothing is saved.
+    """
+
+    kind: str
+    name: str
+    why: str
+    saves: int | None = None
+
+
+@dataclass(frozen=True)
+class Requirements:
+    """What a scene requires of a board; printing it says what was left out, why, and what it saves.
+
+    Attributes
+    ----------
+    program : Program
+        As compiled.
+    kept, dropped, offered : tuple of Item
+        ``dropped`` is left out of the program already; ``offered`` asks for a word of the user.
+    everything : int
+        Instructions with nothing left out: every parameter live, every state and every mode kept.
+    felt : Scene
+        What the board has to run: without the islands that only feed a view.
+    view : Scene or None
+        Those islands, for :func:`~hapticlab.compiler.replay.replay`.
+    """
+
+    program: Program = field(repr=False)
+    kept: tuple
+    dropped: tuple
+    offered: tuple
+    everything: int
+    felt: Scene = field(repr=False)
+    view: Scene | None = field(repr=False)
+
+    def _tables(self):
+        yield "kept", "", self.kept
+        yield "left out", "saves", self.dropped
+        yield "offered", "saves", self.offered
+
+    @property
+    def _head(self):
+        p = self.program
+        method = f", {p.facts['method']}" if "method" in p.facts else ""
+        return (
+            f"{p.name} at T = {p.T:g} s{method}: {len(p)} instructions a tick and {len(p.states)} states; "
+            f"{self.everything} with nothing left out"
+        )
+
+    def __str__(self):
+        lines = [self._head]
+        items = [i for _, _, group in self._tables() for i in group]
+        wide = max([len(i.name) for i in items], default=0)
+        for title, column, group in self._tables():
+            if group:
+                lines.append(f"{title:<{wide + 14}} {column:>6}")
+                for i in group:
+                    saves = "" if i.saves is None else f"{i.saves:>6}"
+                    lines.append(f"  {i.name:<{wide}}  {i.kind:<10}{saves:>6}  {i.why}")
+        return "\n".join(lines)
+
+    def _repr_markdown_(self):
+        rows = [f"**{self._head}**", "", "| | what | saves | why |", "|---|---|---|---|"]
+        for title, _, group in self._tables():
+            for i in group:
+                why, name = (text.replace("|", r"\|") for text in (i.why, i.name))
+                rows.append(f"| {title} | {i.kind} {name} | {'' if i.saves is None else i.saves} | {why} |")
+        return "\n".join(rows)
