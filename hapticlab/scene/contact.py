@@ -85,6 +85,11 @@ class Contact:
         return isinstance(self.law, FORCE_LAWS)
 
     @property
+    def constants(self):
+        """The expressions of the law, and the slip."""
+        return (self.slip, *(part for part in vars(self.law).values() if isinstance(part, sp.Expr)))
+
+    @property
     def unit(self):
         """Unit of the force: N, or N*m where the gap is an angle."""
         return gap_units(self.gap, self.name)[0]
@@ -195,6 +200,11 @@ class friction:
     def is_force(self):
         """True with a ``stick_speed``: then the force is an expression of the state."""
         return self.stick_speed is not None
+
+    @property
+    def constants(self):
+        """The expressions of the law."""
+        return tuple(part for part in (self.F_c, self.F_s, self.stick_speed) if part is not None)
 
     @property
     def unit(self):

@@ -39,6 +39,9 @@ class Mechanics:
         How constraints are kept; see :func:`lagrange`.
     alpha : float or None
         Rate of Baumgarte's stabilisation [1/s].
+    dissipation : expression [W]
+        Rayleigh's function.
+    forces : tuple of (coordinate, expression)
     """
 
     coordinates: tuple
@@ -51,6 +54,8 @@ class Mechanics:
     lagrangian: sp.Expr = None
     enforce: str = "auto"
     alpha: float = None
+    dissipation: sp.Expr = sp.S.Zero
+    forces: tuple = ()
 
     def __post_init__(self):
         if self.enforce not in ENFORCE:
@@ -160,7 +165,10 @@ def lagrange(L, *, dissipation=0, forces=None, constraints=(), contacts=(), enfo
         for q, w, p in zip(coordinates, rates, momenta, strict=True)
     )
     written = (L, R, *forces.values(), *zeros, *(part for c in contacts for part in _parts(c)))
-    return Mechanics(coordinates, (2,) * len(coordinates), M, f, written, zeros, contacts, L, enforce, alpha)
+    energies = {"lagrangian": L, "dissipation": R, "forces": tuple(forces.items())}
+    return Mechanics(
+        coordinates, (2,) * len(coordinates), M, f, written, zeros, contacts, enforce=enforce, alpha=alpha, **energies
+    )
 
 
 def _listed(given):
@@ -168,8 +176,8 @@ def _listed(given):
 
 
 def _parts(contact):
-    """Return the expressions of a contact or friction: what moves it first, then its force."""
-    return (contact.gap if isinstance(contact, Contact) else contact.slip, contact.force)
+    """Return the expressions of a contact or friction: what moves it first, then its force and its constants."""
+    return (contact.gap if isinstance(contact, Contact) else contact.slip, contact.force, *contact.constants)
 
 
 def _zero(given, where):
