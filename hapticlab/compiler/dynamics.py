@@ -1,7 +1,5 @@
 """The equations of motion of a scene at one instant of a step, as traced values: M a = f, constraints, contacts."""
 
-from functools import partial
-
 import numpy as np
 import sympy as sp
 
@@ -12,6 +10,7 @@ from .constraints import enforcement
 from .contacts import Contacts
 from .first_sample import numbers
 from .mass import is_definite, start_of
+from .port_mass import port_mass
 from .solve import solve
 
 
@@ -37,7 +36,7 @@ class Dynamics:
     def __init__(self, lowering, form, method, substeps):
         self.lowering, self.form, self.method, self.substeps = lowering, form, method, substeps
         self.h = lowering.tracing.T / substeps
-        constraints = [g for model in form.models for g in model.constraints]
+        self.constraints = constraints = [g for model in form.models for g in model.constraints]
         try:
             self.definite = is_definite(form, lowering.scene.values, lowering.graph)
         except MassError:
@@ -126,6 +125,17 @@ class Dynamics:
         M, f = self._part(self.enforced.coordinates)
         return [list(map(translate, row)) for row in M], list(map(translate, f))
 
+    def _hovering(self, tau, state):
+        """Return the state after the micro-impulses at the end of a step."""
+        if not self.contacts.hovering:
+            return state
+        if self.enforced:
+            names = ", ".join(c.name for c in self.contacts.hovering)
+            raise SceneError(f"{names}: micro-impulses know no constraints; take the law impulse or rigid, with method='taylor'")
+        translate, (M, f) = self.at(tau, *state), self._part(self.second)
+        M, f = [list(map(translate, row)) for row in M], list(map(translate, f))
+        return state[0], self.contacts.hover(tau, state, M, f, self.second, self.h, self.definite), state[2]
+
     def settled(self, tau, state):
         """Return the state with the constraints met again, once a period."""
         if not self.enforced:
@@ -149,6 +159,8 @@ class Dynamics:
         role = getattr(type(expr), "role", None)
         if role in ("reaction", "impulse", "impact_loss", "impact_work", "rub") and not hasattr(type(expr), "constraint"):
             return self.contacts.at_sample(expr)
+        if hasattr(type(expr), "constraint") and type(expr).constraint not in self.constraints:
+            raise SceneError(f"{expr} is the reaction of {type(expr).constraint} = 0; add it to the constraints of hl.lagrange")
         if not self.enforced:
             return None
         if self._now is None:
@@ -158,22 +170,34 @@ class Dynamics:
             return found[type(expr).constraint]
         return self._now.leaf(expr)
 
+    @property
+    def facts(self):
+        """The mass that is felt through a constraint on the handle, where the force is its reaction."""
+        if not self.enforced or not any(hasattr(type(f), "constraint") for f in self.form.force.atoms(sp.Function)):
+            return {}
+        M, f = self._part(self.enforced.coordinates)
+        return {"port_mass": port_mass(self.enforced, self.form.force, M, f, self._start())}
+
     def advance(self):
         """Trace one period; return (values of ``states`` after it, facts, count of unlocated steps or None)."""
         lowering, tracing = self.lowering, self.lowering.tracing
         if not self.states:
-            return [], {}, None
+            return [], self.facts, None
         second = [lowering.state(q) for q in self.second]
         groups = (second, [lowering.state(q.diff(t)) for q in self.second], [lowering.state(q) for q in self.first])
-        facts, unlocated = {}, None
+        facts, unlocated, reacting = self.facts, None, []
         if isinstance(self.method, Taylor):
-            contacts = partial(self.contacts.reactions) if self.contacts.located else None
-            groups, facts, unlocated = advance(
+            contacts = self.contacts.reactions if self.contacts.located else None
+            groups, located, unlocated = advance(
                 self.method, tracing, self.rates, groups, self.h, self.substeps, lowering.scene.values,
                 lowering.scene.name, contacts=contacts, impact=self.contacts.impact if contacts else None,
+                after=reacting.extend,
             )  # fmt: skip
+            facts |= located
+            groups = self._hovering(tracing.T, groups)
         else:
             for step in range(self.substeps):
-                groups = self.method.step(self.rates, step * self.h, groups, self.h)
+                groups = self._hovering((step + 1) * self.h, self.method.step(self.rates, step * self.h, groups, self.h))
+        self.contacts.finish(reacting)
         groups = self.settled(tracing.T, groups)
         return [value for group in groups for value in group], facts, unlocated

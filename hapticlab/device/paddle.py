@@ -9,6 +9,7 @@ from ..compiler.ir import Program
 from ..compiler.lower import compile
 from ..errors import PaddleError, ParameterError
 from ..scene.scene import Scene
+from .port_mass import check_port_mass
 
 
 class Paddle(ABC):
@@ -95,4 +96,5 @@ class Paddle(ABC):
             )
         if not program.outputs or program.outputs[0].name != "F":
             raise PaddleError(f"{name} has no force: the first output of a paddle's program is F [N].")
+        check_port_mass(program, self)
         return program

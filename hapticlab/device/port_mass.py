@@ -70,16 +70,19 @@ def largest_root(ratio, k, part=0.0, velocity="backward_difference"):
     return max(abs(np.roots([1.0, *[0.0] * k, *(ratio * w for w in weights)])), default=0.0)
 
 
-def check_port_mass(program, paddle, m):
-    """Refuse a program whose port mass this handle does not hold still."""
-    mp = program.facts.get("port_mass")
-    if mp is None or m is None:
+def check_port_mass(program, paddle):
+    """Refuse a program whose constraint on the handle this paddle cannot hold still.
+
+    A board's force comes somewhere within the period of its sample: a whole sample of delay is taken for it.
+    """
+    felt = program.facts.get("port_mass")
+    m = getattr(paddle, "m", None) or getattr(getattr(paddle, "settings", None), "m", None)
+    if felt is None or not m:
         return
-    delay = getattr(paddle, "delay", 0.0)
-    limit = largest_port_mass(m=m, T=paddle.T, delay=delay, velocity=program.facts["velocity"])
-    if not abs(mp) < limit:
+    limit = largest_port_mass(m=m, T=paddle.T, delay=getattr(paddle, "delay", paddle.T), velocity=program.facts["velocity"])
+    if not felt < limit:
         raise PaddleError(
-            f"{program.name}: the constraint on the handle makes {mp:.4g} kg felt, and the handle weighs {m:g} kg; its "
-            f"acceleration is estimated from samples, which is stable below {limit:.4g} kg only. Put a coupler between the "
-            "handle and the body (a spring and damper instead of the constraint), or make the body lighter"
+            f"{program.name}: through the constraint on the handle {felt:.4g} kg are felt, and the handle itself is {m:g} kg. "
+            f"Its acceleration is estimated from samples, which is stable below {limit:.4g} kg only. Put a coupler between "
+            "the handle and the body (a spring and damper instead of the constraint), or make the body lighter"
         )

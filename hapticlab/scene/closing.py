@@ -88,6 +88,15 @@ def _margins(drivers, sources, start, points):
     return np.array(rows)
 
 
+def driven_over(drivers, start):
+    """Return driver -> many values over the range that is checked, for those that have one."""
+    generator = np.random.default_rng(17)
+    ranged = [q for q in drivers if _limits(q, start) is not None]
+    if len(ranged) == 1:
+        return {ranged[0]: np.linspace(*_limits(ranged[0], start), 721)}
+    return {q: generator.uniform(*_limits(q, start), 2048) for q in ranged}
+
+
 def wraps(drivers, sources, start):
     """Return the dependent angles that jump when a driver goes through its range."""
     found = set()
