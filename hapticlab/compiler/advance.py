@@ -100,7 +100,7 @@ def advance(method, tracing, rates, groups, h, substeps, values, name, contacts=
     for k, value in enumerate(now):
         tracing.set_next(("held", k), value)
     if after:
-        after(stepper.reactions(builder.const(substeps * h), groups, now))
+        after(stepper.reactions(builder.const(substeps * h), groups, now)[: motion.given])
     facts = (
         {"order": order}
         | ({} if motion.smooth else {"events": events})

@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 from math import factorial
 
+from ..errors import ProgramError
 from .complementarity import reactions
 from .guards import Leaves, Reaction, freeze
 from .taylor import Series, minus, times
-from .trace import Value, select
+from .trace import Value, reachable, select
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +26,7 @@ class Motion:
         Derivatives of w and of s.
     guards : list of Guard
     reactions : list of Reaction
+        Those of contacts and frictions first, ``given`` of them; then the mixtures of cases that can be slid along.
     """
 
     builder: object
@@ -36,6 +38,7 @@ class Motion:
     ds: list
     guards: list
     reactions: list
+    given: int = 0
 
     @property
     def smooth(self):
@@ -74,8 +77,17 @@ def motion_of(builder, rates, second, first=0, events=None):
     leaves = [*q, *w, *s, tau, *(r.leaf for r in given), *(r.side for r in given if r.side is not None)]
     values, guards, found = freeze(builder, [*a, *ds, *parts], leaves, [*w, *s], new)
     parts = iter(values[len(a) + len(ds) :])
+    if any(
+        r.level == 2 and {leaf.id for leaf in s} & {*reachable(builder.instructions, [r.measure.id])} for r in given
+    ):
+        raise ProgramError(
+            "the gap of a contact holds a coordinate of first order, whose acceleration no equation gives; a gap is made of "
+            "coordinates with masses, the handle and time: give that coordinate a mass, or use a penalty law"
+        )
     given = [Reaction(r.leaf, next(parts), r.level, next(parts), next(parts), r.lean, r.side) for r in given]
-    return Motion(builder, q, w, s, tau, values[: len(a)], values[len(a) : len(a) + len(ds)], guards, [*given, *found])
+    return Motion(
+        builder, q, w, s, tau, values[: len(a)], values[len(a) : len(a) + len(ds)], guards, [*given, *found], len(given)
+    )
 
 
 class Flow:

@@ -11,6 +11,7 @@ from hapticlab.compiler.engine import load
 from hapticlab.compiler.flow import motion_of
 from hapticlab.compiler.guards import Reaction, contact, coulomb
 from hapticlab.compiler.trace import Builder, cos, floor, maximum, minimum, select, sin
+from hapticlab.errors import ProgramError
 
 T = 1e-3
 G = 9.81
@@ -365,3 +366,41 @@ def test_what_is_frozen():
     assert sorted(g.kind for g in motion.guards) == ["floor", "side", "side"]
     assert len(motion.reactions) == 1 and isinstance(motion.reactions[0], Reaction)
     assert not motion.smooth
+
+
+def test_a_gap_of_a_coordinate_without_mass_is_refused():
+    def contacts(tau, q, w, s, new):
+        return [contact(q[0] - s[0], new())]
+
+    with pytest.raises(ProgramError, match="first order"):
+        motion_of(Builder("f64"), lambda tau, q, w, s: ([-G], [-s[0]]), 1, 1, contacts)
+
+
+def test_friction_and_a_resting_contact_act_on_each_other():
+    # a block on a table, thrown along it: mu N slows it, N is the reaction of the table, and it stops for good
+    m, mu, v = 0.3, 0.4, 0.5
+
+    class Table:
+        def contacts(self, tau, q, w, s, new):
+            self.N, self.R = new(), new()
+            limit = mu * self.N
+            return [contact(q[1], self.N), coulomb(new, w[0], limit, limit, self.R)]
+
+        def rates(self, tau, q, w, s):
+            return [-self.R / m, self.N / m - G], []
+
+        def impact(self, motion):
+            def lands(at, fired, held):
+                return [at(motion.w[0]), 0.0 * at(motion.w[1])], [fired[0] | held[0], held[1]]
+
+            return lands
+
+    table = Table()
+    motion = program(
+        table.rates, [0.0, 1e-3], [v, 0.0], T=T, order=6, events=3, contacts=table.contacts, impact=table.impact
+    )
+    t, lands = times(400), math.sqrt(2e-3 / G)
+    q, z, w, _ = rows(motion, len(t)).T
+    s = np.clip(t - lands, 0, v / (mu * G))
+    np.testing.assert_allclose(q, v * (np.minimum(t, lands) + s) - mu * G * s**2 / 2, rtol=0, atol=1e-13)
+    assert abs(z[t > lands]).max() < 1e-15 and not w[t > lands + v / (mu * G)].any()
