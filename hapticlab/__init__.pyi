@@ -35,6 +35,7 @@ from .errors import (
 from .records import PaddleProfile, Telemetry
 from .scene.contact import Contact, friction
 from .scene.contact_laws import impulse, micro_impulse, rigid
+from .scene.device_image import device_image
 from .scene.felt import felt_impulse, pulse_time
 from .scene.force_laws import hunt_crossley, penalty
 from .scene.laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
@@ -75,6 +76,7 @@ __all__ = [
     "connect",
     "coordinate",
     "delay",
+    "device_image",
     "doctor",
     "energy",
     "felt_impulse",
