@@ -99,19 +99,21 @@ def impacts_of(motion, laws, place, period, order="sequential", slips=(), rubs=(
     slips : list of Value
         Tangential velocities, in the order of their rows k, k + 1, ...
     rubs : list of Value
-        Leaves in the accelerations for the friction forces along them, zero but in an impact.
+        Leaves in the accelerations for the friction forces along them. The motion is left without them.
     """
     along = _Along(motion)
     gaps = [motion.reactions[i].measure for i in place]
     pushes = [*(motion.reactions[i].leaf for i in place), *rubs]
     path = dict(zip(motion.q, motion.w, strict=True)) | {motion.tau: 1.0}
     resting = {r.leaf: None for r in motion.reactions} | dict.fromkeys(rubs)
+    columns = [[along(a, {push: 1.0}) for a in motion.a] for push in pushes]
+    motion.a[:] = [along(a, {}, 0, zero=rubs) for a in motion.a] if rubs else motion.a  # no impact, no rubbing
     return Impacts(
         laws, order, place, gaps, motion.w,
         free=[along(a, {}, 0, zero=resting) for a in motion.a],
         rows=[[along(gap, {q: 1.0}) for q in motion.q] for gap in gaps]
         + [[along(slip, {w: 1.0}) for w in motion.w] for slip in slips],
-        columns=[[along(a, {push: 1.0}) for a in motion.a] for push in pushes],
+        columns=columns,
         rates=[along(gap, path) for gap in gaps] + list(slips),
         biases=[2.0 * along(gap, path, 2) for gap in gaps],
         period=period, near=1e-9 if motion.builder.real == "f64" else 1e-7,
