@@ -20,7 +20,7 @@ def channel_of(state, real):
     return Channel(type(state).__name__, type(state).unit, real)
 
 
-def short(expr):
+def short(expr, most=24):
     """Return an expression as a name that fits a line of the listing."""
     text = str(expr)
-    return text if len(text) <= 24 else f"{text[:20]}..."
+    return text if len(text) <= most else f"{text[: most - 4]}..."

@@ -5,6 +5,7 @@ import sympy as sp
 
 from ..scene.derivative import Partial
 from ..scene.symbols import Parameter, T, delay, t, v, x
+from .channels import short
 from .dependence import blocks, coupled
 from .graph import Graph, driven
 from .linear import Linear, states_of
@@ -37,7 +38,7 @@ class Coefficients:
         for m in form.M[k]:
             moving = self._moving(m)
             if moving:
-                return f"the inertia {_short(m)} of {name} changes with {moving}"
+                return f"the inertia {short(m, 60)} of {name} changes with {moving}"
         why = self.slope_moves(form.f[k], f"in the equation of {name}")
         if why is None and any(s == t or isinstance(s, driven) for s in self.graph.variables_of([form.f[k]])):
             why = f"t drives the equation of {name} between two samples"
@@ -49,7 +50,7 @@ class Coefficients:
             for variable in (*self.states, *HANDLE):
                 moving = self._moving(Partial(term, variable))
                 if moving:
-                    return f"{_short(term)} {where} is not linear: its slope changes with {moving}"
+                    return f"{short(term, 60)} {where} is not linear: its slope changes with {moving}"
         return None
 
     def _moving(self, expr):
@@ -111,11 +112,6 @@ def leaves(expr):
         else:
             stack.extend(e.args)
     return found
-
-
-def _short(term):
-    text = str(term)
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def linear_rows(coefficients):

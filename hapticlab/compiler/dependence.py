@@ -56,7 +56,7 @@ class Dependence:
                 stack.append(leaf.expr)
             elif role in ("coordinate", "signal"):
                 found.add(type(leaf).__name__)
-            elif hasattr(type(leaf), "contact"):
+            elif role not in (None, "handle", "driven"):  # a reaction, or what impacts add up to
                 found |= {type(q).__name__ for model in coupled(self.form) for q in model.coordinates}
         return found
 

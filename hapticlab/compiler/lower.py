@@ -18,7 +18,7 @@ from .graph import Graph
 from .handle import HOLDS, VELOCITIES, Handle
 from .ir import Channel
 from .methods import METHODS
-from .modes import excluded, folded
+from .modes import excluded, folded, rests_on, within
 from .options import choice, live_names, period, steps
 from .phase import Clock
 from .trace import cast
@@ -97,10 +97,10 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, undecided=(
     choice("velocity", velocity, VELOCITIES)
     T, substeps, live = period(T), steps(substeps), live_names(live)
     try:
-        form, _ = excluded(scene, T, live, undecided)
+        form, decisions = excluded(scene, T, live, undecided)
         other = Taylor() if other == Taylor.name else other
         other = other if isinstance(other, Taylor) else METHODS.get(other)
-        return _Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live).program()
+        return _Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live).program(rests_on(form, decisions))
     except RecursionError:
         raise ProgramError(
             f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals, "
@@ -133,10 +133,11 @@ class _Lowering:
             self.form = self.exact.others
         self.dynamics = Dynamics(self, self.form, method, substeps)
 
-    def program(self):
-        """Trace the tick in the order it runs."""
+    def program(self, ranges):
+        """Trace the tick in the order it runs; outside of ``ranges``, of coordinates, the force is no number."""
         real = self.tracing.real
-        outputs = [(Channel("F", "N", real), self._real(self.at_sample(self.form.force)))]
+        force = within(self._real(self.at_sample(self.form.force)), ranges, self.at_sample)
+        outputs = [(Channel("F", "N", real), force)]
         units = self.scene.watch_units
         for name, expr in self.form.watch.items():
             outputs.append((Channel(name, units[name], real), self._real(self.at_sample(expr))))
@@ -150,7 +151,8 @@ class _Lowering:
         for channel, value in zip(program.parameters, program.values, strict=True):
             if value == value:
                 self._entering(channel.name, value)
-        return replace(program, notes=(*program.notes, *self.dynamics.notes)) if self.dynamics.notes else program
+        held = (f"holds while {low:g} <= {type(q).__name__} <= {high:g}; beyond, F is nan" for q, (low, high) in ranges.items())
+        return replace(program, notes=(*program.notes, *self.dynamics.notes, *held))
 
     def translator(self, leaf, after=0.0):
         """Return what translates expressions of the tick, ``after`` [s] after the sample."""

@@ -1,5 +1,6 @@
 """The modes that declared ranges exclude: a condition that always or never holds over them is not compared at run time."""
 
+import math
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -7,6 +8,7 @@ import sympy as sp
 from ..errors import ParameterError
 from ..scene.cases import Piecewise
 from .ranges import Ranges
+from .trace import select
 
 
 @dataclass(frozen=True)
@@ -155,9 +157,39 @@ def without_excluded(form, ranges, keep=()):
     return made, found
 
 
+def open_conditions(form, rows):
+    """Return the conditions that stay open in the force, the channels and these equations of motion, as written."""
+    exprs = [form.force, *form.watch.values(), *form.updates.values(), *(form.f[k] for k in rows)]
+    cases = [node for node in _choices(exprs) if isinstance(node, sp.Piecewise)]
+    conditions = {condition for node in cases for _, condition in node.args if condition not in (sp.true, sp.false)}
+    return sorted(conditions, key=str)
+
+
 def excluded(scene, T, live, undecided=()):
     """Return (form, decisions) of :func:`without_excluded` for a scene whose ``live`` parameters alone may change."""
     return without_excluded(scene.explicit(), Ranges(folded(scene, live), T), undecided)
+
+
+def rests_on(form, decisions):
+    """Return coordinate -> (low, high): the ranges without which what was decided, and pairs left out, may be wrong."""
+    found = {}
+    for decision in decisions.values():
+        moving = (e for e in decision.what.atoms(sp.Function) if getattr(type(e), "role", None) == "coordinate")
+        found |= {q: (type(q).low, type(q).high) for q in moving}
+    for model in form.models:
+        found |= getattr(model.contacts, "ranges", {})
+    return {q: ends for q, ends in sorted(found.items(), key=str) if any(map(math.isfinite, ends))}
+
+
+def within(value, ranges, translate):
+    """Return a value that is no number where a coordinate is outside of these ranges: a fault, and the motor off."""
+    inside = None
+    for q, (low, high) in ranges.items():
+        place = translate(q)
+        parts = [low <= place] * math.isfinite(low) + [place <= high] * math.isfinite(high)
+        for part in parts:
+            inside = part if inside is None else inside & part
+    return value if inside is None else select(inside, value, math.nan)
 
 
 def folded(scene, live):

@@ -116,7 +116,7 @@ def _rows(every, view, rows):
             f"every = {every!r}; needs a whole number of rows, from 1 to {max(1, rows - 1)} for this record"
         )
     if count > 1:
-        for expr in (*view.watch.values(), *(side for e in view.eom for side in getattr(e, "args", ()))):
+        for expr in (*view.watch.values(), *(part for e in view.eom for part in getattr(e, "written", None) or e.args)):
             memory = _memory(expr)
             if memory is not None:
                 raise ProgramError(

@@ -9,11 +9,12 @@ import sympy as sp
 from ..errors import HapticlabError, SceneError
 from ..scene.scene import Scene
 from ..scene.symbols import n, t, v
+from .channels import short
 from .coefficients import Coefficients, linear_rows
 from .dependence import FORCE, Dependence, part_of
 from .exact import EXACT
 from .lower import compile, lowered
-from .modes import excluded
+from .modes import excluded, open_conditions
 from .options import live_names
 from .requirements import Item, Requirements
 
@@ -70,7 +71,7 @@ class _Report:
 
     def made(self):
         felt, view = self._split()
-        dropped = (*self._unseen(), *self._folded(), *self._modes(), *self._velocity())
+        dropped = (*self._unseen(), *self._folded(), *self._modes(), *self._pairs(), *self._velocity())
         return Requirements(
             self.program, tuple(self._kept()), dropped, tuple(self._offers(felt, view)), self._everything(), felt, view
         )
@@ -105,6 +106,12 @@ class _Report:
         for name, p in self.scene.parameters.items():
             if any(c.name == name for c in self.program.parameters):
                 yield Item("parameter", name, f"live: may be set while it runs{_limits(p)}")
+
+        for model in self.form.models:
+            for c in model.contacts:
+                yield Item("contact", c.name, f"may close: {type(c.law).__name__ if hasattr(c, 'law') else 'friction'}")
+        for condition in open_conditions(self.form, self.graph.needed):
+            yield Item("mode", short(condition, 40), "open over the declared ranges: both sides are computed")
 
     def _why_kept(self, name, kind):
         *way, _ = self.paths[name]
@@ -153,7 +160,12 @@ class _Report:
     def _modes(self):
         for written, decision in self.decisions.items():
             becomes = {sp.true: "always holds", sp.false: "never holds"}.get(decision.becomes, f"is {decision.becomes}")
-            yield Item("mode", str(written), f"{becomes}: {decision.why}", self._more(undecided=(written,)))
+            yield Item("mode", short(written, 40), f"{becomes}: {decision.why}", self._more(undecided=(written,)))
+
+    def _pairs(self):
+        for model in self.form.models:
+            for pair in getattr(model.contacts, "dropped", ()):
+                yield Item("pair", f"{pair.first}, {pair.second}", f"cannot meet: {pair.why}")
 
     def _velocity(self):
         if not any("v(n" in c.name or c.name == "x(n-1)" for c in (*self.program.states, *self.program.inputs)):

@@ -250,7 +250,10 @@ class SimulatedPaddle(Paddle):
 
 
 def _likely_cause(program):
-    """Return what to look for where a program that holds sines and cosines stopped, else nothing."""
+    """Return what to look for where a program stopped: a range that was left, an angle past all sines; else nothing."""
+    held = [note for note in program.notes if note.startswith("holds while")]
+    if held:
+        return f". The scene {'; '.join(held)}"
     if not any(i.op in ("sin", "cos") for i in program.tick.instructions):
         return ""
     real = program.outputs[0].type

@@ -172,7 +172,9 @@ def lagrange(L, *, dissipation=0, forces=None, constraints=(), contacts=(), enfo
 
 
 def _listed(given):
-    return (given,) if isinstance(given, (sp.Basic, Contact, friction)) else tuple(given)
+    if isinstance(given, (sp.Basic, Contact, friction)):
+        return (given,)
+    return given if isinstance(given, tuple) else tuple(given)  # contacts_between says what it left out
 
 
 def _parts(contact):

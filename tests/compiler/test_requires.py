@@ -211,3 +211,52 @@ def test_what_it_refuses():
         requires(SHOWN, live="nobody")
     with pytest.raises(ProgramError, match="method = 'best'"):
         requires(SHOWN, method="best")
+
+
+def test_a_decision_on_a_coordinate_is_watched_over():
+    """A stop that z cannot reach is left out; where z leaves its range after all, the motor goes off and says why."""
+    near = hl.coordinate("near", unit="m", range=(-0.02, 0.02))
+    z_o = hl.parameters("z_o", units="m", values=0.03, ranges=(0.025, 0.04))
+    pull = k * (x(t) - near)
+    scene = hl.Scene(force=pull, eom=[sp.Eq(m * near.diff(t, 2), pull - hl.when(near > z_o, k * (near - z_o)))])
+    program = hl.compile(scene, T=T)
+    assert program.notes == ("holds while -0.02 <= near <= 0.02; beyond, F is nan",)
+    assert found(requires(scene), "near(t) > z_o").saves > 10
+    log = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.Hand(push=5)).run(scene, duration=0.3, progress=False)
+    assert "holds while -0.02 <= near <= 0.02" in log.fault
+    quiet = hl.SimulatedPaddle(m=0.05, b=0.1, T=T).run(scene, duration=0.3, v=0.05, progress=False)
+    assert quiet.fault is None and abs(quiet.F).max() > 0.1
+
+
+def test_energies_of_several_bodies():
+    """One Lagrangian of a mass that is felt and a pendulum that is not: the graph tells them apart, blocks of M included."""
+    L = (
+        m * z.diff(t) ** 2 / 2
+        + m * length**2 * th.diff(t) ** 2 / 2
+        + m * g * length * sp.cos(th)
+        - k * (x(t) - z) ** 2 / 2
+    )
+    scene = hl.Scene(force=k * (x(t) - z), eom=[hl.lagrange(L, dissipation=b * (v(t) - z.diff(t)) ** 2 / 2)])
+    report = requires(scene, live="g l")
+    assert found(report, "th").why == "no path to F or a watched channel" and found(report, "th").saves > 30
+    assert next(i for i in report.offered if i.kind == "linear").name == "z"
+    exact = hl.compile(scene, T=T, method="exact", live="g l", dtype="float64")
+    assert "th" in exact.notes[0]
+    plain = hl.Scene(force=k * (x(t) - z), eom=[MASS])
+    outputs = [
+        load(hl.compile(s, T=T, method="exact", live=(), dtype="float64"))
+        .run(50, np.linspace(0, 0.01, 50)[:, None])
+        .outputs
+        for s in (scene, plain)
+    ]
+    assert outputs[0] == pytest.approx(outputs[1], abs=1e-13)
+
+
+def test_what_a_constraint_ties_is_kept():
+    """A pendulum whose mass slides on a rail of the felt mass: the constraint alone ties what the force needs."""
+    L = m * (z.diff(t) ** 2 + w.diff(t) ** 2) / 2 - k * (x(t) - z) ** 2 / 2
+    tied = hl.lagrange(L, constraints=[sp.Eq(w, 2 * z)], enforce="kkt")
+    report = requires(hl.Scene(force=k * (x(t) - z), eom=[tied]))
+    assert found(report, "w").kind == "state"
+    assert not [i for i in report.dropped if i.kind == "state"]
+    assert "held by a constraint" in next(i for i in report.offered if i.kind == "linear").why
