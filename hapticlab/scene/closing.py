@@ -41,7 +41,7 @@ def check_range(drivers, sources, start):
 def _closest(drivers, sources, start):
     """Return (margin, number of the step, drivers) where a loop is closest to opening: a search that narrows."""
     generator = np.random.default_rng(23)
-    centre, half = (np.array(a) for a in zip(*(_box(q, start) for q in drivers), strict=True))
+    centre, half = np.array([_box(q, start) for q in drivers]).reshape(-1, 2).T
     one = len(drivers) == 1
     points = np.linspace(-1, 1, 721)[:, None] if one else generator.uniform(-1, 1, (4096, len(drivers)))
     best, width = (np.inf,), 1.0

@@ -52,7 +52,7 @@ def device_image(constraint, *, name="image"):
     >>> import hapticlab as hl
     >>> from hapticlab import t, x
     >>> q = hl.coordinate("q", unit="m")
-    >>> device_image(q - x(t)).force
+    >>> hl.device_image(q - x(t)).force
     image(t)
     """
     check_name(name, "device image")
