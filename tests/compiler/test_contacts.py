@@ -176,6 +176,18 @@ def test_the_hand_feels_the_momentum_that_the_ball_takes():
     assert log["F"][-1] == pytest.approx(M * G, rel=1e-9)
 
 
+def test_contacts_too_short_and_rests_too_slow_for_the_period_are_refused():
+    k = hl.parameters("k", units="N/m", values=1e5)
+    scene = dropped(hl.penalty(k=k))
+    with pytest.raises(SceneError, match=r"floor: the contact lasts 7.02 ms .* 7.0 steps of 1 ms; rk4 needs 10. Take substeps=2"):
+        hl.compile(scene, T=T)
+    hl.compile(scene, T=T, substeps=2)
+    hl.compile(scene(k=4e4), T=T)
+    with pytest.raises(SceneError, match=r"floor: rest_speed = 0.004 m/s; needs at least a T/2 = 0.004905 m/s"):
+        hl.compile(dropped(hl.impulse(e=0.8, rest_speed=0.004)), method="taylor", T=T)
+    hl.compile(dropped(hl.impulse(e=0.8, rest_speed="6 mm/s")), method="taylor", T=T)
+
+
 def test_what_cannot_run_is_refused():
     with pytest.raises(ProgramError, match=r"method = 'rk4': floor needs its events located inside the step, which is method='t"):
         run(dropped(hl.impulse(e=0.8)), 1, method="rk4")
