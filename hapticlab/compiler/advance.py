@@ -93,7 +93,7 @@ def advance(method, tracing, rates, groups, h, substeps, values, name, contacts=
     held = [_held(tracing, k) for k in range(len(motion.reactions))]
     now, missed = held, None
     for step in range(substeps):
-        groups, now, left_out = stepper.step(builder.const(step * h), groups, now)
+        groups, now, left_out = stepper.step(builder.const(step * h), groups, now, jumped=step == 0)
         check_size(motion, builder, name)
         count = select(left_out, builder.const(1.0), 0.0)
         missed = count if missed is None else missed + count

@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 from math import factorial
 
+import numpy as np
+
 from ..errors import ProgramError
 from .complementarity import reactions
 from .guards import Leaves, Reaction, freeze
-from .taylor import Series, minus, times
+from .taylor import Series, dot, minus, plus, times
 from .trace import Value, reachable, select
 
 
@@ -44,6 +46,13 @@ class Motion:
     def smooth(self):
         """True where one series holds for the whole step."""
         return not (self.guards or self.reactions)
+
+    @property
+    def driven(self):
+        """True where a reaction holds something to what is not in the state: the handle or time."""
+        inside = {leaf.id for leaf in (*self.q, *self.w, *self.s)} | {r.leaf.id for r in self.reactions}
+        seen = reachable(self.builder.instructions, [r.measure.id for r in self.reactions])
+        return any(self.builder.instructions[p].op in ("input", "state") and p not in inside for p in seen)
 
     @property
     def stops(self):
@@ -161,8 +170,12 @@ class Flow:
         """Find out how the reactions act, before :meth:`hold` says which are held."""
         n = len(self.motion.reactions)
         self._start = self.series.lengths()
-        self._rest = self._left(0, [0.0] * n)
-        ones = [self._left(0, [1.0 if j == i else 0.0 for j in range(n)]) for i in range(n)]
+        self._rest, a = self._left(0, [0.0] * n), self._a
+        ones = []
+        self._pushes = []  # how each reaction changes the rates of w and s
+        for i in range(n):
+            ones.append(self._left(0, [1.0 if j == i else 0.0 for j in range(n)]))
+            self._pushes.append([minus(pushed, free) for pushed, free in zip(self._a, a, strict=True)])
         # for free and for held: row i, column j says how residual i changes with reaction j
         self._slopes = [[[minus(one[i][m], self._rest[i][m]) for one in ones] for i in range(n)] for m in (0, 1)]
 
@@ -171,6 +184,33 @@ class Flow:
         self.held = held
         self.series.cut(self._start)
         self._set(0, self._solved(self._rest))
+
+    def put_back(self, held):
+        """Return ((q, w, s), impulses) with what is held put back to where it is held; after :meth:`begin`.
+
+        The handle moves between two samples as its hold has it, so at a sample it jumps, and with it what it touches.
+        Positions and rates change by as little as the masses allow: by what the reactions themselves push.
+        """
+        levels = [r.level for r in self.motion.reactions]
+        rates = [
+            self.of(r.measure, 1)[1] * (1 / self.h) if r.level == 2 else self.at(r.measure)
+            for r in self.motion.reactions
+        ]
+        gaps = [self.at(r.measure) for r in self.motion.reactions]
+        p = self._masked(held, rates)
+        r = self._masked([h if level == 2 else np.False_ for h, level in zip(held, levels, strict=True)], gaps)
+        q, w, s = ([row[0] for row in part] for part in self.state())
+        moved = [
+            plus(value, dot(r, push)) for value, *push in zip(q, *(row[: len(q)] for row in self._pushes), strict=True)
+        ]
+        rates = [plus(value, dot(p, push)) for value, *push in zip([*w, *s], *self._pushes, strict=True)]
+        return (moved, rates[: len(w)], rates[len(w) :]), p
+
+    def _masked(self, held, left):
+        """Return the pushes that take away what is left of some held measures."""
+        n = len(held)
+        rows = [[_either(held[i], self._slopes[1][i][j], float(i == j)) for j in range(n)] for i in range(n)]
+        return reactions(rows, [_either(h, value, 0.0) for h, value in zip(held, left, strict=True)], [True] * n)
 
     def slope(self, i):
         """Return how the rate of measure i changes with its own reaction."""
@@ -186,6 +226,7 @@ class Flow:
         start = series.lengths()
         self._set(k, trial)
         self._grow_once(k)
+        self._a = [series.known[rate.id][k] for rate in (*motion.a, *motion.ds)]
         left = []
         for r, value in zip(motion.reactions, trial, strict=True):
             free = minus(value, series.of(r.free, k)[k])

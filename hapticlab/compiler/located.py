@@ -58,9 +58,14 @@ class Stepper:
         self.events = 0 if motion.smooth else events
         self.impact, self.number, self.steps = impact, number, steps
 
-    def step(self, tau, state, held=()):
-        """Return (state, held, unlocated) at tau + h; ``unlocated`` is true where an event was left out."""
+    def step(self, tau, state, held=(), jumped=False):
+        """Return (state, held, unlocated) at tau + h; ``unlocated`` is true where an event was left out.
+
+        ``jumped``: the handle is a new sample, not where the step before left it.
+        """
         now = self._start(tau, state, list(held))
+        if jumped and self.motion.driven:
+            now = self._put_back(now)
         for piece in range(self.events + 1):
             flow, now = self._flow(now)
             guards = [
@@ -81,6 +86,26 @@ class Stepper:
         now = _Now(tau, state, [], [], held, [np.False_] * (len(motion.guards) + len(motion.reactions)), 1.0)
         flags, sides = self._truths(tau, state)
         return replace(now, flags=flags, sides=sides)
+
+    def _put_back(self, now):
+        """Return where the step stands after the handle jumped: what rests on it and sticks to it goes along.
+
+        A contact is let go where that takes a pull that its reaction could not give within the step.
+        """
+        flow = self._fresh(now)
+        flow.begin()
+        state, pushes = flow.put_back(now.held)
+        flow.hold(now.held)
+        held = [
+            was if r.level == 1 else was & (0.0 <= flow.at(r.leaf) + p * (1 / self.h))
+            for r, was, p in zip(self.motion.reactions, now.held, pushes, strict=True)
+        ]
+        let_go = _any(was & ~is_ for was, is_ in zip(now.held, held, strict=True))
+        state = tuple(
+            [select(let_go, old, new) for old, new in zip(*parts, strict=True)]
+            for parts in zip(now.state, state, strict=True)
+        )
+        return replace(now, state=state, held=held)
 
     def _truths(self, tau, state):
         """Return the flag of every guard, and the side of every slip, as the comparisons have them."""
