@@ -10,7 +10,7 @@ import numpy as np
 import sympy as sp
 
 from ..errors import MassError, SceneError
-from ..scene.closing import declared_range, is_angle, name, names, shown, values
+from ..scene.closing import declared_range, in_unit, is_angle, name, names, shown, values
 from ..scene.dyads import NotClosed
 from ..scene.loops import AGREEING, embed, is_holonomic
 from ..scene.symbols import t, v
@@ -162,7 +162,7 @@ def _check_start(assembly, constraints, positions, coordinates, start):
         off, _ = assembly.look(assembly.start[:, None])
         residuals = ", ".join(f"{value:.3g}" for value in off[:, 0])
         wanted = ", ".join(
-            f"initial={float(value)!r} for {name(p)}" for p, value, far in zip(coordinates, q, moved, strict=True) if far
+            in_unit(p, value) for p, value, far in zip(coordinates, q, moved, strict=True) if far
         )
         raise SceneError(
             f"the start {values(coordinates, start)} is off the constraints {shown(positions)}: the left sides are "
@@ -183,7 +183,7 @@ def _check_rates(assembly, constraints, coordinates, start, drivers=()):
     far = given & (np.abs(change) > AGREEING * np.maximum(assembly.scale, np.abs(rates)))
     if far.any():
         wanted = ", ".join(
-            f"rate={float(rate)!r} for {name(p)}" for p, rate, off in zip(coordinates, rates + change, far, strict=True) if off
+            in_unit(p, rate, "/s") for p, rate, off in zip(coordinates, rates + change, far, strict=True) if off
         )
         raise SceneError(
             f"the rates at the start break the constraints {shown(constraints)}: they change at "

@@ -145,5 +145,10 @@ def values(coordinates, at):
     return ", ".join(f"{name(q)} = {at[q]:.6g}" for q in coordinates)
 
 
+def in_unit(q, value, per=""):
+    """Return a start as it can be declared: every digit, and the unit a parameter for it needs."""
+    return f"{name(q)} = {float(value)!r} {type(q).unit}{per}"
+
+
 def shown(constraints):
     return " and ".join(f"{c} = 0" for c in constraints)

@@ -12,7 +12,7 @@ import numpy as np
 import sympy as sp
 
 from ..errors import SceneError
-from .closing import Open, check_range, declared_range, is_coordinate, name, names, shown, values, wraps
+from .closing import Open, check_range, declared_range, in_unit, is_coordinate, name, names, shown, values, wraps
 from .dyads import Equations, NotClosed, number
 from .symbols import v
 
@@ -178,12 +178,12 @@ def _check_start(constraints, sources, start):
     moving = [q for q in start if is_coordinate(q) and any(c.has(q) for c in off)]
     residuals = ", ".join(f"{float(number(c, start)):.3g}" for c in off)
     wanted = ", ".join(
-        f"initial={at[step.coordinate]!r} for {name(step.coordinate)}"
+        in_unit(step.coordinate, at[step.coordinate])
         for step in steps
         if abs(at[step.coordinate] - start[step.coordinate]) > AGREEING
     )
     raise SceneError(
-        f"the start {values(moving, start)} is off the constraint {shown(off)}: the left side is {residuals}. Take {wanted}"
+        f"the start {values(moving, start)} is off the constraint {shown(off)}: the left side is {residuals}. Start with {wanted}"
     )
 
 

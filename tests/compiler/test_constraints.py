@@ -82,7 +82,7 @@ def test_a_massless_coordinate_is_given_the_constraints_weight():
 
 @pytest.mark.parametrize("enforce", ["auto", "kkt", "numeric"])
 def test_a_start_off_the_constraints(enforce):
-    with pytest.raises(SceneError, match=r"start .*phi = 0\.2.* is off the constraint.*0\.00054.*initial="):
+    with pytest.raises(SceneError, match=r"start .*phi = 0\.2.* is off the constraint.*0\.00054.* phi = 0\.19\d+ rad"):
         enforcement(SLIDER_CRANK, COORDINATES, start() | {phi: 0.2}, enforce=enforce)
 
 
@@ -90,17 +90,17 @@ def test_the_closest_start_is_on_the_constraints():
     with pytest.raises(SceneError) as caught:
         enforcement(SLIDER_CRANK, COORDINATES, start() | {phi: 0.2}, enforce="kkt")
     told = str(caught.value).split("them is ")[1]
-    given = {part.split(" for ")[1]: float(part.split(" for ")[0].removeprefix("initial=")) for part in told.split(", ")}
+    given = {part.split()[0]: float(part.split()[2]) for part in told.split(", ")}
     at = {q: given[type(q).__name__] for q in COORDINATES}
     assert max(abs(g.subs(at)) for g in SLIDER_CRANK) < 1e-15
 
 
 def test_rates_that_break_the_constraints():
-    with pytest.raises(SceneError, match=r"rates at the start break.*change at 0\.0\d+, 0\.0459 a second.*rate="):
+    with pytest.raises(SceneError, match=r"rates at the start break.*change at 0\.0\d+, 0\.0459 a second.* phi = 0\.44\d+ rad/s"):
         enforcement(SLIDER_CRANK, COORDINATES, start() | {phi.diff(t): 0.0}, enforce="kkt")
     # rates that follow from the driver need not be given, but must not be wrong
     enforcement(SLIDER_CRANK, COORDINATES, start() | {phi.diff(t): 0.0})
-    with pytest.raises(SceneError, match=r"rate=0\.46.* for phi"):
+    with pytest.raises(SceneError, match=r"phi = 0\.46\d+ rad/s"):
         enforcement(SLIDER_CRANK, COORDINATES, start() | {phi.diff(t): 0.1})
 
 
@@ -110,7 +110,7 @@ def test_a_constraint_of_rates():
     found, (note,) = enforcement(knife, (X, Y, theta), along)
     assert isinstance(found, Multipliers)
     assert "a constraint of rates has none" in note
-    with pytest.raises(SceneError, match=r"rate=0\.91266.* for X, rate=0\.28232.* for Y"):
+    with pytest.raises(SceneError, match=r"X = 0\.91266\d+ m/s, Y = 0\.28232\d+ m/s"):
         enforcement(knife, (X, Y, theta), along | {X.diff(t): 1.0, Y.diff(t): 0.0})
     with pytest.raises(SceneError, match="not linear in the rates"):
         enforcement((X.diff(t) ** 2 - 1,), (X, Y), {X: 0.0, Y: 0.0})

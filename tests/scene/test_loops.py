@@ -184,7 +184,7 @@ def test_a_start_off_the_constraint_names_the_value_to_take():
     wanted = start[phi]
     with pytest.raises(SceneError, match="off the constraint.*the left side is") as caught:
         embed(SLIDER_CRANK, [phi, s, theta], {**start, phi: 0.2})
-    assert f"initial={wanted:.12f}"[:18] in str(caught.value)
+    assert f"Start with phi = {wanted:.12f}"[:28] in str(caught.value)
     embed(SLIDER_CRANK, [phi, s, theta], {**start, phi: round(wanted, 9)})
 
 
