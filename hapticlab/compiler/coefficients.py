@@ -24,10 +24,12 @@ class Coefficients:
         Parameters whose value cannot change while it runs.
     T : float
         Sampling period [s].
+    graph : Graph, optional
+        Of the form's expressions, with the same constants.
     """
 
-    def __init__(self, form, constants, T):
-        self.form, self.T, self.graph = form, T, Graph(constants)
+    def __init__(self, form, constants, T, graph=None):
+        self.form, self.T, self.graph = form, T, graph or Graph(constants)
         self.states = states_of(form.coordinates, form.orders)
 
     def why_not(self, k):
@@ -38,7 +40,7 @@ class Coefficients:
         for m in form.M[k]:
             moving = self._moving(m)
             if moving:
-                return f"the inertia {short(m, 60)} of {name} changes with {moving}"
+                return f"the inertia {short(m.doit(), 60)} of {name} changes with {moving}"
         why = self.slope_moves(form.f[k], f"in the equation of {name}")
         if why is None and any(s == t or isinstance(s, driven) for s in self.graph.variables_of([form.f[k]])):
             why = f"t drives the equation of {name} between two samples"
@@ -50,7 +52,7 @@ class Coefficients:
             for variable in (*self.states, *HANDLE):
                 moving = self._moving(Partial(term, variable))
                 if moving:
-                    return f"{short(term, 60)} {where} is not linear: its slope changes with {moving}"
+                    return f"{short(term.doit(), 60)} {where} is not linear: its slope changes with {moving}"
         return None
 
     def _moving(self, expr):

@@ -41,7 +41,7 @@ class Exact:
 
     def __init__(self, lowering, form, rest):
         self.lowering, self.tracing, constants = lowering, lowering.tracing, lowering.folded
-        linear, self.others = linear_part(lowering.scene, form, constants, self.tracing.T, rest)
+        linear, self.others = linear_part(lowering.scene, form, constants, self.tracing.T, rest, lowering.graph)
         self.constant_parts = [form.f[form.coordinates.index(q)] for q in linear.coordinates]
         kept = {*linear.coordinates, *self.others.coordinates}
         self.left_out = tuple(type(q).__name__ for q in form.coordinates if q not in kept)
@@ -123,7 +123,7 @@ def _cheaper(linear, read, T):
     return modes if products[1] + np.count_nonzero(modes.V[read]) < products[0] else plain
 
 
-def linear_part(scene, form, constants, T, rest):
+def linear_part(scene, form, constants, T, rest, graph):
     """Return (Linear, the form of the other equations); refuse what ``method="exact"`` cannot take, with the reason.
 
     Equations that neither the force nor a channel depends on are in neither.
@@ -134,13 +134,15 @@ def linear_part(scene, form, constants, T, rest):
         Parameters that are constants of the program.
     rest : str or None
         The method for what is not linear.
+    graph : Graph
+        Of the form's expressions, with these constants.
 
     Raises
     ------
     ProgramError
     """
-    form = part_of(form, Dependence(form).needed)
-    coefficients = Coefficients(form, constants, T)
+    form = part_of(form, Dependence(form, graph).needed)
+    coefficients = Coefficients(form, constants, T, graph)
     rows, reasons = linear_rows(coefficients)
     names = ", ".join(type(form.coordinates[k]).__name__ for k in rows)
     if reasons and not rows:

@@ -103,6 +103,10 @@ class _Report:
             if name in self.paths:
                 kind = "state" if name in self.graph.coordinates else "signal"
                 yield Item(kind, name, self._why_kept(name, kind))
+        for q in self.scene.coordinates:
+            if q not in self.form.coordinates:
+                means = next(e.rhs for e in self.scene.eom if isinstance(e, sp.Eq) and e.lhs == q)
+                yield Item("alias", type(q).__name__, f"another name of {short(means, 40)}: no state of its own")
         for name, p in self.scene.parameters.items():
             if any(c.name == name for c in self.program.parameters):
                 yield Item("parameter", name, f"live: may be set while it runs{_limits(p)}")
@@ -147,8 +151,10 @@ class _Report:
                 yield Item("parameter", name, why, self._more(live=(*live, name)))
 
     def _parameters_used(self):
-        """Return the names in what the outputs can see, and in the starts of it."""
+        """Return the names in what the outputs can see, in the starts of it, and in the laws of contacts."""
         form, seen = self.form, [self.form.force, *self.form.watch.values()]
+        laws = [getattr(c, "law", c) for model in form.models for c in model.contacts]
+        seen += [a for law in laws for a in vars(law).values() if isinstance(a, sp.Basic)]
         for k, q in enumerate(form.coordinates):
             if type(q).__name__ in self.paths:
                 seen += [*form.M[k], form.f[k], type(q).initial, getattr(type(q), "rate", sp.S.Zero)]

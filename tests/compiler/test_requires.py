@@ -7,9 +7,11 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab import n, t, v, x
 from hapticlab.compiler.engine import load
+from hapticlab.compiler.pairs import contacts_between
 from hapticlab.compiler.replay import replay
 from hapticlab.compiler.requires import requires
 from hapticlab.errors import AnalysisError, ParameterError, ProgramError, SceneError
+from hapticlab.scene.shapes import Circle, ground
 
 T = 1e-3
 w, y, z = (hl.coordinate(name, unit="m") for name in "wyz")
@@ -260,3 +262,23 @@ def test_what_a_constraint_ties_is_kept():
     assert found(report, "w").kind == "state"
     assert not [i for i in report.dropped if i.kind == "state"]
     assert "held by a constraint" in next(i for i in report.offered if i.kind == "linear").why
+
+
+def test_pairs_that_cannot_meet():
+    """Three balls over a table, each with a range of its own: no two of them can meet, and the middle one is felt."""
+
+    heights = [hl.coordinate(f"h{i}", unit="m", initial=0.03, range=(0.0, 0.1)) for i in range(3)]
+    balls = [Circle(0.01).at(x=0.05 * i, y=h, name=f"ball{i}") for i, h in enumerate(heights)]
+    contacts = contacts_between([ground(), *balls], law=hl.penalty(k=k))
+    L = sum(m * h.diff(t) ** 2 / 2 - m * g * h for h in heights) - k * (x(t) - heights[1]) ** 2 / 2
+    scene = hl.Scene(force=k * (x(t) - heights[1]), eom=[hl.lagrange(L, contacts=contacts)])
+    report = requires(scene)
+    assert [i.name for i in report.dropped if i.kind == "pair"] == ["ball0, ball1", "ball0, ball2", "ball1, ball2"]
+    assert [i.name for i in report.kept if i.kind == "contact"] == ["ground_ball0", "ground_ball1", "ground_ball2"]
+    assert found(report, "h0").why == found(report, "h2").why == "no path to F or a watched channel"
+    assert any(note.startswith("holds while") for note in report.program.notes)
+
+
+def test_a_defined_coordinate_is_no_state():
+    scene = hl.Scene(force=k * (x(t) - w), eom=[sp.Eq(w, 3 * z), sp.Eq(m * z.diff(t, 2), 3 * k * (x(t) - w))])
+    assert found(requires(scene), "w").why == "another name of 3*z(t): no state of its own"
