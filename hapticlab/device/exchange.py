@@ -131,7 +131,10 @@ class Exchange:
         self._closed = True
         if self._thread is not None and self._thread is not threading.current_thread():
             self._thread.join(2)
+        carrier = getattr(self.port, "_socket", None)
         self.port.close()
+        if carrier is not None:
+            carrier.close()  # pyserial leaves it open where the other end has gone first
 
     @contextmanager
     def _my_time(self):

@@ -174,8 +174,10 @@ def check_units(force, eom, watch, moving):
     for name, expr in watch.items():
         agree([expr], f"watch {name}")
     for kind in map(type, moving):
-        agree_with(kind.initial, kind.unit, f"initial value of {kind.__name__}")
-        if hasattr(kind, "rate"):
+        # a number stands in the declared unit, as the value of a parameter does
+        if not kind.initial.is_number:
+            agree_with(kind.initial, kind.unit, f"initial value of {kind.__name__}")
+        if hasattr(kind, "rate") and not kind.rate.is_number:
             rate_unit = f"({kind.unit})/s" if kind.unit != "1" else "1/s"
             agree_with(kind.rate, rate_unit, f"initial rate of {kind.__name__}")
 

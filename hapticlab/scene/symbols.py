@@ -9,7 +9,7 @@ from sympy.core.function import AppliedUndef, UndefinedFunction
 from ..errors import SceneError, SignalError
 from .cases import when
 from .parameters import Parameter, T, parameters
-from .units import dimension
+from .units import dimension, in_si
 from .written import CONDITIONS, check_name, expression
 
 __all__ = ["Parameter", "T", "coordinate", "delay", "lag_of", "n", "parameters", "signal", "t", "v", "when", "x"]
@@ -29,8 +29,9 @@ def coordinate(name, *, unit, initial=0, rate=0, range=(-math.inf, math.inf)):
         One word that no parameter, signal or other coordinate of the scene has, and no column of a record.
     unit : str
         SI unit, such as ``m`` or ``rad``.
-    initial, rate : number or expression
-        Value and rate at the first sample; may use parameters and x(n), so that a body can start at the handle.
+    initial, rate : number, text with a unit, or expression
+        Value and rate at the first sample, a number in ``unit`` and ``unit``/s; may use parameters and x(n), so that a
+        body can start at the handle.
         A coordinate with an equation of first order starts with its value alone.
     range : (low, high)
         Where the coordinate stays, in SI. Contact pairs, cases and ranks are decided over it when a scene is compiled,
@@ -49,11 +50,18 @@ def coordinate(name, *, unit, initial=0, rate=0, range=(-math.inf, math.inf)):
     """
     check_name(name, "coordinate")
     dimension(unit)
-    start = {"initial": expression(initial, f"initial of {name}"), "rate": expression(rate, f"rate of {name}")}
+    start = {
+        "initial": _start(initial, unit, f"initial of {name}"),
+        "rate": _start(rate, "1/s" if unit == "1" else f"{unit}/s", f"rate of {name}"),
+    }
     if not _is_range(range):
         raise SceneError(f"{name}: range = {range!r}; needs (low, high) in {unit} with low < high, such as (-0.05, 0.05)")
     start |= {"low": float(range[0]), "high": float(range[1])}
     return sp.Function(name, real=True, unit=unit, role="coordinate", **start)(t)
+
+
+def _start(given, unit, where):
+    return sp.Float(in_si(given, unit, where)) if isinstance(given, str) else expression(given, where)
 
 
 def _is_range(given):
@@ -102,8 +110,8 @@ def signal(name, *, unit, initial=0):
     name : str
         One word that no parameter, coordinate or other signal of the scene has, and no column of a record.
     unit : str
-    initial : number or expression
-        The value of every sample before the first.
+    initial : number, text with a unit, or expression
+        The value of every sample before the first, a number in ``unit``.
 
     Returns
     -------
@@ -118,7 +126,7 @@ def signal(name, *, unit, initial=0):
     """
     check_name(name, "signal")
     dimension(unit)
-    facts = {"unit": unit, "role": "signal", "initial": expression(initial, f"initial of {name}")}
+    facts = {"unit": unit, "role": "signal", "initial": _start(initial, unit, f"initial of {name}")}
     return _restored(name, {"real": True, **facts})
 
 
