@@ -7,7 +7,7 @@ from ..scene.derivative import Partial
 from ..scene.symbols import Parameter, T, delay, t, v, x
 from .channels import short
 from .dependence import blocks, coupled
-from .graph import Graph, driven
+from .graph import Graph
 from .linear import Linear, states_of
 
 #: the handle as an equation of motion sees it
@@ -41,10 +41,7 @@ class Coefficients:
             moving = self._moving(m)
             if moving:
                 return f"the inertia {short(m.doit(), 60)} of {name} changes with {moving}"
-        why = self.slope_moves(form.f[k], f"in the equation of {name}")
-        if why is None and any(s == t or isinstance(s, driven) for s in self.graph.variables_of([form.f[k]])):
-            why = f"t drives the equation of {name} between two samples"
-        return why
+        return self.slope_moves(form.f[k], f"in the equation of {name}")
 
     def slope_moves(self, expr, where):
         """Return which term of an expression is not linear in states and handle, or None."""

@@ -3,9 +3,11 @@
 import numpy as np
 
 from ..errors import ProgramError
+from ..scene.symbols import t
 from .channels import channel_of
 from .coefficients import HANDLE, Coefficients, leaves, linear_rows
 from .dependence import Dependence, part_of
+from .graph import driven
 from .ir import Channel
 
 #: what a method's name begins with, where its linear parts are taken exactly; the rest follows a plus sign
@@ -65,13 +67,32 @@ class Exact:
 
     def advance(self):
         """Give every state its value at the next sample."""
-        lowering, zero = self.lowering, self.tracing.tick.const(0.0)
-        still = dict.fromkeys((*self.states, *HANDLE), zero)
-        translate = lowering.translator(lambda leaf: still[leaf] if leaf in still else lowering.at_sample(leaf))
-        self.rest = list(map(translate, self.constant_parts))  # what stays the same over the period
-        self.motion = lowering.handle.polynomial()
+        self.rest = list(map(self._rest_of, self.constant_parts))
+        self.motion = self.lowering.handle.polynomial()
         for key, value in zip(self._keys, self._moved(self.tracing.T), strict=True):
             self.tracing.set_next(key, value)
+
+    def _rest_of(self, f):
+        """Return what an equation holds beside states and handle, over the period: value, rate, second rate.
+
+        It stays as it is at the sample, but for what t drives: a parabola through its values at both ends and midway.
+        """
+        T, lowering = self.tracing.T, self.lowering
+        still = dict.fromkeys((*self.states, *HANDLE), self.tracing.tick.const(0.0))
+        driven_by_t = any(a == t or isinstance(a, driven) for a in lowering.graph.variables_of([f]))
+
+        def at(tau):
+            def leaf(expr):
+                if expr in still:
+                    return still[expr]
+                return lowering.at_sample(expr) + tau if expr == t and tau else lowering.at_sample(expr)
+
+            return lowering.translator(leaf, tau)(f)
+
+        if not driven_by_t:
+            return [at(0.0)]
+        first, middle, last = map(at, (0.0, T / 2, T))
+        return [first, (4 * middle - 3 * first - last) * (1 / T), (first - 2 * middle + last) * (4 / T**2)]
 
     def at(self, tau):
         """Return {state: value} at tau [s] after the sample."""
@@ -95,8 +116,9 @@ class Exact:
         for column, powers in enumerate(self.motion):
             for k, value in enumerate(powers):
                 add(value, Psi[k] @ space.inputs[:, column])
-        for k, value in enumerate(self.rest):
-            add(value, Psi[0] @ space.rest[:, k])
+        for row, powers in enumerate(self.rest):
+            for k, value in enumerate(powers):
+                add(value, Psi[k] @ space.rest[:, row])
         values, table = [value for value, _ in effects.values()], [effect for _, effect in effects.values()]
         return [
             value + _sum(row, values)
