@@ -11,17 +11,28 @@ travel to either side and at most 5 N; another paddle may ask for other values, 
 """
 
 from .bodies import mass_spring_damper, tuned_absorber, two_masses
+from .contacts import ball_on_the_paddle, stick_slip
 from .entries import CATALOGUE as catalogue
 from .entries import NOMINAL as nominal
 from .entries import unknown
+from .mechanisms import four_bar, gears, rolling, slider_crank
+from .pendulums import cart_pole, pendulum_on_the_handle
 from .surfaces import buckling_beam, detents, texture, virtual_fixture
 
 __all__ = [
+    "ball_on_the_paddle",
     "buckling_beam",
+    "cart_pole",
     "catalogue",
     "detents",
+    "four_bar",
+    "gears",
     "mass_spring_damper",
     "nominal",
+    "pendulum_on_the_handle",
+    "rolling",
+    "slider_crank",
+    "stick_slip",
     "texture",
     "tuned_absorber",
     "two_masses",

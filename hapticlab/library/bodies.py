@@ -27,7 +27,7 @@ def mass_spring_damper():
     handle transmits the ringing of the mass on k and K together, sqrt((k + K)/m).
 
     Teaches natural frequency, damping ratio and impedance; any textbook of system dynamics, such as K. Ogata, *System
-    Dynamics*, ch. 8. On an Uno: semi-implicit Euler at 800 Hz.
+    Dynamics*, ch. 3. On an Uno: semi-implicit Euler at 800 Hz.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def two_masses():
     sqrt(k (1/m_1 + 1/m_2)) while their centre moves on.
 
     Teaches modes, the rigid-body mode, resonance and antiresonance (non-collocated control); J. P. Den Hartog,
-    *Mechanical Vibrations*, ch. 3. On an Uno: semi-implicit Euler at 500 Hz.
+    *Mechanical Vibrations*, ch. 3. On an Uno: semi-implicit Euler at 800 Hz.
 
     Returns
     -------
@@ -137,8 +137,8 @@ def tuned_absorber():
 
 def draw_tuned_absorber(axes, *, x=0.0, z_1=0.0, z_2=0.008, **_):
     """Draw the machine on its springs beside the handle, the absorber on the machine."""
-    s = Sketch(axes, -0.07, 0.14, -0.04, 0.055)
-    u, main, small, wall = s.u, z_1 + 0.055, z_2 + 0.095, 0.115
+    s = Sketch(axes, -0.07, 0.165, -0.04, 0.06)
+    u, main, small, wall = s.u, z_1 + 0.055, z_2 + 0.12, 0.135
     s.handle(x)
     s.pair((x, 0), (main - 8 * u, 0))
     s.block((main, 4 * u), 16, 22, "$m_1$")
@@ -149,4 +149,4 @@ def draw_tuned_absorber(axes, *, x=0.0, z_1=0.0, z_2=0.008, **_):
     s.pair((main + 8 * u, -3.5 * u), (wall, -3.5 * u), "$k_1,\\ b_1$")
     s.ground((wall, 3 * u), (wall, -10 * u), depth=-1.5)
     s.coordinate("$z_1$", z_1, -11 * u, origin=0.055)
-    s.coordinate("$z_2$", z_2, 19 * u, origin=0.095)
+    s.coordinate("$z_2$", z_2, 19 * u, origin=0.12)

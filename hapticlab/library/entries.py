@@ -6,7 +6,7 @@ from difflib import get_close_matches
 
 from ..errors import SceneError
 from ..records import PaddleProfile
-from . import bodies, surfaces
+from . import bodies, contacts, mechanisms, pendulums, surfaces
 
 #: the paddle that the default values are made for
 NOMINAL = PaddleProfile(
@@ -91,10 +91,21 @@ def _uno(method, rate):
 
 
 SEMI = "semi_implicit_euler"
+LOCATED = {"method": "taylor", "T": NOMINAL.T}
 CATALOGUE = Catalogue((
-    Entry(bodies.mass_spring_damper, bodies.draw_mass_spring_damper, 0.25, uno=_uno(SEMI, 800)),
-    Entry(bodies.two_masses, bodies.draw_two_masses, 0.25, uno=_uno(SEMI, 500)),
-    Entry(bodies.tuned_absorber, bodies.draw_tuned_absorber, 0.25, uno=_uno(SEMI, 400)),
+    Entry(bodies.mass_spring_damper, bodies.draw_mass_spring_damper, 0.21, uno=_uno(SEMI, 800)),
+    Entry(bodies.two_masses, bodies.draw_two_masses, 0.21, uno=_uno(SEMI, 800)),
+    Entry(bodies.tuned_absorber, bodies.draw_tuned_absorber, 0.21, uno=_uno(SEMI, 400)),
+    Entry(
+        pendulums.pendulum_on_the_handle, pendulums.draw_pendulum_on_the_handle, 0.21, uno=_uno(SEMI, 500), stored=0.0033
+    ),
+    Entry(pendulums.cart_pole, pendulums.draw_cart_pole, 0.21, uno=_uno(SEMI, 500), stored=0.2944),
+    Entry(mechanisms.gears, mechanisms.draw_gears, 0.21, uno=_uno(SEMI, 500)),
+    Entry(mechanisms.slider_crank, mechanisms.draw_slider_crank, 0.21, uno=_uno(SEMI, 400)),
+    Entry(mechanisms.four_bar, mechanisms.draw_four_bar, 0.21, uno=_uno(SEMI, 250)),
+    Entry(mechanisms.rolling, mechanisms.draw_rolling, 0.21, uno=_uno(SEMI, 500)),
+    Entry(contacts.ball_on_the_paddle, contacts.draw_ball_on_the_paddle, 0.21, LOCATED, stored=0.0236),
+    Entry(contacts.stick_slip, contacts.draw_stick_slip, 0.21, LOCATED),
     Entry(surfaces.detents, surfaces.draw_detents, 0.19, uno=_uno(SEMI, 1000)),
     Entry(surfaces.texture, surfaces.draw_texture, 0.28, uno=_uno(SEMI, 800)),
     Entry(surfaces.virtual_fixture, surfaces.draw_virtual_fixture, 0.2, uno=_uno(SEMI, 1000)),

@@ -11,7 +11,10 @@ from hapticlab.compiler import engine
 
 @pytest.fixture(scope="session")
 def led():
-    """Return a function that leads the handle along x [m] and returns what is felt and watched, in double precision."""
+    """Return a function that leads the handle along x [m] and returns what is felt and watched, in double precision.
+
+    Every state that ``start`` does not name is zero there, and the handle has been at rest.
+    """
 
     def lead(scene, x, *, T, start=None, velocity="backward_difference", **options):
         program = hl.compile(scene, T=T, dtype="float64", velocity=velocity, **options)
@@ -20,8 +23,8 @@ def led():
         inputs = x[:, None] if len(program.inputs) == 1 else np.column_stack([x, np.gradient(x, T)])
         states = None
         if start is not None:
-            states = loaded.run(1, inputs[:1], program.values).states
-            for name, value in start.items():
+            states = np.zeros((len(names), 1))
+            for name, value in {**{name: x[0] for name in names if name.startswith("x(")}, **start}.items():
                 states[names.index(name), 0] = value
         run = loaded.run(len(x), inputs, program.values, states)
         columns = {c.name: run.outputs[:, j, 0] for j, c in enumerate(program.outputs)}
