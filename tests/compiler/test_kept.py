@@ -1,6 +1,7 @@
 """Constrained scenes from their Lagrangian to running programs, against equations reduced by hand and closed forms."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -235,3 +236,42 @@ def test_a_reaction_whose_constraint_is_missing():
     scene = hl.Scene(force=image.force, eom=[hl.lagrange(m * q.diff(t) ** 2 / 2)])
     with pytest.raises(SceneError, match="add it to the constraints"):
         hl.compile(scene, T=1e-3)
+
+
+def test_a_slider_without_mass_is_carried_by_its_rod():
+    J, r, L, k, a = hl.parameters("J r L k a", units="kg*m^2 m m N/m rad", values=(2e-5, 0.03, 0.1, 30, 0.7))
+    theta = hl.coordinate("theta", unit="rad", initial=a)
+    phi = hl.coordinate("phi", unit="rad", initial=sp.asin(r / L * sp.sin(a)))
+    s = hl.coordinate("s", unit="m", initial=r * sp.cos(a) + sp.sqrt(L**2 - (r * sp.sin(a)) ** 2))
+    loop = (r * sp.cos(theta) + L * sp.cos(phi) - s, r * sp.sin(theta) - L * sp.sin(phi))
+    channels = {}
+    for enforce in ("embed", "kkt"):
+        model = hl.lagrange(J * theta.diff(t) ** 2 / 2 - k * (s - L) ** 2 / 2, constraints=loop, enforce=enforce)
+        channels[enforce] = run(hl.Scene(force=k * (x(t) - s) * 0, eom=[model], watch=[theta, s]))[1]
+
+    class Crank:
+        """The crank against the spring alone: J theta'' = -k (s - L) ds/dtheta."""
+
+        def reduced(self, angle):
+            out = math.sqrt(0.01 - (0.03 * math.sin(angle)) ** 2)
+            slope = -0.03 * math.sin(angle) - 0.03**2 * math.sin(angle) * math.cos(angle) / out
+            return 2e-5, 0.0, 30 * (0.03 * math.cos(angle) + out - 0.1) * slope
+
+    wanted = swing(Crank(), 0.7, 0.0, TIMES)[0]
+    for found in channels.values():
+        np.testing.assert_allclose(found[::100, 0], wanted, atol=1e-7)
+
+
+def test_a_rank_lost_by_a_live_parameter_turns_the_motor_off():
+    q, z = hl.coordinate("q", unit="m"), hl.coordinate("z", unit="m")
+    m, c = hl.parameters("m c", units="kg 1", values=(0.02, 0.5))
+    image = hl.device_image(q - x(t))
+    L = m * (q.diff(t) ** 2 + z.diff(t) ** 2) / 2
+    scene = hl.Scene(force=image.force, eom=[hl.lagrange(L, constraints=[image.constraint, q - c * z], enforce="kkt")])
+    paddle = hl.SimulatedPaddle(m=0.2, b=0, T=1e-3, hand=hl.Hand(push=0.1))
+    program = hl.compile(scene, T=1e-3, velocity="measured")
+    assert paddle.run(program, duration=0.05, progress=False).fault is None
+    # at c = 0 both constraints hold q
+    values = [1e-9 if channel.name == "c" else value for channel, value in zip(program.parameters, program.values, strict=True)]
+    log = paddle.run(replace(program, values=tuple(values)), duration=0.05, progress=False)
+    assert "not finite" in log.fault
