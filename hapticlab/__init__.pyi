@@ -1,6 +1,7 @@
 """The public names and where they live; __init__.py loads each on first use (SPEC 1)."""
 
 from . import library
+from .analysis.books import balance, energy_books
 from .analysis.chatter import chatter
 from .analysis.energy import energy
 from .analysis.passivity import passivity_limit
@@ -70,6 +71,7 @@ __all__ = [
     "T",
     "Telemetry",
     "UnitsError",
+    "balance",
     "calibrate",
     "chatter",
     "compile",
@@ -79,6 +81,7 @@ __all__ = [
     "device_image",
     "doctor",
     "energy",
+    "energy_books",
     "felt_impulse",
     "force_filter",
     "friction",
