@@ -142,6 +142,8 @@ def _cheaper(scene, options):
     bound = set(scene.parameters) <= set(scene.values)
     if used["live"] is None and bound and scene.parameters:
         yield "with live='' (parameters fixed)", scene, {**options, "live": ()}
+    if scene.eom and bound and used["method"] in METHODS:
+        yield "with method='exact', live=''", scene, {**options, "method": "exact", "live": ()}
     now = METHODS.get(used["method"])
     if scene.eom and now:
         below = [m for m in METHODS.values() if m.evaluations < now.evaluations and m.name != "euler"]

@@ -10,7 +10,8 @@ import hapticlab as hl
 from hapticlab import n, t, v, x
 from hapticlab.compiler.coefficients import Coefficients, linear_rows
 from hapticlab.compiler.engine import load
-from hapticlab.errors import ProgramError
+from hapticlab.compiler.fit import fit
+from hapticlab.errors import ProgramError, ProgramLimitError
 
 T = 1e-3
 w, y, z = (hl.coordinate(name, unit="m") for name in "wyz")
@@ -246,3 +247,23 @@ def test_one_way_only():
     names = [type(q).__name__ for q in feels.explicit().coordinates]
     assert [names[k] for k in rows] == ["w"]
     assert reasons[names.index("z")] == "y, which is not linear, drives z between two samples"
+
+
+@pytest.mark.parametrize("hold", ["zoh", "foh", "soh"])
+@pytest.mark.parametrize("velocity", ["measured", "backward_difference"])
+def test_it_sees_the_handle_as_the_other_methods_do(hold, velocity):
+    """What rk4 tends to as its error falls with the fourth power of its step."""
+    X, V = SWING
+    found = []
+    for options in ({"method": "exact"}, {"method": "rk4", "substeps": 16}, {"method": "rk4", "substeps": 8}):
+        seen = {"hold": hold, "velocity": velocity, "dtype": "float64"}
+        program = hl.compile(chain(2, b=0.3), T=T, live=(), **seen, **options)
+        found.append(load(program).run(60, np.column_stack([X, V])[:, : len(program.inputs)]).outputs)
+    exact, fine, coarse = found
+    assert abs(exact - fine).max() < 2e-8 * abs(exact).max()
+    assert 12 < abs(exact - coarse).max() / abs(exact - fine).max() < 20
+
+
+def test_it_is_offered_where_a_board_is_too_slow():
+    with pytest.raises(ProgramLimitError, match=r"fits with method='exact', live=''"):
+        fit(chain(1, b=0.5), "uno", T=1e-3)
