@@ -119,8 +119,10 @@ def _assembly(constraints, coordinates, start):
     function = sp.lambdify(q, written, "numpy")
 
     def look(at):
+        found = np.empty((len(written), *at.shape[1:]))
         with np.errstate(all="ignore"):
-            found = np.array([np.broadcast_to(np.asarray(e, float), at.shape[1:]) for e in function(*at)])
+            for k, value in enumerate(function(*at)):
+                found[k] = value
         return found[: len(off)], found[len(off) :].reshape(len(rows), len(q), *at.shape[1:])
 
     low, high = np.array([declared_range(p) for p in coordinates], float).T
