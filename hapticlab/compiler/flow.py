@@ -49,7 +49,9 @@ class Motion:
 
     @property
     def driven(self):
-        """True where a reaction holds something to what is not in the state: the handle or time."""
+        """True where what is held has to be put back: to the handle, or where an event was left out."""
+        if any(r.level == 2 for r in self.reactions):
+            return True
         inside = {leaf.id for leaf in (*self.q, *self.w, *self.s)} | {r.leaf.id for r in self.reactions}
         seen = reachable(self.builder.instructions, [r.measure.id for r in self.reactions])
         return any(self.builder.instructions[p].op in ("input", "state") and p not in inside for p in seen)

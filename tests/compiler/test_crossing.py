@@ -47,7 +47,7 @@ def guards(seed, count):
             yield p
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_first_crossing_of_smooth_guards_is_that_of_numpy_roots(seed):
     found_some = missed_none = 0
     with np.errstate(all="ignore"):
@@ -74,7 +74,7 @@ def test_two_frequencies_whose_second_derivative_changes_sign_once():
     rng = np.random.default_rng(5)
     tried = 0
     with np.errstate(all="ignore"):
-        for _ in range(400):
+        for _ in range(200):
             modes = [(rng.normal() + 1j * rng.normal(), 1j * rng.uniform(0.2, 1)) for _ in range(2)]
             p = series_of(rng.uniform(0, 0.2), rng.normal() * 0.2, modes)
             p[0] = abs(p[0]) * rng.uniform(0, 0.5)
@@ -86,12 +86,12 @@ def test_two_frequencies_whose_second_derivative_changes_sign_once():
             assert found == (expected is not None)
             assert expected is None or abs(place - expected) < 1e-12
             tried += 1
-    assert tried > 300
+    assert tried > 150
 
 
 def test_fewer_steps_do_where_the_motion_hardly_turns():
     found_some = 0
-    for p in guards(3, 500):
+    for p in guards(3, 250):
         slow = p * 0.1 ** np.arange(ORDER + 1)
         slow[0] = min(slow[0], 0.9 * abs(slow[1]))
         place, found = first_crossing([np.float64(c) for c in slow], steps=FEWER_STEPS)
@@ -102,7 +102,7 @@ def test_fewer_steps_do_where_the_motion_hardly_turns():
         if found and expected is not None:
             assert abs(place - expected) * slope < 1e-13
             found_some += 1
-    assert found_some > 50
+    assert found_some > 25
 
 
 @pytest.mark.parametrize(

@@ -89,17 +89,21 @@ def penalty_flight(m, k, b, drop):
         q, w = inside(t)
         return -k * q - b * w
 
-    lost = brentq(force, 0.6 * math.pi / omega, 1.0 * math.pi / omega, xtol=1e-18, rtol=1e-15)
+    lost = brentq(force, 0.6 * math.pi / omega, 1.2 * math.pi / omega, xtol=1e-18, rtol=1e-15)
     return -v / G, lost, inside
 
 
-@pytest.mark.parametrize("k, substeps, ticks", [(1e6, 5, 0.75), (4e4, 1, 3.6)])
-def test_a_contact_of_a_spring_and_damper_shorter_than_a_tick(k, substeps, ticks):
-    m, b, drop = 0.05, 2.0, 0.1234
+@pytest.mark.parametrize(
+    "k, b, substeps, ticks",
+    [(6e5, 0.0, 4, 0.95), (4e4, 2.0, 1, 3.6), pytest.param(1e6, 2.0, 5, 0.75, marks=pytest.mark.slow)],
+)
+def test_a_contact_of_a_spring_and_damper_shorter_than_a_tick(k, b, substeps, ticks):
+    m, drop = 0.05, 0.1234
     assert math.sqrt(k / m) * T / substeps <= 1 and math.pi * math.sqrt(m / k) < ticks * T
 
     def rates(tau, q, w, s):
-        return [select(q[0] <= 0.0, maximum(0.0, -k * q[0] - b * w[0]), 0.0) * (1 / m) - G], []
+        force = maximum(0.0, -k * q[0] - b * w[0]) if b else -k * q[0]
+        return [select(q[0] <= 0.0, force, 0.0) * (1 / m) - G], []
 
     motion = program(rates, [drop], [0.0], T=T, substeps=substeps, order=14 if substeps > 1 else 18, events=2)
     touch, lost, inside = penalty_flight(m, k, b, drop)
