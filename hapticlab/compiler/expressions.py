@@ -6,7 +6,7 @@ import sympy as sp
 
 from ..errors import ProgramError, ProgramLimitError
 from ..scene.amount import Amount
-from ..scene.closest_points import ClosestPoints
+from ..scene.closest_points import ClosestPoints, sampled
 from ..scene.derivative import Partial, Rate
 from ..scene.symbols import delay
 from ..scene.units import fixed
@@ -33,11 +33,13 @@ class Translator:
         The values of live parameters, with which their products must stay numbers of the real type.
     graph : Graph, optional
         Where derivatives are taken.
+    sample : Translator, optional
+        What translates expressions at the sample; this one unless given.
     """
 
-    def __init__(self, builder, leaf, clock=None, bound=None, graph=None):
+    def __init__(self, builder, leaf, clock=None, bound=None, graph=None, sample=None):
         self.builder, self.leaf, self.clock, self.bound = builder, leaf, clock, bound or {}
-        self.graph, self.copied = graph, {}
+        self.graph, self.copied, self.sample = graph, {}, sample or self
         self.known, self.settled = {}, {}
 
     def __call__(self, expr):
@@ -223,6 +225,7 @@ _RULES = (
     (sp.core.relational.Relational, Translator._relation),
     ((sp.And, sp.Or, sp.Not, sp.Xor, sp.ITE), Translator._logic),
     (Amount, lambda translator, expr: translator(expr.value)),
+    (sampled, lambda translator, expr: translator.sample(expr.args[0])),
     (ClosestPoints, gjk.trace),
 )
 _LOGIC = {

@@ -70,8 +70,16 @@ def _edges(corners, count):
     return normals, lengths
 
 
-def closest(A, B):
+def closest(A, B, chosen=None, radius=None):
     """Return what two cores are to each other; they must not both be points.
+
+    Parameters
+    ----------
+    A, B : Core
+    chosen : (Core, Core), optional
+        The same two where their closest features are chosen, such as at the sample before; here and now unless given.
+    radius : Value or float [m], optional
+        With ``chosen``: how far apart the cores are when the bodies touch; none unless given.
 
     Returns
     -------
@@ -82,48 +90,92 @@ def closest(A, B):
     point : (x, y) [m]
         Of B, where it is closest to A.
     """
-    one = _against(A, B) if A.normals else None
-    two = _against(B, A) if B.normals else None
-    if two is not None:
-        gap, (n_x, n_y), (p_x, p_y), separation = two
-        # seen from the other side
-        two = gap, (-n_x, -n_y), (p_x - gap * n_x, p_y - gap * n_y), separation
-    if one is None or two is None:
-        return (one or two)[:3]
-    first = one[3] >= two[3]
-    return pick(first, one[:3], two[:3])
+    A0, B0 = chosen or (A, B)
+    one = _features(A0, B0) if A.normals else None
+    two = _features(B0, A0) if B.normals else None
+    held = None if chosen is None else (radius,)
+    if two is None:
+        return _measured(A, B, one, held)
+    gap, (n_x, n_y), (p_x, p_y) = _measured(B, A, two, held)
+    # seen from the other side
+    other = gap, (-n_x, -n_y), (p_x - gap * n_x, p_y - gap * n_y)
+    return pick(one.separation >= two.separation, _measured(A, B, one, held), other) if one else other
 
 
-def _against(A, B):
-    """Return (distance, normal, point of B, separation) as the most separating edge of A has it."""
+@dataclass(frozen=True)
+class _Features:
+    """An edge of A and a corner of B, in the frame of each: what is closest, and which of them says how far."""
+
+    separation: object
+    edge: tuple  # start, normal, length
+    corner: tuple
+    on_face: object  # the corner faces the edge
+    end: tuple  # of A's edge, nearest to the corner
+    beside: tuple  # normal, and direction away from the corner, of B's edge on the side of that end; or None
+    on_other: object  # the end faces that edge
+    along: object  # how far from the corner [m], when it does not
+    apart: tuple  # from there to the end, in B's frame
+
+
+def _features(A, B):
+    """Choose the features as the most separating edge of A has them."""
     pose, back = relative(A, B), relative(B, A)
     separation, a, n, l = _most_separating(A, [moved(pose, p) for p in distinct(B)])
-    seen = [dot(n, moved(pose, p)) for p in B.seen]
-    v, *around = _first_seen(seen, _around(B))
-    offset = less(moved(pose, v), a)
+    v, *around = _first_seen([dot(n, moved(pose, p)) for p in B.seen], _around(B))
     t = (-n[1], n[0])
-    along, height = dot(t, offset), dot(n, offset)
+    along = dot(t, less(moved(pose, v), a))
     # in overlap the corner is inside, wherever it lies along the edge
     on_face = ((0.0 <= along) & (along <= l)) | (separation <= 0.0)
     beyond = along > 0.5 * l
-    end = less(moved(back, pick(beyond, (a[0] + l * t[0], a[1] + l * t[1]), a)), v)
-    n_B = back[2] * n[0] - back[3] * n[1], back[3] * n[0] + back[2] * n[1]
+    end = pick(beyond, (a[0] + l * t[0], a[1] + l * t[1]), a)
+    apart = less(moved(back, end), v)
     if not around:
-        distance = sqrt(maximum(dot(end, end), SAME_POINT))
-        gap = select(on_face, height, distance)
-        normal = pick(on_face, n_B, (-end[0] / distance, -end[1] / distance))
-        return gap, turned(B, normal), moved((B.x, B.y, B.c, B.s), v), separation
+        return _Features(separation, (a, n), v, on_face, end, None, None, None, apart)
     # the edge of B beside the corner on which the end of A's edge lies, if the two edges are parallel
     m, l_B, tau = pick(beyond, *around)
-    s = dot(tau, end)
+    s = dot(tau, apart)
     on_other, s = (0.0 <= s) & (s <= l_B), clip(s, 0.0, l_B)
-    r = end[0] - s * tau[0], end[1] - s * tau[1]
-    distance = sqrt(maximum(dot(r, r), SAME_POINT))
-    gap = select(on_face, height, select(on_other, dot(m, end), distance))
-    normal = pick(on_face, n_B, pick(on_other, minus(m), (-r[0] / distance, -r[1] / distance)))
-    s = select(on_face, 0.0 * s, s)
-    point = v[0] + s * tau[0], v[1] + s * tau[1]
-    return gap, turned(B, normal), moved((B.x, B.y, B.c, B.s), point), separation
+    apart = apart[0] - s * tau[0], apart[1] - s * tau[1]
+    return _Features(separation, (a, n), v, on_face, end, (m, tau), on_other, s, apart)
+
+
+def _measured(A, B, f, held):
+    """Return (distance, normal, point of B) of the features, where the bodies are now."""
+    pose, back = relative(A, B), relative(B, A)
+    (a, n), v = f.edge, f.corner
+    height = dot(n, less(moved(pose, v), a))
+    r = less(moved(back, f.end), v)
+    n_B = back[2] * n[0] - back[3] * n[1], back[3] * n[0] + back[2] * n[1]
+    point = v
+    if f.beside:
+        (m, tau), s = f.beside, f.along
+        facing = dot(m, r)
+        along = select(f.on_other, dot(tau, r), s)
+        r = r[0] - s * tau[0], r[1] - s * tau[1]
+        along = select(f.on_face, 0.0, along)
+        point = v[0] + along * tau[0], v[1] + along * tau[1]
+    distance, u = _between(r, f.apart, held)
+    gap, normal = distance, minus(u)
+    if f.beside:
+        gap, normal = select(f.on_other, facing, gap), pick(f.on_other, minus(m), normal)
+    gap, normal = select(f.on_face, height, gap), pick(f.on_face, n_B, normal)
+    return gap, turned(B, normal), moved((B.x, B.y, B.c, B.s), point)
+
+
+def _between(r, before, held):
+    """Return the length of r and its direction; held, to second order in what has changed since ``before``.
+
+    A length has no sign, and two corners that fly through each other stay apart: the direction of before has one.
+    """
+    if held is None:
+        length = sqrt(maximum(dot(r, r), SAME_POINT))
+        return length, (r[0] / length, r[1] / length)
+    length = sqrt(maximum(dot(before, before), SAME_POINT))
+    u = before[0] / length, before[1] / length
+    (radius,) = held
+    across = u[0] * r[1] - u[1] * r[0]
+    bent = across * across / (2.0 * maximum(length, radius)) if radius is not None else 0.0
+    return dot(u, r) + bent, u
 
 
 def _most_separating(A, others):

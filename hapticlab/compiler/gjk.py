@@ -13,7 +13,8 @@ corners that a radius widens.
 import sympy as sp
 from sympy.core.symbol import Str
 
-from ..scene.closest_points import PARTS, ClosestPoints
+from ..scene.closest_points import PARTS, ClosestPoints, sampled
+from ..scene.symbols import t
 from .faces import SAME_POINT, closest, core, distinct, dot, less, minus, moved, pick, relative, turned
 from .trace import clip, maximum, select, sqrt
 
@@ -103,27 +104,48 @@ def _measured(A, B, one, two):
 def trace(translator, node):
     """Return the value of a :class:`~hapticlab.scene.closest_points.ClosestPoints`; its other parts are known then."""
     first, second, method, label, _ = node.args
-    A, B = _cores(translator, first), _cores(translator, second)
-    measure = closest if method.name == "faces" else distance
-    found = [measure(a, b) for a in A for b in B] if A else _above(translator, first, B)
-    least = found[0]
-    for other in found[1:]:
-        least = pick(other[0] < least[0], other, least)
-    gap, normal, point = least
-    for part, value in zip(PARTS, (gap, *normal, *point), strict=True):
+    found = _pairs(translator, first, second, method.name)
+    if method.name == "sample" and len(found) > 1:
+        chosen = _pairs(_at_sample(translator), first, second, "faces")
+    else:
+        chosen = found
+    (least, gap), *others = [(by[0], result) for by, result in zip(chosen, found, strict=True)]
+    for by, result in others:
+        least, gap = pick(by < least, (by, result), (least, gap))
+    distance, normal, point = gap
+    for part, value in zip(PARTS, (distance, *normal, *point), strict=True):
         translator.known[ClosestPoints(first, second, method, label, Str(part))] = value
     return translator.known[node]
 
 
-def _cores(translator, body):
-    cores, x, y, angle = body
-    placed = [translator(expr) for expr in (x, y, sp.cos(angle), sp.sin(angle))]
-    return [core([tuple(map(translator, p)) for p in corners], *placed) for corners in cores]
+def _pairs(translate, first, second, method):
+    """Return (distance, normal, point) of each core of one body and each of the other, or of each corner."""
+    A, B = _cores(translate, first), _cores(translate, second)
+    if not A:
+        return _above(translate, first, B)
+    if method == "gjk":
+        return [distance(a, b) for a in A for b in B]
+    if method == "faces":
+        return [closest(a, b) for a in A for b in B]
+    A0, B0 = (_cores(_at_sample(translate), body) for body in (first, second))
+    radii = first[4] + second[4]
+    radius = translate(radii) if radii != 0 else None
+    return [closest(a, b, (a0, b0), radius) for a, a0 in zip(A, A0, strict=True) for b, b0 in zip(B, B0, strict=True)]
 
 
-def _above(translator, plane, cores):
+def _at_sample(translate):
+    return lambda expr: translate(sampled(expr) if expr.has(t) else expr)
+
+
+def _cores(translate, body):
+    cores, x, y, angle, _ = body
+    placed = [translate(expr) for expr in (x, y, sp.cos(angle), sp.sin(angle))]
+    return [core([tuple(map(translate, p)) for p in corners], *placed) for corners in cores]
+
+
+def _above(translate, plane, cores):
     """Return (height, normal, point) of each corner above a half-plane."""
-    _, x, y, angle = plane
-    x, y, c, s = (translator(expr) for expr in (x, y, sp.cos(angle), sp.sin(angle)))
+    _, x, y, angle, _ = plane
+    x, y, c, s = (translate(expr) for expr in (x, y, sp.cos(angle), sp.sin(angle)))
     points = [moved((B.x, B.y, B.c, B.s), p) for B in cores for p in distinct(B)]
     return [(dot((-s, c), less(p, (x, y))), (-s, c), p) for p in points]

@@ -9,6 +9,7 @@ derivatives share is computed once.
 import numpy as np
 import sympy as sp
 
+from ..scene.closest_points import sampled
 from ..scene.derivative import Partial, Rate
 from ..scene.symbols import Parameter, acceleration, t, v, x
 from .algebra import Algebra
@@ -59,7 +60,7 @@ class Graph:
         self.fixed, self.embedded = dict(fixed or {}), dict(embedded or {})
         self.builder = Algebra("f64")
         self.variables = {}  # expression -> number of its input
-        self.translator = Translator(self.builder, self._leaf, clock=self, graph=self)
+        self.translator = Translator(self.builder, self._leaf, clock=self, graph=self, sample=self._held)
         self._gradients, self._tangents = {}, {}
 
     def __call__(self, expr):
@@ -87,6 +88,10 @@ class Graph:
         if inner.id not in self._gradients:
             self._gradients[inner.id] = Gradient(inner)
         return self._gradients[inner.id](at)
+
+    def _held(self, expr):
+        # what a sample holds does not vary with the motion: a variable of its own
+        return self.variable(sampled(expr))
 
     def _tangent(self, key, seed):
         return self._tangents.setdefault(key, Tangent(self.builder, seed))
@@ -131,16 +136,22 @@ class Graph:
                 if i.op == "const":
                     done[k] = i.value
                 elif i.op == "input":
-                    done[k] = at[variables[i.index]]
+                    done[k] = self._number(variables[i.index], at)
                 else:
                     done[k] = NUMPY[i.op](*(done[a] for a in i.args))
         return [np.asarray(done[k], float) for k in wanted]
+
+    def _number(self, variable, at):
+        return self.evaluate(variable.args, at)[0] if isinstance(variable, sampled) else at[variable]
 
     def variables_of(self, exprs):
         """Return the variables that expressions depend on."""
         reached = reachable(self.builder.instructions, [self(expr).id for expr in exprs])
         numbers = {i.index for i in (self.builder.instructions[k] for k in reached) if i.op == "input"}
-        return [expr for expr, number in self.variables.items() if number in numbers]
+        found = [expr for expr, number in self.variables.items() if number in numbers]
+        held = [expr.args[0] for expr in found if isinstance(expr, sampled)]
+        more = self.variables_of(held) if held else []
+        return list(dict.fromkeys([*(expr for expr in found if not isinstance(expr, sampled)), *more]))
 
     def copy(self, value, translator, known):
         """Return a value of the graph in a translator's builder, its variables what they are to the translator.

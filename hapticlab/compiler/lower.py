@@ -157,7 +157,8 @@ class _Lowering:
     def translator(self, leaf, after=0.0):
         """Return what translates expressions of the tick, ``after`` [s] after the sample."""
         clock = Clock(self._tick_count, self.tracing.T, after)
-        return Translator(self.tracing.tick, leaf, clock, self.scene.values, self.graph)
+        at_sample = getattr(self, "at_sample", None)  # the first that is made
+        return Translator(self.tracing.tick, leaf, clock, self.scene.values, self.graph, at_sample)
 
     def _entering(self, name, value):
         return entering(value, self.tracing.real, f"{name} = {value:g}", ParameterError)

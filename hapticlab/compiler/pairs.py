@@ -79,7 +79,7 @@ class Contacts(tuple):
         return "\n".join(lines)
 
 
-def contacts_between(bodies, *, law, ignore=(), handle=(-math.inf, math.inf), corners=False, method="faces", values=None):
+def contacts_between(bodies, *, law, ignore=(), handle=(-math.inf, math.inf), corners=False, method="sample", values=None):
     """Return a contact for each pair of bodies that can meet.
 
     Parameters
@@ -94,8 +94,9 @@ def contacts_between(bodies, *, law, ignore=(), handle=(-math.inf, math.inf), co
     corners : bool
         Give each corner above a half-plane a contact of its own: what holds a box that lies flat, for a law without a
         place. Its stiffness then counts once a corner.
-    method : {"faces", "gjk"}
-        See :func:`hapticlab.scene.gaps.gap`.
+    method : {"sample", "faces", "gjk"}
+        How often the closest edges and corners are looked for: see :func:`hapticlab.scene.gaps.gap`. Once a sample unless
+        asked otherwise.
     values : dict name -> number, optional
         Parameters, for looking where the bodies start; their declared values unless given.
 

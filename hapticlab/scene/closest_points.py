@@ -9,8 +9,8 @@ PARTS = {"distance": "m", "normal_x": "1", "normal_y": "1", "point_x": "m", "poi
 class ClosestPoints(sp.Expr):
     """One of the facts about where two bodies' cores are closest: their distance, the normal or the point.
 
-    The arguments are the two bodies, each ``Tuple(cores, x, y, angle)``, the method, what it prints as, and the part. A
-    half-plane, which comes first, has no cores.
+    The arguments are the two bodies, each ``Tuple(cores, x, y, angle, radius)``, the method, what it prints as, and the
+    part. A half-plane, which comes first, has no cores.
     """
 
     is_commutative = True
@@ -36,3 +36,12 @@ class ClosestPoints(sp.Expr):
 
     def _latex(self, printer):
         return rf"\mathrm{{{self.part}}}\left(\text{{{self.args[3].name}}}\right)".replace("_", r"\_")
+
+
+class sampled(sp.Expr):
+    """The value of an expression at the sample, held until the next one, whatever it is inside a step."""
+
+    is_commutative = True
+    is_real = True
+    is_number = False
+    keeps_unit = True

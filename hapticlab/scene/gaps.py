@@ -15,7 +15,7 @@ from .cases import when
 from .closest_points import PARTS, ClosestPoints
 from .shapes import Box, Capsule, Circle, HalfPlane, Placed, Segment
 
-METHODS = ("faces", "gjk")
+METHODS = ("faces", "sample", "gjk")
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,13 @@ def gap(a, b, *, method="faces"):
     ----------
     a, b : Placed
         Shapes in their places, ``shape.at(...)``.
-    method : {"faces", "gjk"}
-        For two cores with corners. ``"gjk"`` costs less from about 16 corners each, and gives no negative distance of
-        the cores: only for shapes that a radius widens.
+    method : {"faces", "sample", "gjk"}
+        How the closest edges and corners are found. ``"faces"``: wherever the gap is asked for, at every stage of a
+        step; exact. ``"sample"``: once a sample, as Fig. 23.7 has the collision detector beside the solver; the distance
+        of what is closest then is exact inside the step, and what is closest changes a sample late. It costs a fraction
+        and leaves the motion smooth between samples, which laws with impulses need of polygons. ``"gjk"``: as
+        ``"faces"``, cheaper from about 16 corners each; gives no negative distance of the cores, so it is only for
+        shapes that a radius widens.
 
     Returns
     -------
@@ -128,16 +132,17 @@ def _closest(a, b, method):
     known = {part: ClosestPoints(_cores(a), _cores(b), Str(method), Str(f"{a.name}, {b.name}"), Str(part)) for part in PARTS}
     normal, r = (known["normal_x"], known["normal_y"]), b.shape.radius
     point = known["point_x"] - r * normal[0], known["point_y"] - r * normal[1]
-    if above:
+    if above and method != "sample":
         return _extreme(sp.Min, [height for height, _, _ in above]), normal, point
-    if isinstance(b.shape, Circle) and isinstance(a.shape, (Box, Capsule, Segment)):
+    if method != "sample" and isinstance(b.shape, Circle) and isinstance(a.shape, (Box, Capsule, Segment)):
         return _from_disc(a, b), normal, point
     return known["distance"] - radii, normal, point
 
 
 def _cores(body):
     cores = () if isinstance(body.shape, HalfPlane) else body.shape.cores
-    return sp.Tuple(sp.Tuple(*(sp.Tuple(*(sp.Tuple(*p) for p in core)) for core in cores)), body.x, body.y, body.angle)
+    corners = sp.Tuple(*(sp.Tuple(*(sp.Tuple(*p) for p in core)) for core in cores))
+    return sp.Tuple(corners, body.x, body.y, body.angle, body.shape.radius)
 
 
 def _extreme(kind, values):

@@ -9,6 +9,7 @@ from placements import values
 
 import hapticlab as hl
 from hapticlab.compiler import engine
+from hapticlab.compiler.advance import Taylor
 from hapticlab.compiler.first_sample import numbers
 from hapticlab.compiler.pairs import Contacts, _sweep, check_apart, contacts_between, possible_pairs
 from hapticlab.errors import SceneError
@@ -197,26 +198,28 @@ def test_refused(make, word):
         make(Circle(1).at(name="one"), Circle(1).at(x=q, name="other"))
 
 
-def falling(shape, **options):
-    """Energy, gap and height of a body that falls on a tile and bounces about, elastic all along."""
+def falling(shape, method):
+    """Energy and gap of a body that falls on a tile and bounces about, elastic all along; and the instructions."""
     x, y = (hl.coordinate(name, unit="m", initial=Amount(value, "m")) for name, value in (("x1", 0.02), ("y1", 0.5)))
     a = hl.coordinate("a1", unit="rad", initial=0.3, rate=Amount(2.0, "rad/s"))
     m, J, g, k = hl.parameters("m J g k", units="kg kg*m^2 m/s^2 N/m", values=(0.1, 2e-4, 9.81, 3000))
     tile = Polygon([(-0.2, 0), (0.2, 0), (0.15, 0.1), (-0.15, 0.1)]).at(y=0.2, name="tile")
-    (contact,) = contacts_between([tile, shape.at(x=x, y=y, angle=a, name="rod")], law=penalty(k=k))
+    (contact,) = contacts_between([tile, shape.at(x=x, y=y, angle=a, name="rod")], law=penalty(k=k), method=method)
     L = m * (x.diff(t) ** 2 + y.diff(t) ** 2) / 2 + J * a.diff(t) ** 2 / 2 - m * g * y
     fall = lagrange(L, contacts=[contact])
     depth = sp.Max(-contact.gap, 0)
     scene = hl.Scene(force=0, eom=[fall], watch={"E": fall.energy + k * depth**2 / 2, "d": contact.gap})
-    program = hl.compile(scene, T=4e-4, dtype="float64", **options)
+    program = hl.compile(scene, T=4e-4, dtype="float64")
     found = engine.load(program).run(1500, np.zeros((1500, 1)), np.array(program.values)[:, None])
-    return found.outputs[:, 1:, 0].T
+    return *found.outputs[:, 1:, 0].T, len(program)
 
 
 @pytest.mark.parametrize("shape", [Box(0.1, 0.06), Capsule(0.1, 0.02)])
 def test_a_fall_keeps_its_energy(shape):
     """The force is along the gradient of the gap, whichever corner or edge is closest, so k d^2/2 is its potential."""
-    E, d = falling(shape)
+    (E, d, cost), (every_stage, _, most) = falling(shape, "sample"), falling(shape, "faces")
+    assert cost < 0.5 * most
+    assert np.ptp(every_stage) < 3e-4 * E[0]
     assert d.min() < -0.005 and np.sum(np.diff((d < 0).astype(int)) > 0) >= 2
     # what is left is the method's: RK4 has order 1 where the contact closes inside a step
     assert np.ptp(E) < 3e-4 * E[0]
@@ -236,3 +239,30 @@ def test_a_box_lies_on_its_corners():
     y_end, a_end, N = engine.load(program).run(4000, np.zeros((4000, 1)), np.array(program.values)[:, None]).outputs[-1, 1:, 0]
     assert y_end == pytest.approx(0.05 - 0.2 * 9.81 / (2 * 2000), abs=1e-9)
     assert abs(a_end) < 1e-9 and N == pytest.approx(0.2 * 9.81, rel=1e-6)
+
+
+def bouncing(shape, ticks):
+    """Energy and gap of a body that bounces on a tilted tile by impulses that keep the energy, located in the step."""
+    x, y = (hl.coordinate(name, unit="m", initial=Amount(value, "m")) for name, value in (("x1", 0.02), ("y1", 0.36)))
+    a = hl.coordinate("a1", unit="rad", initial=0.3, rate=Amount(2.0, "rad/s"))
+    m, J, g = hl.parameters("m J g", units="kg kg*m^2 m/s^2", values=(0.1, 2e-4, 9.81))
+    bodies = [Box(0.4, 0.1).at(y=0.2, angle=0.2, name="tile"), shape.at(x=x, y=y, angle=a, name="body")]
+    contacts = contacts_between(bodies, law=impulse(e=1))
+    L = m * (x.diff(t) ** 2 + y.diff(t) ** 2) / 2 + J * a.diff(t) ** 2 / 2 - m * g * y
+    fall = lagrange(L, contacts=contacts)
+    scene = hl.Scene(force=0, eom=[fall], watch={"E": fall.energy, "d": contacts[0].gap})
+    program = hl.compile(scene, T=1e-3, dtype="float64", method=Taylor(order=6, events=1), live="m")
+    return engine.load(program).run(ticks, np.zeros((ticks, 1)), np.array(program.values)[:, None]).outputs[:, 1:3, 0].T
+
+
+def test_impulses_between_a_disc_and_a_tile():
+    E, d = bouncing(Circle(0.04), 500)
+    assert np.ptp(E) < 1e-9 * E[0]
+    assert d.min() > -1e-9 and np.sum(np.diff(np.sign(np.diff(d))) > 0) >= 2  # it turns between samples
+
+
+@pytest.mark.slow
+def test_impulses_between_a_box_and_a_tile():
+    E, d = bouncing(Box(0.1, 0.06), 300)
+    assert np.ptp(E) < 1e-9 * E[0]
+    assert d.min() > -1e-9 and np.sum(np.diff(np.sign(np.diff(d))) > 0) >= 2

@@ -131,6 +131,33 @@ def test_derivatives_on_the_graph(one, other):
     assert np.quantile(np.abs(r_t - (late - early) / (2 * h))[smooth], 0.9) < 1e-7
 
 
+@pytest.mark.parametrize(("one", "other"), OTHERS)
+def test_features_of_the_sample_are_the_same_at_the_sample(one, other):
+    at, (a, b) = placed(7, count=200), pair(one, other)
+    here, held = closest(a, b), closest(a, b, method="sample")
+    known, found = (values([c.gap, *c.normal, *c.point], at) for c in (here, held))
+    assert max(np.abs(k - f).max() for k, f in zip(known, found, strict=True)) < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("one", "other"), [("circle", "polygon"), ("box", "box"), ("capsule", "rounded"), ("box", "half-plane")]
+)
+def test_features_of_the_sample_have_the_same_derivatives(one, other):
+    """Held, a corner's distance is taken to second order, so that a disc that rolls over one feels it turn."""
+    at, (a, b) = placed(8, count=200), pair(one, other)
+    generator = np.random.default_rng(9)
+    at |= {q.diff(t): generator.uniform(-1, 1, 200) for q in (*A, *B)}
+    (g, r, r_t), (held, rate, rate_t) = (
+        Graph().evaluate([c, Rate(c), Rate(Rate(c))], at) for c in (gap(a, b), gap(a, b, method="sample"))
+    )
+    assert np.abs(g - held).max() < 1e-14 and np.abs(r - rate).max() < 1e-12
+    core = g + CORES[one][1] + CORES.get(other, ((), 0))[1]
+    radii = core - g
+    alike = (core > radii) & (radii > 1e-9) | (core < 0)  # corners nearer than in touch bend as they do in touch
+    assert alike.mean() > 0.15
+    assert np.abs(r_t - rate_t)[alike].max() < 1e-9
+
+
 def test_boxes_stacked_edge_on_edge_push_straight_up():
     """Corners coincide and edges are parallel: the normal and its derivatives are those of the edges all the same."""
     a, b = pair("box", "box")
@@ -252,7 +279,7 @@ def test_gjk_is_offered_for_shapes_with_a_radius():
     assert np.abs(one - other)[one > -0.1 + 1e-9].max() < 5e-15
     with pytest.raises(SceneError, match="gjk gives no negative distance"):
         gap(*pair("polygon", "box"), method="gjk")
-    with pytest.raises(SceneError, match="faces, gjk"):
+    with pytest.raises(SceneError, match="faces, sample, gjk"):
         gap(a, b, method="sat")
 
 
