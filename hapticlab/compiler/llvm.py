@@ -1,6 +1,7 @@
 """Machine code for this computer: the only module that opens llvmlite."""
 
 import ctypes
+import functools
 import threading
 
 import numpy as np
@@ -25,14 +26,13 @@ class Llvm:
 
     def __init__(self, program):
         _open_llvmlite()
-        self.program = expand(program.verify())
-        self._width = next((lanes for most, lanes in WIDTHS.items() if len(self.program) <= most), 8)
+        self.program = program.verify()
         self._compiled = {}
         self._lock = threading.Lock()
 
     def run(self, ticks, inputs, parameters, states=None, every=1):
         lanes = parameters.shape[1]
-        width = 1 if lanes == 1 else self._width
+        width = 1 if lanes == 1 else self._width()
         stride = -(-lanes // width) * width
         outputs = np.empty((ticks // every, len(self.program.outputs), stride))
         carried = np.empty((len(self.program.states), stride))
@@ -46,10 +46,17 @@ class Llvm:
         run(ticks, every, 0, stride, stride, states is not None, *(a.ctypes.data for a in arrays))
         return outputs[..., :lanes], carried[:, :lanes]
 
+    def _width(self):
+        return next((lanes for most, lanes in WIDTHS.items() if len(self._expanded) <= most), 8)
+
+    @functools.cached_property
+    def _expanded(self):
+        return expand(self.program)
+
     def _function(self, width):
         with self._lock:
             if width not in self._compiled:
-                self._compiled[width] = _compile(emit(self.program, width))
+                self._compiled[width] = _compile(emit(self.program if width == 1 else self._expanded, width))
             return self._compiled[width][1]
 
 

@@ -7,7 +7,8 @@ a*b + c nor reorder a sum: the bits are those of the interpreter.
 
 import struct
 
-from .ir import LEAVES
+from .ir import ELEMENTARY, LEAVES
+from .side_by_side import functions, in_order
 from .trace import reachable
 
 SCALAR = {"f32": "float", "f64": "double", "bool": "i1", "i32": "i32"}
@@ -146,19 +147,28 @@ class Writer:
             f"{r} = sitofp {k} {r}.e to {t}",
         ])  # fmt: skip
 
-    def block(self, block, prefix, leaves):
-        """Return the name of every result of a block and its lines, by position."""
-        names, lines = [], {}
+    def names(self, block, prefix, leaves):
+        """Return the name of every result of a block, by position."""
+        names = []
         for position, i in enumerate(block.instructions):
             if i.op == "const":
                 names.append(self.const(i.value, i.type))
-            elif i.op in LEAVES:
-                names.append(leaves[i.op] + str(i.index))
             else:
-                names.append(f"%{prefix}{position}")
+                names.append(leaves[i.op] + str(i.index) if i.op in LEAVES else f"%{prefix}{position}")
+        return names
+
+    def lines(self, block, names, positions):
+        """Return the lines that compute these results of a block."""
+        lines = []
+        computed = [k for k in positions if block.instructions[k].op not in LEAVES]
+        for alike in in_order(block, computed):
+            i = block.instructions[alike[0]]
+            if i.op in ELEMENTARY:
+                lines += functions(self, block, names, alike)
+            else:
                 operands = [names[a] for a in i.args]
-                lines[position] = self.operation(names[-1], i, operands, block.instructions[i.args[0]].type)
-        return names, lines
+                lines.append(self.operation(names[alike[0]], i, operands, block.instructions[i.args[0]].type))
+        return lines
 
     def load(self, result, channel, address, shared=False):
         """Read a float64 a lane, or one ``shared`` by all lanes, as the type of a channel."""
@@ -223,31 +233,32 @@ class Writer:
 
 
 def emit(program, lanes=1):
-    """Return LLVM's text of ``run`` for a program without elementary functions.
+    """Return LLVM's text of ``run`` for a program; one of several lanes must be without elementary functions.
 
     ``run(ticks, every, first, last, stride, resumed, inputs, parameters, states, outputs)`` steps lanes first, first +
     lanes, ... below last. The arrays are those of :meth:`hapticlab.compiler.engine.Engine.run`, ``stride`` lanes long;
     ``states`` are read if ``resumed``, and always written.
     """
     w = Writer(lanes)
-    begun, init = w.block(program.init, "i", {"param": "%p", "input": "%y"})
-    names, lines = w.block(program.tick, "t", {"param": "%p", "input": "%x", "state": "%s"})
-    begun, after = ([n[k] for k in b.states] for n, b in ((begun, program.init), (names, program.tick)))
+    init, tick = program.init, program.tick
+    first = w.names(init, "i", {"param": "%p", "input": "%y"})
+    names = w.names(tick, "t", {"param": "%p", "input": "%x", "state": "%s"})
+    begun, after = ([n[k] for k in b.states] for n, b in ((first, init), (names, tick)))
     hoisted = _needs_parameters_alone(program.tick)
     stepped = set(reachable(program.tick.instructions, program.tick.states)) - hoisted
     phi = "{0}{1} = phi {2} [ {3}, {4} ], [ {5}, {6} ]".format
     types = [w.types[c.type] for c in program.states]
     parts = {
         "parameters": w.load_lanes("%p", program.parameters, "%parameters"),
-        "hoisted": [line for k, line in lines.items() if k in hoisted],
+        "hoisted": w.lines(tick, names, hoisted),
         "sample_of_init": w.load_sample("%y", program.inputs, "%inputs"),
-        "init": init.values(),
+        "init": w.lines(init, first, range(len(init.instructions))),
         "resume": w.load_lanes("%r", program.states, "%states"),
         "start": [phi("%b", k, t, begun[k], "%init", f"%r{k}", "%resume") for k, t in enumerate(types)],
         "states": [phi("%s", k, t, f"%b{k}", "%start", after[k], "%next") for k, t in enumerate(types)],
         "sample": w.load_sample("%x", program.inputs, "%row"),
-        "tick": [line for k, line in lines.items() if k in stepped],
-        "kept": [line for k, line in lines.items() if k not in stepped and k not in hoisted],
+        "tick": w.lines(tick, names, stepped),
+        "kept": w.lines(tick, names, {*range(len(tick.instructions))} - stepped - hoisted),
         "outputs": w.store_lanes("%o", program.outputs, [names[k] for k in program.tick.outputs], "%out"),
         "save": w.store_lanes("%e", program.states, after, "%states"),
     }

@@ -10,7 +10,7 @@ from random_programs import PRIMITIVE, assert_same_bits, random_program, random_
 
 from hapticlab.compiler.engine import load
 from hapticlab.compiler.ir import OPERATIONS, Block, Channel, Program
-from hapticlab.compiler.trace import Builder, floor, select, sqrt
+from hapticlab.compiler.trace import Builder, cos, exp, floor, select, sin, sqrt
 
 pytest.importorskip("llvmlite")
 REALS = {"f32": ("f32",), "f64": ("f64",), "mixed": ("f32", "f64")}
@@ -140,3 +140,20 @@ def test_many_engines_and_threads_share_nothing():
     for result in results:
         assert_same_bits(result.outputs, reference.outputs)
         assert_same_bits(result.states, reference.states)
+
+
+@pytest.mark.parametrize("real", ["f32", "f64"])
+@pytest.mark.parametrize("count", [1, 2, 5, 9, 17])
+def test_functions_side_by_side_give_the_bits_of_one_alone(real, count):
+    """Vectors of 1, 2, 8 and 8 + 1 or 16 + 1 lanes; a sine of a sine waits for it; one angle is asked for twice."""
+
+    def chained(*angles):
+        inner = [sin(a) * 3.0 for a in angles]
+        return sum((cos(a) + sin(b) + exp(b) for a, b in zip(angles, inner, strict=True)), cos(inner[0]))
+
+    program = one_block(real, [f"a{k}" for k in range(count)], chained)
+    rows = np.random.default_rng(count).uniform(-40, 40, (20, count))
+    rows[0], rows[1, 0] = 0.0, np.inf
+    fast, slow = load(program, "llvm"), load(program, "interpreter")
+    for row in rows:
+        assert_same_bits(fast.run(1, parameters=row).outputs, slow.run(1, parameters=row).outputs)
