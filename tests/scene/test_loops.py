@@ -211,3 +211,31 @@ def test_holonomic():
     assert is_holonomic(FOUR_BAR[0])
     assert not is_holonomic(s.diff(hl.t) - r * theta.diff(hl.t))
     assert not is_holonomic(s - r * hl.v(hl.t))
+
+
+def test_a_five_bar_is_driven_by_its_two_cranks():
+    low, high = (1.2, 2.2), (0.9, 1.9)
+    left, right = hl.coordinate("left", unit="rad", range=low), hl.coordinate("right", unit="rad", range=high)
+    loop = [
+        r * sp.cos(left) + L * sp.cos(phi) - L * sp.cos(q3) - r * sp.cos(right) - g,
+        r * sp.sin(left) + L * sp.sin(phi) - L * sp.sin(q3) - r * sp.sin(right),
+    ]
+
+    def elbows(link):
+        d = 0.06 + 0.08 * (np.exp(1j * 1.3) - np.exp(1j * 1.8))
+        arm = d / 2 + 1j * d / abs(d) * math.sqrt(link**2 - abs(d) ** 2 / 4)
+        return {phi: float(np.angle(arm)), q3: float(np.angle(arm - d))}
+
+    start = {left: 1.8, right: 1.3, r: 0.08, L: 0.1, g: 0.06, **elbows(0.1)}
+    found = embed(loop, [left, phi, q3, right], start)
+    assert found.drivers == (left, right)
+    generator = np.random.default_rng(3)
+    at = {**start, left: generator.uniform(*low, 100), right: generator.uniform(*high, 100)}
+    for step in found.steps:
+        at[step.coordinate] = number(step.value, at)
+    assert residual(loop, at) < 1e-15
+    # the elbows stay on their side
+    assert np.all(np.sin(at[q3] - at[phi]) > 0) == (math.sin(start[q3] - start[phi]) > 0)
+    with pytest.raises(SceneError, match="cannot close at left = .*, right = "):
+        embed(loop, [left, phi, q3, right], start | {L: 0.06, **elbows(0.06)})
+
