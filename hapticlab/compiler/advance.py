@@ -7,7 +7,7 @@ from .crossing import FEWER_STEPS, STEPS
 from .flow import motion_of
 from .ir import Channel
 from .located import Stepper
-from .stiffness import check_size, check_smooth, check_step, frequency, is_linear, numbers, order_for
+from .stiffness import check_size, check_smooth, check_step, frequency, is_linear, numbers, order_for, within
 from .trace import select
 
 #: most located events of a step: what touches may leave within it, and something else may happen too
@@ -47,7 +47,9 @@ class Taylor:
                 raise ProgramError(f"{name} = {given!r}; needs a whole number in {low}..{high}")
 
 
-def advance(method, tracing, rates, groups, h, substeps, values, name, contacts=None, impact=None, after=None):
+def advance(
+    method, tracing, rates, groups, h, substeps, values, name, contacts=None, impact=None, after=None, ranges=()
+):
     """Trace one period of a motion; return (groups, facts, unlocated) with the state after it.
 
     Parameters
@@ -71,6 +73,9 @@ def advance(method, tracing, rates, groups, h, substeps, values, name, contacts=
     after : callable ``(reactions)``, optional
         Is given the values of the motion's reactions at the end of the period.
 
+    ranges : sequence of (low, high), optional
+        Declared for each q: where one is finite, a motion that is not linear is looked at within it too.
+
     Returns
     -------
     groups : (q, w, s)
@@ -83,12 +88,13 @@ def advance(method, tracing, rates, groups, h, substeps, values, name, contacts=
     motion = motion_of(builder, rates, len(groups[0]), len(groups[2]), contacts)
     check_smooth(motion, name)
     number = numbers(builder.instructions, tracing.at_start(values))
-    omega = frequency(motion, [tuple([number(v.id) for v in part] for part in groups)], number)
+    start, linear = tuple([number(v.id) for v in part] for part in groups), is_linear(motion)
+    omega = frequency(motion, [start, *(() if linear else within(ranges, start))], number)
     check_step(omega, h * substeps, substeps, name)
-    order = method.order or order_for(omega * h, real, is_linear(motion))
+    order = method.order or order_for(omega * h, real, linear)
     surfaces = len(motion.guards) + len(motion.reactions)
     events = method.events or _EVENTS[surfaces > 2]
-    steps = FEWER_STEPS if omega * h <= 0.05 and is_linear(motion) else STEPS
+    steps = FEWER_STEPS if omega * h <= 0.05 and linear else STEPS
     stepper = Stepper(motion, h, order, events, impact and impact(motion), steps=steps)
     held = [_held(tracing, k) for k in range(len(motion.reactions))]
     now, missed = held, None

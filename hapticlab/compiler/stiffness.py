@@ -100,6 +100,18 @@ def frequency(motion, states, number):
     return float(largest)
 
 
+def within(ranges, start, count=8):
+    """Yield states (q, w, s) like the start, positions anywhere within their declared ranges where these are finite."""
+    q, w, s = start
+    bounded = [k for k, limits in enumerate(ranges) if np.isfinite(limits).all()]
+    generator = np.random.default_rng(13)
+    for _ in range(count if bounded else 0):
+        at = list(q)
+        for k in bounded:
+            at[k] = generator.uniform(*ranges[k])
+        yield at, w, s
+
+
 def check_step(omega, T, substeps, name):
     """Refuse a step in which the fastest part of the motion turns by more than a radian."""
     if omega * T / substeps > 1.0:

@@ -184,3 +184,16 @@ def test_the_handle_that_falls_away_leaves_it_behind():
     # the first samples tell of the fall a period or two late, and what is let go then has the speed of that instant
     assert (abs(y - x[0] + 9.81 * falls**2 / 2) <= 2.5 * 20 * T * T + 20 * T * falls).all()
     assert N[40] == pytest.approx(0.05 * 9.81) and not N[60:].any()
+
+
+def test_a_declared_range_is_looked_at_where_the_motion_is_not_linear():
+    m, k, start, u = hl.parameters("m k q_0 u", units="kg N/m^3 m N/m", values=(0.05, 5e8, 0.0, 1.0))
+
+    def hardening(**declared):
+        q = hl.coordinate("q", unit="m", initial=start, **declared)
+        return hl.Scene(u * q, [sp.Eq(m * q.diff(hl.t, 2), -k * q**3)])
+
+    assert "omega" not in hl.compile(hardening(), method="taylor", T=T).facts
+    # at 2 cm the spring has 3 k q^2 = 6e5 N/m: 3464 rad/s
+    with pytest.raises(ProgramError, match=r"substeps=[34]"):
+        hl.compile(hardening(range=(-0.02, 0.02)), method="taylor", T=T)
