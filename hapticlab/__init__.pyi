@@ -7,9 +7,12 @@ from .analysis.energy import energy
 from .analysis.passivity import passivity_limit
 from .analysis.pictures import picture
 from .analysis.plots import plot
+from .analysis.reduction import reduction
 from .analysis.stability import stability_limit
 from .analysis.sweep import sweep
 from .compiler.lower import compile
+from .compiler.replay import replay
+from .compiler.requires import requires
 from .device.board import SerialPaddle
 from .device.calibrate import calibrate
 from .device.connect import connect
@@ -101,6 +104,9 @@ __all__ = [
     "proxy_curve",
     "proxy_wall",
     "pulse_time",
+    "reduction",
+    "replay",
+    "requires",
     "rigid",
     "signal",
     "stability_limit",
