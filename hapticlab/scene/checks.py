@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import sympy as sp
+from sympy.core.cache import cacheit
 from sympy.core.function import AppliedUndef
 
 from ..errors import ParameterError, SceneError, SignalError
@@ -15,8 +16,13 @@ _NOT_REAL = (sp.I, sp.zoo, sp.nan, sp.oo, -sp.oo)
 
 def applied(expressions, *roles):
     """Return the applied functions of a role (coordinate, signal, handle), sorted by name."""
-    atoms = {a for e in expressions for a in e.atoms(sp.Function)}
+    atoms = {a for e in expressions for a in _functions(e)}
     return sorted((a for a in atoms if getattr(type(a), "role", None) in roles), key=str)
+
+
+@cacheit  # a scene is asked many times, and a Lagrangian is long
+def _functions(expr):
+    return frozenset(expr.atoms(sp.Function))
 
 
 def equations(eom):
