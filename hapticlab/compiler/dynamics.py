@@ -31,7 +31,7 @@ class Dynamics:
     second, first : tuple of coordinates
         Those that are integrated: with their rates, and by a given rate.
     notes : tuple of str
-        How constraints are kept.
+        How constraints are kept, and what models say of where they came from.
     """
 
     def __init__(self, lowering, form, method, substeps):
@@ -45,6 +45,7 @@ class Dynamics:
                 raise
             self.definite = False  # a constraint may carry what has no mass of its own
         self.enforced, self.notes = self._enforced(constraints) if constraints else (None, ())
+        self.notes = (*self.notes, *(note for model in form.models for note in model.notes))
         kept = self.enforced.coordinates if self.enforced else ()
         orders = dict(zip(form.coordinates, form.orders, strict=True))
         self.others = tuple(q for q in form.coordinates if q not in kept)
@@ -193,7 +194,7 @@ class Dynamics:
             groups, located, unlocated = advance(
                 self.method, tracing, self.rates, groups, self.h, self.substeps, lowering.scene.values,
                 lowering.scene.name, contacts=contacts, impact=self.contacts.impact if contacts else None,
-                after=reacting.extend,
+                after=reacting.extend, ranges=[(type(q).low, type(q).high) for q in self.second],
             )  # fmt: skip
             facts |= located
             groups = self._hovering(tracing.T, groups)

@@ -42,6 +42,10 @@ class Mechanics:
     dissipation : expression [W]
         Rayleigh's function.
     forces : tuple of (coordinate, expression)
+    notes : tuple of str
+        What a listing of the program says about where the equations came from.
+    names : tuple of (symbol of SymPy, expression)
+        What the symbols of a model of ``sympy.physics.mechanics`` became.
     """
 
     coordinates: tuple
@@ -56,6 +60,8 @@ class Mechanics:
     alpha: float = None
     dissipation: sp.Expr = sp.S.Zero
     forces: tuple = ()
+    notes: tuple = ()
+    names: tuple = ()
 
     def __post_init__(self):
         if self.enforce not in ENFORCE:
@@ -66,7 +72,9 @@ class Mechanics:
             raise SceneError(f"two contacts are called {twice}; give each its own, hl.Contact(..., name='...')")
 
     def __getitem__(self, name):
-        """Return the coordinate of a name."""
+        """Return the coordinate of a name; of a symbol of SymPy, what it became."""
+        if isinstance(name, sp.Basic) and name in dict(self.names):
+            return dict(self.names)[name]
         known = {type(q).__name__: q for q in self.coordinates}
         if name not in known:
             raise SceneError(f"no coordinate {name!r}; there are {', '.join(known)}")
@@ -154,6 +162,12 @@ def lagrange(L, *, dissipation=0, forces=None, constraints=(), contacts=(), enfo
     moved = [L, R, *zeros, *forces, *(part for c in contacts for part in _parts(c)[:1])]
     coordinates = tuple(applied(moved, "coordinate"))
     _check(L, R, forces, coordinates)
+    _check_units(L, R, forces)
+    return of_energies(L, R, forces, coordinates, zeros, contacts, enforce=enforce, alpha=alpha)
+
+
+def of_energies(L, R, forces, coordinates, constraints, contacts=(), **facts):
+    """Return the :class:`Mechanics` of energies and forces that have been checked."""
     rates = [q.diff(t) for q in coordinates]
     momenta = [Partial(L, w) for w in rates]
     N = range(len(rates))  # entries above the diagonal are those below it, so that the compiler sees that M is symmetric
@@ -164,11 +178,9 @@ def lagrange(L, *, dissipation=0, forces=None, constraints=(), contacts=(), enfo
         )
         for q, w, p in zip(coordinates, rates, momenta, strict=True)
     )
-    written = (L, R, *forces.values(), *zeros, *(part for c in contacts for part in _parts(c)))
+    written = (L, R, *forces.values(), *constraints, *(part for c in contacts for part in _parts(c)))
     energies = {"lagrangian": L, "dissipation": R, "forces": tuple(forces.items())}
-    return Mechanics(
-        coordinates, (2,) * len(coordinates), M, f, written, zeros, contacts, enforce=enforce, alpha=alpha, **energies
-    )
+    return Mechanics(coordinates, (2,) * len(coordinates), M, f, written, constraints, contacts, **energies, **facts)
 
 
 def _listed(given):
@@ -201,9 +213,13 @@ def _check(L, R, forces, coordinates):
     second = next((d for d in (L + R).atoms(sp.Derivative) if d.derivative_count > 1), None)
     if second is not None:
         raise SceneError(f"L or the dissipation holds {second}; energies are of positions and rates alone")
+    for q in forces:
+        if q not in coordinates or getattr(type(q), "role", None) != "coordinate":
+            raise SceneError(f"forces has {q}; its keys are coordinates: {', '.join(map(str, coordinates))}")
+
+
+def _check_units(L, R, forces):
     agree_with(L, "N*m", "L")
     agree_with(R, "W", "dissipation")
     for q, Q in forces.items():
-        if q not in coordinates or getattr(type(q), "role", None) != "coordinate":
-            raise SceneError(f"forces has {q}; its keys are coordinates: {', '.join(map(str, coordinates))}")
         agree_with(Q, unit_of(sp.Mul(L, 1 / q, evaluate=False)), f"force on {type(q).__name__}")
