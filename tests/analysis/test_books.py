@@ -60,7 +60,9 @@ LEAKS = {
 }
 
 
-@pytest.mark.parametrize("model, method, substeps", LEAKS)
+@pytest.mark.parametrize("model, method, substeps", [
+    *LEAKS, pytest.param("hunt_crossley", "taylor", 2, marks=pytest.mark.slow),
+])  # fmt: skip
 def test_the_books_of_every_contact_model_close(model, method, substeps):
     """supplied = stored + dissipated + leak at every sample, and the leak is no more than the method's own."""
     log = run(dropped(LAWS[model]), 1200, method=method, substeps=substeps)
@@ -69,7 +71,7 @@ def test_the_books_of_every_contact_model_close(model, method, substeps):
     assert supplied == pytest.approx(M * G * H)
     # stored is the ball's own energy, known independently; while it flies, nothing else holds any
     assert dissipated[-1] > 0.3 * M * G * H and (np.diff(dissipated) > -1e-12).all()
-    assert np.abs(leak).max() < LEAKS[model, method, substeps]
+    assert np.abs(leak).max() < LEAKS.get((model, method, substeps), 1e-13)
 
 
 def test_the_leak_is_what_the_method_makes():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -106,6 +107,42 @@ def test_a_block_slides_to_a_stop_and_stays():
     assert np.abs(log["z"] - (0.8 * s - a * s**2 / 2)).max() < 1e-14
     stopped = log["t"] > 0.8 / a
     assert (log["w"][stopped] == 0).all() and np.abs(log["F_f"][log["t"] > 0.8 / a + T]).max() < 1e-12
+
+
+def test_dry_friction_carries_its_share_of_a_reaction():
+    """A block that slides on a floor it rests on, F_c = mu N with N found while it runs: it stops after w^2/(2 mu g)."""
+    mu, w0 = hl.parameters("mu w0", units="1 m/s", values=(0.3, 0.8))
+    y, s = hl.coordinate("y", unit="m"), hl.coordinate("s", unit="m", rate=w0)
+    floor = hl.Contact(y, hl.impulse(e=0.5), name="floor")
+    rub = hl.friction(slip=s.diff(t), F_c=mu * floor.force, name="rub")
+    L = m * (y.diff(t) ** 2 + s.diff(t) ** 2) / 2 - m * g * y
+    scene = hl.Scene(force=0, eom=[lagrange(L, contacts=[floor, rub])], watch={"s": s, "N": floor.force, "F_f": rub.force})
+    log = run(scene, 500)
+    a = 0.3 * G
+    tau = np.minimum(log["t"], 0.8 / a)
+    assert np.abs(log["s"] - (0.8 * tau - a * tau**2 / 2)).max() < 1e-14
+    assert log["N"][1:] == pytest.approx(M * G, rel=1e-14)
+    assert log["F_f"][1 : int(0.8 / a / T)] == pytest.approx(0.3 * M * G, rel=1e-14) and abs(log["F_f"][-1]) < 1e-14
+
+
+@pytest.mark.slow
+def test_a_constrained_body_strikes_as_the_same_body_in_one_coordinate():
+    """A pendulum in x and y on a constraint, against its angle: the impact goes through the multiplier."""
+    d, r = hl.parameters("d r", units="m m", values=(0.05, 0.3))
+    X, Y = hl.coordinate("X", unit="m", initial=r), hl.coordinate("Y", unit="m")
+    angle = hl.coordinate("angle", unit="rad", initial=np.pi / 2)
+    law, logs = hl.impulse(e=0.7), []
+    flat = lagrange(
+        m * (X.diff(t) ** 2 + Y.diff(t) ** 2) / 2 - m * g * Y, constraints=[X**2 + Y**2 - r**2],
+        contacts=[hl.Contact(X + d, law, name="stop")],
+    )  # fmt: skip
+    turned = lagrange(
+        m * r**2 * angle.diff(t) ** 2 / 2 + m * g * r * sp.cos(angle), contacts=[hl.Contact(r * sp.sin(angle) + d, law)]
+    )
+    for motion, place in ((flat, X), (turned, r * sp.sin(angle))):
+        logs.append(run(hl.Scene(force=0, eom=[motion], watch={"place": place}), 1200))
+    assert np.abs(logs[0]["place"] - logs[1]["place"]).max() < 1e-12
+    assert logs[0]["place"].min() == pytest.approx(-0.05, abs=1e-3)
 
 
 def test_stick_slip_breaks_away_slides_and_sticks_as_in_closed_form():
