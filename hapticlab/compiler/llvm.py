@@ -3,6 +3,7 @@
 import ctypes
 import functools
 import threading
+import weakref
 
 import numpy as np
 
@@ -57,7 +58,7 @@ class Llvm:
         with self._lock:
             if width not in self._compiled:
                 self._compiled[width] = _compile(emit(self.program if width == 1 else self._expanded, width))
-            return self._compiled[width][1]
+            return self._compiled[width]
 
 
 def llvmlite_is_ready():
@@ -93,14 +94,23 @@ def _context(binding):
 
 
 def _compile(text):
-    """Return the keeper of the machine code and the function in it; the function lives as long as the keeper."""
+    """Return the function of a text as machine code, which lives as long as the function."""
     binding = _open_llvmlite()
     target = binding.Target.from_default_triple()
     machine = target.create_target_machine(
         cpu=binding.get_host_cpu_name(), features=binding.get_host_cpu_features().flatten(), opt=2, jit=True
     )
-    module = binding.parse_assembly(text, _context(binding))
-    keeper = binding.create_mcjit_compiler(module, machine)
+    context = _context(binding)
+    keeper = binding.create_mcjit_compiler(binding.parse_assembly(text, context), machine)
     keeper.finalize_object()
     prototype = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 6, *[ctypes.c_void_p] * 4)
-    return keeper, prototype(keeper.get_function_address("run"))
+    run = prototype(keeper.get_function_address("run"))
+    # the garbage collector would close what it finds in a cycle in any order, and the code must go before its context
+    weakref.finalize(run, _close, keeper, context).atexit = False
+    return run
+
+
+def _close(keeper, context):
+    """Free machine code, then the context that it was made in."""
+    keeper.close()
+    context.close()

@@ -142,6 +142,17 @@ def test_many_engines_and_threads_share_nothing():
         assert_same_bits(result.states, reference.states)
 
 
+def test_engines_in_a_cycle_are_collected_code_first():
+    for seed in range(4):  # a context freed before its code crashed at once
+        program = random_program(seed)
+        inputs, parameters = drive(program, seed, 3, 1)
+        held = [load(program, "llvm")]
+        held[0].run(3, inputs, parameters)
+        held.append(held)
+        del held
+        assert gc.collect() > 0
+
+
 @pytest.mark.parametrize("real", ["f32", "f64"])
 @pytest.mark.parametrize("count", [1, 2, 5, 9, 17])
 def test_functions_side_by_side_give_the_bits_of_one_alone(real, count):
