@@ -145,24 +145,21 @@ def order_for(omega_h, real, linear):
 
 
 def is_linear(motion):
-    """Tell whether the motion of every mode is linear in its state, the handle and time."""
+    """Tell whether the motion of every mode is linear in its state, driven by polynomials of time at most."""
     instructions = motion.builder.instructions
-    moving = {leaf.id for leaf in (*motion.q, *motion.w, *motion.s, motion.tau, *(r.leaf for r in motion.reactions))}
+    moving = {leaf.id for leaf in (*motion.q, *motion.w, *motion.s, *(r.leaf for r in motion.reactions))}
+    timely = {motion.tau.id}
     for p in reachable(instructions, [rate.id for rate in (*motion.a, *motion.ds)]):
         i = instructions[p]
-        which = [a in moving for a in i.args]
-        if any(which):
-            moving.add(p)
-            linear = {
-                "neg": True,
-                "add": True,
-                "sub": True,
-                "mul": sum(which) == 1,
-                "div": not which[-1],
-                "select": not which[0],
-            }
-            if not linear.get(i.op, False):
-                return False
+        which = [a in moving or a in timely for a in i.args]
+        if not any(which):
+            continue
+        moves = not moving.isdisjoint(i.args)
+        (moving if moves else timely).add(p)
+        product = sum(which) == 1 or not moves
+        rules = {"neg": True, "add": True, "sub": True, "mul": product, "div": not which[-1], "select": not which[0]}
+        if not rules.get(i.op, False):
+            return False
     return True
 
 
