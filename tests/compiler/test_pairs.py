@@ -50,7 +50,7 @@ def crowd(seed, count=7):
     return [*bodies, plane], coordinates
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_what_is_left_out_never_meets(seed):
     bodies, coordinates = crowd(seed)
     pairs = possible_pairs(bodies)
@@ -198,9 +198,9 @@ def test_refused(make, word):
         make(Circle(1).at(name="one"), Circle(1).at(x=q, name="other"))
 
 
-def falling(shape, method):
+def falling(shape, method, ticks):
     """Energy and gap of a body that falls on a tile and bounces about, elastic all along; and the instructions."""
-    x, y = (hl.coordinate(name, unit="m", initial=Amount(value, "m")) for name, value in (("x1", 0.02), ("y1", 0.5)))
+    x, y = (hl.coordinate(name, unit="m", initial=Amount(value, "m")) for name, value in (("x1", 0.02), ("y1", 0.38)))
     a = hl.coordinate("a1", unit="rad", initial=0.3, rate=Amount(2.0, "rad/s"))
     m, J, g, k = hl.parameters("m J g k", units="kg kg*m^2 m/s^2 N/m", values=(0.1, 2e-4, 9.81, 3000))
     tile = Polygon([(-0.2, 0), (0.2, 0), (0.15, 0.1), (-0.15, 0.1)]).at(y=0.2, name="tile")
@@ -210,40 +210,46 @@ def falling(shape, method):
     depth = sp.Max(-contact.gap, 0)
     scene = hl.Scene(force=0, eom=[fall], watch={"E": fall.energy + k * depth**2 / 2, "d": contact.gap})
     program = hl.compile(scene, T=4e-4, dtype="float64")
-    found = engine.load(program).run(1500, np.zeros((1500, 1)), np.array(program.values)[:, None])
+    found = engine.load(program).run(ticks, np.zeros((ticks, 1)), np.array(program.values)[:, None])
     return *found.outputs[:, 1:, 0].T, len(program)
 
 
-@pytest.mark.parametrize("shape", [Box(0.1, 0.06), Capsule(0.1, 0.02)])
-def test_a_fall_keeps_its_energy(shape):
+@pytest.mark.parametrize(
+    ("shape", "method", "ticks"),
+    [
+        (Box(0.1, 0.06), "sample", 400),
+        pytest.param(Box(0.1, 0.06), "faces", 2000, marks=pytest.mark.slow),
+        pytest.param(Capsule(0.1, 0.02), "sample", 2000, marks=pytest.mark.slow),
+    ],
+)
+def test_a_fall_keeps_its_energy(shape, method, ticks):
     """The force is along the gradient of the gap, whichever corner or edge is closest, so k d^2/2 is its potential."""
-    (E, d, cost), (every_stage, _, most) = falling(shape, "sample"), falling(shape, "faces")
-    assert cost < 0.5 * most
-    assert np.ptp(every_stage) < 3e-4 * E[0]
-    assert d.min() < -0.005 and np.sum(np.diff((d < 0).astype(int)) > 0) >= 2
+    E, d, cost = falling(shape, method, ticks)
+    assert d.min() < -0.003 and np.any(np.diff((d < 0).astype(int)) < 0)
     # what is left is the method's: RK4 has order 1 where the contact closes inside a step
     assert np.ptp(E) < 3e-4 * E[0]
+    assert cost < (1500 if method == "sample" else 4000)
 
 
 def test_a_box_lies_on_its_corners():
     """Each of the two corners below carries half the weight: m g/(2 k) deep."""
     y = hl.coordinate("y1", unit="m", initial=Amount(0.0503, "m"))
     a = hl.coordinate("a1", unit="rad", initial=0.002)
-    m, J, g, k, b = hl.parameters("m J g k b", units="kg kg*m^2 m/s^2 N/m N*s/m", values=(0.2, 5e-4, 9.81, 2000, 10))
+    m, J, g, k, b = hl.parameters("m J g k b", units="kg kg*m^2 m/s^2 N/m N*s/m", values=(0.2, 5e-4, 9.81, 2000, 20))
     box = Box(0.2, 0.1).at(y=y, angle=a, name="box")
     contacts = contacts_between([ground(), box], law=penalty(k=k, b=b), corners=True)
     L = m * y.diff(t) ** 2 / 2 + J * a.diff(t) ** 2 / 2 - m * g * y
     total = sp.Add(*(c.force for c in contacts))
     scene = hl.Scene(force=0, eom=[lagrange(L, contacts=contacts)], watch={"y1": y, "a1": a, "N": total})
-    program = hl.compile(scene, T=5e-4, dtype="float64")
-    y_end, a_end, N = engine.load(program).run(4000, np.zeros((4000, 1)), np.array(program.values)[:, None]).outputs[-1, 1:, 0]
+    program = hl.compile(scene, T=1e-3, dtype="float64", method="verlet")
+    y_end, a_end, N = engine.load(program).run(1500, np.zeros((1500, 1)), np.array(program.values)[:, None]).outputs[-1, 1:, 0]
     assert y_end == pytest.approx(0.05 - 0.2 * 9.81 / (2 * 2000), abs=1e-9)
     assert abs(a_end) < 1e-9 and N == pytest.approx(0.2 * 9.81, rel=1e-6)
 
 
 def bouncing(shape, ticks):
     """Energy and gap of a body that bounces on a tilted tile by impulses that keep the energy, located in the step."""
-    x, y = (hl.coordinate(name, unit="m", initial=Amount(value, "m")) for name, value in (("x1", 0.02), ("y1", 0.36)))
+    x, y = (hl.coordinate(name, unit="m", initial=Amount(value, "m")) for name, value in (("x1", 0.02), ("y1", 0.31)))
     a = hl.coordinate("a1", unit="rad", initial=0.3, rate=Amount(2.0, "rad/s"))
     m, J, g = hl.parameters("m J g", units="kg kg*m^2 m/s^2", values=(0.1, 2e-4, 9.81))
     bodies = [Box(0.4, 0.1).at(y=0.2, angle=0.2, name="tile"), shape.at(x=x, y=y, angle=a, name="body")]
@@ -256,7 +262,7 @@ def bouncing(shape, ticks):
 
 
 def test_impulses_between_a_disc_and_a_tile():
-    E, d = bouncing(Circle(0.04), 500)
+    E, d = bouncing(Circle(0.04), 250)
     assert np.ptp(E) < 1e-9 * E[0]
     assert d.min() > -1e-9 and np.sum(np.diff(np.sign(np.diff(d))) > 0) >= 2  # it turns between samples
 

@@ -53,17 +53,17 @@ def two_ellipses():
     watch = {"d": tracked.gap, "rate_1": tracked.rate, "u": u, "w": w, "th": th, "ph": ph, "q": q}
     watch |= {"p_x": tracked.point[0], "p_y": tracked.point[1], "n_x": tracked.normal[0], "s": tracked.slip}
     scene = hl.Scene(force=k * tracked.gap, eom=[*FREE, *tracked.eom], watch=watch)
-    return tracked, run(scene, 1500)
+    return tracked, run(scene, 700)
 
 
 def test_two_ellipses_that_turn(two_ellipses):
     _, log = two_ellipses
-    for k in range(0, 1500, 150):
+    for k in range(0, 700, 70):
         cam, egg = ellipse(0.1, 0.05, (0, 0, log["th"][k])), ellipse(0.04, 0.08, (log["q"][k], 0.02, log["ph"][k]))
         # the polygon of 3000 points lies within 0.1 (pi/3000)^2/2 = 6e-8 m of its ellipse
         assert log["d"][k] == pytest.approx(distance(cam, egg), abs=1.2e-7)
         assert shapely.distance(shapely.Polygon(egg), shapely.Point(log["p_x"][k], log["p_y"][k])) < 1.2e-7
-    assert np.ptp(log["d"]) > 0.05 and np.ptp(log["u"]) > 0.3
+    assert np.ptp(log["d"]) > 0.03 and np.ptp(log["u"]) > 0.2
 
 
 def test_it_stays_on_the_minimum(two_ellipses):
@@ -98,12 +98,12 @@ def test_a_start_beside_the_minimum_is_pulled_to_it():
     moved = hl.coordinate("u", unit="1", initial=type(u).initial + 0.01)
     swap = {u: moved, u.diff(t): moved.diff(t)}
     eom = [sp.Eq(z.diff(t, 2), 0), *(e.xreplace(swap) for e in tracked.eom)]
-    log = run(hl.Scene(force=0, eom=eom, watch={"u": moved}), 2000)
+    log = run(hl.Scene(force=0, eom=eom, watch={"u": moved}), 1300)
     final = log["u"][-1]
     left = -(0.05 - 0.1 * np.cos(log["u"])) * -0.1 * np.sin(log["u"]) - (0.2 - 0.05 * np.sin(log["u"])) * 0.05 * np.cos(log["u"])
     steps = np.array([0, 400, 800, 1200])
     assert left[steps] / left[0] == pytest.approx(np.exp(-5 * steps * 1e-3), rel=1e-9)
-    assert final == pytest.approx(float(type(u).initial), abs=1e-5)
+    assert final == pytest.approx(float(type(u).initial), abs=1e-4)
 
 
 def test_a_circle_has_a_closed_form_and_overlap_a_sign():
@@ -111,9 +111,9 @@ def test_a_circle_has_a_closed_form_and_overlap_a_sign():
     z = hl.coordinate("z", unit="m", initial=Amount(0.2, "m"), rate=Amount(-0.1, "m/s"))
     wheel = Curve(lambda u: (a * sp.cos(u), a * sp.sin(u)))
     tracked = track(wheel.at(name="wheel"), Circle("2 cm").at(x=0.06, y=z, name="ball"))
-    log = run(hl.Scene(force=0, eom=[sp.Eq(z.diff(t, 2), 0), *tracked.eom], watch={"d": tracked.gap, "z": z}), 1500)
+    log = run(hl.Scene(force=0, eom=[sp.Eq(z.diff(t, 2), 0), *tracked.eom], watch={"d": tracked.gap, "z": z}), 1200)
     assert np.abs(log["d"] - (np.hypot(0.06, log["z"]) - 0.12)).max() < 1e-13
-    assert log["d"].min() < -0.03
+    assert log["d"].min() < -0.01
 
 
 def test_the_start_is_the_nearest_of_several_minima():
