@@ -7,6 +7,7 @@ B w' + b. Each group of one or two constraints gives the rows of its coordinates
 import sympy as sp
 
 from ..scene.derivative import Partial, Rate, rates_of
+from ..scene.symbols import t
 from .complementarity import dot
 from .constrained import plus, scaled, times
 from .solve import less_product
@@ -35,7 +36,7 @@ class Instant:
             return self._position(self.step_of[expr])
         if isinstance(expr, sp.Derivative) and expr.expr in self.step_of and expr.derivative_count == 1:
             return self._rate(expr.expr)
-        return None
+        return self.translate(type(expr).of) if getattr(type(expr), "role", None) == "held" else None
 
     def _position(self, step):
         value = self.translate(step.value)
@@ -50,10 +51,12 @@ class Instant:
             constraints, own = self._group(q)
             rest = []
             for g in constraints:
-                known = {p: rate for p, rate in rates_of(g).items() if p not in own}
-                rest.append(dot([self._gradient(g, p) for p in known], list(map(self.translate, known.values()))))
+                before = self._before(g, own)
+                moved = dot([self._gradient(g, p) for p in before], [self.translate(p.diff(t)) for p in before])
+                rest.append(plus(moved, self.translate(rate_of_itself(g))))
             self._solve(self.rates, constraints, own, rest)
-        return self.rates[q]
+        rate = self.rates[q]
+        return rate if isinstance(rate, Value) else self.translate(sp.Float(rate))
 
     def row(self, q):
         """Return the row of B: how the rate of q follows those of the drivers."""
@@ -120,6 +123,14 @@ class Instant:
         J = [[self._gradient(g, u) for u in own] for g in constraints]
         into.update((u, scaled(-1.0, value)) for u, value in zip(own, solved(J, rest), strict=True))
         return into
+
+
+def rate_of_itself(g):
+    """Return the rate of a constraint with its coordinates held: what time and the handle do to it."""
+    moving = [q for q in rates_of(g) if getattr(type(q), "role", None) == "coordinate"]
+    held = {q: sp.Function(f"held_{type(q).__name__}", real=True, unit=type(q).unit, role="held", of=q)(t) for q in moving}
+    still = g.xreplace(dict.fromkeys(held, sp.S.One))
+    return Rate(g.xreplace(held)) if still.has(t) else sp.S.Zero
 
 
 def solved(J, right):

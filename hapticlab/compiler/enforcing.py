@@ -7,13 +7,14 @@ of a step what the other coordinates and rates are, the accelerations, the react
 
 import sympy as sp
 
-from ..scene.derivative import Partial, Rate, rates_of
+from ..scene.derivative import Partial, Rate
 from ..scene.loops import is_holonomic
 from ..scene.symbols import t
 from .complementarity import dot
 from .constrained import LOST, embedded, multipliers, plus, scaled, stiffened
-from .embedding import Instant
+from .embedding import Instant, rate_of_itself
 from .solve import solve
+from .trace import Value
 
 #: Newton steps of a numerical embedding per tick: the first starts within T^2 of the solution, the second ends at rounding
 NEWTON = 2
@@ -190,16 +191,19 @@ class Following:
 
     def leaf(self, expr):
         """Return the rate of a follower, or None for any other expression."""
+        if getattr(type(expr), "role", None) == "held":
+            return self.translate(type(expr).of)
         if not (isinstance(expr, sp.Derivative) and expr.expr in self.partition.first):
             return None
         if self._rates is None:
             rest = []
             for g in self.partition.constraints:
-                known = {p: rate for p, rate in rates_of(g).items() if p not in self.partition.first}
-                pairs = [(self.translate(Partial(g, p)), self.translate(rate)) for p, rate in known.items()]
-                rest.append(dot(*zip(*pairs, strict=True)) if pairs else 0.0)
+                known = [p for p in self.partition.second if g.has(p)]
+                moved = dot([self.translate(Partial(g, p)) for p in known], [self.translate(p.diff(t)) for p in known])
+                rest.append(plus(moved, self.translate(rate_of_itself(g))))
             self._rates = [scaled(-1.0, value) for value in solve(self.J, rest)]
-        return self._rates[self.partition.first.index(expr.expr)]
+        rate = self._rates[self.partition.first.index(expr.expr)]
+        return rate if isinstance(rate, Value) else self.translate(sp.Float(rate))
 
     @property
     def B(self):

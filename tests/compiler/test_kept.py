@@ -275,3 +275,17 @@ def test_a_rank_lost_by_a_live_parameter_turns_the_motor_off():
     values = [1e-9 if channel.name == "c" else value for channel, value in zip(program.parameters, program.values, strict=True)]
     log = paddle.run(replace(program, values=tuple(values)), duration=0.05, progress=False)
     assert "not finite" in log.fault
+
+
+@pytest.mark.parametrize("enforce", ["auto", "kkt", "numeric"])
+def test_a_support_that_time_moves(enforce):
+    A, f, m, k = hl.parameters("A f m k", units="m Hz kg N/m", values=(0.01, 2.0, 0.1, 20.0))
+    q, z = hl.coordinate("q", unit="m", rate=A * 2 * sp.pi * f), hl.coordinate("z", unit="m")
+    L = m * (q.diff(t) ** 2 + z.diff(t) ** 2) / 2 - k * (q - z) ** 2 / 2
+    model = hl.lagrange(L, constraints=[q - A * sp.sin(2 * sp.pi * f * t)], enforce=enforce)
+    _, channels = run(hl.Scene(force=0 * k * x(t), eom=[model], watch={"q": q, "dq": q.diff(t), "z": z}))
+    at, w, own = np.linspace(0, 1, 1001), 4 * math.pi, math.sqrt(200)
+    np.testing.assert_allclose(channels[:, 0], 0.01 * np.sin(w * at), atol=1e-16)
+    np.testing.assert_allclose(channels[:, 1], 0.01 * w * np.cos(w * at), atol=1e-14)
+    forced = 0.01 * own**2 / (own**2 - w**2) * (np.sin(w * at) - w / own * np.sin(own * at))
+    np.testing.assert_allclose(channels[:, 2], forced, atol=3e-10)
