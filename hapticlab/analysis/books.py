@@ -142,10 +142,11 @@ def _of_mechanics(scene):
 
 def _with_model(account, model, scene):
     L, R = model.lagrangian, model.dissipation
-    if any(g.has(x(t), v(t)) for g in model.constraints):
+    driving = next((g for g in model.constraints if g.has(x(t), v(t)) or Partial(g, t).doit() != 0), None)
+    if driving is not None:
         raise AnalysisError(
-            f"{scene.name}: a constraint holds the handle, and its force does work that the books do not see; give stored=, "
-            "supplied= and dissipated="
+            f"{scene.name}: the constraint {driving} = 0 moves with the handle or with time, and its force does work that the "
+            "books do not see; give stored=, supplied= and dissipated="
         )
     rates = [q.diff(t) for q in model.coordinates]
     driven = Partial(L, x(t)) * v(t) + Partial(L, t)
@@ -186,8 +187,8 @@ class Balance:
         Work of the handle at the port, force and displacement as they acted [J], from 0.
     sampling : array, shape (N,)
         What the port gave beyond what the equations of motion were supplied with [J]: energy lost, where positive, by holding
-        the force over a period and by what the hold makes of the handle between samples. Work of other forces than
-        the handle's is part of it.
+        the force over a period, by what the hold makes of the handle between samples, and by impulses that are felt
+        later than they acted. Work of other forces than the handle's is part of it.
     """
 
     t: np.ndarray
