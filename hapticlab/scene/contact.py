@@ -47,7 +47,7 @@ class Contact:
     >>> import hapticlab as hl
     >>> q = hl.coordinate("q", unit="m"); k = hl.parameters("k", units="N/m")
     >>> hl.Contact(q, hl.penalty(k=k), name="table").force
-    Piecewise((Max(0, -k*q(t)), q(t) <= 0), (0, True))
+    Piecewise((-k*q(t), q(t) <= 0), (0, True))
     """
 
     gap: sp.Expr

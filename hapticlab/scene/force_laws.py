@@ -61,8 +61,9 @@ class penalty:
         agree_with(self.b, damping, f"{where}, b")
 
     def force(self, gap, rate):
-        """Return the normal force of a gap that changes at a rate."""
-        return sp.Max(0, -self.k * gap - self.b * rate)
+        """Return the normal force of a gap, <= 0, that changes at a rate."""
+        # a spring alone never pulls while the gap is closed, and a case less is half the work of method="taylor"
+        return sp.Max(0, -self.k * gap - self.b * rate) if self.b != 0 else -self.k * gap
 
     def stored(self, gap):
         """Return the energy in the spring."""
