@@ -6,10 +6,11 @@ import numpy as np
 import sympy as sp
 
 from ..compiler.coefficients import Coefficients
+from ..compiler.dependence import FORCE, Dependence, part_of
 from ..errors import AnalysisError, ParameterError
 from ..scene.derivative import Partial
 from ..scene.scene import Scene
-from ..scene.symbols import delay, lag_of, n, t, v, x
+from ..scene.symbols import Parameter, delay, lag_of, n, t, v, x
 
 #: the handle as a force sees it at the sample, and as an equation of motion sees it
 SEEN = ((x(t), x(n)), (v(t), v(n)))
@@ -90,13 +91,12 @@ def port_of(scene, linear=False):
     if unbound:
         raise ParameterError(f"{', '.join(unbound)} has no value; bind it: scene({unbound[0]}=...)")
     form = scene.explicit()
+    felt = Dependence(form).paths(FORCE)
+    form = part_of(form, [k for k, q in enumerate(form.coordinates) if type(q).__name__ in felt])
     _check_memory(scene, form)
-    found, rows = Coefficients(form, scene.values, 1e-3), range(len(form.coordinates))
-    why = linear and (
-        found.slope_moves(form.force, "in the force") or next(filter(None, map(found.why_not, rows)), None)
-    )
-    if why:
-        raise AnalysisError(f"{scene.name}: {why}; a reduction needs springs and dampers that are linear")
+    found = Coefficients(form, scene.values, 1e-3)
+    if linear:
+        _check_linear(scene, found)
     N, of_second = len(form.coordinates), np.array([order == 2 for order in form.orders], bool)
 
     def at_start(exprs, *shape):
@@ -121,6 +121,29 @@ def port_of(scene, linear=False):
         slopes([form.force], rates)[0] * of_second,
         *own,
     )
+
+
+def _check_linear(scene, found):
+    """Refuse what springs, dampers and masses between handle and ground are not: curved, driven, pulled by a constant."""
+    form, rows = found.form, range(len(found.form.coordinates))
+    why = found.slope_moves(form.force, "in the force") or next(filter(None, map(found.why_not, rows)), None)
+    moving = {*found.states, *SEEN[0], *SEEN[1]}
+    parts = {
+        "the force": form.force,
+        **{f"the equation of {type(q).__name__}": f for q, f in zip(form.coordinates, form.f, strict=True)},
+    }
+    for where, expr in parts.items():
+        at = dict.fromkeys(found.graph.variables_of([expr]), 0.0)
+        driver = next((a for a in at if a not in moving and not isinstance(a, Parameter)), None)
+        if driver is not None:
+            why = why or f"{driver} drives {where}"
+            continue
+        at |= {p: scene.values.get(p.name, 1e-3) for p in at if isinstance(p, Parameter)}
+        pull = float(found.graph.evaluate([expr], at)[0])
+        if abs(pull) > 1e-12:
+            why = why or f"{where} holds {pull:.3g} at rest; measure its coordinates from where it rests"
+    if why:
+        raise AnalysisError(f"{scene.name}: {why}; a reduction needs masses, springs and dampers that are linear")
 
 
 def _check_memory(scene, form):

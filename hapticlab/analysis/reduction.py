@@ -11,6 +11,7 @@ from .impedance import port_of
 from .limit import check_number
 from .masses import modal, network_of, scene_of
 from .moments import candidates
+from .port import port_damping
 from .reduction_plot import plot_reduction
 
 #: below what a hand tells from another force, 7 to 10 %
@@ -29,8 +30,8 @@ class Reduction:
     ----------
     scene, full : Scene
         The reduced scene runs like any other. What the full one watched is not in it.
-    masses : int
-        Of the reduced scene.
+    before, masses : int
+        Masses that are felt in the full scene, and masses of the reduced one.
     band : (float, float)
         [Hz]
     tolerance : float
@@ -48,6 +49,7 @@ class Reduction:
 
     scene: Scene
     full: Scene
+    before: int
     masses: int
     band: tuple
     tolerance: float
@@ -74,19 +76,27 @@ class Reduction:
         """Return the instructions a tick of (the full, the reduced) scene, each compiled with its parameters fixed."""
         return tuple(len(compile(scene, T=T, live=())) for scene in (self.full, self.scene))
 
+    def device_damping(self, T=1e-3):
+        """Return the damping b [N s/m] that a device needs for (the full, the reduced) scene, each compiled.
+
+        See :func:`~hapticlab.analysis.port.port_damping`; ``inf`` without damping of the scene's own.
+        """
+        return tuple(port_damping(scene, T=T, method="exact") for scene in (self.full, self.scene))
+
     def plot(self):
         """Draw both impedances and the error over the band; return a figure."""
         return plot_reduction(self)
 
     def __str__(self):
         before, after = self.instructions()
+        needed = "{:.4g} N s/m, of the reduced one {:.4g}".format(*self.device_damping())
         high = self.band[1]
         lines = [
-            f"{self.full.name}: {len(self.full.coordinates)} masses replaced by {self.masses}, "
-            f"{before} instructions by {after}",
+            f"{self.full.name}: {self.before} masses replaced by {self.masses}, {before} instructions by {after}",
             *(f"  {p.name:<6} {self.scene.values[p.name]:.6g} {p.unit}" for p in self.scene.parameters.values()),
             "  up to [Hz]  |Z_r - Z|/|Z + hand + paddle|",
             *(f"  {f:>10.4g}  {self.below(f):.2g}" for f in (high / 8, high / 4, high / 2, high) if f > self.band[0]),
+            f"  a device's damping for the full scene {needed} (T = 1 ms)",
             f"  {'within' if self.within else 'past'} the tolerance of {self.tolerance:.3g} over {self.band[0]:g} to {high:g} Hz",
         ]
         return "\n".join(lines)
@@ -173,10 +183,13 @@ def _best(scene, network, paddle, band, tolerance, count):
         error = np.abs(reduced.impedance(frequency) - Z) / whole
         if best is None or error.max() < best[0].max():
             best = error, reduced
+    if best is None:
+        raise AnalysisError(f"{scene.name}: the handle tells fewer than {count} masses apart; ask for fewer")
     error, reduced = best
     name = f"{scene.name} with {count} mass{'es' * (count > 1)}"
+    found = reduced.impedance(frequency)
     return Reduction(
-        scene_of(reduced, name), scene, count, band, tolerance, frequency, reduced.impedance(frequency), Z, error
+        scene_of(reduced, name), scene, len(network.mass), count, band, tolerance, frequency, found, Z, error
     )
 
 

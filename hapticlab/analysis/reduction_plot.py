@@ -20,7 +20,7 @@ def plot_reduction(offer):
         figure = new_figure(height=5.0)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         shown = (
-            (offer.full_impedance, f"{len(offer.full.coordinates)} masses"),
+            (offer.full_impedance, f"{offer.before} masses"),
             (offer.impedance, f"{offer.masses} left"),
         )
         for (Z, label), style in zip(shown, STYLES, strict=False):

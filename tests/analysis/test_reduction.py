@@ -133,6 +133,24 @@ def test_starts_are_carried_over():
     assert moved.values["r_1_0"] == pytest.approx(0.002)
 
 
+def test_a_reduction_asks_no_more_of_the_device():
+    """Fewer masses on softer springs: what holds of the full scene in any passive hand holds of the reduced one."""
+    for masses in (1, 2, 3):
+        full, reduced = reduction(chain(4, b=0.2), HELD, band=(0.1, 10), masses=masses).device_damping()
+        assert 0.5 * full < reduced < full
+
+
+def test_masses_that_nobody_feels_are_not_in_it():
+    """A follower that the chain drives and that does not pull back changes neither impedance nor reduction."""
+    y, pull = hl.coordinate("y", unit="m"), hl.parameters("k_y m_y", units="N/m kg", values=(50, 0.1))
+    plain = chain(3)
+    last = plain.coordinates[-1]
+    follower = sp.Eq(pull[1] * y.diff(t, 2), pull[0] * (last - y))
+    scene = hl.Scene(force=plain.force, eom=[*plain.eom, follower], watch=[y])
+    offer = reduction(scene, HELD, band=(0.1, 10), masses=1)
+    assert offer.scene.values == pytest.approx(dict(reduction(plain, HELD, band=(0.1, 10), masses=1).scene.values))
+
+
 def test_order_by_tolerance_and_the_printout():
     offer = reduction(chain(8), HELD, band=(0.1, 10))
     assert offer.masses == 2 and offer.within and [count for count, _ in offer.tried] == [1, 2]
@@ -165,7 +183,7 @@ def test_scenes_that_are_no_network_of_masses():
     k, m, b = hl.parameters("k m b", units="N/m kg N*s/m", values=(100, 0.02, 1.0), ranges={"b": (-2, 2)})
     pull, between = k * (x(t) - z), k * (z - y)
     second = sp.Eq(m * y.diff(t, 2), between)
-    one_way = hl.Scene(force=2 * pull, eom=[sp.Eq(m * z.diff(t, 2), pull), second], name="one way")
+    one_way = hl.Scene(force=k * (x(t) - y), eom=[sp.Eq(m * z.diff(t, 2), pull), second], name="one way")
     with pytest.raises(AnalysisError, match="does not pull back"):
         reduction(one_way, HELD)
     active = hl.Scene(force=pull, eom=[sp.Eq(m * z.diff(t, 2), pull - between - b * z.diff(t)), second], name="active")
@@ -183,3 +201,26 @@ def test_scenes_that_are_no_network_of_masses():
         reduction(
             hl.Scene(force=hl.when(x(t) > z, pull), eom=[sp.Eq(m * z.diff(t, 2), pull), second], name="bent"), HELD
         )
+    weight, drive = hl.parameters("weight", units="N", values=0.2), hl.parameters("f", units="Hz", values=3)
+    for more, said in (
+        (weight, "the equation of z holds 0.2 at rest; measure"),
+        (weight * sp.sin(2 * sp.pi * drive * t), "drives the equation of z"),
+        (weight * x(n - 1) / size, "remembers samples"),
+    ):
+        scene = hl.Scene(force=pull, eom=[sp.Eq(m * z.diff(t, 2), pull - between + more), second])
+        with pytest.raises(AnalysisError, match=said):
+            reduction(scene, HELD)
+
+
+def test_masses_that_move_as_one():
+    """Two equal masses side by side on equal springs are one to the handle; asking for both is refused."""
+    u, w, last = (hl.coordinate(name, unit="m") for name in ("u", "w", "last"))
+    k, m = hl.parameters("k m", units="N/m kg", values=(800, 0.03))
+    F = k * (x(t) - u) + k * (x(t) - w) + 2 * k * (x(t) - last)
+    eom = [sp.Eq(m * u.diff(t, 2), k * (x(t) - u)), sp.Eq(m * w.diff(t, 2), k * (x(t) - w))]
+    scene = hl.Scene(force=F, eom=[*eom, sp.Eq(2 * m * last.diff(t, 2), 2 * k * (x(t) - last))], name="side by side")
+    one = reduction(scene, HELD)
+    assert one.masses == 1 and one.largest < 1e-12
+    assert one.scene.values == pytest.approx({"m_1": 0.12, "k_1": 3200}, rel=1e-9)
+    with pytest.raises(AnalysisError, match="fewer than 2 masses apart"):
+        reduction(scene, HELD, masses=2)

@@ -1,0 +1,115 @@
+"""How much damping a device needs for a linear scene to be passive in any passive hand: the tick of its program, measured.
+
+Colgate and Schenkel (1997): a force F = H(z) x held over each period is passive with a device of damping b where
+``b > T Re{H(e^{j w T})/(1 - e^{j w T})}`` at every frequency. H is taken from the program itself, hold, method and estimator
+of velocity included: it is run once from every unit state and unit input.
+"""
+
+import numpy as np
+
+from ..compiler.engine import load
+from ..compiler.lower import compile
+from ..errors import AnalysisError
+
+#: a pole nearer to the unit circle does not decay, and its resonance has no bound
+LOSSLESS = 1e-9
+#: frequencies looked at, beside those around every pole
+POINTS = 3000
+
+
+def port_damping(scene, *, T=1e-3, **options):
+    """Least damping b [N s/m] of a device with which a linear scene is passive in every passive hand.
+
+    Necessary and sufficient for the sampled scene as compiled, without delay and encoder. A wall k x needs k T/2, and
+    every damper of the scene's coupler as much again.
+
+    Parameters
+    ----------
+    scene : Scene
+        Linear, every parameter bound.
+    T : float
+        Sampling period [s], > 0.
+    **options
+        Of :func:`hapticlab.compile`: method, substeps, hold. Velocity is the backward difference.
+
+    Returns
+    -------
+    float
+        ``inf`` where a resonance has no damping at all.
+
+    Raises
+    ------
+    AnalysisError
+        The scene is not linear, or unstable.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k, b = hl.parameters("k b", units="N/m N*s/m", values=(200, 0.05))
+    >>> round(port_damping(hl.Scene(force=k * hl.x(hl.n) + b * hl.v(hl.n))), 9)
+    0.15
+    """
+    A, B, C, D = tick_map(compile(scene, T=T, live=(), dtype="float64", **options))
+    poles = np.linalg.eigvals(A) if len(A) else np.zeros(0)
+    seen = _seen_poles(A, B, C)
+    if np.any(np.abs(seen) > 1 + LOSSLESS):
+        raise AnalysisError(
+            f"{scene.name}: unstable with the handle held (a pole at {abs(seen).max():.6g}); T is too long for it"
+        )
+    if np.any(np.abs(seen) > 1 - LOSSLESS):
+        return np.inf
+
+    def needed(theta):
+        z = np.exp(1j * np.atleast_1d(theta))
+        inside = (
+            np.linalg.solve(z[:, None, None] * np.eye(len(A)) - A, B[None, :, None])[..., 0]
+            if len(A)
+            else np.zeros((1, 0))
+        )
+        H = inside @ C + D
+        return T / 2 * (H.real - H.imag / np.tan(theta / 2))  # 1/(1 - e^(j a)) is 1/2 + j cot(a/2)/2
+
+    around = [np.abs(np.angle(p)) + (1 - abs(p)) * s * np.geomspace(1e-2, 30, 40) for p in poles for s in (-1, 1)]
+    theta = np.concatenate([np.geomspace(1e-5, np.pi, POINTS), np.linspace(1e-3, np.pi, POINTS), *around])
+    theta = np.unique(theta[(theta > 0) & (theta <= np.pi)])
+    for _ in range(4):  # look closer around the worst
+        values = needed(theta)
+        worst = int(values.argmax())
+        theta = np.linspace(theta[max(worst - 1, 0)], theta[min(worst + 1, len(theta) - 1)], 60)
+    return float(max(values.max(), 0.0))
+
+
+def tick_map(program):
+    """Return A, B, C, D of one tick: states' = A states + B x, F = C states + D x, measured on unit states.
+
+    Raises
+    ------
+    AnalysisError
+        The program is not linear, or takes more than x.
+    """
+    if len(program.inputs) != 1 or any(c.type == "i32" for c in program.states):
+        raise AnalysisError(f"{program.name}: needs a force of x alone, that time does not drive")
+    S, generator = len(program.states), np.random.default_rng(1)
+    mixed = generator.normal(size=(S, 3))
+    states = np.column_stack([np.zeros((S, 1)), np.eye(S), mixed])
+    loaded, values = load(program), np.repeat(np.array(program.values)[:, None], states.shape[1], axis=1)
+    runs = [loaded.run(1, [[x]], values, states) for x in (0.0, 1.0, -0.5)]
+    still, pushed, pulled = (np.vstack([run.states, run.outputs[0, :1]]) for run in runs)
+    rest, by_input = still - still[:, :1], pushed - still
+    whole, scale = rest[:, 1 : S + 1], 1e-9 * max(np.abs(still).max(), np.abs(pushed).max())
+    pairs = ((whole @ mixed, rest[:, S + 1 :]), (by_input, by_input[:, :1]), (still - pulled, by_input / 2))
+    if not all(np.allclose(one, other, rtol=0, atol=scale) for one, other in pairs):
+        raise AnalysisError(
+            f"{program.name} is not linear: its answer to two states is not the sum of its answers to each"
+        )
+    return whole[:S], by_input[:S, 0], whole[S], by_input[S, 0]
+
+
+def _seen_poles(A, B, C):
+    """Return the poles that x moves and F shows."""
+    if not len(A):
+        return np.zeros(0)
+    values, V = np.linalg.eig(A)
+    back = np.linalg.pinv(V)
+    size = np.abs(back @ B) * np.abs(C @ V)
+    return values[size > 1e-9 * size.max(initial=0.0)]
