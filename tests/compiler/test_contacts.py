@@ -94,6 +94,19 @@ def test_hunt_crossley_rebounds_with_its_restitution(exponent, unit):
     assert log["w"][-1] / 1.4 == pytest.approx(hl.hunt_crossley.restitution(0.42), rel=1e-7)
 
 
+def test_newtons_cradle_of_three_swings_without_loss():
+    """Equal pendulums in touch: the first swings in from the left, the last swings out on the right, the middle hangs still."""
+    k_p, lift = hl.parameters("k_p lift", units="N/m m", values=(20, -0.03))
+    balls = [hl.coordinate(f"q_{i}", unit="m", initial=lift if i == 1 else 0) for i in (1, 2, 3)]
+    L = sum(m * q.diff(t) ** 2 / 2 - k_p * q**2 / 2 for q in balls)
+    touching = [hl.Contact(b - a, hl.impulse(e=1), name=f"c_{i}") for i, (a, b) in enumerate(zip(balls, balls[1:], strict=False))]
+    log = run(hl.Scene(force=0, eom=[lagrange(L, contacts=touching)], watch=balls), 1500)
+    angle = np.sqrt(20 / M) * log["t"]
+    assert np.abs(log["q_1"] + 0.03 * np.maximum(np.cos(angle), 0)).max() < 1e-13
+    assert np.abs(log["q_3"] - 0.03 * np.maximum(-np.cos(angle), 0)).max() < 1e-13
+    assert np.abs(log["q_2"]).max() < 1e-13
+
+
 def test_a_block_slides_to_a_stop_and_stays():
     F_c, w0 = hl.parameters("F_c w0", units="N m/s", values=(1.2, 0.8))
     z = hl.coordinate("z", unit="m", rate=w0)
