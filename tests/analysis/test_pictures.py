@@ -16,7 +16,7 @@ GREEK = {
 
 def texts(figure):
     """Return the figure's texts with their boxes in pixels."""
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     axes = figure.axes[0]
     return [(text.get_text(), text.get_window_extent()) for text in axes.texts if text.get_text()]
 
