@@ -74,18 +74,18 @@ def enforcement(
     if enforce == "embed":
         raise SceneError(f"no closed form for the constraints: {reason}. Use enforce='auto' or 'kkt'")
     _check_start(assembly, constraints, positions, coordinates, start)
-    _check_rank(assembly, constraints, coordinates, real)
+    faults = _check_rank(assembly, constraints, coordinates, real)
     if enforce == "numeric":
         followers = _followers(assembly, positions, constraints, coordinates, real)
         note = f"{names(followers)} follow by Newton's method, {len(positions)} unknowns"
-        return Partitioned(coordinates, constraints, followers, definite), (note,)
+        return Partitioned(coordinates, constraints, followers, definite), (note, *faults)
     if enforce == "baumgarte":
         alpha = largest_feedback(method) / h / 2 if alpha is None else alpha
         check_feedback(alpha, method, h)
         note = f"constraints enforced by multipliers with Baumgarte's feedback, alpha = {alpha:.4g} 1/s"
-        return Multipliers(coordinates, constraints, alpha, weight), (note,)
+        return Multipliers(coordinates, constraints, alpha, weight), (note, *faults)
     note = "constraints enforced by multipliers and one projection per tick"
-    return Multipliers(coordinates, constraints, None, weight), (f"{note}: {reason}" if reason else note,)
+    return Multipliers(coordinates, constraints, None, weight), (f"{note}: {reason}" if reason else note, *faults)
 
 
 def _check_wraps(wraps, used):
@@ -204,10 +204,18 @@ def _rate(g, coordinates):
 
 
 def _check_rank(assembly, constraints, coordinates, real):
-    """Refuse constraints that lose a rank somewhere the mechanism can go."""
+    """Refuse constraints that lose a rank where the mechanism must pass or may go; return a note where it hardly does.
+
+    One with several freedoms and no declared ranges passes such a configuration by; should it meet it, the motor goes off.
+    """
     value, q = assembly.weakest()
-    if value < SMALLEST[real]:
+    if value >= SMALLEST[real]:
+        return ()
+    held = [p for p in coordinates if any(g.has(p) for g in constraints)]
+    declared = all(math.isfinite(limit) for p in held for limit in declared_range(p))
+    if declared or len(held) - len(constraints) <= 1:
         raise SceneError(_lost(constraints, coordinates, q, "within the range it can reach"))
+    return (f"the constraints lose a rank at {_at(coordinates, q)}: a motion that meets it turns the motor off",)
 
 
 def _lost(constraints, coordinates, q, where):

@@ -290,4 +290,5 @@ def _atan2(sin, cos, near):
     """Return the angle with this sine and cosine that lies nearest a value; its cut is as far from there as it can be."""
     quarter = round(near / (math.pi / 2))
     y, x = [(sin, cos), (-cos, sin), (-sin, -cos), (cos, -sin)][quarter % 4]
-    return sp.atan2(y, x) + quarter * sp.pi / 2
+    # left as it is: SymPy would ask at length for the signs of its arguments
+    return sp.atan2(y, x, evaluate=False) + quarter * sp.pi / 2

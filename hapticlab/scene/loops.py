@@ -19,7 +19,7 @@ from .symbols import v
 #: initial values that are written with seven digits agree with the constraint
 AGREEING = 1e-6
 #: drivers tried before a loop is left to other methods
-ATTEMPTS = 40
+ATTEMPTS = 12
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,9 @@ def _embed_group(constraints, coordinates, start):
     equations, reasons = Equations(start, _generic(start)), []
     choices = list(itertools.combinations(coordinates, free))
     ranged = [drivers for drivers in choices if drivers and all(map(_has_range, drivers))]
-    for drivers in (ranged + [drivers for drivers in choices if drivers not in ranged])[:ATTEMPTS]:
+    # several drivers without ranges hardly ever go everywhere: three tries show it
+    others = [drivers for drivers in choices if drivers not in ranged][: ATTEMPTS if free < 2 else 3]
+    for drivers in (ranged + others)[:ATTEMPTS]:
         # a declared range is a demand: another driver that never gets there is no answer to it
         if len(reasons) == len(ranged) > 0 and all(isinstance(reason, Open) for reason in reasons):
             break
@@ -127,7 +129,8 @@ def _embed_group(constraints, coordinates, start):
         return Embedding(drivers, tuple(sources), wraps(drivers, sources, start))
     if ranged and all(isinstance(reason, Open) for reason in reasons[: len(ranged)]):
         raise SceneError(f"{reasons[0]}. Declare the range it moves in, or change its lengths")
-    raise NotClosed("; ".join(list(dict.fromkeys(map(str, reasons)))[:3]) or "no driver was found")
+    told = list(dict.fromkeys(map(str, reasons)))[: 3 if free < 2 else 1]
+    raise NotClosed("; ".join(told) or "no driver was found")
 
 
 def _has_range(q):
