@@ -27,7 +27,7 @@ def mass_spring_damper():
     handle transmits the ringing of the mass on k and K together, sqrt((k + K)/m).
 
     Teaches natural frequency, damping ratio and impedance; any textbook of system dynamics, such as K. Ogata, *System
-    Dynamics*, ch. 3. On an Uno: semi-implicit Euler at 800 Hz.
+    Dynamics*, ch. 3. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 800 Hz.
 
     Returns
     -------
@@ -69,7 +69,8 @@ def two_masses():
     sqrt(k (1/m_1 + 1/m_2)) while their centre moves on.
 
     Teaches modes, the rigid-body mode, resonance and antiresonance (non-collocated control); J. P. Den Hartog,
-    *Mechanical Vibrations*, ch. 3. On an Uno: semi-implicit Euler at 800 Hz.
+    *Mechanical Vibrations*, ch. 3. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at
+    800 Hz.
 
     Returns
     -------
@@ -111,7 +112,8 @@ def tuned_absorber():
     with F_0/k_2 and its spring cancels the excitation, whatever the hand does. Detune Omega by 20 % and it is back.
 
     Teaches the absorber's null, the two resonances beside it, and why b_2 > 0 trades the null for width; J. P. Den
-    Hartog, *Mechanical Vibrations*, sec. 3.2. On an Uno: semi-implicit Euler at 400 Hz.
+    Hartog, *Mechanical Vibrations*, sec. 3.2. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms, to be passive but for F_0,
+    which feeds energy. On an Uno: semi-implicit Euler at 400 Hz.
 
     Returns
     -------

@@ -25,7 +25,8 @@ class Entry:
     draw : callable (axes, *, x, ...)
         Draws the mechanism in a state.
     b : float
-        Damping at the handle [N s/m] that makes it passive for any hand with ``options``.
+        Damping at the handle [N s/m] with which it is passive for any hand with ``options``: K T/2 + b_c of its coupler and
+        a little for the velocity that is estimated, or T/2 times the steepest slope of its force. A longer T needs more.
     options : dict
         Of hapticlab.compile, for a computer.
     uno : dict or None

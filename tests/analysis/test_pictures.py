@@ -52,3 +52,7 @@ def test_what_a_picture_does_not_know_is_refused():
         hl.picture("detent")
     with pytest.raises(hl.AnalysisError, match="y: detents has no such quantity; it has x, A, p"):
         hl.picture("detents", y=1)
+    with pytest.raises(hl.AnalysisError, match="four_bar cannot be put together with b = 0.005; take other lengths"):
+        hl.picture("four_bar", b=0.005)
+    with pytest.raises(hl.UnitsError, match="x = '3 N'"):
+        hl.picture("gears", x="3 N")
