@@ -1,9 +1,12 @@
 """A builder for derivatives: constants and signs stay in front of products, and sums gather a factor they share.
 
-The chain rule writes 1/2 m (2 v) v' for m v v', and the mass a joint carries as m1 u + m2 u + m3 u. Here the first has one
-constant, 1, and the second is (m1 + m2 + m3) u, whose sum depends on parameters alone. The rounding of a derivative may
-differ by that; a program's own arithmetic is left as it is written.
+The chain rule writes 1/2 m (2 v) v' for m v v', the mass a joint carries as m1 u + m2 u + m3 u, and a moment of inertia as
+m l^2 sin^2 q + m l^2 cos^2 q. Here the first has one constant, 1, the second is (m1 + m2 + m3) u, whose sum depends on
+parameters alone, and the third is m l^2. The rounding of a derivative may differ by that; a program's own arithmetic is
+left as it is written.
 """
+
+from collections import Counter
 
 from .trace import Builder
 
@@ -57,6 +60,9 @@ class Algebra(Builder):
         """Return c a + d b."""
         if a.id == b.id:
             return self._scaled(c + d, a)
+        whole = self._whole(a, b) if c == d else None
+        if whole is not None:
+            return self._scaled(c, whole)
         shared = self._shared(a, b)
         if shared is not None:
             factor, a, b = shared
@@ -78,3 +84,28 @@ class Algebra(Builder):
                 if factor in j.args:
                     return self.result(factor), self.result(rest), self.result(j.args[1 - j.args.index(factor)])
         return None
+
+    def _whole(self, a, b):
+        """Return r where one of the two is r sin^2 and the other r cos^2, of the same angle, or None."""
+        left, right = self._factors(a), self._factors(b)
+        sine, cosine = left - right, right - left
+        if [*sine.values()] != [2] or [*cosine.values()] != [2]:
+            return None
+        i, j = (self.instructions[k] for k in (*sine, *cosine))
+        if {i.op, j.op} != {"sin", "cos"} or i.args != j.args:
+            return None
+        rest = self.const(1.0)
+        for k in (left & right).elements():
+            rest = self.emit("mul", rest, self.result(k))
+        return rest
+
+    def _factors(self, value):
+        """Return factor -> how often it stands in a product."""
+        found, stack = Counter(), [value.id]
+        while stack:
+            k = stack.pop()
+            if self.instructions[k].op == "mul":
+                stack.extend(self.instructions[k].args)
+            else:
+                found[k] += 1
+        return found

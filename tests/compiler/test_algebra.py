@@ -9,7 +9,7 @@ import pytest
 from hapticlab.compiler.algebra import Algebra
 from hapticlab.compiler.ir import LEAVES
 from hapticlab.compiler.simplify import EVALUATE
-from hapticlab.compiler.trace import Builder
+from hapticlab.compiler.trace import Builder, cos, sin
 
 RULES = (
     lambda a, b, c: a + b, lambda a, b, c: a - b, lambda a, b, c: a * b, lambda a, b, c: -a, lambda a, b, c: c * a,
@@ -63,6 +63,10 @@ def count(make, builder):
         (lambda a, b, c, d: -2.0 * a + 3.0 * b, ["mul", "mul", "sub"]),
         (lambda a, b, c, d: 2.0 * a - 2.0 * b, ["sub", "mul"]),
         (lambda a, b, c, d: (a + 1.0) - 1.0, ["add", "sub"]),
+        (lambda a, b, c, d: a * sin(d) * (sin(d) * b) + cos(d) * (b * (a * cos(d))), ["mul"]),
+        (lambda a, b, c, d: sin(d) * sin(d) + cos(d) * cos(d), []),
+        (lambda a, b, c, d: -0.5 * (a * cos(d) * cos(d)) - 0.5 * (sin(d) * (a * sin(d))), ["mul"]),
+        (lambda a, b, c, d: a * sin(d) * sin(d) + a * cos(c) * cos(c), ["sin", "mul", "mul", "cos", "mul", "mul", "add"]),
     ],
 )
 def test_what_is_left_of(make, ops):
