@@ -132,7 +132,8 @@ class Contact:
 
         With friction in its impacts, the leaf ``rub`` along dslip/dq' too, zero at all other times.
         """
-        normal = self.force * Partial(self.gap, q)
+        along = Partial(self.gap, q)
+        normal = self.force * along if along != 0 else along
         if self.slip == 0:
             return normal
         return normal + self.rub * Partial(self.slip, v(t) if q == x(t) else q.diff(t))
