@@ -20,6 +20,7 @@ from .ir import Channel
 from .methods import METHODS
 from .modes import excluded, folded, rests_on, within
 from .options import choice, live_names, period, steps
+from .pairs import Contacts
 from .phase import Clock
 from .trace import cast
 from .tracing import Tracing
@@ -98,6 +99,9 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, undecided=(
     T, substeps, live = period(T), steps(substeps), live_names(live)
     try:
         form, decisions = excluded(scene, T, live, undecided)
+        for model in form.models:
+            if isinstance(model.contacts, Contacts):
+                model.contacts.check(scene.values)
         other = Taylor() if other == Taylor.name else other
         other = other if isinstance(other, Taylor) else METHODS.get(other)
         return _Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live).program(rests_on(form, decisions))

@@ -18,6 +18,7 @@ from ..scene.checks import applied
 from ..scene.contact import Contact
 from ..scene.gaps import check_placed, closest
 from ..scene.gaps import corners as corners_of
+from ..scene.parameters import Parameter
 from ..scene.shapes import HalfPlane
 from ..scene.symbols import t, x
 from .first_sample import numbers
@@ -57,13 +58,26 @@ class Contacts(tuple):
         Of a contact: both bodies' together.
     places : dict name -> Closest
         Normal, point and slip of a contact: for friction beside a law that has none, and for replacements.
+    values : dict name -> number
+        Of parameters, with which it was looked where the bodies start.
     """
 
-    def __new__(cls, contacts, dropped=(), ranges=None, thickness=None, places=None):
+    def __new__(cls, contacts, dropped=(), ranges=None, thickness=None, places=None, values=None):
         self = super().__new__(cls, contacts)
-        self.dropped, self.ranges = tuple(dropped), dict(ranges or {})
+        self.dropped, self.ranges, self.values = tuple(dropped), dict(ranges or {}), dict(values or {})
         self.thickness, self.places = dict(thickness or {}), dict(places or {})
         return self
+
+    def __add__(self, others):
+        return Contacts((*self, *others), self.dropped, self.ranges, self.thickness, self.places, self.values)
+
+    def check(self, values):
+        """Refuse bodies that start in each other with other values of parameters than when the contacts were made."""
+        bodies = [c for c in self if isinstance(c, Contact)]
+        starts = [type(q).initial for c in bodies for q in applied([c.gap], "coordinate")]
+        known = {p for e in (*starts, *(c.gap for c in bodies)) for p in e.atoms(Parameter)}
+        if any(values.get(p.name, p.value) != self.values.get(p.name, p.value) for p in known):
+            check_apart(bodies, values)
 
     def speeds(self, T):
         """Return name -> speed [m/s] past which two bodies may pass through each other between two samples T [s] apart.
@@ -141,7 +155,7 @@ def contacts_between(bodies, *, law, ignore=(), handle=(-math.inf, math.inf), co
                     stacklevel=2,
                 )
     check_apart(made, values or {})
-    return Contacts(made, pairs.dropped, pairs.ranges, thickness, places)
+    return Contacts(made, pairs.dropped, pairs.ranges, thickness, places, values)
 
 
 def possible_pairs(bodies, *, ignore=(), handle=(-math.inf, math.inf)):
