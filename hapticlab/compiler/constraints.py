@@ -73,6 +73,11 @@ def enforcement(
             reason = str(why)
     if enforce == "embed":
         raise SceneError(f"no closed form for the constraints: {reason}. Use enforce='auto' or 'kkt'")
+    if M is not None and not np.allclose(M, np.transpose(M), rtol=1e-9, atol=1e-12 * np.abs(M).max()):
+        raise MassError(
+            "the mass matrix is not symmetric, so its rows are no generalized forces, and a reaction has no place in them; "
+            "take the equations from hl.lagrange"
+        )
     _check_start(assembly, constraints, positions, coordinates, start)
     faults = _check_rank(assembly, constraints, coordinates, real)
     if enforce == "numeric":

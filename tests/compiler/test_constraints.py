@@ -76,6 +76,8 @@ def test_a_massless_coordinate_is_given_the_constraints_weight():
     assert massive.weight == 0
     massless, _ = enforcement(SLIDER_CRANK, COORDINATES, start(), enforce="kkt", M=np.diag([0, 0.1, 2e-5]))
     assert massless.weight > 0
+    with pytest.raises(MassError, match="not symmetric"):
+        enforcement(SLIDER_CRANK, COORDINATES, start(), enforce="kkt", M=np.diag([1e-5, 0.1, 2e-5]) + np.eye(3, k=1) * 1e-5)
     with pytest.raises(MassError, match="neither masses nor constraints determine the acceleration of Y"):
         enforcement((X - s,), (X, Y, s), {X: 0.1, Y: 0.0, s: 0.1}, enforce="kkt", M=np.diag([0.1, 0.0, 0.1]))
 
@@ -151,3 +153,22 @@ def test_an_angle_that_winds_up_is_not_used_by_itself():
     found, (note,) = enforcement(constraints, (q2, q3, q4), at, used=[q4**2])
     assert isinstance(found, Multipliers)
     assert "q4 turns on and on" in note
+
+
+def test_a_rank_that_a_motion_hardly_meets_is_noted():
+    links = [hl.coordinate(f"a{k}", unit="rad") for k in range(5)]
+    lengths = (0.1, 0.1, 0.1, 0.1, 0.2)
+    closed = tuple(sum(length * turn(q) for length, q in zip(lengths, links, strict=True)) for turn in (sp.cos, sp.sin))
+    at = dict(zip(links, (math.pi / 3, math.pi / 3, -math.pi / 3, -math.pi / 3, math.pi), strict=True))
+    found, notes = enforcement(closed, links, at, enforce="kkt")
+    assert isinstance(found, Multipliers)
+    (note,) = (note for note in notes if "lose a rank" in note)
+    # all links in one line
+    where = [float(part.split(" = ")[1]) for part in note.split(" at ")[1].split(":")[0].split(", ")]
+    np.testing.assert_allclose(np.sin(np.subtract(where, where[0])), 0, atol=2e-3)
+    assert "turns the motor off" in note
+    # within declared ranges it is refused
+    held = [hl.coordinate(f"a{k}", unit="rad", range=(-7, 7)) for k in range(5)]
+    renamed = dict(zip(links, held, strict=True))
+    with pytest.raises(SceneError, match="lose a rank within the range it can reach"):
+        enforcement([g.xreplace(renamed) for g in closed], held, {renamed[q]: angle for q, angle in at.items()}, enforce="kkt")
