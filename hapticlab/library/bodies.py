@@ -27,7 +27,8 @@ def mass_spring_damper():
     handle transmits the ringing of the mass on k and K together, sqrt((k + K)/m).
 
     Teaches natural frequency, damping ratio and impedance; any textbook of system dynamics, such as K. Ogata, *System
-    Dynamics*, ch. 3. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 800 Hz.
+    Dynamics*, ch. 3. Needs b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 800 Hz,
+    or ``method="exact", live=""`` at 1000 Hz.
 
     Returns
     -------

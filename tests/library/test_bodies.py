@@ -3,6 +3,7 @@
 import numpy as np
 
 import hapticlab as hl
+from hapticlab.compiler.cost import cost
 
 
 def test_mass_spring_damper_rings_as_an_oscillator_on_both_springs(led):
@@ -65,3 +66,15 @@ def test_a_detuned_absorber_follows_den_hartog(led):
     (cosine, sine), *_ = np.linalg.lstsq(basis, log.z_1[last], rcond=None)
     exact = p["F_0"] / main / 1j  # of sin(w t)
     assert abs(cosine - 1j * sine - exact) < 1e-6 * abs(exact)
+
+
+def test_a_fixed_mass_spring_damper_fits_an_uno_at_1000_hz_and_is_exact(led):
+    scene = hl.library.mass_spring_damper()
+    taken = cost(hl.compile(scene, method="exact", live="", T=1e-3))
+    assert taken.fits, str(taken)
+    p = scene.values
+    log = led(scene, np.zeros(300), T=1e-3, start={"z": 1e-3}, method="exact", live="")
+    decay, stiffness = (p["b"] + p["b_c"]) / (2 * p["m"]), (p["k"] + p["K"]) / p["m"]
+    poles = np.roots([1, 2 * decay, stiffness])
+    exact = 1e-3 * (poles[1] * np.exp(poles[0] * log.t) - poles[0] * np.exp(poles[1] * log.t)) / (poles[1] - poles[0])
+    assert np.abs(log.z - exact.real).max() < 1e-14

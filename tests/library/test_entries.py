@@ -31,6 +31,8 @@ def test_the_library_lists_what_it_holds():
     assert set(ASKED) <= set(CATALOGUE)
     assert set(CATALOGUE) == set(hl.library.__all__) - {"catalogue", "nominal"}
     assert all(getattr(hl.library, name) is entry.scene for name, entry in CATALOGUE.items())
+    assert set(dir(hl.library)) == set(hl.library.__all__)
+    assert str(hl.library) == str(CATALOGUE)
     assert str(CATALOGUE).count("\n") == 2 * len(CATALOGUE) - 1
 
 
