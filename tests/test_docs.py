@@ -31,6 +31,8 @@ def test_readme_python_runs(capsys):
     # 2 N over 10 mm and on into 150 N/m: without damping 75 d^2 = 2 (0.01 + d), so 150 d = 5.16 N
     assert "at most 5.1 N" in printed
     assert names["felt"].F.max() > 0
+    assert abs(hl.balance(names["bounced"]).leak).max() < 1e-6  # J of 20 mJ: the handle is known at samples only
+    assert "theta  state" in printed  # what the pendulum requires
 
 
 def test_readme_has_lines_that_fit_a_page_and_looks_before_it_pulls():
