@@ -72,6 +72,26 @@ def test_it_fits_an_uno_at_the_rate_it_says_or_not_at_all(entry):
     assert taken.fits == (entry.uno is not None), str(taken)
 
 
+def felt_on_a_board(entry):
+    options = dict(entry.uno)
+    hand = hl.Hand(m=0.02, b=1, k=150, intent=lambda t: 0.02 * np.sin(2 * np.pi * t))
+    paddle = hl.SimulatedPaddle.from_profile(NOMINAL, T=options.pop("T"), b=0.8, counts_per_metre=78_125, hand=hand)
+    with hl.connect("sim://hapkit", paddle=paddle) as board:
+        return board.run(SCENES[entry.name], duration=0.5, **options)
+
+
+def test_it_runs_on_a_board():
+    assert np.abs(felt_on_a_board(CATALOGUE["gears"]).F).max() > 0.1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("entry", [e for e in ENTRIES if e.uno], ids=names)
+def test_every_one_runs_on_a_board(entry):
+    log = felt_on_a_board(entry)
+    assert log.fault is None
+    assert 0.1 < np.abs(log.F).max() < NOMINAL.force_max
+
+
 def test_the_example_runs(tmp_path, capsys):
     example = Path(hl.__file__).parent / "examples" / "from_the_library.py"
     assert main(["run", str(example), "--set", "Omega=25", "--duration", "0.2", "--out", str(tmp_path)]) == 0
