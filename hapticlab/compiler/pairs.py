@@ -24,6 +24,8 @@ from ..scene.symbols import t, x
 from .first_sample import numbers
 from .ranges import Ranges
 
+#: why a pair is left out whatever the ranges are
+WHATEVER = ("ignored", "neither of them moves")
 #: how deep [m] bodies may start in each other: a rounding of where they were put
 TOUCHING = 1e-9
 
@@ -52,7 +54,7 @@ class Contacts(tuple):
     Attributes
     ----------
     dropped : tuple of Dropped
-    ranges : dict coordinate -> (low, high)
+    ranges : dict coordinate, or x(t) -> (low, high)
         What the pruning rests on.
     thickness : dict name -> expression [m]
         Of a contact: both bodies' together.
@@ -176,15 +178,16 @@ def possible_pairs(bodies, *, ignore=(), handle=(-math.inf, math.inf)):
         raise SceneError(f"ignore: {', '.join(sorted(map(str, strangers)))}: no such body")
     ranges = _Ranges(handle)
     boxes = {b: box(b, ranges) for b in bodies}
-    close, kept, dropped = _sweep(boxes), [], []
+    close, kept, dropped, resting = _sweep(boxes), [], [], []
     for k, a in enumerate(bodies):
         for b in bodies[k + 1 :]:
             why = _reason(a, b, boxes, close, ignored, ranges)
             if why:
                 dropped.append(Dropped(a.name, b.name, why))
+                resting += [] if why in WHATEVER else [a, b]
             else:
                 kept.append((a, b))
-    used = applied([pose for b in bodies for pose in (b.x, b.y, b.angle)], "coordinate") if dropped else []
+    used = applied([pose for b in resting for pose in (b.x, b.y, b.angle)], "coordinate", "handle")
     limits = {q: ranges(q) for q in used}
     return Pairs(tuple(kept), tuple(dropped), {q: r for q, r in limits.items() if not all(map(math.isinf, r))})
 
@@ -220,9 +223,9 @@ def _sweep(boxes):
 def _reason(a, b, boxes, close, ignored, ranges):
     """Return why two bodies never meet, or None."""
     if {frozenset([a.name]), frozenset([b.name]), frozenset([a.name, b.name])} & ignored:
-        return "ignored"
+        return WHATEVER[0]
     if not any(pose.has(t) for body in (a, b) for pose in (body.x, body.y, body.angle)):
-        return "neither of them moves"
+        return WHATEVER[1]
     if frozenset((a, b)) not in close:
         axis = next(k for k in (0, 1) if _apart(boxes[a][k], boxes[b][k]))
         return f"{a.name} stays within {_shown(*boxes[a][axis], axis)}, {b.name} within {_shown(*boxes[b][axis], axis)}"

@@ -114,7 +114,14 @@ def test_the_handle_has_a_range_too():
     q = ranged("q", 0.5, 1)
     bodies = [Circle(0.1).at(x=hl.x(t), name="tip"), Circle(0.1).at(x=q, name="ball")]
     assert possible_pairs(bodies).kept
-    assert not possible_pairs(bodies, handle=(-0.1, 0.1)).kept
+    known = possible_pairs(bodies, handle=(-0.1, 0.1))
+    assert not known.kept and known.ranges == {q: (0.5, 1.0), hl.x(t): (-0.1, 0.1)}
+    m, k = hl.parameters("m k", units="kg N/m", values=(0.1, 10))
+    contacts = contacts_between([*bodies, ground(-1)], law=rigid(), handle=(-0.1, 0.1), ignore=[("ball", "ground")])
+    scene = hl.Scene(force=k * hl.x(t), eom=[lagrange(m * q.diff(t) ** 2 / 2, contacts=contacts)], watch=["q"])
+    program = hl.compile(scene, T=1e-3, dtype="float64", method="taylor")
+    felt = engine.load(program).run(3, np.array([[0.05], [0.1], [0.11]]), np.array(program.values)[:, None]).outputs[:, 0, 0]
+    assert felt[:2] == pytest.approx([0.5, 1.0]) and np.isnan(felt[2])
 
 
 def test_contacts_carry_gap_slip_name_and_law():
