@@ -89,15 +89,15 @@ class Coefficients:
         coordinates, orders = tuple(form.coordinates[k] for k in rows), tuple(form.orders[k] for k in rows)
         states = states_of(coordinates, orders)
 
-        def table(entries):
-            return np.reshape(self.numbers(entries), (len(rows), -1))
+        def table(entries, width):
+            return np.reshape(self.numbers(entries), (len(rows), width))
 
         return Linear(
             coordinates,
             orders,
-            table([form.M[i][j] for i in rows for j in rows]),
-            table([Partial(form.f[i], state) for i in rows for state in states]),
-            table([Partial(form.f[i], handle) for i in rows for handle in HANDLE]),
+            table([form.M[i][j] for i in rows for j in rows], len(rows)),
+            table([Partial(form.f[i], state) for i in rows for state in states], len(states)),
+            table([Partial(form.f[i], handle) for i in rows for handle in HANDLE], 2),
         )
 
 

@@ -103,6 +103,8 @@ class Exact:
 
     def _moved(self, tau):
         """Return what the program keeps, at tau [s] after the sample."""
+        if not self.now:
+            return []
         space, effects = self.space, {}  # value -> its effect on all of them
         Phi, Psi = space.over(tau)
 
@@ -139,7 +141,7 @@ def _sum(row, values):
 def _cheaper(linear, read, T):
     """Return the Space that takes fewer products a period, where the states of these numbers are read."""
     plain, modes = linear.space, linear.modes
-    if modes is None:
+    if modes is None or not read:
         return plain
     products = [np.count_nonzero(space.over(T)[0] - np.eye(len(space.A))) for space in (plain, modes)]
     return modes if products[1] + np.count_nonzero(modes.V[read]) < products[0] else plain

@@ -76,6 +76,8 @@ class Linear:
 
         Those of a free mass are, and of critical damping.
         """
+        if not self.states:
+            return None
         size = self.space.scale(np.inf)
         values, vectors = np.linalg.eig(self.A * size[None, :] / size[:, None])
         columns, L = [], np.zeros_like(self.A)

@@ -92,11 +92,13 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, undecided=(
     """Return the program of a scene; of the conditions in ``undecided``, declared ranges decide nothing."""
     exact, other = exact_and_rest(method)
     if not isinstance(other, Taylor) and (not exact or other is not None):
-        choice("method", other, (*METHODS, Taylor.name, *([] if exact else [EXACT])))
+        choice("method", other, (*METHODS, *([] if exact else [Taylor.name, EXACT])))
     choice("hold", hold, HOLDS)
     choice("dtype", dtype, REAL_OF)
     choice("velocity", velocity, VELOCITIES)
     T, substeps, live = period(T), steps(substeps), live_names(live)
+    if exact and other is None and substeps > 1:
+        raise ProgramError(f"substeps = {substeps}: method='exact' takes the whole period at once; leave substeps out")
     try:
         form, decisions = excluded(scene, T, live, undecided)
         for model in form.models:
@@ -104,7 +106,9 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, undecided=(
                 model.contacts.check(scene.values)
         other = Taylor() if other == Taylor.name else other
         other = other if isinstance(other, Taylor) else METHODS.get(other)
-        return _Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live).program(rests_on(form, decisions))
+        return _Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live).program(
+            rests_on(form, decisions)
+        )
     except RecursionError:
         raise ProgramError(
             f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals, "
@@ -155,7 +159,10 @@ class _Lowering:
         for channel, value in zip(program.parameters, program.values, strict=True):
             if value == value:
                 self._entering(channel.name, value)
-        held = (f"holds while {low:g} <= {type(q).__name__} <= {high:g}; beyond, F is nan" for q, (low, high) in ranges.items())
+        held = (
+            f"holds while {low:g} <= {type(q).__name__} <= {high:g}; beyond, F is nan"
+            for q, (low, high) in ranges.items()
+        )
         return replace(program, notes=(*program.notes, *self.dynamics.notes, *held))
 
     def translator(self, leaf, after=0.0):

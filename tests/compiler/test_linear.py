@@ -234,9 +234,18 @@ def test_it_names_what_could_be_had():
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F), pendulum(z)], watch=[th])
     with pytest.raises(ProgramError, match=r"sin\(th\(t\)\).* method='exact\+rk4' takes z exactly and the rest by rk4"):
         hl.compile(scene, T=T, method="exact", live=())
-    for method in ("exact+euler2", "rk4+exact", "exakt", None):
+    for method in ("exact+euler2", "exact+taylor", "rk4+exact", "exakt", None):
         with pytest.raises(ProgramError, match="needs one of"):
             hl.compile(scene, T=T, method=method, live=())
+
+
+def test_scenes_without_motion_to_take():
+    wall = hl.wall()(k=100, x_o=0)
+    assert hl.compile(wall, T=T, method="exact").tick == hl.compile(wall, T=T).tick
+    unseen = hl.Scene(force=k * x(n), eom=[sp.Eq(m * z.diff(t, 2), F)])
+    assert len(hl.compile(unseen, T=T, method="exact").states) == 0
+    with pytest.raises(ProgramError, match="takes the whole period at once"):
+        hl.compile(unseen, T=T, method="exact", substeps=2)
 
 
 def test_one_way_only():
