@@ -168,12 +168,17 @@ class Stepper:
                 yield [_signed(flag, c) for c in p], next(just)
         for r, held, side in zip(motion.reactions, now.held, now.sides, strict=True):
             apart, inside = flow.of(r.measure, order), [*flow.of(r.inside, order - 1), 0.0]
-            if side is not None:
-                apart = [_signed(~side, c) for c in apart]
-            yield (
-                [a if zero(a) and zero(b) else select(held, b, a) for a, b in zip(apart, inside, strict=True)],
-                next(just),
-            )
+            left = next(just)
+            apart = self._departing([c if side is None else _signed(~side, c) for c in apart], left, r.level)
+            yield [a if zero(a) and zero(b) else select(held, b, a) for a, b in zip(apart, inside, strict=True)], left
+
+    def _departing(self, p, just, level):
+        """Return a gap or slip that was just let go without what rounding left of its first derivatives: it opens."""
+        p = list(p)
+        p[1] = select(just, trace.maximum(p[1], 0.0), p[1])
+        if level == 2:
+            p[2] = select(just & (p[1] <= 0.0), trace.maximum(p[2], 0.0), p[2])
+        return p
 
     def _scaled(self, p, left):
         """Return the coefficients on the part of the step that is left, as [0, 1]."""

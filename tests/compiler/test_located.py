@@ -250,7 +250,8 @@ def test_stick_slip_with_friction_that_weakens():
         slip = v - w[0]
         return [(sign(slip) * (F - c * abs(slip)) - k * q[0]) / m], []
 
-    q = rows(program(rates, [0.0], [v], T=T, order=8, events=2), 3000)[:, 0]
+    # one event a tick is enough: breaking away is one, whatever sign rounding gives the slip there
+    q = rows(program(rates, [0.0], [v], T=T, order=8, events=1), 3000)[:, 0]
     np.testing.assert_allclose(q, stick_slip(k, m, v, F, F, c, 3.0), rtol=0, atol=1e-12)
 
 
