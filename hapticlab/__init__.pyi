@@ -42,6 +42,7 @@ from .scene.contact_laws import impulse, micro_impulse, rigid
 from .scene.device_image import device_image
 from .scene.felt import felt_impulse, pulse_time
 from .scene.force_laws import hunt_crossley, penalty
+from .scene.from_mechanics import from_mechanics
 from .scene.laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
 from .scene.mechanics import Mechanics, lagrange
 from .scene.proxy import proxy_curve, proxy_wall
@@ -88,6 +89,7 @@ __all__ = [
     "felt_impulse",
     "force_filter",
     "friction",
+    "from_mechanics",
     "hunt_crossley",
     "impulse",
     "lagrange",
