@@ -152,7 +152,9 @@ def _check_independent(assembly, constraints, positions, coordinates):
         return
     involved = [g for g, weight in zip(constraints, weights, strict=False) if abs(weight) > 1e-6]
     generator = np.random.default_rng(11)
-    elsewhere = assembly.closest(q + assembly.scale[:, None] * generator.uniform(-0.2, 0.2, (len(q), 3)))
+    elsewhere = q + assembly.scale[:, None] * generator.uniform(-0.2, 0.2, (len(q), 3))
+    if len(constraints) < len(coordinates):
+        elsewhere = assembly.closest(elsewhere)
     if all(assembly.dependent(at) is not None for at in elsewhere.T):
         raise SceneError(
             f"redundant constraints: {shown(involved)} repeat each other (their gradients are dependent at every "
