@@ -16,7 +16,9 @@ import sympy as sp
 
 from ..errors import SceneError
 from .amount import number_of
+from .cases import when
 from .checks import agree_with
+from .derivative import Partial
 from .parameters import Parameter
 from .shapes import Circle, Placed, Shape
 from .symbols import T, coordinate, n, t
@@ -82,7 +84,7 @@ class Tracked:
     gap : expression [m]
         Signed distance, negative in overlap; right while the overlap is less deep than the curves bend.
     rate : expression [m/s]
-        Of the gap. A law with a damper takes it as it is: ``law.force(tracked.gap, tracked.rate)``.
+        Of the gap.
     normal, point : (x, y)
         Unit vector out of the first curve, and the closest point [m] of the second.
     slip : expression [m/s]
@@ -96,6 +98,17 @@ class Tracked:
     normal: tuple
     point: tuple
     slip: sp.Expr
+
+    def force(self, law):
+        """Return the normal force [N] of a law such as :class:`~hapticlab.scene.force_laws.penalty`, an expression."""
+        return when(self.gap <= 0, law.force(self.gap, self.rate))
+
+    def generalized_force(self, law, q):
+        """Return what the force does to a coordinate q, for ``forces={q: ...}`` of :func:`hapticlab.lagrange`, or to x(t).
+
+        The closest points stay where they are on their curves: the distance is stationary there.
+        """
+        return self.force(law) * Partial(self.gap, q)
 
 
 def track(a, b, *, names=("u", "w"), rate=None, start=None, values=None):

@@ -147,6 +147,25 @@ def test_a_cam_is_felt():
     assert log.d.min() < 0 < np.ptp(log.x)
 
 
+def test_a_cam_and_an_egg_collide_and_keep_their_energy():
+    """A law with the tracked gap as its potential: what the cam loses the egg has."""
+    m, J, k = hl.parameters("m J k", units="kg kg*m^2 N/m", values=(0.2, 4e-4, 20_000))
+    y, turn, other = (
+        hl.coordinate("y1", unit="m", initial=Amount(0.16, "m"), rate=Amount(-0.5, "m/s")),
+        hl.coordinate("a1", unit="rad", initial=0.3),
+        hl.coordinate("a2", unit="rad", initial=0.9),
+    )
+    found = track(CAM.at(angle=turn, name="cam"), EGG.at(x=0.02, y=y, angle=other, name="egg"))
+    law = hl.penalty(k=k)
+    L = m * y.diff(t) ** 2 / 2 + J * (turn.diff(t) ** 2 + other.diff(t) ** 2) / 2
+    motion = hl.lagrange(L, forces={c: found.generalized_force(law, c) for c in (y, turn, other)})
+    depth = sp.Max(-found.gap, 0)
+    watch = {"E": motion.energy + k * depth**2 / 2, "d": found.gap, "spin": turn.diff(t)}
+    log = run(hl.Scene(force=0, eom=[motion, *found.eom], watch=watch), 700, T=2e-4)
+    assert log["d"].min() < -5e-4 and log["d"][-1] > 0.001 and abs(log["spin"][-1]) > 0.5
+    assert np.ptp(log["E"]) < 1e-5 * log["E"][0]
+
+
 @pytest.mark.parametrize(
     ("make", "word"),
     [
