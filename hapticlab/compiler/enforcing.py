@@ -228,5 +228,3 @@ class Following:
         own = [scaled(-1.0, value) for value in solve(self.J, curvature)]
         first = self.partition.first
         return [own[first.index(q)] if q in first else 0.0 for q in self.partition.coordinates]
-
-

@@ -36,7 +36,7 @@ def largest_port_mass(*, m, T, delay=0.0, velocity="backward_difference"):
     Examples
     --------
     >>> from hapticlab.device.port_mass import largest_port_mass
-    >>> largest_port_mass(m=0.05, T=1e-3)
+    >>> round(largest_port_mass(m=0.05, T=1e-3), 12)
     0.1
     >>> largest_port_mass(m=0.05, T=1e-3, velocity="measured")
     0.05
@@ -48,7 +48,7 @@ def largest_port_mass(*, m, T, delay=0.0, velocity="backward_difference"):
     if part < 1e-9:
         if velocity == "measured":
             return m
-        return m / (math.sin(math.pi * (2 * k + 1) / (4 * k + 6)))  # the cosine, exact at pi/3
+        return m / math.cos(math.pi / (2 * k + 3))
     low, high = 0.0, 4.0
     while high - low > 1e-12:
         middle = (low + high) / 2

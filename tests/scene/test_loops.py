@@ -238,4 +238,3 @@ def test_a_five_bar_is_driven_by_its_two_cranks():
     assert np.all(np.sin(at[q3] - at[phi]) > 0) == (math.sin(start[q3] - start[phi]) > 0)
     with pytest.raises(SceneError, match="cannot close at left = .*, right = "):
         embed(loop, [left, phi, q3, right], start | {L: 0.06, **elbows(0.06)})
-
