@@ -5,7 +5,7 @@ import math
 import numpy as np
 import sympy as sp
 
-from .dyads import NotClosed, number
+from .loop_terms import NotClosed, number
 
 #: of Step.margin: a sine of 1e-4 between a link and the circle it must meet, what float32 still resolves
 CLOSEST = 1e-8

@@ -13,7 +13,8 @@ import sympy as sp
 
 from ..errors import SceneError
 from .closing import Open, check_range, declared_range, in_unit, is_coordinate, name, names, shown, values, wraps
-from .dyads import Equations, NotClosed, number
+from .dyads import Equations
+from .loop_terms import NotClosed, number
 from .symbols import v
 
 #: initial values that are written with seven digits agree with the constraint

@@ -8,7 +8,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab.errors import SceneError
-from hapticlab.scene.dyads import NotClosed, number
+from hapticlab.scene.loop_terms import NotClosed, number
 from hapticlab.scene.loops import embed, is_holonomic
 
 r, L, l3, g, e = hl.parameters("r L l3 g e", units="m m m m m")
