@@ -276,3 +276,11 @@ def test_it_sees_the_handle_as_the_other_methods_do(hold, velocity):
 def test_it_is_offered_where_a_board_is_too_slow():
     with pytest.raises(ProgramLimitError, match=r"fits with method='exact', live=''"):
         fit(chain(1, b=0.5), "uno", T=1e-3)
+
+
+def test_a_jump_of_the_state_is_not_linear_though_its_slope_is_zero_on_both_sides():
+    F = hl.parameters("F_c", units="N", values=0.3)
+    u = hl.parameters("u", units="N*s/m", values=1.0)
+    rubbed = hl.Scene(u * y.diff(t), [sp.Eq(m * y.diff(t, 2), k * (x(t) - y) - F * sp.sign(y.diff(t)))])
+    with pytest.raises(ProgramError, match="jumps with sign"):
+        hl.compile(rubbed, T=T, method="exact", live=())
