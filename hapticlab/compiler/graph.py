@@ -61,7 +61,7 @@ class Graph:
         self.builder = Algebra("f64")
         self.variables = {}  # expression -> number of its input
         self.translator = Translator(self.builder, self._leaf, clock=self, graph=self, sample=self._held)
-        self._gradients, self._tangents = {}, {}
+        self._gradients, self._tangents, self._derivatives = {}, {}, {}
 
     def __call__(self, expr):
         """Return the value of an expression in the graph."""
@@ -77,6 +77,11 @@ class Graph:
 
     def derivative(self, expr):
         """Return the value of a :class:`Partial` or a :class:`Rate`."""
+        if expr not in self._derivatives:  # every stage of a method asks again
+            self._derivatives[expr] = self._derivative(expr)
+        return self._derivatives[expr]
+
+    def _derivative(self, expr):
         inner = self(expr.args[0])
         if isinstance(expr, Rate):
             return self._tangent("rate", self._rate_of)(inner)
