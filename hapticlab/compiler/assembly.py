@@ -96,8 +96,10 @@ class Assembly:
 
     def weakness(self, q, columns=slice(None)):
         """Return the relative singular value at each configuration, shape (lanes,)."""
-        sizes = np.linalg.svd(self.jacobian(q)[:, :, columns], compute_uv=False)
-        return sizes[:, -1] / np.maximum(sizes[:, 0], 1.0)
+        J = self.jacobian(q)[:, :, columns]
+        known = np.isfinite(J).all(axis=(1, 2))  # a mechanism does not get where its constraints are not numbers
+        sizes = np.linalg.svd(np.where(known[:, None, None], J, 0.0), compute_uv=False)
+        return np.where(known, sizes[:, -1] / np.maximum(sizes[:, 0], 1.0), np.inf)
 
     def _along(self, q, headings):
         """Return what the constraints let pass of directions, of size one; shape (lanes, n)."""
