@@ -25,12 +25,13 @@ def of_kane(method, given, enforce):
     _formed(method)
     still = dict.fromkeys(method._uaux, sp.S.Zero) | {u.diff(t): sp.S.Zero for u in method._uaux}
     constrained = bool(len(method._f_h) or len(method._udep))
-    speeds = _speeds(method, still)
+    q, u, K, rest = _kinematics(method)
+    speeds = _speeds(u, K.xreplace(still), rest.xreplace(still))
     plain = {u: w.expr for u, w in speeds.items() if isinstance(w, sp.Derivative)} if speeds else {}
     if speeds and len(set(plain.values())) == len(speeds):
-        return _in_rates(method, speeds, plain, still, constrained, given, enforce)
+        return _in_rates(method, q, speeds, plain, still, given, enforce)
     if speeds and constrained:
-        return _in_rates(method, speeds, {}, still, constrained, _starts(given, speeds, still, method), enforce)
+        return _in_rates(method, q, speeds, {}, still, _starts(given, speeds, still, method), enforce)
     return _in_speeds(method, still, constrained, given, enforce)
 
 
@@ -41,12 +42,25 @@ def _formed(method):
         method.kanes_equations()
 
 
-def _speeds(method, still):
+def _kinematics(method):
+    """Return (q, u, K, rest) of the kinematic equations K u + rest = 0.
+
+    A speed that is in none of them, such as the spin of a wheel, is the rate of a coordinate of its own.
+    """
+    q, u, K = list(method.q), list(method.u), method._k_ku_implicit
+    rest = method._k_kqdot_implicit * method.q.diff(t) + method._f_k_implicit
+    for k, speed in enumerate(u):
+        if K.cols == len(u) and K[:, k].is_zero_matrix:
+            q.append(sp.Function(f"q_{type(speed).__name__}")(t))
+            K = K.col_join(sp.Matrix([[-sp.Integer(j == k) for j in range(len(u))]]))
+            rest = rest.col_join(sp.Matrix([q[-1].diff(t)]))
+    return q, u, K, rest
+
+
+def _speeds(u, k_u, rest):
     """Return speed -> expression of coordinates and rates, or None where the kinematic equations do not give them."""
-    k_u, k_q, f_k = (m.xreplace(still) for m in (method._k_ku_implicit, method._k_kqdot_implicit, method._f_k_implicit))
     if not k_u.rows == k_u.cols > 0:
         return None
-    rest = k_q * method.q.diff(t) + f_k
     if k_u.is_diagonal() and all(entry != 0 for entry in k_u.diagonal()):
         solved = [-right / entry for right, entry in zip(rest, k_u.diagonal(), strict=True)]
     else:
@@ -54,12 +68,13 @@ def _speeds(method, still):
             solved = list(-k_u.LUsolve(rest))
         except (ValueError, sp.matrices.exceptions.NonInvertibleMatrixError):
             return None
-    return None if any(e.has(sp.nan, sp.zoo) for e in solved) else dict(zip(method.u, solved, strict=True))
+    return None if any(e.has(sp.nan, sp.zoo) for e in solved) else dict(zip(u, solved, strict=True))
 
 
 def _unconstrained(method, q, u):
     """Return Kane's equations of all speeds, as if none depended on another."""
-    zero = list(method._k_kqdot_implicit * method.q.diff(t) + method._k_ku_implicit * method.u + method._f_k_implicit)
+    _, _, K, rest = _kinematics(method)
+    zero = list(K * sp.Matrix(u) + rest)
     extra = {"u_auxiliary": list(method._uaux)} if len(method._uaux) else {}
     whole = type(method)(method._inertial, q, u, kd_eqs=zero, **extra)
     whole.kanes_equations(method.bodies, method.loads)
@@ -107,10 +122,10 @@ def _numbers(J, words):
     return at | {d: sp.S.Zero for row in J for e in row for d in e.atoms(sp.Derivative)}
 
 
-def _in_rates(method, speeds, plain, still, constrained, given, enforce):
+def _in_rates(method, q, speeds, plain, still, given, enforce):
     """Return the model of second order: u are functions of q and q', so with u' = T q'' + b it is T'M T q'' = T'(f - M b)."""
-    q, u = list(method.q), list(method.u)
-    whole = _unconstrained(method, q, u) if constrained else method
+    u = list(speeds)
+    whole = _unconstrained(method, q, u) if len(method._f_h) or len(method._udep) else method
     velocity = list(method._k_nh * method.u + method._f_nh) if len(method._udep) else []
     M, f, configuration, velocity, U = (
         [sp.sympify(e).xreplace(still).xreplace(speeds) for e in part]
