@@ -4,9 +4,11 @@ from . import library
 from .analysis.books import balance, energy_books
 from .analysis.chatter import chatter
 from .analysis.energy import energy
+from .analysis.impedance import impedance
 from .analysis.passivity import passivity_limit
 from .analysis.pictures import picture
 from .analysis.plots import plot
+from .analysis.port import port_damping
 from .analysis.reduction import reduction
 from .analysis.stability import stability_limit
 from .analysis.sweep import sweep
@@ -91,6 +93,7 @@ __all__ = [
     "friction",
     "from_mechanics",
     "hunt_crossley",
+    "impedance",
     "impulse",
     "lagrange",
     "library",
@@ -101,6 +104,7 @@ __all__ = [
     "penalty",
     "picture",
     "plot",
+    "port_damping",
     "predicted_sample",
     "profile",
     "proxy_curve",

@@ -13,6 +13,8 @@ from . import __version__
 from . import board_commands as board
 from . import demo as demonstration
 from .analysis.plots import plot
+from .compiler.advance import Taylor
+from .compiler.exact import EXACT
 from .compiler.methods import METHODS
 from .device.calibrate import STEPS
 from .errors import HapticlabError
@@ -171,7 +173,7 @@ def _parser():
     ran.add_argument("--every", type=_whole, metavar="N", help="have the board send one sample in N ticks")
     ran.add_argument("--duration", type=float, metavar="SECONDS", help="how long to run [s]")
     ran.add_argument("--T", type=float, metavar="SECONDS", help="sampling period [s]")
-    ran.add_argument("--method", choices=sorted(METHODS), help="integrator of the equations of motion (default: rk4)")
+    ran.add_argument("--method", choices=[*sorted(METHODS), Taylor.name, EXACT], help="integrator of the equations of motion (default: rk4)")
     ran.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
     ran.set_defaults(command=run, parser=ran)
     for one, folder in ((shown, "hapticlab-demo"), (ran, "hapticlab-run")):
