@@ -13,6 +13,7 @@ from .analysis.reduction import reduction
 from .analysis.stability import stability_limit
 from .analysis.sweep import sweep
 from .compiler.lower import compile
+from .compiler.pairs import contacts_between
 from .compiler.replay import replay
 from .compiler.requires import requires
 from .device.board import SerialPaddle
@@ -39,24 +40,34 @@ from .errors import (
     UnitsError,
 )
 from .records import PaddleProfile, Telemetry
+from .scene.amount import Amount
 from .scene.contact import Contact, friction
 from .scene.contact_laws import impulse, micro_impulse, rigid
+from .scene.curves import Curve, track
 from .scene.device_image import device_image
 from .scene.felt import felt_impulse, pulse_time
 from .scene.force_laws import hunt_crossley, penalty
 from .scene.from_mechanics import from_mechanics
+from .scene.gaps import closest, gap
 from .scene.laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
 from .scene.mechanics import Mechanics, lagrange
 from .scene.proxy import proxy_curve, proxy_wall
 from .scene.scene import Scene
+from .scene.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, ground, replacement
 from .scene.symbols import T, coordinate, delay, n, parameters, signal, t, v, when, x
 
 __version__: str
 
 __all__ = [
+    "Amount",
     "AnalysisError",
+    "Box",
+    "Capsule",
+    "Circle",
     "Contact",
+    "Curve",
     "EngineMissingError",
+    "HalfPlane",
     "Hand",
     "HapticlabError",
     "LinkError",
@@ -66,11 +77,13 @@ __all__ = [
     "PaddleError",
     "PaddleProfile",
     "ParameterError",
+    "Polygon",
     "PortError",
     "ProgramError",
     "ProgramLimitError",
     "Scene",
     "SceneError",
+    "Segment",
     "SerialPaddle",
     "SignalError",
     "SimulatedPaddle",
@@ -80,8 +93,10 @@ __all__ = [
     "balance",
     "calibrate",
     "chatter",
+    "closest",
     "compile",
     "connect",
+    "contacts_between",
     "coordinate",
     "delay",
     "device_image",
@@ -92,6 +107,8 @@ __all__ = [
     "force_filter",
     "friction",
     "from_mechanics",
+    "gap",
+    "ground",
     "hunt_crossley",
     "impedance",
     "impulse",
@@ -111,6 +128,7 @@ __all__ = [
     "proxy_wall",
     "pulse_time",
     "reduction",
+    "replacement",
     "replay",
     "requires",
     "rigid",
@@ -118,6 +136,7 @@ __all__ = [
     "stability_limit",
     "sweep",
     "t",
+    "track",
     "v",
     "virtual_coupler",
     "virtual_damper",

@@ -173,7 +173,8 @@ def _parser():
     ran.add_argument("--every", type=_whole, metavar="N", help="have the board send one sample in N ticks")
     ran.add_argument("--duration", type=float, metavar="SECONDS", help="how long to run [s]")
     ran.add_argument("--T", type=float, metavar="SECONDS", help="sampling period [s]")
-    ran.add_argument("--method", choices=[*sorted(METHODS), Taylor.name, EXACT], help="integrator of the equations of motion (default: rk4)")
+    methods = [*sorted(METHODS), Taylor.name, EXACT]
+    ran.add_argument("--method", choices=methods, help="integrator of the equations of motion (default: rk4)")
     ran.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
     ran.set_defaults(command=run, parser=ran)
     for one, folder in ((shown, "hapticlab-demo"), (ran, "hapticlab-run")):
