@@ -172,10 +172,9 @@ def of_energies(L, R, forces, coordinates, constraints, contacts=(), **facts):
     momenta = [Partial(L, w) for w in rates]
     N = range(len(rates))  # entries above the diagonal are those below it, so that the compiler sees that M is symmetric
     M = tuple(tuple(Partial(momenta[max(i, j)], rates[min(i, j)]) for j in N) for i in N)
+    touched = {q: [c.generalized_force(q) for c in contacts if _parts(c)[0].has(q)] for q in coordinates}
     f = tuple(
-        sp.Add(
-            Partial(L, q), -Rate(p), -Partial(R, w), forces.get(q, sp.S.Zero), *(c.generalized_force(q) for c in contacts)
-        )
+        sp.Add(Partial(L, q), -Rate(p), -Partial(R, w), forces.get(q, sp.S.Zero), *touched[q])
         for q, w, p in zip(coordinates, rates, momenta, strict=True)
     )
     written = (L, R, *forces.values(), *constraints, *(part for c in contacts for part in _parts(c)))

@@ -282,3 +282,14 @@ def test_pairs_that_cannot_meet():
 def test_a_defined_coordinate_is_no_state():
     scene = hl.Scene(force=k * (x(t) - w), eom=[sp.Eq(w, 3 * z), sp.Eq(m * z.diff(t, 2), 3 * k * (x(t) - w))])
     assert found(requires(scene), "w").why == "another name of 3*z(t): no state of its own"
+
+
+def test_a_contact_of_what_nobody_sees_is_left_out_with_it():
+    a, b = hl.coordinate("a", unit="m"), hl.coordinate("b", unit="m", initial=0.1)
+    m, k, K = hl.parameters("m k K", units="kg N/m N/m", values=(0.05, 500, 200))
+    kinetic = m * (a.diff(hl.t) ** 2 + b.diff(hl.t) ** 2) / 2
+    pull = K * (hl.x(hl.t) - a)
+    model = hl.lagrange(kinetic, forces={a: pull}, contacts=[hl.Contact(b, hl.penalty(k=k))])
+    alone = hl.lagrange(m * a.diff(hl.t) ** 2 / 2, forces={a: pull})
+    both, one = (hl.compile(hl.Scene(pull, eom), T=1e-3, method="exact", live="") for eom in (model, alone))
+    assert both.tick == one.tick
