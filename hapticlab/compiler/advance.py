@@ -89,7 +89,7 @@ def advance(
     check_smooth(motion, name)
     number = numbers(builder.instructions, tracing.at_start(values))
     start, linear = tuple([number(v.id) for v in part] for part in groups), is_linear(motion)
-    omega = frequency(motion, [start, *(() if linear else within(ranges, start))], number)
+    omega = frequency(motion, [start, *(() if linear else within(ranges, start))], number, linear)
     check_step(omega, h * substeps, substeps, name)
     order = method.order or order_for(omega * h, real, linear)
     surfaces = len(motion.guards) + len(motion.reactions)

@@ -47,8 +47,8 @@ def _value(i, known, given):
         return AT_ONCE[i.op](*(known[a] for a in i.args))
 
 
-def jacobian(motion, modes, at, number):
-    """Return the matrix of the motion's rates at a state (q, w, s), shape (2 n + m, 2 n + m), in given modes."""
+def _varied(motion, modes, at, number):
+    """Return the series of values and their gradients by (q, w, s), as coefficients 0 and 1."""
     leaves, values = [*motion.q, *motion.w, *motion.s], [*at[0], *at[1], *at[2]]
     rows = {
         leaf.id: [np.float64(value), unit]
@@ -56,14 +56,30 @@ def jacobian(motion, modes, at, number):
     }
     rows[motion.tau.id] = [0.0, 0.0]
     rows |= {leaf.id: [value, 0.0] for leaf, value in modes.items()}
-    series = Series(motion.builder.instructions, rows, number)
-    n = len(motion.q)
-    J = np.zeros((len(leaves), len(leaves)))
+    return Series(motion.builder.instructions, rows, number)
+
+
+def jacobian(motion, modes, at, number):
+    """Return the matrix of the motion's rates at a state (q, w, s), shape (2 n + m, 2 n + m), in given modes."""
+    series, n = _varied(motion, modes, at, number), len(motion.q)
+    J = np.zeros((2 * n + len(motion.s),) * 2)
     J[:n, n : 2 * n] = np.eye(n)
     with np.errstate(all="ignore"):
-        for row, rate in zip(range(n, len(leaves)), [*motion.a, *motion.ds], strict=True):
+        for row, rate in zip(range(n, len(J)), [*motion.a, *motion.ds], strict=True):
             J[row] = series.of(rate, 1)[1]
     return J
+
+
+def _onto_surfaces(motion, modes, at, number):
+    """Return a state like the one given that can be in these modes: on the surfaces it would have to lie beyond."""
+    q, w, s = np.array(at[0], float), at[1], at[2]
+    for g in motion.guards:
+        if g.kind == "side":
+            value, gradient = _varied(motion, modes, (q, w, s), number).of(g.measure, 1)
+            along = np.broadcast_to(gradient, (2 * len(q) + len(s),))[: len(q)]
+            if (value < 0) != modes[g.leaf] and along.any() and np.isfinite(along).all():
+                q = q - value * along / (along @ along)
+    return list(q), w, s
 
 
 def modes_of(motion):
@@ -88,12 +104,17 @@ def _free(motion, modes):
     return modes
 
 
-def frequency(motion, states, number):
-    """Return the largest |eigenvalue| [rad/s] of the motion over its modes and some states; nan where it is not known."""
+def frequency(motion, states, number, linear=True):
+    """Return the largest |eigenvalue| [rad/s] of the motion over its modes and some states; nan where it is not known.
+
+    Where it is not linear, a mode that a state cannot be in is looked at where it begins.
+    """
     largest = 0.0
     for at in states:
         for modes in modes_of(motion):
-            J = jacobian(motion, modes, at, number)
+            with np.errstate(all="ignore"):
+                state = at if linear else _onto_surfaces(motion, modes, at, number)
+            J = jacobian(motion, modes, state, number)
             if not np.isfinite(J).all():
                 return math.nan
             largest = max(largest, max(abs(np.linalg.eigvals(J)), default=0.0))

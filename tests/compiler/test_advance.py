@@ -197,3 +197,17 @@ def test_a_declared_range_is_looked_at_where_the_motion_is_not_linear():
     # at 2 cm the spring has 3 k q^2 = 6e5 N/m: 3464 rad/s
     with pytest.raises(ProgramError, match=r"substeps=[34]"):
         hl.compile(hardening(range=(-0.02, 0.02)), method="taylor", T=T)
+
+
+def test_a_contact_that_hardens_is_not_judged_by_where_it_does_not_touch():
+    # 5 cm above the floor the law k d^2 would have 2 k d = 1e5 N/m; it touches with none, and 2 mm deep has 4000 N/m
+    c = hl.parameters("c", units="N/m^2", values=1e6)
+    law = drop(law=lambda q, k, b: hl.when(q <= 0, c * sp.Max(0, -q) ** 2))
+    _, exact = run(law, 200, method="taylor", dtype="float64")
+    _, rk4 = run(law, 200, method="rk4", substeps=64, dtype="float64")
+    np.testing.assert_allclose(exact[:, 0], rk4[:, 0], rtol=0, atol=1e-9)
+    # a range down to -5 cm says that it may go there
+    q, m = hl.coordinate("q", unit="m", range=(-0.05, 0.1)), hl.parameters("m", units="kg", values=0.05)
+    deep = hl.Scene(0, [sp.Eq(m * q.diff(hl.t, 2), c * sp.Max(0, -q) ** 2)])
+    with pytest.raises(ProgramError, match="substeps=2"):
+        hl.compile(deep, T=T, method="taylor")
