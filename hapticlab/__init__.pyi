@@ -12,6 +12,7 @@ from .analysis.port import port_damping
 from .analysis.reduction import reduction
 from .analysis.stability import stability_limit
 from .analysis.sweep import sweep
+from .compiler.advance import Taylor
 from .compiler.lower import compile
 from .compiler.pairs import contacts_between
 from .compiler.replay import replay
@@ -88,6 +89,7 @@ __all__ = [
     "SignalError",
     "SimulatedPaddle",
     "T",
+    "Taylor",
     "Telemetry",
     "UnitsError",
     "balance",

@@ -162,7 +162,9 @@ class Telemetry:
     def __repr__(self):
         stopped = f"; fault: {self.fault}" if self.fault else ""
         seconds = f"{len(self) * self.T:g} s at T = {self.T:g} s"
-        return f"Telemetry({len(self)} samples, {seconds}: {', '.join(self.columns)}{stopped})"
+        missed = np.count_nonzero(self.channels.get("unlocated", 0))
+        left_out = f"; an event was not located in {missed} of them, see unlocated" if missed else ""
+        return f"Telemetry({len(self)} samples, {seconds}: {', '.join(self.columns)}{left_out}{stopped})"
 
     def save(self, path):
         """Write everything to a NumPy archive and return its path (``.npz`` is added where missing)."""

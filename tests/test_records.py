@@ -92,6 +92,12 @@ def test_repr_is_short_and_names_the_fault():
     assert len(text) < 150 and "5 samples" in text and "F was nan" in text
 
 
+def test_repr_tells_of_events_that_were_not_located():
+    missed = make_log(channels={"unlocated": [0, 1, 0, 2, 0]})
+    assert "an event was not located in 2 of them, see unlocated" in repr(missed)
+    assert "not located" not in repr(make_log(channels={"unlocated": np.zeros(5)}))
+
+
 def test_profile_says_what_it_is():
     nominal = PaddleProfile("toy", m=0.05, b=0.1, counts_per_metre=1e5, coulomb=0.2, force_max=3, source="a sketch")
     assert "10 um per count (floor)" in str(nominal) and "nominal, not measured" in str(nominal)
