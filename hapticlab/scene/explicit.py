@@ -84,6 +84,7 @@ def explicit_form(scene):
         named = ", ".join(type(q).__name__ for q in own) or "none"
         for q in own:
             _order(q, equations)  # names the one that has no equation
+        _check_unmodelled(equations, modelled)
         raise MassError(f"{len(equations)} equations of motion for {len(own)} coordinates ({named}); give one for each")
     orders = {q: _order(q, equations) for q in own}
     orders |= {q: order for model in models for q, order in zip(model.coordinates, model.orders, strict=True)}
@@ -119,6 +120,16 @@ def _check_models(modelled):
     if twice is not None:
         name = type(twice).__name__
         raise SceneError(f"two Lagrangians move {name}; add the energies and give one hl.lagrange(L_1 + L_2)")
+
+
+def _check_unmodelled(equations, modelled):
+    for q in modelled:
+        if any(d.expr == q and d.derivative_count == 2 for e in equations for d in e.atoms(sp.Derivative)):
+            name = type(q).__name__
+            raise MassError(
+                f"{name} is moved by a Lagrangian, which moves every coordinate it holds, and by an equation of its own; "
+                f"add its energy to the Lagrangian, forces={{{name}: ...}}, and leave the equation out"
+            )
 
 
 def _order(q, equations):
