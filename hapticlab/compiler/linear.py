@@ -84,7 +84,7 @@ class Linear:
         for value, column in zip(values, vectors.T, strict=True):
             if value.imag < 0:
                 continue  # the other half of a pair
-            largest = column[np.abs(column[: self.seconds] if value.imag else column).argmax()]
+            largest = column[np.abs(column[: self.seconds or None] if value.imag else column).argmax()]
             column = column * np.conj(largest) / abs(largest) if largest else column
             k, both = len(columns), [column.real, column.imag] if value.imag else [column.real]
             L[k : k + 2, k : k + 2] += [[value.real, value.imag], [-value.imag, value.real]] if value.imag else 0.0
