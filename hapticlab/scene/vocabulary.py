@@ -52,7 +52,11 @@ class Vocabulary:
         self.declared = all(s in units for s in free)
         for c in constants:
             self.table[c] = replace[c] if c in replace else self._parameter(c, units.get(c, "1"), values.get(c))
-        self._coordinates(replace, units, self._keyed(initial, "initial", rates=True))
+        initial = self._keyed(initial, "initial", rates=True)
+        wrong = next((s for s in initial if s in constants), None)
+        if wrong is not None:
+            raise SceneError(f"initial has {wrong}, which does not move; what it is goes into values={{{wrong}: ...}}")
+        self._coordinates(replace, units, initial)
         for symbol, given in replace.items():
             if symbol not in self.table:
                 self.inputs[symbol] = self(given)
@@ -151,7 +155,7 @@ class Vocabulary:
     def _word(self, symbol):
         """Return a name that nothing has yet, and note it where it is another than the symbol's own."""
         own = _name(symbol)
-        plain = re.sub(r"\W+", "_", own).strip("_") or "q"
+        plain = own if own.isidentifier() else re.sub(r"[\W_]+", "_", own).strip("_") or "q"
         plain = f"q{plain}" if plain[0].isdigit() else plain
         made, k = plain, 1
         while made in self.taken or iskeyword(made):
