@@ -16,6 +16,9 @@ from .vocabulary import Vocabulary
 READ = ("_f_h", "_f_nh", "_k_nh", "_uaux", "_udep", "_inertial", "_k_ku_implicit", "_k_kqdot_implicit", "_f_k_implicit")
 DRIFTS = "constraints of speeds are kept by their rate alone, as KanesMethod writes them: they drift by the step's error"
 
+#: of a constraint's gradient, of size one: what is left of it when it follows from others
+REPEATED = 1e-9
+
 
 def of_kane(method, given, enforce):
     """Return the :class:`Mechanics` of a KanesMethod; see :func:`~hapticlab.scene.from_mechanics.from_mechanics`."""
@@ -103,13 +106,16 @@ def _independent(configuration, velocity, q, words):
         return velocity
     J = [[g.diff(p) for p in q] for g in configuration] + [[g.diff(p.diff(t)) for p in q] for g in velocity]
     J = np.array(sp.Matrix(J).xreplace(_numbers(J, words)).evalf(), float)
-    J /= np.linalg.norm(J, axis=1)[:, None]
+    J /= np.maximum(np.linalg.norm(J, axis=1)[:, None], np.finfo(float).tiny)
     basis, rest, chosen = np.linalg.qr(J[: len(configuration)].T)[0], J[len(configuration) :], []
     for _ in range(len(velocity) - len(configuration)):
         rest = rest - rest @ basis @ basis.T
-        best = int(np.argmax(np.linalg.norm(rest, axis=1)))
+        sizes = np.linalg.norm(rest, axis=1)
+        best = int(np.argmax(sizes))
+        if sizes[best] < REPEATED:
+            break
         chosen.append(best)
-        basis = np.column_stack([basis, rest[best] / np.linalg.norm(rest[best])])
+        basis = np.column_stack([basis, rest[best] / sizes[best]])
     return [velocity[k] for k in sorted(chosen)]
 
 
@@ -152,7 +158,7 @@ def _in_speeds(method, still, constrained, given, enforce):
     states, u = [*method.q, *method.u], list(method.u)
     M, f = method.mass_matrix.xreplace(still), method.forcing.xreplace(still)
     turning = [method.kindiffdict()[p.diff(t)].xreplace(still) for p in method.q]
-    words = Vocabulary(states, [*M, *f, *turning], {}, **given)
+    words = Vocabulary(states, [*M, *f, *turning, *method._f_h], {}, **given)
     driven = next((s for s in states if s in words.inputs), None)
     if driven is not None:
         raise SceneError(f"{driven} is replaced, which needs speeds that are rates of coordinates, u = q'")

@@ -46,10 +46,11 @@ class Vocabulary:
         replace = self._keyed(replace, "replace")
         units, values = self._keyed(units, "units"), self._keyed(values, "values")
         self._check_given(replace, units, values, constants, functions)
-        for given in replace.values():
-            self.taken |= {s.name for s in given.atoms(Parameter)} | {type(f).__name__ for f in given.atoms(AppliedUndef)}
-        free = [s for s in self.symbols if s not in replace and s not in self.speeds]
-        self.declared = all(s in units for s in free)
+        replace |= {q: q for q in self.moving if _is_coordinate(q)}
+        for given in (*replace.values(), *map(sp.sympify, expressions)):
+            self.taken |= {s.name for s in given.atoms(Parameter)}
+            self.taken |= {type(f).__name__ for f in given.atoms(AppliedUndef) if _is_coordinate(f)}
+        self.declared = all(s in units for s in self.symbols if s not in replace and s not in self.speeds)
         for c in constants:
             self.table[c] = replace[c] if c in replace else self._parameter(c, units.get(c, "1"), values.get(c))
         initial = self._keyed(initial, "initial", rates=True)
@@ -137,7 +138,7 @@ class Vocabulary:
             if q in replace:
                 if starts:
                     raise SceneError(f"{q} is replaced by {replace[q]}; declare its start there")
-                if getattr(type(replace[q]), "role", None) == "coordinate":
+                if _is_coordinate(replace[q]):
                     self.table[q] = replace[q]
                 continue
             if len(starts) > 1 and starts[-1] != q.diff(t) and q.diff(t) in starts:
@@ -164,6 +165,10 @@ class Vocabulary:
         if made != own:
             self.notes += (f"{symbol} of the model is called {made} here",)
         return made
+
+
+def _is_coordinate(expr):
+    return getattr(type(expr), "role", None) == "coordinate"
 
 
 def _name(symbol):

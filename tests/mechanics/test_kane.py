@@ -186,3 +186,39 @@ def test_rolling_disc_with_dependent_speeds():
     touching = check(mech, watch, reference, 0.005, 0.05, 1e-6)
     assert np.abs(touching[:, 0]).max() < 1e-14
     assert touching[0, 1] == pytest.approx(12.0, rel=1e-14)
+
+
+def test_rolling_disc_and_its_path():
+    """Coordinates of the path beside the angles: more coordinates than speeds."""
+    q, u = dynamicsymbols("q1:6"), dynamicsymbols("u1:4")
+    inner, values = disc()
+    r = sp.Symbol("r")
+    turning = inner.kindiffdict()
+    spun = turning[inner.q[2].diff(t)]
+    path = [q[3].diff(t) - r * spun * sp.cos(q[0]), q[4].diff(t) - r * spun * sp.sin(q[0])]
+    kane = KanesMethod(
+        inner._inertial, q, u, kd_eqs=[*(rate - value for rate, value in turning.items()), *path]
+    )  # fmt: skip
+    kane.kanes_equations(inner.bodies, inner.loads)
+    compare(kane, values, [0.2, 0.3, 0.1, 0.0, 0.0, 0.4, 12.0, -0.5], 0.005, 0.05, 1e-6)
+
+
+def test_what_cannot_be_projected_is_said_and_small():
+    """A bob on a rod in x and y, and a counter of its x: three coordinates for two speeds, one of them dependent."""
+    q, u, (l, m, g) = dynamicsymbols("q1:4"), dynamicsymbols("u1:3"), sp.symbols("l m g")
+    N, P = ReferenceFrame("N"), Point("P")
+    P.set_vel(N, u[0] * N.x + u[1] * N.y)
+    kane = KanesMethod(
+        N, [q[0], q[2]], u[:1], kd_eqs=[q[0].diff() - u[0], q[2].diff() - 2 * u[0], q[1].diff() - u[1]],
+        q_dependent=[q[1]], configuration_constraints=[q[0] ** 2 + q[1] ** 2 - l**2],
+        u_dependent=u[1:], velocity_constraints=[q[0] * u[0] + q[1] * u[1]],
+    )  # fmt: skip
+    kane.kanes_equations([Particle("bob", P, m)], [(P, -m * g * N.y)])
+    starts = [0.0, 0.0, -0.3, 0.5, 0.0]
+    values = {l: 0.3, m: 0.2, g: 9.81}
+    mech = taken(kane, values, starts)
+    assert mech.notes[-1].startswith("constraints of speeds are kept by their rate alone")
+    rod = sum(mech[p] ** 2 for p in q[:2]) - 0.09
+    watch = {f"s{k}": mech[s] for k, s in enumerate([*kane.q, *kane.u])} | {"rod": rod}
+    drift = check(mech, watch, lambda at: motion(kane, values, starts, at), 0.02, 0.2, 1e-5)
+    assert 1e-9 < np.abs(drift).max() < 1e-6

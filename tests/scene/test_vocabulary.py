@@ -133,6 +133,16 @@ def test_a_coordinate_of_ones_own():
     assert mech.M == ((M,),)
 
 
+def test_words_of_a_scene_in_a_model_stay_what_they_are():
+    z, (M, K) = hl.coordinate("z", unit="m"), hl.parameters("k K", units="kg N/m")
+    mech = hl.from_mechanics(sprung(K * (x(t) - z), m=M, q=z), values={k: 3}, units={k: "N/m"})
+    assert mech.coordinates == (z,)
+    assert mech[k].name == "k_1"  # the model's k; a parameter of that name was there
+    assert mech.forces[0][1].doit() == K * (x(t) - z)
+    with pytest.raises(UnitsError, match="force on z"):
+        hl.from_mechanics(sprung(M * z, m=M, q=z), units={k: "N/m"})
+
+
 def test_speeds_that_are_no_rates_are_states_of_their_own():
     u = dynamicsymbols("u")
     mech = hl.from_mechanics(by_kane(u=u, kd=q.diff(t) - 2 * u), values={m: 0.5, k: 8.0}, initial={q: 1.0, u: 0.25})
