@@ -41,19 +41,29 @@ class Translator:
         self.builder, self.leaf, self.clock, self.bound = builder, leaf, clock, bound or {}
         self.graph, self.copied, self.sample = graph, {}, sample or self
         self.known, self.settled = {}, {}
+        self.started = []  # what is being translated, outermost first, and how many instructions there were before it
 
     def __call__(self, expr):
         """Return the value of an expression."""
         expr = sp.sympify(expr)
         if expr not in self.known:
+            self.started.append((expr, len(self.builder.instructions)))
             if len(self.builder.instructions) > MOST_INSTRUCTIONS:
-                raise ProgramLimitError(
-                    f"more than {MOST_INSTRUCTIONS} instructions when translating {str(expr)[:60]}...; "
-                    "keep M and f apart (never invert or expand symbolically) or take a smaller model"
-                )
+                raise ProgramLimitError(self._grown())
             self.known[expr] = self._translate(expr)
+            self.started.pop()
             check_product(expr, self.known[expr], self.known, self.bound, self.settled)
         return self.known[expr]
+
+    def _grown(self):
+        """Return a message that names the smallest part that took most of the instructions."""
+        now = len(self.builder.instructions)
+        grown = [(expr, now - before) for expr, before in self.started if now - before > MOST_INSTRUCTIONS / 2]
+        reason = "they are of many parts, none of which is most of them; take fewer coordinates, contacts or substeps"
+        if grown:
+            expr, size = grown[-1]
+            reason = f"{size} of them for {str(expr)[:60]}...; write it with fewer terms, or not expanded in symbols"
+        return f"more than {MOST_INSTRUCTIONS} instructions: {reason}"
 
     def _translate(self, expr):
         if expr in (sp.true, sp.false):

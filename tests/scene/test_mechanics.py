@@ -122,7 +122,12 @@ def test_a_model_without_energies_has_none():
 
 def test_past_the_limit_the_term_that_grew_is_named(monkeypatch):
     monkeypatch.setattr("hapticlab.compiler.expressions.MOST_INSTRUCTIONS", 300)
-    rough = sp.Add(*(sp.sin(j * phi) ** j for j in range(1, 40)))
+    rough = sp.Add(*(sp.sin(j * phi) ** j for j in range(1, 80)))
     mech = hl.lagrange(KINETIC - m * g * l * rough)
-    with pytest.raises(ProgramLimitError, match=r"more than 300 instructions .*sin\(.*phi"):
+    with pytest.raises(ProgramLimitError, match=r"more than 300 instructions: \d+ of them for sin\(phi\(t\)\) \+ .*fewer terms"):
         compiled(mech)
+    many = [hl.coordinate(f"q{j}", unit="m") for j in range(20)]
+    pulls = [k * sp.Add(*(many[j] - many[i] for i in range(20))) for j in range(20)]
+    eom = [sp.Eq(m * p.diff(t, 2), -pull) for p, pull in zip(many, pulls, strict=True)]
+    with pytest.raises(ProgramLimitError, match="none of which is most of them; take fewer coordinates"):
+        hl.compile(hl.Scene(force=0, eom=eom, watch=many), T=1e-3)
