@@ -7,14 +7,15 @@ contacts. Prints markdown; in brackets is the ratio to hapticlab in the same run
 ``pip install "hapticlab[bench]" casadi mujoco`` brings the peers and needs gcc; a peer that is not installed is left out.
 Before anything is timed every peer's accelerations are compared with the equations in closed form, to 1e-9.
 
-Compile time is CPU time, subprocesses included, imports done and SymPy's cache empty, to the end of a first step. Every
-mass and length is a live parameter. An operation is an arithmetic operation or a function call, after the peer's own
-common subexpressions; an LU by NumPy is counted as the operations of LAPACK's gesv. SymPy's LagrangesMethod is given
-LIMIT seconds of CPU time.
+Compile time is CPU time, subprocesses included, imports done and SymPy's cache empty, to the end of a first step; the
+garbage collector is kept from what other peers left. Every mass and length is a live parameter. An operation is an
+arithmetic operation or a function call, after the peer's own common subexpressions; an LU by NumPy is counted as the
+operations of LAPACK's gesv. SymPy's LagrangesMethod is given LIMIT seconds of CPU time.
 """
 
 import argparse
 import functools
+import gc
 import json
 import os
 import platform
@@ -74,10 +75,13 @@ def compiled(make, model, rounds):
     seconds = []
     for _ in range(rounds):
         clear_cache()
+        gc.collect()
+        gc.freeze()
         start = spent()
         made = make(model)
         made.run(1)
         seconds.append(spent() - start)
+        gc.unfreeze()
     return made, min(seconds)
 
 
