@@ -4,7 +4,7 @@ Planar pendulums of 1 to 8 links (absolute angles, relative angles, on a cart) f
 running machine code, the operations of one right-hand side, and the time of a step; then balls in a column with penalty
 contacts. Prints markdown; in brackets is the ratio to hapticlab in the same run.
 
-``pip install "hapticlab[bench]" casadi mujoco`` brings the peers and needs gcc; a peer that is not installed is left out.
+``pip install "hapticlab[bench]" casadi mujoco`` brings the peers; some need gcc. A peer that is not installed is left out.
 Before anything is timed every peer's accelerations are compared with the equations in closed form, to 1e-9.
 
 Compile time is CPU time, subprocesses included, imports done and SymPy's cache empty, to the end of a first step; the
@@ -103,11 +103,11 @@ def cells(makers, model, rounds):
     for name, make in makers.items():
         try:
             made[name], seconds = compiled(make, model, rounds if name == OURS or "CasADi" in name else 1)
-        except ImportError:
+        except (ImportError, FileNotFoundError):  # not installed, or without gcc
             continue
         found["compile", name] = 1e3 * seconds
     for name, peer in made.items():
-        checked(name, peer, model, made["CasADi, its VM"])
+        checked(name, peer, model, made[OURS])
         if peer.operations:
             found["operations", name], found["moving", name] = peer.operations()
     for which in ("run", "semi_implicit"):
