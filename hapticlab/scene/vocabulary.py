@@ -98,7 +98,8 @@ class Vocabulary:
 
     def _keyed(self, given, what, rates=False):
         """Return a dict symbol -> value of one whose keys are symbols or their names."""
-        known = {_name(s): s for s in self.symbols} | {s: s for s in self.symbols}
+        names = [_name(s) for s in self.symbols]
+        known = dict(zip(names, self.symbols, strict=True)) | {s: s for s in self.symbols}
         if rates:
             known |= {q.diff(t): q.diff(t) for q in self.moving}
         found = {}
@@ -106,6 +107,8 @@ class Vocabulary:
             if key not in known:
                 there = ", ".join(map(_name, self.symbols))
                 raise SceneError(f"{what} has {key}, which is nothing that these equations hold; they hold {there}")
+            if names.count(key) > 1:
+                raise SceneError(f"{what} has {key!r}, which two symbols of the model are called; give the symbol itself")
             found[known[key]] = expression(value, f"replace[{key}]") if what == "replace" else value
         return found
 
@@ -121,6 +124,12 @@ class Vocabulary:
         wrong = next((s for s in (*units, *values) if s in replace), None)
         if wrong is not None:
             raise SceneError(f"{wrong} is replaced by {replace[wrong]}, which has its unit and its value; give it no other")
+        wrong = next((s for s in constants if replace.get(s, sp.S.Zero).has(t, sp.Function)), None)
+        if wrong is not None:
+            raise SceneError(
+                f"{wrong} is a constant where the equations were formed, and {replace[wrong]} changes; replace it by numbers "
+                "and parameters, or make it one of dynamicsymbols in the model"
+            )
         wrong = next((s for s in values if s not in constants), None)
         if wrong is not None:
             raise SceneError(f"values has {wrong}, which moves; where it starts is initial={{{wrong}: ...}}")

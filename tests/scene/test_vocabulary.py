@@ -58,6 +58,13 @@ def test_a_constant_and_a_coordinate_of_one_name():
     assert {type(mech[q]).__name__, mech[sp.Symbol("q")].name} == {"q", "q_1"}
 
 
+def test_a_name_of_two_symbols_is_no_key():
+    with pytest.raises(SceneError, match="values has 'm', which two symbols of the model are called; give the symbol itself"):
+        hl.from_mechanics(sprung(k=sp.Symbol("m", positive=True)), values={"m": 1})
+    mech = hl.from_mechanics(sprung(k=sp.Symbol("m", positive=True)), values={m: 1, sp.Symbol("m", positive=True): 2})
+    assert {p.name: p.value for p in (mech[m], mech[sp.Symbol("m", positive=True)])} == {"m": 1.0, "m_1": 2.0}
+
+
 def test_units_values_and_starts_by_symbol_or_name():
     mech = hl.from_mechanics(
         sprung(), units={q: "m", "m": "kg", k: "N/m"}, values={"m": "100 g", k: 40}, initial={"q": "5 mm", q.diff(t): 0.2}
@@ -172,6 +179,8 @@ def test_driven_motions_are_differentiated():
         ({"units": {"w": "m"}}, r"units has w, which is nothing that these equations hold; they hold q, k, m"),
         ({"values": {q: 1}}, r"values has q\(t\), which moves; where it starts is initial"),
         ({"values": {m: 1}, "replace": {m: 2}}, r"m is replaced by 2, which has its unit and its value"),
+        ({"replace": {k: 3 * q}}, r"k is a constant where the equations were formed, and 3\*q\(t\) changes"),
+        ({"replace": {k: v(t)}}, r"k is a constant where the equations were formed"),
         ({"initial": {m: 1}}, r"initial has m, which does not move"),
         ({"initial": {q: 1}, "replace": {q: x(t)}}, r"q\(t\) is replaced by x\(t\); declare its start there"),
         ({"replace": {q: "z"}}, r"replace\[q\(t\)\] = 'z'; needs a number, or an expression"),
