@@ -172,7 +172,7 @@ def of_energies(L, R, forces, coordinates, constraints, contacts=(), **facts):
     momenta = [Partial(L, w) for w in rates]
     N = range(len(rates))  # entries above the diagonal are those below it, so that the compiler sees that M is symmetric
     M = tuple(tuple(Partial(momenta[max(i, j)], rates[min(i, j)]) for j in N) for i in N)
-    touched = {q: [c.generalized_force(q) for c in contacts if _parts(c)[0].has(q)] for q in coordinates}
+    touched = {q: [c.generalized_force(q) for c in contacts if _touches(c, q)] for q in coordinates}
     f = tuple(
         sp.Add(Partial(L, q), -Rate(p), -Partial(R, w), forces.get(q, sp.S.Zero), *touched[q])
         for q, w, p in zip(coordinates, rates, momenta, strict=True)
@@ -186,6 +186,11 @@ def _listed(given):
     if isinstance(given, (sp.Basic, Contact, friction)):
         return (given,)
     return given if isinstance(given, tuple) else tuple(given)  # contacts_between says what it left out
+
+
+def _touches(contact, q):
+    """Tell whether a contact acts on a coordinate: by its gap, or by friction along its slip."""
+    return any(getattr(contact, part, sp.S.Zero).has(q) for part in ("gap", "slip"))
 
 
 def _parts(contact):
