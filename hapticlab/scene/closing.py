@@ -147,7 +147,7 @@ def values(coordinates, at):
 
 def in_unit(q, value, per=""):
     """Return a start as it can be declared: every digit, and the unit a parameter for it needs."""
-    return f"{name(q)} = {float(value)!r} {type(q).unit}{per}"
+    return f"{name(q)} = {float(value)!r} {type(q).unit}{per}".removesuffix(" 1")
 
 
 def shown(constraints):
