@@ -227,3 +227,12 @@ def test_kane_before_its_equations():
 def test_masses_are_masses():
     with pytest.raises(ParameterError, match="m = -1 kg; a mass needs m > 0"):
         hl.from_mechanics(sprung(), units={m: "kg"}, values={m: -1})
+
+
+def test_a_model_of_kane_is_shown_as_equations():
+    mech = hl.from_mechanics(by_kane())
+    (equation,) = mech.equations
+    mass, stiffness, z = mech[m], mech[k], mech[q]
+    assert equation == sp.Eq(mass * z.diff(t, 2), -stiffness * z)
+    assert r"\frac{d^{2}}{d t^{2}} q" in mech._repr_latex_()
+    assert str(mech) == "M a = f of 1 coordinates"
