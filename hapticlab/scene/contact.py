@@ -127,6 +127,11 @@ class Contact:
             return sp.S.Zero
         return sp.Function(f"{self.name}_{role}", real=True, unit=unit, role=role, contact=self.name)(t)
 
+    @property
+    def felt(self):
+        """The force on the environment [N] where the gap holds the handle x(t): -force times dgap/dx; not its impulses."""
+        return -self.generalized_force(x(t))
+
     def generalized_force(self, q):
         """Return what the contact does to a coordinate q, or to the handle x(t): force times dgap/dq.
 

@@ -8,6 +8,7 @@ from scipy.special import lambertw
 
 import hapticlab as hl
 from hapticlab import n, t, v, x
+from hapticlab.compiler.engine import load
 from hapticlab.errors import SceneError, SignalError, UnitsError
 from hapticlab.scene.contact import Contact, friction
 from hapticlab.scene.contact_laws import hunt_crossley, impulse, micro_impulse, penalty, rigid
@@ -127,3 +128,11 @@ def test_little_damping_gives_hunt_and_crossleys_own_relation():
     """e = 1 - alpha v with lambda = 3/2 alpha k, so alpha = 2/3 c."""
     cv = 1e-5
     assert 1 - hunt_crossley.restitution(cv) == pytest.approx(2 / 3 * cv, rel=1e-4)
+
+
+def test_a_contact_is_felt_as_its_force_along_the_gap():
+    k, z = hl.parameters("k", units="N/m", values=200), hl.coordinate("z", unit="m")
+    lever = Contact(z - 3 * x(t), penalty(k=k), name="lever")
+    force = hl.compile(hl.Scene(lever.felt.subs(z, 0).doit()), T=1e-3, dtype="float64")
+    # the handle at 10 mm is 30 mm deep at the end of a lever of ratio 3: 3 * 200 N/m * 30 mm
+    assert load(force).run(1, [[0.01]]).outputs[0, 0, 0] == pytest.approx(18.0, rel=1e-12)
