@@ -7,7 +7,7 @@ from .derivative import Partial
 from .kane import of_kane
 from .mechanics import lagrange, of_energies
 from .symbols import t
-from .vocabulary import Vocabulary
+from .vocabulary import Vocabulary, gathered
 
 
 def from_mechanics(system, *, units=None, values=None, initial=None, replace=None, enforce="auto"):
@@ -86,7 +86,7 @@ def _of_lagrange(method, given, enforce):
     (L,) = method._L
     q = list(method.q)
     holonomic = list(method._hol_coneqs)
-    constraints = [*holonomic, *list(method.coneqs)[len(holonomic) :]]
+    constraints = [*map(gathered, holonomic), *list(method.coneqs)[len(holonomic) :]]
     loads = _loads(method)
     parts = [L, *constraints, *(e for pair in loads for e in pair)]
     words = Vocabulary(q, parts, {}, **given)

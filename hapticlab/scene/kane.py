@@ -10,7 +10,7 @@ from .derivative import Partial, Rate
 from .mechanics import Mechanics
 from .symbols import t
 from .units import agree
-from .vocabulary import Vocabulary
+from .vocabulary import Vocabulary, gathered
 
 #: what is read of a KanesMethod beside its documented attributes, in SymPy 1.13 and 1.14
 READ = ("_f_h", "_f_nh", "_k_nh", "_uaux", "_udep", "_inertial", "_k_ku_implicit", "_k_kqdot_implicit", "_f_k_implicit")
@@ -137,6 +137,7 @@ def _in_rates(method, q, speeds, plain, still, given, enforce):
         [sp.sympify(e).xreplace(still).xreplace(speeds) for e in part]
         for part in (whole.mass_matrix, whole.forcing, method._f_h, velocity, u)
     )
+    configuration = list(map(gathered, configuration))
     words = Vocabulary(q, [*M, *f, *configuration, *velocity, *U], plain, **given)
     velocity = _independent(configuration, velocity, q, words)
     coordinates = tuple(words.table[p] for p in q if p in words.table)

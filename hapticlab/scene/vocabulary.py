@@ -5,6 +5,7 @@ from keyword import iskeyword
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
+from sympy.simplify.fu import TR8
 
 from ..errors import SceneError
 from .amount import amount
@@ -12,6 +13,9 @@ from .derivative import Rate
 from .parameters import Parameter, parameters
 from .symbols import coordinate, n, t, v, x
 from .written import RESERVED, expression
+
+#: operations of a constraint past which expanding it may take seconds
+MOST_GATHERED = 200
 
 
 class Vocabulary:
@@ -176,6 +180,18 @@ class Vocabulary:
         return made
 
 
+def gathered(constraint):
+    """Return a constraint with cos a cos b - sin a sin b as cos(a + b), as loops that are solved in closed form are written.
+
+    Joints write each frame in the one before, so that a loop of SymPy holds products of cosines instead.
+    """
+    constraint = sp.sympify(constraint)
+    if sp.count_ops(constraint) > MOST_GATHERED:
+        return constraint
+    sums = sp.expand(TR8(sp.expand(constraint)))
+    return sums if sp.count_ops(sums) < sp.count_ops(constraint) else constraint
+
+
 def _is_coordinate(expr):
     return getattr(type(expr), "role", None) == "coordinate"
 
@@ -196,4 +212,8 @@ def _symbols(expressions):
     strange = next((f for f in functions if f.args != (t,)), None)
     if strange is not None:
         raise SceneError(f"{strange} is no function of time alone; write it as an expression of coordinates and constants")
-    return sorted(constants, key=_name), sorted(functions, key=str)
+    return sorted(constants, key=_order), sorted(functions, key=_order)
+
+
+def _order(symbol):
+    return _name(symbol), len(symbol.assumptions0), str(sorted(symbol.assumptions0.items()))
