@@ -62,6 +62,11 @@ class Gradient:
     Parameters
     ----------
     value : Value
+
+    Attributes
+    ----------
+    leaves : list of int
+        Numbers of the inputs that the value depends on.
     """
 
     def __init__(self, value):
@@ -81,6 +86,7 @@ class Gradient:
                 grown = part(mine)
                 self.adjoint[a] = self.adjoint[a] + grown if a in self.adjoint else grown
         self.zero = builder.const(0.0)
+        self.leaves = [k for k in sorted(order) if builder.instructions[k].op == "input"]
 
     def __call__(self, k):
         return self.adjoint.get(k, self.zero)

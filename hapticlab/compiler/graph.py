@@ -85,14 +85,28 @@ class Graph:
         inner = self(expr.args[0])
         if isinstance(expr, Rate):
             return self._tangent("rate", self._rate_of)(inner)
-        at = self.variable(expr.variable).id if expr.variable not in self.embedded else None
-        if at is None:
-            raise ValueError(f"{expr.variable} is a function of other coordinates; differentiate by those")
+        by = expr.variable
+        if by in self.embedded:
+            raise ValueError(f"{by} is a function of other coordinates; differentiate by those")
+        at, turning = self.variable(by).id, by == t or isinstance(by, Parameter)
+
+        def seed(number):
+            angle = self._input(number)
+            if turning and isinstance(angle, driven):
+                return self(sp.diff(2 * sp.pi * angle.args[0] * t, by))
+            return 1.0 if number == at else 0.0
+
         if isinstance(expr.args[0], (Partial, Rate)):
-            return self._tangent(at, lambda number: 1.0 if number == at else 0.0)(inner)
+            return self._tangent(at, seed)(inner)
         if inner.id not in self._gradients:
             self._gradients[inner.id] = Gradient(inner)
-        return self._gradients[inner.id](at)
+        gradient = self._gradients[inner.id]
+        angles = [k for k in gradient.leaves if turning and isinstance(self._input(k), driven)]
+        return sum((gradient(k) * seed(k) for k in angles), gradient(at))
+
+    def _input(self, number):
+        """Return the variable that instruction ``number`` is."""
+        return list(self.variables)[self.builder.instructions[number].index]
 
     def _held(self, expr):
         # what a sample holds does not vary with the motion: a variable of its own
@@ -103,7 +117,7 @@ class Graph:
 
     def _rate_of(self, number):
         """Return how the input that is instruction ``number`` changes along the motion."""
-        expr = list(self.variables)[self.builder.instructions[number].index]
+        expr = self._input(number)
         if isinstance(expr, driven):
             return self(2 * sp.pi * expr.args[0])
         if expr == t:

@@ -165,6 +165,27 @@ def test_a_moving_floor_does_its_work_through_force_laws():
     assert log["supplied"][-1] - log["supplied"][0] > lifted > 0.1
 
 
+OSCILLATING = {
+    "penalty": hl.penalty(k=k, b=b), "impulse": hl.impulse(e=e), "rigid": hl.rigid(), "spring": None,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("law", OSCILLATING)
+def test_what_oscillates_in_time_puts_work_in(law):
+    """A ball on a shaking plate, and one on a spring whose stiffness swings: nothing leaks though t drives both."""
+    A, om = hl.parameters("A om", units="m 1/s", values=(0.01, 30))
+    z = hl.coordinate("z", unit="m", initial=h0 / 5)
+    if law == "spring":
+        motion = lagrange(m * z.diff(t) ** 2 / 2 - k * (1 + sp.cos(om * t) / 4) * z**2 / 2)
+    else:
+        plate = hl.Contact(z - A * sp.sin(om * t), OSCILLATING[law], name="plate")
+        motion = lagrange(m * z.diff(t) ** 2 / 2 - m * g * z, contacts=[plate])
+    log = run(energy_books(hl.Scene(force=0, eom=[motion])), 400, method="taylor")
+    put_in = log["supplied"] - log["supplied"][0]
+    assert np.abs(put_in).max() > 0.02  # more than a tenth of what there is at first
+    assert np.abs(log["leak"]).max() < 1e-12
+
+
 def test_impacts_of_the_handle_put_work_in():
     """A ball that the moving handle strikes: the work of the blow is booked, and the books close through it."""
     ball = hl.coordinate("ball", unit="m", initial=x(n) + h0 / 5)

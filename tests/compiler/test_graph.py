@@ -6,7 +6,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import t, v, x
-from hapticlab.compiler.graph import Graph
+from hapticlab.compiler.graph import Graph, driven
 from hapticlab.scene.derivative import Partial, Rate
 from hapticlab.scene.symbols import acceleration
 
@@ -78,6 +78,21 @@ def test_a_driven_angle_is_a_variable_of_its_own():
     got = [float(e) for e in graph.evaluate(nodes, at)]
     w = 2 * np.pi * f_now
     assert got == pytest.approx([a_now * w * np.cos(angle), -a_now * w**2 * np.sin(angle), np.sin(angle)], rel=1e-14)
+
+
+def test_a_derivative_by_time_or_frequency_goes_through_the_angle():
+    graph = Graph()
+    expr = a * t * p**2 * sp.cos(2 * sp.pi * f * t)
+    nodes = [
+        Partial(expr, t), Partial(expr, f), Partial(expr, p), Partial(Partial(expr, t), t), Partial(Partial(expr, p), t),
+        Partial(Partial(expr, t), p), Partial(Rate(expr), t), Partial(Partial(expr, f), t),
+    ]  # fmt: skip
+    for node in nodes:
+        graph(node)
+    at = {p: 0.7, dp: 1.1, t: 0.4, f: 3.0, a: 1.5}
+    angles = {e: 2 * np.pi * 3.0 * 0.4 for e in graph.variables if isinstance(e, driven)}
+    for node, got in zip(nodes, graph.evaluate(nodes, at | angles), strict=True):
+        assert float(got) == pytest.approx(float(by_sympy(node.doit(), at)), rel=1e-12)
 
 
 def test_rates_of_a_coordinate_that_follows_another():
