@@ -4,7 +4,7 @@ import sympy as sp
 
 from ..errors import MassError, SceneError
 from .derivative import Partial
-from .kane import of_kane
+from .kane import check_version, of_kane
 from .mechanics import lagrange, of_energies
 from .symbols import t
 from .vocabulary import Vocabulary, gathered
@@ -83,6 +83,7 @@ def from_mechanics(system, *, units=None, values=None, initial=None, replace=Non
 
 
 def _of_lagrange(method, given, enforce):
+    check_version(method, ("_L", "_hol_coneqs"))
     (L,) = method._L
     q = list(method.q)
     holonomic = list(method._hol_coneqs)

@@ -12,7 +12,7 @@ from .symbols import t
 from .units import agree
 from .vocabulary import Vocabulary, gathered
 
-#: what is read of a KanesMethod beside its documented attributes, in SymPy 1.13 and 1.14
+#: what is read of a KanesMethod beside its documented attributes, in SymPy 1.14
 READ = ("_f_h", "_f_nh", "_k_nh", "_uaux", "_udep", "_inertial", "_k_ku_implicit", "_k_kqdot_implicit", "_f_k_implicit")
 DRIFTS = "constraints of speeds are kept by their rate alone, as KanesMethod writes them: they drift by the step's error"
 
@@ -22,9 +22,7 @@ REPEATED = 1e-9
 
 def of_kane(method, given, enforce):
     """Return the :class:`Mechanics` of a KanesMethod; see :func:`~hapticlab.scene.from_mechanics.from_mechanics`."""
-    missing = next((name for name in READ if not hasattr(method, name)), None)
-    if missing:
-        raise SceneError(f"this SymPy, {sp.__version__}, keeps no {missing} in a KanesMethod; install sympy 1.14")
+    check_version(method, READ)
     _formed(method)
     still = dict.fromkeys(method._uaux, sp.S.Zero) | {u.diff(t): sp.S.Zero for u in method._uaux}
     constrained = bool(len(method._f_h) or len(method._udep))
@@ -36,6 +34,13 @@ def of_kane(method, given, enforce):
     if speeds and constrained:
         return _in_rates(method, q, speeds, {}, still, _starts(given, speeds, still, method), enforce)
     return _in_speeds(method, still, constrained, given, enforce)
+
+
+def check_version(method, names):
+    """Refuse a SymPy that keeps its equations under other names."""
+    missing = next((name for name in names if not hasattr(method, name)), None)
+    if missing:
+        raise SceneError(f"SymPy {sp.__version__} keeps no {missing} in a {type(method).__name__}; install sympy 1.14")
 
 
 def _formed(method):

@@ -224,6 +224,14 @@ def test_kane_before_its_equations():
         hl.from_mechanics(KanesMethod(N, [q], [u], kd_eqs=[q.diff(t) - u]))
 
 
+@pytest.mark.parametrize(("method", "name"), [(sprung, "_L"), (by_kane, "_k_nh")])
+def test_another_sympy_is_refused(method, name):
+    model = method()
+    delattr(model, name)
+    with pytest.raises(SceneError, match=f"SymPy .* keeps no {name} in a .*; install sympy 1.14"):
+        hl.from_mechanics(model)
+
+
 def test_masses_are_masses():
     with pytest.raises(ParameterError, match="m = -1 kg; a mass needs m > 0"):
         hl.from_mechanics(sprung(), units={m: "kg"}, values={m: -1})
