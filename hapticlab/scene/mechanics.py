@@ -1,5 +1,6 @@
 """Equations of motion from energies: Lagrange's equations, kept as derivatives that the compiler takes on its graph."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import sympy as sp
@@ -9,8 +10,8 @@ from .checks import agree_with, applied
 from .contact import Contact, friction
 from .derivative import Partial, Rate
 from .symbols import t
-from .units import unit_of
-from .written import expression
+from .units import agree, unit_of
+from .written import expression, zero_of
 
 ENFORCE = ("auto", "embed", "kkt", "baumgarte", "numeric")
 
@@ -66,6 +67,11 @@ class Mechanics:
     def __post_init__(self):
         if self.enforce not in ENFORCE:
             raise SceneError(f"enforce = {self.enforce!r}; needs one of {', '.join(ENFORCE)}")
+        if self.alpha is not None and self.enforce != "baumgarte":
+            raise SceneError(
+                f"alpha = {self.alpha} is the feedback of Baumgarte's stabilisation, and enforce = {self.enforce!r} has none; "
+                "write enforce='baumgarte', or leave alpha out"
+            )
         names = [c.name for c in self.contacts]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice:
@@ -153,12 +159,15 @@ def lagrange(L, *, dissipation=0, forces=None, constraints=(), contacts=(), enfo
     (Eq(m*Derivative(z(t), (t, 2)), -k*z(t)),)
     """
     L, R = expression(L, "L"), expression(dissipation, "dissipation")
-    zeros = tuple(_zero(g, f"constraint {k}") for k, g in enumerate(_listed(constraints), 1))
+    constraints = _listed(constraints)
+    zeros = tuple(zero_of(g, f"constraint {k}") for k, g in enumerate(constraints, 1))
+    for k, (given, g) in enumerate(zip(constraints, zeros, strict=True), 1):
+        agree(given.args if isinstance(given, sp.Eq) else [g], f"constraint {k}")
     contacts = _listed(contacts)
     for c in contacts:
         if not isinstance(c, (Contact, friction)):
             raise SceneError(f"contacts holds {c!r}; needs hl.Contact(gap, law) or hl.friction(slip=...)")
-    forces = {q: expression(Q, f"force on {q}") for q, Q in dict(forces or {}).items()}
+    forces = {q: expression(Q, f"force on {q}") for q, Q in _forces(forces).items()}
     moved = [L, R, *zeros, *forces, *(part for c in contacts for part in _parts(c)[:1])]
     coordinates = tuple(applied(moved, "coordinate"))
     _check(L, R, forces, coordinates)
@@ -198,12 +207,14 @@ def _parts(contact):
     return (contact.gap if isinstance(contact, Contact) else contact.slip, contact.force, *contact.constants)
 
 
-def _zero(given, where):
-    if given in (sp.true, sp.false):
-        raise SceneError(f"{where} is {given}: its sides are equal for every motion, or never; it constrains nothing")
-    if isinstance(given, sp.Eq):
-        return expression(given.lhs - given.rhs, where)
-    return expression(given, where)
+def _forces(given):
+    """Return forces as a dict; refuse what has no coordinates for keys."""
+    if given is not None and not isinstance(given, Mapping):
+        raise SceneError(f"forces = {given}; needs a dict that says on which coordinate each acts, such as forces={{z: F}}")
+    for q in given or ():
+        if not isinstance(q, sp.Basic):
+            raise SceneError(f"forces has the key {q!r}; its keys are coordinates themselves, such as forces={{z: F}}")
+    return dict(given or {})
 
 
 def _along(g, q):
