@@ -7,6 +7,7 @@ from ..errors import MassError, ParameterError, SceneError
 from ..scene.symbols import acceleration, t, v, x
 from .advance import Taylor, advance
 from .constraints import enforcement
+from .contact_starts import check_starts
 from .contact_steps import check_contacts
 from .contacts import Contacts
 from .first_sample import numbers
@@ -57,6 +58,7 @@ class Dynamics:
         self.contacts = Contacts(elements, lowering.tracing, lowering.at_sample, self.at)
         if form.coordinates:
             self.contacts.check(method)
+            check_starts(form, lowering.scene.values)
             check_contacts(form, lowering.scene.values, self.h, lowering.tracing.T, method)
         self._now = None
 

@@ -5,7 +5,7 @@ import math
 import sympy as sp
 
 from ..scene.parameters import Parameter
-from ..scene.symbols import n, t
+from ..scene.symbols import delay, n, t
 from .graph import Graph
 
 
@@ -34,7 +34,12 @@ def numbers(expressions, values):
 def _start(variable, values):
     if isinstance(variable, Parameter):
         return float(values.get(variable.name, variable.value))
-    if variable in (n, t) or getattr(type(variable), "role", None) == "handle":
+    if variable in (n, t) or getattr(type(variable), "role", None) in ("handle", "driven"):
         return 0.0
-    initial = type(variable.expr).rate if isinstance(variable, sp.Derivative) else type(variable).initial
+    if isinstance(variable, delay):
+        initial = variable.args[0]
+    elif isinstance(variable, sp.Derivative):
+        initial = type(variable.expr).rate
+    else:
+        initial = getattr(type(variable), "initial", sp.S.Zero)  # reactions and impacts: nothing has happened yet
     return (numbers([initial], values) or [math.nan])[0]
