@@ -87,7 +87,7 @@ def test_equations_with_multipliers():
         ({"L": L, "constraints": [sp.Eq(z, z)]}, SceneError, r"constraint 1 is True: its sides are equal for every motion"),
         ({"L": L, "constraints": [sp.Eq(z, l * phi), sp.Eq(z, phi)]}, UnitsError, r"constraint 2: .*in m but .*in 1"),
         ({"L": L, "constraints": [l * phi - z.diff(t)]}, UnitsError, r"constraint 1: .*in m/s"),
-        ({"L": L, "constraints": [z - l * phi], "alpha": 50.0}, SceneError, r"alpha = 50.0 is the feedback .*enforce = 'auto' has none"),
+        ({"L": L, "constraints": [z - l * phi], "alpha": 50.0}, SceneError, r"alpha = 50.0 .*enforce = 'auto' has none"),
         ({"L": L, "contacts": [z]}, SceneError, r"contacts holds z\(t\); needs hl.Contact"),
         ({"L": L, "enforce": "glue"}, SceneError, r"enforce = 'glue'; needs one of auto, embed"),
         ({"L": "m*v"}, SceneError, r"L = 'm\*v'; needs a number, or an expression"),
