@@ -7,7 +7,7 @@ import sympy as sp
 from ..scene.laws import virtual_coupler
 from ..scene.scene import Scene
 from ..scene.symbols import coordinate, n, parameters, t, x
-from .sketch import Sketch
+from .sketch import Sketch, clearance
 
 
 def coupler(z):
@@ -52,14 +52,14 @@ def mass_spring_damper():
 
 def draw_mass_spring_damper(axes, *, x=0.015, z=0.01, **_):
     """Draw the mass to the right of the handle, its spring and damper to the wall."""
-    s = Sketch(axes, -0.075, 0.135, -0.032, 0.032)
-    left, wall, half = z + 0.05, 0.115, 9 * s.u
+    s, origin = Sketch(axes, -0.075, 0.135, -0.032, 0.032), 0.05 + clearance(x, z)
+    left, wall, half = z + origin, origin + 0.065, 9 * s.u
     s.handle(x)
     s.pair((x, 0), (left - half, 0))
     s.block((left, 0), 18, 12, "$m$")
     s.pair((left + half, 0), (wall, 0), "$k,\\ b$")
     s.ground((wall, 9 * s.u), (wall, -9 * s.u), depth=-1.5)
-    s.coordinate("$z$", z, -11 * s.u, origin=0.05)
+    s.coordinate("$z$", z, -11 * s.u, origin=origin)
 
 
 def two_masses():
@@ -94,15 +94,15 @@ def two_masses():
 
 def draw_two_masses(axes, *, x=0.012, z_1=0.008, z_2=0.015, **_):
     """Draw both masses in a row to the right of the handle."""
-    s = Sketch(axes, -0.055, 0.155, -0.032, 0.032)
-    first, second, half = z_1 + 0.052, z_2 + 0.112, 7 * s.u
+    s, origin = Sketch(axes, -0.055, 0.155, -0.032, 0.032), 0.052 + clearance(x, z_1)
+    first, second, half = z_1 + origin, z_2 + origin + 0.06, 7 * s.u
     s.handle(x)
     s.pair((x, 0), (first - half, 0))
     s.block((first, 0), 14, 12, "$m_1$")
     s.pair((first + half, 0), (second - half, 0), "$k,\\ b$")
     s.block((second, 0), 14, 12, "$m_2$")
-    s.coordinate("$z_1$", z_1, -11 * s.u, origin=0.052)
-    s.coordinate("$z_2$", z_2, -11 * s.u, origin=0.112)
+    s.coordinate("$z_1$", z_1, -11 * s.u, origin=origin)
+    s.coordinate("$z_2$", z_2, -11 * s.u, origin=origin + 0.06)
 
 
 def tuned_absorber():
@@ -140,8 +140,8 @@ def tuned_absorber():
 
 def draw_tuned_absorber(axes, *, x=0.0, z_1=0.0, z_2=0.008, **_):
     """Draw the machine on its springs beside the handle, the absorber on the machine."""
-    s = Sketch(axes, -0.07, 0.165, -0.04, 0.06)
-    u, main, small, wall = s.u, z_1 + 0.055, z_2 + 0.12, 0.135
+    s, origin = Sketch(axes, -0.07, 0.165, -0.04, 0.06), 0.055 + clearance(x, z_1)
+    u, main, small, wall = s.u, z_1 + origin, z_2 + origin + 0.065, origin + 0.08
     s.handle(x)
     s.pair((x, 0), (main - 8 * u, 0))
     s.block((main, 4 * u), 16, 22, "$m_1$")
@@ -151,5 +151,5 @@ def draw_tuned_absorber(axes, *, x=0.0, z_1=0.0, z_2=0.008, **_):
     s.block((small, 10 * u), 10, 9, "$m_2$")
     s.pair((main + 8 * u, -3.5 * u), (wall, -3.5 * u), "$k_1,\\ b_1$")
     s.ground((wall, 3 * u), (wall, -10 * u), depth=-1.5)
-    s.coordinate("$z_1$", z_1, -11 * u, origin=0.055)
-    s.coordinate("$z_2$", z_2, 19 * u, origin=0.12)
+    s.coordinate("$z_1$", z_1, -11 * u, origin=origin)
+    s.coordinate("$z_2$", z_2, 19 * u, origin=origin + 0.065)

@@ -8,7 +8,7 @@ from ..scene.mechanics import lagrange
 from ..scene.scene import Scene
 from ..scene.symbols import coordinate, n, parameters, t, x
 from .bodies import coupler
-from .sketch import SOFT, Sketch
+from .sketch import SOFT, Sketch, clearance
 
 
 def ball_on_the_paddle(law=None):
@@ -110,14 +110,15 @@ def stick_slip(stick_speed=None):
 
 def draw_stick_slip(axes, *, x=0.022, z=0.012, **_):
     """Draw the block on its rough floor beside the handle."""
-    s = Sketch(axes, -0.075, 0.135, -0.034, 0.03)
-    u, place, floor = s.u, z + 0.07, -5 * s.u
+    s, origin = Sketch(axes, -0.075, 0.135, -0.034, 0.03), 0.07 + clearance(x, z)
+    u, place, floor = s.u, z + origin, -5 * s.u
+    end = max(0.13, place + 14 * u)
     s.pair((x, 0), (place - 8 * u, 0))
-    s.handle(x)
+    s.handle(x, below=11)
     s.block((place, 0), 16, 10, "$m$")
-    rough = np.arange(0.03, 0.1301, 0.6 * u)
+    rough = np.arange(0.03, end, 0.6 * u)
     s.line(*np.column_stack([rough, floor - 0.25 * u * (1 + (-1.0) ** np.arange(len(rough)))]), width=1.0, color=SOFT)
-    s.ground((0.03, floor - 0.5 * u), (0.13, floor - 0.5 * u))
+    s.ground((0.03, floor - 0.5 * u), (end, floor - 0.5 * u))
     s.arrow((place + 12 * u, floor + 1.5 * u), (place + 3 * u, floor + 1.5 * u))
     s.text((place + 12 * u, floor + 1.5 * u), "$F_f$", right=2.6, up=0.6)
-    s.coordinate("$z$", z, -11 * u, origin=0.07)
+    s.coordinate("$z$", z, -11 * u, origin=origin)

@@ -110,5 +110,5 @@ CATALOGUE = Catalogue((
     Entry(surfaces.detents, surfaces.draw_detents, 0.19, uno=_uno(SEMI, 1000)),
     Entry(surfaces.texture, surfaces.draw_texture, 0.28, uno=_uno(SEMI, 800)),
     Entry(surfaces.virtual_fixture, surfaces.draw_virtual_fixture, 0.2, uno=_uno(SEMI, 1000)),
-    Entry(surfaces.buckling_beam, surfaces.draw_buckling_beam, 0.17, uno=_uno(SEMI, 1000)),
+    Entry(surfaces.buckling_beam, surfaces.draw_buckling_beam, 0.17, uno=_uno(SEMI, 1000), stored=0.0102),
 ))  # fmt: skip

@@ -7,7 +7,7 @@ from ..scene.mechanics import lagrange
 from ..scene.scene import Scene
 from ..scene.symbols import coordinate, n, parameters, t, x
 from .bodies import coupler
-from .sketch import Sketch
+from .sketch import Sketch, clearance
 
 
 def pendulum_on_the_handle():
@@ -44,21 +44,22 @@ def pendulum_on_the_handle():
 
 def draw_pendulum_on_the_handle(axes, *, x=0.015, z=0.006, theta=0.4, l=0.15, **_):
     """Draw the carriage on its rail beside the handle, the pendulum below it."""
-    s = Sketch(axes, -0.075, 0.225, min(-0.19, -l - 0.04), 0.035)
-    pivot = np.array([z + 0.085, 0.0])
+    s, origin = Sketch(axes, -0.075, 0.225, min(-0.19, -l - 0.04), 0.035), 0.085 + clearance(x, z)
+    pivot, hangs = np.array([z + origin, 0.0]), np.cos(theta) > 0
     bob = pivot + l * np.array([np.sin(theta), -np.cos(theta)])
     s.pair((x, 0), (pivot[0] - 5 * s.u, 0))
     s.handle(x)
-    s.block(pivot, 10, 6)
-    s.text(pivot, "$M$", up=5)
+    s.line((min(0.06, pivot[0] - 7 * s.u), -4.2 * s.u), (max(origin + 0.09, pivot[0] + 7 * s.u), -4.2 * s.u), width=1.6)
+    s.block(pivot, 10, 8)
+    s.text(pivot, "$M$", right=-2.8)
     s.line((pivot[0], 0), (pivot[0], -l - 4 * s.u), width=0.8, color="#8a8a8a", linestyle="--")
     s.rod(pivot, bob, width=2.0)
     s.text((pivot + bob) / 2, "$l$", right=3 if theta >= 0 else -3, up=0.5)
     s.disc(bob, 2.6 * s.u, zorder=5)
     s.text(bob, "$m$", right=5.5)
     s.pin(pivot)
-    s.angle(pivot, 0.45 * l / s.u, -np.pi / 2, -np.pi / 2 + theta, r"$\theta$")
-    s.coordinate("$z$", z, 9 * s.u, origin=0.085)
+    s.angle(pivot, (0.45 if hangs else 0.3) * l / s.u, -np.pi / 2, -np.pi / 2 + theta, r"$\theta$")
+    s.coordinate("$z$", z, (9 if hangs else -12) * s.u, origin=origin)
 
 
 def cart_pole():
@@ -95,10 +96,10 @@ def cart_pole():
 
 def draw_cart_pole(axes, *, x=0.03, z=0.015, theta=0.35, l=0.3, **_):
     """Draw the cart on the ground beside the handle, the pole above it."""
-    s = Sketch(axes, -0.13, 0.37, -0.085, max(0.335, l + 0.035))
-    hinge = np.array([z + 0.15, 0.0])
+    s, origin = Sketch(axes, -0.13, 0.37, -0.085, max(0.335, l + 0.035)), 0.15 + clearance(x, z)
+    hinge, stands = np.array([z + origin, 0.0]), np.cos(theta) > 0
     bob = hinge + l * np.array([np.sin(theta), np.cos(theta)])
-    s.ground((0.07, -0.035), (0.33, -0.035))
+    s.ground((min(0.07, hinge[0] - 10 * s.u), -0.035), (max(origin + 0.18, hinge[0] + 10 * s.u), -0.035))
     s.pair((x, 0), (hinge[0] - 8 * s.u, 0))
     s.handle(x)
     s.block(hinge, 16, 8)
@@ -111,5 +112,5 @@ def draw_cart_pole(axes, *, x=0.03, z=0.015, theta=0.35, l=0.3, **_):
     s.disc(bob, 2.2 * s.u, zorder=5)
     s.text(bob, "$m$", right=5)
     s.pin(hinge)
-    s.angle(hinge, 0.6 * l / s.u, np.pi / 2, np.pi / 2 - theta, r"$\theta$")
-    s.coordinate("$z$", z, -13 * s.u, origin=0.15)
+    s.angle(hinge, (0.6 if stands else 0.3) * l / s.u, np.pi / 2, np.pi / 2 - theta, r"$\theta$")
+    s.coordinate("$z$", z, -13 * s.u, origin=origin)

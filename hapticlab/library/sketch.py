@@ -4,6 +4,8 @@ Lengths are in metres, to scale where the mechanism has them. Whatever stands fo
 handle) is measured in ``u``, a hundredth of the picture's width.
 """
 
+import re
+
 import numpy as np
 
 INK, SOFT, HANDLE, BODY = "#000000", "#8a8a8a", "#c1440e", "#dbe6f0"
@@ -17,32 +19,46 @@ class Sketch:
     ----------
     axes : matplotlib.axes.Axes
     left, right, bottom, top : float
-        What the picture shows [m].
+        What the picture shows [m]; more where the state that is drawn reaches farther.
+    tilt : float
+        Angle by which everything but the letters is turned about the origin [rad, counterclockwise].
     """
 
-    def __init__(self, axes, left, right, bottom, top):
+    def __init__(self, axes, left, right, bottom, top, tilt=0.0):
         self.axes, self.u = axes, (right - left) / 100
+        self.turned = np.array([[np.cos(tilt), np.sin(tilt)], [-np.sin(tilt), np.cos(tilt)]])
         self.left, self.right, self.bottom, self.top = left, right, bottom, top
         axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
         axes.axis("off")
 
+    def place(self, points, wide=1.0, high=1.0):
+        """Return where points (x, y) are in the picture, which grows to show them and so many u around."""
+        placed = np.asarray(points, float) @ self.turned
+        around = np.multiply((wide, high), self.u)
+        (left, bottom), (right, top) = placed.min(axis=0) - around, placed.max(axis=0) + around
+        (l, r), (b, t) = self.axes.get_xlim(), self.axes.get_ylim()
+        self.axes.set(xlim=(min(l, left), max(r, right)), ylim=(min(b, bottom), max(t, top)))
+        return placed
+
     def line(self, *points, width=1.5, color=INK, **style):
         """Draw a line through points (x, y)."""
-        self.axes.plot(*np.transpose(points), color=color, linewidth=width, solid_capstyle="round", **style)
+        self.axes.plot(*self.place(points).T, color=color, linewidth=width, solid_capstyle="round", **style)
 
     def area(self, points, color=BODY, edge=INK, zorder=3):
         """Fill a polygon."""
-        self.axes.fill(*np.transpose(points), facecolor=color, edgecolor=edge, linewidth=1.4, zorder=zorder)
+        self.axes.fill(*self.place(points).T, facecolor=color, edgecolor=edge, linewidth=1.4, zorder=zorder)
 
     def text(self, at, text, right=0.0, up=0.0, **style):
         """Write text centred at a point, moved by so many u."""
+        letters = len(re.sub(r"\\\w+", "o", text).strip("$"))
         at = np.add(at, (right * self.u, up * self.u))
-        self.axes.text(*at, text, **{"ha": "center", "va": "center", **TEXT, **style})
+        self.axes.text(*self.place([at], 1 + 0.8 * letters, 2.0)[0], text, **{"ha": "center", "va": "center", **TEXT, **style})
 
     def arrow(self, start, end, label="", color=INK, **moved):
         """Draw an arrow; its label stands beyond the tip unless moved by ``right``, ``up`` [u]."""
         look = {"arrowstyle": "-|>", "color": color, "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
-        self.axes.annotate("", tuple(end), tuple(start), arrowprops=look, zorder=8)
+        tail, tip = map(tuple, self.place([start, end]))
+        self.axes.annotate("", tip, tail, arrowprops=look, zorder=8)
         if label:
             along = np.subtract(end, start) / (np.hypot(*np.subtract(end, start)) or 1.0)
             self.text(end, label, **(moved or {"right": 2.6 * along[0], "up": 2.6 * along[1]}), color=color)
@@ -60,7 +76,7 @@ class Sketch:
         """Draw the handle at x and its coordinate ``below`` it [u]; its name stands above unless moved."""
         u = self.u
         self.area(_box((x, y), 3 * u, 9 * u), color=HANDLE, zorder=6)
-        self.text((x, y), "handle", **(moved or {"up": 8.8}), color=HANDLE)
+        self.text((x, y), "handle", **(moved or {"up": 9.3}), color=HANDLE)
         self.coordinate("$x$", x, y - below * u)
 
     def ground(self, start, end, depth=1.5):
@@ -142,14 +158,19 @@ class Sketch:
         self.area(np.column_stack([x + 0.8 * u * np.cos(angles), y + 0.8 * u * np.sin(angles)]), "#ffffff", zorder=7)
 
     def angle(self, centre, radius, start, end, label):
-        """Draw an angle as an arc with an arrow from start to end [rad], named beyond its middle; radius in u."""
-        reach, middle = radius * self.u, (start + end) / 2
+        """Draw an angle as an arc with an arrow from start to end [rad], named beyond its middle or 45 degrees on."""
+        reach, middle = radius * self.u, start + np.clip((end - start) / 2, -0.8, 0.8)
         turns = np.linspace(start, end, 40)
         arc = np.asarray(centre) + reach * np.column_stack([np.cos(turns), np.sin(turns)])
         self.line(*arc, width=1.0, zorder=6)
         if abs(end - start) * radius > 2:
             self.arrow(arc[-6], arc[-1])
         self.text(centre, label, right=(radius + 2.6) * np.cos(middle), up=(radius + 2.6) * np.sin(middle))
+
+
+def clearance(x, z, spare=0.01):
+    """Return how much farther to the right [m] a body at z stands, so that the handle at x does not run into it."""
+    return max(0.0, x - z - spare)
 
 
 def _box(centre, width, height):

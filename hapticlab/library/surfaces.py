@@ -11,7 +11,7 @@ import sympy as sp
 
 from ..scene.scene import Scene
 from ..scene.symbols import n, parameters, when, x
-from .sketch import SOFT, Sketch
+from .sketch import INK, SOFT, Sketch
 
 TWO_PI = 2 * sp.pi
 
@@ -136,7 +136,7 @@ def draw_virtual_fixture(axes, *, x=-0.006, x_g=0.0, w=0.02, x_o=0.035, k=150.0,
         near, far = d**2 / 2, w**2 / 4 - np.maximum(w - d, 0) ** 2 / 2
         well = k * (np.where(d <= w / 2, near, far) - w**2 / 4)
         wall = 0.5 * k_w * np.maximum(np.asarray(at) - x_o, 0) ** 2
-        return np.minimum(0.6 * (well + wall), 0.013)
+        return min(0.6, 0.009 / max(k * w**2 / 4, 1e-9)) * (well + wall)  # the well stays above its letters
 
     _track(s, track, x, "$U(x)$")
     for place, name in ((x_g, "$x_g$"), (x_o, "$x_o$")):
@@ -193,11 +193,11 @@ def _track(s, track, x, name):
     """Draw a potential as a track, and the handle with a roller on it."""
     at = np.linspace(s.left, s.right, 801)
     s.axes.fill_between(at, track(at), s.bottom + 2 * s.u, color="#efefef", linewidth=0)
-    s.line(*np.column_stack([at, track(at)]), width=1.6)
+    s.axes.plot(at, track(at), color=INK, linewidth=1.6)  # a wall leaves the frame, which does not grow for it
     radius, near = 1.2 * s.u, np.linspace(-1, 1, 41)
     rest = float(np.max(track(x + radius * near) + radius * np.sqrt(1 - near**2)))
     s.disc((x, rest), radius, zorder=5)
-    top = s.top - 8.5 * s.u
+    top = max(s.top - 8.5 * s.u, rest + 8 * s.u)
     s.line((x, rest + radius), (x, top), width=2.0)
-    s.handle(x, top, below=-7, right=6.5)
+    s.handle(x, top, below=-7, right=6.5 if x < s.right - 15 * s.u else -6.5)
     s.text((s.left, float(np.max(track(at[:120])))), name, right=4.5, up=3.2)
