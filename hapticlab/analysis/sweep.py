@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..compiler.held import held
 from ..device.link import link, load_linked
 from ..device.progress import progress_bar
 from ..errors import AnalysisError
@@ -168,21 +169,24 @@ class _Grid:
         self.index = dict(zip(axes, np.indices(self.shape).reshape(len(axes), self.points), strict=True))
         paddle = replace(paddle, **{name: a for name, a in fixed.items() if name in PADDLE_AXES})
         start = {name: fixed.get(name, 0.0) for name in START_AXES}
-        changed = [name for name in axes if name in PADDLE_AXES or name in START_AXES]
+        holding = held(scene)  # a program has these as constants
+        lengths = [name for name in axes if name in holding]
+        changed = [name for name in axes if name in PADDLE_AXES or name in START_AXES or name in lengths]
         self.setting = np.zeros(self.points, int)
         for name in changed:
             self.setting = self.setting * len(axes[name]) + self.index[name]
-        self.paddles, self.starts = [], []
+        self.paddles, self.starts, self.lengths = [], [], []
         for values in itertools.product(*(axes[name].tolist() for name in changed)):
             here = dict(zip(changed, values, strict=True))
             self.paddles.append(replace(paddle, **{name: a for name, a in here.items() if name in PADDLE_AXES}))
             self.starts.append({name: here.get(name, a) for name, a in start.items()})
+            self.lengths.append(tuple((name, here[name]) for name in lengths))
 
     def groups(self):
         """Return the settings that can share one program and its inputs, as lists of their numbers."""
         found = {}
         for number, paddle in enumerate(self.paddles):
-            found.setdefault((paddle.T, paddle.structure, paddle.noise), []).append(number)
+            found.setdefault((paddle.T, paddle.structure, paddle.noise, self.lengths[number]), []).append(number)
         return list(found.values())
 
     def parameters(self, program, settings, cells):
@@ -200,7 +204,7 @@ def _measure(grid, settings, duration, metric, engine, progress):
     paddle = grid.paddles[settings[0]]
     cells = np.flatnonzero(np.isin(grid.setting, settings))
     ticks = paddle.ticks(duration)
-    program = paddle.program(grid.scene)
+    program = paddle.program(grid.scene(**dict(grid.lengths[settings[0]])))
     if ticks < SHORTEST:
         raise AnalysisError(f"duration = {duration:g} s is {ticks} samples of T = {paddle.T:g} s; needs at least {SHORTEST}")
     measure = METRICS[metric](ticks, paddle.T)

@@ -11,6 +11,7 @@ from .contact_starts import check_starts
 from .contact_steps import check_contacts
 from .contacts import Contacts
 from .first_sample import numbers
+from .held import check_lengths
 from .mass import is_definite, start_of
 from .port_mass import port_mass
 from .solve import solve
@@ -68,11 +69,14 @@ class Dynamics:
         coordinates = tuple(q for m in form.models if m.constraints for q in m.coordinates)
         start = self._start()
         M = lowering.graph.evaluate([m for row in self._part(coordinates)[0] for m in row], start)
-        return enforcement(
+        enforced, notes = enforcement(
             constraints, coordinates, start, enforce=model.enforce, alpha=model.alpha,
             M=np.reshape(M, (len(coordinates), -1)), method=self.method, h=self.h, real=lowering.tracing.real,
             used=[form.force, *form.watch.values(), *(e for m in form.models for e in m.written)],
         )  # fmt: skip
+        embedding = getattr(enforced, "embedding", None)
+        check_lengths(constraints, coordinates, start, lowering.folded, lowering.tracing.real, embedding)
+        return enforced, notes
 
     def _start(self):
         """Return what every variable is at the first sample: variable -> float."""

@@ -16,6 +16,7 @@ from .exact import EXACT, Exact, exact_and_rest
 from .expressions import Translator
 from .graph import Graph
 from .handle import HOLDS, VELOCITIES, Handle
+from .held import notes_on
 from .ir import Channel
 from .methods import METHODS
 from .modes import excluded, folded, rests_on, within
@@ -64,7 +65,8 @@ def compile(
     velocity : {"backward_difference", "measured"}
         Where v(n) comes from; "measured" asks the paddle for it.
     live : str or sequence of names or Parameters, optional
-        Parameters that stay settable while running, all by default; the others become constants.
+        Parameters that stay settable while running, by default all but those that constraints hold; the others become
+        constants.
 
     Returns
     -------
@@ -163,7 +165,8 @@ class _Lowering:
             f"holds while {low:g} <= {type(q).__name__} <= {high:g}; beyond, F is nan"
             for q, (low, high) in ranges.items()
         )
-        return replace(program, notes=(*program.notes, *self.dynamics.notes, *held))
+        lengths = notes_on(self.scene, self.folded)
+        return replace(program, notes=(*program.notes, *self.dynamics.notes, *lengths, *held))
 
     def translator(self, leaf, after=0.0):
         """Return what translates expressions of the tick, ``after`` [s] after the sample."""

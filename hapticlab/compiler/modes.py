@@ -7,6 +7,7 @@ import sympy as sp
 
 from ..errors import ParameterError
 from ..scene.cases import Piecewise
+from .held import check_live, held
 from .ranges import Ranges
 from .trace import select
 
@@ -193,14 +194,15 @@ def within(value, ranges, translate):
 
 
 def folded(scene, live):
-    """Return name -> value of the parameters that become constants: none where ``live`` is None."""
+    """Return name -> value of the parameters that become constants: where ``live`` is None, what constraints hold."""
     if live is None:
-        return {}
+        return {name: scene.values[name] for name in held(scene) if name in scene.values}
     strangers = set(live) - set(scene.parameters)
     if strangers:
         raise ParameterError(
             f"live: {', '.join(sorted(strangers))} is not a parameter; {', '.join(scene.parameters)} are"
         )
+    check_live(scene, live)
     fixed = set(scene.parameters) - set(live)
     unbound = sorted(fixed - set(scene.values))
     if unbound:

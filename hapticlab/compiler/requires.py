@@ -13,6 +13,7 @@ from .channels import short
 from .coefficients import Coefficients, linear_rows
 from .dependence import FORCE, Dependence, part_of
 from .exact import EXACT
+from .held import held
 from .lower import compile, lowered
 from .modes import excluded, open_conditions
 from .options import live_names
@@ -225,7 +226,8 @@ class _Report:
         if not rows:
             return Item("linear", "none", next(iter(reasons.values()), "no equation of motion is needed"))
         live = live_names(self.options["live"])
-        kept = [name for name in (self.scene.parameters if live is None else live) if name not in found.live(rows)]
+        settable = [name for name in self.scene.parameters if name not in held(self.scene)] if live is None else live
+        kept = [name for name in settable if name not in found.live(rows)]
         method = self.options["method"]
         exact = f"{EXACT}+{method}" if reasons else EXACT
         before, after = (self._more(live=kept, method=m) for m in (method, exact))

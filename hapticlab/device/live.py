@@ -25,7 +25,9 @@ def checked(program, values):
     names = named_values(program)
     unknown = sorted(set(values) - set(names))
     if unknown:
-        raise ParameterError(f"{unknown[0]} is no live parameter of {program.name}; it has {', '.join(names) or 'none'}.")
+        why = next((f" ({note})" for note in program.notes if note.startswith(f"{unknown[0]}: ")), "")
+        listed = ", ".join(names) or "none"
+        raise ParameterError(f"{unknown[0]} is no live parameter of {program.name}{why}; it has {listed}.")
     if len(values) > MOST_AT_ONCE:
         raise ParameterError(f"{len(values)} parameters at once; a board takes {MOST_AT_ONCE} between two ticks: set fewer")
     declared = {c.name: Parameter(c.name, c.unit, c.low, c.high) for c in program.parameters}
