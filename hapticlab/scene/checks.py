@@ -33,6 +33,10 @@ def equations(eom):
     for equation in listed:
         if is_model(equation):
             continue
+        if hasattr(equation, "generalized_force"):
+            raise SceneError(
+                f"eom holds {equation.name}, which is no equation; it belongs to those of its bodies: hl.lagrange(L, contacts=[...])"
+            )
         if not isinstance(equation, sp.Eq):
             raise SceneError(
                 f"eom holds {equation!r}; needs equations, sp.Eq(left side, right side), or hl.lagrange(...)"
@@ -79,7 +83,7 @@ def named(watch, coordinates):
         if isinstance(item, str) and item not in by_name:
             raise SceneError(f"watch {item!r}: no such coordinate; there are {', '.join(by_name) or 'none'}")
         expr = by_name[item] if isinstance(item, str) else expression(item, "watch")
-        is_named = getattr(type(expr), "role", None) == "coordinate"
+        is_named = getattr(type(expr), "role", None) == "coordinate" or hasattr(type(expr), "contact")
         name = type(expr).__name__ if is_named else sp.sstr(expr)
         if name in RESERVED:
             raise SceneError(f"watch [{name}]: a record has its own {name}; name the channel, watch={{'{name}_1': {name}}}")

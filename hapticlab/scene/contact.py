@@ -5,18 +5,28 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ..errors import SceneError, SignalError
+from .amount import number_of
 from .cases import when
-from .checks import agree_with, applied, check_symbols
+from .checks import applied, check_symbols
 from .contact_laws import EVENT_LAWS, FORCE_LAWS
 from .derivative import Partial, Rate
-from .force_laws import gap_units
+from .force_laws import check_constant, constant, gap_units, written_out
 from .symbols import lag_of, t, v, x
 from .units import dimension_of, si_name
 from .written import check_name, expression
 
 
+class _InASum:
+    """What is no expression, and says so where it is added to one."""
+
+    def _refuse(self, other=None):
+        raise SceneError(f"{self.name} is a {type(self).__name__}, not a force; its force is an expression, {self.name}.force")
+
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __neg__ = _refuse
+
+
 @dataclass(frozen=True)
-class Contact:
+class Contact(_InASum):
     """Two bodies, or a body and the handle, that cannot pass each other.
 
     Parameters
@@ -55,8 +65,11 @@ class Contact:
     name: str = "contact"
     slip: sp.Expr = sp.S.Zero
 
+    __repr__ = written_out
+
     def __post_init__(self):
         check_name(self.name, "contact")
+        _check_is_distance(self.gap, self.name)
         gap, slip = expression(self.gap, f"{self.name}: gap"), expression(self.slip, f"{self.name}: slip")
         object.__setattr__(self, "gap", gap)
         object.__setattr__(self, "slip", slip)
@@ -145,7 +158,7 @@ class Contact:
 
 
 @dataclass(frozen=True, kw_only=True)
-class friction:
+class friction(_InASum):
     """Coulomb friction between two surfaces that slip on each other.
 
     Sliding: F_c against the slip. Sticking: whatever keeps the slip at zero, up to F_s. Sticking is a mode with its own
@@ -156,11 +169,11 @@ class friction:
     ----------
     slip : expression [m/s]
         Relative velocity, linear in rates; of coordinates' rates and the handle's v(t).
-    F_c : Parameter or expression [N], >= 0
+    F_c : Parameter, expression or text with a unit [N], >= 0
         Sliding friction; ``mu * contact.force`` for dry friction at a contact.
-    F_s : Parameter or expression [N], optional
+    F_s : Parameter, expression or text with a unit [N], optional
         Breakaway force, >= F_c; F_c unless given.
-    stick_speed : Parameter or expression [m/s], optional
+    stick_speed : Parameter, expression or text with a unit [m/s], optional
         Replaces sticking by a steep line: the force is F_c slip/stick_speed up to that speed. An ordinary force, for
         every method; it creeps where it should stick.
     name : str
@@ -179,12 +192,14 @@ class friction:
     stick_speed: sp.Expr = None
     name: str = "friction"
 
+    __repr__ = written_out
+
     def __post_init__(self):
         check_name(self.name, "friction")
         for part in ("slip", "F_c", "F_s", "stick_speed"):
             given = getattr(self, part)
             if given is not None:
-                object.__setattr__(self, part, expression(given, f"{self.name}: {part}"))
+                object.__setattr__(self, part, constant(given, f"{self.name}: {part}"))
         if self.F_s is not None and self.stick_speed is not None:
             raise SceneError(f"{self.name}: stick_speed replaces sticking, so there is no breakaway force F_s; leave one out")
         if self.F_s is None:
@@ -194,13 +209,13 @@ class friction:
         _check_slip(self.slip, self.name)
         unit = self.unit
         for part in ("F_c", "F_s"):
-            if getattr(self, part).is_number and getattr(self, part) < 0:
+            if getattr(self, part).is_negative:
                 raise SceneError(f"{self.name}: {part} = {getattr(self, part)}; friction opposes the slip: needs {part} >= 0")
-            agree_with(getattr(self, part), unit, f"{self.name}, {part}")
-        if self.F_c.is_number and self.F_s.is_number and self.F_s < self.F_c:
+            check_constant(getattr(self, part), unit, f"{self.name}, {part}")
+        if (number_of(self.F_s) - number_of(self.F_c)).is_negative:
             raise SceneError(f"{self.name}: F_s = {self.F_s} < F_c = {self.F_c}; breaking away takes at least the sliding force")
         if self.stick_speed is not None:
-            agree_with(self.stick_speed, si_name(dimension_of(self.slip, self.name)), f"{self.name}, stick_speed")
+            check_constant(self.stick_speed, si_name(dimension_of(self.slip, self.name)), f"{self.name}, stick_speed")
 
     @property
     def is_force(self):
@@ -221,7 +236,7 @@ class friction:
     def force(self):
         """The friction force [N] against the slip, an expression."""
         if not self.is_force:
-            return reaction(self.name, self.unit)
+            return reaction(self.name, self.unit, "F")
         return self.F_c * sp.Max(-1, sp.Min(1, self.slip / self.stick_speed))
 
     def generalized_force(self, q):
@@ -229,9 +244,26 @@ class friction:
         return -self.force * Partial(self.slip, v(t) if q == x(t) else q.diff(t))
 
 
-def reaction(name, unit):
-    """Return the leaf that stands for a reaction found while the scene runs."""
-    return sp.Function(name, real=True, unit=unit, role="reaction", contact=name)(t)
+def reaction(name, unit, letter="N"):
+    """Return the leaf that stands for a reaction found while the scene runs; a contact's name may be a function's, floor."""
+    printed = {"letter": letter, "_sympystr": _as_text, "_latex": _as_latex}
+    return sp.Function(name, real=True, unit=unit, role="reaction", contact=name, **printed)(t)
+
+
+def _as_text(leaf, printer):
+    return f"{type(leaf).letter}_{type(leaf).__name__}(t)"
+
+
+def _as_latex(leaf, printer, exp=None):
+    name = type(leaf).__name__.replace("_", r"\_")
+    plain = rf"{type(leaf).letter}_{{\mathrm{{{name}}}}}"
+    return plain if exp is None else f"{plain}^{{{exp}}}"
+
+
+def _check_is_distance(gap, name):
+    if isinstance(gap, sp.core.relational.Relational):
+        apart = gap.gts - gap.lts if hasattr(gap, "gts") else gap.lhs - gap.rhs
+        raise SceneError(f"{name}: gap = {gap} is a condition; a contact takes the distance itself, >= 0 apart: {apart}")
 
 
 def _check_gap(gap, name):

@@ -7,7 +7,7 @@ import sympy as sp
 from ..errors import SceneError
 from .amount import amount
 from .checks import agree_with
-from .force_laws import hunt_crossley, penalty, shown, take
+from .force_laws import hunt_crossley, penalty, shown, take, written_out
 from .symbols import Parameter
 from .units import agree
 from .written import expression
@@ -54,6 +54,8 @@ class impulse:
     order: str = "sequential"
     mu: sp.Expr = 0
 
+    __repr__ = written_out
+
     def __post_init__(self):
         _take_restitution(self)
         take(self, mu="friction coefficient")
@@ -96,6 +98,8 @@ class micro_impulse:
     e: sp.Expr
     envelope: sp.Expr = "0.1 mm"
 
+    __repr__ = written_out
+
     def __post_init__(self):
         _take_restitution(self)
         length = _positive(self.envelope, "envelope", "m", "the distance at which bodies count as in contact")
@@ -119,10 +123,20 @@ class rigid:
     ----------
     mu : number, Parameter or expression, >= 0
         Friction of the impact on the way in.
+
+    Examples
+    --------
+    A block that falls on the floor and stays:
+
+    >>> import hapticlab as hl
+    >>> z = hl.coordinate("z", unit="m", initial=0.1)
+    >>> hl.Contact(z, hl.rigid(), name="floor").law
+    rigid(mu=0)
     """
 
     mu: sp.Expr = 0
 
+    __repr__ = written_out
     e = sp.S.Zero
     rest_speed = sp.oo
     order = "simultaneous"

@@ -9,7 +9,7 @@ from .checks import agree_with
 from .derivative import Partial
 from .symbols import t, x
 from .units import dimension_of, si_name
-from .written import check_name, expression
+from .written import check_name, zero_of
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ def device_image(constraint, *, name="image"):
 
     Parameters
     ----------
-    constraint : expression
-        Zero, of coordinates and x(t), such as ``q - x(t)``.
+    constraint : sp.Eq or expression that is zero
+        Of coordinates and x(t), such as ``q - x(t)`` or ``sp.Eq(q, x(t))``.
     name : str
 
     Returns
@@ -56,7 +56,7 @@ def device_image(constraint, *, name="image"):
     image(t)
     """
     check_name(name, "device image")
-    constraint = expression(constraint, name)
+    constraint = zero_of(constraint, name)
     along = Partial(constraint, x(t)).doit()
     if along == 0:
         raise SceneError(f"{name}: {constraint} = 0 does not hold x(t), so the handle has no part in it; write q - x(t)")

@@ -1,13 +1,14 @@
 """Contact laws that are forces over a time: the penalty spring and damper, and Hunt and Crossley's; chapter section 23.5.2."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import sympy as sp
 
-from ..errors import SceneError
+from ..errors import SceneError, UnitsError
+from .amount import Amount
 from .checks import agree_with
-from .units import dimension, dimension_of, fixed
+from .units import dimension, dimension_of, fixed, quantity
 from .written import expression
 
 #: exponent of two spheres, or a sphere on a plane
@@ -17,6 +18,13 @@ _OF_GAP = {
     dimension("m"): ("N", "N/m", "N*s/m", "m/s"),
     (): ("N*m", "N*m/rad", "N*m*s/rad", "rad/s"),
 }
+
+
+def written_out(law):
+    """Return a law, contact or friction as it is written, its numbers in few digits."""
+    values = {f.name: getattr(law, f.name) for f in fields(law)}
+    text = {k: sp.sstr(value, full_prec=False) if isinstance(value, sp.Basic) else repr(value) for k, value in values.items()}
+    return f"{type(law).__name__}({', '.join(f'{name}={value}' for name, value in text.items())})"
 
 
 def gap_units(gap, where):
@@ -37,8 +45,8 @@ class penalty:
 
     Parameters
     ----------
-    k : Parameter or expression [N/m], >= 0
-    b : Parameter or expression [N s/m], >= 0
+    k : Parameter, expression or text with a unit [N/m], >= 0
+    b : Parameter, expression or text with a unit [N s/m], >= 0
 
     Examples
     --------
@@ -51,14 +59,16 @@ class penalty:
     k: sp.Expr
     b: sp.Expr = 0
 
+    __repr__ = written_out
+
     def __post_init__(self):
         take(self, k="stiffness", b="damping")
 
     def check(self, gap, where):
         """Refuse constants whose units do not belong to the gap."""
         _, stiffness, damping, _ = gap_units(gap, where)
-        agree_with(self.k, stiffness, f"{where}, k")
-        agree_with(self.b, damping, f"{where}, b")
+        check_constant(self.k, stiffness, f"{where}, k")
+        check_constant(self.b, damping, f"{where}, b")
 
     def force(self, gap, rate):
         """Return the normal force of a gap, <= 0, that changes at a rate."""
@@ -89,8 +99,8 @@ class hunt_crossley:
 
     Parameters
     ----------
-    k : Parameter or expression [N/m^n], >= 0
-    c : Parameter or expression [s/m], >= 0
+    k : Parameter, expression or text with a unit [N/m^n], >= 0
+    c : Parameter, expression or text with a unit [s/m], >= 0
     exponent : fraction
         n >= 1; 3/2 unless given. With a whole n the force is a polynomial in d.
 
@@ -106,6 +116,8 @@ class hunt_crossley:
     c: sp.Expr
     exponent: sp.Rational = HERTZ
 
+    __repr__ = written_out
+
     def __post_init__(self):
         take(self, k="stiffness", c="damping factor")
         exponent = fixed(expression(self.exponent, "exponent"))
@@ -116,6 +128,10 @@ class hunt_crossley:
     def check(self, gap, where):
         """Refuse constants whose units do not belong to the gap."""
         force, _, _, speed = gap_units(gap, where)
+        if self.k.is_number:
+            check_constant(self.k, f"{force}/{speed.removesuffix('/s')}^{float(self.exponent):g}", f"{where}, k")
+        if self.c.is_number:
+            check_constant(self.c, f"s/{speed.removesuffix('/s')}", f"{where}, c")
         agree_with(self.k * gap**self.exponent, force, f"{where}, k gap^{self.exponent}")
         agree_with(1 / self.c if self.c != 0 else 0, speed, f"{where}, 1/c")
 
@@ -171,11 +187,30 @@ class hunt_crossley:
 def take(law, **words):
     """Keep the constants of a law as expressions; refuse a negative number."""
     for name, word in words.items():
-        expr = expression(getattr(law, name), name)
-        if expr.is_number and expr < 0:
+        expr = constant(getattr(law, name), name)
+        if expr.is_negative:
             fed = "friction opposes the slip" if name == "mu" else "a negative one feeds energy to the user"
             raise SceneError(f"{name} = {shown(expr)}; a contact needs a {word} {name} >= 0: {fed}")
         object.__setattr__(law, name, expr)
+
+
+def constant(given, where):
+    """Return a constant of a law: an expression, or a text with a unit such as '1000 N/m'."""
+    if not isinstance(given, str):
+        return expression(given, where)
+    number, unit = quantity(given, where)
+    return Amount(number, unit) if number else sp.S.Zero
+
+
+def check_constant(expr, unit, where):
+    """Refuse a constant of another unit; of a bare number, say how it gets one."""
+    if expr.is_number and expr != 0 and unit != "1":
+        name = where.rpartition(", ")[2]
+        raise UnitsError(
+            f"{where} = {shown(expr)} has no unit; needs {unit}: '{shown(expr)} {unit}', or "
+            f"hl.parameters('{name}', units='{unit}', values={shown(expr)})"
+        )
+    agree_with(expr, unit, where)
 
 
 def shown(number):

@@ -76,7 +76,11 @@ def si_name(dimensions):
         if dimension(name) == dimensions:
             return name
     base = {"[length]": "m", "[mass]": "kg", "[time]": "s", "[current]": "A", "[temperature]": "K"}
-    return "*".join(base.get(k, k.strip("[]")) + (f"^{p}" if p != 1 else "") for k, p in dimensions)
+    return "*".join(base.get(k, k.strip("[]")) + (_exponent(p) if p != 1 else "") for k, p in dimensions)
+
+
+def _exponent(p):
+    return f"^{p}" if p.denominator == 1 else f"^({p})"
 
 
 def in_si(value, unit, name):
@@ -103,6 +107,21 @@ def _converted(text, unit, name):
         return float(quantity.to(unit if unit != "1" else "dimensionless").magnitude)
     except (AttributeError, TypeError, ValueError, OverflowError) as problem:
         raise UnitsError(f"{cure} ({problem})") from None
+
+
+def quantity(text, name):
+    """Return (number, SI unit) of a text such as '5 N/mm'."""
+    written = _QUANTITY.fullmatch(text)
+    number, own = written.groups() if written else ("", "")
+    if not own:
+        raise UnitsError(f"{name} = {text!r}; needs a number and its unit, such as '2 N/m'")
+    try:
+        given, one = _parsed(float(number), own), _parsed(1.0, own).to_base_units()
+    except (AttributeError, TypeError, ValueError, OverflowError) as problem:
+        raise UnitsError(f"{name} = {text!r}; needs a quantity ({problem})") from None
+    if one.magnitude == 1.0:
+        return float(number), own
+    return float(given.to_base_units().magnitude), si_name(_exponents(one))
 
 
 def kind_of(unit):

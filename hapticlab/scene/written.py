@@ -1,5 +1,6 @@
 """What a student wrote, taken as expressions, conditions and names, or refused in words."""
 
+from inspect import isfunction
 from keyword import iskeyword
 
 import sympy as sp
@@ -42,13 +43,35 @@ def expression(given, where):
         expr = given if isinstance(given, sp.Basic) else sp.sympify(given, strict=True)
     except (sp.SympifyError, TypeError):
         expr = None
+    if isinstance(expr, sp.Eq):
+        raise SceneError(f"{where} = {expr} is an equation; an expression alone is needed here, such as its right side")
     if isinstance(expr, CONDITIONS):
         raise SceneError(f"{where}: a condition is not a number; write hl.when(condition, 1, 0)")
     if isinstance(expr, sp.Expr):
         return expr
     if isinstance(given, FunctionClass):
         raise SceneError(f"{where} = {given.__name__}; needs one of its values: write {given.__name__}(n)")
+    if hasattr(given, "generalized_force"):
+        raise SceneError(f"{where} is the contact or friction {given.name} itself; its force is {given.name}.force")
     raise SceneError(f"{where} = {given!r}; needs a number, or an expression of parameters, x(n) and v(n)")
+
+
+def zero_of(given, where):
+    """Return what a constraint sets to zero, given as an equation or as that expression."""
+    if isinstance(given, bool):
+        raise SceneError(f"{where} is {given}: == is Python's own and compares at once; write sp.Eq(a, b)")
+    if given in (sp.true, sp.false):
+        raise SceneError(f"{where} is {given}: its sides are equal for every motion, or never; it constrains nothing")
+    return expression(given.lhs - given.rhs if isinstance(given, sp.Eq) else given, where)
+
+
+def no_scene(given, cure):
+    """Say that what was given is no scene, in few words; of a function, that it makes one."""
+    if isfunction(given) and given.__name__.isidentifier():
+        place = "hl.library." if given.__module__.startswith("hapticlab.library.") else ""
+        return f"{given.__name__} is a function, not a scene; call it: {place}{given.__name__}()"
+    text = repr(given)
+    return f"{text if len(text) <= 80 else type(given).__name__} is not a scene; {cure}"
 
 
 def condition(given):

@@ -17,6 +17,7 @@ Q = hl.coordinate("q", unit="m")
 ANGLE = hl.coordinate("theta", unit="rad")
 K, B, C, F_C, MU, KH, KR = hl.parameters("k b c F_c mu k_h k_r", units="N/m N*s/m s/m N 1 N/m^1.5 N*m/rad")
 E = hl.parameters("e", units="1", values=0.8, ranges=(0, 1))
+FLOOR = Contact(Q, impulse(e=0.5), name="floor")
 
 
 @pytest.mark.parametrize("made, message", [
@@ -36,6 +37,14 @@ E = hl.parameters("e", units="1", values=0.8, ranges=(0, 1))
     (lambda: Contact(-x(t), impulse(e=E), "wall"), r"wall: gap = -x\(t\) holds the handle alone, .* hl.proxy_wall"),
     (lambda: Contact(Q, impulse(e=E, mu=MU)), r"friction mu = mu needs a direction; give slip="),
     (lambda: Contact(Q, penalty(k=K), slip=v(t)), r"a penalty has no friction of its own; add hl.friction\(slip=..., F_c=mu"),
+    (lambda: Contact(Q >= 0, rigid()), r"gap = q\(t\) >= 0 is a condition; a contact takes the distance itself, .*apart: q\(t\)"),
+    (lambda: Contact(Q <= 0, rigid()), r"a contact takes the distance itself, .*apart: -q\(t\)"),
+    (lambda: penalty(k="-50 N/m"), r"k = -50; a contact needs a stiffness k >= 0"),
+    (lambda: friction(slip=v(t), F_c="2 N", F_s="1 N"), r"F_s = \(1 N\) < F_c = \(2 N\); breaking away takes at least"),
+    (lambda: hl.Scene(FLOOR), r"force is the contact or friction floor itself; its force is floor.force"),
+    (lambda: K * Q + FLOOR, r"floor is a Contact, not a force; its force is an expression, floor.force"),
+    (lambda: friction(slip=v(t), F_c=F_C) - K * Q, r"friction is a friction, not a force; .*friction.force"),
+    (lambda: hl.Scene(0, [FLOOR]), r"eom holds floor, which is no equation; .*hl.lagrange\(L, contacts=\[...\]\)"),
     (lambda: friction(slip=Q.diff(t) ** 2, F_c=F_C), r"slip = .* is not linear in the velocities"),
     (lambda: friction(slip=Q, F_c=F_C), r"slip = q\(t\) holds no velocity; needs a relative velocity"),
     (lambda: friction(slip=v(t), F_c=F_C, F_s=F_C, stick_speed=1), r"stick_speed replaces sticking.*leave one out"),
@@ -47,7 +56,11 @@ def test_what_cannot_be_a_contact_is_refused_in_words(made, message):
 
 @pytest.mark.parametrize("made, message", [
     (lambda: Contact(Q, penalty(k=B)), r"contact, k: b is in N\*s/m but .* in N/m"),
-    (lambda: Contact(Q, penalty(k=50)), r"50 is a bare number: give it a unit"),
+    (lambda: Contact(Q, penalty(k=50)), r"k = 50 has no unit; needs N/m: '50 N/m', or hl.parameters\('k', units='N/m', v"),
+    (lambda: Contact(Q, penalty(k="50 N")), r"contact, k: \(50 N\) is in N but"),
+    (lambda: Contact(Q, penalty(k="hard")), r"k = 'hard'; needs a number and its unit"),
+    (lambda: Contact(Q, hunt_crossley(k=1e5, c=0)), r"needs N/m\^1.5: '100000 N/m\^1.5'"),
+    (lambda: friction(slip=Q.diff(hl.t), F_c=1), r"F_c = 1 has no unit; needs N: '1 N'"),
     (lambda: Contact(ANGLE, penalty(k=K)), r"k: k is in N/m but .* in N\*m/rad"),
     (lambda: Contact(Q, hunt_crossley(k=KH, c=C, exponent=2)), r"k gap\^2"),
     (lambda: Contact(Q, hunt_crossley(k=KH, c=B)), r"1/c"),
@@ -71,6 +84,31 @@ def test_what_fits_is_taken():
     assert not stop.is_force and type(stop.force).role == "reaction" and type(stop.impulse).unit == "N*s"
     assert friction(slip=ANGLE.diff(t), F_c=KR).unit == "N*m"
     assert hash(stop) == hash(Contact(Q, impulse(e=0.5), name="stop"))
+
+
+def test_texts_with_units_are_taken_as_the_other_laws_take_them():
+    """A spring pressed 2 mm into its contact, its stiffness in N/mm, pushes as the parameter of 1000 N/m does."""
+    pushes = []
+    for k_c in ("1 N/mm", hl.parameters("k_c", units="N/m", values=1000)):
+        pad = Contact(Q, penalty(k=k_c), name="pad")
+        start = hl.coordinate("q", unit="m", initial=-0.002)
+        scene = hl.Scene(pad.force.xreplace({Q: start}), [sp.Eq(start.diff(t), 0)])
+        pushes.append(load(hl.compile(scene, T=1e-3, dtype="float64")).run(1, np.zeros((1, 1))).outputs[0, 0, 0])
+    assert pushes[0] == pushes[1] == pytest.approx(2.0, rel=1e-15)
+    assert penalty(k="5 N*m/rad").k.unit == "N*m/rad" and penalty(k="0 N/m").k == 0
+    stiff = hunt_crossley(k="100 N/mm^1.5", c="0.2 s/m").k
+    assert float(stiff.value) == pytest.approx(100 * 1e3**1.5, rel=1e-12)
+    assert Contact(Q, hunt_crossley(k=stiff, c="0.2 s/m")).law.k == stiff
+    assert friction(slip=v(t), F_c="1 N", stick_speed="5 mm/s").stick_speed.value == 0.005
+
+
+def test_a_contact_called_floor_does_not_print_as_the_function():
+    assert str(2 * FLOOR.force) == "2*N_floor(t)" and sp.latex(FLOOR.force) == r"N_{\mathrm{floor}}"
+    assert sp.latex(FLOOR.force**2) == r"N_{\mathrm{floor}}^{2}"
+    assert str(friction(slip=v(t), F_c=F_C, name="brake").force) == "F_brake(t)"
+    model = hl.lagrange(hl.parameters("m", units="kg") * Q.diff(t) ** 2, contacts=[FLOOR])
+    assert list(hl.Scene(0, [model], watch=[FLOOR.force]).watch) == ["floor"]
+    assert "e=0.5," in repr(FLOOR) and repr(penalty(k="2.5 N/m", b=B)) == "penalty(k=(2.5 N/m), b=b)"
 
 
 LAWS = [

@@ -24,6 +24,10 @@ def test_the_force_is_the_reaction_on_the_handle(constraint, by_handle):
     assert unit_of(image.force) == "N"
 
 
+def test_an_equation_is_taken_as_the_constraints_of_a_model_are():
+    assert hl.device_image(sp.Eq(q, x(t))) == hl.device_image(q - x(t))
+
+
 def test_a_constraint_without_the_handle_is_no_image():
     with pytest.raises(SceneError, match=r"grip: q\(t\) = 0 does not hold x\(t\).*write q - x\(t\)"):
         hl.device_image(q, name="grip")

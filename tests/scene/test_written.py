@@ -62,6 +62,7 @@ def scenes():
         ({"force": F_0 * sp.I}, "not a real number"),
         ({"force": F_0 * sp.nan}, "not a real number"),
         ({"force": x(n) > 0}, "a condition is not a number"),
+        ({"force": sp.Eq(z, x_o)}, r"force = Eq\(z\(t\), x_o\) is an equation; an expression alone"),
         ({"watch": [None]}, "needs a number"),
         ({"watch": {"q": [1]}}, r"watch q = \[1\]"),
         ({"watch": 5}, "watch = 5; needs a list"),
