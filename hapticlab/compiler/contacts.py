@@ -1,9 +1,12 @@
 """The contacts of a scene in a program: reactions that a stepper locates, impacts, and what a force may know of them."""
 
+import sympy as sp
+
 from ..errors import ProgramError, SceneError
 from ..scene.contact import friction
-from ..scene.contact_laws import micro_impulse, rigid
+from ..scene.contact_laws import impulse, micro_impulse, rigid
 from ..scene.derivative import Partial, Rate
+from ..scene.symbols import t, x
 from .complementarity import dot, response
 from .guards import contact, coulomb
 from .impact import dissipated
@@ -113,6 +116,9 @@ class Contacts:
     def at_sample(self, expr):
         """Return a reaction, or what impacts added up to, as a state that the step before this sample has set."""
         kind, tracing = type(expr), self.tracing
+        name = kind.contact
+        if name not in [e.name for e in (*self.contacts, *self.hovering, *self.frictions)]:
+            raise SceneError(f"{name} is used but no model has it: hl.lagrange(..., contacts=[{name}])")
         if kind.role == "rub":
             return tracing.tick.const(0.0)
         channel = Channel(kind.__name__, kind.unit, tracing.real)
@@ -132,6 +138,16 @@ class Contacts:
         for leaf, value in known.items():
             self.at_sample(leaf)
             self.tracing.set_next(leaf, value)
+
+
+def unfelt(form):
+    """Yield a note on each contact with the handle whose impacts move the bodies, and nothing that is felt holds."""
+    read = {leaf for e in (form.force, *form.updates.values()) for leaf in e.atoms(sp.Function)}
+    for c in (c for model in form.models for c in model.contacts):
+        strikes = isinstance(getattr(c, "law", None), (impulse, rigid))
+        if strikes and c.gap.has(x(t)) and c.impulse not in read:
+            pulse = f"hl.felt_impulse({c.name}, tau='5 ms') makes them felt"
+            yield f"{c.name} acts by impulses, which {c.name}.force does not hold; {pulse}"
 
 
 def _check_names(elements):

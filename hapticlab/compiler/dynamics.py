@@ -9,7 +9,7 @@ from .advance import Taylor, advance
 from .constraints import enforcement
 from .contact_starts import check_starts
 from .contact_steps import check_contacts
-from .contacts import Contacts
+from .contacts import Contacts, unfelt
 from .first_sample import numbers
 from .held import check_lengths
 from .mass import is_definite, start_of
@@ -47,7 +47,7 @@ class Dynamics:
                 raise
             self.definite = False  # a constraint may carry what has no mass of its own
         self.enforced, self.notes = self._enforced(constraints) if constraints else (None, ())
-        self.notes = (*self.notes, *(note for model in form.models for note in model.notes))
+        self.notes = (*self.notes, *(note for model in form.models for note in model.notes), *unfelt(form))
         kept = self.enforced.coordinates if self.enforced else ()
         orders = dict(zip(form.coordinates, form.orders, strict=True))
         self.others = tuple(q for q in form.coordinates if q not in kept)

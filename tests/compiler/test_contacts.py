@@ -15,6 +15,7 @@ from hapticlab.scene.mechanics import lagrange
 T, M, G, H = 1e-3, 0.5, 9.81, 0.1
 m, g, h0 = hl.parameters("m g h0", units="kg m/s^2 m", values=(M, G, H))
 q = hl.coordinate("q", unit="m", initial=h0)
+HANDLE = x(t)
 FALL = m * q.diff(t) ** 2 / 2 - m * g * q
 
 
@@ -257,3 +258,41 @@ def test_what_cannot_run_is_refused():
         run(scene(*pair), 1)
     with pytest.raises(SceneError, match=r"two contacts are called a"):
         scene(hl.Contact(q, e, name="a"), hl.Contact(z, e, name="a"))
+
+
+def test_a_contact_that_no_model_has_is_refused():
+    ball = hl.coordinate("ball", unit="m", initial=x(n) + h0)
+    top = hl.Contact(ball - x(t), hl.impulse(e=0.5), name="top")
+    felt = hl.felt_impulse(top, tau="20 ms")
+    motion = lagrange(m * ball.diff(t) ** 2 / 2 - m * g * ball)
+    rub = hl.friction(slip=ball.diff(t), F_c=0.1 * top.force, name="rub")
+    for scene in (
+        hl.Scene(force=-top.force, eom=[motion], watch=[ball]),
+        hl.Scene(force=-top.force),
+        hl.Scene(felt.force, [motion, *felt.equations]),
+        hl.Scene(force=0, eom=[motion], watch={"loss": top.impact_loss}),
+        hl.Scene(force=0, eom=[lagrange(m * ball.diff(t) ** 2 / 2, contacts=[rub])], watch=[ball]),
+    ):
+        with pytest.raises(SceneError, match=r"top is used but no model has it: hl.lagrange\(..., contacts=\[top\]\)"):
+            hl.compile(scene, method="taylor", T=T)
+
+
+def test_impulses_that_are_not_felt_are_noted():
+    ball = hl.coordinate("ball", unit="m", initial=x(n) + h0)
+    note = "top acts by impulses, which top.force does not hold; hl.felt_impulse(top, tau='5 ms') makes them felt"
+
+    def notes(law, force, plate=HANDLE, extra=lambda top: ()):
+        top = hl.Contact(ball - plate, law, name="top")
+        motion = lagrange(m * ball.diff(t) ** 2 / 2 - m * g * ball, contacts=[top])
+        scene = hl.Scene(force(top), [motion, *extra(top)], watch={"ball": ball, "p": top.impulse})
+        return hl.compile(scene, method="taylor", T=T).notes
+
+    def felt(top):
+        return hl.felt_impulse(top, tau="5 ms")
+
+    for law in (hl.impulse(e=0.5), hl.rigid()):
+        assert note in notes(law, lambda top: top.force)
+        assert note in notes(law, lambda top: 0)
+        assert note not in notes(law, lambda top: felt(top).force, extra=lambda top: felt(top).equations)
+    assert note not in notes(hl.impulse(e=0.5), lambda top: 0, plate=0)  # a floor that the handle has no part in
+    assert note not in notes(hl.micro_impulse(e=0.5), lambda top: top.force)  # its force is what its impulses give a period
