@@ -7,6 +7,7 @@ import sympy as sp
 
 from ..compiler.coefficients import Coefficients
 from ..compiler.dependence import FORCE, Dependence, part_of
+from ..compiler.graph import shown
 from ..errors import AnalysisError, ParameterError
 from ..scene.derivative import Partial
 from ..scene.scene import Scene
@@ -136,7 +137,7 @@ def _check_linear(scene, found):
         at = dict.fromkeys(found.graph.variables_of([expr]), 0.0)
         driver = next((a for a in at if a not in moving and not isinstance(a, Parameter)), None)
         if driver is not None:
-            why = why or f"{driver} drives {where}"
+            why = why or f"{shown(driver)} drives {where}"
             continue
         at |= {p: scene.values.get(p.name, 1e-3) for p in at if isinstance(p, Parameter)}
         pull = float(found.graph.evaluate([expr], at)[0])

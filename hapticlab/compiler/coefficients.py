@@ -7,7 +7,7 @@ from ..scene.derivative import Partial
 from ..scene.symbols import Parameter, T, delay, t, v, x
 from .channels import short
 from .dependence import blocks, coupled
-from .graph import Graph
+from .graph import Graph, shown
 from .linear import Linear, states_of
 
 #: the handle as an equation of motion sees it
@@ -58,7 +58,7 @@ class Coefficients:
 
     def _moving(self, expr):
         """Return what changes while it runs in a coefficient, as text, or nothing."""
-        return ", ".join(sorted(str(s) for s in self.graph.variables_of([expr]) if not isinstance(s, Parameter)))
+        return ", ".join(sorted({shown(s) for s in self.graph.variables_of([expr]) if not isinstance(s, Parameter)}))
 
     def sees(self, k):
         """Return the equations whose states enter equation k, in order."""

@@ -33,6 +33,11 @@ class driven(sp.Function):
     role = "driven"
 
 
+def shown(variable):
+    """Return what a message calls a variable; an angle that time drives is time."""
+    return "time" if variable == t or isinstance(variable, driven) else str(variable)
+
+
 class Graph:
     """The graph of a scene's expressions, in float64, its variables the inputs of one block.
 

@@ -204,7 +204,7 @@ def test_scenes_that_are_no_network_of_masses():
     weight, drive = hl.parameters("weight", units="N", values=0.2), hl.parameters("f", units="Hz", values=3)
     for more, said in (
         (weight, "the equation of z holds 0.2 at rest; measure"),
-        (weight * sp.sin(2 * sp.pi * drive * t), "drives the equation of z"),
+        (weight * sp.sin(2 * sp.pi * drive * t), ": time drives the equation of z"),
         (weight * x(n - 1) / size, "remembers samples"),
     ):
         scene = hl.Scene(force=pull, eom=[sp.Eq(m * z.diff(t, 2), pull - between + more), second])
