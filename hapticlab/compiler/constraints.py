@@ -104,8 +104,8 @@ def _check_wraps(wraps, used):
 
 def _note_of(embedding):
     solved = names(step.coordinate for step in embedding.steps)
-    drivers = names(embedding.drivers) or "the handle"
-    return f"{solved} in closed form, driven by {drivers}: no drift"
+    drivers = f"driven by {embedding.driven_by}" if embedding.driven_by else "held still"
+    return f"{solved} in closed form, {drivers}: no drift"
 
 
 def _followers(assembly, positions, constraints, coordinates, real):

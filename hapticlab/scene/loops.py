@@ -10,12 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from ..errors import SceneError
 from .closing import Open, check_range, declared_range, in_unit, is_coordinate, name, names, shown, values, wraps
 from .dyads import Equations
 from .loop_terms import NotClosed, number
-from .symbols import v
+from .symbols import t, v, x
 
 #: initial values that are written with seven digits agree with the constraint
 AGREEING = 1e-6
@@ -47,8 +48,17 @@ class Embedding:
         """The dependent coordinates in order, each a :class:`~hapticlab.scene.dyads.Step`."""
         return tuple(step for _, steps in self.groups for step in steps)
 
+    @property
+    def driven_by(self):
+        """What the dependent coordinates follow, in words: drivers, the handle, time; empty where they stay."""
+        values = sp.Tuple(*(step.value for step in self.steps))
+        timed = values.xreplace({f: sp.Dummy() for f in values.atoms(AppliedUndef, x, v)}).has(t)
+        others = {"the handle": values.has(x, v), "time": timed}
+        found = [*(name(q) for q in self.drivers if values.has(q)), *(what for what, has in others.items() if has)]
+        return ", ".join(found)
+
     def __str__(self):
-        lines = [f"driven by {names(self.drivers) or 'the handle'}"]
+        lines = [f"driven by {self.driven_by}"] if self.driven_by else []
         return "\n".join([*lines, *(f"{name(s.coordinate)} = {s.value}" for s in self.steps)])
 
 

@@ -47,6 +47,29 @@ def test_a_loop_is_closed_where_it_can_be_and_the_program_says_so():
     assert note == "phi, s in closed form, driven by theta: no drift"
 
 
+def test_only_what_takes_part_is_said_to_drive():
+    A, om = hl.parameters("A om", units="m 1/s")
+    at = {X: 0.0, Y: 0.0, s: 0.0, A: 0.01, om: 30.0, t: 0.0, hl.x(t): 0.0}
+    for constraints, said in (
+        ([Y - A * sp.sin(om * t)], "Y in closed form, driven by time"),
+        ([Y - hl.x(t)], "Y in closed form, driven by the handle"),
+        ([Y - 2 * X], "Y in closed form, driven by X"),
+        ([Y - 2 * X - A * sp.sin(om * t)], "Y in closed form, driven by X, time"),
+        ([Y - X, X - hl.x(t)], "X, Y in closed form, driven by the handle"),
+        ([Y], "Y in closed form, held still"),
+    ):
+        _, (note,) = enforcement(constraints, (X, Y, s), at)
+        assert note == f"{said}: no drift"
+    turning = (*SLIDER_CRANK, theta - sp.asin(0.5) - om * t)
+    angle = math.asin(0.3 * 0.5)
+    begin = {
+        theta: math.pi / 6, phi: angle, s: 0.03 * math.cos(math.pi / 6) + 0.1 * math.cos(angle), X: 0.0, om: 30.0, t: 0.0,
+        theta.diff(t): 0.0, phi.diff(t): 0.0, s.diff(t): 0.0, X.diff(t): 0.0,
+    }  # fmt: skip
+    _, (note,) = enforcement(turning, (*COORDINATES, X), begin)
+    assert "driven by time: no drift" in note and "X" not in note
+
+
 def test_what_has_no_closed_form_takes_multipliers_and_says_why():
     found, (note,) = enforcement((X**2 + Y**2 - 0.01,), (X, Y), {X: 0.06, Y: -0.08})
     assert isinstance(found, Multipliers)
