@@ -16,6 +16,7 @@ u = x(n) / L
 FUNCTIONS = [
     sp.sin(u), sp.cos(3 * u), sp.tan(u), sp.exp(-2 * u), sp.log(2 + u), sp.atan(4 * u), sp.tanh(3 * u),
     sp.sinh(u), sp.cosh(u), sp.asin(u / 2), sp.acos(u / 2), sp.atan2(u, u - 1), sp.atan2(-u, u - sp.Rational(1, 3)),
+    sp.atan2(3, u), sp.atan2(-3, u), sp.atan2(u, 2), sp.atan2(u, -2),
     sp.Abs(u), sp.sign(u), sp.Heaviside(u, 1), sp.floor(5 * u), sp.ceiling(5 * u), sp.Min(u, u**2, sp.Rational(1, 5)),
     sp.Max(u, -u, sp.Rational(1, 3)), u**2, u**5, (2 + u) ** sp.Rational(3, 2), 1 / sp.sqrt(2 + u), (2 + u) ** sp.pi,
     1 / (3 + u) ** 3, sp.Piecewise((1, u > sp.Rational(1, 2)), (2, u > 0), (3, True)), sp.pi * u - sp.E,
