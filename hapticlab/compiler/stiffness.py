@@ -200,17 +200,21 @@ def check_smooth(motion, name):
     instructions = motion.builder.instructions
     edges = {frozenset((g.first.id, g.second.id)) for g in motion.guards if g.kind == "side"}
     zero = motion.builder.const(0.0, motion.builder.real).id
-    for p in reachable(instructions, [rate.id for rate in (*motion.a, *motion.ds)]):
+
+    def vanishes(p):
+        """Tell whether a value is zero on a surface: a factor of it is, or one of its cases."""
         i = instructions[p]
-        if i.op not in ("sqrt", "log"):
-            continue
-        a = i.args[0]
-        while instructions[a].op == "neg":
-            a = instructions[a].args[0]
-        inner = instructions[a]
-        on_edge = (inner.op == "select" and zero in inner.args[1:]) or frozenset((a, zero)) in edges
-        if on_edge or (inner.op == "sub" and frozenset(inner.args) in edges):
+        if p == zero or frozenset((p, zero)) in edges:
+            return True
+        if i.op == "sub":
+            return frozenset(i.args) in edges
+        parts = {"neg": i.args, "mul": i.args, "div": i.args[:1], "select": i.args[1:], "sqrt": i.args}
+        return any(map(vanishes, {*parts.get(i.op, ())}))
+
+    for p in reachable(instructions, [rate.id for rate in (*motion.a, *motion.ds)]):
+        if instructions[p].op in ("sqrt", "log") and vanishes(instructions[p].args[0]):
             raise ProgramError(
-                f"{name}: a broken power of what is zero at touch, such as d**(3/2), has no Taylor series there; "
-                "method='taylor' takes whole exponents: exponent=1 or 2, or use method='rk4' with ten substeps a contact"
+                f"{name}: a broken power or logarithm of what is zero on a surface, such as d**(3/2) at touch or "
+                "sqrt(Abs(y)), has no Taylor series there; method='taylor' takes whole exponents: exponent=1 or 2, or use "
+                "method='rk4' with ten substeps a contact"
             )

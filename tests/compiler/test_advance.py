@@ -138,6 +138,33 @@ def test_a_broken_power_is_refused_where_it_starts_from_zero():
     hertz = drop(law=lambda q, k, b: hl.when(q <= 0, c * sp.Max(0, -q) ** sp.Rational(3, 2)))
     with pytest.raises(ProgramError, match="broken power"):
         hl.compile(hertz, method="taylor", T=T)
+    u = hl.parameters("F_u", units="N", values=0.1)
+    for distance in (abs, lambda a: hl.when(a < 0, -a, a)):
+        for power in (sp.sqrt, sp.log, lambda a: a ** sp.Rational(1, 3)):
+            rough = drop(law=lambda q, k, b, distance=distance, power=power: -u * power(distance(q * k / u)))
+            with pytest.raises(ProgramError, match=r"broken power.*sqrt\(Abs"):
+                hl.compile(rough, method="taylor", T=T)
+    smooth = drop(law=lambda q, k, b: -u * sp.sqrt(1 + abs(q * k / u)))
+    assert hl.compile(smooth, method="taylor", T=T)
+
+
+def free(law, start=0.3, rate=0.0, ticks=400, **options):
+    """Return what becomes of y'' = law(y, y'), in seconds, by method="taylor": y and the program."""
+    s1 = hl.parameters("s_1", units="s", values=1.0)
+    y = hl.coordinate("y", unit="1", initial=start, rate=rate)
+    scene = hl.Scene(0, [sp.Eq(s1**2 * y.diff(hl.t, 2), law(y, s1 * y.diff(hl.t)))], watch={"y": y})
+    program, out = run(scene, ticks, method="taylor", dtype="float64", live=(), **options)
+    return out[:, 1], program
+
+
+def test_an_angle_of_a_vector_is_smooth_where_it_is_upright():
+    y, _ = free(lambda y, w: -20 * sp.atan2(sp.Rational(1, 100), y), rate=-2.0, ticks=300)
+    found = solve_ivp(
+        lambda s, u: [u[1], -20 * math.atan2(0.01, u[0])], (0, 0.3), [0.3, -2], "DOP853", T * np.arange(300),
+        rtol=1e-13, atol=1e-15, max_step=1e-3,
+    ).y[0]  # fmt: skip
+    assert found[-1] < 0 < found[0]
+    np.testing.assert_allclose(y, found, rtol=0, atol=1e-13)
 
 
 def test_nothing_is_added_where_nothing_switches():
