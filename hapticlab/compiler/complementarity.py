@@ -9,8 +9,9 @@ after 250 rounds (projected Gauss-Seidel, two contacts, mass ratio 100). The lin
 from itertools import chain, combinations
 
 from ..errors import SceneError
-from .solve import is_zero, less_product, solve
+from .solve import solve
 from .trace import Value, maximum, minimum, select
+from .zeros import dot, is_zero, less_product
 
 #: contacts that act on each other at once: 2^4 = 16 sets
 MOST_TOGETHER = 4
@@ -38,15 +39,6 @@ def response(M, J, definite=True):
             # written once, so that W is symmetric to the last digit
             W[i][j] = W[j][i] = dot(J[i], P[j])
     return W, P
-
-
-def dot(a, b):
-    """Return the sum of products, structural zeros left out; 0.0 where all are."""
-    total = 0.0
-    for x, y in zip(a, b, strict=True):
-        if not (is_zero(x) or is_zero(y)):
-            total = x * y if is_zero(total) else total + x * y
-    return total
 
 
 def complementarity(W, q, touching=None, names=None):

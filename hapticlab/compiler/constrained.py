@@ -10,9 +10,9 @@ Wanner, *Solving Ordinary Differential Equations II*, section VII.2 (projection)
 import numpy as np
 
 from ..errors import SceneError
-from .complementarity import dot
-from .solve import is_zero, less_product, solve
-from .trace import Value, select
+from .solve import solve
+from .trace import select
+from .zeros import dot, is_zero, less_product, plus, scaled
 
 #: a pivot of J M^-1 J^T below this part of its first value is lost in rounding: J has lost a rank
 LOST = {"f64": 4e-15, "f32": 2e-6}
@@ -109,23 +109,6 @@ def embedded(M, f, B, b, definite=True):
             # M itself may be unsymmetric when a student wrote the equations
             A[j][i] = A[i][j] if definite else dot(columns[j], moved[i])
     return solve(A, [dot(column, rest) for column in columns], definite)
-
-
-def plus(a, b):
-    """Return a + b, structural zeros left out."""
-    return b if is_zero(a) else a if is_zero(b) else a + b
-
-
-def scaled(k, a):
-    """Return k * a, a structural zero left as it is."""
-    return a if is_zero(a) else -a if k == -1.0 else k * a
-
-
-def times(a, b):
-    """Return a * b; zero where either is a structural zero, and no product with one."""
-    if is_zero(a) or is_zero(b):
-        return 0.0
-    return b if not isinstance(a, Value) and a == 1.0 else a if not isinstance(b, Value) and b == 1.0 else a * b
 
 
 def largest_feedback(method, most=100.0):

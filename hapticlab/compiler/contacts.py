@@ -7,12 +7,13 @@ from ..scene.contact import friction
 from ..scene.contact_laws import impulse, micro_impulse, rigid
 from ..scene.derivative import Partial, Rate
 from ..scene.symbols import t, x
-from .complementarity import dot, response
+from .complementarity import response
 from .guards import contact, coulomb
 from .impact import dissipated
 from .impacts import impacts_of
 from .ir import Channel
 from .touch import Law, micro_impulses
+from .zeros import dot
 
 #: what an expression may ask of a contact -> unit, and whether it adds up over the run or starts anew at each sample
 SUMS = {"impulse": False, "impact_loss": True, "impact_work": True}

@@ -9,8 +9,8 @@ Traced values, floats and arrays alike.
 
 import numpy as np
 
-from .taylor import ZERO, plus, times, zero
 from .trace import Value, equal, maximum, select, sqrt
+from .zeros import ZERO, is_zero, plus, times
 
 #: Newton steps for the bend, where a few digits do; for the minimum; for the root
 STEPS = {"f64": (2, 3, 5), "f32": (1, 2, 4)}
@@ -33,7 +33,7 @@ def derivative(p):
 
 def degree(p):
     """Return the degree that the structural zeros leave."""
-    return max((k for k, c in enumerate(p) if not zero(c)), default=0)
+    return max((k for k, c in enumerate(p) if not is_zero(c)), default=0)
 
 
 def first_crossing(p, starts_at_zero=False, steps=None):
@@ -72,7 +72,7 @@ def first_crossing(p, starts_at_zero=False, steps=None):
 
 
 def _of_parabola(c, b, a):
-    if zero(a):
+    if is_zero(a):
         return c / -b, (b < 0.0) & (b <= -c)
     inside = b * b - times(4.0, a * c)
     root = sqrt(maximum(inside, 0.0))

@@ -8,10 +8,8 @@ import sympy as sp
 
 from ..scene.derivative import Partial, Rate, rates_of
 from ..scene.symbols import t
-from .complementarity import dot
-from .constrained import plus, scaled, times
-from .solve import less_product
 from .trace import Value
+from .zeros import dot, less_product, plus, scaled, times
 
 
 class Instant:

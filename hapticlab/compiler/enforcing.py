@@ -10,11 +10,11 @@ import sympy as sp
 from ..scene.derivative import Partial, Rate
 from ..scene.loops import is_holonomic
 from ..scene.symbols import t
-from .complementarity import dot
-from .constrained import LOST, embedded, multipliers, plus, scaled, stiffened
+from .constrained import LOST, embedded, multipliers, stiffened
 from .embedding import Instant, rate_of_itself
 from .solve import solve
 from .trace import Value
+from .zeros import dot, plus, scaled
 
 #: Newton steps of a numerical embedding per tick: the first starts within T^2 of the solution, the second ends at rounding
 NEWTON = 2

@@ -14,6 +14,7 @@ normal . d(witness)/dq, with the place of the witness on each body held (the env
 
 from dataclasses import dataclass
 
+from ..scene.plane import dot, less, minus
 from .trace import clip, maximum, select, sqrt
 
 #: square of the distance [m^2] below which two corners are one, and have no direction from each other
@@ -234,15 +235,3 @@ def pick(condition, a, b):
     if isinstance(a, tuple):
         return tuple(pick(condition, one, other) for one, other in zip(a, b, strict=True))
     return a if a is b else select(condition, a, b)
-
-
-def dot(a, b):
-    return a[0] * b[0] + a[1] * b[1]
-
-
-def less(a, b):
-    return a[0] - b[0], a[1] - b[1]
-
-
-def minus(a):
-    return -a[0], -a[1]

@@ -8,8 +8,9 @@ import numpy as np
 from ..errors import ProgramError
 from .complementarity import reactions
 from .guards import Leaves, Reaction, freeze
-from .taylor import Series, dot, minus, plus, times
+from .taylor import Series
 from .trace import Value, reachable, select
+from .zeros import dot, minus, plus, times
 
 
 @dataclass(frozen=True, eq=False)

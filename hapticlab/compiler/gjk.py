@@ -14,8 +14,9 @@ import sympy as sp
 from sympy.core.symbol import Str
 
 from ..scene.closest_points import PARTS, ClosestPoints, sampled
+from ..scene.plane import dot, less, minus
 from ..scene.symbols import t
-from .faces import SAME_POINT, closest, core, distinct, dot, less, minus, moved, pick, relative, turned
+from .faces import SAME_POINT, closest, core, distinct, moved, pick, relative, turned
 from .trace import clip, maximum, select, sqrt
 
 

@@ -6,9 +6,10 @@ beforehand.
 """
 
 from ..errors import SceneError
-from .complementarity import SINGULAR, complementarity, dot, real_of
-from .solve import is_zero, same
+from .complementarity import SINGULAR, complementarity, real_of
+from .solve import same
 from .trace import maximum, minimum, select
+from .zeros import dot, is_zero
 
 
 def sequential(W, u, e, touching=None, sweeps=None, rubs=None):

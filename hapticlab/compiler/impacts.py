@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass, field, replace
 
-from .complementarity import dot
 from .taylor import Series
 from .touch import strike
 from .trace import Value, select
+from .zeros import dot
 
 
 @dataclass(frozen=True)

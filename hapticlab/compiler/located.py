@@ -12,8 +12,9 @@ import numpy as np
 from . import trace
 from .crossing import first_crossing, horner
 from .flow import Flow
-from .taylor import ZERO, product, times, zero
+from .taylor import product
 from .trace import select
+from .zeros import ZERO, is_zero, times
 
 #: two crossings closer than this part of a piece happen at once
 TOGETHER = {"f64": 1e-14, "f32": 1e-6}
@@ -170,7 +171,7 @@ class Stepper:
             apart, inside = flow.of(r.measure, order), [*flow.of(r.inside, order - 1), 0.0]
             left = next(just)
             apart = self._departing([c if side is None else _signed(~side, c) for c in apart], left, r.level)
-            yield [a if zero(a) and zero(b) else select(held, b, a) for a, b in zip(apart, inside, strict=True)], left
+            yield [a if is_zero(a) and is_zero(b) else select(held, b, a) for a, b in zip(apart, inside, strict=True)], left
 
     def _departing(self, p, just, level):
         """Return a gap or slip that was just let go without what rounding left of its first derivatives: it opens."""
@@ -274,7 +275,7 @@ class Stepper:
 
 
 def _signed(negative, c):
-    return c if zero(c) else select(negative, -c, c)
+    return c if is_zero(c) else select(negative, -c, c)
 
 
 def _if(condition, a, b):

@@ -8,6 +8,7 @@ method. A pivot that is zero all the same, of a singular M, gives a nan or an in
 """
 
 from .trace import Value, select
+from .zeros import is_zero, less_product
 
 
 def solve(M, f, definite=False):
@@ -42,18 +43,6 @@ def solve(M, f, definite=False):
 def same(a, b):
     """Tell whether two entries are the same value: value numbering has made equal expressions one."""
     return a.id == b.id if isinstance(a, Value) and isinstance(b, Value) else a is b or a == b
-
-
-def is_zero(a):
-    """Tell whether a value is the constant zero: a structural zero, known before anything runs."""
-    return (a.constant if isinstance(a, Value) else a) == 0
-
-
-def less_product(a, b, c):
-    """Return a - b * c, a itself where the product is a structural zero."""
-    if is_zero(b) or is_zero(c):
-        return a
-    return -(b * c) if is_zero(a) else a - b * c
 
 
 def _ldl(M, f):

@@ -5,10 +5,9 @@ motion is linear the series is the matrix exponential to rounding; where it ends
 since a structural zero is never computed. Coefficients are of theta = tau/h, so that none leaves float32.
 """
 
-import numpy as np
-
 from . import trace
-from .trace import Value, select
+from .trace import select
+from .zeros import ZERO, dot, is_zero, minus, plus, times
 
 #: operation -> its value from the values of its operands
 AT_ONCE = {
@@ -18,39 +17,6 @@ AT_ONCE = {
     "select": select, "sqrt": trace.sqrt, "floor": trace.floor, "sin": trace.sin, "cos": trace.cos, "exp": trace.exp,
     "log": trace.log, "atan": trace.atan, "tanh": trace.tanh,
 }  # fmt: skip
-
-
-#: a structural zero, which divides without an exception, as every engine does
-ZERO = np.float64(0.0)
-
-
-def zero(c):
-    """Tell whether a coefficient vanishes for certain: a constant 0."""
-    c = c.constant if isinstance(c, Value) else c
-    return isinstance(c, (int, float)) and c == 0
-
-
-def plus(a, b):
-    """Return a + b, free where one of them is a structural zero."""
-    return b if zero(a) else a if zero(b) else a + b
-
-
-def minus(a, b):
-    """Return a - b, free where b is a structural zero."""
-    return a if zero(b) else -b if zero(a) else a - b
-
-
-def times(a, b):
-    """Return a * b, ZERO where one of them is a structural zero."""
-    return ZERO if zero(a) or zero(b) else a * b
-
-
-def dot(a, b):
-    """Return the sum of products of two equally long lists."""
-    total = ZERO
-    for one, other in zip(a, b, strict=True):
-        total = plus(total, times(one, other))
-    return total
 
 
 def product(a, b, k):
@@ -146,7 +112,7 @@ class Series:
     # coefficient k > 0 of each operation: w is its own row so far, u and v are those of its operands
 
     def _neg(self, k, w, u):
-        return ZERO if zero(u[k]) else -u[k]
+        return ZERO if is_zero(u[k]) else -u[k]
 
     def _add(self, k, w, u, v):
         return plus(u[k], v[k])
@@ -161,7 +127,7 @@ class Series:
         return times(minus(u[k], dot(v[1 : k + 1], w[k - 1 :: -1])), 1.0 / v[0])
 
     def _select(self, k, w, condition, u, v):
-        return ZERO if zero(u[k]) and zero(v[k]) else select(condition[0], u[k], v[k])
+        return ZERO if is_zero(u[k]) and is_zero(v[k]) else select(condition[0], u[k], v[k])
 
     def _sqrt(self, k, w, u):
         return times(minus(u[k], dot(w[1:k], w[k - 1 : 0 : -1])), 0.5 / w[0])

@@ -8,9 +8,10 @@ handle feels the impulse -sum p_i d(row i)/dx.
 import math
 from dataclasses import dataclass
 
-from .complementarity import complementarity, dot, reactions
+from .complementarity import complementarity, reactions
 from .impact import closed, dissipated, micro_rebound, sequential, simultaneous
 from .trace import maximum, select
+from .zeros import dot
 
 
 @dataclass(frozen=True)

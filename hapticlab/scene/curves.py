@@ -20,6 +20,7 @@ from .cases import when
 from .checks import agree_with
 from .derivative import Partial
 from .parameters import Parameter
+from .plane import dot, less
 from .shapes import Circle, Placed, Shape
 from .symbols import T, coordinate, n, t
 from .written import expression
@@ -184,36 +185,36 @@ def _placed(body, u, order=0):
 
 def _stationary(a, b, at):
     """Return (F, J, dF/dt): what is zero where the distance is stationary, its derivative to the places and to time."""
-    D = _less(_placed(b, at[-1]), _placed(a, at[0]))
+    D = less(_placed(b, at[-1]), _placed(a, at[0]))
     A, A2 = _placed(a, at[0], 1), _placed(a, at[0], 2)
-    dD = _less(b.velocity(_placed(b, at[-1])), a.velocity(_placed(a, at[0])))
+    dD = less(b.velocity(_placed(b, at[-1])), a.velocity(_placed(a, at[0])))
     # the residuals of D . D / 2, so that J is its Hessian: positive definite where the distance is least
-    F = [-_dot(D, A)]
-    J = [[_dot(A, A) - _dot(D, A2)]]
-    moving = [-_dot(dD, A) - a.turning * _dot(D, (-A[1], A[0]))]
+    F = [-dot(D, A)]
+    J = [[dot(A, A) - dot(D, A2)]]
+    moving = [-dot(dD, A) - a.turning * dot(D, (-A[1], A[0]))]
     if len(at) == 2:
         B, B2 = _placed(b, at[1], 1), _placed(b, at[1], 2)
-        F.append(_dot(D, B))
-        J = [[J[0][0], -_dot(A, B)], [-_dot(A, B), _dot(B, B) + _dot(D, B2)]]
-        moving.append(_dot(dD, B) + b.turning * _dot(D, (-B[1], B[0])))
+        F.append(dot(D, B))
+        J = [[J[0][0], -dot(A, B)], [-dot(A, B), dot(B, B) + dot(D, B2)]]
+        moving.append(dot(dD, B) + b.turning * dot(D, (-B[1], B[0])))
     return F, J, moving
 
 
 def _facts(a, b, at):
     """Return (gap, rate, normal, point, slip) at the closest points."""
     p, q, A = _placed(a, at[0]), _placed(b, at[-1]), _placed(a, at[0], 1)
-    speed = sp.sqrt(_dot(A, A))
+    speed = sp.sqrt(dot(A, A))
     normal = A[1] / speed, -A[0] / speed
     r = b.shape.radius
     point = q[0] - r * normal[0], q[1] - r * normal[1]
-    relative = _less(b.velocity(point), a.velocity(point))
+    relative = less(b.velocity(point), a.velocity(point))
     slip = normal[0] * relative[1] - normal[1] * relative[0]
-    return _dot(normal, _less(q, p)) - r, _dot(normal, relative), normal, point, slip
+    return dot(normal, less(q, p)) - r, dot(normal, relative), normal, point, slip
 
 
 def _start(a, b, at, F, J, start, values):
     """Return where the distance is least at the first sample."""
-    D = _less(_placed(b, at[-1]), _placed(a, at[0]))
+    D = less(_placed(b, at[-1]), _placed(a, at[0]))
     at_start = _first_sample([*D, _facts(a, b, at)[0], *F, *(entry for row in J for entry in row)], values)
     if at_start is None:
         raise SceneError(f"{a.name} and {b.name}: parameters without a value; give values={{name: number}} to find the start")
@@ -279,11 +280,3 @@ def _first_sample(expressions, values):
     known |= {t: sp.S.Zero, n: sp.S.Zero}
     # twice: the initial value of a coordinate may hold parameters
     return [number_of(expr.xreplace(known).xreplace(known)) for expr in expressions]
-
-
-def _dot(a, b):
-    return a[0] * b[0] + a[1] * b[1]
-
-
-def _less(a, b):
-    return a[0] - b[0], a[1] - b[1]
