@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..compiler.exact import exact_and_rest
 from ..compiler.held import held
 from ..device.link import link, load_linked
 from ..device.progress import progress_bar
@@ -20,6 +21,8 @@ PADDLE_AXES = {
     "T": "s", "m": "kg", "b": "N*s/m", "delay": "s", "counts_per_metre": "1/m", "coulomb": "N", "force_max": "N", "noise": "m",
 }  # fmt: skip
 START_AXES = {"x": "m", "v": "m/s"}
+#: what a sweep may say about how its scene is compiled; a parameter of that name goes first
+OPTIONS = ("method", "substeps", "hold")
 #: lanes and ticks of one call of the engine, between two looks at the progress bar
 LANES, TICKS = 2048, 2000
 
@@ -83,6 +86,9 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
     engine : {"auto", "llvm", "interpreter"}
     progress : bool
         Show a bar when the sweep lasts longer than two seconds.
+    method, substeps, hold : optional
+        As :func:`hapticlab.compile` takes them, the same for every point; method="taylor" sweeps impacts and sticking
+        friction. With method="exact" parameters of the scene that are no axis are constants.
     **values : float or array of shape (n,)
         SI, or texts with a unit. An array is an axis, a single number only sets the value. Names: the scene's
         parameters; of the paddle T, m, b, delay, counts_per_metre, coulomb, force_max, noise; x and v, where the handle starts.
@@ -108,11 +114,15 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
     """
     if metric not in METRICS:
         raise AnalysisError(f"metric = {metric!r}; needs one of {', '.join(METRICS)}")
+    own = scene.parameters if isinstance(scene, Scene) else ()
+    options = {name: values.pop(name) for name in OPTIONS if name in values and name not in own}
     axes, fixed, units = _names(scene, values)
     scene = scene(**{name: a for name, a in fixed.items() if name in scene.parameters})
     for end in (np.min, np.max):  # the scene itself refuses what lies outside a parameter's range
         bound = scene(**{name: float(end(a)) for name, a in axes.items() if name in scene.parameters})
-    grid = _Grid(bound, paddle, axes, fixed)
+    if exact_and_rest(options.get("method"))[0]:
+        options["live"] = [name for name in axes if name in own]
+    grid = _Grid(bound, paddle, axes, fixed, options)
     result = np.empty(grid.points)
     for settings in grid.groups():
         cells, found = _measure(grid, settings, duration, metric, engine, progress)
@@ -162,8 +172,8 @@ def _in_si(given, unit, name):
 class _Grid:
     """The points of a sweep: each is the scene's values and a setting, which is a paddle and where its handle starts."""
 
-    def __init__(self, scene, paddle, axes, fixed):
-        self.scene, self.axes = scene, axes
+    def __init__(self, scene, paddle, axes, fixed, options):
+        self.scene, self.axes, self.options = scene, axes, options
         self.shape = tuple(len(a) for a in axes.values())
         self.points = int(np.prod(self.shape))
         self.index = dict(zip(axes, np.indices(self.shape).reshape(len(axes), self.points), strict=True))
@@ -204,7 +214,7 @@ def _measure(grid, settings, duration, metric, engine, progress):
     paddle = grid.paddles[settings[0]]
     cells = np.flatnonzero(np.isin(grid.setting, settings))
     ticks = paddle.ticks(duration)
-    program = paddle.program(grid.scene(**dict(grid.lengths[settings[0]])))
+    program = paddle.program(grid.scene(**dict(grid.lengths[settings[0]])), **grid.options)
     if ticks < SHORTEST:
         raise AnalysisError(f"duration = {duration:g} s is {ticks} samples of T = {paddle.T:g} s; needs at least {SHORTEST}")
     measure = METRICS[metric](ticks, paddle.T)

@@ -2,21 +2,24 @@
 
 import functools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import sympy as sp
 from scipy.interpolate import CubicSpline
 
+import hapticlab as hl
 from hapticlab.analysis.chatter import chatter
 from hapticlab.analysis.energy import energy
 from hapticlab.analysis.stability import stability_limit
 from hapticlab.analysis.sweep import sweep
 from hapticlab.device.hand import Hand
 from hapticlab.device.simulated import SimulatedPaddle
-from hapticlab.errors import AnalysisError, PaddleError, ParameterError
+from hapticlab.errors import AnalysisError, PaddleError, ParameterError, ProgramError
 from hapticlab.scene.laws import wall
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import n, parameters, x
+from hapticlab.scene.symbols import n, parameters, t, x
 
 PUSHED = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=Hand(push=2.0))
 #: encoder, friction, noise, saturation, and a force that changes inside the periods
@@ -216,6 +219,49 @@ def test_texts_with_units_are_axes_too():
     np.testing.assert_array_equal(told.values, plain.values)
     with pytest.raises(AnalysisError, match=r"k = \[None\]; an axis needs"):
         sweep(wall(), PUSHED, k=[None])
+
+
+def bouncing():
+    """A ball that falls on the handle, and loses 1 - e^2 of its energy each time."""
+    m, g, h, e = hl.parameters(
+        "m_b g h e", units="kg m/s^2 m 1", values=(0.02, 9.81, 0.01, 0.5), ranges={"e": (0, 1)}
+    )
+    q = hl.coordinate("q", unit="m", initial=x(n) + h)
+    hit = hl.Contact(q - x(t), hl.impulse(e=e), name="hit")
+    free = hl.lagrange(m * q.diff(t) ** 2 / 2 - m * g * q, contacts=[hit])
+    k = hl.parameters("k", units="N/m", values=200)
+    felt = hl.felt_impulse(hit, tau="4 ms")
+    return Scene(force=k * x(n) + felt.force, eom=[free, *felt.equations], watch=[q])
+
+
+def test_impacts_are_swept_by_a_method_that_knows_them():
+    scene, axes = bouncing(), {"e": [0.2, 0.9], "k": [100.0, 400.0]}
+    with pytest.raises(ProgramError, match="taylor"):
+        sweep(scene, PUSHED, progress=False, **axes)
+    options = {"duration": 0.2, "progress": False}
+    grid = sweep(scene, PUSHED, metric="peak_force", method="taylor", **options, **axes)
+    alone = [
+        [abs(PUSHED.run(scene(e=e, k=k), method="taylor", **options).F).max() for k in axes["k"]] for e in axes["e"]
+    ]
+    np.testing.assert_array_equal(grid.values, alone)
+    assert len(np.unique(grid.values)) == 4
+
+
+def test_how_a_sweep_is_compiled():
+    K, m = hl.parameters("K m_2", units="N/m kg", values=(400, 0.05))
+    z = hl.coordinate("z", unit="m")
+    scene = Scene(force=K * (x(n) - z), eom=[sp.Eq(m * z.diff(t, 2), K * (x(t) - z))])
+    options = {"duration": 0.2, "progress": False}
+    for how in ({"method": "euler", "substeps": 3}, {"method": "heun", "hold": "zoh"}, {"method": "exact"}):
+        grid = sweep(scene, PUSHED, metric="peak_force", b=[0.1, 0.5], **options, **how)
+        live = {"live": ()} if how["method"] == "exact" else {}
+        alone = [abs(replace(PUSHED, b=b).run(scene, **options, **how, **live).F).max() for b in (0.1, 0.5)]
+        np.testing.assert_array_equal(grid.values, alone)
+    with pytest.raises(ProgramError, match="method = 'rk5'"):
+        sweep(scene, PUSHED, b=[0.1], method="rk5")
+    hold = parameters("hold", units="N/m")
+    own = sweep(Scene(force=hold * x(n)), PUSHED, metric="peak_force", hold=[100.0, 900.0], **options)
+    assert list(own.axes) == ["hold"] and own.values[0] < own.values[1]
 
 
 def test_the_engine_of_a_sweep_takes_doubles():
