@@ -53,11 +53,11 @@ class Exact:
         self.space = _cheaper(linear, [k for s, k in self.states.items() if s in read], self.tracing.T)
         first, back = [lowering.first_of(s) for s in self.states], np.linalg.inv(self.space.V)
         plain, real = self.space.is_plain, self.tracing.real
-        self._keys = list(self.states) if plain else [f"mode {k}" for k in range(1, 1 + len(self.states))]
-        channels = [channel_of(key, real) if plain else Channel(key, "1", real) for key in self._keys]
+        self.keys = list(self.states) if plain else [f"mode {k}" for k in range(1, 1 + len(self.states))]
+        channels = [channel_of(key, real) if plain else Channel(key, "1", real) for key in self.keys]
         self.now = [
             self.tracing.state(key, channel, _sum(row, first))
-            for key, channel, row in zip(self._keys, channels, back, strict=True)
+            for key, channel, row in zip(self.keys, channels, back, strict=True)
         ]
         self._at = {}
 
@@ -69,7 +69,7 @@ class Exact:
         """Give every state its value at the next sample."""
         self.rest = list(map(self._rest_of, self.constant_parts))
         self.motion = self.lowering.handle.polynomial()
-        for key, value in zip(self._keys, self._moved(self.tracing.T), strict=True):
+        for key, value in zip(self.keys, self._moved(self.tracing.T), strict=True):
             self.tracing.set_next(key, value)
 
     def _rest_of(self, f):

@@ -9,6 +9,7 @@ from ..scene.scene import Scene
 from ..scene.symbols import Parameter, T, acceleration, delay, lag_of, n, t, v, x
 from ..scene.units import unit_of
 from .advance import Taylor
+from .bounds import guarded, notes_of
 from .channels import channel_of, short
 from .constants import entering
 from .dynamics import Dynamics
@@ -155,18 +156,15 @@ class _Lowering:
         if unlocated is not None:
             outputs.append((Channel("unlocated", "1", real), unlocated))
         self.tracing.complete()
+        outputs, ranges = guarded(self, outputs, ranges)
         unused = [str(sample) for sample in self.form.updates if sample not in self.resolved]
         unused += self.exact.left_out if self.exact else ()
         program = self.tracing.finish(self.scene.name, outputs, self.scene.values, self.facts, unused)
         for channel, value in zip(program.parameters, program.values, strict=True):
             if value == value:
                 self._entering(channel.name, value)
-        held = (
-            f"holds while {low:g} <= {type(q).__name__} <= {high:g}; beyond, F is nan"
-            for q, (low, high) in ranges.items()
-        )
         lengths = notes_on(self.scene, self.folded)
-        return replace(program, notes=(*program.notes, *self.dynamics.notes, *lengths, *held))
+        return replace(program, notes=(*program.notes, *self.dynamics.notes, *lengths, *notes_of(ranges)))
 
     def translator(self, leaf, after=0.0):
         """Return what translates expressions of the tick, ``after`` [s] after the sample."""

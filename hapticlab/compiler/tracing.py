@@ -84,6 +84,11 @@ class Tracing:
             notes=notes,
         ).verify()
 
+    def observed(self, outputs):
+        """Return the keys of the states the outputs depend on, now or at any later tick."""
+        keys = list(self._states)
+        return {keys[k] for k in self._observed(outputs)}
+
     def _observed(self, outputs):
         """Return the numbers of the states the outputs depend on, now or at any later tick."""
         nexts = [next for _, _, next in self._states.values()]

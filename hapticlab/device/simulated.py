@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from ..compiler.bounds import BEYOND
 from ..compiler.elementary import TABLES
 from ..errors import PaddleError
 from ..records import PaddleProfile, Telemetry
@@ -251,9 +252,9 @@ class SimulatedPaddle(Paddle):
 
 def _likely_cause(program):
     """Return what to look for where a program stopped: a range that was left, an angle past all sines; else nothing."""
-    held = [note for note in program.notes if note.startswith("holds while")]
-    if held:
-        return f". The scene {'; '.join(held)}"
+    left = [note.removeprefix(BEYOND) for note in program.notes if note.startswith(BEYOND)]
+    if left:
+        return f". Most likely {' or '.join(left)}"
     if not any(i.op in ("sin", "cos") for i in program.tick.instructions):
         return ""
     real = program.outputs[0].type

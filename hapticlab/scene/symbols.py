@@ -35,7 +35,8 @@ def coordinate(name, *, unit, initial=0, rate=0, range=(-math.inf, math.inf)):
         A coordinate with an equation of first order starts with its value alone.
     range : (low, high)
         Where the coordinate stays, in SI. Contact pairs, cases and ranks are decided over it when a scene is compiled,
-        and a coordinate that leaves it while running is a fault: the motor goes off.
+        and a coordinate that leaves it while running is a fault: the motor goes off. A start outside is refused. Nothing
+        watches over a coordinate that no output can see, which a program leaves out.
 
     Returns
     -------

@@ -222,10 +222,10 @@ def test_a_decision_on_a_coordinate_is_watched_over():
     pull = k * (x(t) - near)
     scene = hl.Scene(force=pull, eom=[sp.Eq(m * near.diff(t, 2), pull - hl.when(near > z_o, k * (near - z_o)))])
     program = hl.compile(scene, T=T)
-    assert program.notes == ("holds while -0.02 <= near <= 0.02; beyond, F is nan",)
+    assert program.notes == ("F is nan where near left -0.02..0.02 m",)
     assert found(requires(scene), "near(t) > z_o").saves > 10
     log = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.Hand(push=5)).run(scene, duration=0.3, progress=False)
-    assert "holds while -0.02 <= near <= 0.02" in log.fault
+    assert "Most likely near left -0.02..0.02 m" in log.fault
     quiet = hl.SimulatedPaddle(m=0.05, b=0.1, T=T).run(scene, duration=0.3, v=0.05, progress=False)
     assert quiet.fault is None and abs(quiet.F).max() > 0.1
 
@@ -276,7 +276,7 @@ def test_pairs_that_cannot_meet():
     assert [i.name for i in report.dropped if i.kind == "pair"] == ["ball0, ball1", "ball0, ball2", "ball1, ball2"]
     assert [i.name for i in report.kept if i.kind == "contact"] == ["ground_ball0", "ground_ball1", "ground_ball2"]
     assert found(report, "h0").why == found(report, "h2").why == "no path to F or a watched channel"
-    assert any(note.startswith("holds while") for note in report.program.notes)
+    assert any(note.startswith("F is nan where h") for note in report.program.notes)
 
 
 def test_a_defined_coordinate_is_no_state():
