@@ -72,7 +72,6 @@ def advance(
         Makes the impact of :class:`~hapticlab.compiler.located.Stepper` for the motion.
     after : callable ``(reactions)``, optional
         Is given the values of the motion's reactions at the end of the period.
-
     ranges : sequence of (low, high), optional
         Declared for each q: where one is finite, a motion that is not linear is looked at within it too.
 

@@ -139,5 +139,5 @@ def _lost(constraints, coordinates, q, where):
 
 
 def shown_at(coordinates, q):
-    # what is zero but for rounding is shown as zero
+    """Return a configuration for a message; what is zero but for rounding is shown as zero."""
     return ", ".join(f"{name(p)} = {round(float(value), 9) + 0.0:.4g}" for p, value in zip(coordinates, q, strict=True))

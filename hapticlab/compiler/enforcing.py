@@ -28,6 +28,7 @@ class Closed:
         self.second, self.first = embedding.drivers, ()
 
     def instant(self, translate):
+        """Return the loops at one instant, to ask for rows, offsets and reactions."""
         return Instant(self.embedding, translate)
 
     def rates(self, instant, M, f):
@@ -44,6 +45,7 @@ class Closed:
         return instant.reactions(dict(zip(self.coordinates, rest, strict=True)))
 
     def settle(self, at, state):
+        """Return the state as it is: a closed form is always on the constraints."""
         return state
 
     def _motion(self, instant):
@@ -61,6 +63,7 @@ class Multipliers:
         self.second, self.first = tuple(coordinates), ()
 
     def instant(self, translate):
+        """Return the constraints at one instant, to ask for gradients and residuals."""
         return Unreduced(self.coordinates, self.constraints, translate)
 
     def rates(self, instant, M, f):
@@ -108,6 +111,7 @@ class Unreduced:
         self.coordinates, self.constraints, self.translate = coordinates, constraints, translate
 
     def leaf(self, expr):
+        """Return None: every coordinate is integrated, so none follows from others."""
         return None
 
     @property
@@ -153,6 +157,7 @@ class Partitioned:
         self.second = tuple(q for q in coordinates if q not in followers)
 
     def instant(self, translate):
+        """Return the followers at one instant, to ask for their rates."""
         return Following(self, translate)
 
     def rates(self, instant, M, f):

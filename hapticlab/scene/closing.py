@@ -126,22 +126,27 @@ def _limits(q, start):
 
 
 def is_angle(q):
+    """Tell whether a coordinate is an angle, which may go round."""
     return type(q).unit in ("rad", "1")
 
 
 def is_coordinate(symbol):
+    """Tell whether a symbol is a coordinate, as q(t)."""
     return getattr(type(symbol), "role", None) == "coordinate"
 
 
 def name(q):
+    """Return what a coordinate is called, without its (t)."""
     return type(q).__name__
 
 
 def names(coordinates):
+    """Return the names of coordinates, for a message."""
     return ", ".join(map(name, coordinates))
 
 
 def values(coordinates, at):
+    """Return "q = 0.1, z = 0.2" of coordinates, for a message."""
     return ", ".join(f"{name(q)} = {at[q]:.6g}" for q in coordinates)
 
 
@@ -151,4 +156,5 @@ def in_unit(q, value, per=""):
 
 
 def shown(constraints):
+    """Return constraints as equations, for a message."""
     return " and ".join(f"{c} = 0" for c in constraints)
