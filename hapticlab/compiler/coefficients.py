@@ -12,7 +12,8 @@ from .linear import Linear, states_of
 
 #: the handle as an equation of motion sees it
 HANDLE = (x(t), v(t))
-_JUMPS = (sp.sign, sp.floor, sp.ceiling, sp.Heaviside, sp.core.relational.Relational)
+#: what jumps: its slope is zero on both sides
+JUMPS = (sp.sign, sp.floor, sp.ceiling, sp.Heaviside, sp.core.relational.Relational)
 
 
 class Coefficients:
@@ -47,7 +48,7 @@ class Coefficients:
     def slope_moves(self, expr, where):
         """Return which term of an expression is not linear in states and handle, or None."""
         for term in sp.Add.make_args(expr):
-            for jump in term.atoms(*_JUMPS):  # its slope is zero on both sides, so that the slopes do not tell
+            for jump in term.atoms(*JUMPS):  # its slope is zero on both sides, so that the slopes do not tell
                 if {*self.graph.variables_of(jump.args)} & {*self.states, *HANDLE}:
                     return f"{short(term.doit(), 60)} {where} is not linear: it jumps with {short(jump, 40)}"
             for variable in (*self.states, *HANDLE):

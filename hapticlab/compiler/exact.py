@@ -4,8 +4,8 @@ import numpy as np
 
 from ..errors import ProgramError
 from ..scene.symbols import t
-from .channels import channel_of
-from .coefficients import HANDLE, Coefficients, leaves, linear_rows
+from .channels import channel_of, short
+from .coefficients import HANDLE, JUMPS, Coefficients, leaves, linear_rows
 from .dependence import Dependence, part_of
 from .graph import driven
 from .ir import Channel
@@ -39,12 +39,15 @@ class Exact:
         What is not linear.
     left_out : tuple of str
         Coordinates that neither the force nor a channel depends on.
+    notes : tuple of str
+        Switches of time that are sampled instead of located.
     """
 
     def __init__(self, lowering, form, rest):
         self.lowering, self.tracing, constants = lowering, lowering.tracing, lowering.folded
         linear, self.others = linear_part(lowering.scene, form, constants, self.tracing.T, rest, lowering.graph)
         self.constant_parts = [form.f[form.coordinates.index(q)] for q in linear.coordinates]
+        self.notes = tuple(self._switches(linear.coordinates))
         kept = {*linear.coordinates, *self.others.coordinates}
         self.left_out = tuple(type(q).__name__ for q in form.coordinates if q not in kept)
         self.states = {s: k for k, s in enumerate(linear.states)}
@@ -79,7 +82,6 @@ class Exact:
         """
         T, lowering = self.tracing.T, self.lowering
         still = dict.fromkeys((*self.states, *HANDLE), self.tracing.tick.const(0.0))
-        driven_by_t = any(a == t or isinstance(a, driven) for a in lowering.graph.variables_of([f]))
 
         def at(tau):
             def leaf(expr):
@@ -89,10 +91,23 @@ class Exact:
 
             return lowering.translator(leaf, tau)(f)
 
-        if not driven_by_t:
+        if not self._has_time([f]):
             return [at(0.0)]
         first, middle, last = map(at, (0.0, T / 2, T))
         return [first, (4 * middle - 3 * first - last) * (1 / T), (first - 2 * middle + last) * (4 / T**2)]
+
+    def _has_time(self, exprs):
+        return any(a == t or isinstance(a, driven) for a in self.lowering.graph.variables_of(exprs))
+
+    def _switches(self, coordinates):
+        """Yield a note for each jump in time of an equation: of the parabola, a switch is up to T/3 early or late."""
+        for q, f in zip(coordinates, self.constant_parts, strict=True):
+            for jump in sorted(f.atoms(*JUMPS) if self._has_time([f]) else (), key=str):
+                if self._has_time(jump.args):
+                    yield (
+                        f"{short(jump, 40)} in the equation of {type(q).__name__} is taken at the start, middle and end of "
+                        "each period, so that it switches up to T/3 early or late; method='taylor' locates it"
+                    )
 
     def at(self, tau):
         """Return {state: value} at tau [s] after the sample."""

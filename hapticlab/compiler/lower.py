@@ -163,8 +163,9 @@ class _Lowering:
         for channel, value in zip(program.parameters, program.values, strict=True):
             if value == value:
                 self._entering(channel.name, value)
+        exact = self.exact.notes if self.exact else ()
         lengths = notes_on(self.scene, self.folded)
-        return replace(program, notes=(*program.notes, *self.dynamics.notes, *lengths, *notes_of(ranges)))
+        return replace(program, notes=(*program.notes, *exact, *self.dynamics.notes, *lengths, *notes_of(ranges)))
 
     def translator(self, leaf, after=0.0):
         """Return what translates expressions of the tick, ``after`` [s] after the sample."""

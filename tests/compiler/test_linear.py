@@ -232,6 +232,23 @@ def test_what_it_refuses(eom, options, said):
         hl.compile(scene, T=T, **{"method": "exact", "live": (), **options})
 
 
+def test_a_switch_of_time_is_noted():
+    """The parabola of a period takes a jump up to T/3 early or late, in what it adds to the rate; nothing else is."""
+    A, t0, om = hl.parameters("A t0 om", units="N s 1/s", values=(0.5, 0.0104, 70))
+    push = hl.when(t > t0, A) + A * sp.sin(om * t)
+    free = hl.Scene(force=k * x(n), eom=[sp.Eq(m * z.diff(t, 2), push - b * z.diff(t))], watch=[z.diff(t)])
+    program = hl.compile(free, T=T, method="exact", live=())
+    (note,) = (note for note in program.notes if "T/3" in note)
+    assert note.startswith("t0 < t in the equation of z is taken at the start, middle and end") and "'taylor' locates" in note
+    fast, exact = (run(free, np.zeros(13), method=method)[-1, 1] for method in ("exact", "taylor"))
+    late = -(fast - exact) * 0.05 / 0.5 * np.exp(0.8 / 0.05 * 1.6e-3)  # of a step of A/m that decays with b/m
+    assert late == pytest.approx((1 / 6 - 0.4) * T, rel=0.01)
+    square = hl.Scene(force=k * x(n), eom=[sp.Eq(m * z.diff(t, 2), A * sp.sign(sp.sin(om * t)) - b * z.diff(t))], watch=[z])
+    assert any("sign(sin(om*t)) in the equation" in note for note in hl.compile(square, T=T, method="exact", live=()).notes)
+    smooth = hl.Scene(force=k * x(n), eom=[sp.Eq(m * z.diff(t, 2), A * sp.sin(om * t) - b * z.diff(t))], watch=[z])
+    assert not any("T/3" in note for note in hl.compile(smooth, T=T, method="exact", live=()).notes)
+
+
 def test_it_names_what_could_be_had():
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F), pendulum(z)], watch=[th])
     with pytest.raises(ProgramError, match=r"sin\(th\(t\)\).* method='exact\+rk4' takes z exactly and the rest by rk4"):
