@@ -7,7 +7,18 @@ from .crossing import FEWER_STEPS, STEPS
 from .flow import motion_of
 from .ir import Channel
 from .located import Stepper
-from .stiffness import check_size, check_smooth, check_step, frequency, is_linear, numbers, order_for, within
+from .stiffness import (
+    check_size,
+    check_smooth,
+    check_step,
+    extremes,
+    frequency,
+    is_linear,
+    live_in,
+    numbers,
+    order_for,
+    within,
+)  # fmt: skip
 from .trace import select
 
 #: most located events of a step: what touches may leave within it, and something else may happen too
@@ -86,10 +97,17 @@ def advance(
     builder, real = tracing.tick, tracing.real
     motion = motion_of(builder, rates, len(groups[0]), len(groups[2]), contacts)
     check_smooth(motion, name)
-    number = numbers(builder.instructions, tracing.at_start(values))
-    start, linear = tuple([number(v.id) for v in part] for part in groups), is_linear(motion)
-    omega = frequency(motion, [start, *(() if linear else within(ranges, start))], number, linear)
+    linear = is_linear(motion)
+
+    def fastest(values):
+        number = numbers(builder.instructions, tracing.at_start(values))
+        start = tuple([number(v.id) for v in part] for part in groups)
+        return frequency(motion, [start, *(() if linear else within(ranges, start))], number, linear)
+
+    omega = fastest(values)
     check_step(omega, h * substeps, substeps, name)
+    for ends in extremes(live_in(motion, tracing.parameters)):
+        check_step(fastest({**values, **ends}), h * substeps, substeps, name, ends)
     order = method.order or order_for(omega * h, real, linear)
     surfaces = len(motion.guards) + len(motion.reactions)
     events = method.events or _EVENTS[surfaces > 2]

@@ -16,6 +16,8 @@ ORDERS = {"f64": (6, 16), "f32": (4, 9)}
 MOST_INSTRUCTIONS = 200_000
 #: modes looked at: all combinations of up to this many cases, then one case changed at a time
 _MOST_COMBINED = 6
+#: live parameters of which all combinations of the ends of their ranges are looked at
+_MOST_ENDS = 4
 
 
 def numbers(instructions, given):
@@ -133,13 +135,71 @@ def within(ranges, start, count=8):
         yield at, w, s
 
 
-def check_step(omega, T, substeps, name):
-    """Refuse a step in which the fastest part of the motion turns by more than a radian."""
+def live_in(motion, parameters):
+    """Return the live parameters that the rates of a motion depend on, of all ``parameters`` of its scene."""
+    instructions = motion.builder.instructions
+    reached = reachable(instructions, [rate.id for rate in (*motion.a, *motion.ds)])
+    return [parameters[k] for k in sorted({instructions[p].index for p in reached if instructions[p].op == "param"})]
+
+
+def extremes(parameters):
+    """Yield name -> value at the ends of those declared ranges that are finite: all together, of many each alone.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k, b = hl.parameters("k b", units="N/m N*s/m", ranges={"k": (50, 200)})
+    >>> list(extremes([k, b]))
+    [{'k': 50.0}, {'k': 200.0}]
+    """
+    ends = {p.name: (p.low, p.high) for p in parameters if math.isfinite(p.low) and math.isfinite(p.high)}
+    if ends and len(ends) <= _MOST_ENDS:
+        yield from (dict(zip(ends, values, strict=True)) for values in itertools.product(*ends.values()))
+    elif ends:
+        yield from ({name: low for name, (low, _) in ends.items()}, {name: high for name, (_, high) in ends.items()})
+        yield from ({name: end} for name, both in ends.items() for end in both)
+
+
+def check_step(omega, T, substeps, name, live=()):
+    """Refuse a step in which the fastest part of the motion turns by more than a radian.
+
+    ``live`` has the values of live parameters, name -> value, at which it is looked at; else they are those bound.
+    """
     if omega * T / substeps > 1.0:
+        shown = ", ".join(f"{parameter} = {live[parameter]:g}" for parameter in live)
+        where = f"at {shown}, to which it may be set while it runs, " if live else ""
+        cure = f", declare a narrower range, or leave {', '.join(live)} out of live=" if live else ""
         raise ProgramError(
-            f"{name}: its fastest part turns with omega = {omega:.4g} rad/s, by omega T/substeps = {omega * T / substeps:.3g} "
-            f"rad in a step of {T / substeps:g} s; method='taylor' needs at most 1: take substeps={math.ceil(omega * T)}"
+            f"{name}: {where}its fastest part turns with omega = {omega:.4g} rad/s, by omega T/substeps = "
+            f"{omega * T / substeps:.3g} rad in a step of {T / substeps:g} s; method='taylor' needs at most 1: take "
+            f"substeps={math.ceil(omega * T)}{cure}"
         )
+
+
+def around(start, ranges, bound):
+    """Yield states (q, w, s) at which a motion that is not linear may be faster than at its start: at rest, and at zero.
+
+    A friction tanh(w/v_s) is steep where the rate passes zero. Positions are set to zero only where ``bound``, a
+    constraint, does not tie them and their declared ranges hold it.
+    """
+    q, w, s = start
+    centre = [value if bound or low > 0 or high < 0 else 0.0 for value, (low, high) in zip(q, ranges, strict=True)]
+    rest = [0.0] * len(w)
+    yield from ((*at, s) for at in ((q, rest), (centre, w), (centre, rest)) if at != (q, w))
+
+
+def remainder_for(order, real, linear):
+    """Return the parts of a state that the last term of its series may be: (converged, not diverged); None where it is.
+
+    Examples
+    --------
+    >>> remainder_for(16, "f64", linear=False), remainder_for(16, "f64", linear=True)
+    ((1e-08, 0.0001), None)
+    """
+    if linear or order < 6:  # a motion that turns by a radian leaves 1/order!
+        return None
+    last = 10.0 / math.factorial(order)
+    return max({"f64": 1e-8, "f32": 1e-5}[real], last), max(1e-4, last)
 
 
 def order_for(omega_h, real, linear):
