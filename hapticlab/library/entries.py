@@ -103,7 +103,7 @@ CATALOGUE = Catalogue((
     Entry(pendulums.cart_pole, pendulums.draw_cart_pole, 0.21, uno=_uno(SEMI, 500), stored=0.2944),
     Entry(mechanisms.gears, mechanisms.draw_gears, 0.21, uno=_uno(SEMI, 500)),
     Entry(mechanisms.slider_crank, mechanisms.draw_slider_crank, 0.21, uno=_uno(SEMI, 400)),
-    Entry(mechanisms.four_bar, mechanisms.draw_four_bar, 0.21, uno=_uno(SEMI, 250)),
+    Entry(mechanisms.four_bar, mechanisms.draw_four_bar, 0.21, uno=_uno(SEMI, 250) | {"hold": "foh"}),
     Entry(mechanisms.rolling, mechanisms.draw_rolling, 0.21, uno=_uno(SEMI, 500)),
     Entry(contacts.ball_on_the_paddle, contacts.draw_ball_on_the_paddle, 0.21, LOCATED, stored=0.0236),
     Entry(contacts.stick_slip, contacts.draw_stick_slip, 0.21, LOCATED),

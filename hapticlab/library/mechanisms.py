@@ -139,7 +139,7 @@ def four_bar():
     (dpsi/dtheta = 0). Lengths by Grashof, a + d < b + c: the crank turns fully, the rocker swings.
 
     Teaches loop closure, mobility, mechanical advantage; R. L. Norton, *Design of Machinery*, ch. 4 and 6. Needs
-    b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 250 Hz.
+    b >= K T/2 + b_c, 0.2 N s/m at T = 1 ms. On an Uno: semi-implicit Euler at 250 Hz, hold="foh".
 
     Returns
     -------
