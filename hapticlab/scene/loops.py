@@ -13,7 +13,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from ..errors import SceneError
-from .closing import Open, check_range, declared_range, in_unit, is_coordinate, name, names, shown, values, wraps
+from .closing import Open, check_range, declared_range, in_unit, is_coordinate, name, shown, values, wraps
 from .dyads import Equations
 from .loop_terms import NotClosed, number
 from .symbols import t, v, x
