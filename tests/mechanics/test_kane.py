@@ -4,15 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from independent import check, motion, run
-from sympy.physics.mechanics import (
-    KanesMethod,
-    Particle,
-    Point,
-    ReferenceFrame,
-    RigidBody,
-    dynamicsymbols,
-    inertia,
-)
+from sympy.physics.mechanics import KanesMethod, Particle, Point, ReferenceFrame, RigidBody, dynamicsymbols, inertia
 from sympy.physics.mechanics.models import multi_mass_spring_damper, n_link_pendulum_on_cart
 
 import hapticlab as hl
@@ -109,28 +101,39 @@ def test_double_pendulum():
     compare(kane, values, [0.7, -0.4, 0.3, 2.0], 0.005, 0.1, 3e-7)
 
 
-def disc(auxiliary=False):
-    """The rolling disc of SymPy's documentation, by Kane's method; with speeds that measure the forces of the ground."""
-    q, u, extra, f = (dynamicsymbols(names) for names in ("q1:4", "u1:4", "u4:7", "f1:4"))
-    r, m, g = sp.symbols("r m g")
+r, m, g = sp.symbols("r m g")
+DISC = {r: 0.1, m: 0.4, g: 9.81}
+
+
+def turned(q, u):
+    """Return the frames of a disc by its heading, lean and spin, and what is zero by the speeds of its body."""
     N = ReferenceFrame("N")
     Y = N.orientnew("Y", "Axis", [q[0], N.z])
     L = Y.orientnew("L", "Axis", [q[1], Y.x])
     R = L.orientnew("R", "Axis", [q[2], L.y])
     w = R.ang_vel_in(N)
     R.set_ang_vel(N, u[0] * L.x + u[1] * L.y + u[2] * L.z)
+    return N, Y, L, R, [(R.ang_vel_in(N) - w).dot(axis) for axis in L]
+
+
+def rigid(centre, L, R):
+    """Return the disc as a body."""
+    return RigidBody("D", centre, R, m, (inertia(L, m / 4 * r**2, m / 2 * r**2, m / 4 * r**2), centre))
+
+
+def disc(auxiliary=False):
+    """The rolling disc of SymPy's documentation, by Kane's method; with speeds that measure the forces of the ground."""
+    q, u, extra, f = (dynamicsymbols(names) for names in ("q1:4", "u1:4", "u4:7", "f1:4"))
+    N, Y, L, R, turning = turned(q, u)
     C = Point("C")
     C.set_vel(N, extra[0] * L.x + extra[1] * Y.z.cross(L.x) + extra[2] * Y.z if auxiliary else 0)
     centre = C.locatenew("Dmc", r * L.z)
     centre.v2pt_theory(C, N, R)
-    I = inertia(L, m / 4 * r**2, m / 2 * r**2, m / 4 * r**2)
-    kane = KanesMethod(
-        N, q, u, kd_eqs=[(R.ang_vel_in(N) - w).dot(axis) for axis in L], u_auxiliary=extra if auxiliary else None
-    )
+    kane = KanesMethod(N, q, u, kd_eqs=turning, u_auxiliary=extra if auxiliary else None)
     loads = [(centre, -m * g * Y.z)]
     loads += [(C, f[0] * L.x + f[1] * Y.z.cross(L.x) + f[2] * Y.z)] if auxiliary else []
-    kane.kanes_equations([RigidBody("D", centre, R, m, (I, centre))], loads)
-    return kane, {r: 0.1, m: 0.4, g: 9.81}
+    kane.kanes_equations([rigid(centre, L, R)], loads)
+    return kane, DISC
 
 
 STARTS = [0.2, 0.3, 0.1, 0.4, 12.0, -0.5]
@@ -146,27 +149,20 @@ def test_rolling_disc(auxiliary):
 def held_disc():
     """The same disc in six coordinates: it touches the ground (configuration) and does not slip (rates)."""
     q, u = dynamicsymbols("q1:7"), dynamicsymbols("u1:7")
-    r, m, g = sp.symbols("r m g")
-    N = ReferenceFrame("N")
-    Y = N.orientnew("Y", "Axis", [q[0], N.z])
-    L = Y.orientnew("L", "Axis", [q[1], Y.x])
-    R = L.orientnew("R", "Axis", [q[2], L.y])
-    w = R.ang_vel_in(N)
-    R.set_ang_vel(N, u[0] * L.x + u[1] * L.y + u[2] * L.z)
+    N, _, L, R, turning = turned(q, u)
     O, centre = Point("O"), Point("Dmc")
     centre.set_pos(O, q[3] * N.x + q[4] * N.y + q[5] * N.z)
     centre.set_vel(N, u[3] * N.x + u[4] * N.y + u[5] * N.z)
     O.set_vel(N, 0)
     C = centre.locatenew("C", -r * L.z)
     slip = C.v2pt_theory(centre, N, R)
-    I = inertia(L, m / 4 * r**2, m / 2 * r**2, m / 4 * r**2)
     kane = KanesMethod(
         N, q_ind=q[:5], u_ind=u[:3], q_dependent=q[5:], u_dependent=u[3:],
         configuration_constraints=[q[5] - r * sp.cos(q[1])], velocity_constraints=[slip.dot(axis) for axis in N],
-        kd_eqs=[*((R.ang_vel_in(N) - w).dot(axis) for axis in L), *(u[k] - q[k].diff() for k in (3, 4, 5))],
+        kd_eqs=[*turning, *(u[k] - q[k].diff() for k in (3, 4, 5))],
     )  # fmt: skip
-    kane.kanes_equations([RigidBody("D", centre, R, m, (I, centre))], [(centre, -m * g * N.z)])
-    return kane, {r: 0.1, m: 0.4, g: 9.81}, slip
+    kane.kanes_equations([rigid(centre, L, R)], [(centre, -m * g * N.z)])
+    return kane, DISC, slip
 
 
 def test_rolling_disc_with_dependent_speeds():
@@ -192,7 +188,6 @@ def test_rolling_disc_and_its_path():
     """Coordinates of the path beside the angles: more coordinates than speeds."""
     q, u = dynamicsymbols("q1:6"), dynamicsymbols("u1:4")
     inner, values = disc()
-    r = sp.Symbol("r")
     turning = inner.kindiffdict()
     spun = turning[inner.q[2].diff(t)]
     path = [q[3].diff(t) - r * spun * sp.cos(q[0]), q[4].diff(t) - r * spun * sp.sin(q[0])]
