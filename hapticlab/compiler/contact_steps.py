@@ -1,6 +1,7 @@
 """Whether the steps of a method are short enough for a contact: ten from touch to leave, and a bounce that ends."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import sympy as sp
@@ -10,6 +11,7 @@ from ..scene.contact import Contact
 from ..scene.contact_laws import impulse
 from ..scene.derivative import Partial, Rate
 from ..scene.force_laws import hunt_crossley
+from ..scene.parameters import Parameter
 from .first_sample import numbers
 from .impact import check_rest_speed
 
@@ -22,6 +24,11 @@ def check_contacts(form, values, h, T, method):
 
     Force laws under a method that does not locate events need ten steps a contact; a rest speed must end the bounces
     within two a period. Nothing is asked where a parameter has no value yet, or where constraints change the masses.
+
+    Returns
+    -------
+    dict contact -> float
+        Of each that needs ten steps, the largest stiffness that leaves them, at the masses looked at.
 
     Parameters
     ----------
@@ -37,11 +44,11 @@ def check_contacts(form, values, h, T, method):
     """
     contacts = [c for model in form.models for c in model.contacts if isinstance(c, Contact)]
     if not contacts or any(model.constraints for model in form.models):
-        return
+        return {}
     M = numbers([m for row in form.M for m in row], values)
     if M is None:
-        return
-    M = np.reshape(M, (len(form.f), -1))
+        return {}
+    M, largest = np.reshape(M, (len(form.f), -1)), {}
     for c in contacts:
         J = numbers([Partial(c.gap, q) for q in form.coordinates], values)
         if J is None or not any(J):
@@ -51,8 +58,36 @@ def check_contacts(form, values, h, T, method):
             k = numbers([c.law.k], values)
             if k is not None:
                 check_contact_steps(c, k[0], float(column @ J), h, T, method=method.name)
+                largest[c] = max(k[0], _largest(c.law, float(column @ J), h))
         elif isinstance(c.law, impulse) and c.law.rest_speed is not None:
             _check_rest(c, form, column, values, T)
+    return largest
+
+
+def _largest(law, W, h, speed=1.0):
+    """Return the stiffness with which a contact lasts just ten steps: its duration goes as k^(-1/(n + 1)), n = 1 of a spring."""
+    return (law.duration(1.0, 1 / W, speed) / (STEPS_PER_CONTACT * h)) ** (float(getattr(law, "exponent", 1)) + 1)
+
+
+def limited(program, largest):
+    """Return a program whose live parameters stop where a contact would get too short, with a note on each.
+
+    Parameters
+    ----------
+    program : Program
+    largest : dict contact -> float
+        Of :func:`check_contacts`. A stiffness that is an expression is noted and not held: its parameters stay free.
+    """
+    live, notes = {c.name: c for c in program.parameters}, []
+    for c, most in sorted(largest.items(), key=lambda item: item[1]):
+        names = sorted(p.name for p in c.law.k.atoms(Parameter) if p.name in live)
+        lasts = f"for which {c.name} lasts {STEPS_PER_CONTACT} steps; substeps or method='taylor' allow more"
+        if names and isinstance(c.law.k, Parameter) and most < live[names[0]].high:
+            live[names[0]] = replace(live[names[0]], high=most)
+            notes.append(f"{names[0]}: at most {most:.4g} {live[names[0]].unit}, {lasts}")
+        elif names and not isinstance(c.law.k, Parameter):
+            notes.append(f"{', '.join(names)}: {c.law.k} at most {most:.4g}, {lasts}")
+    return replace(program, parameters=tuple(live.values()), notes=(*program.notes, *notes))
 
 
 def _check_rest(contact, form, column, values, T):

@@ -57,10 +57,11 @@ class Dynamics:
         self.states = (*self.second, *(q.diff(t) for q in self.second), *self.first)
         elements = [c for model in form.models for c in model.contacts]
         self.contacts = Contacts(elements, lowering.tracing, lowering.at_sample, self.at)
+        self.largest = {}
         if form.coordinates:
             self.contacts.check(method)
             check_starts(form, lowering.scene.values)
-            check_contacts(form, lowering.scene.values, self.h, lowering.tracing.T, method)
+            self.largest = check_contacts(form, lowering.scene.values, self.h, lowering.tracing.T, method)
         self._now = None
 
     def _enforced(self, constraints):

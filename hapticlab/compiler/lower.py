@@ -12,6 +12,7 @@ from .advance import Taylor
 from .bounds import guarded, notes_of
 from .channels import channel_of, short
 from .constants import entering
+from .contact_steps import limited
 from .dynamics import Dynamics
 from .exact import EXACT, Exact, exact_and_rest
 from .expressions import Translator
@@ -160,6 +161,7 @@ class _Lowering:
         unused = [str(sample) for sample in self.form.updates if sample not in self.resolved]
         unused += self.exact.left_out if self.exact else ()
         program = self.tracing.finish(self.scene.name, outputs, self.scene.values, self.facts, unused)
+        program = limited(program, self.dynamics.largest)
         for channel, value in zip(program.parameters, program.values, strict=True):
             if value == value:
                 self._entering(channel.name, value)

@@ -31,12 +31,21 @@ def checked(program, values):
     if len(values) > MOST_AT_ONCE:
         raise ParameterError(f"{len(values)} parameters at once; a board takes {MOST_AT_ONCE} between two ticks: set fewer")
     declared = {c.name: Parameter(c.name, c.unit, c.low, c.high) for c in program.parameters}
-    numbers = {name: declared[name].check(value) for name, value in values.items()}
+    numbers = {name: _within(declared[name], value, program.notes) for name, value in values.items()}
     with np.errstate(over="ignore"):
         bad = [name for name, value in numbers.items() if not np.isfinite(np.float32(value))]
     if bad:
         raise ParameterError(f"{bad[0]} = {numbers[bad[0]]:g}; a board needs a finite float32, |{bad[0]}| < 3.4e38.")
     return numbers
+
+
+def _within(parameter, value, notes):
+    """Return a value in SI; one past what a program can take is refused with the program's own reason."""
+    try:
+        return parameter.check(value)
+    except ParameterError as problem:
+        why = next((f" ({note})" for note in notes if note.startswith(f"{parameter.name}: ")), "")
+        raise ParameterError(f"{problem}{why}") from None
 
 
 def send(exchange, program, numbers):
