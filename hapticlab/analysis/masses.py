@@ -41,13 +41,6 @@ class Network:
         return ((forces[:, :1, :1] + forces[:, :1, 1:] @ motion) / s)[:, 0, 0]
 
     @property
-    def resonances(self):
-        """Frequencies of the masses with the handle held, without damping [Hz], ascending."""
-        L = np.linalg.cholesky(self.mass)
-        inside = np.linalg.solve(L, np.linalg.solve(L, self.stiffness[1:, 1:]).T)
-        return np.sqrt(np.maximum(np.linalg.eigvalsh((inside + inside.T) / 2), 0)) / (2 * np.pi)
-
-    @property
     def of_unit_masses(self):
         """The same with unit masses, and Q with z = Q y."""
         Q = np.linalg.inv(np.linalg.cholesky(self.mass)).T

@@ -11,15 +11,12 @@ from .impedance import port_of
 from .limit import check_number
 from .masses import modal, network_of, scene_of
 from .moments import candidates
+from .peaks import BESIDE, around, frequencies, held, infinite, outside, refined
 from .port import port_damping
 from .reduction_plot import plot_reduction
 
 #: below what a hand tells from another force, 7 to 10 %
 TOLERANCE = 0.05
-#: frequencies at which two impedances are compared, besides those of their resonances
-POINTS = 400
-#: no frequency nearer to a resonance than this part of it is compared: without damping the impedance there is infinite
-BESIDE = 5e-3
 
 
 @dataclass(frozen=True)
@@ -36,13 +33,16 @@ class Reduction:
         [Hz]
     tolerance : float
     frequency : array, shape (P,)
-        [Hz], over the band.
+        [Hz], over the band and finest at resonances; nothing within BESIDE, half a percent, of those of ``poles``.
     impedance, full_impedance : complex array, shape (P,)
         At the handle, F/v [N s/m].
     error : array, shape (P,)
         ``|Z_reduced - Z| / |Z + Z_hand + Z_paddle|``: the part by which the motion of handle and hand changes.
     within : bool
-        Whether the largest error is below the tolerance.
+        Whether the largest error is below the tolerance, and every pole within BESIDE of where it was.
+    poles : tuple of (float, float)
+        Frequencies without damping [Hz], at which the full impedance is infinite, each with the one nearest to it of the
+        reduced scene; no error is defined between the two.
     tried : tuple of (int, float)
         Masses and largest error of all that were looked at.
     """
@@ -58,6 +58,7 @@ class Reduction:
     full_impedance: np.ndarray = field(repr=False)
     error: np.ndarray = field(repr=False)
     tried: tuple = ()
+    poles: tuple = ()
 
     @property
     def largest(self):
@@ -66,7 +67,12 @@ class Reduction:
 
     @property
     def within(self):
-        return self.largest <= self.tolerance
+        return self.largest <= self.tolerance and self.shift <= BESIDE
+
+    @property
+    def shift(self):
+        """How far a pole has moved, the largest part of its frequency."""
+        return max((abs(now / before - 1) for before, now in self.poles), default=0.0)
 
     def below(self, frequency):
         """Return the largest error up to a frequency [Hz]."""
@@ -96,6 +102,7 @@ class Reduction:
             *(f"  {p.name:<6} {self.scene.values[p.name]:.6g} {p.unit}" for p in self.scene.parameters.values()),
             "  up to [Hz]  |Z_r - Z|/|Z + hand + paddle|",
             *(f"  {f:>10.4g}  {self.below(f):.2g}" for f in (high / 8, high / 4, high / 2, high) if f > self.band[0]),
+            *map(_shifted, self.poles),
             f"  a device's damping for the full scene {needed} (T = 1 ms)",
             f"  {'within' if self.within else 'past'} the tolerance of {self.tolerance:.3g} over {self.band[0]:g} to {high:g} Hz",
         ]
@@ -164,8 +171,9 @@ def reduction(scene, paddle, *, band=(0.1, 20.0), masses=None, tolerance=TOLERAN
     cure = (
         "accept=True takes it all the same" if masses is not None else "masses=..., accept=True takes one all the same"
     )
+    moved = [_shifted(pair).strip() + ". " for pair in best.poles if best.shift > BESIDE]
     raise AnalysisError(
-        f"{scene.name}: past the tolerance of {tolerance:g} over {low:g} to {high:g} Hz: {shown} masses; "
+        f"{''.join(moved)}{scene.name}: past the tolerance of {tolerance:g} over {low:g} to {high:g} Hz: {shown} masses; "
         f"ask a narrower band, or {cure}"
     )
 
@@ -173,31 +181,47 @@ def reduction(scene, paddle, *, band=(0.1, 20.0), masses=None, tolerance=TOLERAN
 def _best(scene, network, paddle, band, tolerance, count):
     """Return the offer of ``count`` masses that is nearest over the band."""
     unit = network.of_unit_masses
-    frequency = _frequencies(network, band)
-    Z = network.impedance(frequency)
-    whole = np.abs(Z + _of_paddle(paddle, frequency))
+    poles = infinite(network, lambda f: _of_paddle(paddle, f), band)
+    common = frequencies(network, paddle, band, poles)
     rate = 2 * np.pi * np.sqrt(band[0] * band[1])  # time in which the band is of order one
     best = None
     for stiffness, damping, V in candidates(unit.stiffness / rate**2, unit.damping / rate, count):
         reduced = modal(stiffness * rate**2, damping * rate, np.einsum("ji,abj->abi", V, unit.start))
-        error = np.abs(reduced.impedance(frequency) - Z) / whole
-        if best is None or error.max() < best[0].max():
-            best = error, reduced
+        own = around(held(reduced)[0], band)
+        found = _Compared(network, reduced, paddle, np.union1d(common, own[outside(own, poles)]))
+        if best is None or found.error.max() < best.error.max():
+            best = found
     if best is None:
         raise AnalysisError(f"{scene.name}: the handle tells fewer than {count} masses apart; ask for fewer")
-    error, reduced = best
+    best = best.at(refined(best.frequency, lambda f: best.at(f).error, poles))
+    resonances = held(best.reduced)[0].imag / (2 * np.pi)
+    pairs = tuple((float(f), float(min(resonances, key=lambda r: abs(r - f), default=np.inf))) for f in poles)
     name = f"{scene.name} with {count} mass{'es' * (count > 1)}"
-    found = reduced.impedance(frequency)
     return Reduction(
-        scene_of(reduced, name), scene, len(network.mass), count, band, tolerance, frequency, found, Z, error
+        scene_of(best.reduced, name), scene, len(network.mass), count, band, tolerance, best.frequency, best.Z_reduced,
+        best.Z, best.error, poles=pairs,
+    )  # fmt: skip
+
+
+class _Compared:
+    """Two networks and their impedances at frequencies [Hz]."""
+
+    def __init__(self, network, reduced, paddle, frequency):
+        self.network, self.reduced, self.paddle, self.frequency = network, reduced, paddle, frequency
+        self.Z, self.Z_reduced = network.impedance(frequency), reduced.impedance(frequency)
+        self.error = np.abs(self.Z_reduced - self.Z) / np.abs(self.Z + _of_paddle(paddle, frequency))
+
+    def at(self, frequency):
+        return _Compared(self.network, self.reduced, self.paddle, frequency)
+
+
+def _shifted(pair):
+    """Say where an impedance is infinite, and where that of the reduced scene is."""
+    before, now = pair
+    return (
+        f"  undamped: its impedance is infinite at {before:.5g} Hz, that of the reduced scene at {now:.5g} Hz "
+        f"({abs(now / before - 1):.2g} of it away); nothing within {BESIDE:g} of it is compared"
     )
-
-
-def _frequencies(network, band):
-    """Return frequencies [Hz] over the band, both sides of every resonance among them; at one Z may be infinite."""
-    beside = [f * side for f in network.resonances for side in (1 - BESIDE, 1 + BESIDE)]
-    grid = [f for f in np.geomspace(*band, POINTS) if not np.isclose(f, network.resonances, rtol=BESIDE).any()]
-    return np.unique([*grid, *(f for f in beside if band[0] <= f <= band[1])])
 
 
 def _of_paddle(paddle, frequency):
