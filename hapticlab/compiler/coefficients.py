@@ -3,6 +3,7 @@
 import numpy as np
 import sympy as sp
 
+from ..scene.contact import Contact
 from ..scene.derivative import Partial
 from ..scene.symbols import Parameter, T, delay, t, v, x
 from .channels import short
@@ -37,25 +38,43 @@ class Coefficients:
     def why_not(self, k):
         """Return why equation k is not linear with constant coefficients, or None."""
         form, name = self.form, type(self.form.coordinates[k]).__name__
-        if any(form.coordinates[k] in model.coordinates for model in coupled(form)):
-            return f"{name} is held by a constraint or a contact of an instant, which M and f do not tell"
-        for m in form.M[k]:
-            moving = self._moving(m)
-            if moving:
-                return f"the inertia {short(m.doit(), 60)} of {name} changes with {moving}"
-        return self.slope_moves(form.f[k], f"in the equation of {name}")
+        for model in coupled(form):
+            if form.coordinates[k] in model.coordinates:
+                return _what_ties(name, model)
+        moving = [(self._moving(m), q, m) for q, m in zip(form.coordinates, form.M[k], strict=True)]
+        moving = [found for found in moving if found[0]]
+        if not moving:
+            return self.slope_moves(form.f[k], f"in the equation of {name}")
+        # sin^2 + cos^2 holds an angle and stays the same: the cause is an entry whose number changes
+        leaves, q, m = next((found for found in moving if self._varies(found[2])), moving[0])
+        of = name if q == form.coordinates[k] else f"that couples {name} and {type(q).__name__}"
+        of = f"of {of}" if of == name else of
+        if not self._varies(m):
+            return f"the inertia {short(m.doit(), 60)} {of} is written with {leaves}, though it stays the same; simplify it"
+        return f"the inertia {short(m.doit(), 60)} {of} changes with {leaves}"
 
     def slope_moves(self, expr, where):
         """Return which term of an expression is not linear in states and handle, or None."""
+        cancels = None
         for term in sp.Add.make_args(expr):
             for jump in term.atoms(*JUMPS):  # its slope is zero on both sides, so that the slopes do not tell
                 if {*self.graph.variables_of(jump.args)} & {*self.states, *HANDLE}:
                     return f"{short(term.doit(), 60)} {where} is not linear: it jumps with {short(jump, 40)}"
             for variable in (*self.states, *HANDLE):
                 moving = self._moving(Partial(term, variable))
-                if moving:
+                if moving and self._varies(Partial(term, variable)):
                     return f"{short(term.doit(), 60)} {where} is not linear: its slope changes with {moving}"
-        return None
+                if moving:
+                    cancels = cancels or f"what comes to {short(term.doit(), 60)} {where} is written with {moving}; simplify it"
+        return cancels
+
+    def _varies(self, expr):
+        """Tell whether an expression is another number at other places; parameters stay what they are."""
+        somewhere = np.random.default_rng(1).uniform(0.5, 1.5, (64, 5))
+        leaves = sorted(self.graph.variables_of([expr]), key=str)
+        at = {a: row[0] if isinstance(a, Parameter) else row for a, row in zip(leaves, somewhere, strict=False)}
+        values = np.broadcast_to(self.graph.evaluate([expr], at)[0], (5,)) if len(leaves) <= 64 else np.arange(2)
+        return bool(np.ptp(values) > 1e-9 * np.abs(values).max() + 1e-12)
 
     def _moving(self, expr):
         """Return what changes while it runs in a coefficient, as text, or nothing."""
@@ -104,6 +123,15 @@ class Coefficients:
             table([Partial(form.f[i], state) for i in rows for state in states], len(states)),
             table([Partial(form.f[i], handle) for i in rows for handle in HANDLE], 2),
         )
+
+
+def _what_ties(name, model):
+    """Say what holds a coordinate of a model beside M and f: a constraint, an impact or a friction that sticks."""
+    if model.constraints:
+        return f"{name} is tied by a constraint"
+    element = next(c for c in model.contacts if not c.is_force)
+    does = "stops it in an instant" if isinstance(element, Contact) else "may stick"
+    return f"{name} is a coordinate of a model with {element.name}, which {does}"
 
 
 def leaves(expr):

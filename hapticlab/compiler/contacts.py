@@ -54,11 +54,16 @@ class Contacts:
     def check(self, method):
         """Refuse a method that cannot locate what the scene needs located."""
         if self.located and method.name != "taylor":
-            names = ", ".join(e.name for e in (*self.contacts, *self.frictions))
+            names = [e.name for e in (*self.contacts, *self.frictions)]
+            needs = "need" if len(names) > 1 else "needs"
+            at_the_end = ["every impact is late by up to a step"] * bool(self.contacts)
+            at_the_end += ["a friction never comes to rest"] * bool(self.frictions)
+            others = ["penalty, hunt_crossley or micro_impulse"] * bool(self.contacts)
+            others += ["a friction with a stick_speed"] * bool(self.frictions)
             raise ProgramError(
-                f"method = {method.name!r}: {names} needs its events located inside the step, which is method='taylor'; at the "
-                "end of a step instead, every bounce is wrong by the order of the step. For other methods take penalty, "
-                "hunt_crossley or micro_impulse, and friction with a stick_speed"
+                f"method = {method.name!r}: {', '.join(names)} {needs} events located inside the step, which is "
+                f"method='taylor'; at the end of a step instead, {' and '.join(at_the_end)}. Other methods take "
+                f"{', and '.join(others)}"
             )
 
     # the two callables of a stepper
@@ -139,6 +144,11 @@ class Contacts:
         for leaf, value in known.items():
             self.at_sample(leaf)
             self.tracing.set_next(leaf, value)
+
+
+def located(elements):
+    """Tell whether any of contacts and frictions has events that a method must locate inside its step."""
+    return any(not (e.is_force or isinstance(getattr(e, "law", None), micro_impulse)) for e in elements)
 
 
 def unfelt(form):

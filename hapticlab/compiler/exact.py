@@ -6,7 +6,8 @@ from ..errors import ProgramError
 from ..scene.symbols import t
 from .channels import channel_of, short
 from .coefficients import HANDLE, JUMPS, Coefficients, leaves, linear_rows
-from .dependence import Dependence, part_of
+from .contacts import located
+from .dependence import Dependence, coupled, part_of
 from .graph import driven
 from .ir import Channel
 
@@ -184,6 +185,9 @@ def linear_part(scene, form, constants, T, rest, graph):
     coefficients = Coefficients(form, constants, T, graph)
     rows, reasons = linear_rows(coefficients)
     names = ", ".join(type(form.coordinates[k]).__name__ for k in rows)
+    if reasons and any(located(model.contacts) for model in coupled(form)):
+        why = next(iter(reasons.values()))
+        raise ProgramError(f"{scene.name}: {why}; use method='taylor', which locates that and is exact where motion is linear")
     if reasons and not rows:
         raise ProgramError(
             f"{scene.name}: {next(iter(reasons.values()))}; nothing is left for method='exact', use 'rk4'"

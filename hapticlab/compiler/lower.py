@@ -8,6 +8,7 @@ from ..errors import ParameterError, ProgramError, SceneError
 from ..scene.scene import Scene
 from ..scene.symbols import Parameter, T, acceleration, delay, lag_of, n, t, v, x
 from ..scene.units import unit_of
+from ..scene.written import no_scene
 from .advance import Taylor
 from .bounds import guarded, notes_of
 from .channels import channel_of, short
@@ -88,7 +89,7 @@ def compile(
     4
     """
     if not isinstance(scene, Scene):
-        raise SceneError(f"{scene!r} is not a scene; write hl.compile(hl.Scene(force=...), T=1e-3)")
+        raise SceneError(no_scene(scene, "write hl.compile(hl.Scene(force=...), T=1e-3)"))
     return lowered(scene, method, T, substeps, hold, dtype, velocity, live)
 
 
@@ -96,7 +97,7 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, undecided=(
     """Return the program of a scene; of the conditions in ``undecided``, declared ranges decide nothing."""
     exact, other = exact_and_rest(method)
     if not isinstance(other, Taylor) and (not exact or other is not None):
-        choice("method", other, (*METHODS, *([] if exact else [Taylor.name, EXACT])))
+        choice("method", other, (*METHODS, *([] if exact else [Taylor.name, EXACT, f"{EXACT}+rk4"])))
     choice("hold", hold, HOLDS)
     choice("dtype", dtype, REAL_OF)
     choice("velocity", velocity, VELOCITIES)

@@ -9,6 +9,7 @@ from ..errors import AnalysisError, ProgramError
 from ..records import Telemetry, check_record
 from ..scene.scene import Scene
 from ..scene.symbols import T, delay, lag_of, n
+from ..scene.written import no_scene
 from .coefficients import leaves
 from .engine import load
 from .lower import compile
@@ -83,7 +84,7 @@ def replay(view, log, *, every=10, engine="auto", **options):
     """
     check_record(log, "replay")
     if not isinstance(view, Scene):
-        raise AnalysisError(f"{view!r} is not a scene; needs one that watches something, as hl.requires(scene).view")
+        raise AnalysisError(no_scene(view, "needs one that watches something, as hl.requires(scene).view"))
     if not view.watch:
         raise AnalysisError(f"{view.name} watches nothing; needs hl.Scene(..., watch=[...])")
     every = _rows(every, view, len(log))
@@ -93,7 +94,7 @@ def replay(view, log, *, every=10, engine="auto", **options):
     program, slow = _run(view, log, every, engine, options)
     full = slow if every == 1 else _run(view, log, 1, engine, options)[1]
     names = [c.name for c in program.outputs[1:]]
-    units = {c.name: c.unit for c in program.outputs[1:]}
+    units = {c.name: getattr(type(view.watch.get(c.name)), "unit", c.unit) for c in program.outputs[1:]}  # rad is no 1
     shown = {name: _between(slow[:, j], every, len(log)) for j, name in enumerate(names)}
     exact = {name: full[: len(log), j] for j, name in enumerate(names)}
     return Replay(

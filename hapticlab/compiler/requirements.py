@@ -5,6 +5,9 @@ from dataclasses import dataclass, field
 from ..scene.scene import Scene
 from .ir import Program
 
+#: kind of a row that is part of the one above it
+PART = "of these"
+
 
 @dataclass(frozen=True)
 class Item:
@@ -13,7 +16,8 @@ class Item:
     Attributes
     ----------
     kind : str
-        state, signal, parameter, mode, pair, velocity, linear, view
+        state, signal, parameter, mode, pair, velocity, linear, view; :data:`PART` of a row above, which its savings are in;
+        shared, what makes the rows add up
     name : str
     why : str
     saves : int or None
@@ -42,6 +46,10 @@ class Requirements:
         What the board has to run: without the islands that only feed a view.
     view : Scene or None
         Those islands, for :func:`~hapticlab.compiler.replay.replay`.
+    made_of : str
+        What the states of the program are.
+    declined : str or None
+        Why ``method="exact"`` is not offered.
     """
 
     program: Program = field(repr=False)
@@ -51,6 +59,8 @@ class Requirements:
     everything: int
     felt: Scene = field(repr=False)
     view: Scene | None = field(repr=False)
+    made_of: str = ""
+    declined: str | None = None
 
     def _tables(self):
         yield "kept", "", self.kept
@@ -61,10 +71,16 @@ class Requirements:
     def _head(self):
         p = self.program
         method = f", {p.facts['method']}" if "method" in p.facts else ""
+        states = f"{len(p.states)} states" + (f" ({self.made_of})" if p.states else "")
         return (
-            f"{p.name} at T = {p.T:g} s{method}: {len(p)} instructions a tick and {len(p.states)} states; "
+            f"{p.name} at T = {p.T:g} s{method}: {len(p)} instructions a tick and {states}; "
             f"{self.everything} with nothing left out"
         )
+
+    @property
+    def _declined(self):
+        nothing = "" if self.offered else "offered: nothing; "
+        return [f"{nothing}exact is not offered: {self.declined}"] if self.declined else []
 
     def __str__(self):
         lines = [self._head]
@@ -76,7 +92,7 @@ class Requirements:
                 for i in group:
                     saves = "" if i.saves is None else f"{i.saves:>6}"
                     lines.append(f"  {i.name:<{wide}}  {i.kind:<10}{saves:>6}  {i.why}")
-        return "\n".join(lines)
+        return "\n".join([*lines, *self._declined])
 
     def _repr_markdown_(self):
         rows = [f"**{self._head}**", "", "| | what | saves | why |", "|---|---|---|---|"]
@@ -84,4 +100,4 @@ class Requirements:
             for i in group:
                 why, name = (text.replace("|", r"\|") for text in (i.why, i.name))
                 rows.append(f"| {title} | {i.kind} {name} | {'' if i.saves is None else i.saves} | {why} |")
-        return "\n".join(rows)
+        return "\n".join([*rows, "", *self._declined])

@@ -9,6 +9,7 @@ import sympy as sp
 from ..errors import HapticlabError, SceneError
 from ..scene.scene import Scene
 from ..scene.symbols import n, t, v
+from ..scene.written import no_scene
 from .channels import short
 from .coefficients import Coefficients, linear_rows
 from .dependence import FORCE, Dependence, part_of
@@ -17,7 +18,7 @@ from .held import held
 from .lower import compile, lowered
 from .modes import excluded, open_conditions
 from .options import live_names
-from .requirements import Item, Requirements
+from .requirements import PART, Item, Requirements
 
 
 def requires(scene, *, T=1e-3, **options):
@@ -53,7 +54,7 @@ def requires(scene, *, T=1e-3, **options):
     m parameter folded to 0.05 kg
     """
     if not isinstance(scene, Scene):
-        raise SceneError(f"{scene!r} is not a scene; write hl.requires(hl.Scene(force=...))")
+        raise SceneError(no_scene(scene, "write hl.requires(hl.Scene(force=...))"))
     compile(scene, T=T, **options)  # refuses what it does not know
     defaults = {name: p.default for name, p in inspect.signature(compile).parameters.items() if name != "scene"}
     return _Report(scene, {**defaults, **options, "T": T}).made()
@@ -67,15 +68,23 @@ class _Report:
         self.program = lowered(scene, **options)
         self.form, self.decisions = excluded(scene, options["T"], live_names(options["live"]))
         self.graph = Dependence(self.form)
-        self.paths = self.graph.paths(FORCE, *self.graph.channels)
+        # the force comes first: what a channel sees too is kept for the force all the same
+        self.paths = self.graph.paths(*self.graph.channels) | self.graph.paths(FORCE)
         self.whole = Dependence(scene.explicit())  # a part of a scene keeps its modes, and all they hold
 
     def made(self):
         felt, view = self._split()
-        dropped = (*self._unseen(), *self._folded(), *self._modes(), *self._pairs(), *self._velocity())
-        return Requirements(
-            self.program, tuple(self._kept()), dropped, tuple(self._offers(felt, view)), self._everything(), felt, view
-        )
+        dropped = [*self._unseen(), *self._folded(), *self._modes(), *self._pairs(), *self._velocity()]
+        watched = [name for i in dropped if i.saves == 0 and i.kind == "state" for name in i.name.split(", ")]
+        dropped = [_in_words(i) for i in dropped if i.saves != 0 or i.kind in ("parameter", "mode")]
+        everything = self._everything()
+        rest = everything - len(self.program) - sum(i.saves for i in dropped if i.saves and i.kind != PART)
+        if rest and dropped:
+            dropped.append(Item("shared", "together", "what the rows above share, or save only beside each other", rest))
+        offers, declined = self._offers(felt, view)
+        why = "its declared range is relied upon, and beyond it the motor goes off"
+        kept, made_of = (*self._kept(), *(Item("state", name, why) for name in watched)), self._made_of()
+        return Requirements(self.program, kept, tuple(dropped), offers, everything, felt, view, made_of, declined)
 
     def _more(self, scene=None, **changes):
         """Return how many instructions another scene or other options take more, or None where they cannot be had."""
@@ -114,7 +123,9 @@ class _Report:
 
         for model in self.form.models:
             for c in model.contacts:
-                yield Item("contact", c.name, f"may close: {type(c.law).__name__ if hasattr(c, 'law') else 'friction'}")
+                does = f"may close: {type(c.law).__name__}" if hasattr(c, "law") else "may stick: friction"
+                does = "may slip and creep: friction" if c.is_force and not hasattr(c, "law") else does
+                yield Item("contact", c.name, does)
         for condition in open_conditions(self.form, self.graph.needed):
             yield Item("mode", short(condition, 40), "open over the declared ranges: both sides are computed")
 
@@ -143,13 +154,13 @@ class _Report:
         used = self._parameters_used()
         folded = [] if live is None else [name for name in self.scene.parameters if name in used and name not in live]
         if len(folded) > 1:
-            yield Item("parameters", ", ".join(folded), "folded, all of them together", self._more(live=None))
+            yield Item("parameters", ", ".join(folded), "folded, all of them together; each by itself:", self._more(live=None))
         for name, p in self.scene.parameters.items():
             if name not in used:
                 yield Item("parameter", name, "only what is left out uses it")
             elif name in folded:
                 why = f"folded to {self.scene.values[name]:g} {p.unit}".removesuffix(" 1")
-                yield Item("parameter", name, why, self._more(live=(*live, name)))
+                yield Item(PART if len(folded) > 1 else "parameter", name, why, self._more(live=(*live, name)))
 
     def _parameters_used(self):
         """Return the names in what the outputs can see, in the starts of it, and in the laws of contacts."""
@@ -186,6 +197,16 @@ class _Report:
         more = self._more(all_of_it, undecided=tuple(self.decisions), **live)
         return len(self.program) + (more or 0)
 
+    def _made_of(self):
+        """Return what the states of the program are, in words."""
+        names = {c.name for c in self.program.states}
+        rates = {f"d{name}/dt" for name in self.graph.coordinates} & names
+        coordinates = set(self.graph.coordinates) & names
+        past = {name for name in names if name.startswith(("x(n", "v(n"))}
+        parts = [(len(coordinates), "coordinate"), (len(rates), "rate"), (len(past), "past sample")]
+        parts.append((len(names) - len(coordinates) - len(rates) - len(past), "other"))
+        return ", ".join(f"{count} {word}{'s' * (count > 1 and word != 'other')}" for count, word in parts if count)
+
     # what is offered
 
     def _split(self):
@@ -209,22 +230,26 @@ class _Report:
         return made(**{p: value for p, value in self.scene.values.items() if p in made.parameters})
 
     def _offers(self, felt, view):
+        """Return (what is offered, why exact is not, or None)."""
+        offered, declined = [], None
         if view is not None:
             names = sorted(set(self.whole.paths(*self.whole.channels)) - set(self.whole.paths(FORCE)))
             names = [name for name in names if not name.startswith("watch ")]
             more = self._more(felt)
             why = "only a view shows it: run .felt on the board, and hl.replay(.view, log) beside the record"
-            yield Item("view", ", ".join(names), why, None if more is None else -more)
+            offered.append(Item("view", ", ".join(names), why, None if more is None else -more))
         if self.form.coordinates and not self.options["method"].startswith(EXACT):
-            yield self._linear()
+            linear, declined = self._linear()
+            offered += linear
+        return tuple(offered), declined
 
     def _linear(self):
-        """Return what method="exact" would save, or why it cannot be had."""
+        """Return what method="exact" would save, or ([], why it cannot be had)."""
         form = part_of(self.form, self.graph.needed)
         found = Coefficients(form, {}, self.options["T"])
         rows, reasons = linear_rows(found)
         if not rows:
-            return Item("linear", "none", next(iter(reasons.values()), "no equation of motion is needed"))
+            return [], next(iter(reasons.values()), "no equation of motion is needed")
         live = live_names(self.options["live"])
         settable = [name for name in self.scene.parameters if name not in held(self.scene)] if live is None else live
         kept = [name for name in settable if name not in found.live(rows)]
@@ -233,7 +258,14 @@ class _Report:
         before, after = (self._more(live=kept, method=m) for m in (method, exact))
         names = ", ".join(type(form.coordinates[k]).__name__ for k in rows)
         why = f"method={exact!r}, live={' '.join(kept)!r}: no step error at any stiffness"
-        return Item("linear", names, why, None if None in (before, after) else before - after)
+        return [Item("linear", names, why, None if None in (before, after) else before - after)], None
+
+
+def _in_words(item):
+    """Return an item whose savings are none without a number, and with words where it costs instructions."""
+    if item.saves is None or item.saves > 0:
+        return item
+    return replace(item, saves=None, why=item.why + (f"; this takes {-item.saves} more" if item.saves else ""))
 
 
 def _limits(p):

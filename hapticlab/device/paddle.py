@@ -9,6 +9,7 @@ from ..compiler.ir import Program
 from ..compiler.lower import compile
 from ..errors import PaddleError, ParameterError
 from ..scene.scene import Scene
+from ..scene.written import no_scene
 from .port_mass import check_port_mass
 
 
@@ -59,7 +60,7 @@ class Paddle(ABC):
             Naming the parameters that have no value yet.
         """
         if not isinstance(scene, (Scene, Program)):
-            raise PaddleError(f"{scene!r} is no scene; a paddle runs a Scene or a compiled Program.")
+            raise PaddleError(no_scene(scene, "a paddle runs a Scene or a compiled Program."))
         if isinstance(scene, Program):
             if options:
                 given = ", ".join(options)

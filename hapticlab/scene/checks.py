@@ -35,7 +35,7 @@ def equations(eom):
             continue
         if hasattr(equation, "generalized_force"):
             raise SceneError(
-                f"eom holds {equation.name}, which is no equation; it belongs to those of its bodies: hl.lagrange(L, contacts=[...])"
+                f"eom holds {equation.name}, which is no equation; it goes to those of its bodies: hl.lagrange(L, contacts=[...])"
             )
         if not isinstance(equation, sp.Eq):
             raise SceneError(

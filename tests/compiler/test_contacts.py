@@ -240,8 +240,21 @@ def test_contacts_too_short_and_rests_too_slow_for_the_period_are_refused():
 
 
 def test_what_cannot_run_is_refused():
-    with pytest.raises(ProgramError, match=r"method = 'rk4': floor needs its events located inside the step, which is method='t"):
+    with pytest.raises(ProgramError, match=r"floor needs events located .* is method='taylor'; .* impact is late .*penalty"):
         run(dropped(hl.impulse(e=0.8)), 1, method="rk4")
+    pull = hl.parameters("F_c", units="N", values=1)
+    brake = hl.friction(slip=q.diff(t), F_c=pull, name="brake")
+    rubbed = hl.Scene(force=0, eom=[lagrange(FALL, contacts=[brake])], watch=[q])
+    with pytest.raises(ProgramError, match=r"brake needs events .*a friction never comes to rest. Other methods take a friction"):
+        run(rubbed, 1, method="rk4")
+    both = lagrange(FALL, contacts=[hl.Contact(q, hl.rigid(), name="floor"), brake])
+    with pytest.raises(ProgramError, match=r"floor, brake need events"):
+        run(hl.Scene(force=0, eom=[both]), 1, method="rk4")
+    for method in ("exact", "exact+rk4"):
+        with pytest.raises(ProgramError, match=r"with brake, which may stick; use method='taylor', which locates that"):
+            run(rubbed, 1, method=method)
+    with pytest.raises(ProgramError, match=r"method = 'exat'; needs one of .*exact, exact\+rk4"):
+        run(rubbed, 1, method="exat")
     z = hl.coordinate("z", unit="m", initial=h0)
     L = FALL + m * z.diff(t) ** 2 / 2
     e = hl.impulse(e=0.5)

@@ -106,5 +106,5 @@ def test_unbound_parameters_are_named_with_the_cure(paddle):
 
 
 def test_what_is_no_scene_is_refused(paddle):
-    with pytest.raises(HapticlabError, match="is no scene"):
+    with pytest.raises(HapticlabError, match="is not a scene"):
         paddle.run(lambda x: 5 * x, duration=0.05)
