@@ -17,9 +17,6 @@ from ..scene.mechanics import Mechanics
 from ..scene.symbols import acceleration, coordinate, lag_of, t, v, x
 from .energy import energy
 
-CHANNELS = ("supplied", "stored", "dissipated", "leak")
-
-
 #: what a scene's books record [J]
 CHANNELS = ("supplied", "stored", "dissipated", "leak")
 
@@ -205,7 +202,8 @@ class Balance:
         return (
             f"supplied {1e3 * put_in:.4g} mJ = stored {1e3 * kept:.4g} + dissipated {1e3 * lost:.4g} "
             f"+ leak {1e3 * self.leak[-1]:.2g} mJ ({1e3 * worst:.2g} mJ at worst); "
-            f"the port gave {1e3 * self.port[-1]:.4g} mJ, {1e3 * self.sampling[-1]:.2g} mJ of it to sampling"
+            f"the port gave {1e3 * self.port[-1]:.4g} mJ, which differs by {1e3 * self.sampling[-1]:.2g} mJ: what holding "
+            "the force, felt impulses and other forces do"
         )
 
 
@@ -224,6 +222,19 @@ def balance(log):
     ------
     AnalysisError
         The run did not record the books.
+
+    Examples
+    --------
+    >>> import hapticlab as hl, sympy as sp
+    >>> m, K = hl.parameters("m K", units="kg N/m", values=(0.05, 200))
+    >>> z = hl.coordinate("z", unit="m")
+    >>> pull = K * (hl.x(hl.t) - z)
+    >>> L = m * z.diff(hl.t) ** 2 / 2 - K * (hl.x(hl.t) - z) ** 2 / 2
+    >>> books = hl.energy_books(hl.Scene(force=pull, eom=[hl.lagrange(L)]))
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=1.0, T=1e-3, hand=hl.Hand(push=1.0))
+    >>> result = hl.balance(paddle.run(books, duration=0.05, progress=False))
+    >>> bool(abs(result.leak[-1]) < 1e-3 * result.supplied[-1])
+    True
     """
     check_record(log, "balance")
     missing = [name for name in CHANNELS if name not in log.channels]

@@ -12,6 +12,7 @@ from ..errors import AnalysisError, ParameterError
 from ..scene.derivative import Partial
 from ..scene.scene import Scene
 from ..scene.symbols import Parameter, delay, lag_of, n, t, v, x
+from ..scene.written import no_scene
 
 #: the handle as a force sees it at the sample, and as an equation of motion sees it
 SEEN = ((x(t), x(n)), (v(t), v(n)))
@@ -78,7 +79,11 @@ def impedance(scene, frequency):
     >>> complex(impedance(hl.Scene(force=k * hl.x(hl.n) + b * hl.v(hl.n)), 1 / (2 * np.pi)).round(9))
     (3-200j)
     """
-    frequency = np.asarray(frequency, float)
+    try:
+        frequency = np.asarray(frequency, float)
+    except (TypeError, ValueError):
+        what = f"a {type(frequency).__name__}"
+        raise AnalysisError(f"frequency is {what}; needs numbers in Hz, hl.impedance(scene, [1, 10, 100])") from None
     if not (np.isfinite(frequency).all() and (frequency > 0).all()):
         raise AnalysisError(f"frequency = {frequency} Hz; an impedance needs finite frequencies > 0")
     return port_of(scene).impedance(frequency)
@@ -87,7 +92,7 @@ def impedance(scene, frequency):
 def port_of(scene, linear=False):
     """Return the :class:`Port` of a scene, linearised about its start; ``linear`` refuses one that is not."""
     if not isinstance(scene, Scene):
-        raise AnalysisError(f"{scene!r} is not a scene; needs hl.Scene(force=...)")
+        raise AnalysisError(no_scene(scene, "needs hl.Scene(force=...)"))
     unbound = sorted(set(scene.parameters) - set(scene.values))
     if unbound:
         raise ParameterError(f"{', '.join(unbound)} has no value; bind it: scene({unbound[0]}=...)")

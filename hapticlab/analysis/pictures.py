@@ -16,7 +16,7 @@ def picture(name, **state):
     Parameters
     ----------
     name : str
-        Of a scene in ``hl.library``.
+        Of a scene in ``hl.library``, or that function of the library itself.
     **state : float or str
         The handle x [m], coordinates and parameters by name, in SI or as a text with a unit; the others as the library
         has them.
@@ -37,6 +37,9 @@ def picture(name, **state):
     >>> figure.axes[0].get_title()
     'detents'
     """
+    name = getattr(name, "__name__", name)  # hl.library.detents itself
+    if not isinstance(name, str):
+        raise AnalysisError(f"a {type(name).__name__} has no picture; hl.picture draws the library's scenes by name: 'detents'")
     entry = CATALOGUE[name]
     scene = entry.scene()
     moving = {"x": "m"} | {type(q).__name__: type(q).unit for q in scene.coordinates}

@@ -153,6 +153,9 @@ def reduction(scene, paddle, *, band=(0.1, 20.0), masses=None, tolerance=TOLERAN
     >>> offer.masses, {name: round(value, 6) for name, value in offer.scene.values.items()}
     (1, {'k_1': 1600.0, 'm_1': 0.04})
     """
+    if not (hasattr(paddle, "m") and hasattr(paddle, "b")):
+        cure = "needs one with m [kg] and b [N s/m], such as hl.SimulatedPaddle(m=0.05, b=0.1)"
+        raise AnalysisError(f"paddle = {paddle!r}; {cure}")
     low, high = _band(band)
     tolerance = check_number("tolerance", tolerance, "", "needs a part > 0, such as 0.05", lambda a: a > 0)
     network = network_of(scene, port_of(scene, linear=True))
@@ -167,13 +170,12 @@ def reduction(scene, paddle, *, band=(0.1, 20.0), masses=None, tolerance=TOLERAN
     best = offers[-1]
     if best.within or (accept and masses is not None):
         return Reduction(**{**vars(best), "tried": tried})
-    shown = ", ".join(f"{error:.2g} with {count}" for count, error in tried)
-    cure = (
-        "accept=True takes it all the same" if masses is not None else "masses=..., accept=True takes one all the same"
-    )
+    shown = ", ".join(f"{error:.2g} with {count} mass{'es' * (count > 1)}" for count, error in tried)
+    which = "takes it" if masses is not None else f"with masses={best.masses} takes that"
+    cure = f"accept=True {which} all the same"
     moved = [_shifted(pair).strip() + ". " for pair in best.poles if best.shift > BESIDE]
     raise AnalysisError(
-        f"{''.join(moved)}{scene.name}: past the tolerance of {tolerance:g} over {low:g} to {high:g} Hz: {shown} masses; "
+        f"{''.join(moved)}{scene.name}: past the tolerance of {tolerance:g} over {low:g} to {high:g} Hz: {shown}; "
         f"ask a narrower band, or {cure}"
     )
 

@@ -62,3 +62,5 @@ def test_refusals():
         impedance(hl.Scene(force=k * x(n)), [0.0, 1.0])
     with pytest.raises(AnalysisError, match="not a scene"):
         impedance(k, 1.0)
+    with pytest.raises(AnalysisError, match="frequency is a SimulatedPaddle; needs numbers in Hz"):
+        impedance(hl.Scene(force=k * x(n)), hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3))

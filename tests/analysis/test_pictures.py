@@ -105,5 +105,8 @@ def test_what_a_picture_does_not_know_is_refused():
         hl.picture("detents", y=1)
     with pytest.raises(hl.AnalysisError, match="four_bar cannot be put together with b = 0.005; take other lengths"):
         hl.picture("four_bar", b=0.005)
+    with pytest.raises(hl.AnalysisError, match="a Scene has no picture; hl.picture draws the library's scenes by name"):
+        hl.picture(hl.library.detents())
+    assert hl.picture(hl.library.detents).axes[0].get_title() == "detents"
     with pytest.raises(hl.UnitsError, match="x = '3 N'"):
         hl.picture("gears", x="3 N")

@@ -164,9 +164,12 @@ def test_order_by_tolerance_and_the_printout():
 
 def test_what_is_refused():
     with pytest.raises(
-        AnalysisError, match=r"past the tolerance of 0.05 over 0.1 to 100 Hz: .* with 1, .* with 3 masses"
+        AnalysisError,
+        match="past the tolerance of 0.05 over 0.1 to 100 Hz: .* with 1 mass, .* with 3 masses; .*accept=True with masses=3",
     ):
-        reduction(chain(4), HELD, band=(0.1, 100))
+        reduction(chain(4), HELD, band=(0.1, 100), accept=True)
+    with pytest.raises(AnalysisError, match=r"paddle = None; needs one with m \[kg\] and b"):
+        reduction(chain(4), None)
     with pytest.raises(AnalysisError, match="accept=True takes it"):
         reduction(chain(4), HELD, band=(0.1, 100), masses=1)
     assert not reduction(chain(4), HELD, band=(0.1, 100), masses=1, accept=True).within
