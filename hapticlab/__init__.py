@@ -7,10 +7,24 @@
 200.0
 """
 
+from difflib import get_close_matches
+
 import lazy_loader
 
 # Each public name is loaded on first use, as Scientific Python's SPEC 1 describes: a command line or a notebook server
 # that needs one of them does not wait for all of SymPy. The names and their modules are in __init__.pyi.
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+_load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+
+def __getattr__(name):
+    try:
+        return _load(name)
+    except AttributeError:
+        words = {public.lower(): public for public in __all__}
+        near = [words[word] for word in get_close_matches(name.lower(), words, 2, 0.75)]
+        if name in __all__ or not near:
+            raise
+        raise AttributeError(f"hapticlab has no {name}; did you mean hl.{' or hl.'.join(near)}?") from None
+
 
 __version__ = "0.1.0"

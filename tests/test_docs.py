@@ -93,3 +93,12 @@ def test_files_named_in_the_documents_exist():
     named = set(re.findall(r"`((?:tests|firmware|hapticlab|\.ci)/[\w/.]+)`", README + contributing))
     assert len(named) >= 5
     assert [path for path in sorted(named) if not (ROOT / path).exists()] == []
+
+
+def test_a_misspelt_name_is_answered_with_those_that_come_near():
+    with pytest.raises(AttributeError, match=r"hapticlab has no Contac; did you mean hl.Contact\?"):
+        hl.Contac  # noqa: B018
+    with pytest.raises(AttributeError, match=r"did you mean hl.lagrange\?"):
+        hl.Lagrange  # noqa: B018
+    with pytest.raises(AttributeError, match="No hapticlab attribute zzzz"):
+        hl.zzzz  # noqa: B018

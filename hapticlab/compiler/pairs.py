@@ -128,11 +128,9 @@ def contacts_between(bodies, *, law, ignore=(), handle=(-math.inf, math.inf), co
     Examples
     --------
     >>> import hapticlab as hl
-    >>> from hapticlab.scene.contact_laws import rigid
-    >>> from hapticlab.scene.shapes import Circle, ground
     >>> z = hl.coordinate("z", unit="m", initial=1)
-    >>> balls = [Circle(0.1).at(x=k, y=z, name=f"ball{k}") for k in range(2)]
-    >>> print(contacts_between([ground(), *balls], law=rigid()))
+    >>> balls = [hl.Circle(0.1).at(x=k, y=z, name=f"ball{k}") for k in range(2)]
+    >>> print(hl.contacts_between([hl.ground(), *balls], law=hl.rigid()))
     2 contacts: ground_ball0, ground_ball1
     left out ball0 and ball1: ball0 stays within -0.1 <= x <= 0.1 m, ball1 within 0.9 <= x <= 1.1 m
     """
@@ -166,9 +164,8 @@ def possible_pairs(bodies, *, ignore=(), handle=(-math.inf, math.inf)):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> from hapticlab.scene.shapes import Box
     >>> z = hl.coordinate("z", unit="m")
-    >>> two = [Box(1, 1).at(name="left"), Box(1, 1).at(x=3, y=z, name="right")]
+    >>> two = [hl.Box(1, 1).at(name="left"), hl.Box(1, 1).at(x=3, y=z, name="right")]
     >>> possible_pairs(two).dropped[0].why
     'left stays within -0.5 <= x <= 0.5 m, right within 2.5 <= x <= 3.5 m'
     """

@@ -6,6 +6,7 @@ import sympy as sp
 
 from ..errors import SceneError
 from .checks import agree_with
+from .parameters import Parameter
 from .units import in_si
 from .written import expression
 
@@ -90,3 +91,19 @@ def turned(angle):
 def number_of(expr):
     """Return an expression with its amounts as plain numbers."""
     return expr.xreplace({a: a.value for a in expr.atoms(Amount)})
+
+
+def take_lengths(shape, *positive, zero=None):
+    """Take a shape's lengths as expressions in m; refuse what cannot be a length."""
+    for field in (*positive, *([zero] if zero else [])):
+        where = f"{field} of a {type(shape).__name__}"
+        length = amount(getattr(shape, field), "m", where)
+        known = number_of(length)
+        if known.is_number and (known < 0 or (known == 0 and field != zero)):
+            raise SceneError(f"{where} = {float(known):g} m; a length needs {'>= 0' if field == zero else '> 0'}")
+        if isinstance(length, Parameter) and not length.low >= 0:
+            raise SceneError(
+                f"{where} = {length.name}, which may be negative; declare hl.parameters('{length.name}', units='m', "
+                "ranges=(low, high)) with low > 0"
+            )
+        object.__setattr__(shape, field, length)

@@ -47,9 +47,8 @@ class Curve(Shape):
 
     >>> import hapticlab as hl
     >>> import sympy as sp
-    >>> from hapticlab.scene.curves import Curve
     >>> a, b = hl.parameters("a b", units="m m", values=(0.1, 0.05))
-    >>> cam = Curve(lambda u: (a * sp.cos(u), b * sp.sin(u))).at(name="cam")
+    >>> cam = hl.Curve(lambda u: (a * sp.cos(u), b * sp.sin(u))).at(name="cam")
     """
 
     tracked = True
@@ -143,11 +142,9 @@ def track(a, b, *, names=("u", "w"), rate=None, start=None, values=None):
     --------
     >>> import hapticlab as hl
     >>> import sympy as sp
-    >>> from hapticlab.scene.curves import Curve, track
-    >>> from hapticlab.scene.shapes import Circle
     >>> a, b = hl.parameters("a b", units="m m", values=(0.1, 0.05))
     >>> z = hl.coordinate("z", unit="m", initial=0.2)
-    >>> found = track(Curve(lambda u: (a * sp.cos(u), b * sp.sin(u))).at(), Circle(0.01).at(y=z))
+    >>> found = hl.track(hl.Curve(lambda u: (a * sp.cos(u), b * sp.sin(u))).at(), hl.Circle(0.01).at(y=z))
     >>> found.coordinates, float(type(found.coordinates[0]).initial)
     ((u(t),), 1.5707963267948966)
     """

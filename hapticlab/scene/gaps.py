@@ -76,17 +76,24 @@ def gap(a, b, *, method="faces"):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> from hapticlab.scene.gaps import gap
-    >>> from hapticlab.scene.shapes import Circle, ground
     >>> z = hl.coordinate("z", unit="m")
-    >>> gap(ground(), Circle("5 mm").at(y=z))
+    >>> hl.gap(hl.ground(), hl.Circle("5 mm").at(y=z))
     z(t) - (0.005 m)
     """
     return closest(a, b, method=method).gap
 
 
 def closest(a, b, *, method="faces"):
-    """Return the :class:`Closest` of two placed shapes; see :func:`gap`."""
+    """Return the :class:`Closest` of two placed shapes: gap, normal and point; see :func:`gap`.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> z = hl.coordinate("z", unit="m")
+    >>> found = hl.closest(hl.ground(), hl.Circle("5 mm").at(y=z))
+    >>> found.gap, found.normal
+    (z(t) - (0.005 m), (0, 1))
+    """
     for body in (a, b):
         check_placed(body)
     if method not in METHODS:

@@ -9,10 +9,9 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ..errors import SceneError
-from .amount import amount, number_of
+from .amount import amount, take_lengths
 from .derivative import Partial, rates_of
 from .polygons import convex_parts, outline, width
-from .symbols import Parameter
 from .units import in_si
 
 ZERO = sp.S.Zero
@@ -70,27 +69,33 @@ class Circle(Shape):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> from hapticlab.scene.shapes import Circle
     >>> z = hl.coordinate("z", unit="m")
-    >>> Circle("20 mm").at(y=z, name="ball")
+    >>> hl.Circle("20 mm").at(y=z, name="ball")
     ball: Circle(radius=(0.02 m)) at (0, z(t)), turned by 0
     """
 
     radius: sp.Expr
 
     def __post_init__(self):
-        _lengths(self, zero="radius")
+        take_lengths(self, zero="radius")
 
 
 @dataclass(frozen=True)
 class Box(Shape):
-    """Rectangle around its origin, ``width`` along x and ``height`` along y, each > 0 [m]."""
+    """Rectangle around its origin, ``width`` along x and ``height`` along y, each > 0 [m].
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.Box("40 mm", "20 mm").at(y="15 mm", name="book")
+    book: Box(width=(0.04 m), height=(0.02 m)) at (0, (0.015 m)), turned by 0
+    """
 
     width: sp.Expr
     height: sp.Expr
 
     def __post_init__(self):
-        _lengths(self, "width", "height")
+        take_lengths(self, "width", "height")
 
     @property
     def cores(self):
@@ -104,13 +109,21 @@ class Box(Shape):
 
 @dataclass(frozen=True)
 class Capsule(Shape):
-    """Bar with round ends around its origin: a segment of ``length`` along x, widened by ``radius``; both > 0 [m]."""
+    """Bar with round ends around its origin: a segment of ``length`` along x, widened by ``radius``; both > 0 [m].
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> z = hl.coordinate("z", unit="m")
+    >>> hl.Capsule("40 mm", "5 mm").at(y=z, name="bar")
+    bar: Capsule(length=(0.04 m), radius=(0.005 m)) at (0, z(t)), turned by 0
+    """
 
     length: sp.Expr
     radius: sp.Expr
 
     def __post_init__(self):
-        _lengths(self, "length", "radius")
+        take_lengths(self, "length", "radius")
 
     @property
     def cores(self):
@@ -123,12 +136,18 @@ class Segment(Shape):
 
     Touched by a :class:`Circle` it has no inside: the distance is never negative. A body that passes it between two
     samples is on its other side; give it a thickness (:class:`Capsule`) where that can happen.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.Segment("40 mm").at(name="edge")
+    edge: Segment(length=(0.04 m)) at (0, 0), turned by 0
     """
 
     length: sp.Expr
 
     def __post_init__(self):
-        _lengths(self, "length")
+        take_lengths(self, "length")
 
     cores = Capsule.cores
 
@@ -151,8 +170,8 @@ class Polygon(Shape):
 
     Examples
     --------
-    >>> from hapticlab.scene.shapes import Polygon
-    >>> hook = Polygon([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)])
+    >>> import hapticlab as hl
+    >>> hook = hl.Polygon([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)])
     >>> [len(part) for part in hook.parts]
     [4, 4]
     """
@@ -169,7 +188,7 @@ class Polygon(Shape):
             raise SceneError(f"points = {self.points!r}; needs a list of corners (x, y) in m, such as [(0, 0), (1, 0), (0, 1)]")
         object.__setattr__(self, "points", outline(points))
         object.__setattr__(self, "parts", convex_parts(self.points))
-        _lengths(self, zero="radius")
+        take_lengths(self, zero="radius")
 
     @property
     def cores(self):
@@ -186,8 +205,8 @@ class HalfPlane(Shape):
 
     Examples
     --------
-    >>> from hapticlab.scene.shapes import HalfPlane
-    >>> floor, wall = HalfPlane().at(name="floor"), HalfPlane().at(x=0.1, angle=1.5707963267948966, name="wall")
+    >>> import hapticlab as hl
+    >>> floor, wall = hl.HalfPlane().at(name="floor"), hl.HalfPlane().at(x=0.1, angle=1.5707963267948966, name="wall")
     >>> floor.direction(0, 1), wall.direction(0, 1)
     ((0, 1), (-1, 0))
     """
@@ -198,7 +217,14 @@ class HalfPlane(Shape):
 
 
 def ground(y=0, *, name="ground"):
-    """Return the floor below a height y [m]: a :class:`HalfPlane` in its place."""
+    """Return the floor below a height y [m]: a :class:`HalfPlane` in its place.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.ground("-20 mm")
+    ground: HalfPlane() at (0, (-0.02 m)), turned by 0
+    """
     return HalfPlane().at(y=y, name=name)
 
 
@@ -253,9 +279,8 @@ def replacement(body, forces):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> from hapticlab.scene.shapes import Box, replacement
     >>> N, a = hl.parameters("N a", units="N m")
-    >>> replacement(Box(1, 1).at(), [((0, N), (a, 0)), ((0, -N), (0, 0))])
+    >>> hl.replacement(hl.Box(1, 1).at(), [((0, N), (a, 0)), ((0, -N), (0, 0))])
     (0, 0, N*a)
     """
     F_x, F_y = sp.Add(*(f[0] for f, _ in forces)), sp.Add(*(f[1] for f, _ in forces))
@@ -270,19 +295,3 @@ def generalized(body, F_x, F_y, couple, q):
 
 def _rate(pose):
     return sp.Add(*(Partial(pose, variable).doit() * rate for variable, rate in rates_of(pose).items()))
-
-
-def _lengths(shape, *positive, zero=None):
-    """Take a shape's lengths as expressions in m; refuse what cannot be a length."""
-    for field in (*positive, *([zero] if zero else [])):
-        where = f"{field} of a {type(shape).__name__}"
-        length = amount(getattr(shape, field), "m", where)
-        known = number_of(length)
-        if known.is_number and (known < 0 or (known == 0 and field != zero)):
-            raise SceneError(f"{where} = {float(known):g} m; a length needs {'>= 0' if field == zero else '> 0'}")
-        if isinstance(length, Parameter) and not length.low >= 0:
-            raise SceneError(
-                f"{where} = {length.name}, which may be negative; declare hl.parameters('{length.name}', units='m', "
-                "ranges=(low, high)) with low > 0"
-            )
-        object.__setattr__(shape, field, length)
