@@ -35,8 +35,9 @@ def device_image(constraint, *, name="image"):
     What is felt is the reaction, exact in position: no spring gives way. It needs the handle's acceleration, which is
     estimated, (v(n) - v(n-1))/T. The mass felt at the port therefore is limited: below the mass of the handle where v
     is measured, below twice that where v is the backward difference. Delay moves the limit: that of the difference goes
-    down, to the mass of the handle; that of a measured v doubles with half a period of it, and is back with a whole one.
-    Past it the paddle refuses the scene; then a coupler is required. A program's ``facts["port_mass"]`` says how much it is, at the start.
+    down, to the mass of the handle; that of a measured v is twice as high with half a period of it, and back with a whole
+    one. Past it the paddle refuses the scene; then a coupler is required. A program's ``facts["port_mass"]`` says how much
+    it is, at the start.
 
     Parameters
     ----------
