@@ -10,6 +10,7 @@ from ..compiler.held import held
 from ..device.link import link, load_linked
 from ..device.progress import progress_bar
 from ..errors import AnalysisError
+from ..scene.parameters import Parameter
 from ..scene.scene import Scene
 from ..scene.units import in_si
 from .chatter import SHORTEST
@@ -204,6 +205,9 @@ class _Grid:
         scene = np.repeat(np.array(program.values, float)[:, None], len(cells), axis=1)
         for row, channel in enumerate(program.parameters):
             if channel.name in self.axes:
+                swept = Parameter(channel.name, channel.unit, channel.low, channel.high)  # a program may take less than a scene
+                for end in (np.min, np.max):
+                    swept.check(float(end(self.axes[channel.name])))
                 scene[row] = self.axes[channel.name][self.index[channel.name][cells]]
         plants = np.array([self.paddles[s].plant_values(**self.starts[s]) for s in settings]).T
         return np.concatenate([scene, plants[:, np.searchsorted(settings, self.setting[cells])]])

@@ -10,6 +10,7 @@ from ..scene.symbols import Parameter, T, acceleration, delay, lag_of, n, t, v, 
 from ..scene.units import unit_of
 from ..scene.written import no_scene
 from .advance import Taylor
+from .allowed import bounded, limits
 from .bounds import guarded, notes_of
 from .channels import channel_of, short
 from .constants import entering
@@ -137,6 +138,7 @@ class _Lowering:
             entering(value, REAL_OF[dtype], f"{text} = {T:g} s", ParameterError)
         self.handle = Handle(self.tracing, velocity, hold)
         self.folded = folded(scene, live)
+        self.limits = limits(form, scene.values, self.folded, T)
         self.graph = Graph(self.folded)
         self.at_start = Translator(self.tracing.init, self._leaf_at_start, bound=scene.values, graph=self.graph)
         self.at_sample = self.translator(self._leaf_at_sample)
@@ -163,6 +165,7 @@ class _Lowering:
         unused += self.exact.left_out if self.exact else ()
         program = self.tracing.finish(self.scene.name, outputs, self.scene.values, self.facts, unused)
         program = limited(program, self.dynamics.largest)
+        program = bounded(program, self.limits)
         for channel, value in zip(program.parameters, program.values, strict=True):
             if value == value:
                 self._entering(channel.name, value)

@@ -8,6 +8,7 @@ import math
 
 import sympy as sp
 
+from ..scene.amount import Amount
 from ..scene.symbols import Parameter, T, delay, n, t
 from ..scene.units import fixed
 
@@ -75,6 +76,8 @@ class Ranges:
             return (expr.low, expr.high) if value is None else (value, value)
         if expr.is_number:
             return (float(expr),) * 2 if expr.is_finite and expr.is_real else EVERYTHING
+        if isinstance(expr, Amount):
+            return (float(expr.value),) * 2
         if expr in (n, t):
             return 0.0, math.inf
         if getattr(type(expr), "role", None) == "coordinate":

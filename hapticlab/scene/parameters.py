@@ -36,7 +36,9 @@ class Parameter(sp.Symbol):
         return number
 
     def _range(self, word):
-        if self.low == 0 and math.isinf(self.high) and word:
+        if self.low == 0 and math.isinf(self.high):
+            if not word:
+                return f"needs {self.name} >= 0"
             return (
                 f"a {word} needs {self.name} >= 0. A negative one feeds energy to the user; if that is meant, "
                 f"declare it: hl.parameters('{self.name}', units='{self.unit}', ranges=(-limit, limit))"

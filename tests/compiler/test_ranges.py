@@ -10,6 +10,7 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab.compiler.modes import decide
 from hapticlab.compiler.ranges import Ranges
+from hapticlab.scene.amount import amount
 from hapticlab.scene.parameters import Parameter
 
 a, b, c = Parameter("a", "1", -0.7, 1.3), Parameter("b", "1", 0.2, 0.9), Parameter("c", "1", -3.0, -1.0)
@@ -66,3 +67,9 @@ def test_several_cases():
     assert decide(three, Ranges()) == hl.when(a > 0, 2, 3)
     assert decide(sp.Abs(c) + sp.Abs(a) + sp.Min(a, c), Ranges()) == -c + sp.Abs(a) + c
     assert decide(sp.Min(b, a, 2), Ranges()) == sp.Min(a, b)
+
+
+def test_an_amount_with_a_unit_is_its_number():
+    k = hl.parameters("k", units="N/m", ranges=(100, 200))
+    law = hl.penalty(k=k + amount("50 N/m", "N/m", "k"))
+    assert Ranges()(law.k) == pytest.approx((150, 250), abs=1e-9)
