@@ -1,8 +1,8 @@
 """Derivatives that are written down but not worked out: the compiler takes them on the shared graph.
 
 A derivative of an energy, worked out in symbols, repeats its parts over and over: SymPy's LagrangesMethod needs 8 to
-22 s for a pendulum of eight links (tests/benchmarks/modelling.py). :class:`Partial` and :class:`Rate` name the derivative instead. They stand wherever
-an expression may stand; ``.doit()`` works them out in symbols, for a reader.
+22 s for a pendulum of eight links (tests/benchmarks/modelling.py). :class:`Partial` and :class:`Rate` name the
+derivative instead. They stand wherever an expression may stand; ``.doit()`` works them out in symbols, for a reader.
 """
 
 import sympy as sp
