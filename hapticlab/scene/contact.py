@@ -32,7 +32,8 @@ class Contact(_InASum):
     Parameters
     ----------
     gap : expression [m], or [rad] for a joint that stops
-        >= 0 apart, 0 in touch; of coordinates, parameters, t and the handle x(t).
+        >= 0 apart, 0 in touch; of coordinates, parameters, t and the handle x(t). It starts so, the handle at 0; under
+        a force law it may start pressed in by 1 mm, or with a force up to ten times what presses the bodies together.
     law : penalty, hunt_crossley, impulse, micro_impulse or rigid
     name : str
         Names the contact in messages and records; two contacts of a scene need two names.
