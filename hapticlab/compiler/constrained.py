@@ -10,6 +10,7 @@ Wanner, *Solving Ordinary Differential Equations II*, section VII.2 (projection)
 import numpy as np
 
 from ..errors import SceneError
+from .advance import Taylor
 from .solve import solve
 from .trace import select
 from .zeros import dot, is_zero, less_product, plus, scaled
@@ -115,7 +116,8 @@ def largest_feedback(method, most=100.0):
     """Return the largest alpha*h for which Baumgarte's feedback g'' + 2 alpha g' + alpha^2 g = 0 decays in a method.
 
     The step matrix of the method on that equation is formed and its spectral radius followed: 2 (sqrt(2) - 1) for
-    semi-implicit Euler, 2.785 for RK4.
+    semi-implicit Euler, 2.785 for RK4. A Taylor series is taken for steps of up to a radian of the fastest part, and
+    the feedback is one: 1, within the 2 or more that every order is stable for.
 
     Examples
     --------
@@ -124,6 +126,8 @@ def largest_feedback(method, most=100.0):
     >>> print(f"{largest_feedback(METHODS['semi_implicit_euler']):.6f} {largest_feedback(METHODS['rk4']):.6f}")
     0.828427 2.785294
     """
+    if isinstance(method, Taylor):
+        return 1.0
     if _radius(method, 1e-3) >= 1:
         raise SceneError(f"{method.name} does not damp a drift at any alpha; take another method, or the projection")
     low = high = 1e-3

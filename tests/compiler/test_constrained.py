@@ -4,11 +4,16 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
+import hapticlab as hl
+from hapticlab.compiler import expressions
+from hapticlab.compiler.advance import Taylor
 from hapticlab.compiler.constrained import check_feedback, embedded, largest_feedback, multipliers, stiffened
+from hapticlab.compiler.engine import load
 from hapticlab.compiler.methods import METHODS
 from hapticlab.compiler.trace import Builder
-from hapticlab.errors import SceneError
+from hapticlab.errors import ProgramLimitError, SceneError
 
 
 def system(N, m, seed=1):
@@ -74,6 +79,33 @@ def test_feedback_limits():
 
 #: on the double pole -alpha: the real axis of the stability region, and for semi-implicit Euler the zeta = 1 entry
 CLOSED = {"euler": 2, "semi_implicit_euler": 2 * (math.sqrt(2) - 1), "verlet": 1, "heun": 2, "rk4": 2.785293563405282}
+
+
+def swinging(enforce):
+    """A pendulum in X and Y, from the horizontal."""
+    m, g, l = hl.parameters("m g l", units="kg m/s^2 m", values=(0.1, 9.81, 0.1))
+    X, Y = hl.coordinate("X", unit="m", initial=0.1), hl.coordinate("Y", unit="m")
+    L = m * (X.diff(hl.t) ** 2 + Y.diff(hl.t) ** 2) / 2 - m * g * Y
+    return hl.Scene(0, [hl.lagrange(L, constraints=[X**2 + Y**2 - l**2], enforce=enforce)], watch={"X": X, "Y": Y})
+
+
+def test_multipliers_past_the_limit_say_what_takes_less(monkeypatch):
+    monkeypatch.setattr(expressions, "MOST_INSTRUCTIONS", 2500)
+    with pytest.raises(ProgramLimitError, match="enforce='embed'.*'rk4'"):
+        hl.compile(swinging("kkt"), T=1e-3, method="taylor", dtype="float64")
+
+
+def test_a_taylor_series_takes_a_radian_of_feedback():
+    assert largest_feedback(Taylor()) == 1
+    scene = swinging("baumgarte")
+    program = hl.compile(scene, T=1e-3, method="taylor", dtype="float64", live=())
+    assert any("alpha = 500 1/s" in note for note in program.notes)
+    out = load(program).run(1000, np.zeros((1000, len(program.inputs)))).outputs[:, :, 0]
+    turn = solve_ivp(
+        lambda s, u: [u[1], -98.1 * math.sin(u[0])], (0, 1), [math.pi / 2, 0], "DOP853", 1e-3 * np.arange(1000),
+        rtol=1e-12, atol=1e-13,
+    ).y[0]  # fmt: skip
+    np.testing.assert_allclose(out[:, 1], 0.1 * np.sin(turn), rtol=0, atol=1e-11)
 
 
 def test_too_much_feedback_is_refused():
