@@ -19,6 +19,10 @@ MOST_TOGETHER = 4
 SINGULAR = {"f64": 1e-9, "f32": 1e-4}
 #: how far a candidate may violate its inequalities, of the largest term
 TOLERANCE = {"f64": 1e-12, "f32": 3e-6}
+#: a gap or gap rate that no reaction keeps from closing is one past this part of what it is the difference of,
+IMPOSSIBLE = {"f64": 1e-6, "f32": 1e-3}
+#: and past this, in m or m/s
+SMALLEST = {"f64": 1e-9, "f32": 1e-5}
 _NEVER = 1e30
 
 
@@ -82,6 +86,31 @@ def complementarity(W, q, touching=None, names=None):
         for i, value in zip(island, part, strict=True):
             p[i] = value
     return p
+
+
+def impossible(W, after, touching, size):
+    """Return whether some gaps close although everything that can has been done: no p keeps these contacts apart.
+
+    A body between two that do not give, an imposed handle and a wall, is the case. Only contacts that act on each other
+    can be; False where there are none.
+
+    Parameters
+    ----------
+    W : list of lists
+        Its structural zeros tell which contacts act on each other.
+    after : list of Value or float
+        What should not be negative: gaps [m] or gap rates [m/s].
+    touching : list of bool or Value
+    size : Value or float
+        Of what ``after`` is the small difference; what is lost of it in rounding is not held against a contact.
+    """
+    together = [i for island in islands(W) if len(island) > 1 for i in island]
+    real = real_of(W, after)
+    worst = False
+    for i in together:
+        closes = touching[i] & (after[i] < -(IMPOSSIBLE[real] * size + SMALLEST[real]))
+        worst = closes if worst is False else closes | worst
+    return worst
 
 
 def islands(W):

@@ -7,6 +7,7 @@ from ..scene.contact import friction
 from ..scene.contact_laws import impulse, micro_impulse, rigid
 from ..scene.derivative import Partial, Rate
 from ..scene.symbols import t, x
+from .bounds import BEYOND
 from .complementarity import response
 from .guards import contact, coulomb
 from .impact import dissipated
@@ -65,6 +66,17 @@ class Contacts:
                 f"method='taylor'; at the end of a step instead, {' and '.join(at_the_end)}. Other methods take "
                 f"{', and '.join(others)}"
             )
+
+    @property
+    def faults(self):
+        """What notes say of contacts that a handle may press together."""
+        touching = [*self.contacts, *self.hovering]
+        if len(touching) < 2 or not any(c.gap.has(x(t)) for c in touching):
+            return ()
+        return (
+            f"{BEYOND}no force keeps contacts apart ({', '.join(c.name for c in touching)}): the handle presses a body "
+            "against something that does not give; use penalty, or a coupler between handle and body",
+        )
 
     # the two callables of a stepper
 

@@ -1,15 +1,15 @@
 """The motion over one piece of a step, as polynomials of theta = tau/h: the series of the accelerations in given modes."""
 
+import math
 from dataclasses import dataclass
-from math import factorial
 
 import numpy as np
 
 from ..errors import ProgramError
-from .complementarity import reactions
+from .complementarity import impossible, reactions
 from .guards import Leaves, Reaction, freeze
 from .taylor import Series
-from .trace import Value, reachable, select
+from .trace import Value, maximum, reachable, select
 from .zeros import dot, minus, plus, times
 
 
@@ -206,8 +206,20 @@ class Flow:
         moved = [
             plus(value, dot(r, push)) for value, *push in zip(q, *(row[: len(q)] for row in self._pushes), strict=True)
         ]
+        moved = self._possible(moved, r, held, gaps)
         rates = [plus(value, dot(p, push)) for value, *push in zip([*w, *s], *self._pushes, strict=True)]
         return (moved, rates[: len(w)], rates[len(w) :]), p
+
+    def _possible(self, moved, pushes, held, gaps):
+        """Return the positions put back, nan where a body is held between two that leave no room for it."""
+        contacts = [i for i, r in enumerate(self.motion.reactions) if r.level == 2]
+        slopes = [[self._slopes[1][i][j] for j in contacts] for i in contacts]
+        r, size = [pushes[i] for i in contacts], 0.0
+        for i in contacts:
+            size = maximum(size, select(held[i], abs(gaps[i]), 0.0))
+        after = [plus(gaps[i], dot(row, r)) for i, row in zip(contacts, slopes, strict=True)]
+        never = impossible(slopes, after, [held[i] for i in contacts], size)
+        return moved if never is False else [select(never, math.nan, value) for value in moved]
 
     def _masked(self, held, left):
         """Return the pushes that take away what is left of some held measures."""
@@ -233,7 +245,7 @@ class Flow:
         left = []
         for r, value in zip(motion.reactions, trial, strict=True):
             free = minus(value, series.of(r.free, k)[k])
-            scale = factorial(k + r.level) / factorial(k) / self.h**r.level
+            scale = math.factorial(k + r.level) / math.factorial(k) / self.h**r.level
             left.append((free, times(scale, series.of(r.measure, k + r.level)[k + r.level])))
         series.cut(start)
         return left

@@ -8,7 +8,7 @@ handle feels the impulse -sum p_i d(row i)/dx.
 import math
 from dataclasses import dataclass
 
-from .complementarity import complementarity, reactions
+from .complementarity import complementarity, impossible, reactions
 from .impact import closed, dissipated, micro_rebound, sequential, simultaneous
 from .trace import maximum, select
 from .zeros import dot
@@ -111,6 +111,7 @@ def strike(W, u, b, touching, laws, period, order="sequential"):
     resting = release(gaps, b[:k], slow, names)
     closing = reactions(gaps, after[:k], resting)
     p = [a + extra for a, extra in zip(p, [*closing, *[0.0] * (len(u) - k)], strict=True)]
+    p = _possible(gaps, p, u, _rates(W, u, p), touching)
     after = [select(resting[i], 0.0, rate) if i < k else rate for i, rate in enumerate(_rates(W, u, p))]
     return Struck(p, after, resting, dissipated(u, after, p))
 
@@ -139,7 +140,17 @@ def micro_impulses(W, u, b, gaps, laws, envelopes, step):
     ]
     q = [rate - select(rate < 0.0, aim, 0.0) for rate, aim in zip(u, aims, strict=True)]
     p = complementarity(W, q, near, names)
+    p = _possible(W, p, u, _rates(W, u, p), near)
     return p, _rates(W, u, p)
+
+
+def _possible(gaps, p, before, after, touching):
+    """Return the impulses, nan where they do not keep the contacts apart: there the motor goes off."""
+    size = 0.0
+    for rate in before[: len(touching)]:
+        size = maximum(size, abs(rate))
+    never = impossible(gaps, after, touching, size)
+    return p if never is False else [select(never, math.nan, value) for value in p]
 
 
 def _slow(rate, acceleration, rest_speed, period):

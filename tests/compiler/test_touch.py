@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+import hapticlab as hl
+from hapticlab.compiler.complementarity import impossible
 from hapticlab.compiler.engine import load
 from hapticlab.compiler.flow import motion_of
 from hapticlab.compiler.guards import contact
@@ -338,3 +340,57 @@ def test_micro_impulses_hold_a_stack():
         lowest = min(lowest, q[0], q[1] - q[0])
     assert total / 1000 == pytest.approx([0.4 * G * T, 0.1 * G * T], rel=2e-3)
     assert lowest > -3e-5 and q[1] < 3e-4
+
+
+def squeezed(law, path, gravity=9.81, hold="soh", real="float64", ticks=450):
+    """A puck between a floor at -30 mm and a handle above it that goes along ``path``; returns places and log of a run."""
+    m, g, o = hl.parameters("m g o", units="kg m/s^2 m", values=(0.1, gravity, 0.03))
+    y = hl.coordinate("y", unit="m", initial=-0.01)
+    floor, hand = hl.Contact(y + o, law, name="floor"), hl.Contact(hl.x(hl.t) - y, law, name="hand")
+    felt = hl.felt_impulse(hand, tau="5 ms")
+    motion = hl.lagrange(m * y.diff(hl.t) ** 2 / 2 - m * g * y, contacts=[floor, hand])
+    scene = hl.Scene(felt.force, [motion, *felt.equations], watch={"y": y})
+    program = hl.compile(scene, T=T, method="taylor", dtype=real, hold=hold, live=())
+    x = path(T * np.arange(ticks))
+    rows = np.column_stack([x] + [np.gradient(x, T)] * (len(program.inputs) - 1))
+    return load(program).run(ticks, rows).outputs[:, 1, 0], x, program
+
+
+LAWS = [hl.rigid(), hl.impulse(e=0.5), hl.impulse(e=0.5, order="simultaneous")]
+
+
+@pytest.mark.parametrize("law, gravity", [*((law, 9.81) for law in LAWS), (LAWS[0], 0.001)], ids=str)
+def test_no_force_keeps_the_handle_from_what_lies_on_the_floor(law, gravity):
+    """An imposed handle at 0.1 m/s reaches the floor at 0.3 s: nothing that is computed after that may look sound."""
+    y, x, program = squeezed(law, lambda t: -0.1 * t, gravity, real="float32" if gravity > 1 else "float64")
+    bad = np.flatnonzero(~np.isfinite(y))
+    assert bad.size and bad[0] <= 305 and not np.isfinite(y[bad[0] :]).any()
+    assert (y[: bad[0]] >= -0.03 - 1e-6).all() and (y[: bad[0]] <= x[: bad[0]] + 2e-4).all()
+    (note,) = (note for note in program.notes if "no force keeps contacts apart (floor, hand)" in note)
+    assert "use penalty, or a coupler between handle and body" in note
+
+
+@pytest.mark.parametrize("law", LAWS, ids=str)
+def test_a_handle_that_only_comes_near_is_no_fault(law):
+    y, x, _ = squeezed(law, lambda t: -0.0299 * np.sin(10 * t) ** 2)
+    assert np.isfinite(y).all() and y.min() > -0.03 - 1e-9 and (y - x).max() < 1e-4
+
+
+def test_a_paddle_that_presses_a_puck_on_a_wall_stops_with_what_to_do():
+    m, o = hl.parameters("m o", units="kg m", values=(0.1, 0.03))
+    y = hl.coordinate("y", unit="m", initial=0.01)
+    wall, hand = hl.Contact(o - y, hl.rigid(), name="wall"), hl.Contact(y - hl.x(hl.t), hl.rigid(), name="hand")
+    felt = hl.felt_impulse(hand, tau="5 ms")
+    motion = hl.lagrange(m * y.diff(hl.t) ** 2 / 2, contacts=[wall, hand])
+    scene = hl.Scene(felt.force, [motion, *felt.equations], watch={"y": y})
+    log = hl.SimulatedPaddle(m=0.05, b=0.5, T=T, hand=hl.Hand(push=1.0)).run(scene, duration=0.2, method="taylor")
+    assert "no force keeps contacts apart" in log.fault and "use penalty" in log.fault
+    assert np.nanmax(log.y) <= 0.03 + 1e-6
+
+
+def test_impossible_is_told_from_rounding():
+    W, both = [[1.0, -1.0], [-1.0, 1.0]], [True, True]
+    assert impossible(W, [0.0, -0.1], both, 0.1)
+    assert not impossible(W, [0.0, -1e-10], both, 0.1) and not impossible(W, [1e-17, -2e-17], both, 2e-17)
+    assert not impossible(W, [0.0, -0.1], [True, False], 0.1)
+    assert impossible([[1.0, 0.0], [0.0, 1.0]], [-0.1, -0.1], both, 0.1) is False  # apart, each can be pushed away
