@@ -7,7 +7,9 @@ from .crossing import FEWER_STEPS, STEPS
 from .flow import motion_of
 from .ir import Channel
 from .located import Stepper
+from .remainder import remainder_for
 from .stiffness import (
+    around,
     check_size,
     check_smooth,
     check_step,
@@ -30,7 +32,11 @@ class Taylor:
     """The motion over a step as a Taylor series, with the instants located at which its equations change.
 
     Where the motion between events is linear, it is the closed form to rounding; elsewhere its error is that of the
-    order. Walls, contacts, friction and every other case of the state end the series at the instant where they change.
+    order. There the last term of the series, of order 6 at least, is compared with the state: a step in which it is more
+    than 1e-8 of it (1e-5 in float32) is counted in the output ``unlocated``, if there is one; more than 1e-4 is a series
+    that diverges, and makes the state nan: a fault, which more substeps mend.
+
+    Walls, contacts, friction and every other case of the state end the series at the instant where they change.
 
     Parameters
     ----------
@@ -59,8 +65,9 @@ class Taylor:
 
 
 def advance(
-    method, tracing, rates, groups, h, substeps, values, name, contacts=None, impact=None, after=None, ranges=()
-):
+    method, tracing, rates, groups, h, substeps, values, name, contacts=None, impact=None, after=None, ranges=(),
+    bound=False,
+):  # fmt: skip
     """Trace one period of a motion; return (groups, facts, unlocated) with the state after it.
 
     Parameters
@@ -85,14 +92,16 @@ def advance(
         Is given the values of the motion's reactions at the end of the period.
     ranges : sequence of (low, high), optional
         Declared for each q: where one is finite, a motion that is not linear is looked at within it too.
+    bound : bool
+        Constraints tie the positions.
 
     Returns
     -------
     groups : (q, w, s)
     facts : dict
-        Order, events and omega, for the listing.
+        Order, events, omega, and the part of a state past which the last term of its series makes it nan, for the listing.
     unlocated : Value or None
-        Steps of this period that left an event out; None where there is none to locate.
+        Steps of this period that left an event out, or whose series had not converged; None where there is no event.
     """
     builder, real = tracing.tick, tracing.real
     motion = motion_of(builder, rates, len(groups[0]), len(groups[2]), contacts)
@@ -102,7 +111,8 @@ def advance(
     def fastest(values):
         number = numbers(builder.instructions, tracing.at_start(values))
         start = tuple([number(v.id) for v in part] for part in groups)
-        return frequency(motion, [start, *(() if linear else within(ranges, start))], number, linear)
+        others = () if linear else (*around(start, ranges, bound), *within(ranges, start))
+        return frequency(motion, [start, *others], number, linear)
 
     omega = fastest(values)
     check_step(omega, h * substeps, substeps, name)
@@ -112,7 +122,8 @@ def advance(
     surfaces = len(motion.guards) + len(motion.reactions)
     events = method.events or _EVENTS[surfaces > 2]
     steps = FEWER_STEPS if omega * h <= 0.05 and linear else STEPS
-    stepper = Stepper(motion, h, order, events, impact and impact(motion), steps=steps)
+    remainder = remainder_for(order, real, linear)
+    stepper = Stepper(motion, h, order, events, impact and impact(motion), steps=steps, remainder=remainder)
     held = [_held(tracing, k) for k in range(len(motion.reactions))]
     now, missed = held, None
     for step in range(substeps):
@@ -127,6 +138,7 @@ def advance(
     facts = (
         {"order": order}
         | ({} if motion.smooth else {"events": events})
+        | ({"remainder": remainder[1]} if remainder else {})
         | ({"omega": float(f"{omega:.4g}")} if omega > 0 else {})
     )
     return groups, facts, None if motion.smooth else missed

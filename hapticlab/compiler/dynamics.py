@@ -6,6 +6,7 @@ import sympy as sp
 from ..errors import MassError, ParameterError, SceneError
 from ..scene.symbols import acceleration, t, v, x
 from .advance import Taylor, advance
+from .bounds import BEYOND
 from .constraints import enforcement
 from .contact_starts import check_starts
 from .contact_steps import check_contacts
@@ -202,8 +203,12 @@ class Dynamics:
                 self.method, tracing, self.rates, groups, self.h, self.substeps, lowering.scene.values,
                 lowering.scene.name, contacts=contacts, impact=self.contacts.impact if contacts else None,
                 after=reacting.extend, ranges=[(type(q).low, type(q).high) for q in self.second],
+                bound=bool(self.enforced),
             )  # fmt: skip
             facts |= located
+            if "remainder" in located:
+                self.notes += (f"{BEYOND}the Taylor series of a step diverges; take more substeps",)
+            self.notes += self.contacts.faults
             groups = self._hovering(tracing.T, groups)
         else:
             for step in range(self.substeps):

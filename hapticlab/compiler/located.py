@@ -5,16 +5,20 @@ each the motion is a polynomial; the earliest crossing of all guards ends it, it
 step goes on from that state. A step whose events outnumber its pieces goes on without locating, and says so.
 """
 
+import math
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 
 from . import trace
+from .conditions import any_of, either, signed, size
 from .crossing import first_crossing, horner
 from .flow import Flow
+from .remainder import exceeded
 from .taylor import product
 from .trace import select
-from .zeros import ZERO, is_zero, times
+from .zeros import is_zero, times
 
 #: two crossings closer than this part of a piece happen at once
 TOGETHER = {"f64": 1e-14, "f32": 1e-6}
@@ -52,18 +56,22 @@ class Stepper:
         See :class:`~hapticlab.compiler.flow.Flow`.
     steps : dict, optional
         Newton steps of a crossing: see :func:`~hapticlab.compiler.crossing.first_crossing`.
+    remainder : (float, float), optional
+        Of a motion that is not linear, whose series may diverge: the part of each state that the last term may be. Past
+        the first, the step counts as unlocated; past the second, the state is not a number.
     """
 
-    def __init__(self, motion, h, order, events, impact=None, number=None, steps=None):
+    def __init__(self, motion, h, order, events, impact=None, number=None, steps=None, remainder=None):
         self.motion, self.h, self.order = motion, h, order
         self.events = 0 if motion.smooth else events
-        self.impact, self.number, self.steps = impact, number, steps
+        self.impact, self.number, self.steps, self.remainder = impact, number, steps, remainder
 
     def step(self, tau, state, held=(), jumped=False):
         """Return (state, held, unlocated) at tau + h; ``unlocated`` is true where an event was left out.
 
         ``jumped``: the handle is a new sample, not where the step before left it.
         """
+        self._rough = np.False_
         now = self._start(tau, state, list(held))
         if jumped and self.motion.driven:
             now = self._put_back(now)
@@ -75,7 +83,8 @@ class Stepper:
             ]
             if piece < self.events:
                 now = self._advanced(flow, now, guards)
-        return self._moved(flow, now, now.left), now.held, _any(found for _, found in guards)
+        state = self._moved(flow, now, now.left)
+        return state, now.held, self._rough | any_of(found for _, found in guards)
 
     def reactions(self, tau, state, held):
         """Return what the reactions are at a state, with those held that are."""
@@ -101,7 +110,7 @@ class Stepper:
             was if r.level == 1 else was & (0.0 <= flow.at(r.leaf) + p * (1 / self.h))
             for r, was, p in zip(self.motion.reactions, now.held, pushes, strict=True)
         ]
-        let_go = _any(was & ~is_ for was, is_ in zip(now.held, held, strict=True))
+        let_go = any_of(was & ~is_ for was, is_ in zip(now.held, held, strict=True))
         state = tuple(
             [select(let_go, old, new) for old, new in zip(*parts, strict=True)]
             for parts in zip(now.state, state, strict=True)
@@ -152,7 +161,7 @@ class Stepper:
             if side is not None:
                 holds = flow.slope(i) < 0.0
                 allowed = allowed & holds
-                side = _if(wanted & ~allowed, _if(holds, 0.0 < flow.at(r.lean), ~side), side)
+                side = either(wanted & ~allowed, either(holds, 0.0 < flow.at(r.lean), ~side), side)
             held.append(allowed)
             sides.append(side)
         return held, sides
@@ -166,11 +175,11 @@ class Stepper:
                 square = [product(p, p, k) for k in range(order + 1)]
                 yield [0.25 - square[0], *(times(-1.0, c) for c in square[1:])], next(just)
             else:
-                yield [_signed(flag, c) for c in p], next(just)
+                yield [signed(flag, c) for c in p], next(just)
         for r, held, side in zip(motion.reactions, now.held, now.sides, strict=True):
             apart, inside = flow.of(r.measure, order), [*flow.of(r.inside, order - 1), 0.0]
             left = next(just)
-            apart = self._departing([c if side is None else _signed(~side, c) for c in apart], left, r.level)
+            apart = self._departing([c if side is None else signed(~side, c) for c in apart], left, r.level)
             yield [a if is_zero(a) and is_zero(b) else select(held, b, a) for a, b in zip(apart, inside, strict=True)], left
 
     def _departing(self, p, just, level):
@@ -190,7 +199,13 @@ class Stepper:
         return scaled
 
     def _moved(self, flow, now, theta):
-        return tuple([horner(p, theta) for p in part] for part in flow.state())
+        """Return the state at theta; nan where its series diverges."""
+        state = tuple([horner(p, theta) for p in part] for part in flow.state())
+        if not self.remainder:
+            return state
+        rough, wild = exceeded(chain(*flow.state()), theta, self.order, self.remainder)
+        self._rough = rough | self._rough
+        return tuple([select(wild, math.nan, value) for value in part] for part in state)
 
     def _advanced(self, flow, now, guards):
         """Return where the step stands at the earliest of the crossings found, its mode changed."""
@@ -214,7 +229,7 @@ class Stepper:
                 held.append(was & ~f)
             else:  # a slip that comes to zero is tried; one that breaks away goes where it leans
                 held.append((was & ~f) | (f & ~was))
-                side = _if(f & was, 0.0 < horner(flow.of(r.lean, self.order - 1), theta), side)
+                side = either(f & was, 0.0 < horner(flow.of(r.lean, self.order - 1), theta), side)
             sides.append(side)
         later = _Now(tau, state, sides, flags, held, fired, now.left * (1.0 - earliest))
         return self._struck(now, later, fired) if self.impact else later
@@ -227,7 +242,7 @@ class Stepper:
                 step = select(0.0 < horner(flow.of(g.measure, self.order), theta), 1.0, -1.0)
                 flags.append(select(f, flag + step, flag))
             else:
-                flags.append(_if(f, ~flag, flag))
+                flags.append(either(f, ~flag, flag))
         return flags
 
     def _crossing(self, p, just, idle, left):
@@ -243,10 +258,10 @@ class Stepper:
     def _idle(self, guard, now):
         """Tell whether the motion does not depend on a guard in the present modes."""
         flags = {g.leaf: flag for g, flag in zip(self.motion.guards, now.flags, strict=True)}
-        return _any(flags[leaf] if value else ~flags[leaf] for leaf, value in guard.idle)
+        return any_of(flags[leaf] if value else ~flags[leaf] for leaf, value in guard.idle)
 
     def _chosen(self, guard, condition, a, b):
-        return select(condition, a, b) if guard.kind == "floor" else _if(condition, a, b)
+        return select(condition, a, b) if guard.kind == "floor" else either(condition, a, b)
 
     def _struck(self, before, now, fired):
         """Let the contacts that closed act on the rates; modes that look at rates are looked up again."""
@@ -255,7 +270,7 @@ class Stepper:
             f & ~was if r.level == 2 else np.False_
             for r, f, was in zip(motion.reactions, fired[base:], before.held, strict=True)
         ]
-        struck = _any(closed)
+        struck = any_of(closed)
         w, held = self.impact(self._fresh(now).at, closed, now.held)
         w = [select(struck, new, old) for new, old in zip(w, now.state[1], strict=True)]
         state = now.state[0], w, now.state[2]
@@ -264,34 +279,11 @@ class Stepper:
             self._chosen(g, struck & ~f, new, old)
             for g, f, new, old in zip(motion.guards, fired, flags, now.flags, strict=False)
         ]
-        after, speed = self._fresh(replace(now, state=state)), _size(w)
+        after, speed = self._fresh(replace(now, state=state)), size(w)
         for i, r in enumerate(motion.reactions):
             if r.side is not None:  # a slip that an impact stopped is tried, one that it set off is let go
                 stopped = abs(after.at(r.measure)) <= 100 * TOGETHER[motion.builder.real] * speed
                 held[i] = stopped
-                sides[i] = _if(struck, sides[i], now.sides[i])
-        held = [_if(struck, new, old) for new, old in zip(held, now.held, strict=True)]
+                sides[i] = either(struck, sides[i], now.sides[i])
+        held = [either(struck, new, old) for new, old in zip(held, now.held, strict=True)]
         return replace(now, state=state, held=held, flags=flags, sides=sides)
-
-
-def _signed(negative, c):
-    return c if is_zero(c) else select(negative, -c, c)
-
-
-def _if(condition, a, b):
-    """Choose between conditions, as select does between numbers."""
-    return (condition & a) | (~condition & b)
-
-
-def _size(values):
-    total = ZERO
-    for value in values:
-        total = total + abs(value)
-    return total
-
-
-def _any(conditions):
-    total = np.False_
-    for c in conditions:
-        total = c | total
-    return total

@@ -109,15 +109,18 @@ def _free(motion, modes):
 def frequency(motion, states, number, linear=True):
     """Return the largest |eigenvalue| [rad/s] of the motion over its modes and some states; nan where it is not known.
 
-    Where it is not linear, a mode that a state cannot be in is looked at where it begins.
+    Where it is not linear, a mode that a state cannot be in is looked at where it begins; of the states after the first,
+    those where it has no finite rates do not count.
     """
     largest = 0.0
-    for at in states:
+    for place, at in enumerate(states):
         for modes in modes_of(motion):
             with np.errstate(all="ignore"):
                 state = at if linear else _onto_surfaces(motion, modes, at, number)
             J = jacobian(motion, modes, state, number)
             if not np.isfinite(J).all():
+                if place:
+                    continue
                 return math.nan
             largest = max(largest, max(abs(np.linalg.eigvals(J)), default=0.0))
     return float(largest)
@@ -186,20 +189,6 @@ def around(start, ranges, bound):
     centre = [value if bound or low > 0 or high < 0 else 0.0 for value, (low, high) in zip(q, ranges, strict=True)]
     rest = [0.0] * len(w)
     yield from ((*at, s) for at in ((q, rest), (centre, w), (centre, rest)) if at != (q, w))
-
-
-def remainder_for(order, real, linear):
-    """Return the parts of a state that the last term of its series may be: (converged, not diverged); None where it is.
-
-    Examples
-    --------
-    >>> remainder_for(16, "f64", linear=False), remainder_for(16, "f64", linear=True)
-    ((1e-08, 0.0001), None)
-    """
-    if linear or order < 6:  # a motion that turns by a radian leaves 1/order!
-        return None
-    last = 10.0 / math.factorial(order)
-    return max({"f64": 1e-8, "f32": 1e-5}[real], last), max(1e-4, last)
 
 
 def order_for(omega_h, real, linear):

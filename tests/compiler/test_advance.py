@@ -238,3 +238,48 @@ def test_a_contact_that_hardens_is_not_judged_by_where_it_does_not_touch():
     deep = hl.Scene(0, [sp.Eq(m * q.diff(hl.t, 2), c * sp.Max(0, -q) ** 2)])
     with pytest.raises(ProgramError, match="substeps=2"):
         hl.compile(deep, T=T, method="taylor")
+
+
+@pytest.mark.parametrize("law", [lambda y: sp.tanh(1000 * y), lambda y: y / sp.sqrt(y**2 + 1e-6)])
+def test_a_series_that_diverges_within_a_step_is_a_fault(law):
+    # steep within a millimetre of zero, which it passes at 3.7 m/s: a step of 1 ms is past the poles of the series
+    y, program = free(lambda y, w: -20 * law(y), start=0.35, ticks=220)
+    assert np.isfinite(y[:187]).all() and not np.isfinite(y[190:]).any()
+    assert any("diverges; take more substeps" in note for note in program.notes)
+    fine, _ = free(lambda y, w: -20 * law(y), start=0.35, ticks=220, substeps=16)
+    f = sp.lambdify(sp.Symbol("y"), law(sp.Symbol("y")), "math")
+    found = solve_ivp(
+        lambda s, u: [u[1], -20 * f(u[0])], (0, 0.22), [0.35, 0], "DOP853", T * np.arange(220),
+        rtol=1e-13, atol=1e-15, max_step=1e-4,
+    ).y[0]  # fmt: skip
+    np.testing.assert_allclose(fine, found, rtol=0, atol=1e-12)
+
+
+def test_a_motion_steeper_at_rest_than_at_its_start_is_refused_with_its_substeps():
+    m, F_c, v_s = hl.parameters("m F_c v_s", units="kg N m/s", values=(0.1, 0.5, 1e-3))
+    q = hl.coordinate("q", unit="m", rate=0.5)
+    smoothed = hl.Scene(0, [sp.Eq(m * q.diff(hl.t, 2), -F_c * sp.tanh(q.diff(hl.t) / v_s))], watch={"q": q})
+    with pytest.raises(ProgramError, match=r"omega = 5000 rad/s.*substeps=5"):
+        hl.compile(smoothed, method="taylor", T=T)
+
+
+def test_an_event_in_a_series_that_has_not_converged_counts_as_unlocated():
+    def law(y, w):
+        return -20 * sp.tanh(300 * y) - hl.when(y < -0.1, 1)
+
+    y, program = free(law, start=0.35, ticks=230)
+    assert program.outputs[-1].name == "unlocated"
+    outputs = load(program).run(230, np.zeros((230, 1))).outputs[:, 2, 0]
+    assert np.isfinite(y).all() and outputs[:180].sum() == 0 and 0 < outputs.sum() < 6
+
+
+def test_the_test_of_the_series_costs_linear_motions_nothing():
+    k, m, start = hl.parameters("k m q_0", units="N/m kg m", values=(20.0, 0.1, 0.02))
+
+    def length(power):
+        q = hl.coordinate("q", unit="m", initial=start)
+        force = -k * start * (q / start) ** power
+        return hl.compile(hl.Scene(0, [sp.Eq(m * q.diff(hl.t, 2), force)], watch={"q": q}), method="taylor", T=T)
+
+    assert "remainder" not in length(1).facts and "diverges" not in str(length(1).notes)
+    assert length(3).facts["remainder"] == 1e-4

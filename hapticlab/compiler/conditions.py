@@ -1,0 +1,32 @@
+"""Cases and sums over traced values, floats and arrays alike."""
+
+import numpy as np
+
+from .trace import select
+from .zeros import ZERO, is_zero
+
+
+def signed(negative, c):
+    """Return c, or -c where ``negative``; a structural zero as it is."""
+    return c if is_zero(c) else select(negative, -c, c)
+
+
+def either(condition, a, b):
+    """Choose between conditions, as select does between numbers."""
+    return (condition & a) | (~condition & b)
+
+
+def size(values):
+    """Return the sum of |values|."""
+    total = ZERO
+    for value in values:
+        total = total + abs(value)
+    return total
+
+
+def any_of(conditions):
+    """Return whether any of some conditions holds."""
+    total = np.False_
+    for c in conditions:
+        total = c | total
+    return total
