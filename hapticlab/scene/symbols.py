@@ -4,7 +4,7 @@ import copyreg
 import math
 
 import sympy as sp
-from sympy.core.function import AppliedUndef, UndefinedFunction
+from sympy.core.function import AppliedUndef, FunctionClass, UndefinedFunction
 
 from ..errors import SceneError, SignalError
 from .cases import when
@@ -73,6 +73,17 @@ def _is_range(given):
     return low < high
 
 
+class _Unapplied(FunctionClass):
+    """A function of time, which is no number until it is applied; arithmetic on it is refused in words."""
+
+    def _refuse(cls, *_):
+        name = cls.__name__
+        or_at = f", or {name}(t) in an equation of motion" if cls.role == "handle" else ""
+        raise SignalError(f"{name} is a function of time; write {name}(n) for its sample{or_at}")
+
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = __pow__ = __neg__ = _refuse
+
+
 class _Sampled:
     """One value a sample: it changes with the clock, so SymPy must not take its rate for zero."""
 
@@ -90,7 +101,7 @@ class _Signal(_Sampled, AppliedUndef):
     """A sample y(n-k) of a signal."""
 
 
-class _SignalFunction(UndefinedFunction):
+class _SignalFunction(_Unapplied, UndefinedFunction):
     """A signal y; a type of its own because SymPy restores its undefined functions without their base class."""
 
 
@@ -152,7 +163,7 @@ def lag_of(applied):
     raise SignalError(f"{applied} is not a sample: {cure}")
 
 
-class _HandleSignal(_Sampled, sp.Function):
+class _HandleSignal(_Sampled, sp.Function, metaclass=_Unapplied):
     """A signal of the handle: one argument, checked when written."""
 
     nargs = 1
