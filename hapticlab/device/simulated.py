@@ -251,15 +251,14 @@ class SimulatedPaddle(Paddle):
 
 
 def _likely_cause(program):
-    """Return what to look for where a program stopped: a range that was left, an angle past all sines; else nothing."""
+    """Return what to look for where a program stopped: what its notes say, an angle past all sines; else nothing."""
     left = [note.removeprefix(BEYOND) for note in program.notes if note.startswith(BEYOND)]
-    if left:
-        return f". Most likely {' or '.join(left)}"
+    likely = f". Most likely {' or '.join(left)}" if left else ""
     if not any(i.op in ("sin", "cos") for i in program.tick.instructions):
-        return ""
+        return likely
     real = program.outputs[0].type
     dtype = "float32" if real == "f32" else "float64"
-    return f". Look for an angle beyond {TABLES[real].angle_limit:g} rad: it has no meaning in {dtype}, and no sine"
+    return f"{likely}. Look for an angle beyond {TABLES[real].angle_limit:g} rad: it has no meaning in {dtype}, and no sine"
 
 
 def _run_in_chunks(loaded, inputs, parameters, chunk, progress):
