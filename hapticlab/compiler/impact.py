@@ -81,7 +81,7 @@ def simultaneous(W, u, e, touching=None, names=None):
 
     >>> from hapticlab.compiler.impact import simultaneous
     >>> p, u = simultaneous([[2.0, -1.0], [-1.0, 2.0]], [-1.0, 0.0], [1.0, 1.0])
-    >>> [round(value, 9) for value in (*p, *u)]
+    >>> [round(float(value), 9) for value in (*p, *u)]
     [1.333333333, 0.666666667, 1.0, 0.0]
     """
     p, after = _at_once(W, u, e, touching, names)
