@@ -22,7 +22,7 @@ class Column:
     def numbers(self):
         """Return masses [kg], heights of the centres [m] and velocities [m/s]: some touch, some do not."""
         random = np.random.default_rng(self.contacts)
-        heights = RADIUS * (2 * np.arange(self.contacts) + 1) + np.cumsum(random.uniform(-2e-3, 2e-3, self.contacts))
+        heights = RADIUS * (2 * np.arange(self.contacts) + 1) + np.cumsum(random.uniform(-0.9e-3, 2e-3, self.contacts))
         return random.uniform(0.05, 0.15, self.contacts), heights, random.uniform(-0.2, 0.2, self.contacts)
 
     @property
