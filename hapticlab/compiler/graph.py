@@ -16,7 +16,6 @@ from .algebra import Algebra
 from .constants import entering
 from .differentiate import Gradient, Tangent
 from .expressions import Translator
-from .ir import LEAVES
 from .simplify import EVALUATE
 from .trace import reachable
 
@@ -183,10 +182,10 @@ class Graph:
         ``known`` (dict) remembers what has been copied for this translator.
         """
         builder, variables = translator.builder, list(self.variables)
-        for k in _missing(self.builder.instructions, value.id, known):
+        for k in reachable(self.builder.instructions, [value.id], known):
             i = self.builder.instructions[k]
             if i.op == "const":
-                real = i.type not in LEAVES and i.type == "f64"
+                real = i.type == "f64"
                 known[k] = builder.const(entering(i.value, builder.real, f"{i.value:g}")) if real else builder.const(i.value)
             elif i.op == "input":
                 expr = variables[i.index]
@@ -195,14 +194,3 @@ class Graph:
             else:
                 known[k] = builder.emit(i.op, *(known[a] for a in i.args))
         return known[value.id]
-
-
-def _missing(instructions, wanted, known):
-    """Return, in order, what a result needs and is not known yet."""
-    seen, stack = set(), [wanted]
-    while stack:
-        k = stack.pop()
-        if k not in seen and k not in known:
-            seen.add(k)
-            stack.extend(instructions[k].args)
-    return sorted(seen)

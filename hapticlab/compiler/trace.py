@@ -95,12 +95,12 @@ class Builder:
         return {"B": "bool", "I": "i32"}[result]
 
 
-def reachable(instructions, wanted):
-    """Return, in order, the positions that the wanted ones need."""
+def reachable(instructions, wanted, known=()):
+    """Return, in order, the positions that the wanted ones need and that are not known yet."""
     seen, stack = set(), list(wanted)
     while stack:
         k = stack.pop()
-        if k not in seen:
+        if k not in seen and k not in known:
             seen.add(k)
             stack.extend(instructions[k].args)
     return sorted(seen)
