@@ -47,8 +47,6 @@ class Graph:
     ----------
     fixed : dict name -> float
         Parameters that are constants.
-    embedded : dict coordinate -> expression
-        Coordinates that are functions of others, by a constraint solved in closed form.
 
     Examples
     --------
@@ -60,8 +58,8 @@ class Graph:
     12.0
     """
 
-    def __init__(self, fixed=None, embedded=None):
-        self.fixed, self.embedded = dict(fixed or {}), dict(embedded or {})
+    def __init__(self, fixed=None):
+        self.fixed = dict(fixed or {})
         self.builder = Algebra("f64")
         self.variables = {}  # expression -> number of its input
         self.translator = Translator(self.builder, self._leaf, clock=self, graph=self, sample=self._held)
@@ -90,8 +88,6 @@ class Graph:
         if isinstance(expr, Rate):
             return self._tangent("rate", self._rate_of)(inner)
         by = expr.variable
-        if by in self.embedded:
-            raise ValueError(f"{by} is a function of other coordinates; differentiate by those")
         at, turning = self.variable(by).id, by == t or isinstance(by, Parameter)
 
         def seed(number):
@@ -133,13 +129,6 @@ class Graph:
     def _leaf(self, expr):
         if isinstance(expr, Parameter) and expr.name in self.fixed:
             return self.builder.const(self.fixed[expr.name])
-        if expr in self.embedded:
-            return self(self.embedded[expr])
-        if isinstance(expr, sp.Derivative) and expr.expr in self.embedded:
-            rate = self.embedded[expr.expr]
-            for _ in range(expr.derivative_count):
-                rate = Rate(rate)
-            return self(rate)
         return self.variable(expr)
 
     def evaluate(self, exprs, at):

@@ -95,16 +95,6 @@ def test_a_derivative_by_time_or_frequency_goes_through_the_angle():
         assert float(got) == pytest.approx(float(by_sympy(node.doit(), at)), rel=1e-12)
 
 
-def test_rates_of_a_coordinate_that_follows_another():
-    graph = Graph(embedded={q: sp.sin(p)})
-    at = {p: 0.6, dp: 1.3}
-    got = graph.evaluate([q, dq, Rate(dq), Partial(q**2, p)], at)
-    s, c = np.sin(0.6), np.cos(0.6)
-    assert [float(e) for e in got] == pytest.approx([s, c * 1.3, -s * 1.69, 2 * s * c], rel=1e-14)
-    with pytest.raises(ValueError, match="is a function of other coordinates"):
-        graph(Partial(q**2, q))
-
-
 def test_parts_are_shared():
     """Of n links, the matrix is n^2 entries of a few operations each, not expressions that grow with n."""
 
