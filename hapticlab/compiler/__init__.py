@@ -25,12 +25,13 @@ what is written by hand. Nothing is solved in symbols.
 ``held`` keep coordinates and lengths where that was concluded. ``requires`` leaves out what the force does not need
 (``dependence``, ``requirements``), for ``replay`` to run after the fact.
 
-**ExplicitForm -> Dynamics.** ``lower`` is the tick, in the order it runs: sample (``handle``), force, outputs, and one
-period of motion. Expressions become values of a ``trace`` by ``expressions`` (``phase`` and ``constants`` look after
-angles and numbers, ``simplify`` after every operation). Whatever must be differentiated, evaluated in numbers or shared
-is in ``graph`` (``differentiate``, ``algebra``). ``dynamics`` answers one question: in this state at this instant, what
-are the accelerations? For M a = f alone that is ``solve``; ``mass`` has looked whether there is an answer,
-``first_sample`` where it starts, ``zeros`` leaves out what is structurally zero.
+**ExplicitForm -> Dynamics.** ``lower`` checks what was asked for, ``lowering`` is the tick, in the order it runs:
+sample (``handle``), force, outputs, and one period of motion. Expressions become values of a ``trace`` by
+``expressions`` (``phase`` and ``constants`` look after angles and numbers, ``simplify`` after every operation).
+Whatever must be differentiated, evaluated in numbers or shared is in ``graph`` (``differentiate``, ``algebra``).
+``dynamics`` answers one question: in this state at this instant, what are the accelerations? For M a = f alone that is
+``solve``; ``mass`` has looked whether there is an answer, ``first_sample`` where it starts, ``zeros`` leaves out what
+is structurally zero.
 
 - A constraint: ``constraints`` chooses how it is kept, and refuses one that cannot be: ``consistency`` says why,
   ``assembly`` has walked the configurations. ``enforcing`` does what was chosen while it runs: a closed form

@@ -1,36 +1,16 @@
 """Lower a scene to a program: the sample is taken, the force computed from it, then the equations of motion advance."""
 
-from dataclasses import replace
-
-import sympy as sp
-
-from ..errors import ParameterError, ProgramError, SceneError
+from ..errors import ProgramError, SceneError
 from ..scene.scene import Scene
-from ..scene.symbols import Parameter, T, acceleration, delay, lag_of, n, t, v, x
-from ..scene.units import unit_of
 from ..scene.written import no_scene
 from .advance import Taylor
-from .allowed import bounded, limits
-from .bounds import guarded, notes_of
-from .channels import channel_of, short
-from .constants import entering
-from .contact_steps import limited
-from .dynamics import Dynamics
-from .exact import EXACT, Exact, exact_and_rest
-from .expressions import Translator
-from .graph import Graph
-from .handle import HOLDS, VELOCITIES, Handle
-from .held import notes_on
-from .ir import Channel
+from .exact import EXACT, exact_and_rest
+from .handle import HOLDS, VELOCITIES
+from .lowering import REAL_OF, Lowering
 from .methods import METHODS
-from .modes import excluded, folded, rests_on, within
+from .modes import excluded, rests_on
 from .options import choice, live_names, period, steps
 from .pairs import Contacts
-from .phase import Clock
-from .trace import cast
-from .tracing import Tracing
-
-REAL_OF = {"float32": "f32", "float64": "f64"}
 
 
 def compile(
@@ -112,7 +92,7 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, undecided=(
                 model.contacts.check(scene.values)
         other = Taylor() if other == Taylor.name else other
         other = other if isinstance(other, Taylor) else METHODS.get(other)
-        return _Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live).program(
+        return Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live).program(
             rests_on(form, decisions)
         )
     except RecursionError:
@@ -120,181 +100,3 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, undecided=(
             f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals, "
             "y = hl.signal(...), with an equation for each"
         ) from None
-
-
-class _Lowering:
-    """One scene on its way to a program."""
-
-    def __init__(self, scene, form, exact, method, T, substeps, hold, dtype, velocity, live):
-        self.scene, self.form, self.exact = scene, form, None
-        self.method, self.substeps = method, substeps
-        names = "+".join([EXACT] * exact + ([method.name] if method else []))
-        self.facts = {"method": names, "substeps": substeps, "hold": hold, "velocity": velocity, "dtype": dtype}
-        if not self.form.coordinates:
-            self.facts = {"velocity": velocity, "dtype": dtype}
-        parameters = tuple(scene.parameters.values())
-        self.tracing = Tracing(REAL_OF[dtype], T, parameters)
-        for value, text in ((T, "T"), (1 / T, "1/T with T"), (T / substeps, "T/substeps with T")):
-            entering(value, REAL_OF[dtype], f"{text} = {T:g} s", ParameterError)
-        self.handle = Handle(self.tracing, velocity, hold)
-        self.folded = folded(scene, live)
-        self.limits = limits(form, scene.values, self.folded, T)
-        self.graph = Graph(self.folded)
-        self.at_start = Translator(self.tracing.init, self._leaf_at_start, bound=scene.values, graph=self.graph)
-        self.at_sample = self.translator(self._leaf_at_sample)
-        self.resolving, self.resolved = [], set()
-        if exact and form.coordinates:
-            self.exact = Exact(self, form, method and method.name)
-            self.form = self.exact.others
-        self.dynamics = Dynamics(self, self.form, method, substeps)
-
-    def program(self, ranges):
-        """Trace the tick in the order it runs; outside of ``ranges``, of coordinates, the force is no number."""
-        real = self.tracing.real
-        force = within(self._real(self.at_sample(self.form.force)), ranges, self.at_sample)
-        outputs = [(Channel("F", "N", real), force)]
-        units = self.scene.watch_units
-        for name, expr in self.form.watch.items():
-            outputs.append((Channel(name, units[name], real), self._real(self.at_sample(expr))))
-        unlocated = self._advance()
-        if unlocated is not None:
-            outputs.append((Channel("unlocated", "1", real), unlocated))
-        self.tracing.complete()
-        outputs, ranges = guarded(self, outputs, ranges)
-        unused = [str(sample) for sample in self.form.updates if sample not in self.resolved]
-        unused += self.exact.left_out if self.exact else ()
-        program = self.tracing.finish(self.scene.name, outputs, self.scene.values, self.facts, unused)
-        program = limited(program, self.dynamics.largest)
-        program = bounded(program, self.limits)
-        for channel, value in zip(program.parameters, program.values, strict=True):
-            if value == value:
-                self._entering(channel.name, value)
-        exact = self.exact.notes if self.exact else ()
-        lengths = notes_on(self.scene, self.folded)
-        return replace(program, notes=(*program.notes, *exact, *self.dynamics.notes, *lengths, *notes_of(ranges)))
-
-    def translator(self, leaf, after=0.0):
-        """Return what translates expressions of the tick, ``after`` [s] after the sample."""
-        clock = Clock(self._tick_count, self.tracing.T, after)
-        at_sample = getattr(self, "at_sample", None)  # the first that is made
-        return Translator(self.tracing.tick, leaf, clock, self.scene.values, self.graph, at_sample)
-
-    def _entering(self, name, value):
-        return entering(value, self.tracing.real, f"{name} = {value:g}", ParameterError)
-
-    def _real(self, value):
-        if value.type == "bool":
-            raise SceneError(f"{self.scene.name}: a condition is not a number; write hl.when(condition, 1, 0)")
-        return cast(value, self.tracing.real)
-
-    # what the leaves of an expression stand for, at the first sample, at sample n, and inside a step
-
-    def _common(self, builder, symbol):
-        """Return a parameter, T, or None."""
-        if symbol == T:
-            return builder.const(self.tracing.T)
-        if isinstance(symbol, Parameter):
-            if symbol.name in self.folded:
-                return builder.const(self._entering(symbol.name, self.folded[symbol.name]))
-            return self.tracing.parameter(builder, self.tracing.parameters.index(symbol))
-        return None
-
-    def _leaf_at_start(self, leaf):
-        common = self._common(self.tracing.init, leaf)
-        if common is not None:
-            return common
-        kind = type(leaf)
-        if leaf in (n, t):
-            return self.tracing.init.const(0.0)
-        if kind in (x, v):
-            return self.handle.first(kind)
-        if kind is acceleration or getattr(kind, "role", "signal") not in ("coordinate", "signal"):
-            return self.tracing.init.const(0.0)  # reactions and what impacts add up to: nothing has happened yet
-        if isinstance(leaf, delay):
-            return self.at_start(leaf.args[0])
-        if isinstance(leaf, sp.Derivative):
-            return self.at_start(type(leaf.expr).rate)
-        if kind.role == "signal" and lag_of(leaf) == 0:
-            return self._resolve(leaf, self.at_start)
-        # the handle's acceleration, reactions and what impacts add up to start at zero
-        return self.at_start(getattr(kind, "initial", sp.S.Zero))
-
-    def _leaf_at_sample(self, leaf):
-        common = self._common(self.tracing.tick, leaf)
-        if common is not None:
-            return common
-        tracing, kind = self.tracing, type(leaf)
-        if leaf in (n, t):
-            count = self._tick_count()
-            return count if leaf == n else count * tracing.T
-        if kind in (x, v):
-            return self.handle.sample(kind, lag_of(leaf) or 0)
-        if kind is acceleration:
-            return self.handle.acceleration()
-        if isinstance(leaf, delay):
-            argument = leaf.args[0]
-            channel = Channel(short(leaf), unit_of(argument), tracing.real)
-            return tracing.state(leaf, channel, self.at_start(argument), lambda: self.at_sample(argument))
-        if isinstance(leaf, sp.Derivative) or kind.role == "coordinate":
-            return self._coordinate_state(leaf)
-        if kind.role != "signal":
-            return self.dynamics.leaf_at_sample(leaf)
-        lag = lag_of(leaf)
-        if lag == 0:
-            return self._resolve(leaf, self.at_sample)
-        channel = Channel(str(leaf), kind.unit, tracing.real)
-        return tracing.state(leaf, channel, self.at_start(kind.initial), lambda: self.at_sample(leaf.func(n - lag + 1)))
-
-    def _resolve(self, sample, translate):
-        """Return y(n) by its difference equation; refuse one that needs itself."""
-        if sample not in self.form.updates:
-            raise SceneError(f"{sample} has no equation; add sp.Eq({sample}, ...) to eom")
-        if sample in self.resolving:
-            loop = " -> ".join(map(str, [*self.resolving, sample]))
-            raise SceneError(f"{loop}: a sample cannot depend on itself; use {type(sample).__name__}(n-1) on one side")
-        self.resolving.append(sample)
-        self.resolved.add(sample)
-        value = translate(self.form.updates[sample])
-        self.resolving.pop()
-        return value
-
-    def _tick_count(self):
-        # time is counted in whole ticks: a float32 sum of periods is seconds wrong after minutes
-        tracing = self.tracing
-        count = tracing.state("tick", Channel("tick", "1", "i32"), tracing.init.const(0, "i32"))
-        tracing.set_next("tick", tracing.tick.emit("iadd", count, tracing.tick.const(1, "i32")))
-        return tracing.tick.emit("itof", count, type=tracing.real)
-
-    def _coordinate_state(self, leaf):
-        """Return q or q' as it is at the sample."""
-        if self.exact and leaf in self.exact.states:
-            return self.exact.state(leaf)
-        follows = self.dynamics.leaf_at_sample(leaf) if leaf not in self.dynamics.states else None
-        if follows is not None:
-            return follows
-        q, order = (leaf.expr, leaf.derivative_count) if isinstance(leaf, sp.Derivative) else (leaf, 0)
-        if order >= self.form.orders[self.form.coordinates.index(q)]:
-            raise SceneError(
-                f"{leaf} is what the equations of motion solve for; the force and what is watched may use "
-                f"{type(q).__name__} and lower derivatives"
-            )
-        return self.state(leaf)
-
-    def state(self, leaf):
-        """Return a state of the equations of motion as it is at the sample."""
-        return self.tracing.state(leaf, channel_of(leaf, self.tracing.real), self.first_of(leaf))
-
-    def first_of(self, state):
-        """Return q or q' at the first sample."""
-        return self.at_start(type(state.expr).rate if isinstance(state, sp.Derivative) else type(state).initial)
-
-    # one period of the equations of motion
-
-    def _advance(self):
-        if self.exact:
-            self.exact.advance()
-        values, facts, unlocated = self.dynamics.advance()
-        self.facts |= facts
-        for state, value in zip(self.dynamics.states, values, strict=True):
-            self.tracing.set_next(state, value)
-        return unlocated
