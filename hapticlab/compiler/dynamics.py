@@ -108,7 +108,7 @@ class Dynamics:
         """Return what translates expressions at ``tau`` [s] after the sample, in the state (q, w, s)."""
         lowering, exact = self.lowering, self.lowering.exact
         held = dict(zip(self.states, [*q, *w, *s], strict=True)) | (exact.at(tau) if exact else {})
-        held |= dict(zip((x(t), v(t)), lowering.handle.motion(tau), strict=True)) | self.contacts.leaves
+        held |= lowering.handle.leaves(tau) | self.contacts.leaves
 
         def leaf(expr):
             if expr in held:

@@ -1,6 +1,6 @@
 """How a program sees the handle: the samples it remembers, its velocity, and its motion between two samples."""
 
-from ..scene.symbols import v, x
+from ..scene.symbols import t, v, x
 from .ir import Channel
 
 HOLDS = ("zoh", "foh", "soh")
@@ -71,6 +71,10 @@ class Handle:
         if self.velocity == "backward_difference":
             velocity = velocity + acceleration * (self.T / 2)
         return position + (velocity + acceleration * (tau / 2)) * tau, velocity + acceleration * tau
+
+    def leaves(self, tau):
+        """Return what an equation of motion sees of the handle at tau [s] after the sample: expression -> value."""
+        return dict(zip((x(t), v(t)), self.motion(tau), strict=True))
 
     def polynomial(self):
         """Return x(t) and v(t) after the sample as ``hold`` sees them, each as value, rate, ... at the sample: two lists."""

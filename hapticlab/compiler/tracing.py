@@ -15,6 +15,7 @@ class Tracing:
         self.real, self.T = real, T
         self.init, self.tick = Builder(real), Builder(real)
         self.parameters = parameters  # tuple of scene parameters, in order
+        self.inputs = [Channel("x", "m", real), Channel("v", "m/s", real)]
         self._states = {}  # key -> [channel, first value, next value]
         self._waiting = []  # (key, callable) of next values not traced yet
 
@@ -41,7 +42,7 @@ class Tracing:
     def at_start(self, values):
         """Return what the leaves of the tick are at the first sample, x = 0: dict (op, index) -> float; nan unbound."""
         given = {("param", k): values.get(p.name, float("nan")) for k, p in enumerate(self.parameters)}
-        given |= {("input", 0): 0.0, ("input", 1): 0.0}
+        given |= {("input", k): 0.0 for k in range(len(self.inputs))}
         number = numbers(self.init.instructions, given)
         return given | {("state", k): number(first.id) for k, (_, first, _) in enumerate(self._states.values())}
 
@@ -66,13 +67,12 @@ class Tracing:
         live = {i.index for block in (init, tick) for i in block.instructions if i.op == "param"}
         kept = [k for k in range(len(self.parameters)) if k in live]
         order = {"state": {k: new for new, k in enumerate(alive)}, "param": {k: new for new, k in enumerate(kept)}}
-        uses_v = any(i.op == "input" and i.index == 1 for block in (init, tick) for i in block.instructions)
-        inputs = (Channel("x", "m", self.real), Channel("v", "m/s", self.real))[: 1 + uses_v]
+        last = max((i.index for block in (init, tick) for i in block.instructions if i.op == "input"), default=0)
         named = [self.parameters[k] for k in kept]
         notes = (f"left out, because no output can see it: {', '.join(dropped)}",) if dropped else ()
         return Program(
             name=name,
-            inputs=inputs,
+            inputs=tuple(self.inputs[: last + 1]),
             parameters=tuple(Channel(p.name, p.unit, self.real, p.low, p.high) for p in named),
             states=tuple(states[k][0] for k in alive),
             outputs=tuple(channel for channel, _ in outputs),
