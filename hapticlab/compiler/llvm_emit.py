@@ -1,14 +1,17 @@
 """A program as the text of one LLVM function that runs it for many ticks, one lane or a vector of lanes at a time.
 
 States travel in phi nodes. What depends on parameters alone is computed before the loop over ticks; what only the
-outputs need is computed where they are stored. No instruction carries a fast-math flag, so LLVM may neither contract
-a*b + c nor reorder a sum: the bits are those of the interpreter.
+outputs need is computed where they are stored; what only one arm of a select needs, where that arm is chosen, if it is
+much. No instruction carries a fast-math flag, so LLVM may neither contract a*b + c nor reorder a sum: the bits are those
+of the interpreter.
 """
 
 import struct
 
+from .branches import Branches
 from .ir import ELEMENTARY, LEAVES
 from .side_by_side import functions, in_order
+from .skipped import Demand
 from .trace import reachable
 
 SCALAR = {"f32": "float", "f64": "double", "bool": "i1", "i32": "i32"}
@@ -55,18 +58,22 @@ tick:
   {states}
   {sample}
   {tick}
+  br label %stepped
+stepped:
   %left.less = sub i64 %left, 1
   %due = icmp eq i64 %left.less, 0
   br i1 %due, label %store, label %next
 store:
   {kept}
+  br label %stored
+stored:
   {outputs}
   %out.size = mul i64 %stride, {output_count}
   %out.after = getelementptr double, ptr %out, i64 %out.size
   br label %next
 next:
-  %left.next = phi i64 [ %left.less, %tick ], [ %every, %store ]
-  %out.next = phi ptr [ %out, %tick ], [ %out.after, %store ]
+  %left.next = phi i64 [ %left.less, %stepped ], [ %every, %stored ]
+  %out.next = phi ptr [ %out, %stepped ], [ %out.after, %stored ]
   %row.next = getelementptr double, ptr %row, i64 {input_count}
   %n.next = add i64 %n, 1
   %more = icmp slt i64 %n.next, %ticks
@@ -243,22 +250,27 @@ def emit(program, lanes=1):
     init, tick = program.init, program.tick
     first = w.names(init, "i", {"param": "%p", "input": "%y"})
     names = w.names(tick, "t", {"param": "%p", "input": "%x", "state": "%s"})
-    begun, after = ([n[k] for k in b.states] for n, b in ((first, init), (names, tick)))
+    begun = [first[k] for k in init.states]
     hoisted = _needs_parameters_alone(program.tick)
     stepped = set(reachable(program.tick.instructions, program.tick.states)) - hoisted
+    fixed = w.lines(tick, names, hoisted)
+    kept = set(reachable(tick.instructions, tick.outputs)) - stepped - hoisted
+    written = Branches(w, tick, Demand(tick), names)
+    advance, keep = (written.lines(sorted(part), label) for part, label in ((stepped, "tick"), (kept, "store")))
+    after = [names[k] for k in tick.states]
     phi = "{0}{1} = phi {2} [ {3}, {4} ], [ {5}, {6} ]".format
     types = [w.types[c.type] for c in program.states]
     parts = {
         "parameters": w.load_lanes("%p", program.parameters, "%parameters"),
-        "hoisted": w.lines(tick, names, hoisted),
+        "hoisted": fixed,
         "sample_of_init": w.load_sample("%y", program.inputs, "%inputs"),
         "init": w.lines(init, first, range(len(init.instructions))),
         "resume": w.load_lanes("%r", program.states, "%states"),
         "start": [phi("%b", k, t, begun[k], "%init", f"%r{k}", "%resume") for k, t in enumerate(types)],
         "states": [phi("%s", k, t, f"%b{k}", "%start", after[k], "%next") for k, t in enumerate(types)],
         "sample": w.load_sample("%x", program.inputs, "%row"),
-        "tick": w.lines(tick, names, stepped),
-        "kept": w.lines(tick, names, {*range(len(tick.instructions))} - stepped - hoisted),
+        "tick": advance,
+        "kept": keep,
         "outputs": w.store_lanes("%o", program.outputs, [names[k] for k in program.tick.outputs], "%out"),
         "save": w.store_lanes("%e", program.states, after, "%states"),
     }
