@@ -1,5 +1,6 @@
 """Advance a scene by ``method="taylor"``: the series of its motion, events located, the order chosen and the step checked."""
 
+import math
 from dataclasses import dataclass
 
 from ..errors import ProgramError
@@ -21,6 +22,7 @@ from .stiffness import (
     order_for,
     within,
 )  # fmt: skip
+from .switched import Maps
 from .trace import select
 
 #: most located events of a step: what touches may leave within it, and something else may happen too
@@ -62,6 +64,20 @@ class Taylor:
         for name, given, low, high in (("order", self.order, 2, 20), ("events", self.events, 1, 8)):
             if given is not None and (type(given) is not int or not low <= given <= high):
                 raise ProgramError(f"{name} = {given!r}; needs a whole number in {low}..{high}")
+
+
+@dataclass(frozen=True)
+class Switched(Taylor):
+    """``method="exact"`` of a motion that is linear between switches: see :mod:`hapticlab.compiler.switched`.
+
+    Parameters
+    ----------
+    why : str
+        Why it is not one linear system: the reason to refuse it where it is not linear in every mode either.
+    """
+
+    why: str = ""
+    name = "exact"
 
 
 def advance(
@@ -106,6 +122,8 @@ def advance(
     builder, real = tracing.tick, tracing.real
     motion = motion_of(builder, rates, len(groups[0]), len(groups[2]), contacts)
     check_smooth(motion, name)
+    if isinstance(method, Switched):
+        return switched(method, tracing, motion, groups, h, name, impact and impact(motion), after)
     linear = is_linear(motion)
 
     def fastest(values):
@@ -124,8 +142,7 @@ def advance(
     steps = FEWER_STEPS if omega * h <= 0.05 and linear else STEPS
     remainder = remainder_for(order, real, linear)
     stepper = Stepper(motion, h, order, events, impact and impact(motion), steps=steps, remainder=remainder)
-    held = [_held(tracing, k) for k in range(len(motion.reactions))]
-    now, missed = held, None
+    now, missed = [held_state(tracing, k) for k in range(len(motion.reactions))], None
     for step in range(substeps):
         groups, now, left_out = stepper.step(builder.const(step * h), groups, now, jumped=step == 0)
         check_size(motion, builder, name)
@@ -144,6 +161,26 @@ def advance(
     return groups, facts, None if motion.smooth else missed
 
 
-def _held(tracing, k):
+def held_state(tracing, k):
     """Return whether reaction k is held: sticking, or at rest; a motion starts free."""
     return tracing.state(("held", k), Channel(f"held({k})", "1", "bool"), tracing.init.const(False))
+
+
+def switched(method, tracing, motion, groups, h, name, impact, after):
+    """Trace one period of a motion that is linear between switches; see :func:`advance`."""
+    maps = Maps(motion, h, method.why, tracing.parameters)
+    events = method.events or _EVENTS[len(motion.guards) + len(motion.reactions) > 2]
+    turns = maps.omega * h
+    stepper = Stepper(
+        motion, h, order_for(min(turns, 1.0) / 2, tracing.real, True), events, impact,
+        longest=maps.longest, pieces=events + max(1, math.ceil(turns)),
+    )  # fmt: skip
+    held = [held_state(tracing, k) for k in range(len(motion.reactions))]
+    groups, held, missed = maps.step(stepper, groups, held)
+    check_size(motion, tracing.tick, name)
+    for k, value in enumerate(held):
+        tracing.set_next(("held", k), value)
+    if after:
+        after(stepper.reactions(tracing.tick.const(h), groups, held)[: motion.given])
+    facts = {"maps": len(maps.modes), "order": stepper.order, "events": events, "pieces": stepper.pieces}
+    return groups, facts | ({"omega": float(f"{maps.omega:.4g}")} if turns else {}), missed

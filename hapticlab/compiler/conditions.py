@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .trace import select
+from .trace import Value, select
 from .zeros import ZERO, is_zero
 
 
@@ -14,6 +14,12 @@ def signed(negative, c):
 def either(condition, a, b):
     """Choose between conditions, as select does between numbers."""
     return (condition & a) | (~condition & b)
+
+
+def one_of(condition, a, b):
+    """Choose between conditions as :func:`either`, by a select: what only one of them needs may be skipped."""
+    a, b = (c if isinstance(c, Value) else bool(c) for c in (a, b))
+    return 0.5 < select(condition, select(a, 1.0, 0.0), select(b, 1.0, 0.0))
 
 
 def size(values):

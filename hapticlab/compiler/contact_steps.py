@@ -12,6 +12,7 @@ from ..scene.contact_laws import impulse
 from ..scene.derivative import Partial, Rate
 from ..scene.force_laws import hunt_crossley
 from ..scene.parameters import Parameter
+from .advance import Taylor
 from .first_sample import numbers
 from .impact import check_rest_speed
 
@@ -54,7 +55,7 @@ def check_contacts(form, values, h, T, method):
         if J is None or not any(J):
             continue
         column = np.linalg.solve(M, J)
-        if c.is_force and method.name != "taylor":
+        if c.is_force and not isinstance(method, Taylor):
             k = numbers([c.law.k], values)
             if k is not None:
                 check_contact_steps(c, k[0], float(column @ J), h, T, method=method.name)

@@ -36,6 +36,24 @@ def degree(p):
     return max((k for k, c in enumerate(p) if not is_zero(c)), default=0)
 
 
+def scaled(p, length):
+    """Return the coefficients of p on [0, length], taken as [0, 1]."""
+    parts, power = [p[0]], length
+    for c in p[1:]:
+        parts.append(times(power, c))
+        power = power * length
+    return parts
+
+
+def departing(p, just, level):
+    """Return a gap or slip that was just let go without what rounding left of its first derivatives: it opens."""
+    p = list(p)
+    p[1] = select(just, maximum(p[1], 0.0), p[1])
+    if level == 2:
+        p[2] = select(just & (p[1] <= 0.0), maximum(p[2], 0.0), p[2])
+    return p
+
+
 def first_crossing(p, starts_at_zero=False, steps=None):
     """Return where p first goes from positive to negative within [0, 1], and whether it does.
 

@@ -12,13 +12,13 @@ from itertools import chain
 import numpy as np
 
 from . import trace
-from .conditions import any_of, either, signed, size
-from .crossing import first_crossing, horner
+from .conditions import any_of, either, one_of, signed, size
+from .crossing import departing, first_crossing, horner, scaled
 from .flow import Flow
 from .remainder import exceeded
 from .taylor import product
 from .trace import select
-from .zeros import is_zero, times
+from .zeros import is_zero, plus, times
 
 #: two crossings closer than this part of a piece happen at once
 TOGETHER = {"f64": 1e-14, "f32": 1e-6}
@@ -59,12 +59,19 @@ class Stepper:
     remainder : (float, float), optional
         Of a motion that is not linear, whose series may diverge: the part of each state that the last term may be. Past
         the first, the step counts as unlocated; past the second, the state is not a number.
+    longest : callable flags -> value, optional
+        Longest piece in the modes of these flags, as a part of the step: see :mod:`hapticlab.compiler.switched`.
+    pieces : int, optional
+        Where pieces are held to a length; one more than the events, otherwise.
     """
 
-    def __init__(self, motion, h, order, events, impact=None, number=None, steps=None, remainder=None):
+    def __init__(
+        self, motion, h, order, events, impact=None, number=None, steps=None, remainder=None, longest=None, pieces=None
+    ):
         self.motion, self.h, self.order = motion, h, order
-        self.events = 0 if motion.smooth else events
+        self.pieces = pieces or 1 + (0 if motion.smooth else events)
         self.impact, self.number, self.steps, self.remainder = impact, number, steps, remainder
+        self.longest = longest
 
     def step(self, tau, state, held=(), jumped=False):
         """Return (state, held, unlocated) at tau + h; ``unlocated`` is true where an event was left out.
@@ -75,16 +82,33 @@ class Stepper:
         now = self._start(tau, state, list(held))
         if jumped and self.motion.driven:
             now = self._put_back(now)
-        for piece in range(self.events + 1):
+        ends = []
+        for piece in range(self.pieces):
             flow, now = self._flow(now)
+            reach = trace.minimum(now.left, self.longest(now.flags)) if self.longest else now.left
             guards = [
-                self._crossing(p, just, idle, now.left)
+                self._crossing(p, just, idle, reach)
                 for (p, just), idle in zip(self._guards(flow, now), self._idles(now), strict=True)
             ]
-            if piece < self.events:
-                now = self._advanced(flow, now, guards)
-        state = self._moved(flow, now, now.left)
-        return state, now.held, self._rough | any_of(found for _, found in guards)
+            if piece < self.pieces - 1:
+                now = self._advanced(flow, now, guards, reach)
+                ends.append(now)
+        missed = self._rough | any_of(found for _, found in guards)
+        if self.longest:  # what is left stays undone: no series is taken beyond where it holds
+            missed = missed | (reach < now.left)
+        return self._ended(ends, self._moved(flow, now, reach), now.held, missed)
+
+    def _ended(self, ends, state, held, missed):
+        """Return what the first piece that ends the step leaves; all later ones are needed by one case alone."""
+        for now in reversed(ends) if self.longest else ():
+            more = 0.0 < now.left
+            state = tuple(
+                [select(more, later, here) for later, here in zip(*parts, strict=True)]
+                for parts in zip(state, now.state, strict=True)
+            )
+            held = [one_of(more, later, here) for later, here in zip(held, now.held, strict=True)]
+            missed = one_of(more, missed, np.False_)
+        return state, held, missed
 
     def reactions(self, tau, state, held):
         """Return what the reactions are at a state, with those held that are."""
@@ -179,24 +203,8 @@ class Stepper:
         for r, held, side in zip(motion.reactions, now.held, now.sides, strict=True):
             apart, inside = flow.of(r.measure, order), [*flow.of(r.inside, order - 1), 0.0]
             left = next(just)
-            apart = self._departing([c if side is None else signed(~side, c) for c in apart], left, r.level)
+            apart = departing([c if side is None else signed(~side, c) for c in apart], left, r.level)
             yield [a if is_zero(a) and is_zero(b) else select(held, b, a) for a, b in zip(apart, inside, strict=True)], left
-
-    def _departing(self, p, just, level):
-        """Return a gap or slip that was just let go without what rounding left of its first derivatives: it opens."""
-        p = list(p)
-        p[1] = select(just, trace.maximum(p[1], 0.0), p[1])
-        if level == 2:
-            p[2] = select(just & (p[1] <= 0.0), trace.maximum(p[2], 0.0), p[2])
-        return p
-
-    def _scaled(self, p, left):
-        """Return the coefficients on the part of the step that is left, as [0, 1]."""
-        scaled, power = [p[0]], left
-        for c in p[1:]:
-            scaled.append(times(power, c))
-            power = power * left
-        return scaled
 
     def _moved(self, flow, now, theta):
         """Return the state at theta; nan where its series diverges."""
@@ -207,14 +215,14 @@ class Stepper:
         self._rough = rough | self._rough
         return tuple([select(wild, math.nan, value) for value in part] for part in state)
 
-    def _advanced(self, flow, now, guards):
+    def _advanced(self, flow, now, guards, reach):
         """Return where the step stands at the earliest of the crossings found, its mode changed."""
         motion, base = self.motion, len(self.motion.guards)
         earliest = 1.0
         for place, _ in guards:
             earliest = trace.minimum(place, earliest)
         fired = [(place <= earliest + TOGETHER[motion.builder.real]) & found for place, found in guards]
-        theta = earliest * now.left
+        theta = earliest * reach
         state, tau = self._moved(flow, now, theta), now.tau + self.h * theta
         flags = self._toggled(flow, now, theta, fired)
         if any(g.idle for g in motion.guards):  # a guard that did nothing is looked up where it may be needed again
@@ -231,7 +239,8 @@ class Stepper:
                 held.append((was & ~f) | (f & ~was))
                 side = either(f & was, 0.0 < horner(flow.of(r.lean, self.order - 1), theta), side)
             sides.append(side)
-        later = _Now(tau, state, sides, flags, held, fired, now.left * (1.0 - earliest))
+        after = 0.0 if reach is now.left else now.left - reach
+        later = _Now(tau, state, sides, flags, held, fired, plus(after, reach * (1.0 - earliest)))
         return self._struck(now, later, fired) if self.impact else later
 
     def _toggled(self, flow, now, theta, fired):
@@ -246,7 +255,7 @@ class Stepper:
         return flags
 
     def _crossing(self, p, just, idle, left):
-        place, found = first_crossing(self._scaled(p, left), just, self.steps)
+        place, found = first_crossing(scaled(p, left), just, self.steps)
         return (place, found) if idle is None else (select(idle, 1.0, place), ~idle & found)
 
     def _idles(self, now):

@@ -214,12 +214,12 @@ def order_for(omega_h, real, linear):
     return max(low, order)
 
 
-def is_linear(motion):
-    """Tell whether the motion of every mode is linear in its state, driven by polynomials of time at most."""
+def is_linear(motion, measures=()):
+    """Tell whether the motion of every mode is linear in its state, driven by polynomials of time at most; measures too."""
     instructions = motion.builder.instructions
     moving = {leaf.id for leaf in (*motion.q, *motion.w, *motion.s, *(r.leaf for r in motion.reactions))}
     timely = {motion.tau.id}
-    for p in reachable(instructions, [rate.id for rate in (*motion.a, *motion.ds)]):
+    for p in reachable(instructions, [value.id for value in (*motion.a, *motion.ds, *measures)]):
         i = instructions[p]
         which = [a in moving or a in timely for a in i.args]
         if not any(which):
