@@ -21,8 +21,8 @@ class Branches:
     def __init__(self, writer, block, demand, names):
         self.writer, self.block, self.demand, self.names = writer, block, demand, names
         self.users = [[] for _ in block.instructions]
-        for k, i in enumerate(block.instructions):
-            for a in i.args if demand.of[k] is not None else ():
+        for k, needed in enumerate(demand.of):
+            for a in demand.before(k) if needed is not None else ():
                 self.users[a].append(k)
         self._count = 0
 

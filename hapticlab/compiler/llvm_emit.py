@@ -11,7 +11,7 @@ import struct
 from .branches import Branches
 from .ir import ELEMENTARY, LEAVES
 from .side_by_side import functions, in_order
-from .skipped import Demand
+from .skipped import Demand, in_lazy_order
 from .trace import reachable
 
 SCALAR = {"f32": "float", "f64": "double", "bool": "i1", "i32": "i32"}
@@ -24,7 +24,7 @@ LINES = {
     "add": "fadd {t} {0}, {1}", "sub": "fsub {t} {0}, {1}", "mul": "fmul {t} {0}, {1}", "div": "fdiv {t} {0}, {1}",
     "sqrt": "call {t} @llvm.sqrt.{s}({t} {0})", "floor": "call {t} @llvm.floor.{s}({t} {0})",
     "lt": "fcmp olt {a} {0}, {1}", "le": "fcmp ole {a} {0}, {1}", "eq": "fcmp oeq {a} {0}, {1}",
-    "and": "and {t} {0}, {1}", "or": "or {t} {0}, {1}", "not": "xor {t} {0}, {true}",
+    "and": "select {a} {0}, {t} {1}, {t} {false}", "or": "select {a} {0}, {t} {true}, {t} {1}", "not": "xor {t} {0}, {true}",
     "select": "select {a} {0}, {t} {1}, {t} {2}",
     "iadd": "add {t} {0}, {1}", "itof": "sitofp {a} {0} to {t}",
 }  # fmt: skip
@@ -124,7 +124,8 @@ class Writer:
         if "@" in LINES[i.op]:
             name = {"abs": "fabs"}.get(i.op, i.op)
             self.intrinsics.add(f"declare {t} @llvm.{name}.{suffix}({t})")
-        return f"{result} = " + LINES[i.op].format(*operands, t=t, a=a, s=suffix, true=self.const(True, "bool"))
+        true, false = self.const(True, "bool"), self.const(False, "bool")
+        return f"{result} = " + LINES[i.op].format(*operands, t=t, a=a, s=suffix, true=true, false=false)
 
     def exp2i(self, r, type, a):
         """2**a by way of the exponent field. The clamp comes first, so the conversion to an integer is defined."""
@@ -173,7 +174,7 @@ class Writer:
             if i.op in ELEMENTARY:
                 lines += functions(self, block, names, alike)
             else:
-                operands = [names[a] for a in i.args]
+                operands = [names[a] for a in in_lazy_order(block.instructions, i)]
                 lines.append(self.operation(names[alike[0]], i, operands, block.instructions[i.args[0]].type))
         return lines
 

@@ -5,6 +5,7 @@ their conditions choose those arms. Evaluating conditions before arms is always 
 the order found here keeps to it, and gathers what the same choices need.
 """
 
+import functools
 import heapq
 from dataclasses import dataclass
 
@@ -35,6 +36,20 @@ def work(instruction):
     return 0 if instruction.op in LEAVES else _WORK.get(instruction.op, 1)
 
 
+def in_lazy_order(instructions, i):
+    """Return the operands of an instruction: of two conditions first the one that is known earlier."""
+    if i.op not in ("and", "or"):
+        return i.args
+    return sorted(i.args, key=lambda a: _plain(instructions, a, True)[0])
+
+
+def _plain(instructions, condition, chosen):
+    """Return the condition that others are the negations of, and what it is."""
+    while instructions[condition].op == "not":
+        condition, chosen = instructions[condition].args[0], not chosen
+    return condition, chosen
+
+
 class Demand:
     """What is needed under which choices: of each position a set of choices (bits), all of which must hold.
 
@@ -50,31 +65,40 @@ class Demand:
 
     def __init__(self, block):
         self.instructions = block.instructions
-        self.choices = []  # (condition, chosen) of each bit
+        self._bits = {}  # of (condition, chosen)
         self.of = self._demanded(block)
         self._forget_small()
+        self._conditions = functools.cache(lambda needed: [self.choices[bit][0] for bit in _bits(needed)])
 
     def _demanded(self, block):
         """Return the choices that every use of each position makes; None where there is no use."""
-        bits, of = {}, [None] * len(block.instructions)
+        of = [None] * len(block.instructions)
         for k in (*block.outputs, *block.states):
             of[k] = 0
         for k in reversed(range(len(of))):
             if of[k] is None:
                 continue
             i = block.instructions[k]
-            for place, a in enumerate(i.args):
+            first, *rest = in_lazy_order(block.instructions, i) or [None]
+            if first is not None:
+                of[first] = of[k] if of[first] is None else of[first] & of[k]
+            chosen = {"select": (True, False), "and": (True,), "or": (False,)}.get(i.op)
+            for place, a in enumerate(rest):
                 needed = of[k]
-                if i.op == "select" and place and needed.bit_count() < DEEPEST:
-                    needed |= 1 << bits.setdefault(self._choice(i.args[0], place == 1), len(bits))
+                if chosen and needed.bit_count() < DEEPEST:
+                    needed |= self._choosing(first, chosen[place])
                 of[a] = needed if of[a] is None else of[a] & needed
-        self.choices = list(bits)
+        self.choices = list(self._bits)
         return of
 
-    def _choice(self, condition, chosen):
-        while self.instructions[condition].op == "not":
-            condition, chosen = self.instructions[condition].args[0], not chosen
-        return condition, chosen
+    def _choosing(self, condition, chosen, deep=4):
+        """Return the bit of a choice, and of those that it implies: both of ``a and b`` hold where it does."""
+        condition, chosen = _plain(self.instructions, condition, chosen)
+        bits = 1 << self._bits.setdefault((condition, chosen), len(self._bits))
+        if deep and self.instructions[condition].op == ("and" if chosen else "or"):
+            for a in self.instructions[condition].args:
+                bits |= self._choosing(a, chosen, deep - 1)
+        return bits
 
     def _forget_small(self):
         """Drop the choices that would skip too little."""
@@ -86,6 +110,10 @@ class Demand:
                 skipped[bit] += its
         kept = sum(1 << bit for bit, total in enumerate(skipped) if total >= WORTH)
         self.of = [needed and needed & kept for needed in self.of]
+
+    def before(self, k):
+        """Return what must be known before position k: its operands, and the conditions of its choices."""
+        return (*self.instructions[k].args, *self._conditions(self.of[k]))
 
     def arranged(self, positions):
         """Return the positions among these that are of use, in an order to compute them: positions, and arms.
@@ -106,14 +134,12 @@ class _Order:
         left = set(positions)
         self.waits, self.then, self.ready = {}, {}, {}
         self.left = dict.fromkeys((demand.of[k] for k in positions), 0)  #: work by choices needed
-        conditions = {needed: [demand.choices[bit][0] for bit in _bits(needed)] for needed in self.left}
         for k in positions:
-            needed = demand.of[k]
-            before = left.intersection((*demand.instructions[k].args, *conditions[needed]))
+            before = left.intersection(demand.before(k))
             self.waits[k] = len(before)
             for a in before:
                 self.then.setdefault(a, []).append(k)
-            self.left[needed] += work(demand.instructions[k])
+            self.left[demand.of[k]] += work(demand.instructions[k])
         for k in positions:
             if not self.waits[k]:
                 self._queue(k)
@@ -153,7 +179,7 @@ class _Order:
             if needed & choices == choices:
                 found |= needed & ~choices
         known = [bit for bit in _bits(found) if not self.demand.of[self.demand.choices[bit][0]] & ~choices]
-        return max(known, key=lambda bit: (self._skips(bit), -bit), default=None)
+        return max(known, key=lambda bit: (self._skips(bit), bit), default=None)
 
     def _skips(self, bit):
         return sum(much for needed, much in self.left.items() if needed >> bit & 1)

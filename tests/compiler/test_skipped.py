@@ -8,10 +8,11 @@ from hapticlab.compiler import skipped
 from hapticlab.compiler.engine import load
 from hapticlab.compiler.ir import OPERATIONS, Block, Channel, Program
 from hapticlab.compiler.llvm_emit import emit
-from hapticlab.compiler.skipped import Arm, Demand
+from hapticlab.compiler.skipped import Arm, Demand, in_lazy_order
 from hapticlab.compiler.trace import Builder, select, sqrt
 
 MANY_SELECTS = (*PRIMITIVE, *["select"] * 6)
+LOGIC = {"not": lambda a: not next(a), "and": all, "or": any}
 
 
 def long(a, by=3.0, steps=30):
@@ -59,7 +60,12 @@ def needed_lazily(block, values):
         if k not in needed:
             needed.add(k)
             i = block.instructions[k]
-            stack += (i.args[0], i.args[1 if values[i.args[0]] else 2]) if i.op == "select" else i.args
+            operands = in_lazy_order(block.instructions, i)
+            if i.op == "select":
+                operands = i.args[0], i.args[1 if values[i.args[0]] else 2]
+            elif i.op in ("and", "or") and values[operands[0]] == (i.op == "or"):
+                operands = operands[:1]
+            stack += operands
     return needed
 
 
@@ -84,7 +90,8 @@ def test_what_lazy_evaluation_needs_is_computed_in_an_order_that_can_be(monkeypa
     for _ in range(20):  # any truth of the conditions, whether numbers could make it or not
         values = list(rng.random(len(code)) < 0.5)
         for k, i in enumerate(code):
-            values[k] = not values[i.args[0]] if i.op == "not" else values[k]
+            if i.op in LOGIC:
+                values[k] = LOGIC[i.op](values[a] for a in i.args)
         done = computed(items, values)
         assert done >= needed_lazily(program.tick, values)
         most = max(most, len(everything) - len(done))
@@ -134,6 +141,14 @@ def test_the_negation_of_a_condition_is_the_same_choice():
 
     (arm,) = arms(arranged(program_of(body)))
     assert arm.chosen
+
+
+def test_conditions_are_asked_for_one_after_the_other():
+    program = program_of(lambda x, y: select((x < y) & (long(x) < y) | (y < 0.0), x, y))
+    assert len(arms(arranged(program))) == 1
+    both = program_of(lambda x, y: select((x < y) & (y < 2.0), long(x), y) + select(x < y, long(x), 1.0))
+    (arm,) = arms(arranged(both))  # both conditions imply the first
+    assert both.tick.instructions[arm.condition].op == "lt"
 
 
 def test_what_is_needed_anyway_and_what_is_little_is_not_skipped():
