@@ -17,7 +17,7 @@ THETA = 5.371920351148152
 
 
 def exponential(A):
-    """Return e^A of a real square matrix.
+    """Return e^A of a real square matrix, or of each of many, shape (..., n, n).
 
     Examples
     --------
@@ -26,17 +26,18 @@ def exponential(A):
     [[1.0, 1.0], [0.0, 1.0]]
     """
     A = np.asarray(A, float)
-    norm = np.abs(A).sum(axis=0).max() if A.size else 0.0
-    halvings = max(0, int(np.ceil(np.log2(norm / THETA)))) if norm > 0 else 0
-    A = A / 2.0**halvings
-    even, odd, power = np.zeros_like(A), np.zeros_like(A), np.eye(len(A))
+    norm = np.abs(A).sum(axis=-2).max(axis=-1, initial=0.0)
+    halvings = np.ceil(np.log2(np.maximum(norm / THETA, 1.0)))
+    A = A / 2.0 ** halvings[..., None, None]
+    even, odd, power = np.zeros_like(A), np.zeros_like(A), np.eye(A.shape[-1])
     for k in range(0, 14, 2):
         even, odd = even + PADE[k] * power, odd + PADE[k + 1] * power
         power = power @ A @ A
     odd = A @ odd
     result = np.linalg.solve(even - odd, even + odd)
-    for _ in range(halvings):
-        result = result @ result
+    for k in range(int(halvings.max(initial=0.0))):
+        more = halvings > k
+        result[more] = result[more] @ result[more]
     return result
 
 

@@ -9,6 +9,8 @@ linear in time, leaves [-coulomb, coulomb]. All of it is straight-line arithmeti
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ..compiler.trace import equal, maximum, minimum, select, sqrt
 from ..errors import PaddleError
 
@@ -33,19 +35,21 @@ class Piece(NamedTuple):
 
 
 def resolution(length, M, b, k):
-    """Return how many pieces to cut a stretch [s] into, and how many Taylor terms each needs.
+    """Return how many pieces to cut a stretch [s] into, and how many Taylor terms each needs; arrays for arrays.
 
     The derivatives of v grow by at most g h from one to the next, where g solves g^2 = (b/M) g + k/M; h is chosen so
     that g h <= 1, which also leaves room for one zero of a homogeneous solution only.
     """
-    g = (b / M + math.sqrt((b / M) ** 2 + 4 * k / M)) / 2
-    pieces = max(1, math.ceil(g * length))
-    if pieces > MOST_PIECES:
+    g = (b / M + np.sqrt((b / M) ** 2 + 4 * k / M)) / 2
+    pieces = np.maximum(1, np.ceil(g * length)).astype(int)
+    if np.max(pieces) > MOST_PIECES:
+        g = np.broadcast_to(g, pieces.shape).flat[np.argmax(pieces)]
         raise PaddleError(
-            f"coulomb > 0 on a handle that settles in {1 / g:.3g} s would cut the period into {pieces} pieces; at most "
+            f"coulomb > 0 on a handle that settles in {1 / g:.3g} s would cut the period into {np.max(pieces)} pieces; at most "
             f"{MOST_PIECES}. Use T <= {MOST_PIECES / g:.3g} s, more mass, a softer or less damped hand, or coulomb=0."
         )
-    return pieces, next(terms for terms, growth in TERMS.items() if g * length / pieces <= growth)
+    enough = np.searchsorted(list(TERMS.values()), g * length / pieces)
+    return pieces, np.array(list(TERMS))[enough]
 
 
 def slide(piece, x, v, u, d=None):

@@ -7,11 +7,11 @@ chatter boundary at half its true stiffness or beyond any. The coefficients are 
 program serves every mass, damping and period, and lanes may sweep them.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..compiler.exponential import exponential
 from ..compiler.ir import Channel
 from . import friction
 
@@ -28,12 +28,12 @@ def transition(M, b, k, h):
 
     Parameters
     ----------
-    M, b, k, h : float
+    M, b, k, h : float or array
         Mass [kg] > 0, damping [N s/m], stiffness [N/m], duration [s] >= 0.
 
     Returns
     -------
-    dict of str to float
+    dict of str to float or array
         x(h) = xx x + xv v + xu u + xd d and v(h) = vx x + vv v + vu u + vd d.
 
     Examples
@@ -43,16 +43,19 @@ def transition(M, b, k, h):
     >>> round(phi["xu"] * 1e6, 9), round(phi["vu"], 9)      # h**2/2M and h/M
     (10.0, 0.02)
     """
-    from scipy.linalg import expm
-
     # In time over h, with v h, u h^2/M and d h^3/M as coordinates, every entry is of order one and so keeps its
     # relative accuracy; in SI units h^3/6M would drown beside 1.
-    A = np.array([[0, 1, 0, 0], [-k * h * h / M, -b * h / M, 1, 0], [0, 0, 0, 1], [0, 0, 0, 0]])
-    E = expm(A)
+    M, b, k, h = np.broadcast_arrays(*(np.asarray(a, float) for a in (M, b, k, h)))
+    A = np.zeros((*h.shape, 4, 4))
+    A[..., 0, 1] = A[..., 1, 2] = A[..., 2, 3] = 1
+    A[..., 1, 0], A[..., 1, 1] = -k * h * h / M, -b * h / M
+    E = exponential(A)
+    E[(b == 0) & (k == 0), :2] = (1, 1, 1 / 2, 1 / 6), (0, 1, 1, 1 / 2)  # a mass alone coasts, without any rounding
     scale = {"x": 1.0, "v": h, "u": h * h / M, "d": h**3 / M}
-    row = {"x": (0, 1.0), "v": (1, 1 / h if h else 0.0)}
+    row = {"x": (0, 1.0), "v": (1, np.where(h > 0, 1 / np.where(h > 0, h, 1.0), 0.0))}
     column = {name: position for position, name in enumerate("xvud")}
-    return {e: float(E[row[e[0]][0], column[e[1]]] * scale[e[1]] * row[e[0]][1]) for e in PHI}
+    found = {e: E[..., row[e[0]][0], column[e[1]]] * scale[e[1]] * row[e[0]][1] for e in PHI}
+    return found if h.ndim else {e: float(c) for e, c in found.items()}
 
 
 @dataclass(frozen=True)
@@ -162,21 +165,31 @@ class Plant:
 def plant_of(paddle):
     """Return the Plant of a simulated paddle: only what it has."""
     hand = paddle.hand
-    whole, fraction = delay_parts(paddle)
+    whole, split, coulomb, pieces, terms = (a.item() for a in decided(paddle))
     leaning = hand is not None and not hand.moves and hand.intent is not None and hand.k * hand.intent != 0
-    pieces, terms = friction.resolution(max(part_lengths(paddle)), *dynamics(paddle)) if paddle.coulomb else (1, 0)
     return Plant(
         whole=whole,
-        split=fraction > 0,
+        split=split,
         push=hand is not None and (hand.push != 0 or leaning),
         shake=hand is not None and hand.noise > 0,
         spring=hand is not None and hand.k > 0,
         drag=hand is not None and hand.moves and hand.b > 0,
         ramp=hand is not None and hand.moves,
-        coulomb=paddle.coulomb > 0,
+        coulomb=coulomb,
         pieces=pieces,
         terms=terms,
     )
+
+
+def decided(paddle):
+    """Return what the numbers of a paddle decide in its Plant: whole, split, coulomb, pieces and terms, as arrays."""
+    whole, fraction = delay_parts(paddle)
+    pieces, terms, coulomb = 1, 0, np.asarray(paddle.coulomb) > 0
+    if coulomb.any():
+        length = np.maximum(fraction, 1 - fraction) * paddle.T
+        pieces, terms = friction.resolution(np.where(coulomb, length, 0.0), *dynamics(paddle))
+        pieces, terms = np.where(coulomb, pieces, 1), np.where(coulomb, terms, 0)
+    return tuple(np.asarray(a) for a in (whole, np.asarray(fraction) > 0, coulomb, pieces, terms))
 
 
 def dynamics(paddle):
@@ -186,22 +199,22 @@ def dynamics(paddle):
 
 
 def delay_parts(paddle):
-    """Return the whole samples of the delay and the fraction of a sample that is left."""
-    samples = paddle.delay / paddle.T
-    whole = math.floor(samples + WHOLE)
-    fraction = samples - whole
-    return whole, (fraction if fraction > WHOLE else 0.0)
+    """Return the whole samples of the delay and the fraction of a sample that is left; arrays where the paddle has them."""
+    samples = np.asarray(paddle.delay / paddle.T)
+    whole = np.floor(samples + WHOLE).astype(int)
+    fraction = np.where(samples - whole > WHOLE, samples - whole, 0.0)
+    return (whole, fraction) if samples.ndim else (whole.item(), fraction.item())
 
 
 def part_lengths(paddle):
     """Return how long each part of a period lasts [s]."""
     fraction = delay_parts(paddle)[1]
-    return (fraction * paddle.T, (1 - fraction) * paddle.T) if fraction else (paddle.T,)
+    return (fraction * paddle.T, (1 - fraction) * paddle.T) if paddle.plant.split else (paddle.T,)
 
 
 def values(paddle):
-    """Return the values of ``plant_of(paddle).channels()``."""
-    plant, hand = plant_of(paddle), paddle.hand
+    """Return the values of ``paddle.plant.channels()``: numbers, and arrays where the paddle's are."""
+    plant, hand = paddle.plant, paddle.hand
     M, b, k = dynamics(paddle)
     found = {"plant.coulomb": paddle.coulomb}
     if hand is not None:
