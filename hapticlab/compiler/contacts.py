@@ -7,6 +7,7 @@ from ..scene.contact import friction
 from ..scene.contact_laws import impulse, micro_impulse, rigid
 from ..scene.derivative import Partial, Rate
 from ..scene.symbols import t, x
+from .advance import Taylor
 from .bounds import BEYOND
 from .complementarity import response
 from .guards import contact, coulomb
@@ -54,7 +55,7 @@ class Contacts:
 
     def check(self, method):
         """Refuse a method that cannot locate what the scene needs located."""
-        if self.located and method.name != "taylor":
+        if self.located and not isinstance(method, Taylor):
             names = [e.name for e in (*self.contacts, *self.frictions)]
             needs = "need" if len(names) > 1 else "needs"
             at_the_end = ["every impact is late by up to a step"] * bool(self.contacts)
@@ -141,6 +142,11 @@ class Contacts:
             return tracing.tick.const(0.0)
         channel = Channel(kind.__name__, kind.unit, tracing.real)
         return tracing.state(expr, channel, tracing.init.const(0.0))
+
+    def at_the_end(self, expr):
+        """Return a reaction, or what impacts added up to, at the end of the period."""
+        self.at_sample(expr)
+        return self.tracing.next_of(expr)
 
     def finish(self, reactions=()):
         """Set the states that :meth:`at_sample` gave: ``reactions`` are those at the end of the period, if any are located."""

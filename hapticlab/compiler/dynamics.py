@@ -4,6 +4,7 @@ import numpy as np
 import sympy as sp
 
 from ..errors import MassError, ParameterError, SceneError
+from ..scene.derivative import Partial
 from ..scene.symbols import acceleration, t, v, x
 from .advance import Taylor, advance
 from .bounds import BEYOND
@@ -11,11 +12,16 @@ from .constraints import enforcement
 from .contact_starts import check_starts
 from .contact_steps import check_contacts
 from .contacts import Contacts, unfelt
+from .damping import stiffened
 from .first_sample import numbers
+from .force_at import IMPULSE
 from .held import check_lengths
 from .mass import is_definite, start_of
+from .multistep import advanced
 from .port_mass import port_mass
 from .solve import solve
+from .suited import check_suited
+from .zeros import dot, plus, scaled
 
 
 class Dynamics:
@@ -61,6 +67,8 @@ class Dynamics:
         self.largest = {}
         if form.coordinates:
             self.contacts.check(method)
+            if not isinstance(method, Taylor):
+                check_suited(method, form, lowering.graph, lowering.exact is not None)
             check_starts(form, lowering.scene.values)
             self.largest = check_contacts(form, lowering.scene.values, self.h, lowering.tracing.T, method)
         self._now = None
@@ -109,6 +117,10 @@ class Dynamics:
         lowering, exact = self.lowering, self.lowering.exact
         held = dict(zip(self.states, [*q, *w, *s], strict=True)) | (exact.at(tau) if exact else {})
         held |= lowering.handle.leaves(tau) | self.contacts.leaves
+        return self.translator(held, tau, lowering.at_sample, lambda leaf: lowering.translator(leaf, tau))
+
+    def translator(self, held, tau, at_sample, make):
+        """Return what ``make(leaf)`` makes of a leaf: what is ``held``, what constraints determine, else ``at_sample``."""
 
         def leaf(expr):
             if expr in held:
@@ -116,25 +128,49 @@ class Dynamics:
             follows = instant.leaf(expr) if instant else None
             if follows is not None:
                 return follows
-            return lowering.at_sample(expr) + tau if expr == t else lowering.at_sample(expr)
+            return at_sample(expr) + tau if expr == t else at_sample(expr)
 
-        translate = lowering.translator(leaf, tau)
+        translate = make(leaf)
         instant = self.enforced.instant(translate) if self.enforced else None
         translate.instant = instant
         return translate
 
-    def rates(self, tau, q, w, s):
-        """Return (a, ds): the accelerations of ``second`` and the rates of ``first``."""
-        translate = self.at(tau, q, w, s)
-        a, ds = self.enforced.rates(translate.instant, *self._values(translate)) if self.enforced else ([], [])
-        M, f = self._part(self.others) if self.enforced else (self.form.M, self.form.f)
-        solution = solve([list(map(translate, row)) for row in M], list(map(translate, f)), self.definite) if f else []
+    def rates(self, tau, q, w, s, at=None):
+        """Return (a, ds): the accelerations of ``second`` and the rates of ``first``; ``at`` makes the translator."""
+        translate, implicit = (at or self.at)(tau, q, w, s), getattr(self.method, "implicit_damping", False)
+        a, ds = [], []
+        if self.enforced:
+            M, f = self._values(translate, self.enforced.coordinates, implicit)
+            a, ds = self.enforced.rates(translate.instant, M, f)
+            felt = [r for f in self.form.f for r in f.atoms(sp.Function) if IMPULSE in self.others and hasattr(type(r), "constraint")]
+            found = self.enforced.reactions(translate.instant, M, f) if felt else {}
+            translate.known |= {r: found[type(r).constraint] for r in felt}
+        solution = solve(*self._values(translate, self.others, implicit), self.definite) if self.others else []
         found = dict(zip(self.others, solution, strict=True))
+        if implicit and IMPULSE in found:
+            found[IMPULSE] = self._felt_at_the_end(translate, found)
         return [*a, *(found[q] for q in self.second if q in found)], [*ds, *(found[q] for q in self.first if q in found)]
 
-    def _values(self, translate):
-        M, f = self._part(self.enforced.coordinates)
+    def reaction(self, expr, translate, instant):
+        """Return the reaction of a constraint at the instant of a translator."""
+        if type(expr).constraint not in self.constraints:
+            raise SceneError(f"{expr} is the reaction of {type(expr).constraint} = 0; add it to the constraints of hl.lagrange")
+        return self.enforced.reactions(instant, *self._values(translate, self.enforced.coordinates))[type(expr).constraint]
+
+    def _values(self, translate, coordinates, implicit=False):
+        """Return M and f of some coordinates as values, with ``implicit`` damping (M - h D, f)."""
+        M, f = self._part(coordinates)
+        if implicit:
+            orders = [self.form.orders[self.form.coordinates.index(q)] for q in coordinates]
+            return stiffened(M, f, coordinates, orders, translate, self.h, self.lowering.scene.values)
         return [list(map(translate, row)) for row in M], list(map(translate, f))
+
+    def _felt_at_the_end(self, translate, found):
+        """Return the force that implicit damping ends with: what it gives the bodies, with the rates it moves them to."""
+        felt = self.form.f[self.form.coordinates.index(IMPULSE)]
+        slopes = [translate(Partial(felt, q.diff(t))) for q in self.second if q in found]
+        moved = [found[q] for q in self.second if q in found]
+        return plus(found[IMPULSE], scaled(self.h, dot(slopes, moved)))
 
     def _hovering(self, tau, state):
         """Return the state after the micro-impulses at the end of a step."""
@@ -143,8 +179,8 @@ class Dynamics:
         if self.enforced:
             names = ", ".join(c.name for c in self.contacts.hovering)
             raise SceneError(f"{names}: micro-impulses know no constraints; take the law impulse or rigid, with method='taylor'")
-        translate, (M, f) = self.at(tau, *state), self._part(self.second)
-        M, f = [list(map(translate, row)) for row in M], list(map(translate, f))
+        translate = self.at(tau, *state)
+        M, f = self._values(translate, self.second)
         return state[0], self.contacts.hover(tau, state, M, f, self.second, self.h, self.definite), state[2]
 
     def settled(self, tau, state):
@@ -154,7 +190,7 @@ class Dynamics:
 
         def at(state):
             translate = self.at(tau, *state)
-            return translate.instant, self._values(translate)[0]
+            return translate.instant, self._values(translate, self.enforced.coordinates)[0]
 
         n2, n1 = len(self.enforced.second), len(self.enforced.first)
         q, w, s = state
@@ -170,15 +206,12 @@ class Dynamics:
         role = getattr(type(expr), "role", None)
         if role in ("reaction", "impulse", "impact_loss", "impact_work", "rub") and not hasattr(type(expr), "constraint"):
             return self.contacts.at_sample(expr)
-        if hasattr(type(expr), "constraint") and type(expr).constraint not in self.constraints:
-            raise SceneError(f"{expr} is the reaction of {type(expr).constraint} = 0; add it to the constraints of hl.lagrange")
+        if self.enforced and self._now is None:
+            self._now = self.enforced.instant(self.lowering.at_sample)
+        if hasattr(type(expr), "constraint"):
+            return self.reaction(expr, self.lowering.at_sample, self._now)
         if not self.enforced:
             return None
-        if self._now is None:
-            self._now = self.enforced.instant(self.lowering.at_sample)
-        if role == "reaction":
-            found = self.enforced.reactions(self._now, *self._values(self.lowering.at_sample))
-            return found[type(expr).constraint]
         return self._now.leaf(expr)
 
     @property
@@ -210,6 +243,8 @@ class Dynamics:
                 self.notes += (f"{BEYOND}the Taylor series of a step diverges; take more substeps",)
             self.notes += self.contacts.faults
             groups = self._hovering(tracing.T, groups)
+        elif self.method.steps > 1:
+            groups = advanced(self, groups)
         else:
             for step in range(self.substeps):
                 groups = self._hovering((step + 1) * self.h, self.method.step(self.rates, step * self.h, groups, self.h))

@@ -4,10 +4,12 @@ import numpy as np
 
 from ..errors import ProgramError
 from ..scene.symbols import t
+from .advance import Switched
 from .channels import channel_of, short
 from .coefficients import HANDLE, JUMPS, Coefficients, leaves, linear_rows
 from .contacts import located
 from .dependence import Dependence, coupled, part_of
+from .force_at import IMPULSE
 from .graph import driven
 from .ir import Channel
 
@@ -21,6 +23,20 @@ def exact_and_rest(method):
         return False, method
     _, plus, rest = method.partition("+")
     return True, rest if plus else None
+
+
+class _NotLinear(ProgramError):
+    """What ``method="exact"`` cannot take as one linear system."""
+
+
+def exact_or_switched(lowering, form, method):
+    """Return (Exact, method), or (None, Switched) for what may be linear between switches and has no other method."""
+    try:
+        return Exact(lowering, form, method and method.name), method
+    except _NotLinear as why:
+        if method is not None or any(model.constraints for model in form.models):
+            raise
+        return None, Switched(why=str(why))
 
 
 class Exact:
@@ -54,13 +70,14 @@ class Exact:
         self.states = {s: k for k, s in enumerate(linear.states)}
         other = [form.force, *form.watch.values(), *form.updates.values(), *self.others.f, *sum(self.others.M, ())]
         read = set().union(*map(leaves, other))
-        self.space = _cheaper(linear, [k for s, k in self.states.items() if s in read], self.tracing.T)
+        averaged = IMPULSE in self.states  # which starts anew at each sample, alone
+        self.space = linear.space if averaged else _cheaper(linear, [k for s, k in self.states.items() if s in read], self.tracing.T)
         first, back = [lowering.first_of(s) for s in self.states], np.linalg.inv(self.space.V)
         plain, real = self.space.is_plain, self.tracing.real
         self.keys = list(self.states) if plain else [f"mode {k}" for k in range(1, 1 + len(self.states))]
         channels = [channel_of(key, real) if plain else Channel(key, "1", real) for key in self.keys]
         self.now = [
-            self.tracing.state(key, channel, _sum(row, first))
+            self.tracing.tick.const(0.0) if key == IMPULSE else self.tracing.state(key, channel, _sum(row, first))
             for key, channel, row in zip(self.keys, channels, back, strict=True)
         ]
         self._at = {}
@@ -70,11 +87,13 @@ class Exact:
         return _sum(self.space.V[self.states[s]], self.now)
 
     def advance(self):
-        """Give every state its value at the next sample."""
+        """Give every state its value at the next sample; return {state: value}."""
         self.rest = list(map(self._rest_of, self.constant_parts))
         self.motion = self.lowering.handle.polynomial()
         for key, value in zip(self.keys, self._moved(self.tracing.T), strict=True):
-            self.tracing.set_next(key, value)
+            if key != IMPULSE:
+                self.tracing.set_next(key, value)
+        return self.at(self.tracing.T)
 
     def _rest_of(self, f):
         """Return what an equation holds beside states and handle, over the period: value, rate, second rate.
@@ -187,14 +206,14 @@ def linear_part(scene, form, constants, T, rest, graph):
     names = ", ".join(type(form.coordinates[k]).__name__ for k in rows)
     if reasons and any(located(model.contacts) for model in coupled(form)):
         why = next(iter(reasons.values()))
-        raise ProgramError(f"{scene.name}: {why}; use method='taylor', which locates that and is exact where motion is linear")
+        raise _NotLinear(f"{scene.name}: {why}; use method='taylor', which locates that and is exact where motion is linear")
     if reasons and not rows:
-        raise ProgramError(
+        raise _NotLinear(
             f"{scene.name}: {next(iter(reasons.values()))}; nothing is left for method='exact', use 'rk4'"
         )
     if reasons and rest is None:
         why = next(iter(reasons.values()))
-        raise ProgramError(f"{scene.name}: {why}; method='exact+rk4' takes {names} exactly and the rest by rk4")
+        raise _NotLinear(f"{scene.name}: {why}; method='exact+rk4' takes {names} exactly and the rest by rk4")
     live = coefficients.live(rows)
     if live:
         keep = " ".join(sorted(set(scene.parameters) - set(live) - set(constants)))

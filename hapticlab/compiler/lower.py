@@ -5,6 +5,7 @@ from ..scene.scene import Scene
 from ..scene.written import no_scene
 from .advance import Taylor
 from .exact import EXACT, exact_and_rest
+from .force_at import FORCE_AT
 from .handle import HOLDS, VELOCITIES
 from .lowering import REAL_OF, Lowering
 from .methods import METHODS
@@ -23,11 +24,12 @@ def compile(
     dtype="float32",
     velocity="backward_difference",
     live=None,
+    force_at="before",
 ):
     """Compile a scene to the program that runs at the sample rate.
 
-    At sample n the force is computed from x(n) and the present states; then the equations of motion advance by T in
-    ``substeps`` steps of an explicit method.
+    At sample n the force is computed from x(n) and the present states (``force_at`` has two other ways); then the
+    equations of motion advance by T in ``substeps`` steps of an explicit method.
 
     Parameters
     ----------
@@ -51,6 +53,12 @@ def compile(
     live : str or sequence of names or Parameters, optional
         Parameters that stay settable while running, by default all but those that constraints hold; the others become
         constants.
+    force_at : {"before", "after", "mean"}
+        With which states the force is computed. ``"before"``: those at the sample, so that F(n) is the force at that
+        instant. ``"after"``: those at the end of the period, with the sample x(n), v(n), as a loop that moves its bodies
+        first does it; what difference equations and channels hold stays that of the sample. ``"mean"``: the mean of F
+        over the period as the equations of motion see it, with x(t) of ``hold``, so that the impulse felt is the impulse
+        that the bodies are given.
 
     Returns
     -------
@@ -71,10 +79,10 @@ def compile(
     """
     if not isinstance(scene, Scene):
         raise SceneError(no_scene(scene, "write hl.compile(hl.Scene(force=...), T=1e-3)"))
-    return lowered(scene, method, T, substeps, hold, dtype, velocity, live)
+    return lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at)
 
 
-def lowered(scene, method, T, substeps, hold, dtype, velocity, live, undecided=()):
+def lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at, undecided=()):
     """Return the program of a scene; of the conditions in ``undecided``, declared ranges decide nothing."""
     exact, other = exact_and_rest(method)
     if not isinstance(other, Taylor) and (not exact or other is not None):
@@ -82,6 +90,7 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, undecided=(
     choice("hold", hold, HOLDS)
     choice("dtype", dtype, REAL_OF)
     choice("velocity", velocity, VELOCITIES)
+    choice("force_at", force_at, FORCE_AT)
     T, substeps, live = period(T), steps(substeps), live_names(live)
     if exact and other is None and substeps > 1:
         raise ProgramError(f"substeps = {substeps}: method='exact' takes the whole period at once; leave substeps out")
@@ -92,7 +101,7 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, undecided=(
                 model.contacts.check(scene.values)
         other = Taylor() if other == Taylor.name else other
         other = other if isinstance(other, Taylor) else METHODS.get(other)
-        return Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live).program(
+        return Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live, force_at).program(
             rests_on(form, decisions)
         )
     except RecursionError:

@@ -13,8 +13,9 @@ from .channels import channel_of, short
 from .constants import entering
 from .contact_steps import limited
 from .dynamics import Dynamics
-from .exact import EXACT, Exact
+from .exact import EXACT, exact_or_switched
 from .expressions import Translator
+from .force_at import IMPULSE, at_the_end, averaged
 from .graph import Graph
 from .handle import Handle
 from .held import notes_on
@@ -33,13 +34,11 @@ class Lowering:
     Arguments as :func:`~hapticlab.compiler.lower.compile` has checked them; ``form`` is what declared ranges left of it.
     """
 
-    def __init__(self, scene, form, exact, method, T, substeps, hold, dtype, velocity, live):
+    def __init__(self, scene, form, exact, method, T, substeps, hold, dtype, velocity, live, force_at):
         self.scene, self.form, self.exact = scene, form, None
         self.method, self.substeps = method, substeps
         names = "+".join([EXACT] * exact + ([method.name] if method else []))
         self.facts = {"method": names, "substeps": substeps, "hold": hold, "velocity": velocity, "dtype": dtype}
-        if not self.form.coordinates:
-            self.facts = {"velocity": velocity, "dtype": dtype}
         parameters = tuple(scene.parameters.values())
         self.tracing = Tracing(REAL_OF[dtype], T, parameters)
         for value, text in ((T, "T"), (1 / T, "1/T with T"), (T / substeps, "T/substeps with T")):
@@ -48,23 +47,32 @@ class Lowering:
         self.folded = folded(scene, live)
         self.limits = limits(form, scene.values, self.folded, T)
         self.graph = Graph(self.folded)
+        self.force_at, self.moved = force_at, {}
+        if force_at == "mean":
+            self.form = form = averaged(form, self.graph)
+        if not form.coordinates:
+            self.facts = {"velocity": velocity, "dtype": dtype}
+        elif force_at != "before":
+            self.facts["force_at"] = force_at
         self.at_start = Translator(self.tracing.init, self._leaf_at_start, bound=scene.values, graph=self.graph)
         self.at_sample = self.translator(self._leaf_at_sample)
         self.resolving, self.resolved = [], set()
         if exact and form.coordinates:
-            self.exact = Exact(self, form, method and method.name)
-            self.form = self.exact.others
+            self.exact, method = exact_or_switched(self, form, method)
+            self.form = self.exact.others if self.exact else form
         self.dynamics = Dynamics(self, self.form, method, substeps)
 
     def program(self, ranges):
         """Trace the tick in the order it runs; outside of ``ranges``, of coordinates, the force is no number."""
         real = self.tracing.real
-        force = within(self._real(self.at_sample(self.form.force)), ranges, self.at_sample)
-        outputs = [(Channel("F", "N", real), force)]
-        units = self.scene.watch_units
+        before = self.force_at == "before"
+        force = self.at_sample(self.form.force) if before else None
+        units, outputs = self.scene.watch_units, []
         for name, expr in self.form.watch.items():
             outputs.append((Channel(name, units[name], real), self._real(self.at_sample(expr))))
         unlocated = self._advance()
+        force = force if before else at_the_end(self)(self.form.force)
+        outputs.insert(0, (Channel("F", "N", real), within(self._real(force), ranges, self.at_sample)))
         if unlocated is not None:
             outputs.append((Channel("unlocated", "1", real), unlocated))
         self.tracing.complete()
@@ -190,6 +198,8 @@ class Lowering:
 
     def state(self, leaf):
         """Return a state of the equations of motion as it is at the sample."""
+        if leaf == IMPULSE:
+            return self.tracing.tick.const(0.0)
         return self.tracing.state(leaf, channel_of(leaf, self.tracing.real), self.first_of(leaf))
 
     def first_of(self, state):
@@ -200,9 +210,12 @@ class Lowering:
 
     def _advance(self):
         if self.exact:
-            self.exact.advance()
+            self.moved |= self.exact.advance()
         values, facts, unlocated = self.dynamics.advance()
         self.facts |= facts
-        for state, value in zip(self.dynamics.states, values, strict=True):
-            self.tracing.set_next(state, value)
+        moved = dict(zip(self.dynamics.states, values, strict=True))
+        self.moved |= moved
+        for state, value in moved.items():
+            if state != IMPULSE:
+                self.tracing.set_next(state, value)
         return unlocated

@@ -39,6 +39,10 @@ class Tracing:
         """Give a state the value it has at the next tick."""
         self._states[key][2] = value
 
+    def next_of(self, key):
+        """Return the value that a state has at the next tick, once it is set."""
+        return self._states[key][2]
+
     def at_start(self, values):
         """Return what the leaves of the tick are at the first sample, x = 0: dict (op, index) -> float; nan unbound."""
         given = {("param", k): values.get(p.name, float("nan")) for k, p in enumerate(self.parameters)}

@@ -1,0 +1,58 @@
+"""When in the period a force is evaluated: at its start, with the states at its end, or on average."""
+
+from dataclasses import replace
+
+import sympy as sp
+
+from ..scene.symbols import T, t, v, x
+from .graph import driven
+
+#: with the states at the sample, with those at the end of the period, or the mean over the period
+FORCE_AT = ("before", "after", "mean")
+
+#: what the force adds up to since the sample, as a coordinate of first order: its name is no word, so no scene has it
+IMPULSE = sp.Function("impulse of F", real=True, unit="N*s", role="coordinate", initial=sp.S.Zero, low=-sp.oo, high=sp.oo)(t)
+
+
+def averaged(form, graph):
+    """Return a form whose force is the mean over the period, the integral of F since the sample divided by T.
+
+    The integral is one more state of the same method, so that the impulse which is felt is the impulse that the bodies
+    are given. A force of samples alone is its own mean.
+    """
+    if not any(map(_moves, graph.variables_of([form.force]))):
+        return form
+    return replace(
+        form,
+        coordinates=(*form.coordinates, IMPULSE),
+        orders=(*form.orders, 1),
+        M=(*((*row, sp.S.Zero) for row in form.M), (*[sp.S.Zero] * len(form.f), sp.S.One)),
+        f=(*form.f, form.force),
+        force=IMPULSE / T,
+    )
+
+
+def _moves(variable):
+    """Tell whether a variable of a graph changes between two samples."""
+    role = getattr(type(variable.expr if variable.is_Derivative else variable), "role", None)
+    return variable in (t, x(t), v(t)) or isinstance(variable, driven) or role in ("coordinate", "reaction")
+
+
+def at_the_end(lowering):
+    """Return what translates the force once the period is traced: states at its end, all else as at the sample."""
+    dynamics = lowering.dynamics
+
+    def leaf(expr):
+        if expr in lowering.moved:
+            return lowering.moved[expr]
+        if hasattr(type(expr), "contact"):
+            return dynamics.contacts.at_the_end(expr)
+        if hasattr(type(expr), "constraint"):
+            return dynamics.reaction(expr, translate, instant)
+        follows = instant.leaf(expr) if instant else None
+        return lowering.at_sample(expr) if follows is None else follows
+
+    translate = lowering.translator(leaf)
+    instant = dynamics.enforced.instant(translate) if dynamics.enforced else None
+    translate.instant = instant
+    return translate
