@@ -19,7 +19,7 @@ OUTSIDE = {"__init__", "__main__"}  # the public names, and `python -m hapticlab
 DOORS = {
     "pint": {"scene.units"},
     "llvmlite": {"compiler.llvm", "compiler.llvm_emit"},
-    "scipy": {"analysis.matrix", "device.plant"},
+    "scipy": {"analysis.hybrid", "analysis.matrix", "device.plant"},
     "matplotlib": {"analysis.plots"},
     "serial": {"device.serial", "device.urls.protocol_sim"},
     "ipywidgets": {"widgets.view"},

@@ -23,7 +23,7 @@ class Engine:
     """A program ready to run; ``engine.run(...)`` may be called again and again, from several threads at once."""
 
     def __init__(self, program, kernel):
-        self.program, self._kernel = program, kernel
+        self.program, self.kernel = program, kernel
         self.name = kernel.name
 
     def run(self, ticks, inputs=None, parameters=None, states=None, every=1):
@@ -70,7 +70,7 @@ class Engine:
             self._check_int32("states", program.states, states)
         self._check_int32("parameters", program.parameters, parameters)
         self._check_int32("inputs", program.inputs, inputs.T)
-        return Run(self._kernel.run(ticks, inputs, parameters, states, every))
+        return Run(self.kernel.run(ticks, inputs, parameters, states, every))
 
     def _real(self, what, given):
         """Return an array of float64, or say what is wrong with it."""

@@ -1,0 +1,216 @@
+"""The force that a scene would give without samples: two solvers that share no step, and how far they agree."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compiler.driven import DEGREE, coefficients, driven
+from ..compiler.engine import load
+from ..compiler.graph import Graph
+from ..compiler.instant import instant
+from ..errors import AnalysisError, ProgramError
+from ..scene.symbols import acceleration, n, t, v, x
+from .hybrid import Field, Hybrid
+from .motions import HandleMotion
+
+#: between two values of F [s]: 2 ms, 1 ms and 0.5 ms are whole numbers of it, and so are their quarters
+STEP = 1.25e-4
+#: of the Taylor series; at most one radian of the fastest part is in a substep
+ORDER = 10
+#: part of the peak force to which two solvers must agree to certify each other
+TOLERANCE = 1e-6
+#: of the values of F, those at which the second solver is asked
+EVERY = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """F(t) of a scene whose handle moves as given, without sampling, hold and method.
+
+    Attributes
+    ----------
+    motion : HandleMotion
+    t, F : arrays
+        Time [s], every ``step``, and force [N].
+    agreement : float
+        Largest difference between the two solvers up to the horizon [N]; inf where there is one only.
+    how : str
+        The solvers, or why there is but one.
+    horizon : float
+        Until when F is known [s]: from there on two solvers separate, or the scene faults.
+    chaotic : bool
+        They agreed first and separated later: rounding decides what comes after the horizon.
+    tolerance : float
+        Part of the peak force that ``certified`` asks for.
+    """
+
+    motion: HandleMotion
+    t: np.ndarray
+    F: np.ndarray
+    agreement: float
+    how: str
+    horizon: float
+    chaotic: bool = False
+    tolerance: float = TOLERANCE
+    step: float = STEP
+
+    @property
+    def peak(self):
+        """Largest force up to the horizon [N]."""
+        return float(np.abs(self.F[self.t <= self.horizon]).max(initial=0.0))
+
+    @property
+    def certified(self):
+        """Whether two solvers agree to the tolerance."""
+        return self.agreement <= self.tolerance * self.peak
+
+    def certifies(self, error):
+        """Tell whether the solvers agree ten times better than an error [N] that is to be reported."""
+        return self.agreement <= 0.1 * error
+
+    def at(self, times):
+        """Return F [N] at times [s] that are whole numbers of the step, nan past the horizon."""
+        times = np.asarray(times, float)
+        k = np.rint(times / self.step)
+        if np.any(np.abs(times - k * self.step) > 1e-9) or np.any((k < 0) | (k >= len(self.t))):
+            raise AnalysisError(
+                f"F is known every {self.step:g} s up to {self.t[-1]:g} s; ask at whole numbers of that, or give "
+                "reference(..., step=...) a step that divides your sampling period"
+            )
+        return np.where(times <= self.horizon + 1e-9, self.F[k.astype(int)], np.nan)
+
+    def __str__(self):
+        verdict = "certified" if self.certified else "uncertified"
+        until = f", chaotic from {self.horizon:.3g} s on" if self.chaotic else ""
+        agreed = f"two solvers agree to {self.agreement:.2g} N of {self.peak:.3g} N"
+        return f"{self.motion.name}: {verdict}, {agreed}{until} ({self.how})"
+
+
+def reference(scene, motion, *, step=STEP, tolerance=TOLERANCE):
+    """Return the :class:`Reference` of a scene under one motion of the handle; see :func:`references`."""
+    return references(scene, [motion], step=step, tolerance=tolerance)[0]
+
+
+def references(scene, motions, *, step=STEP, tolerance=TOLERANCE):
+    """The force of a scene as its equations have it, for each of some motions of the handle: a list of :class:`Reference`.
+
+    First solver: the Taylor series of the motion, events located, the handle a polynomial of degree 7 over each step.
+    Second: scipy's DOP853 on the accelerations compiled by themselves, events found on its dense output.
+
+    Parameters
+    ----------
+    scene : Scene
+        Every parameter bound. It must have a meaning between the samples: no signals, delays or past samples.
+    motions : sequence of HandleMotion
+    step : float
+        Between two values of F [s]; the sampling periods it is compared with are whole numbers of it.
+    tolerance : float
+        Part of the peak force to which the two must agree.
+
+    Raises
+    ------
+    AnalysisError
+        The scene lives at the samples alone.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> from hapticlab.analysis.motions import handle_motions
+    >>> found = reference(hl.library.mass_spring_damper(), handle_motions()[1])
+    >>> found.certified
+    True
+    """
+    return _References(scene, step, tolerance).all(motions)
+
+
+class _References:
+    """The programs of one scene, compiled once for all its motions."""
+
+    def __init__(self, scene, step, tolerance):
+        self.scene, self.step, self.tolerance = scene, step, tolerance
+        try:
+            self.program = _slow_enough(scene, step)
+        except ProgramError as error:
+            raise AnalysisError(f"{scene.name} has no reference: {error}") from error
+        self.first = load(self.program)
+        self.second, self.why = None, ""
+
+    def all(self, motions):
+        """Return the reference of each motion."""
+        return [self.one(motion) for motion in motions]
+
+    def one(self, motion):
+        """Return the reference of one motion."""
+        step = self.step
+        times = step * np.arange(round(motion.duration / step) + 1)
+        rows = coefficients(motion.derivatives(times + step / 2, DEGREE), step)
+        at = np.array(motion.at(times))
+        inputs = np.column_stack([at.T, rows])[:, : len(self.program.inputs)]
+        F = self.first.run(len(times), inputs).outputs[:, 0, 0]
+        try:
+            other, how = self._other(motion, times[::EVERY], rows, at)
+        except (AnalysisError, ProgramError) as error:
+            return self._single(motion, times, F, str(error))
+        return self._compared(motion, times, F, other, how)
+
+    def _other(self, motion, times, rows, at):
+        """Return (F at times, how) by the second solver."""
+        form = self.scene.explicit()
+        if not form.coordinates:
+            bound = {p: self.scene.values[name] for name, p in self.scene.parameters.items()}
+            held = {x(n): at[0], v(n): at[1], x(t): at[0], v(t): at[1], acceleration(t): at[2]}
+            whole = {t: self.step * np.arange(at.shape[1])}
+            (found,) = Graph().evaluate([form.force], bound | held | whole)
+            return np.broadcast_to(found, at.shape[1:])[::EVERY], "force of the handle alone, evaluated by two routes"
+        if self.second is None:
+            self.second = instant(self.scene, T=self.step)
+            self.kernel = load(self.second.program).kernel
+        field_ = Field(self.second, rows, self.step, self.kernel)
+        F = Hybrid(field_).run(self.second.start(at[0, 0], at[1, 0]), times, motion.breaks)
+        return F, "Taylor series with located events, and scipy's DOP853"
+
+    def _single(self, motion, times, F, why):
+        horizon = _finite_until(times, F)
+        return Reference(motion, times, F, np.inf, f"one solver: {why}", horizon, False, self.tolerance, self.step)
+
+    def _compared(self, motion, times, F, other, how):
+        ok = _finite_until(times, F)
+        apart = np.abs(F[::EVERY] - other)
+        coarse = times[::EVERY]
+        apart = apart[coarse <= ok]
+        peak = np.abs(F[times <= ok]).max(initial=0.0)
+        sofar = np.maximum.accumulate(np.where(np.isfinite(apart), apart, np.inf))
+        beyond = np.flatnonzero(sofar > self.tolerance * peak)
+        chaotic, horizon = False, ok
+        if len(beyond) and beyond[0] > len(coarse) // 10 and sofar[beyond[0] // 2] < 1e-2 * self.tolerance * peak:
+            chaotic, horizon = True, float(coarse[beyond[0] - 1])
+            sofar = sofar[: beyond[0]]
+        return Reference(
+            motion,
+            times,
+            F,
+            float(sofar[-1]) if len(sofar) else np.inf,
+            how,
+            horizon,
+            chaotic,
+            self.tolerance,
+            self.step,
+        )
+
+
+def _slow_enough(scene, step):
+    """Return the driven program with as many substeps as its fastest part asks for."""
+    substeps = 1
+    while True:
+        try:
+            return driven(scene, T=step, substeps=substeps, order=ORDER)
+        except ProgramError as error:
+            if "substeps=" not in str(error) or substeps >= 64:
+                raise
+        substeps *= 2
+
+
+def _finite_until(times, F):
+    """Return the last time before F is no number."""
+    wrong = np.flatnonzero(~np.isfinite(F))
+    return float(times[-1] if not len(wrong) else times[max(wrong[0] - 1, 0)])
