@@ -92,7 +92,7 @@ class Stepper:
             ]
             if piece < self.pieces - 1:
                 now = self._advanced(flow, now, guards, reach)
-                ends.append(now)
+                ends.append((now, self._rough))
         missed = self._rough | any_of(found for _, found in guards)
         if self.longest:  # what is left stays undone: no series is taken beyond where it holds
             missed = missed | (reach < now.left)
@@ -100,14 +100,14 @@ class Stepper:
 
     def _ended(self, ends, state, held, missed):
         """Return what the first piece that ends the step leaves; all later ones are needed by one case alone."""
-        for now in reversed(ends) if self.longest else ():
+        for now, rough in reversed(ends):
             more = 0.0 < now.left
             state = tuple(
                 [select(more, later, here) for later, here in zip(*parts, strict=True)]
                 for parts in zip(state, now.state, strict=True)
             )
             held = [one_of(more, later, here) for later, here in zip(held, now.held, strict=True)]
-            missed = one_of(more, missed, np.False_)
+            missed = one_of(more, missed, rough)
         return state, held, missed
 
     def reactions(self, tau, state, held):
