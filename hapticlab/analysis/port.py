@@ -10,11 +10,12 @@ import numpy as np
 from ..compiler.engine import load
 from ..compiler.lower import compile
 from ..errors import AnalysisError
+from .limit import whole_and_fraction
 
 #: a pole nearer to the unit circle does not decay, and its resonance has no bound
 LOSSLESS = 1e-9
 #: frequencies looked at, beside those around every pole
-POINTS = 3000
+POINTS = 1000
 
 
 def port_damping(scene, *, T=1e-3, **options):
@@ -50,33 +51,49 @@ def port_damping(scene, *, T=1e-3, **options):
     0.15
     """
     A, B, C, D = tick_map(compile(scene, T=T, live=(), dtype="float64", **options))
-    poles = np.linalg.eigvals(A) if len(A) else np.zeros(0)
+    pole = unstable_pole(A, B, C)
+    if pole is not None:
+        raise AnalysisError(f"{scene.name}: unstable with the handle held (a pole at {pole:.6g}); T is too long for it")
+    return required(A, B, C, D, T)[0]
+
+
+def unstable_pole(A, B, C, allowed=0):
+    """Return the largest |pole| outside the unit circle that x moves and F shows, None where no more than ``allowed`` are."""
+    outside = np.sort(np.abs(_seen_poles(A, B, C)))[::-1]
+    outside = outside[outside > 1 + LOSSLESS]
+    return float(outside[0]) if len(outside) > allowed else None
+
+
+def required(A, B, C, D, T, delay=0.0):
+    """Return (b, theta): the least damping of a device [N s/m] and w T at the frequency that asks for it.
+
+    A delay of d + f periods: ``H`` averaged over the two forces of a period, and one term more, see
+    :mod:`hapticlab.analysis.passivity`. A resonance without damping asks for inf.
+    """
     seen = _seen_poles(A, B, C)
-    if np.any(np.abs(seen) > 1 + LOSSLESS):
-        raise AnalysisError(
-            f"{scene.name}: unstable with the handle held (a pole at {abs(seen).max():.6g}); T is too long for it"
-        )
-    if np.any(np.abs(seen) > 1 - LOSSLESS):
-        return np.inf
+    lossless = seen[np.abs(seen) > 1 - LOSSLESS]
+    if len(lossless):
+        return np.inf, float(np.abs(np.angle(lossless)).max())
+    whole, fraction = whole_and_fraction(delay, T)
 
     def needed(theta):
         z = np.exp(1j * np.atleast_1d(theta))
-        inside = (
-            np.linalg.solve(z[:, None, None] * np.eye(len(A)) - A, B[None, :, None])[..., 0]
-            if len(A)
-            else np.zeros((1, 0))
-        )
-        H = inside @ C + D
-        return T / 2 * (H.real - H.imag / np.tan(theta / 2))  # 1/(1 - e^(j a)) is 1/2 + j cot(a/2)/2
+        inside = np.linalg.solve(z[:, None, None] * np.eye(len(A)) - A, B[None, :, None])[..., 0] if len(A) else np.zeros((1, 0))
+        H = (inside @ C + D) * z ** -float(whole)
+        averaged = H * ((1 - fraction) + fraction / z)
+        asked = T / 2 * (averaged.real - averaged.imag / np.tan(theta / 2))  # 1/(1 - e^(j a)) is 1/2 + j cot(a/2)/2
+        return (asked + np.sqrt(asked**2 + T**2 * fraction * (1 - fraction) * abs(H) ** 2)) / 2 if fraction else asked
 
+    poles = np.linalg.eigvals(A) if len(A) else np.zeros(0)
     around = [np.abs(np.angle(p)) + (1 - abs(p)) * s * np.geomspace(1e-2, 30, 40) for p in poles for s in (-1, 1)]
     theta = np.concatenate([np.geomspace(1e-5, np.pi, POINTS), np.linspace(1e-3, np.pi, POINTS), *around])
     theta = np.unique(theta[(theta > 0) & (theta <= np.pi)])
     for _ in range(4):  # look closer around the worst
         values = needed(theta)
         worst = int(values.argmax())
+        at = theta[worst]
         theta = np.linspace(theta[max(worst - 1, 0)], theta[min(worst + 1, len(theta) - 1)], 60)
-    return float(max(values.max(), 0.0))
+    return float(max(values.max(), 0.0)), float(at)
 
 
 def tick_map(program):

@@ -1,0 +1,230 @@
+"""The longest step that a method takes stably on a scene, predicted from its equations of motion before it runs."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compiler.advance import Taylor
+from ..compiler.contact_steps import STEPS_PER_CONTACT
+from ..compiler.exact import EXACT
+from ..compiler.exponential import exponential
+from ..compiler.methods import METHODS
+from ..compiler.options import choice, period, steps
+from ..compiler.step_matrix import longest_step, step_matrix
+from ..errors import AnalysisError
+from ..scene.scene import Scene
+from ..scene.written import no_scene
+from .linearization import motion_at
+from .operating import WORTH, kind_of, operating_points, probes_of
+from .switches import switched
+
+#: h_max/h at and above which a nonlinear scene needs no further test; below 1 it is refused
+AMPLE = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class ModeLimit:
+    """One operating point in one mode.
+
+    Attributes
+    ----------
+    mode, point : str
+        The conditions that hold, and where that was looked at.
+    eigenvalues : complex array
+        Of the equations of motion [1/s].
+    h_max : float
+        Longest stable step [s]; inf without a limit, 0 where no step is stable.
+    margin : float
+        h_max/h.
+    energy_gain : float
+        Part by which the energy of the least damped oscillation grows in a step, beyond what it does in truth; negative
+        where the method damps. 0 without an oscillation.
+    steps_per_contact : float
+        Steps in half a period of the fastest oscillation, which is how long a contact lasts; inf without one.
+    """
+
+    mode: str
+    point: str
+    eigenvalues: np.ndarray
+    h_max: float
+    margin: float
+    energy_gain: float
+    steps_per_contact: float
+
+
+@dataclass(frozen=True, eq=False)
+class StepLimit:
+    """The longest stable step of a method on a scene, over all modes looked at; printing it shows them.
+
+    Attributes
+    ----------
+    scene, method : str
+    T, h : float
+        Period and step [s].
+    modes : tuple of ModeLimit
+    kind : {"linear", "piecewise linear", "small-signal"}
+        What the prediction is worth: exact; exact within each mode; of small motions about the operating points.
+    """
+
+    scene: str
+    method: str
+    T: float
+    h: float
+    modes: tuple
+    kind: str
+
+    @property
+    def small_signal(self):
+        """Whether this is about small motions about the operating points alone."""
+        return self.kind == "small-signal"
+
+    @property
+    def worst(self):
+        """The mode that decides."""
+        return min(self.modes, key=lambda m: m.margin)
+
+    @property
+    def h_max(self):
+        """Longest stable step [s]."""
+        return self.worst.h_max
+
+    @property
+    def margin(self):
+        """h_max/h: 2 and above is ample, below 1 unstable."""
+        return self.worst.margin
+
+    @property
+    def energy_gain(self):
+        """The largest gain of energy per step."""
+        return max(m.energy_gain for m in self.modes)
+
+    @property
+    def steps_per_contact(self):
+        """The fewest, over the modes in which something holds that does not at the start."""
+        return min((m.steps_per_contact for m in self.modes[1:] if m.mode != self.modes[0].mode), default=np.inf)
+
+    @property
+    def verdict(self):
+        """``"stable"``; ``"close"``: a margin under 2 on a scene that is not linear, few steps a contact; ``"unstable"``."""
+        if self.margin < 1:
+            return "unstable"
+        close = self.small_signal and self.margin < AMPLE
+        return "close" if close or self.steps_per_contact < STEPS_PER_CONTACT else "stable"
+
+    def __float__(self):
+        return float(self.h_max)
+
+    def __str__(self):
+        head = f"{self.scene}, {self.method} in steps of {1e3 * self.h:g} ms: {self.verdict}, h_max = {1e3 * self.h_max:.4g} ms"
+        lines = [f"{head}, margin {self.margin:.3g} ({WORTH[self.kind]})"]
+        lines.append(f"  {'h_max [ms]':>10} {'margin':>8} {'gain/step':>10} {'steps/contact':>13}  mode; where")
+        for m in self.modes:
+            where = m.mode if m.point in m.mode else f"{m.mode}; {m.point}"
+            lines.append(f"  {1e3 * m.h_max:10.4g} {m.margin:8.3g} {m.energy_gain:10.2g} {m.steps_per_contact:13.3g}  {where}")
+        return "\n".join(lines)
+
+    __repr__ = __str__
+
+
+def step_limit(scene, method="rk4", *, T, substeps=1, hold="soh", at=None, **options):
+    """Longest stable step h_max [s] of a method on a scene, in every mode of its contacts and cases.
+
+    In each mode the method takes one step from every basis vector of the linearised motion. The longest step is the
+    shortest one whose matrix has more eigenvalues outside the unit circle than the motion has in the right half plane.
+
+    Parameters
+    ----------
+    scene : Scene
+        Every parameter bound.
+    method : str or Taylor
+    T : float
+        Sampling period [s], > 0.
+    substeps : int
+    hold : str
+        Changes what drives the motion, not whether it is stable; taken so that options of hl.compile can be passed on.
+    at : dict name -> float, or sequence of them, optional
+        Operating points: handle x and v, coordinates and rates by name. By default the start with the handle at x = 0,
+        rest, places within declared ranges, and one place in every mode that can be reached.
+    **options
+        Others of :func:`hapticlab.compile`, which do not change the step.
+
+    Returns
+    -------
+    StepLimit
+
+    Examples
+    --------
+    >>> import hapticlab as hl, sympy as sp
+    >>> k, m = hl.parameters("k m", units="N/m kg", values=(500, 0.05))
+    >>> z = hl.coordinate("z", unit="m")
+    >>> F = k * (hl.x(hl.t) - z)
+    >>> scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)])
+    >>> round(hl.step_limit(scene, "semi_implicit_euler", T=1e-3).margin, 3)
+    20.0
+    """
+    if not isinstance(scene, Scene):
+        raise AnalysisError(no_scene(scene, "needs hl.step_limit(hl.Scene(force=...), T=1e-3)"))
+    T, h = period(T), period(T) / steps(substeps)
+    name = _method(method)
+    known = switched(scene)
+    points = operating_points(known, at, T)
+    probes = probes_of(points)
+    J, seconds = motion_at(known, [*points, *probes], T)
+    kind = kind_of(points, probes, J)
+    modes = tuple(
+        _mode_limit(name, J[k], seconds, h, known.named(p.mode), p.words)
+        for k, p in enumerate(points)
+    )
+    return StepLimit(scene.name, name, T, h, modes, kind)
+
+
+def _method(method):
+    """Return the name of a method, refusing one that is not known."""
+    if isinstance(method, Taylor):
+        return Taylor.name
+    rest = method.removeprefix(EXACT + "+") if isinstance(method, str) else method
+    choice("method", rest, (*METHODS, Taylor.name, EXACT))
+    return method
+
+
+def step_of(method, J, seconds):
+    """Return ``h -> step matrices`` of a method's name on y' = J y: of a method that is exact, the exponential."""
+    if method in (EXACT, Taylor.name):
+        return lambda h: np.array([exponential(J * one) for one in np.ravel(h)])
+    return lambda h: step_matrix(METHODS[method.removeprefix(EXACT + "+")], J, seconds, h)
+
+
+def _mode_limit(method, J, seconds, h, mode, point):
+    values = np.linalg.eigvals(J)
+    step = step_of(method, J, seconds)
+    if method == EXACT:
+        h_max = np.inf
+    elif method == Taylor.name:
+        h_max = 1.0 / max(np.abs(values).max(initial=0.0), 1e-300)
+    else:
+        h_max = longest_step(step, J)
+    fastest = np.abs(values.imag).max(initial=0.0)
+    return ModeLimit(
+        mode, point, values, float(h_max), float(h_max / h), energy_gain(values, np.linalg.eigvals(step(np.array([h]))[0]), h),
+        float(np.pi / (fastest * h)) if fastest > 0 else np.inf,
+    )  # fmt: skip
+
+
+def energy_gain(values, multipliers, h):
+    """Return by how much more energy an oscillation gains in a step than in truth, the largest over the oscillations.
+
+    Parameters
+    ----------
+    values : complex array
+        Eigenvalues of the motion [1/s].
+    multipliers : complex array
+        Of the step matrix.
+    h : float
+    """
+    gains = [0.0]
+    oscillating = [value for value in values if value.imag > abs(value.real)]
+    for value in oscillating:
+        true = np.exp(value * h)
+        nearest = multipliers[np.abs(multipliers - true).argmin()]
+        gains.append(float(abs(nearest / true) ** 2 - 1.0))
+    return max(gains[1:], default=0.0)
