@@ -9,8 +9,10 @@ from .analysis.passivity import passivity_limit
 from .analysis.pictures import picture
 from .analysis.plots import plot
 from .analysis.port import port_damping
+from .analysis.port_passivity import port_passivity
 from .analysis.reduction import reduction
 from .analysis.stability import stability_limit
+from .analysis.step_limit import step_limit
 from .analysis.sweep import sweep
 from .compiler.advance import Taylor
 from .compiler.lower import compile
@@ -124,6 +126,7 @@ __all__ = [
     "picture",
     "plot",
     "port_damping",
+    "port_passivity",
     "predicted_sample",
     "profile",
     "proxy_curve",
@@ -136,6 +139,7 @@ __all__ = [
     "rigid",
     "signal",
     "stability_limit",
+    "step_limit",
     "sweep",
     "t",
     "track",
