@@ -9,6 +9,7 @@ import numpy as np
 
 from ..compiler.engine import load
 from ..compiler.lower import compile
+from ..compiler.phase import is_timed
 from ..errors import AnalysisError
 from .limit import whole_and_fraction
 
@@ -104,7 +105,7 @@ def tick_map(program):
     AnalysisError
         The program is not linear, or takes more than x.
     """
-    if len(program.inputs) != 1 or any(c.type == "i32" for c in program.states):
+    if len(program.inputs) != 1 or is_timed(program):
         raise AnalysisError(f"{program.name}: needs a force of x alone, that time does not drive")
     S, generator = len(program.states), np.random.default_rng(1)
     mixed = generator.normal(size=(S, 3))

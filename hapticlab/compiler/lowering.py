@@ -21,7 +21,7 @@ from .handle import Handle
 from .held import notes_on
 from .ir import Channel
 from .modes import folded, within
-from .phase import Clock
+from .phase import Clock, counted, digit
 from .trace import cast
 from .tracing import Tracing
 
@@ -91,7 +91,7 @@ class Lowering:
 
     def translator(self, leaf, after=0.0):
         """Return what translates expressions of the tick, ``after`` [s] after the sample."""
-        clock = Clock(self._tick_count, self.tracing.T, after)
+        clock = Clock(lambda: counted(self.tracing), self.tracing.T, after)
         at_sample = getattr(self, "at_sample", None)  # the first that is made
         return Translator(self.tracing.tick, leaf, clock, self.scene.values, self.graph, at_sample)
 
@@ -141,7 +141,7 @@ class Lowering:
             return common
         tracing, kind = self.tracing, type(leaf)
         if leaf in (n, t):
-            count = self._tick_count()
+            count = self._ticks()
             return count if leaf == n else count * tracing.T
         if kind in (x, v):
             return self.handle.sample(kind, lag_of(leaf) or 0)
@@ -174,12 +174,10 @@ class Lowering:
         self.resolving.pop()
         return value
 
-    def _tick_count(self):
+    def _ticks(self):
         # time is counted in whole ticks: a float32 sum of periods is seconds wrong after minutes
-        tracing = self.tracing
-        count = tracing.state("tick", Channel("tick", "1", "i32"), tracing.init.const(0, "i32"))
-        tracing.set_next("tick", tracing.tick.emit("iadd", count, tracing.tick.const(1, "i32")))
-        return tracing.tick.emit("itof", count, type=tracing.real)
+        high, low = counted(self.tracing)
+        return high * digit(self.tracing.real) + low
 
     def _coordinate_state(self, leaf):
         """Return q or q' as it is at the sample."""

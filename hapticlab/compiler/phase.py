@@ -1,13 +1,15 @@
-"""Angles that time drives, sin(2 pi f t), in whole turns taken off before they cost digits.
+"""Time in whole ticks, and angles that time drives, sin(2 pi f t), in whole turns taken off before they cost digits.
 
-As it is written the angle grows without end: after five seconds at 250 Hz a float32 holds it to half a thousandth of a
-radian, and past 8192 rad not at all. Time is a whole number of ticks, so the turns are a whole number times the turns of
-one tick, and of that product only the fraction is needed. It is found without rounding by multiplying short pieces, as
-half_pi is taken off in :mod:`hapticlab.compiler.elementary`.
+A float32 counts no further than 2**24, and an int32 turns negative after 2**31: so ticks are counted in two digits, and
+a scene has the time of day after weeks at any rate. As it is written the angle grows without end: after five seconds at
+250 Hz a float32 holds it to half a thousandth of a radian, and past 8192 rad not at all. Time is a whole number of
+ticks, so the turns are a whole number times the turns of one tick, and of that product only the fraction is needed. It
+is found without rounding by multiplying short pieces, as half_pi is taken off in :mod:`hapticlab.compiler.elementary`.
 
 Accuracy in float32: 1e-6 rad, and the rounding of the frequency and of its turns a tick to float32, each at most 2**-24
 of the whole angle: a frequency wrong by 1e-7 of itself, and no noise. A frequency that is not live is rounded once. It
-holds for 2**24 ticks, 4.6 hours at 1 kHz; after that float32 counts ticks by twos. In float64 it holds for 2**31 ticks.
+holds for 2**33 ticks, three months at 1 kHz; in float64 for 2**48. Where t stands outside of a sine it is one number: past
+2**24 ticks, 4.6 hours at 1 kHz, float32 tells it to 6e-8 of itself.
 """
 
 import math
@@ -16,15 +18,38 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ..scene.symbols import Parameter, T, n, t
-from .trace import Value, floor
+from .ir import Channel
+from .trace import Value, floor, select
 
-#: bits of the lower part of a tick count, and bits after the point of the longer piece of a tick's turns
-SPLIT = {"f32": (12, 12), "f64": (16, 36)}
+#: bits of a digit of a tick count, and bits after the point of the longer piece of a tick's turns
+SPLIT = {"f32": (11, 12), "f64": (16, 36)}
+#: states that count ticks, the lower digit first
+TICKS = ("tick", "tick_high")
+
+
+def counted(tracing):
+    """Return (high, low), whole numbers: ``high`` times the size of a digit and ``low`` are the ticks so far."""
+    size, zero = digit(tracing.real), tracing.init.const(0.0)
+    low, high = (tracing.state(name, Channel(name, "1", tracing.real), zero) for name in TICKS)
+    full = low >= size - 1.0
+    for name, value in zip(TICKS, (select(full, 0.0, low + 1.0), select(full, high + 1.0, high)), strict=True):
+        tracing.set_next(name, value)
+    return high, low
+
+
+def digit(type):
+    """Return how many ticks a digit of the tick count takes."""
+    return 2.0 ** SPLIT[type][0]
+
+
+def is_timed(program):
+    """Tell whether a program counts ticks: its tick is another map at another time."""
+    return any(c.name in TICKS for c in program.states)
 
 
 @dataclass(frozen=True)
 class Clock:
-    """Time as a program has it: ``count()`` whole ticks of ``T`` [s], and ``after`` [s] since the last one."""
+    """Time as a program has it: ``count()`` whole ticks of ``T`` [s], as two digits, and ``after`` [s] since the last."""
 
     count: callable
     T: float
@@ -63,11 +88,14 @@ def reduced_angle(f, clock, type):
     per_second = round(1 / clock.T)
     # a whole rate is exact where a decimal T is not
     turns = f / per_second if math.isclose(per_second * clock.T, 1.0, rel_tol=1e-12) else f * clock.T
-    low_bits, _ = SPLIT[type]
-    size = 2.0**low_bits
-    count = clock.count()
-    high = floor(count / size)
-    total = _fraction(high, turns * size, type) + _fraction(count - high * size, turns, type)
+    size = digit(type)
+    rest, low = clock.count()
+    high = floor(rest / size)
+    exact = rounded = 0.0
+    for count, place in ((low, 1.0), (rest - high * size, size), (high, size**2)):
+        long, short = _pieces(turns * place, type)
+        exact, rounded = exact + count * long, rounded + count * short
+    total = _centred(exact) + rounded
     if isinstance(clock.after, Value):  # followed as a series over the step: no turns are taken off what moves
         return _centred(total) * (2 * math.pi) + f * clock.after * (2 * math.pi)
     if clock.after:
@@ -75,13 +103,12 @@ def reduced_angle(f, clock, type):
     return _centred(total) * (2 * math.pi)
 
 
-def _fraction(count, turns, type):
-    """Return count * turns less whole turns, count a whole number of few bits."""
+def _pieces(turns, type):
+    """Return a longer piece of so few bits that three products with digits add up exactly, and the rest of ``turns``."""
     _, bits = SPLIT[type]
     turns = _centred(turns)
     long = floor(turns * 2.0**bits + 0.5) * 2.0**-bits
-    short = turns - long
-    return _centred(count * long) + count * short
+    return long, turns - long
 
 
 def _centred(turns):

@@ -6,6 +6,7 @@ from hapticlab.compiler.engine import load
 from hapticlab.compiler.flow import motion_of
 from hapticlab.compiler.ir import Channel, Program
 from hapticlab.compiler.located import Stepper
+from hapticlab.compiler.phase import digit
 from hapticlab.compiler.trace import Builder, Value, select
 
 
@@ -44,3 +45,12 @@ def rows(motion, ticks):
     outputs = load(motion).run(ticks).outputs[:, :, 0]
     assert not outputs[:, -1].any(), f"unlocated at {np.flatnonzero(outputs[:, -1])}"
     return outputs[:, :-1]
+
+
+def at_tick(program, tick, states=None):
+    """Return (states, 1), zeros by default, with the digits of a tick count in place."""
+    states = np.zeros((len(program.states), 1)) if states is None else np.array(states)
+    high, low = divmod(tick, int(digit(program.outputs[0].type)))
+    for row, channel in zip(states, program.states, strict=True):
+        row[:] = {"tick": low, "tick_high": high}.get(channel.name, row)
+    return states

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import sympy as sp
+from motions import at_tick
 from scipy.signal import lfilter
 
 import hapticlab as hl
@@ -76,14 +77,14 @@ def test_an_algebraic_loop_is_refused_with_its_path():
         hl.compile(hl.Scene(force=k * y(n)), T=1e-3)
 
 
-def test_time_is_counted_in_whole_ticks():
-    """After 2^22 ticks a float32 sum of 1 ms would be wrong by seconds; a count is right to a rounding."""
+@pytest.mark.parametrize("start", [2**22, 2**24 + 1, 10**9, 2**31 - 2])
+def test_time_is_counted_in_whole_ticks(start):
+    """After 2^22 ticks a float32 sum of 1 ms would be wrong by seconds; a count is right to a rounding, and stays so."""
     clock = hl.compile(hl.Scene(force=hl.parameters("c", units="N/s", values=1.0) * t, name="clock"), T=1e-3)
-    start = 2**22
-    run = load(clock).run(3, np.zeros((3, 1)), states=np.array([[float(start)]]))
+    run = load(clock).run(3, np.zeros((3, 1)), states=at_tick(clock, start))
     expected = [np.float32(start + i) * np.float32(1e-3) for i in range(3)]
     assert run.outputs[:, 0, 0].tolist() == [float(e) for e in expected]
-    assert run.states[0, 0] == start + 3
+    np.testing.assert_array_equal(run.states, at_tick(clock, start + 3))
 
 
 def test_time_inside_a_step_is_the_time_of_the_stage():
