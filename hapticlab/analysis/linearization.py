@@ -11,6 +11,7 @@ from ..compiler.exact import EXACT
 from ..compiler.guards import Leaves
 from ..compiler.lower import compile
 from ..compiler.lowering import Lowering
+from ..compiler.phase import TICKS
 from ..compiler.tangents import tangents
 from ..compiler.trace import Value
 from ..errors import AnalysisError
@@ -75,7 +76,8 @@ def _tick(program, scene, points):
     """Return what :func:`tick_at` returns, of a program that is compiled."""
     if len(program.inputs) != 1:
         raise AnalysisError(f"{program.name}: needs a program of x alone; leave velocity='measured' out")
-    P, kept = len(points), [k for k, c in enumerate(program.states) if c.type not in ("i32", "bool")]
+    P = len(points)
+    kept = [k for k, c in enumerate(program.states) if c.type not in ("i32", "bool") and c.name not in TICKS]
     leaves = _handle(points) | _parameters(scene, [c.name for c in program.parameters], points, program.values)
     first, _ = tangents(program.init.instructions, program.init.states, leaves, [], P)
     for k, channel in enumerate(program.states):
