@@ -1,31 +1,25 @@
 """One metric over the product of many parameter values: a lane a point, a run for every period and structure."""
 
-import itertools
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..compiler.exact import exact_and_rest
 from ..compiler.held import held
-from ..device.link import link, load_linked
 from ..device.progress import progress_bar
 from ..errors import AnalysisError
-from ..scene.parameters import Parameter
 from ..scene.scene import Scene
 from ..scene.units import in_si
-from .chatter import SHORTEST
-from .measures import METRICS, WithFault
+from .chunks import measured
+from .grid import PADDLE_AXES, START_AXES, Grid
+from .measures import METRICS
+from .partial import Partial, Record
+from .plan import Plan, identity
 from .plots import plot_sweep
+from .workers import number_of, spread
 
-#: what a sweep may change about a simulated paddle, and its unit
-PADDLE_AXES = {
-    "T": "s", "m": "kg", "b": "N*s/m", "delay": "s", "counts_per_metre": "1/m", "coulomb": "N", "force_max": "N", "noise": "m",
-}  # fmt: skip
-START_AXES = {"x": "m", "v": "m/s"}
 #: what a sweep may say about how its scene is compiled; a parameter of that name goes first
 OPTIONS = ("method", "substeps", "hold")
-#: lanes and ticks of one call of the engine, between two looks at the progress bar
-LANES, TICKS = 2048, 2000
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,11 +58,13 @@ class Sweep:
         return f"Sweep({self.metric} [{self.unit}] over {grid}, {self.duration:g} s each)"
 
 
-def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progress=True, **values):
+def sweep(
+    scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progress=True, workers=1, resume=None, **values
+):
     """Simulate every combination of the named values and measure each, without storing a trace.
 
     Points that differ in values only are lanes of one program; every T, and every paddle of another structure, is a run
-    of its own. A point's result is the same as when it runs alone.
+    of its own. A point's result is the same as when it runs alone, bit for bit, for any number of workers.
 
     Parameters
     ----------
@@ -87,6 +83,15 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
     engine : {"auto", "llvm", "interpreter"}
     progress : bool
         Show a bar when the sweep lasts longer than two seconds.
+    workers : int or callable
+        So many at once, -1 for one a processor: threads, which is all that machine code needs; processes where
+        llvmlite is missing (a script then needs ``if __name__ == "__main__":``). Or what maps a function over a sequence as
+        ``map`` does: ``pool.imap_unordered`` of a multiprocessing pool, ``executor.map``, or a Dask cluster's
+        ``client.get_executor().map``, where hapticlab must be installed too. A chunk sent to one carries a program, the
+        axes' values that it takes, the paddle with its seed, and a range of points.
+    resume : path, optional
+        A file that keeps what is finished. The same call goes on from it, whatever stopped it: Ctrl-C, a crash, a reboot;
+        workers may differ. A file of another sweep, or of another version of hapticlab, is refused.
     method, substeps, hold : optional
         As :func:`hapticlab.compile` takes them, the same for every point; method="taylor" sweeps impacts and sticking
         friction. With method="exact" parameters of the scene that are no axis are constants.
@@ -101,7 +106,8 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
     Raises
     ------
     AnalysisError
-        For an unknown metric or name, a name that both the scene and the paddle have, and values that are not finite.
+        For an unknown metric or name, a name that both the scene and the paddle have, values that are not finite, a file
+        to resume from that is of another sweep, and workers that died.
 
     Examples
     --------
@@ -115,6 +121,7 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
     """
     if metric not in METRICS:
         raise AnalysisError(f"metric = {metric!r}; needs one of {', '.join(METRICS)}")
+    workers = number_of(workers)
     own = scene.parameters if isinstance(scene, Scene) else ()
     options = {name: values.pop(name) for name in OPTIONS if name in values and name not in own}
     axes, fixed, units = _names(scene, values)
@@ -123,13 +130,34 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
         bound = scene(**{name: float(end(a)) for name, a in axes.items() if name in scene.parameters})
     if exact_and_rest(options.get("method"))[0]:
         options["live"] = [name for name in axes if name in own]
-    grid = _Grid(bound, paddle, axes, fixed, options)
-    result = np.empty(grid.points)
-    for settings in grid.groups():
-        cells, found = _measure(grid, settings, duration, metric, engine, progress)
-        result[cells] = found
+    paddle_here = replace(paddle, **{name: a for name, a in fixed.items() if name in PADDLE_AXES})
+    starts = {name: fixed.get(name, 0.0) for name in START_AXES}
+    grid = Grid(paddle_here, axes, held(scene))
+    plan = Plan(bound, grid, starts, options, duration, metric, engine)
+    result = _filled(plan, identity(plan, scene), workers, resume, progress)
     about = "\n".join([scene.name, str(paddle), *(f"{name} = {a:g}" for name, a in fixed.items())])
     return Sweep(axes, result.reshape(grid.shape), metric, METRICS[metric].unit, units, duration, about)
+
+
+def _filled(plan, what, workers, resume, progress):
+    """Return the metric at every point: what the file has, and what the workers measure."""
+    result, points, done = np.empty(plan.grid.points), plan.grid.points, 0
+    with Partial(resume, what) as kept, progress_bar(points, progress, "point") as shown:
+        try:
+            for record in kept.records:
+                done += plan.put(result, record, shown)
+            chunks = plan.chunks(kept.records, workers)
+            for group, first, values in spread(measured, chunks, workers, threads=plan.machine_code):
+                record = Record(group, first, plan.digests[group], values)
+                kept.add(record)
+                done += plan.put(result, record, shown)
+        except BaseException as stop:
+            if resume is not None:
+                stop.add_note(f"{done} of {points} points are in {str(resume)!r}; the same call goes on from there")
+            raise
+    if done != points:
+        raise AnalysisError(f"workers gave back {done} of {points} points; needs a map that returns every result once")
+    return result
 
 
 def _names(scene, values):
@@ -168,72 +196,3 @@ def _in_si(given, unit, name):
         return np.asarray(given, float)
     except (TypeError, ValueError):
         raise AnalysisError(f"{name} = {given!r}; an axis needs one or more finite numbers [{unit}]") from None
-
-
-class _Grid:
-    """The points of a sweep: each is the scene's values and a setting, which is a paddle and where its handle starts."""
-
-    def __init__(self, scene, paddle, axes, fixed, options):
-        self.scene, self.axes, self.options = scene, axes, options
-        self.shape = tuple(len(a) for a in axes.values())
-        self.points = int(np.prod(self.shape))
-        self.index = dict(zip(axes, np.indices(self.shape).reshape(len(axes), self.points), strict=True))
-        paddle = replace(paddle, **{name: a for name, a in fixed.items() if name in PADDLE_AXES})
-        start = {name: fixed.get(name, 0.0) for name in START_AXES}
-        holding = held(scene)  # a program has these as constants
-        lengths = [name for name in axes if name in holding]
-        changed = [name for name in axes if name in PADDLE_AXES or name in START_AXES or name in lengths]
-        self.setting = np.zeros(self.points, int)
-        for name in changed:
-            self.setting = self.setting * len(axes[name]) + self.index[name]
-        self.paddles, self.starts, self.lengths = [], [], []
-        for values in itertools.product(*(axes[name].tolist() for name in changed)):
-            here = dict(zip(changed, values, strict=True))
-            self.paddles.append(replace(paddle, **{name: a for name, a in here.items() if name in PADDLE_AXES}))
-            self.starts.append({name: here.get(name, a) for name, a in start.items()})
-            self.lengths.append(tuple((name, here[name]) for name in lengths))
-
-    def groups(self):
-        """Return the settings that can share one program and its inputs, as lists of their numbers."""
-        found = {}
-        for number, paddle in enumerate(self.paddles):
-            found.setdefault((paddle.T, paddle.structure, paddle.noise, self.lengths[number]), []).append(number)
-        return list(found.values())
-
-    def parameters(self, program, settings, cells):
-        """Return the linked program's parameters for some points, shape (parameters, points)."""
-        scene = np.repeat(np.array(program.values, float)[:, None], len(cells), axis=1)
-        for row, channel in enumerate(program.parameters):
-            if channel.name in self.axes:
-                swept = Parameter(channel.name, channel.unit, channel.low, channel.high)  # a program may take less than a scene
-                for end in (np.min, np.max):
-                    swept.check(float(end(self.axes[channel.name])))
-                scene[row] = self.axes[channel.name][self.index[channel.name][cells]]
-        plants = np.array([self.paddles[s].plant_values(**self.starts[s]) for s in settings]).T
-        return np.concatenate([scene, plants[:, np.searchsorted(settings, self.setting[cells])]])
-
-
-def _measure(grid, settings, duration, metric, engine, progress):
-    """Return the points of settings that share a program, and the metric there."""
-    paddle = grid.paddles[settings[0]]
-    cells = np.flatnonzero(np.isin(grid.setting, settings))
-    ticks = paddle.ticks(duration)
-    program = paddle.program(grid.scene(**dict(grid.lengths[settings[0]])), **grid.options)
-    if ticks < SHORTEST:
-        raise AnalysisError(f"duration = {duration:g} s is {ticks} samples of T = {paddle.T:g} s; needs at least {SHORTEST}")
-    measure = METRICS[metric](ticks, paddle.T)
-    loaded = load_linked(link(program, paddle, WithFault(measure)), engine)
-    inputs, parameters = paddle.inputs(ticks), grid.parameters(program, settings, cells)
-    last = []
-    with progress_bar(ticks * len(cells), progress) as shown:
-        for lanes in np.array_split(parameters, range(LANES, len(cells), LANES), axis=1):
-            states = None
-            for start in range(0, ticks, TICKS):
-                rows = inputs[start : start + TICKS]
-                outputs, states = loaded.run(len(rows), rows, lanes, states, every=len(rows))
-                shown.update(len(rows) * lanes.shape[1])
-            last.append(outputs[-1])
-    *numbers, fault = np.concatenate(last, axis=1)
-    counts = np.array([1 / p.counts_per_metre if p.counts_per_metre else 0.0 for p in grid.paddles])
-    found = measure.value(numbers, count=counts[grid.setting[cells]], quarter=ticks // 4 * paddle.T)
-    return cells, np.where(fault > 0, np.nan, found)

@@ -9,9 +9,10 @@ from ..compiler.elementary import TABLES
 from ..errors import PaddleError
 from ..records import PaddleProfile, Telemetry
 from .hand import Hand, require
+from .lanes import device_values
 from .link import link, load_linked
 from .paddle import Paddle
-from .plant import delay_parts, plant_of, values
+from .plant import delay_parts, plant_of
 from .profiles import profile as named_profile
 from .progress import progress_bar
 
@@ -148,10 +149,7 @@ class SimulatedPaddle(Paddle):
     def plant_values(self, x=0.0, v=0.0):
         """Return the values of the linked program's parameters after the scene's, for a start at x [m] with v [m/s]."""
         start = require("x", x, "m", "a start"), require("v", v, "m/s", "a start")
-        sensor = () if self.velocity == "measured" else (1 / self.T,)
-        encoder = () if self.counts_per_metre is None else (self.counts_per_metre, 1 / self.counts_per_metre)
-        limit = () if self.force_max is None else (self.force_max,)
-        return tuple(float(a) for a in (*values(self), *sensor, *encoder, *limit, *start))
+        return tuple(float(a) for a in (*device_values(self), *start))
 
     def inputs(self, ticks):
         """Return the linked program's inputs, shape (ticks, inputs).
