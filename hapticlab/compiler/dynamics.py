@@ -142,7 +142,8 @@ class Dynamics:
         if self.enforced:
             M, f = self._values(translate, self.enforced.coordinates, implicit)
             a, ds = self.enforced.rates(translate.instant, M, f)
-            felt = [r for f in self.form.f for r in f.atoms(sp.Function) if IMPULSE in self.others and hasattr(type(r), "constraint")]
+            averaged = self.form.f[self.form.coordinates.index(IMPULSE)] if IMPULSE in self.others else sp.S.Zero
+            felt = [r for r in averaged.atoms(sp.Function) if hasattr(type(r), "constraint")]
             found = self.enforced.reactions(translate.instant, M, f) if felt else {}
             translate.known |= {r: found[type(r).constraint] for r in felt}
         solution = solve(*self._values(translate, self.others, implicit), self.definite) if self.others else []

@@ -71,7 +71,8 @@ class Exact:
         other = [form.force, *form.watch.values(), *form.updates.values(), *self.others.f, *sum(self.others.M, ())]
         read = set().union(*map(leaves, other))
         averaged = IMPULSE in self.states  # which starts anew at each sample, alone
-        self.space = linear.space if averaged else _cheaper(linear, [k for s, k in self.states.items() if s in read], self.tracing.T)
+        seen = [k for s, k in self.states.items() if s in read]
+        self.space = linear.space if averaged else _cheaper(linear, seen, self.tracing.T)
         first, back = [lowering.first_of(s) for s in self.states], np.linalg.inv(self.space.V)
         plain, real = self.space.is_plain, self.tracing.real
         self.keys = list(self.states) if plain else [f"mode {k}" for k in range(1, 1 + len(self.states))]

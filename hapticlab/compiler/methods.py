@@ -1,7 +1,10 @@
 """The explicit fixed-step methods that ``hl.compile`` knows by name, and what each is known for."""
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 
+from . import stability_region
 from .steps import RK4, adams_bashforth, nystrom, runge_kutta, semi_implicit_euler, verlet
 
 
@@ -33,6 +36,35 @@ class Method:
     order_with_velocity: int = None
     steps: int = 1
     implicit_damping: bool = False
+
+    @cached_property
+    def real(self):
+        """The largest stable h b/m of a body on a damper; nan where velocities are refused.
+
+        Of a method that treats q and v alike it is the stable interval of y' = -y on the real axis.
+        """
+        return math.nan if self.order_with_velocity else stability_region.longest_damper(self)
+
+    @cached_property
+    def imaginary(self):
+        """The largest stable omega h of a spring without damping: the stable interval on the imaginary axis."""
+        return stability_region.longest_for(self)
+
+    def longest_step(self, zeta=0.0):
+        """Return the largest stable omega h of q'' = -omega^2 q - 2 zeta omega q'; nan with damping that is refused."""
+        return math.nan if zeta and self.order_with_velocity else stability_region.longest_for(self, zeta)
+
+    def energy_gain(self, omega_h):
+        """Return the part of its energy that a spring-mass gains in a step of omega h, in the long run."""
+        return stability_region.energy_gain(self, omega_h)
+
+    def amplification(self, z):
+        """Return |R(z)| of y' = lambda y, z = h lambda: at most 1 in the stability region.
+
+        Semi-implicit Euler and Verlet take first-order states by Euler and Heun, of which this is the region; what they
+        do to a spring is in :meth:`longest_step`.
+        """
+        return stability_region.amplification(self, z)
 
 
 METHODS = {

@@ -29,8 +29,8 @@ def check_suited(method, form, graph, exact=False):
         _check_smooth(method, form, graph)
         if exact:
             raise ProgramError(
-                f"method = 'exact+{method.name}': the steps before the first sample are taken by RK4, which the exact part has no "
-                "part in; take 'exact+rk4'"
+                f"method = 'exact+{method.name}': RK4 finds the rates before the first sample, and knows nothing of the exact "
+                "part there; take 'exact+rk4'"
             )
 
 
@@ -38,7 +38,8 @@ def _check_free_of_velocity(method, form, graph):
     cure = f"with it {method.name} has order {method.order_with_velocity}, not {method.order}; take 'rk4'"
     first = [q for q, order in zip(form.coordinates, form.orders, strict=True) if order == 1 and q != IMPULSE]
     if first:
-        raise ProgramError(f"{type(first[0]).__name__} has an equation of first order, which {method.name} knows none of; take 'rk4'")
+        name = type(first[0]).__name__
+        raise ProgramError(f"{name} has an equation of first order, and {method.name} knows those of second order; take 'rk4'")
     if any(model.constraints for model in form.models):
         raise ProgramError(f"constraints turn the accelerations with the square of velocities; {cure}")
     rates = [q.diff(t) for q in form.coordinates]

@@ -1,0 +1,117 @@
+"""The methods that hl.compile knows, as a table and a picture: order, cost, and where each is stable."""
+
+import itertools
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..compiler.methods import METHODS
+from ..compiler.options import choice
+from .plots import STYLES, house_style, new_figure
+
+#: damping ratios of the right picture, and omega h past which nothing is drawn
+ZETA = np.geomspace(0.02, 5.0, 41)
+#: omega h at which the table says how much energy a step adds to a spring
+AT = (0.1, 0.5)
+
+
+class Methods(Mapping):
+    """Methods by name; printing them makes a table, :meth:`plot` a picture."""
+
+    def __init__(self, known):
+        self._known = known
+
+    def __getitem__(self, name):
+        return self._known[choice("method", name, self._known)]
+
+    def __iter__(self):
+        return iter(self._known)
+
+    def __len__(self):
+        return len(self._known)
+
+    def __str__(self):
+        gains = "".join(f"{f'gain at wh={y:g}':>15}" for y in AT)
+        lines = [f"{'method':<28}{'order':>6}{'evaluations':>13}{'h b/m <':>10}{'wh <':>8}{gains}"]
+        for name, m in self.items():
+            gains = "".join(f"{_gain(m, y):>15}" for y in AT)
+            lines.append(f"{name:<28}{m.order:>6}{m.evaluations:>13}{_shown(m.real):>10}{_shown(m.imaginary):>8}{gains}")
+        return "\n".join([*lines, *_BESIDE])
+
+    __repr__ = __str__
+
+    def plot(self, *names):
+        """Draw where methods are stable: |R(z)| = 1 of y' = z y, and the largest omega h against the damping ratio.
+
+        Parameters
+        ----------
+        *names : str
+            All, unless given.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Examples
+        --------
+        >>> import hapticlab as hl
+        >>> figure = hl.methods().plot("rk4", "semi_implicit_euler_damped")
+        >>> [axes.get_ylabel() for axes in figure.axes]
+        ['Im(h λ)', 'largest stable ω h']
+        """
+        chosen = {name: self[name] for name in names or self}
+        with house_style():
+            figure = new_figure(height=4.6, width=10.0)
+            left, right = figure.subplots(1, 2)
+            for (name, method), style in zip(chosen.items(), itertools.cycle(STYLES)):
+                _draw_region(left, method, style)
+                right.loglog(ZETA, [method.longest_step(zeta) or np.nan for zeta in ZETA], **style, label=name)
+            left.set(xlabel="Re(h λ)", ylabel="Im(h λ)", aspect="equal", title="|R| = 1 of y' = λ y, stable inside")
+            right.set(xlabel="damping ratio ζ", ylabel="largest stable ω h", title="q'' = -ω² q - 2 ζ ω q'")
+            figure.legend(loc="outside right center", fontsize="small")
+        return figure
+
+
+def _draw_region(axes, method, style):
+    if method.order_with_velocity:
+        return  # of y' = lambda y it has none: it knows no equations of first order
+    z = np.linspace(-3.2, 1.0, 106)[None, :] + 1j * np.linspace(-3.2, 3.2, 161)[:, None]
+    axes.contour(
+        z.real[0], z.imag[:, 0], method.amplification(z), levels=[1.0], colors=[style["color"]], linestyles=[style["linestyle"]],
+        linewidths=[1.6],
+    )  # fmt: skip
+
+
+_BESIDE = (
+    "gain: part of its energy that a spring gains in a step, in the long run; w: its frequency [rad/s]; h: step [s]",
+    "nystrom4: only where accelerations are free of velocities (else its order would be 2)",
+    "adams_bashforth: only without contacts and cases; the rates before the first sample are found by RK4",
+    "beside them exact and taylor: no error but rounding where motion is linear, whatever wh (exact) or for wh < 1 (taylor)",
+)
+
+
+def methods():
+    """Return the explicit fixed-step methods by name, their limits found by taking steps of them.
+
+    Returns
+    -------
+    Methods
+        A mapping name -> Method: order, evaluations, real, imaginary, longest_step(zeta), energy_gain(omega_h).
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> known = hl.methods()
+    >>> known["rk4"].order, round(known["rk4"].imaginary, 3), known["semi_implicit_euler_damped"].real
+    (4, 2.828, inf)
+    """
+    return Methods(METHODS)
+
+
+def _shown(limit):
+    return "-" if np.isnan(limit) else "any" if np.isinf(limit) else f"{limit:.3f}" if limit else "0"
+
+
+def _gain(method, y):
+    gain = method.energy_gain(y)
+    return "unstable" if y > method.imaginary > 0 else "0 (bounded)" if abs(gain) < 1e-12 else f"{gain:+.1e}"
