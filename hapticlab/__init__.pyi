@@ -5,6 +5,7 @@ from .analysis.books import balance, energy_books
 from .analysis.chatter import chatter
 from .analysis.energy import energy
 from .analysis.impedance import impedance
+from .analysis.methods import methods
 from .analysis.passivity import passivity_limit
 from .analysis.pictures import picture
 from .analysis.plots import plot
@@ -118,6 +119,7 @@ __all__ = [
     "impulse",
     "lagrange",
     "library",
+    "methods",
     "micro_impulse",
     "n",
     "parameters",
