@@ -65,11 +65,12 @@ def unstable_pole(A, B, C, allowed=0):
     return float(outside[0]) if len(outside) > allowed else None
 
 
-def required(A, B, C, D, T, delay=0.0):
+def required(A, B, C, D, T, delay=0.0, points=POINTS):
     """Return (b, theta): the least damping of a device [N s/m] and w T at the frequency that asks for it.
 
     A delay of d + f periods: ``H`` averaged over the two forces of a period, and one term more, see
-    :mod:`hapticlab.analysis.passivity`. A resonance without damping asks for inf.
+    :mod:`hapticlab.analysis.passivity`. A resonance without damping asks for inf. ``points`` is how many frequencies are
+    looked at to begin with, twice, beside those around every pole.
     """
     seen = _seen_poles(A, B, C)
     lossless = seen[np.abs(seen) > 1 - LOSSLESS]
@@ -87,7 +88,7 @@ def required(A, B, C, D, T, delay=0.0):
 
     poles = np.linalg.eigvals(A) if len(A) else np.zeros(0)
     around = [np.abs(np.angle(p)) + (1 - abs(p)) * s * np.geomspace(1e-2, 30, 40) for p in poles for s in (-1, 1)]
-    theta = np.concatenate([np.geomspace(1e-5, np.pi, POINTS), np.linspace(1e-3, np.pi, POINTS), *around])
+    theta = np.concatenate([np.geomspace(1e-5, np.pi, points), np.linspace(1e-3, np.pi, points), *around])
     theta = np.unique(theta[(theta > 0) & (theta <= np.pi)])
     for _ in range(4):  # look closer around the worst
         values = needed(theta)
