@@ -2,10 +2,14 @@
 
 from dataclasses import replace
 
+from ..errors import ProgramLimitError
 from ..scene.symbols import v, x
 from .ir import Block, Channel, Program
 from .stiffness import numbers
 from .trace import Builder
+
+#: a delay of so many samples takes seconds to compile
+MOST_STATES = 2000
 
 
 class Tracing:
@@ -17,6 +21,7 @@ class Tracing:
         self.parameters = parameters  # tuple of scene parameters, in order
         self.inputs = [Channel("x", "m", real), Channel("v", "m/s", real)]
         self._states = {}  # key -> [channel, first value, next value]
+        self._numbers = {}  # key -> how many states came before it
         self._waiting = []  # (key, callable) of next values not traced yet
 
     def input(self, builder, signal):
@@ -30,10 +35,16 @@ class Tracing:
     def state(self, key, channel, first, next=None):
         """Return the present value of a state, made on first use; ``next`` is a callable, or is set later."""
         if key not in self._states:
+            if len(self._states) == MOST_STATES:
+                raise ProgramLimitError(
+                    f"more than {MOST_STATES} states, the last of them {channel.name}: a past sample is kept with all that "
+                    "came after it; take fewer samples back, or a longer T"
+                )
+            self._numbers[key] = len(self._states)
             self._states[key] = [channel, first, None]
             if next is not None:
                 self._waiting.append((key, next))
-        return self.tick.leaf("state", list(self._states).index(key), self._states[key][0].type)
+        return self.tick.leaf("state", self._numbers[key], self._states[key][0].type)
 
     def set_next(self, key, value):
         """Give a state the value it has at the next tick."""
