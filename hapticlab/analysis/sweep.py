@@ -19,7 +19,7 @@ from .plots import plot_sweep
 from .workers import number_of, spread
 
 #: what a sweep may say about how its scene is compiled; a parameter of that name goes first
-OPTIONS = ("method", "substeps", "hold")
+OPTIONS = ("method", "substeps", "hold", "force_at")
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +92,7 @@ def sweep(
     resume : path, optional
         A file that keeps what is finished. The same call goes on from it, whatever stopped it: Ctrl-C, a crash, a reboot;
         workers may differ. A file of another sweep, or of another version of hapticlab, is refused.
-    method, substeps, hold : optional
+    method, substeps, hold, force_at : optional
         As :func:`hapticlab.compile` takes them, the same for every point; method="taylor" sweeps impacts and sticking
         friction. With method="exact" parameters of the scene that are no axis are constants.
     **values : float or array of shape (n,)
