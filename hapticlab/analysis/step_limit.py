@@ -14,7 +14,7 @@ from ..compiler.step_matrix import longest_step, step_matrix
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from ..scene.written import no_scene
-from .linearization import motion_at
+from .linearization import motion_at, slopes_of
 from .operating import WORTH, kind_of, operating_points, probes_of
 from .switches import switched
 
@@ -131,6 +131,7 @@ def step_limit(scene, method="rk4", *, T, substeps=1, hold="soh", at=None, **opt
 
     In each mode the method takes one step from every basis vector of the linearised motion. The longest step is the
     shortest one whose matrix has more eigenvalues outside the unit circle than the motion has in the right half plane.
+    "exact" has no longest step; that of "taylor" is a radian of the fastest part, past which hl.compile refuses it.
 
     Parameters
     ----------
@@ -170,44 +171,49 @@ def step_limit(scene, method="rk4", *, T, substeps=1, hold="soh", at=None, **opt
     points = operating_points(known, at, T)
     probes = probes_of(points)
     J, seconds = motion_at(known, [*points, *probes], T)
-    kind = kind_of(points, probes, J)
+    steps_at = [_step_at(known, p, name, T, J[k], seconds) for k, p in enumerate(points)]
     modes = tuple(
-        _mode_limit(name, J[k], seconds, h, known.named(p.mode), p.words)
-        for k, p in enumerate(points)
+        _mode_limit(name, slopes, step, h, known.named(p.mode), p.words)
+        for p, slopes, step in zip(points, J, steps_at, strict=False)
     )
-    return StepLimit(scene.name, name, T, h, modes, kind)
+    return StepLimit(scene.name, name, T, h, modes, kind_of(points, probes, J))
 
 
 def _method(method):
     """Return the name of a method, refusing one that is not known."""
     if isinstance(method, Taylor):
         return Taylor.name
-    rest = method.removeprefix(EXACT + "+") if isinstance(method, str) else method
+    rest = method.removeprefix(f"{EXACT}+") if isinstance(method, str) else method
     choice("method", rest, (*METHODS, Taylor.name, EXACT))
     return method
 
 
-def step_of(method, J, seconds):
-    """Return ``h -> step matrices`` of a method's name on y' = J y: of a method that is exact, the exponential."""
+def _step_at(scene, point, method, T, J, seconds):
+    """Return ``h -> step matrices`` of a method at a point; of what is exact, none."""
     if method in (EXACT, Taylor.name):
-        return lambda h: np.array([exponential(J * one) for one in np.ravel(h)])
-    return lambda h: step_matrix(METHODS[method.removeprefix(EXACT + "+")], J, seconds, h)
+        return lambda h: np.array([exponential(J * one) for one in h])
+    if method.startswith(EXACT):  # what is not linear is driven by what is, and drives nothing of it
+        rest = slopes_of(scene.set(point.mode), T, exact=True)
+        J, seconds = rest.jacobian(point.values)[0], rest.seconds
+        method = method.removeprefix(f"{EXACT}+")
+    known = METHODS[method]
+    if not known.implicit_damping:
+        return lambda h: step_matrix(known, J, seconds, h)
+    damped, switches = slopes_of(scene, T, known), scene.values_of(point.mode)
+    return lambda h: step_matrix(known, damped.jacobian(point.values, h, len(h), **switches), seconds, h)
 
 
-def _mode_limit(method, J, seconds, h, mode, point):
+def _mode_limit(method, J, step, h, mode, point):
+    """Return the :class:`ModeLimit` of one point, from its step matrices."""
     values = np.linalg.eigvals(J)
-    step = step_of(method, J, seconds)
-    if method == EXACT:
-        h_max = np.inf
-    elif method == Taylor.name:
-        h_max = 1.0 / max(np.abs(values).max(initial=0.0), 1e-300)
+    largest, fastest = np.abs(values).max(initial=0.0), np.abs(values.imag).max(initial=0.0)
+    if method == Taylor.name:
+        h_max = 1.0 / largest if largest else np.inf
     else:
-        h_max = longest_step(step, J)
-    fastest = np.abs(values.imag).max(initial=0.0)
-    return ModeLimit(
-        mode, point, values, float(h_max), float(h_max / h), energy_gain(values, np.linalg.eigvals(step(np.array([h]))[0]), h),
-        float(np.pi / (fastest * h)) if fastest > 0 else np.inf,
-    )  # fmt: skip
+        h_max = np.inf if method == EXACT else longest_step(step, J)
+    gain = energy_gain(values, np.linalg.eigvals(step(np.array([h]))[0]), h)
+    per_contact = np.pi / (fastest * h) if fastest else np.inf
+    return ModeLimit(mode, point, values, float(h_max), float(h_max / h), gain, float(per_contact))
 
 
 def energy_gain(values, multipliers, h):
@@ -221,10 +227,10 @@ def energy_gain(values, multipliers, h):
         Of the step matrix.
     h : float
     """
-    gains = [0.0]
-    oscillating = [value for value in values if value.imag > abs(value.real)]
-    for value in oscillating:
-        true = np.exp(value * h)
-        nearest = multipliers[np.abs(multipliers - true).argmin()]
-        gains.append(float(abs(nearest / true) ** 2 - 1.0))
-    return max(gains[1:], default=0.0)
+    gains = []
+    for value in values:
+        if value.imag > abs(value.real):
+            true = np.exp(value * h)
+            nearest = multipliers[np.abs(multipliers - true).argmin()] if len(multipliers) else true
+            gains.append(float(abs(nearest / true) ** 2 - 1.0))
+    return max(gains, default=0.0)
