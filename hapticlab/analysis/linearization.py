@@ -60,7 +60,7 @@ def tick_of(program, scene, points):
     """Return what :func:`tick_at` returns, of a program that is compiled: of a Switched scene, or of one without switches."""
     if len(program.inputs) != 1:
         raise AnalysisError(f"{program.name}: needs a program of x alone; leave velocity='measured' out")
-    P = len(points)
+    P, modes = len(points), _modes(scene, points)
     kept = [k for k, c in enumerate(program.states) if c.type not in ("i32", "bool") and c.name not in TICKS]
     leaves = _handle(points) | {("param", k): value for k, value in enumerate(program.values)}
     leaves |= {("param", k): modes[c.name] for k, c in enumerate(program.parameters) if c.name in modes}

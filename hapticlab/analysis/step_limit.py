@@ -1,6 +1,6 @@
 """The longest step that a method takes stably on a scene, predicted from its equations of motion before it runs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -200,6 +200,7 @@ def _step_at(scene, point, method, T, J, seconds):
     if not known.implicit_damping:
         return lambda h: step_matrix(known, J, seconds, h)
     damped, switches = slopes_of(scene, T, known), scene.values_of(point.mode)
+    known = replace(known, implicit_damping=False)  # its rates have it already
     return lambda h: step_matrix(known, damped.jacobian(point.values, h, len(h), **switches), seconds, h)
 
 

@@ -18,9 +18,7 @@ SHOWS = 0.05
 
 
 def step_matrix(method, J, seconds, h, mass=None):
-    """Return the matrix of one step, for J of shape (..., S, S) and h that broadcasts with (...).
-
-    It is of shape (..., S, S); of a multistep method it moves the rates of the steps before too, (..., k S, k S) of k steps.
+    """Return the matrix of one step, shape (..., S, S), for J of shape (..., S, S) and h that broadcasts with (...).
 
     Of a multistep method it is larger: it moves the rates of the steps before, too, shape (..., S steps, S steps).
 
@@ -45,24 +43,32 @@ def step_matrix(method, J, seconds, h, mass=None):
     J, h = np.asarray(J, float), np.asarray(h, float)
     S, n = J.shape[-1], seconds
     shape = np.broadcast_shapes(J.shape[:-2], h.shape)
-    whole = S * method.steps
     if not S:
         return np.zeros((*shape, 0, 0))
-
-    def parts(rows):
-        return rows[:n], rows[n : 2 * n], rows[2 * n :]
+    rows = J[..., n:, :] * np.ones((*shape, 1, 1))
+    if method.implicit_damping and n:
+        rows = _damped(rows, n, h, np.eye(n) if mass is None else np.asarray(mass, float))
 
     def rates(tau, q, w, s):
-        found = J[..., n:, :] @ np.stack([*q, *w, *s], axis=-2)
-        return [found[..., k, :] for k in range(n)], [found[..., k, :] for k in range(n, S - n)]
+        found = rows @ np.stack([*q, *w, *s], axis=-2)
+        found = [found[..., k, :] for k in range(S - n)]
+        return found[:n], found[n:]
 
-    start = [np.broadcast_to(row, (*shape, whole)) for row in np.eye(whole)]
-    state, past = parts(start[:S]), [parts(start[k : k + S]) for k in range(S, whole, S)]
-    if past:
-        state, past = method.step(rates, 0.0, state, h[..., None], past)
-    else:
-        state = method.step(rates, 0.0, state, h[..., None])
-    return np.stack([row for part in (state, *past) for group in part for row in group], axis=-2)
+    parts, size = (slice(0, n), slice(n, 2 * n), slice(2 * n, S)), S * method.steps
+    start = [np.broadcast_to(row, (*shape, size)) for row in np.eye(size)]
+    state, *past = (tuple(start[k : k + S][part] for part in parts) for k in range(0, size, S))
+    moved = method.step(rates, 0.0, state, h[..., None], *([past] if past else []))
+    state, past = moved if past else (moved, [])
+    return np.stack([row for group in (state, *past) for part in group for row in part], axis=-2)
+
+
+def _damped(rows, n, h, mass):
+    """Return the rates with implicit damping: of accelerations a, (M - h D)^-1 M a."""
+    forces = mass @ rows[..., :n, :]
+    slopes = [[forces[..., i, n + j] for j in range(n)] for i in range(n)]
+    D = dissipative(slopes, lambda i, j: 1.0)
+    D = np.stack([np.stack([d * np.ones(rows.shape[:-2]) for d in row], axis=-1) for row in D], axis=-2)
+    return np.concatenate([np.linalg.solve(mass - h[..., None, None] * D, forces), rows[..., n:, :]], axis=-2)
 
 
 def rising(J):
