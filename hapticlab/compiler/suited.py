@@ -8,8 +8,9 @@ from ..scene.symbols import Parameter, t
 from .channels import short
 from .force_at import IMPULSE
 
-#: what has a kink or a jump
-CASES = (sp.Piecewise, sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside, sp.floor, sp.ceiling, sp.core.relational.Relational)
+#: what may have a kink or a jump
+KINKS = (sp.Piecewise, sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside, sp.floor, sp.ceiling)
+
 
 
 def check_suited(method, form, graph, exact=False):
@@ -57,7 +58,7 @@ def _check_smooth(method, form, graph):
     if contacts:
         raise ProgramError(f"{contacts[0]} starts and ends within a step: {cure}")
     for q, row, f in zip(form.coordinates, form.M, form.f, strict=True):
-        for case in sorted({c for e in (*row, f) for c in e.atoms(*CASES)}, key=str):
+        for case in sorted({c for e in (*row, f) for c in e.atoms(*KINKS)}, key=str):
             moving = [v for v in graph.variables_of(_conditions(case)) if not isinstance(v, Parameter)]
             if moving:
                 raise ProgramError(f"{short(case, 60)} in the equation of {type(q).__name__} changes with {moving[0]}: {cure}")
