@@ -17,6 +17,7 @@ from .analysis.step_limit import step_limit
 from .analysis.sweep import sweep
 from .compiler.advance import Taylor
 from .compiler.lower import compile
+from .compiler.order import order_of
 from .compiler.pairs import contacts_between
 from .compiler.replay import replay
 from .compiler.requires import requires
@@ -122,6 +123,7 @@ __all__ = [
     "methods",
     "micro_impulse",
     "n",
+    "order_of",
     "parameters",
     "passivity_limit",
     "penalty",
