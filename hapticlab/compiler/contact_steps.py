@@ -1,6 +1,5 @@
 """Whether the steps of a method are short enough for a contact: ten from touch to leave, and a bounce that ends."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +14,7 @@ from ..scene.parameters import Parameter
 from .advance import Taylor
 from .first_sample import numbers
 from .impact import check_rest_speed
+from .options import proposed
 
 #: over the phase of entry, a symplectic step is wrong by at most 0.4 % of the energy at 10 steps, 18 % at 3, 115 % at 2
 STEPS_PER_CONTACT = 10
@@ -126,10 +126,10 @@ def check_contact_steps(contact, k, W, h, T, speed=1.0, method="rk4"):
     lasts = contact.law.duration(k, 1 / W, speed)
     if lasts >= STEPS_PER_CONTACT * h:
         return
-    needed = math.ceil(STEPS_PER_CONTACT * T / lasts)
+    more = proposed(STEPS_PER_CONTACT * T / lasts, "a shorter T")
     at = f" at {speed:g} m/s" if isinstance(contact.law, hunt_crossley) else ""
     raise SceneError(
         f"{contact.name}: the contact{at} lasts {1e3 * lasts:.3g} ms (k = {k:g}, effective mass {1 / W:.3g}), which is "
-        f"{lasts / h:.1f} steps of {1e3 * h:g} ms; {method} needs {STEPS_PER_CONTACT}. Take substeps={needed}, "
+        f"{lasts / h:.1f} steps of {1e3 * h:g} ms; {method} needs {STEPS_PER_CONTACT}. Take {more}, "
         "method='taylor' (which locates touch and leave), or a softer contact"
     )

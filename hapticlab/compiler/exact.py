@@ -15,6 +15,8 @@ from .ir import Channel
 
 #: what a method's name begins with, where its linear parts are taken exactly; the rest follows a plus sign
 EXACT = "exact"
+#: of a state by another [1/s, 1/s^2], in the matrix exponential
+_LARGEST_RATE = 1e150
 
 
 def exact_and_rest(method):
@@ -63,6 +65,7 @@ class Exact:
     def __init__(self, lowering, form, rest):
         self.lowering, self.tracing, constants = lowering, lowering.tracing, lowering.folded
         linear, self.others = linear_part(lowering.scene, form, constants, self.tracing.T, rest, lowering.graph)
+        _check_size(linear, lowering.scene.name)
         self.constant_parts = [form.f[form.coordinates.index(q)] for q in linear.coordinates]
         self.notes = tuple(self._switches(linear.coordinates))
         kept = {*linear.coordinates, *self.others.coordinates}
@@ -172,6 +175,17 @@ def _sum(row, values):
             part = value * float(factor)
             total = part if total is None else total + part
     return values[0].builder.const(0.0) if total is None else total
+
+
+def _check_size(linear, name):
+    with np.errstate(all="ignore"):
+        largest = np.abs(linear.A).max(initial=0.0)
+    if not largest < _LARGEST_RATE:
+        names = ", ".join(type(q).__name__ for q in linear.coordinates)
+        raise ProgramError(
+            f"{name}: the rates of {names} are {largest:.3g} times what they depend on, past {_LARGEST_RATE:g}: no exponential "
+            "of that is a number; look at its masses, stiffnesses and dampings"
+        )
 
 
 def _cheaper(linear, read, T):

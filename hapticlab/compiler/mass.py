@@ -85,7 +85,7 @@ def _definite(M):
     diagonal = np.diag(M)
     if not np.isfinite(M).all() or not (diagonal * M[0, 0] > 0).all():
         return False
-    S = np.sign(M[0, 0]) * M / np.sqrt(np.outer(abs(diagonal), abs(diagonal)))
+    S = np.sign(M[0, 0]) * _over(M, abs(diagonal), abs(diagonal))
     if abs(S - S.T).max() > 1e-12:
         return False
     for j in range(len(S)):
@@ -98,4 +98,9 @@ def _definite(M):
 def _balanced(M):
     """Scale rows and columns to their largest entries, so that grams beside kilograms are not taken for nothing."""
     rows, columns = (abs(M).max(axis=axis) for axis in (1, 0))
-    return M / np.sqrt(np.outer(np.where(rows > 0, rows, 1.0), np.where(columns > 0, columns, 1.0)))
+    return _over(M, np.where(rows > 0, rows, 1.0), np.where(columns > 0, columns, 1.0))
+
+
+def _over(M, rows, columns):
+    """Return M over the geometric means of rows and columns, whose products may be past all numbers."""
+    return M / np.sqrt(rows)[:, None] / np.sqrt(columns)[None, :]

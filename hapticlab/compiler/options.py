@@ -7,6 +7,14 @@ from numbers import Real
 from ..errors import ParameterError, ProgramError
 from ..scene.symbols import Parameter
 
+#: of a period, that an error may propose: more of any method are more instructions than a program may have
+MOST_SUBSTEPS = 1000
+
+
+def proposed(substeps, instead):
+    """Return "substeps=..." where a program can have as many, else what to do ``instead``."""
+    return f"substeps={math.ceil(substeps)}" if substeps <= MOST_SUBSTEPS else instead
+
 
 def choice(name, given, known):
     """Return the option, one of the names known."""

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import ProgramError, ProgramLimitError
 from .ir import LEAVES
+from .options import proposed
 from .taylor import AT_ONCE, Series
 from .trace import reachable
 
@@ -172,10 +173,10 @@ def check_step(omega, T, substeps, name, live=()):
         shown = ", ".join(f"{parameter} = {live[parameter]:g}" for parameter in live)
         where = f"at {shown}, to which it may be set while it runs, " if live else ""
         cure = f", declare a narrower range, or leave {', '.join(live)} out of live=" if live else ""
+        more = proposed(omega * T, "a shorter T or, for what is linear, method='exact'")
         raise ProgramError(
             f"{name}: {where}its fastest part turns with omega = {omega:.4g} rad/s, by omega T/substeps = "
-            f"{omega * T / substeps:.3g} rad in a step of {T / substeps:g} s; method='taylor' needs at most 1: take "
-            f"substeps={math.ceil(omega * T)}{cure}"
+            f"{omega * T / substeps:.3g} rad in a step of {T / substeps:g} s; method='taylor' needs at most 1: take {more}{cure}"
         )
 
 
