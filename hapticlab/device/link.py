@@ -174,7 +174,7 @@ class _Loop:
         scene = [old[f"scene.{c.name}"] for c in self.program.states]
         outputs, scene = self._scene(builder, self.program.tick, p, sample, scene)
         watched = {c.name: o for c, o in zip(self.program.outputs[1:], outputs[1:], strict=True)}
-        fault = _fault(old["fault"], [outputs[0], *scene])
+        fault = _fault(old["fault"], [*outputs, *scene])
         F = self._limit(p, cast(outputs[0], "f64"))
         # Forces computed earlier and not yet felt, the newest first; a fault silences them all.
         past = [old[f"plant.F_{k + 1}"] for k in range(self.plant.whole + self.plant.split)]

@@ -24,6 +24,8 @@ CHUNK = {"interpreter": 250, "llvm": 100_000}
 LONGEST_RUN = 10_000_000
 #: in samples
 LONGEST_DELAY = 1000
+#: counts per metre
+FINEST_ENCODER = 1e12
 _POSITIVE = {"m": "kg", "T": "s"}
 _NOT_NEGATIVE = {
     "b": ("N s/m", "A negative damper feeds energy to the user."),
@@ -105,6 +107,11 @@ class SimulatedPaddle(Paddle):
         for name, unit in (("counts_per_metre", "1/m"), ("force_max", "N")):
             if getattr(self, name) is not None:
                 self._take(name, unit, "None leaves it out.", above=0)
+        if self.counts_per_metre is not None and self.counts_per_metre > FINEST_ENCODER:
+            raise PaddleError(
+                f"counts_per_metre = {self.counts_per_metre:g} 1/m; an encoder needs at most {FINEST_ENCODER:g}, a count a "
+                "picometre. None leaves it out."
+            )
         if self.delay > LONGEST_DELAY * self.T:
             raise PaddleError(
                 f"delay = {self.delay:g} s is {self.delay / self.T:.0f} samples; a simulated paddle keeps "
@@ -211,7 +218,8 @@ class SimulatedPaddle(Paddle):
         fault = None
         if code.any():
             first = int(np.argmax(code > 0))
-            names = ["the force F", *(f"the state {c.name}" for c in program.states)]
+            watched = (f"the watched {c.name}" for c in program.outputs[1:])
+            names = ["the force F", *watched, *(f"the state {c.name}" for c in program.states)]
             culprit = f"{names[int(code[first]) - 1]} of {program.name}"
             when = f"tick {first} (t = {first * self.T:g} s)"
             fault = f"{when}: {culprit} was not finite; the motor is off from there on{_likely_cause(program)}"
