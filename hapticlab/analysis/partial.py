@@ -47,17 +47,30 @@ class Partial:
     """
 
     def __init__(self, path, identity):
-        self.path, self.records, self._file = path and Path(path), [], None
+        self.records, self._file, self._written = [], None, False
         if path is None:
             return
+        try:
+            self.path = Path(path)
+        except TypeError:
+            raise AnalysisError(f"resume = {path!r}; needs the path of a file, which is made where there is none") from None
         line = MAGIC + json.dumps(identity).encode() + b"\n"
         with self._named("open"):
             self._file = open(self.path, "a+b", buffering=0)  # noqa: SIM115 (closed where the block ends)
+        try:
+            self._begin(line, identity)
+        except BaseException:
+            self._file.close()
+            raise
+
+    def _begin(self, line, identity):
+        with self._named("read"):
             self._file.seek(0)
             content = self._file.read()
         kept = self._read(content, line, identity)
         with self._named("write"):
-            self._file.truncate(kept)  # what a record that was cut off has left
+            if kept < len(content):
+                self._file.truncate(kept)  # what a record that was cut off has left
             if kept == 0:
                 self._write(line)
 
@@ -97,6 +110,7 @@ class Partial:
             self._write(body + CRC.pack(zlib.crc32(body)))
 
     def _write(self, content):
+        self._written = True
         if self._file.write(content) != len(content):
             raise OSError("the disk is full")
 
@@ -112,8 +126,9 @@ class Partial:
 
     def __exit__(self, *_):
         if self._file is not None:
-            with contextlib.suppress(OSError):  # a pipe, a network drive: nothing to make sure of
-                os.fsync(self._file.fileno())
+            if self._written:
+                with contextlib.suppress(OSError):  # a network drive may know no way to make sure
+                    os.fsync(self._file.fileno())
             self._file.close()
 
 

@@ -4,14 +4,17 @@ import itertools
 import multiprocessing
 import operator
 import os
+import pickle
 import signal
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 
 from ..errors import AnalysisError
 
 #: how often in a row processes may end before one of them has finished anything
 MOST_BREAKS = 3
+#: how long to wait at a time [s]; on Windows Ctrl-C is heard in between only
+LOOK = 0.2
 
 
 def number_of(workers):
@@ -40,14 +43,14 @@ def spread(function, pieces, workers, *, threads=True):
     function : callable
         Of a module, where it goes to other processes.
     pieces : iterable
-        Taken as they are needed, a few ahead; a callable ``workers`` may take all at once.
+        Taken as they are needed, a few ahead; a callable ``workers`` gets them all at once, in a list, as Dask wants it.
     workers : int or callable
         So many threads or processes; or like ``map(function, pieces)``: of a pool, of an executor, of a cluster.
     threads : bool
         Whether a number means threads, which is enough where the work is done outside Python.
     """
     if callable(workers):
-        yield from workers(function, pieces)
+        yield from _mapped(function, [*pieces], workers)
     elif workers == 1:
         yield from map(function, pieces)
     elif threads:
@@ -56,22 +59,33 @@ def spread(function, pieces, workers, *, threads=True):
         yield from _in_processes(function, pieces, workers)
 
 
+def _mapped(function, pieces, workers):
+    try:
+        yield from workers(function, pieces)
+    except BrokenExecutor as error:
+        raise AnalysisError(
+            "a worker of the pool given as workers was killed, and such a pool ends with it; make a new one and sweep again, "
+            "with resume= from what was finished"
+        ) from error
+
+
 def _in_threads(function, pieces, workers):
     pool = ThreadPoolExecutor(workers)
     try:
-        yield from _submitted(pool, function, pieces, {}, 2 * workers)
+        yield from _submitted(pool, function, enumerate(pieces), {}, 2 * workers)
     finally:
         pool.shutdown(cancel_futures=True)
 
 
 def _in_processes(function, pieces, workers):
     """Start new processes where some were killed, and give them what was under way."""
-    pieces, under_way, breaks = iter(pieces), {}, 0
+    pieces, under_way, breaks = enumerate(_sendable(pieces)), {}, 0
     while breaks < MOST_BREAKS:
         # spawned, never forked: a fork copies locks that other threads hold, and other systems than Linux have none
         pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _ignore_interrupt)
         try:
-            for result in _submitted(pool, function, itertools.chain([*under_way.values()], pieces), under_way, 2 * workers):
+            todo = itertools.chain([*under_way.items()], pieces)
+            for result in _submitted(pool, function, todo, under_way, 2 * workers):
                 breaks = 0
                 yield result
             return
@@ -86,22 +100,36 @@ def _in_processes(function, pieces, workers):
     )
 
 
+def _sendable(pieces):
+    """Refuse at the first piece what no other process can be given, and pass all of them on."""
+    for number, piece in enumerate(pieces):
+        try:
+            if number == 0:
+                pickle.dumps(piece)
+        except (pickle.PicklingError, AttributeError, TypeError) as error:
+            raise AnalysisError(
+                f"this cannot be sent to worker processes: {error}. A function in it, such as a hand's intent, is best "
+                "defined with def in a module that is imported; or sweep with workers=1"
+            ) from error
+        yield piece
+
+
 def _submitted(pool, function, pieces, under_way, ahead):
-    """Yield results from a pool, in any order; ``under_way`` holds the pieces whose result is not out, by their id."""
+    """Yield results from a pool, in any order, for (number, piece); ``under_way`` keeps those whose result is not out."""
     futures = {}
-    for piece in pieces:
-        under_way[id(piece)] = piece
-        futures[pool.submit(function, piece)] = piece
-        if len(futures) >= ahead:
+    for number, piece in pieces:
+        under_way[number] = piece
+        futures[pool.submit(function, piece)] = number
+        while len(futures) >= ahead:
             yield from _finished(futures, under_way)
     while futures:
         yield from _finished(futures, under_way)
 
 
 def _finished(futures, under_way):
-    for future in wait(futures, return_when=FIRST_COMPLETED).done:
+    for future in wait(futures, LOOK, FIRST_COMPLETED).done:
         result = future.result()
-        del under_way[id(futures.pop(future))]
+        del under_way[futures.pop(future)]
         yield result
 
 
