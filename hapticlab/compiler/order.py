@@ -85,16 +85,17 @@ def order_of(scene, method="rk4", *, hold="soh", velocity="backward_difference",
     moving = graph.variables_of([*form.f, *sum(form.M, ()), *(g for model in form.models for g in model.constraints)])
     felt = graph.variables_of([form.force])
     exact, rest = exact_and_rest(method)
+    seen = _seen(hold, velocity, at_samples=_at_samples(method, options))
     locates = isinstance(method, Taylor) or method == Taylor.name or (exact and rest is None)
     limits = {}
     if form.coordinates:
         limits |= _of_method(method, exact, rest, form)
-        limits |= _of_hold(moving, hold)
+        limits |= _of_hold(moving, seen)
         if exact and any(a == t or isinstance(a, driven) for a in moving):
             limits["t followed by a parabola"] = 4
         if not locates:
             limits |= _of_cases(form, graph, scene.values)
-    limits |= _of_force(felt, hold, velocity, force_at)
+    limits |= _of_force(felt, seen, velocity, force_at)
     return Order(limits)
 
 
@@ -105,22 +106,36 @@ def _of_method(method, exact, rest, form):
     return {f"method {method}": METHODS[name].order if name in METHODS else math.inf}
 
 
-def _of_hold(variables, hold):
-    """Return the limits that the handle between samples, and what is held over a period, set."""
+def _at_samples(method, options):
+    """Tell whether a method looks at the handle at samples alone: with steps before it, and no substeps between."""
+    return method in METHODS and METHODS[method].steps > 1 and options.get("substeps", 1) == 1
+
+
+def _seen(hold, velocity, at_samples):
+    """Return in words -> order: how x(t) and v(t) are seen over a period, and what is held from sample to sample."""
     of_x, of_v = HOLD[hold]
-    limits = {}
+    if not at_samples:
+        return {f"x(t) of hold {hold}": of_x, f"v(t) of hold {hold}": of_v, "held over a period": 1}
+    # at a sample x is exact, and v where it is measured; else it is the hold's slope there
+    return {"x(n)": math.inf, "v(n)": math.inf if velocity == "measured" else of_v, "at samples": math.inf}
+
+
+def _of_hold(variables, seen):
+    """Return the limits that the handle between samples, and what is held over a period, set."""
+    (of_x, of_v, (kept, of_held)), limits = seen.items(), {}
     for variable in variables:
         role = getattr(type(variable), "role", None)
-        if variable == x(t):
-            limits[f"x(t) of hold {hold}"] = of_x
-        elif variable == v(t):
-            limits[f"v(t) of hold {hold}"] = of_v
-        elif isinstance(variable, acceleration) or role == "signal" or (isinstance(variable, (x, v)) and variable.has(n)):
-            limits[f"{variable}, held over a period"] = 1
+        if variable in (x(t), v(t)):
+            name, order = of_x if variable == x(t) else of_v
+            limits[name] = order
+        elif isinstance(variable, acceleration):
+            limits["the handle's acceleration, estimated"] = 1
+        elif role == "signal" or (isinstance(variable, (x, v)) and variable.has(n)):
+            limits[f"{variable} {kept}"] = of_held
     return limits
 
 
-def _of_force(felt, hold, velocity, force_at):
+def _of_force(felt, seen, velocity, force_at):
     """Return the limits that the instant of the force sets, and the velocity in it."""
     limits = {}
     states = [a for a in felt if getattr(type(a.expr if a.is_Derivative else a), "role", None) in ("coordinate", "reaction")]
@@ -128,7 +143,7 @@ def _of_force(felt, hold, velocity, force_at):
         limits["states a period late"] = 1
     if force_at == "mean":
         followed = [a for a in felt if a in (x(t), v(t))]
-        limits |= {f"{name} in the force": order for name, order in _of_hold(followed, hold).items()}
+        limits |= {f"{name} in the force": order for name, order in _of_hold(followed, seen).items()}
         felt = [a for a in felt if a not in followed]
     if velocity == "backward_difference" and any(isinstance(a, v) for a in felt):
         limits["v(n) a backward difference"] = 1
