@@ -72,11 +72,12 @@ class Switched(Taylor):
 
     Parameters
     ----------
-    why : str
-        Why it is not one linear system: the reason to refuse it where it is not linear in every mode either.
+    reason, cure : str
+        Why it is not one linear system, and what to do where it is not linear in every mode either.
     """
 
-    why: str = ""
+    reason: str = ""
+    cure: str = ""
     name = "exact"
 
 
@@ -168,7 +169,7 @@ def held_state(tracing, k):
 
 def switched(method, tracing, motion, groups, h, name, impact, after):
     """Trace one period of a motion that is linear between switches; see :func:`advance`."""
-    maps = Maps(motion, h, method.why, tracing.parameters)
+    maps = Maps(motion, h, (method.reason, method.cure), tracing.parameters)
     events = method.events or _EVENTS[len(motion.guards) + len(motion.reactions) > 2]
     turns = maps.omega * h
     stepper = Stepper(

@@ -21,6 +21,7 @@ from .multistep import advanced
 from .port_mass import port_mass
 from .solve import solve
 from .suited import check_suited
+from .switched import linear_between
 from .zeros import dot, plus, scaled
 
 
@@ -240,6 +241,8 @@ class Dynamics:
                 bound=bool(self.enforced),
             )  # fmt: skip
             facts |= located
+            if "maps" in located:
+                self.notes += (linear_between(located),)
             if "remainder" in located:
                 self.notes += (f"{BEYOND}the Taylor series of a step diverges; take more substeps",)
             self.notes += self.contacts.faults

@@ -28,7 +28,11 @@ def exact_and_rest(method):
 
 
 class _NotLinear(ProgramError):
-    """What ``method="exact"`` cannot take as one linear system."""
+    """What ``method="exact"`` cannot take as one linear system: the reason, and what to do where there is no other way."""
+
+    def __init__(self, reason, cure):
+        super().__init__(f"{reason}; {cure}")
+        self.reason = reason
 
 
 def exact_or_switched(lowering, form, method):
@@ -38,7 +42,7 @@ def exact_or_switched(lowering, form, method):
     except _NotLinear as why:
         if method is not None or any(model.constraints for model in form.models):
             raise
-        return None, Switched(why=str(why))
+        return None, Switched(reason=why.reason, cure=str(why).removeprefix(why.reason))
 
 
 class Exact:
@@ -219,16 +223,13 @@ def linear_part(scene, form, constants, T, rest, graph):
     coefficients = Coefficients(form, constants, T, graph)
     rows, reasons = linear_rows(coefficients)
     names = ", ".join(type(form.coordinates[k]).__name__ for k in rows)
+    reason = f"{scene.name}: {next(iter(reasons.values()), '')}"
     if reasons and any(located(model.contacts) for model in coupled(form)):
-        why = next(iter(reasons.values()))
-        raise _NotLinear(f"{scene.name}: {why}; use method='taylor', which locates that and is exact where motion is linear")
+        raise _NotLinear(reason, "use method='taylor', which locates that and is exact where motion is linear")
     if reasons and not rows:
-        raise _NotLinear(
-            f"{scene.name}: {next(iter(reasons.values()))}; nothing is left for method='exact', use 'rk4'"
-        )
+        raise _NotLinear(reason, "nothing is left for method='exact', use 'rk4'")
     if reasons and rest is None:
-        why = next(iter(reasons.values()))
-        raise _NotLinear(f"{scene.name}: {why}; method='exact+rk4' takes {names} exactly and the rest by rk4")
+        raise _NotLinear(reason, f"method='exact+rk4' takes {names} exactly and the rest by rk4")
     live = coefficients.live(rows)
     if live:
         keep = " ".join(sorted(set(scene.parameters) - set(live) - set(constants)))

@@ -96,8 +96,8 @@ class Maps:
     motion : Motion
     h : float
         Period [s].
-    why : str
-        The reason to refuse a motion that is not linear in every mode.
+    why : (str, str)
+        Why it is not one linear system, and what to do where it is not linear in every mode either.
     parameters : sequence of Parameter
         Of its scene.
     """
@@ -108,10 +108,10 @@ class Maps:
         self.choices = [g.leaf for g in motion.guards] + [r.side for r in motion.reactions if r.side is not None]
         measures = [g.measure for g in motion.guards] + [r.measure for r in motion.reactions]
         if any(g.kind == "floor" for g in motion.guards) or not is_linear(motion, measures):
-            raise ProgramError(why)
+            raise self._refused()
         if len(self.choices) > MOST_SURFACES:
             raise ProgramError(
-                f"{why}; method='exact' makes a map for each of the modes of at most {MOST_SURFACES} surfaces (cases, Max, "
+                f"{why[0]}; method='exact' makes a map for each of the modes of at most {MOST_SURFACES} surfaces (cases, Max, "
                 f"Min, contacts, frictions), and there are {len(self.choices)}: use method='taylor'"
             )
         self.surfaces = list(self._surfaces())
@@ -119,6 +119,9 @@ class Maps:
             self._mode(dict(zip(self.choices, map(np.bool_, sides), strict=True)))
             for sides in itertools.product((False, True), repeat=len(self.choices))
         ]
+
+    def _refused(self):
+        return ProgramError("".join(self.why))
 
     @property
     def omega(self):
@@ -164,9 +167,9 @@ class Maps:
         reached = [instructions[p] for p in reachable(instructions, [slope.id])]
         live = sorted({self.parameters[i.index].name for i in reached if i.op == "param"})
         if not live:
-            raise ProgramError(self.why)
+            raise self._refused()
         raise ProgramError(
-            f"{self.why}. method='exact' makes constants of each mode, and {', '.join(live)} may be set while it runs; fix "
+            f"{self.why[0]}; method='exact' makes constants of each mode, and {', '.join(live)} may be set while it runs; fix "
             f"what modes are made of, hl.compile(..., method='exact', live=[...]) without {', '.join(live)}, or use 'taylor'"
         )
 
@@ -222,7 +225,7 @@ class Maps:
         series = self._at(values, 0.0, mode.sides, DEGREE)
         drives = [series.of(rate, DEGREE) for rate in (*motion.a, *motion.ds)]
         if any(not is_zero(row[DEGREE]) for row in drives):
-            raise ProgramError(self.why)
+            raise self._refused()
         rates = [*values[n : 2 * n], *(row[0] for row in drives)]
         degree = max((k for row in drives for k in range(1, DEGREE) if not is_zero(row[k])), default=0)
         # coefficient k of theta^k is k!/h^k of the derivative that Psi_k takes
@@ -254,6 +257,14 @@ class Maps:
         two = len(self.motion.q)
         frequency = max(1 / self.h, math.sqrt(np.abs(A[two : 2 * two, :two]).max(initial=0.0)))
         return np.r_[np.ones(two), np.full(two, frequency), np.ones(len(A) - 2 * two)]
+
+
+def linear_between(facts):
+    """Return what a program says of being linear between switches."""
+    return (
+        f"linear between switches: a constant map for each of {facts['maps']} modes, wherever no switch can be reached within "
+        f"the period; where one may be, it is located, in at most {facts['pieces']} pieces"
+    )
 
 
 def _size(value):

@@ -250,9 +250,8 @@ def test_what_cannot_run_is_refused():
     both = lagrange(FALL, contacts=[hl.Contact(q, hl.rigid(), name="floor"), brake])
     with pytest.raises(ProgramError, match=r"floor, brake need events"):
         run(hl.Scene(force=0, eom=[both]), 1, method="rk4")
-    for method in ("exact", "exact+rk4"):
-        with pytest.raises(ProgramError, match=r"with brake, which may stick; use method='taylor', which locates that"):
-            run(rubbed, 1, method=method)
+    with pytest.raises(ProgramError, match=r"with brake, which may stick; use method='taylor', which locates that"):
+        run(rubbed, 1, method="exact+rk4")
     with pytest.raises(ProgramError, match=r"method = 'exat'; needs one of .*exact, exact\+rk4"):
         run(rubbed, 1, method="exat")
     z = hl.coordinate("z", unit="m", initial=h0)

@@ -1,0 +1,63 @@
+"""A mass in two linear modes, sampled, to forty digits: each piece a power series, its end by mpmath's root finder."""
+
+import mpmath as mp
+import numpy as np
+
+ORDER = 90
+
+
+def motion(samples, T, modes, depth, start):
+    """Return z and z' at the samples, and how many switches there were.
+
+    Between two samples the handle is the parabola of "soh" with backward differences.
+
+    Parameters
+    ----------
+    samples : sequence of float
+        Of the handle [m].
+    modes : dict bool -> (stiffness, damping, a, b, c)
+        z'' = -stiffness z - damping z' + a x + b x' + c, apart and in contact.
+    depth : (a, b, c)
+        In contact where a z + b x + c > 0, or at 0.
+    start : (z, z')
+    """
+    mp.mp.dps = 40
+    T, depth = mp.mpf(T), [mp.mpf(d) for d in depth]
+    modes = {closed: [mp.mpf(c) for c in mode] for closed, mode in modes.items()}
+    z, w, before, switches, found = *map(mp.mpf, start), [mp.mpf(float(samples[0]))] * 2, 0, []
+    for sample in samples:
+        found.append((z, w))
+        x0, (x1, x2) = mp.mpf(float(sample)), before
+        bend = (x0 - 2 * x1 + x2) / T**2
+        x, before = [x0, (x0 - x1) / T + bend * T / 2, bend / 2], (x0, x1)
+        left, closed = T, depth[0] * z + depth[1] * x0 + depth[2] >= 0
+        while left > 0:
+            series = _series(modes[closed], z, w, x)
+            gap = [(depth[0] * c + depth[1] * (x[k] if k < 3 else 0)) * (1 if closed else -1) for k, c in enumerate(series)]
+            gap[0] += depth[2] * (1 if closed else -1)
+            taken = _first_root(gap, left)
+            z, w = mp.polyval(series[::-1], taken), mp.polyval([k * c for k, c in enumerate(series)][:0:-1], taken)
+            x = [mp.polyval(x[::-1], taken), x[1] + 2 * x[2] * taken, x[2]]
+            left, closed, switches = left - taken, closed ^ (taken < left), switches + (taken < left)
+    return np.array(found), switches
+
+
+def _series(mode, z, w, x):
+    stiffness, damping, a, b, c = mode
+    drive = [a * x[0] + b * x[1] + c, a * x[1] + 2 * b * x[2], a * x[2]]
+    series = [z, w]
+    for k in range(ORDER):
+        pushed = (drive[k] if k < 3 else 0) - stiffness * series[k] - damping * (k + 1) * series[k + 1]
+        series.append(pushed / ((k + 1) * (k + 2)))
+    return series
+
+
+def _first_root(gap, left, parts=128):
+    """Return where a polynomial first goes below zero within ``left``, looked for at so many places; ``left`` if not."""
+    scaled = np.array([float(c * left**k) for k, c in enumerate(gap)])
+    values = np.polynomial.polynomial.polyval(np.arange(1, parts + 1) / parts, scaled)
+    below = np.flatnonzero(values < -1e-9 * abs(scaled).max())
+    if not len(below):
+        return left
+    low, high = (left * mp.mpf(int(below[0]) + k) / parts for k in (0, 1))
+    return mp.findroot(lambda t: mp.polyval(gap[::-1], t), (low if below[0] else high / 1e6, high), solver="anderson", tol=1e-60)
