@@ -26,6 +26,47 @@ void coupler(long ticks, double h, const double *in, const double *p, double *fo
     }
 }
 
+/* The same, and a ball of mass p[3] that bounces on the handle, in four RK4 steps a tick; p = B, K, g, m; y = z, z'. */
+static void ball_rates(const double *y, const double *in, const double *p, double *rate)
+{
+    double gap = y[0] - in[0], force = gap <= 0 ? -p[1] * gap - p[0] * (y[1] - in[1]) : 0.0;
+    rate[0] = y[1];
+    rate[1] = (force > 0 ? force : 0.0) / p[3] - p[2];
+}
+
+static inline __attribute__((always_inline)) void rk4(void (*rates)(const double *, const double *, const double *, double *),
+                                                      double *y, const double *in, const double *p, double h)
+{
+    double a[2], b[2], c[2], d[2], u[2];
+    rates(y, in, p, a);
+    for (int i = 0; i < 2; i++) u[i] = y[i] + h / 2 * a[i];
+    rates(u, in, p, b);
+    for (int i = 0; i < 2; i++) u[i] = y[i] + h / 2 * b[i];
+    rates(u, in, p, c);
+    for (int i = 0; i < 2; i++) u[i] = y[i] + h * c[i];
+    rates(u, in, p, d);
+    for (int i = 0; i < 2; i++) y[i] += h / 6 * (a[i] + 2 * (b[i] + c[i]) + d[i]);
+}
+
+void coupler_x4(long ticks, double T, const double *in, const double *p, double *force)
+{
+    double y[2] = {0, 0};
+    for (long n = 0; n < ticks; n++, in += 2) {
+        force[n] = p[0] * (in[0] - y[0]) + p[1] * (in[1] - y[1]);
+        for (int k = 0; k < 4; k++) rk4(coupler_rates, y, in, p, T / 4);
+    }
+}
+
+void ball_x4(long ticks, double T, const double *in, const double *p, double *force)
+{
+    double y[2] = {0.05, 0};
+    for (long n = 0; n < ticks; n++, in += 2) {
+        double gap = y[0] - in[0], push = -p[1] * gap - p[0] * (y[1] - in[1]);
+        force[n] = gap <= 0 && push > 0 ? push : 0.0;
+        for (int k = 0; k < 4; k++) rk4(ball_rates, y, in, p, T / 4);
+    }
+}
+
 /* Eight links in absolute angles, M(q) q'' = f solved by LDL^T; p = K, g, l, m, r; the handle twists the first link. */
 enum { LINKS = 8 };
 

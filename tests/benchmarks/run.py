@@ -20,11 +20,13 @@ import latency  # noqa: E402
 import numpy as np  # noqa: E402
 import steps  # noqa: E402
 import sweeps  # noqa: E402
+import switched  # noqa: E402
 from timing import SCALE  # noqa: E402
 
 SECTIONS = {
     "SymPy expression to running code, imports done": latency.rows,
     "one RK4 step, float64; against the C by hand": steps.rows,
+    "linear between switches, a tick, float64; against the C by hand": switched.rows,
     "10 000 points, a second at 1 kHz, one core; against the C by hand": sweeps.rows,
     "memory, size and import": footprint.rows,
 }

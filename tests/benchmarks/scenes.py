@@ -27,6 +27,17 @@ def coupler():
 COUPLER = {"K": 400.0, "b": 2.0, "k_w": 1000.0, "m": 0.1, "x_w": 0.01}
 
 
+def ball():
+    """Return a ball that bounces on the handle: a penalty contact that does not pull, started 50 mm above."""
+    z = hl.coordinate("z", unit="m", initial=0.05)
+    m, B, K, g = hl.parameters("m B K g", units="kg N*s/m N/m m/s^2")
+    push = hl.when(z <= x(t), sp.Max(0, -K * (z - x(t)) - B * (z.diff(t) - v(t))))
+    return hl.Scene(force=push, eom=[sp.Eq(m * z.diff(t, 2), push - m * g)], name="ball")
+
+
+BALL = {"B": 1.0, "K": 1e4, "g": 9.81, "m": 0.05}
+
+
 def pendulum(links=8):
     """Return a chain of equal links in absolute angles, its first link twisted by the handle through a spring."""
     q = [hl.coordinate(f"q{k}", unit="rad") for k in range(links)]
@@ -47,9 +58,9 @@ def pendulum(links=8):
 PENDULUM = {"K": 0.1, "g": 9.81, "l": 0.2, "m": 0.05, "r": 0.1}
 
 
-def compiled(scene, dtype="float64"):
+def compiled(scene, dtype="float64", method="rk4", **options):
     """Return the scene's program with one RK4 step a tick, the handle held as the C by hand holds it."""
-    return hl.compile(scene, "rk4", T=T, hold="zoh", dtype=dtype, velocity="measured")
+    return hl.compile(scene, method, T=T, hold="zoh", dtype=dtype, velocity="measured", **options)
 
 
 def handle(ticks):
