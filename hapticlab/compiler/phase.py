@@ -119,8 +119,13 @@ def _centred(turns):
 def angle_of(translator, expr):
     """Return the value of an angle, whatever time adds to it reduced to less than a turn."""
     clock = translator.clock
-    f, rest = frequency(expr) if clock else (sp.S.Zero, expr)
+    f, rest = frequency(expr) if clock and _has_time(expr) else (sp.S.Zero, expr)
     if f == 0:
         return translator(expr)
     angle = clock.angle(translator, f)
     return angle if rest == 0 else angle + translator(rest)
+
+
+def _has_time(expr):
+    """Tell whether t or n stands in sums and products: those inside of x(n) and other functions are no angle of time."""
+    return expr in (t, n) or (isinstance(expr, (sp.Add, sp.Mul)) and any(map(_has_time, expr.args)))

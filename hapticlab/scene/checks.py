@@ -11,6 +11,8 @@ from .symbols import Parameter, T, delay, lag_of, n, t, v, x
 from .units import agree, dimension
 from .written import CONDITIONS, RESERVED, check_name, expression
 
+#: of a scene's expressions, a part that stands in several places counted once: a program has 50 000 instructions at most
+MOST_PARTS = 100_000
 _NOT_REAL = (sp.I, sp.zoo, sp.nan, sp.oo, -sp.oo)
 
 
@@ -18,6 +20,22 @@ def applied(expressions, *roles):
     """Return the applied functions of a role (coordinate, signal, handle), sorted by name."""
     atoms = {a for e in expressions for a in _functions(e)}
     return sorted((a for a in atoms if getattr(type(a), "role", None) in roles), key=str)
+
+
+def check_size(expressions):
+    """Refuse, before anything else walks through them, expressions that no program could hold."""
+    seen, waiting = set(), list(expressions)
+    while waiting:
+        part = waiting.pop()
+        if part in seen:
+            continue
+        seen.add(part)
+        waiting.extend(part.args)
+        if len(seen) > MOST_PARTS:
+            raise SceneError(
+                f"the force and the equations have more than {MOST_PARTS} different parts, far past the 50000 instructions of a "
+                "program; a long sum or series needs fewer terms, a table of values a hl.Curve"
+            )
 
 
 @cacheit  # a scene is asked many times, and a Lagrangian is long

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 
 from ..errors import ParameterError, SceneError
-from .checks import applied, check_symbols, check_units, equations, is_model, named, parameters_in, written_in
+from .checks import applied, check_size, check_symbols, check_units, equations, is_model, named, parameters_in, written_in
 from .explicit import explicit_form
 from .frozen import Frozen
 from .units import unit_of
@@ -66,6 +66,7 @@ class Scene:
         _set(self, "eom", equations(self.eom))
         _set(self, "force", expression(self.force, "force"))
         written = [self.force, *written_in(self.eom)]
+        check_size(written)
         _set(self, "watch", Frozen(named(self.watch, applied(written, "coordinate"))))
         check_symbols(self._expressions())
         known = self.parameters
