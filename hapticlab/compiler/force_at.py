@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import sympy as sp
 
+from ..errors import ProgramError
+from ..scene.contact_laws import micro_impulse
 from ..scene.symbols import T, t, v, x
 from .graph import driven
 
@@ -20,8 +22,15 @@ def averaged(form, graph):
     The integral is one more state of the same method, so that the impulse which is felt is the impulse that the bodies
     are given. A force of samples alone is its own mean.
     """
-    if not any(map(_moves, graph.variables_of([form.force]))):
+    variables = graph.variables_of([form.force])
+    if not any(map(_moves, variables)):
         return form
+    for c in (c for model in form.models for c in model.contacts if getattr(c, "force", None) in variables):
+        if isinstance(getattr(c, "law", None), micro_impulse):
+            raise ProgramError(
+                f"force_at = 'mean': {c.force} acts in an instant at the end of a step, between which it is nothing; take "
+                "force_at='before', which holds the force of its impulse over the period"
+            )
     return replace(
         form,
         coordinates=(*form.coordinates, IMPULSE),
