@@ -11,46 +11,81 @@ import numpy as np
 from ..errors import AnalysisError
 
 #: places within a step at which surfaces are looked at
-PLACES = np.linspace(0, 1, 7)[1:]
+PLACES = np.linspace(0, 1, 5)[1:]
 #: most changes of mode within a millisecond: more is a motion along a surface that no mode describes
 MOST_EVENTS = 40
+#: most steps of DOP853 a second of motion: more is a motion too stiff for it
+MOST_STEPS = 5000
 
 
 class Field:
-    """Evaluates an :class:`~hapticlab.compiler.instant.Instant` at any time, in any mode."""
+    """Evaluates an :class:`~hapticlab.compiler.instant.Instant` at any time, in any mode.
 
-    def __init__(self, instant, rows, T, kernel):
-        self.instant, self.rows, self.T, self.kernel = instant, np.ascontiguousarray(rows), T, kernel
+    Parameters
+    ----------
+    instant : Instant
+    rows : array (periods, coefficients)
+        Of the handle's motion.
+    T : float
+        Length of those periods [s].
+    once : tuple
+        Of :meth:`~hapticlab.compiler.engine.Engine.once`.
+    """
+
+    def __init__(self, instant, rows, T, once):
+        self.instant, self.rows, self.T = instant, rows, T
+        self.inputs, self.states, self.outputs, self.tick = once
         self.guards, self.reactions = len(instant.kinds), len(instant.levels)
-        self.sizes = instant.second, instant.first
-        self.parameters = np.zeros((0, 1))
+        self.sizes = n, m = instant.second, instant.first
+        ends = np.cumsum([2, 2 * n + m, self.guards, self.reactions])
+        self.y_at, self.flags_at, self.pushes_at = (slice(*pair) for pair in zip(ends, ends[1:], strict=False))
+        self.sides_at = slice(ends[-1], None)
+        self.last, self.units = np.zeros(self.reactions), np.eye(self.reactions)
 
     def __call__(self, t, y, mode, pushes):
-        """Return (outputs, rates of y) at t, the reactions being ``pushes``."""
-        k = min(max(int(t / self.T), 0), len(self.rows) - 1)
-        inputs = np.append(self.rows[k], t - k * self.T)[None]
-        states = np.concatenate([[k], y, mode.flags, pushes, mode.sides])[:, None]
-        out = self.kernel.run(1, inputs, self.parameters, states)[0][0, :, 0]
-        n = self.sizes[0]
-        return out, np.concatenate([y[n : 2 * n], out[1 : 1 + n + self.sizes[1]]])
+        """Return the outputs at t, the reactions being ``pushes``."""
+        k, states = min(max(int(t / self.T), 0), len(self.rows) - 1), self.states
+        self.inputs[:-1], self.inputs[-1] = self.rows[k], t - k * self.T
+        states[:2], states[self.y_at] = divmod(k, self.instant.digit)[::-1], y
+        if len(states) > 2 + len(y):
+            states[self.flags_at], states[self.pushes_at], states[self.sides_at] = mode.flags, pushes, mode.sides
+        self.tick()
+        return self.outputs.copy()
+
+    def rates(self, y, out):
+        """Return the rates of y from the outputs."""
+        n, m = self.sizes
+        return np.concatenate([y[n : 2 * n], out[1 : 1 + n + m]])
+
+    def slope(self, t, y, mode):
+        """Return the rates of y at t."""
+        return self.rates(y, self._balanced(t, y, mode)[0])
 
     def solved(self, t, y, mode):
-        """Return (outputs, rates of y, pushes): reactions that are held keep their measures, others are free."""
-        pushes = np.zeros(self.reactions)
-        out, rates = self(t, y, mode, pushes)
+        """Return (outputs, pushes): reactions that are held keep their measures, others are free."""
+        out, pushes = self._balanced(t, y, mode)
+        return (self(t, y, mode, pushes) if mode.held.any() else out), pushes
+
+    def _balanced(self, t, y, mode):
+        """Return (outputs, pushes); of the outputs, what is linear in the reactions is right where some are held."""
+        out = self(t, y, mode, self.last)
         if not self.reactions:
-            return out, rates, pushes
-        for _ in range(2):  # what is free may hold another reaction, as friction holds a normal force
-            pushes = np.where(mode.held, 0.0, self.part(out, "free"))
-            out, rates = self(t, y, mode, pushes)
-        if mode.held.any():
-            rest, slopes = self.stays(out), []
-            for i in np.flatnonzero(mode.held):
-                slopes.append(self.stays(self(t, y, mode, pushes + np.eye(self.reactions)[i])[0]) - rest)
-            held = mode.held
-            pushes[held] = np.linalg.solve(np.array(slopes)[:, held].T, -rest[held])
-            out, rates = self(t, y, mode, pushes)
-        return out, rates, pushes
+            return out, self.last
+        held = mode.held
+        for _ in range(3):  # what is free may hold another reaction, as friction holds a normal force
+            pushes = np.where(held, self.last, self.part(out, "free"))
+            if np.array_equal(pushes, self.last):
+                break
+            self.last = pushes
+            out = self(t, y, mode, pushes)
+        if held.any():
+            which, rest = np.flatnonzero(held), self.stays(out)[held]
+            changes = np.array([self(t, y, mode, pushes + self.units[i]) - out for i in which])
+            slopes = np.array([self.stays(change)[held] for change in changes])
+            more = -rest / slopes[0] if len(rest) == 1 else np.linalg.solve(slopes.T, -rest)
+            pushes[held] += more
+            self.last, out = pushes, out + more @ changes
+        return out, pushes
 
     def part(self, out, name):
         """Return one row of every reaction from the outputs."""
@@ -68,7 +103,7 @@ class Field:
 
     def surfaces(self, t, y, mode):
         """Return what is positive while the mode lasts: one number per guard, one per reaction."""
-        out, _, _ = self.solved(t, y, mode)
+        out, _ = self.solved(t, y, mode)
         kinds = np.array([kind == "floor" for kind in self.instant.kinds], bool)
         u = self.measures(out)
         guards = np.where(kinds, 0.25 - u**2, np.where(mode.flags > 0, -u, u))
@@ -95,13 +130,14 @@ class Mode:
 class Hybrid:
     """Integrates a :class:`Field` from event to event."""
 
-    def __init__(self, field, *, rtol=1e-11, atol=1e-13):
+    def __init__(self, field, *, rtol=1e-10, atol=1e-12):
         self.field, self.rtol, self.atol = field, rtol, atol
 
     def run(self, start, times, breaks=()):
         """Return F at ascending times, from the state ``start`` at time 0; ``breaks`` are where the handle's motion changes."""
         field = self.field
-        self.t, self.y, self.times, self.F, self.done = 0.0, start.copy(), times, np.full(len(times), np.nan), 0
+        self.t, self.y, self.times, self.F = 0.0, start.copy(), times, np.full(len(times), np.nan)
+        self.done = self.steps = 0
         self.mode = self._first_mode()
         self.just, self.recent = np.zeros(field.guards + field.reactions, bool), []
         for stop in [*(b for b in breaks if 0 < b < times[-1]), times[-1]]:
@@ -129,12 +165,15 @@ class Hybrid:
 
         field, mode = self.field, self.mode
         solver = DOP853(
-            lambda t, y: field.solved(t, y, mode)[1], self.t, self.y, stop, rtol=self.rtol, atol=self.atol,
+            lambda t, y: field.slope(t, y, mode), self.t, self.y, stop, rtol=self.rtol, atol=self.atol,
             max_step=5e-3 if len(self.just) else np.inf,
         )  # fmt: skip
         while solver.status == "running":
             before = solver.t
             solver.step()
+            self.steps += 1
+            if self.steps > MOST_STEPS * (1 + self.times[-1]):
+                raise AnalysisError(f"at t = {before:.6g} s scipy's DOP853 has taken {self.steps} steps: it is stiff")
             if solver.status == "failed":
                 raise AnalysisError(f"at t = {before:.6g} s the step became too small")
             dense = solver.dense_output()
@@ -223,10 +262,9 @@ class Hybrid:
         field, mode, n = self.field, self.mode, self.field.sizes[0]
         if any(mode.held[j] for j, level in enumerate(mode.levels) if level == 2):
             raise AnalysisError(f"at t = {self.t:.6g} s two contacts touch at once")
-        out, rates, pushes = field.solved(self.t, self.y, mode)
-        pushed, pushed_rates = field(self.t, self.y, mode, pushes + np.eye(field.reactions)[i])
-        W = field.part(pushed, "d2")[i] - field.part(out, "d2")[i]
-        column = (pushed_rates - rates)[n : 2 * n]
+        out, pushes = field.solved(self.t, self.y, mode)
+        change = field(self.t, self.y, mode, pushes + field.units[i]) - out
+        W, column = field.part(change, "d2")[i], change[1 : 1 + n]
         u, b, law = field.part(out, "d1")[i], field.part(out, "d2")[i], field.instant.bounces[i]
         rests = b < 0 and -law.e * u <= max(law.rest_speed, -b * field.T / 2)
         self.y[n : 2 * n] += column * (-(1 if rests else 1 + law.e) * u / W)

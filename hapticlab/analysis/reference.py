@@ -20,7 +20,7 @@ ORDER = 10
 #: part of the peak force to which two solvers must agree to certify each other
 TOLERANCE = 1e-6
 #: of the values of F, those at which the second solver is asked
-EVERY = 8
+EVERY = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +94,7 @@ def reference(scene, motion, *, step=STEP, tolerance=TOLERANCE):
 def references(scene, motions, *, step=STEP, tolerance=TOLERANCE):
     """The force of a scene as its equations have it, for each of some motions of the handle: a list of :class:`Reference`.
 
-    First solver: the Taylor series of the motion, events located, the handle a polynomial of degree 7 over each step.
+    First solver: the Taylor series of the motion, events located, the handle a polynomial of degree 6 over each step.
     Second: scipy's DOP853 on the accelerations compiled by themselves, events found on its dense output.
 
     Parameters
@@ -164,8 +164,8 @@ class _References:
             return np.broadcast_to(found, at.shape[1:])[::EVERY], "force of the handle alone, evaluated by two routes"
         if self.second is None:
             self.second = instant(self.scene, T=self.step)
-            self.kernel = load(self.second.program).kernel
-        field_ = Field(self.second, rows, self.step, self.kernel)
+            self.once = load(self.second.program).once()
+        field_ = Field(self.second, rows, self.step, self.once)
         F = Hybrid(field_).run(self.second.start(at[0, 0], at[1, 0]), times, motion.breaks)
         return F, "Taylor series with located events, and scipy's DOP853"
 

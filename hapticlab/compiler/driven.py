@@ -11,7 +11,7 @@ from .lowering import Lowering
 from .modes import excluded, rests_on
 
 #: of the polynomial that the handle follows over a period
-DEGREE = 7
+DEGREE = 6
 
 
 class Followed(Handle):

@@ -23,7 +23,7 @@ class Engine:
     """A program ready to run; ``engine.run(...)`` may be called again and again, from several threads at once."""
 
     def __init__(self, program, kernel):
-        self.program, self.kernel = program, kernel
+        self.program, self._kernel = program, kernel
         self.name = kernel.name
 
     def run(self, ticks, inputs=None, parameters=None, states=None, every=1):
@@ -70,7 +70,35 @@ class Engine:
             self._check_int32("states", program.states, states)
         self._check_int32("parameters", program.parameters, parameters)
         self._check_int32("inputs", program.inputs, inputs.T)
-        return Run(self.kernel.run(ticks, inputs, parameters, states, every))
+        return Run(self._kernel.run(ticks, inputs, parameters, states, every))
+
+    def once(self):
+        """Return (inputs, states, outputs, tick): arrays to fill and read, and what runs one tick on them, unchecked.
+
+        For a loop in Python that needs the tick as a function: a call costs a microsecond or two. The states are
+        overwritten by the next ones; the parameters are the program's own values.
+
+        Examples
+        --------
+        >>> import hapticlab as hl
+        >>> k = hl.parameters("k", units="N/m", values=200)
+        >>> program = hl.compile(hl.Scene(force=k * hl.x(hl.n)), T=1e-3, dtype="float64")
+        >>> inputs, _, outputs, tick = load(program).once()
+        >>> inputs[0] = 0.01
+        >>> tick()
+        >>> float(outputs[0])
+        2.0
+        """
+        program, kernel = self.program, self._kernel
+        inputs, outputs = np.zeros(len(program.inputs)), np.zeros(len(program.outputs))
+        states, parameters = np.zeros(len(program.states)), np.array(program.values, float)
+
+        def tick():
+            found, following = kernel.run(1, inputs[None], parameters[:, None], states[:, None])
+            outputs[:], states[:] = found[0, :, 0], following[:, 0]
+
+        bound = getattr(kernel, "bound", lambda *_: tick)
+        return inputs, states, outputs, bound(inputs, parameters, states, outputs)
 
     def _real(self, what, given):
         """Return an array of float64, or say what is wrong with it."""

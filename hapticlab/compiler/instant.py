@@ -15,6 +15,7 @@ from ..scene.symbols import t
 from .driven import DEGREE, Followed, lowering_of
 from .flow import motion_of
 from .ir import Block, Channel, Instruction, Program
+from .phase import TICKS, digit
 from .stiffness import numbers
 from .taylor import Series
 from .trace import Value
@@ -50,7 +51,7 @@ class Instant:
     ----------
     program : Program
         Inputs: :func:`~hapticlab.compiler.driven.coefficients` of the handle's period, and tau [s] in it. States: the
-        number of the period, the state (q, w, s), a mode for every guard, a reaction and a side for every reaction.
+        number of the period in two digits, the state (q, w, s), a mode for every guard, a reaction and a side for every reaction.
         Outputs: F, the rates of (w, s), the measure of every guard, and for every reaction its measure, the measure's
         first and second derivative, ``free``, ``inside`` and ``lean``.
     second, first : int
@@ -63,6 +64,8 @@ class Instant:
         One per reaction.
     start : callable (x, v) -> array (states,)
         The state (q, w, s) at the first sample.
+    digit : float
+        Periods that the first digit of their number takes.
     """
 
     program: Program
@@ -72,6 +75,7 @@ class Instant:
     levels: tuple
     bounces: tuple
     start: Callable
+    digit: float
 
 
 def instant(scene, *, T):
@@ -97,7 +101,7 @@ def instant(scene, *, T):
     return Instant(
         _program(scene.name, lowering, motion, outputs), len(motion.w), len(motion.s), tuple(g.kind for g in motion.guards),
         tuple(r.level for r in motion.reactions), (*bounces, *[None] * (len(motion.reactions) - len(bounces))),
-        _start_of(lowering),
+        _start_of(lowering), digit("f64"),
     )  # fmt: skip
 
 
@@ -144,19 +148,22 @@ def _program(name, lowering, motion, outputs):
     inputs = tracing.inputs
     place = {("input", 3 + k): ("input", k) for k in range(DEGREE + 2)}
     place[_key(motion.tau)] = ("input", DEGREE + 1)
-    place |= {_key(leaf): ("state", 1 + k) for k, leaf in enumerate(leaves)}
+    place |= {_key(leaf): ("state", len(TICKS) + k) for k, leaf in enumerate(leaves)}
     reactions = [e.force for e in (*dynamics.contacts.contacts, *dynamics.contacts.frictions)]
     for k, key in enumerate(tracing._states):
-        if key == "tick":
-            place["state", k] = ("state", 0)
+        if key in TICKS:
+            place["state", k] = ("state", TICKS.index(key))
         elif key in dynamics.states:
-            place["state", k] = ("state", 1 + dynamics.states.index(key))
+            place["state", k] = ("state", len(TICKS) + dynamics.states.index(key))
         elif key in reactions:
             place["state", k] = place[_key(motion.reactions[reactions.index(key)].leaf)]
     instructions = tuple(_placed(i, place) for i in block.instructions)
-    states = [Channel("tick", "1", "i32"), *(Channel(f"y_{k}", "1", leaf.type) for k, leaf in enumerate(leaves))]
+    states = [
+        *(Channel(name, "1", tracing.real) for name in TICKS),
+        *(Channel(f"y_{k}", "1", leaf.type) for k, leaf in enumerate(leaves)),
+    ]
     kept = [_leaf("state", c.type, k) for k, c in enumerate(states)]
-    zero = [_leaf("const", c.type, 0, {"bool": False, "i32": 0}.get(c.type, 0.0)) for c in states]
+    zero = [_leaf("const", c.type, 0, False if c.type == "bool" else 0.0) for c in states]
     n = len(instructions)
     tick = Block((*instructions, *kept), block.outputs, tuple(range(n, n + len(kept))))
     named = tuple(Channel(f"o_{k}", "1", tracing.real) for k in range(len(outputs)))

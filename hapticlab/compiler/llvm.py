@@ -47,6 +47,16 @@ class Llvm:
         run(ticks, every, 0, stride, stride, states is not None, *(a.ctypes.data for a in arrays))
         return outputs[..., :lanes], carried[:, :lanes]
 
+    def bound(self, inputs, parameters, states, outputs):
+        """Return what runs one tick of one lane on these arrays; it keeps them."""
+        arrays = inputs, parameters, states, outputs
+        pointers, run = [a.ctypes.data for a in arrays], self._function(1)
+
+        def tick(_arrays=arrays):
+            run(1, 1, 0, 1, 1, True, *pointers)
+
+        return tick
+
     def _width(self):
         return next((lanes for most, lanes in WIDTHS.items() if len(self._expanded) <= most), 8)
 
