@@ -73,6 +73,7 @@ class Dynamics:
             check_starts(form, lowering.scene.values)
             self.largest = check_contacts(form, lowering.scene.values, self.h, lowering.tracing.T, method)
         self._now = None
+        self.at_the_sample = None  # (q, w, s) and (a, ds) of the first stage that is traced
 
     def _enforced(self, constraints):
         form, lowering = self.form, self.lowering
@@ -151,7 +152,11 @@ class Dynamics:
         found = dict(zip(self.others, solution, strict=True))
         if implicit and IMPULSE in found:
             found[IMPULSE] = self._felt_at_the_end(translate, found)
-        return [*a, *(found[q] for q in self.second if q in found)], [*ds, *(found[q] for q in self.first if q in found)]
+        a = [*a, *(found[q] for q in self.second if q in found)]
+        ds = [*ds, *(found[q] for q in self.first if q in found)]
+        if at is None and self.at_the_sample is None:
+            self.at_the_sample = (q, w, s), (a, ds)
+        return a, ds
 
     def reaction(self, expr, translate, instant):
         """Return the reaction of a constraint at the instant of a translator."""

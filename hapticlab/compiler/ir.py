@@ -89,6 +89,8 @@ class Program:
         How it was made (method, substeps, hold, velocity), for the listing and for whoever runs it.
     notes : tuple of str
         What was left out and why.
+    limits : dict name -> (low, value, high)
+        Between what a live parameter keeps a step stable, the others as bound, and the value it was bound to.
     """
 
     name: str
@@ -102,6 +104,7 @@ class Program:
     values: tuple[float, ...] = ()
     facts: dict = field(default_factory=dict, hash=False)
     notes: tuple[str, ...] = ()
+    limits: dict = field(default_factory=dict, hash=False)
 
     def __len__(self):
         """Count the instructions of one tick."""

@@ -22,6 +22,7 @@ from .held import notes_on
 from .ir import Channel
 from .modes import folded, within
 from .phase import Clock, counted, digit
+from .stable_values import kept_stable
 from .trace import cast
 from .tracing import Tracing
 
@@ -81,7 +82,7 @@ class Lowering:
         unused += self.exact.left_out if self.exact else ()
         program = self.tracing.finish(self.scene.name, outputs, self.scene.values, self.facts, unused)
         program = limited(program, self.dynamics.largest)
-        program = bounded(program, self.limits)
+        program = kept_stable(bounded(program, self.limits), self)
         for channel, value in zip(program.parameters, program.values, strict=True):
             if value == value:
                 self._entering(channel.name, value)

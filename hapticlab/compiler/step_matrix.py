@@ -84,7 +84,7 @@ def growing(R):
     return np.where(whole, outside.sum(axis=-1), R.shape[-1])
 
 
-def longest_step(step, J):
+def longest_step(step, J, grid=GRID, closing=(62, 62, 62)):
     """Return the longest stable step [s] of the motion y' = J y; inf where there is none, 0 where no step is stable.
 
     Parameters
@@ -92,6 +92,10 @@ def longest_step(step, J):
     step : callable ``h -> step matrices``
         For an array of steps, shape (H,) -> (H, M, M).
     J : array of shape (S, S)
+    grid : array, optional
+        Steps looked at first, times the largest |eigenvalue| of J.
+    closing : sequence of int
+        Places looked at between the last stable and the first unstable one, again and again.
     """
     values = np.linalg.eigvals(J)
     fastest = float(np.abs(values).max(initial=0.0))
@@ -103,16 +107,16 @@ def longest_step(step, J):
         slowest = np.abs(values[neutral]).min()
         if growing(step(np.array([SHOWS / fastest, SHOWS / slowest])))[0] > allowed:
             return 0.0
-    steps = GRID / fastest
+    steps = grid / fastest
     with np.errstate(all="ignore"):
         too_long = growing(step(steps)) > allowed
     if not too_long.any():
         return np.inf
     first = int(too_long.argmax())
     low, high = (steps[first - 1] if first else 0.0), steps[first]
-    for _ in range(3):  # each closes in sixtyfold
-        between = np.linspace(low, high, 62)
+    for places in closing:
+        between = np.linspace(low, high, places)
         with np.errstate(all="ignore"):
             late = int(np.append(growing(step(between[1:])) > allowed, True).argmax())
-        low, high = between[late], between[min(late + 1, 61)]
+        low, high = between[late], between[min(late + 1, places - 1)]
     return float(low)

@@ -73,7 +73,7 @@ def jacobian(motion, modes, at, number):
     return J
 
 
-def _onto_surfaces(motion, modes, at, number):
+def onto_surfaces(motion, modes, at, number):
     """Return a state like the one given that can be in these modes: on the surfaces it would have to lie beyond."""
     q, w, s = np.array(at[0], float), at[1], at[2]
     for g in motion.guards:
@@ -117,7 +117,7 @@ def frequency(motion, states, number, linear=True):
     for place, at in enumerate(states):
         for modes in modes_of(motion):
             with np.errstate(all="ignore"):
-                state = at if linear else _onto_surfaces(motion, modes, at, number)
+                state = at if linear else onto_surfaces(motion, modes, at, number)
             J = jacobian(motion, modes, state, number)
             if not np.isfinite(J).all():
                 if place:

@@ -14,7 +14,7 @@ from .exchange import Exchange
 from .greeting import cleared, introduction, say_hello, what_happened
 from .hand import require
 from .homing import home
-from .live import checked, named_values, send
+from .live import check_margin, checked, named_values, send
 from .messages import OPTIONS, SENSORS, STATES
 from .paddle import Paddle
 from .progress import progress_bar
@@ -143,6 +143,8 @@ class SerialPaddle(Paddle):
             force_max = require("force_max", force_max, "N", "a run", "passive=True runs with the motor off.", low=0)
         with guarded(self._abandon):
             program = self._checked(scene, every, check_fit, options)
+            if program is not None and not passive:
+                check_margin(program)
             self.clear()
             if not passive and self.settings is not None:
                 self.home()

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ..errors import ParameterError
+from ..compiler.stable_values import part_of_the_way
+from ..errors import PaddleError, ParameterError
 from ..scene.parameters import Parameter
 
 #: parameters in one SET
@@ -20,7 +21,8 @@ def checked(program, values):
     Raises
     ------
     ParameterError
-        For a name the program has not, a value out of its declared range or of float32's.
+        For a name the program has not, a value out of its declared range or of float32's, and values with which, beside
+        those that are set already, a step would be unstable.
     """
     names = named_values(program)
     unknown = sorted(set(values) - set(names))
@@ -36,7 +38,41 @@ def checked(program, values):
         bad = [name for name, value in numbers.items() if not np.isfinite(np.float32(value))]
     if bad:
         raise ParameterError(f"{bad[0]} = {numbers[bad[0]]:g}; a board needs a finite float32, |{bad[0]}| < 3.4e38.")
+    check_stable(program, numbers)
     return numbers
+
+
+def check_stable(program, numbers):
+    """Refuse values past what keeps a step stable: of one alone, or with what the others are set to.
+
+    Each parameter takes a part of the way from the value it was bound to to its limit; the parts may add up to 1.
+    """
+    values, parts = named_values(program) | numbers, {}
+    for name, (low, bound, high) in program.limits.items():
+        toward = [part_of_the_way(values[name], bound, end) for end in (low, high) if np.isfinite(end)]
+        parts[name] = max(toward, default=0.0)
+    taken = {name: part for name, part in parts.items() if part > 1e-9}
+    if sum(taken.values()) <= 1 + 1e-9 or taken.keys().isdisjoint(numbers):
+        return
+    how = "compile with these values bound, or with more substeps"
+    for name in taken.keys() & numbers.keys():
+        if taken[name] > 1 + 1e-9:
+            low, bound, high = program.limits[name]
+            need = f"<= {high:.4g}" if values[name] > bound else f">= {low:.4g}"
+            raise ParameterError(f"{name} = {values[name]:g}: a step is stable for {name} {need}; {how}")
+    shown = ", ".join(f"{name} = {values[name]:.4g} ({100 * part:.0f} %)" for name, part in taken.items())
+    raise ParameterError(
+        f"{shown}: a step may be unstable. Each takes a part of the way to its own limit, and the parts add up to "
+        f"{100 * sum(taken.values()):.0f} %; needs 100 % at most: move one back, {how}"
+    )
+
+
+def check_margin(program):
+    """Refuse a program whose steps are unstable as its values are bound."""
+    margin = program.facts.get("margin", np.inf)
+    if margin < 1:
+        why = next((note for note in program.notes if note.startswith("unstable as bound: ")), "unstable as bound")
+        raise PaddleError(f"{program.name}: {why}. A motor would follow what grows; passive=True runs with the motor off.")
 
 
 def _within(parameter, value, notes):
