@@ -1,0 +1,77 @@
+"""One row of a trade-off in sentences: what was found, where it comes from, and what would change it."""
+
+from .tradeoff_rows import duration, percent
+
+#: an order this far below what is claimed is pointed at
+MISSED = 0.3
+
+
+def explained(row, others, every):
+    """Return what a row says, one sentence a line.
+
+    Parameters
+    ----------
+    row : Row
+    others : sequence of Row
+        Of the same trade-off.
+    every : int
+        Ticks per telemetry sample, of the load.
+    """
+    told = [f"{row.name} on {row.target}: {row.status}" + (f", {row.why}" if row.why else "")]
+    if row.ran:
+        told += [*_error(row, others), *_order(row), *_stability(row)]
+    if row.load == row.load:
+        told += _cost(row, every)
+    return "\n  ".join([*told, *(_passivity(row) if row.b_req is not None else [])])
+
+
+def _error(row, others):
+    yield (
+        f"error of the force at the samples {percent(row.err_max)} of the greatest, rms {percent(row.err_rms)}; "
+        f"held over the period {percent(row.err_hold)}, which only a shorter T makes less"
+    )
+    same = [r for r in others if r.ran and (r.T, r.target, r.precision) == (row.T, row.target, row.precision)]
+    holds = {r.hold: min(o.err_max for o in same if o.hold == r.hold) for r in same}
+    if row.err_max <= 1.2 * holds[row.hold] and min(holds.values()) < row.err_max / 1.2:
+        best = min(holds, key=holds.get)
+        yield f"no method does better with hold={row.hold!r}; hold={best!r} comes to {percent(holds[best])} at this T"
+    elif row.err_max > 1.2 * holds[row.hold]:
+        yield f"of that, hold={row.hold!r} alone makes {percent(holds[row.hold])}: the rest is of the method's steps"
+    if row.sensor_floor > 0:
+        side = "below" if row.err_max < row.sensor_floor else "above"
+        yield f"{side} what the encoder alone makes, {percent(row.sensor_floor)}"
+    if row.doubt > row.err_max / 10:
+        yield f"the solvers of the reference differ by {percent(row.doubt)}: no smaller error is certain"
+
+
+def _order(row):
+    if row.order_seen is not None and row.order_claimed is not None:
+        missed = row.order_seen < row.order_claimed - MISSED and row.err_max > 1e-5
+        but = f", less than the {row.order_claimed:g} that is claimed" if missed else f"; claimed {row.order_claimed:g}"
+        yield f"from this T to the next shorter the error falls with order {row.order_seen:.2f}{but}"
+
+
+def _stability(row):
+    if row.margin is not None:
+        colour = "green" if row.margin >= 2 else "amber, try it for long" if row.margin >= 1 else "unstable sooner or later"
+        yield f"the longest stable step is {row.margin:.3g} times the step taken: {colour}"
+    if row.steps_per_contact is not None and row.steps_per_contact < float("inf"):
+        enough = "enough" if row.steps_per_contact >= 10 else "10 are needed, or contacts that are located (method='taylor')"
+        yield f"{row.steps_per_contact:.3g} steps in the shortest contact: {enough}"
+
+
+def _cost(row, every):
+    if row.cycles is None:
+        yield f"{duration(row.seconds)} a tick on this computer, {percent(row.load)} of the period"
+        return
+    yield (
+        f"{row.cycles:.0f} cycles a tick, predicted, {duration(row.seconds)}; with the rest of the step and telemetry every "
+        f"{every} ticks {percent(row.load)} of the period"
+    )
+    if row.measured is not None:
+        yield f"measured {row.measured:.0f} cycles, {row.measured / row.cycles:.3f} of what was predicted"
+
+
+def _passivity(row):
+    answer = "passive in every passive hand" if row.passive else "not passive in every hand"
+    yield f"needs a device with b >= {row.b_req:.3g} N s/m, and has {row.b_device:.3g} N s/m: {answer}"

@@ -1,0 +1,208 @@
+"""Speed against accuracy: every way to compute a scene on every target, measured, and the cheapest that is good enough."""
+
+import itertools
+import math
+from collections import Counter
+from dataclasses import dataclass
+
+from ..compiler.cost import BOARDS
+from ..compiler.force_at import FORCE_AT
+from ..compiler.handle import HOLDS
+from ..compiler.methods import METHODS
+from ..compiler.options import choice, period, steps
+from ..device.progress import progress_bar
+from ..errors import AnalysisError
+from ..scene.scene import Scene
+from ..scene.written import no_scene
+from .choice import MARGIN, Asked, chosen
+from .copies import shared_out
+from .explained import explained
+from .motions import handle_motions
+from .reference import references
+from .rounds import all_tried
+from .tradeoff_rows import OK, Table, percent, rows_of
+from .trials import Bench, Setting, sensor_floor
+from .work_precision import front, plot_work_precision
+
+#: the target that is no board: this computer
+PC = "pc"
+#: float64 is the pc's alone
+PRECISIONS = ("float32", "float64")
+#: the held force is compared at so many places of the shortest period, at least
+PLACES = 4
+#: shortest step between two values of the reference [s]
+SHORTEST = 1e-5
+
+
+def tradeoff(
+    scene, paddle, *, methods="auto", T=(2e-3, 1e-3, 5e-4), substeps=(1, 2, 4), holds=HOLDS, force_at=("before",),
+    precision=PRECISIONS, targets=(PC, "uno", "cortex-m0+", "cortex-m4f"), motions=None, tolerance=1e-2,
+    velocity="backward_difference", every=10, live=None, workers=None, progress=True,
+):  # fmt: skip
+    """Measure speed against accuracy of a scene: error of the force, cost, stability and passivity of every setting.
+
+    The handle is led along motions; the force of each compiled setting is compared with a reference that two independent
+    solvers agree on, and with what the paddle's encoder alone makes of it. On boards cost is predicted, as
+    :func:`~hapticlab.compiler.cost.cost` does; here it is timed.
+
+    Settings of more substeps are left out where fewer already have the error of the hold itself, and float64 where
+    rounding is no part of the error: ``status`` says "not tried", and ``why``.
+
+    Parameters
+    ----------
+    scene : Scene
+        Every parameter bound. It must have a meaning between the samples.
+    paddle : SimulatedPaddle or PaddleProfile
+        Its damping b [N s/m] and its encoder.
+    methods : "auto" or sequence of str
+        Of :func:`hapticlab.compile`; all but forward Euler unless given.
+    T : sequence of float
+        Sampling periods [s], whole numbers of 10 us or of a quarter of the shortest.
+    substeps, holds, force_at, precision : sequences
+        Of :func:`hapticlab.compile`; precision is its ``dtype``.
+    targets : sequence of {"pc", "uno", "cortex-m0+", "cortex-m4f"}
+    motions : sequence of HandleMotion, optional
+        :func:`~hapticlab.analysis.motions.handle_motions` unless given.
+    tolerance : float
+        Part of the greatest force, for the printed choice and the plot.
+    velocity, live
+        Of :func:`hapticlab.compile`; "exact" takes all parameters as constants whatever ``live`` is.
+    every : int
+        Ticks per sample of telemetry, part of a board's load.
+    workers : int, optional
+        Processes, 2 where they can be copied.
+    progress : bool
+        Show a bar when it lasts longer than two seconds.
+
+    Returns
+    -------
+    Tradeoff
+
+    Raises
+    ------
+    AnalysisError, SceneError, ProgramError
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3)
+    >>> found = hl.tradeoff(hl.wall()(k=150, x_o=0.01), paddle, T=[1e-3], targets=["uno"], workers=1)
+    >>> print(found.table[0].status, found.choose().row.T)
+    ok 0.001
+    """
+    if not isinstance(scene, Scene):
+        raise AnalysisError(no_scene(scene, "write hl.tradeoff(hl.Scene(force=...), paddle)"))
+    T, targets = tuple(period(one) for one in T), tuple(targets)
+    for name in targets:
+        choice("target", name, (PC, *(board for board in BOARDS if BOARDS[board].hz)))
+    boards = tuple(name for name in targets if name != PC)
+    settings = _settings(scene, methods, T, substeps, holds, force_at, precision)
+    with progress_bar(len(settings), progress, "setting") as shown:
+        known = references(scene, motions or handle_motions(scene, paddle), step=_step(T))
+        bench = Bench(scene, paddle, tuple(known), boards, every, velocity, live)
+        with shared_out(bench, workers) as share:
+            trials = all_tried(settings, share, shown.update)
+            keys = list(dict.fromkeys((s.T, s.hold) for s in settings))
+            floors = dict(zip(keys, share(sensor_floor, keys), strict=True))
+    return Tradeoff(scene.name, Table(rows_of(bench, trials, floors, targets)), targets, tolerance, bench)
+
+
+def _settings(scene, methods, T, substeps, holds, force_at, precision):
+    """Return every setting; of a scene without motion, one for each T."""
+    if methods == "auto":
+        methods = (*(name for name in METHODS if name != "euler"), "exact", "taylor")
+    given = {"methods": methods, "substeps": substeps, "holds": holds, "force_at": force_at, "precision": precision}
+    for name, several in given.items():
+        if isinstance(several, str) or not tuple(several):
+            raise AnalysisError(f"{name} = {several!r}; needs a sequence of at least one, such as {name}=[{several!r}]")
+    for hold, when, real in itertools.product(holds, force_at, precision):
+        choice("hold", hold, HOLDS), choice("force_at", when, FORCE_AT), choice("precision", real, PRECISIONS)
+    substeps = sorted(map(steps, substeps))
+    if not scene.coordinates:  # a force of the samples alone: there is nothing to integrate or to hold
+        methods, substeps, holds = ["rk4"], [1], ["soh"]
+    return [Setting(*one) for one in itertools.product(methods, T, substeps, holds, force_at, precision)]
+
+
+def _step(T):
+    """Return the step of the reference [s]: every period is a whole number of it, the shortest of PLACES at least."""
+    ns = [round(one * 1e9) for one in T]
+    common = math.gcd(*ns)
+    common //= next((k for k in range(1, common + 1) if common % k == 0 and common // k <= min(ns) / PLACES), 1)
+    if common < SHORTEST * 1e9:
+        raise AnalysisError(
+            f"T = {', '.join(f'{one:g}' for one in T)} s have no common part of {SHORTEST:g} s or more; take whole numbers of it"
+        )
+    return common * 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Tradeoff:
+    """What :func:`tradeoff` found; printing it shows for each target what none beats, and the choice.
+
+    Attributes
+    ----------
+    name : str
+        Of the scene.
+    table : Table of Row
+        Every setting on every target, failed ones with their reason; ``print(found.table)`` shows them.
+    targets : tuple of str
+    tolerance : float
+    bench : Bench
+        The motions with their references, ``bench.runs``, and the greatest force, ``bench.peak`` [N].
+    """
+
+    name: str
+    table: Table
+    targets: tuple
+    tolerance: float
+    bench: object
+
+    def front(self, target):
+        """Return the rows of a target that none beats in both load and error, cheapest first."""
+        choice("target", target, self.targets)
+        return Table(front(row for row in self.table if row.target == target and row.status == OK))
+
+    def choose(self, *, tolerance=None, load=0.5, passive=True, target=None, margin=MARGIN):
+        """Return the Configuration of least load that is good enough, or NotFeasible, which says what to relax.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            Part of the greatest force. Never less than half of what the encoder alone makes.
+        load : float
+            Part of the period that may be taken.
+        passive : bool
+            The paddle's damping is enough for every passive hand.
+        target : str, optional
+            The first unless given.
+        margin : float
+            Longest stable step over the step taken.
+        """
+        target = choice("target", self.targets[0] if target is None else target, self.targets)
+        return chosen(self.table, target, self._asked(tolerance, load, passive, margin), self.bench.options)
+
+    def explain(self, row):
+        """Return what a row says, in sentences."""
+        return explained(row, self.table, self.bench.every)
+
+    def plot(self, *targets, tolerance=None, load=0.5, passive=True):
+        """Draw error against load, a line for each method; see :func:`~hapticlab.analysis.work_precision.plot_work_precision`."""
+        return plot_work_precision(self, targets or self.targets, self._asked(tolerance, load, passive, MARGIN))
+
+    def _asked(self, tolerance, load, passive, margin):
+        return Asked(self.tolerance if tolerance is None else tolerance, load, passive, margin)
+
+    def summary(self, **asked):
+        """Return for each target what none beats, and the choice, as text."""
+        counts = Counter(row.status.split(" at t")[0].split(" after")[0] for row in self.table)
+        lines = [
+            f"{self.name}: {len(self.table)} rows ({', '.join(f'{count} {status}' for status, count in counts.items())})",
+            f"greatest force {self.bench.peak:.3g} N; the solvers of its reference differ by {percent(self.bench.doubt)} of it",
+            *(f"  {known}" for known in self.bench.runs),
+        ]
+        for target in self.targets:
+            lines += ["", f"{target}: what none beats", str(self.front(target)), str(self.choose(target=target, **asked))]
+        return "\n".join(lines)
+
+    def __str__(self):
+        return self.summary()

@@ -1,0 +1,208 @@
+"""One row of a trade-off: a way to compute a scene on one target, with what it gets wrong, costs and needs."""
+
+import csv
+import itertools
+import math
+from dataclasses import asdict, astuple, dataclass, fields, replace
+
+OK, TOO_LARGE, NOT_TRIED = "ok", "does not fit", "not tried"
+#: statuses of settings that ran, and whose errors are measured
+RAN = (OK, TOO_LARGE, "uncertified", "chaotic")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A setting of :func:`hapticlab.compile` on one target.
+
+    Attributes
+    ----------
+    method, T, substeps, hold, force_at, precision
+        The setting; T in seconds, precision "float32" or "float64".
+    target : str
+        "pc" or the name of a board.
+    err_max, err_rms, err_hold : float
+        Error of the force at the samples, at most and as root of the mean square, and at most of the force held over each
+        period, all as parts of the greatest force; nan where it did not run.
+    doubt : float
+        By which part of the greatest force the solvers of the reference differ: no smaller error is certain.
+    sensor_floor : float
+        Error at the samples that the encoder alone makes, with a perfect program.
+    order_seen, order_claimed : float or None
+        By which power of T the error falls from this T to the next shorter, and what the combination promises.
+    cycles, measured : float or None
+        Of one tick of the program on a board: predicted, typical; and as measured there. None on the pc.
+    seconds : float
+        Time of a tick of the program: on the pc measured, on a board from its cycles.
+    load : float
+        Part of the period that is taken: on a board by the rest of the step and the telemetry too.
+    margin, steps_per_contact : float or None
+        Largest stable step over the step taken; steps in the shortest contact, inf where contacts are located or absent.
+    b_req, b_device : float or None
+        Damping [N s/m] that a device needs for passivity in every hand, and has.
+    status : str
+        "ok", "unstable at t=...", "does not fit", "refused", "uncertified", "chaotic after ...", "not tried".
+    why : str
+        The reason of a status other than "ok".
+    """
+
+    method: str
+    T: float
+    substeps: int
+    hold: str
+    force_at: str
+    precision: str
+    target: str
+    err_max: float = math.nan
+    err_rms: float = math.nan
+    err_hold: float = math.nan
+    doubt: float = math.nan
+    sensor_floor: float = math.nan
+    order_seen: float | None = None
+    order_claimed: float | None = None
+    cycles: float | None = None
+    measured: float | None = None
+    seconds: float = math.nan
+    load: float = math.nan
+    margin: float | None = None
+    steps_per_contact: float | None = None
+    b_req: float | None = None
+    b_device: float | None = None
+    status: str = OK
+    why: str = ""
+
+    @property
+    def passive(self):
+        """Whether the device is passive in every passive hand; None where that is not known."""
+        return None if self.b_req is None or self.b_device is None else self.b_req <= self.b_device
+
+    @property
+    def ran(self):
+        """Whether it ran to the end, so that its errors are known."""
+        return self.status.startswith(RAN)
+
+    @property
+    def name(self):
+        """The setting in a few words."""
+        parts = [self.method, self.hold, f"T = {self.T * 1e3:g} ms"]
+        parts += [f"{self.substeps} substeps"] * (self.substeps > 1) + [f"force {self.force_at}"] * (self.force_at != "before")
+        return ", ".join([*parts, self.precision])
+
+
+_HEADS = (
+    ("method", 26), ("T ms", 5), ("sub", 3), ("hold", 4), ("force", 6), ("real", 4), ("target", 10), ("err max", 9),
+    ("rms", 9), ("held", 9), ("sensor", 9), ("order", 9), ("cycles", 7), ("time", 8), ("load", 8), ("margin", 6),
+    ("contact", 7), ("b_req", 6), ("passive", 7), ("status", 0),
+)  # fmt: skip
+
+
+class Table(tuple):
+    """Rows of a trade-off; printing it shows them, one a line."""
+
+    def __str__(self):
+        heads = " ".join(f"{head:{'<' if head in ('method', 'status') else '>'}{width}}" for head, width in _HEADS)
+        return "\n".join([heads.rstrip(), *map(_line, self)])
+
+    def where(self, **wanted):
+        """Return the rows whose attributes have these values, as in ``table.where(target="uno", status="ok")``."""
+        return Table(row for row in self if all(getattr(row, name) == value for name, value in wanted.items()))
+
+    def to_csv(self, path):
+        """Write the rows to a file, SI units, and return its path."""
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow([*(f.name for f in fields(Row)), "passive"])
+            writer.writerows([*astuple(row), row.passive] for row in self)
+        return path
+
+
+def _line(row):
+    order = f"{_plain(row.order_seen, '.1f')}/{_plain(row.order_claimed, 'g')}"
+    cells = (
+        row.method, f"{row.T * 1e3:g}", row.substeps, row.hold, row.force_at, row.precision.replace("float", "f"), row.target,
+        *map(percent, (row.err_max, row.err_rms, row.err_hold, row.sensor_floor)), order,
+        _plain(row.measured or row.cycles, ".0f"), duration(row.seconds), percent(row.load), _plain(row.margin, ".3g"),
+        _plain(row.steps_per_contact, ".3g"), _plain(row.b_req, ".3g"),
+        {None: "-", True: "yes", False: "no"}[row.passive], row.status,
+    )  # fmt: skip
+    aligned = zip(cells, _HEADS, strict=True)
+    return " ".join(f"{cell:{'<' if head in ('method', 'status') else '>'}{width}}" for cell, (head, width) in aligned).rstrip()
+
+
+def _plain(number, form):
+    return "-" if number is None or number != number else f"{number:{form}}"
+
+
+def percent(part):
+    """Return a part as a percentage of two digits, or a dash.
+
+    Examples
+    --------
+    >>> percent(0.01234), percent(3.2e-7), percent(float("nan"))
+    ('1.2 %', '3.2e-05 %', '-')
+    """
+    return "-" if part is None or part != part else f"{100 * part:.2g} %"
+
+
+def duration(seconds):
+    """Return a time shorter than a second with its unit.
+
+    Examples
+    --------
+    >>> duration(1.2345e-6), duration(43e-9)
+    ('1.23 us', '43 ns')
+    """
+    if seconds is None or seconds != seconds:
+        return "-"
+    factor, unit = (1e9, "ns") if seconds < 1e-6 else (1e6, "us") if seconds < 1e-3 else (1e3, "ms")
+    return f"{seconds * factor:.3g} {unit}"
+
+
+def rows_of(bench, trials, floors, targets):
+    """Yield the rows of trials on every target; a board has float32 alone."""
+    orders = _orders(trials)
+    for trial in trials:
+        s = trial.setting
+        row = Row(
+            **asdict(s), target="pc", err_max=trial.error[0], err_rms=trial.error[1], err_hold=trial.error[2],
+            doubt=bench.doubt, sensor_floor=floors[s.T, s.hold], order_seen=orders.get(s), order_claimed=trial.order,
+            margin=trial.margin, steps_per_contact=trial.steps_per_contact, b_req=trial.b_req, b_device=bench.paddle.b,
+            status=trial.status, why=trial.why,
+        )  # fmt: skip
+        row = _certain(row, bench)
+        for target in targets:
+            if target == "pc":
+                yield replace(row, seconds=trial.seconds, load=trial.seconds / s.T)
+            elif s.precision == "float32":
+                yield _on_board(replace(row, target=target), trial.costs.get(target))
+
+
+def _certain(row, bench):
+    """Return a row that says what the reference leaves open."""
+    if row.status != OK:
+        return row
+    if bench.chaotic is not None:
+        why = "from there on two solvers of the reference differ; errors are those before"
+        return replace(row, status=f"chaotic after {bench.chaotic:.3g} s", why=why)
+    if row.err_max < 10 * bench.doubt:
+        return replace(row, status="uncertified", why=f"the solvers of the reference differ by {percent(bench.doubt)}")
+    return row
+
+
+def _on_board(row, cost):
+    if cost is None:
+        return row
+    if isinstance(cost, str):
+        return replace(row, status=TOO_LARGE if row.ran else row.status, why=row.why or cost, load=math.inf)
+    row = replace(row, cycles=cost.typical, seconds=cost.typical / cost.board.hz, load=cost.share)
+    return replace(row, status=TOO_LARGE, why=cost.memory_problem or cost.in_words()) if row.ran and not cost.fits else row
+
+
+def _orders(trials):
+    """Return for each setting by which power of T its error falls to the next shorter T."""
+    found, ran = {}, {trial.setting: trial for trial in trials if trial.status == OK}
+    shorter = dict(itertools.pairwise(sorted({s.T for s in ran}, reverse=True)))
+    for s, trial in ran.items():
+        other = ran.get(replace(s, T=shorter.get(s.T)))
+        if other and min(trial.error[1], other.error[1]) > 0:
+            found[s] = math.log(trial.error[1] / other.error[1]) / math.log(s.T / other.setting.T)
+    return found

@@ -1,0 +1,99 @@
+"""The figure of a trade-off: error against load, both logarithmic, a line for each method."""
+
+from .plots import FRAME, STYLES, house_style, new_figure
+
+MARKERS = {"zoh": "s", "foh": "^", "soh": "o"}
+#: with a force of the period's end or mean a marker has a bar through it
+BARRED = {"before": None, "after": "|", "mean": "_"}
+#: panels beside each other
+ACROSS = 2
+
+
+def plot_work_precision(tradeoff, targets=None, asked=None):
+    """Draw the error of the force against the load of the target, a panel for each.
+
+    A marker is a setting, its shape the hold, filled where stability, contacts, passivity and the board allow it. A line
+    goes along the settings of one method that none of its others beats. Dashed: the error that the encoder alone makes.
+
+    Parameters
+    ----------
+    tradeoff : Tradeoff
+    targets : sequence of str, optional
+    asked : Asked
+        What decides which markers are filled, and where tolerance and load are drawn.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    targets = list(targets or tradeoff.targets)
+    shown = {target: [row for row in tradeoff.table if row.target == target and row.ran and row.load > 0] for target in targets}
+    methods = list(dict.fromkeys(row.method for rows in shown.values() for row in rows))
+    down, across = -(-len(targets) // ACROSS), min(ACROSS, len(targets))
+    with house_style():
+        figure = new_figure(height=1.0 + 3.4 * down + 0.22 * (len(methods) // 4 + 1), width=5.0 * across + 0.6)
+        panels = figure.subplots(down, across, sharey=True, squeeze=False).ravel()
+        for axes, target in zip(panels, targets, strict=False):
+            _panel(axes, target, shown[target], methods, asked)
+        for axes in panels[len(targets) :]:
+            axes.set_visible(False)
+        for axes in panels[::across]:
+            axes.set_ylabel("greatest error of the force [% of its peak]")
+        figure.suptitle(tradeoff.name)
+        _legend(figure, methods, {row.hold for rows in shown.values() for row in rows})
+    return figure
+
+
+def style_of(number):
+    """Return a line that differs from the others in colour or dash, also in grey print."""
+    first, again = STYLES[number % len(STYLES)], STYLES[(number + number // len(STYLES)) % len(STYLES)]
+    return {"color": first["color"], "linestyle": again["linestyle"]}
+
+
+def _panel(axes, target, rows, methods, asked):
+    for number, method in enumerate(methods):
+        own, style = [row for row in rows if row.method == method], style_of(number)
+        best = front(own)
+        axes.plot(*_places(best), **style, linewidth=1.2, zorder=2)
+        for row in own:
+            allowed = not asked.excess(row).keys() - {"tolerance", "load"} and not row.status.startswith("does not fit")
+            axes.plot(
+                *_places([row]), MARKERS[row.hold], color=style["color"], markersize=5 if row in best else 3.2, zorder=3,
+                markerfacecolor=style["color"] if allowed else "white", markeredgewidth=0.8,
+            )  # fmt: skip
+            if BARRED[row.force_at]:
+                axes.plot(*_places([row]), BARRED[row.force_at], color="black", markersize=8, zorder=4)
+    floors = {row.T: row.sensor_floor for row in rows if row.sensor_floor > 0}
+    for T, floor in floors.items():
+        axes.axhline(100 * floor, color="#4d4d4d", linestyle="--", linewidth=1.0, zorder=1)
+        axes.annotate(
+            f"sensor, {T * 1e3:g} ms", (0.995, 100 * floor), xycoords=("axes fraction", "data"), ha="right", va="bottom",
+            fontsize="x-small", color="#4d4d4d",
+        )  # fmt: skip
+    axes.axhline(100 * asked.tolerance, color="black", linestyle=":", linewidth=1.0, zorder=1)
+    axes.axvline(100 * asked.load, color="black", linestyle=":", linewidth=1.0, zorder=1)
+    axes.set(xscale="log", yscale="log", title=target, xlabel="load [% of the period]")
+
+
+def front(rows):
+    """Return the rows that none of them beats in both load and error, cheapest first."""
+    found = []
+    for row in sorted(rows, key=lambda row: (row.load, row.err_max)):
+        if not found or row.err_max < found[-1].err_max:
+            found.append(row)
+    return found
+
+
+def _places(rows):
+    return [100 * row.load for row in rows], [100 * row.err_max for row in rows]
+
+
+def _legend(figure, methods, holds):
+    from matplotlib.lines import Line2D
+
+    handles = [Line2D([], [], label=method, **style_of(number)) for number, method in enumerate(methods)]
+    for hold in (hold for hold in MARKERS if hold in holds):
+        handles.append(Line2D([], [], color="black", marker=MARKERS[hold], linestyle="", label=f"hold {hold}"))
+    handles.append(Line2D([], [], color="black", marker="o", markerfacecolor="white", linestyle="", label="not allowed"))
+    handles.append(Line2D([], [], color="black", linestyle=":", label="asked for"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize="small", **FRAME)
