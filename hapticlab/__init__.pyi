@@ -15,6 +15,7 @@ from .analysis.reduction import reduction
 from .analysis.stability import stability_limit
 from .analysis.step_limit import step_limit
 from .analysis.sweep import sweep
+from .analysis.tradeoff import tradeoff
 from .compiler.advance import Taylor
 from .compiler.lower import compile
 from .compiler.order import order_of
@@ -147,6 +148,7 @@ __all__ = [
     "sweep",
     "t",
     "track",
+    "tradeoff",
     "v",
     "virtual_coupler",
     "virtual_damper",
