@@ -41,7 +41,8 @@ is structurally zero.
   start and the step. Laws with a force are a case of f; of the others, see below.
 
 **Dynamics -> method.** ``methods`` holds the textbook's explicit steps, which ask dynamics for accelerations. ``exact``
-(of the parts that ``linear`` and ``coefficients`` find, by the ``exponential``) takes what is linear. "taylor" is
+(of the parts that ``linear`` and ``coefficients`` find, by the ``exponential``) takes what is linear, ``switched`` what
+is linear between switches, by a map a mode where none can be reached, else as "taylor" does. "taylor" is
 ``advance``: ``stiffness`` checks the motion and chooses the order; ``guards`` turns every comparison into a mode and
 the instant it ends; ``flow`` makes the polynomial of a piece in given modes by the recurrences of ``taylor``;
 ``crossing`` finds its first root; ``located`` steps from one to the next. At a touch ``impacts`` differentiates what is

@@ -38,7 +38,8 @@ def compile(
         "taylor" locates the instants at which walls, contacts and friction change the motion; between them it is exact
         to rounding where the motion is linear. :class:`~hapticlab.compiler.advance.Taylor` sets its order and events.
         "exact" advances linear equations of motion by their matrix exponential, whose constants it makes of parameters
-        that are not ``live``: no step error at any stiffness. With "+rk4" rk4 takes what is not linear.
+        that are not ``live``: no step error at any stiffness. Of what is linear between switches (walls, contacts,
+        friction) it makes a map a mode, and locates the switches. With "+rk4" rk4 takes what is not linear.
     T : float
         Sampling period [s], > 0.
     substeps : int

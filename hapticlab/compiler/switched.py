@@ -197,6 +197,8 @@ class Maps:
             [select(sure, *pair) for pair in zip(*parts, strict=True)] for parts in zip(fast, slow, strict=True)
         )
         held = [one_of(sure, np.False_, later) for later in now]
+        if stepper.impact:
+            stepper.impact.sums.update({of: select(sure, 0.0, amount) for of, amount in stepper.impact.sums.items()})
         return state, held, select(sure, 0.0, select(missed, 1.0, self.motion.builder.const(0.0)))
 
     def longest(self, flags):
