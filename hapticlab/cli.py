@@ -1,4 +1,4 @@
-"""The command line: demo, run FILE.py, and with a paddle plugged in ports, doctor, flash and calibrate."""
+"""The command line: demo, run FILE.py, tradeoff FILE.py, and with a paddle plugged in ports, doctor, flash and calibrate."""
 
 import argparse
 import json
@@ -13,11 +13,14 @@ from . import __version__
 from . import board_commands as board
 from . import demo as demonstration
 from .analysis.plots import plot
+from .analysis.tradeoff import PC
+from .analysis.tradeoff import tradeoff as measure_tradeoff
 from .compiler.advance import Taylor
+from .compiler.cost import BOARDS
 from .compiler.exact import EXACT
 from .compiler.methods import METHODS
 from .device.calibrate import STEPS
-from .errors import HapticlabError
+from .errors import HapticlabError, SceneError
 from .scenefile import describe, load_scene, report_of, run_scene
 
 #: the last two are what a shell reports of a program that ended by Ctrl-C, or by writing to a closed pipe
@@ -63,19 +66,7 @@ def run(parser, options):
     """Run a scene file, on its own paddle or on a board."""
     if options.port is None and (options.yes or options.every):
         parser.error(f"{'--yes' if options.yes else '--every'} is for a board; name its port with --port")
-    path = Path(options.file)
-    if path.is_dir():
-        parser.error(f"{path} is a folder, needs a file; give a Python file that defines scene = hl.Scene(...)")
-    if not path.is_file():
-        parser.error(f"{path}: no such file; give a Python file that defines scene = hl.Scene(...)")
-    try:
-        file = load_scene(path)
-    except Exception as problem:  # whatever the student's own code raises is theirs to read
-        return _complain(_in_their_words(problem, path))
-    try:
-        file = _changed(file, options)
-    except HapticlabError as problem:
-        parser.error(str(problem))
+    file, path = _opened(parser, options), Path(options.file)
     folder = _folder(options)
     compiling = {"method": options.method} if options.method else {}
     if options.port is None:
@@ -93,6 +84,39 @@ def run(parser, options):
     files = {"figure": figure, "telemetry": log.to_csv(folder / f"{path.stem}.csv")}
     _tell(options, facts, files, f"{log.paddle}\n{describe(facts)}" + (f"\nloop     {loop}" if loop else ""))
     return _complain(f"the run failed: {log.fault}") if log.fault else 0
+
+
+def tradeoff(parser, options):
+    """Measure speed against accuracy of a scene file, for its own paddle and the targets asked for."""
+    file, path = _opened(parser, options), Path(options.file)
+    folder = _folder(options)
+    given = {"methods": options.methods, "T": options.periods, "targets": options.targets}
+    given = {name: several for name, several in given.items() if several}
+    found = measure_tradeoff(file.scene, file.paddle, tolerance=options.tolerance, every=options.every, **given)
+    asked = {"load": options.load, "passive": not options.any_hand}
+    figure = folder / f"{path.stem}-tradeoff.png"
+    found.plot(**asked).savefig(figure)
+    files = {"figure": figure, "table": found.table.to_csv(folder / f"{path.stem}-tradeoff.csv")}
+    chosen = {target: found.choose(target=target, **asked).facts() for target in found.targets}
+    facts = {"scene": found.name, "paddle": str(file.paddle), "rows": len(found.table), "chosen": chosen}
+    return _tell(options, facts, files, found.summary(**asked))
+
+
+def _opened(parser, options):
+    """Return the scene file that was named, with what the command line sets."""
+    path = Path(options.file)
+    if path.is_dir():
+        parser.error(f"{path} is a folder, needs a file; give a Python file that defines scene = hl.Scene(...)")
+    if not path.is_file():
+        parser.error(f"{path}: no such file; give a Python file that defines scene = hl.Scene(...)")
+    try:
+        file = load_scene(path)
+    except Exception as problem:  # whatever the student's own code raises is theirs to read
+        raise SceneError(_in_their_words(problem, path)) from None
+    try:
+        return _changed(file, options)
+    except HapticlabError as problem:
+        parser.error(str(problem))
 
 
 def _folder(options):
@@ -158,7 +182,7 @@ def _parser():
     parser = argparse.ArgumentParser(prog="hapticlab", description="From an equation of motion to a felt virtual wall.")
     parser.add_argument("--version", action="version", version=f"hapticlab {__version__}")
     parser.set_defaults(command=None, parser=parser)
-    commands = parser.add_subparsers(title="commands", metavar="{demo,run,ports,doctor,flash,calibrate}")
+    commands = parser.add_subparsers(title="commands", metavar="{demo,run,tradeoff,ports,doctor,flash,calibrate}")
     shared = argparse.ArgumentParser(add_help=False)
     shared.add_argument("--json", action="store_true", help="print the numbers, named with units, as JSON and nothing else")
     text = "show where the chapter's wall begins to chatter, and run a student's own equation of motion"
@@ -175,12 +199,31 @@ def _parser():
     ran.add_argument("--T", type=float, metavar="SECONDS", help="sampling period [s]")
     methods = [*sorted(METHODS), Taylor.name, EXACT]
     ran.add_argument("--method", choices=methods, help="integrator of the equations of motion (default: rk4)")
-    ran.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
     ran.set_defaults(command=run, parser=ran)
-    for one, folder in ((shown, "hapticlab-demo"), (ran, "hapticlab-run")):
+    traded = _add_tradeoff(commands, shared)
+    for one in (ran, traded):
+        one.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
+    for one, folder in ((shown, "hapticlab-demo"), (ran, "hapticlab-run"), (traded, "hapticlab-tradeoff")):
         one.add_argument("--out", metavar="DIR", default=folder, help="where figure and telemetry go (default: %(default)s)")
     _add_board_commands(commands, shared)
     return parser
+
+
+def _add_tradeoff(commands, shared):
+    """Add what measures speed against accuracy."""
+    text = "measure speed against accuracy of a scene file, and choose what is good enough at the least load"
+    made = commands.add_parser("tradeoff", parents=[shared], help=text, description=text)
+    made.add_argument("file", metavar="FILE.py")
+    made.add_argument("--tolerance", type=float, default=1e-2, metavar="PART", help="of the greatest force (default: 0.01)")
+    made.add_argument("--load", type=float, default=0.5, metavar="PART", help="of the period at most (default: 0.5)")
+    made.add_argument("--any-hand", action="store_true", help="do not ask for passivity in every hand")
+    made.add_argument("--methods", nargs="+", metavar="NAME", help="integrators (default: all but forward Euler)")
+    made.add_argument("--T", dest="periods", type=float, nargs="+", metavar="SECONDS", help="sampling periods [s]")
+    targets = (PC, *(name for name, given in BOARDS.items() if given.hz))
+    made.add_argument("--targets", nargs="+", choices=targets, help="this computer and boards (default: all)")
+    made.add_argument("--every", type=_whole, default=10, metavar="N", help="one sample of telemetry in N ticks (default: 10)")
+    made.set_defaults(command=tradeoff, parser=made, T=None, duration=None)
+    return made
 
 
 def _add_board_commands(commands, shared):

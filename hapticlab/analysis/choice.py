@@ -31,6 +31,12 @@ class Configuration:
     tolerance: float
     notes: tuple = ()
 
+    def facts(self):
+        """Return what was chosen as a dictionary for JSON."""
+        row = self.row
+        told = {"err_max": row.err_max, "load": row.load, "tolerance": self.tolerance, "notes": list(self.notes)}
+        return {"feasible": True, "options": {**self.options, "live": _listed(self.options["live"])}, **told}
+
     def __str__(self):
         row = self.row
         given = ", ".join(f"{name}={value!r}" for name, value in self.options.items())
@@ -57,6 +63,10 @@ class NotFeasible:
 
     def __bool__(self):
         return False
+
+    def facts(self):
+        """Return what is missing as a dictionary for JSON."""
+        return {"feasible": False, "nearest": self.nearest and self.nearest.name, "relax": list(self.relax)}
 
     def __str__(self):
         near = f"; nearest is {self.nearest.name}" if self.nearest else ""
@@ -86,6 +96,10 @@ class Asked:
             "load": max(row.load / self.load, 1.001 if row.status.startswith("does not fit") else 0.0),
         }
         return {name: factor for name, factor in found.items() if factor > 1}
+
+
+def _listed(live):
+    return live if live is None or isinstance(live, str) else [str(one) for one in live]
 
 
 def _ratio(needed, there):
@@ -162,7 +176,8 @@ def _words(name, row, asked):
         return row.why or f"load {percent(row.load)} instead of {percent(asked.load)}"
     if name == "passive":
         part = f", or its stiffness, damping and mass all times {row.b_device / row.b_req:.2g}" if row.b_device else ""
-        return f"a device with b >= {row.b_req:.3g} N s/m, this one has {row.b_device:.3g} N s/m{part}"
+        asks = f"a device with b >= {row.b_req:.3g} N s/m, this one has {row.b_device:.3g} N s/m"
+        return f"{asks}{part}, or passive=False: not in every hand"
     if name == "margin":
         softer = f"stiffness {(row.margin / asked.margin) ** 2:.2g} times as large"
         return f"margin {row.margin:.2g} instead of {asked.margin:g}, or {softer}"

@@ -236,6 +236,17 @@ def _space(axes, side, array):
         axis.set_minor_formatter(NullFormatter())
 
 
+def log_scales(axes):
+    """Make both scales logarithmic, with plain numbers: at 1, 2 and 5 within two decades, else at powers of ten."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    axes.set(xscale="log", yscale="log")
+    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 100 else (1,)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(NullFormatter())
+
+
 def _spacing(array):
     """Return "log" where the values grow by a ratio over more than a factor of five, else "linear"."""
     if len(array) < 3 or array.min() <= 0 or array.max() / array.min() < 5:

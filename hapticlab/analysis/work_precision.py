@@ -1,10 +1,12 @@
 """The figure of a trade-off: error against load, both logarithmic, a line for each method."""
 
-from .plots import FRAME, STYLES, house_style, new_figure
+from .plots import FRAME, STYLES, house_style, log_scales, new_figure
 
 MARKERS = {"zoh": "s", "foh": "^", "soh": "o"}
 #: with a force of the period's end or mean a marker has a bar through it
 BARRED = {"before": None, "after": "|", "mean": "_"}
+#: an error of nothing at all is drawn here
+LEAST = 1e-12
 #: panels beside each other
 ACROSS = 2
 
@@ -40,7 +42,7 @@ def plot_work_precision(tradeoff, targets=None, asked=None):
         for axes in panels[::across]:
             axes.set_ylabel("greatest error of the force [% of its peak]")
         figure.suptitle(tradeoff.name)
-        _legend(figure, methods, {row.hold for rows in shown.values() for row in rows})
+        _legend(figure, panels[0], methods, {row.hold for rows in shown.values() for row in rows})
     return figure
 
 
@@ -72,7 +74,8 @@ def _panel(axes, target, rows, methods, asked):
         )  # fmt: skip
     axes.axhline(100 * asked.tolerance, color="black", linestyle=":", linewidth=1.0, zorder=1)
     axes.axvline(100 * asked.load, color="black", linestyle=":", linewidth=1.0, zorder=1)
-    axes.set(xscale="log", yscale="log", title=target, xlabel="load [% of the period]")
+    axes.set(title=target, xlabel="load [% of the period]")
+    log_scales(axes)
 
 
 def front(rows):
@@ -85,15 +88,17 @@ def front(rows):
 
 
 def _places(rows):
-    return [100 * row.load for row in rows], [100 * row.err_max for row in rows]
+    return [100 * row.load for row in rows], [100 * max(row.err_max, LEAST) for row in rows]
 
 
-def _legend(figure, methods, holds):
-    from matplotlib.lines import Line2D
+def _legend(figure, axes, methods, holds):
+    """Tell lines and markers apart below the panels."""
 
-    handles = [Line2D([], [], label=method, **style_of(number)) for number, method in enumerate(methods)]
-    for hold in (hold for hold in MARKERS if hold in holds):
-        handles.append(Line2D([], [], color="black", marker=MARKERS[hold], linestyle="", label=f"hold {hold}"))
-    handles.append(Line2D([], [], color="black", marker="o", markerfacecolor="white", linestyle="", label="not allowed"))
-    handles.append(Line2D([], [], color="black", linestyle=":", label="asked for"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize="small", **FRAME)
+    def sign(label, **style):
+        return axes.plot([], [], label=label, **style)[0]
+
+    signs = [sign(method, **style_of(number)) for number, method in enumerate(methods)]
+    black = {"color": "black", "linestyle": ""}
+    signs += [sign(f"hold {hold}", marker=mark, **black) for hold, mark in MARKERS.items() if hold in holds]
+    signs += [sign("not allowed", marker="o", markerfacecolor="white", **black), sign("asked for", color="black", linestyle=":")]
+    figure.legend(handles=signs, loc="outside lower center", ncols=4, fontsize="small", **FRAME)
