@@ -7,11 +7,14 @@ The lines work on floats and on traced values. Baumgarte, Comput. Methods Appl. 
 Wanner, *Solving Ordinary Differential Equations II*, section VII.2 (projection).
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..errors import SceneError
 from .advance import Taylor
 from .solve import solve
+from .step_matrix import step_matrix
 from .trace import select
 from .zeros import dot, is_zero, less_product, plus, scaled
 
@@ -142,13 +145,9 @@ def largest_feedback(method, most=100.0):
 
 
 def _radius(method, alpha_h):
-    """Return the spectral radius of one step of h = 1."""
-
-    def rhs(tau, q, w, s):
-        return [-2 * alpha_h * w[0] - alpha_h**2 * q[0]], []
-
-    columns = [method.step(rhs, 0.0, ([float(k == 0)], [float(k == 1)], []), 1.0) for k in (0, 1)]
-    return max(abs(np.linalg.eigvals(np.array([[q[0], w[0]] for q, w, _ in columns]).T)))
+    """Return the spectral radius of one step of h = 1; implicit damping is of forces, and has no part in a feedback."""
+    J = np.array([[0.0, 1.0], [-(alpha_h**2), -2.0 * alpha_h]])
+    return max(abs(np.linalg.eigvals(step_matrix(replace(method, implicit_damping=False), J, 1, 1.0))))
 
 
 def check_feedback(alpha, method, h):

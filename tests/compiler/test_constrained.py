@@ -78,7 +78,11 @@ def test_feedback_limits():
 
 
 #: on the double pole -alpha: the real axis of the stability region, and for semi-implicit Euler the zeta = 1 entry
-CLOSED = {"euler": 2, "semi_implicit_euler": 2 * (math.sqrt(2) - 1), "verlet": 1, "heun": 2, "rk4": 2.785293563405282}
+CLOSED = {
+    "euler": 2, "semi_implicit_euler": 2 * (math.sqrt(2) - 1), "semi_implicit_euler_damped": 2 * (math.sqrt(2) - 1),
+    "verlet": 1, "midpoint": 2, "heun": 2, "ssprk3": 2.5127453266183286, "rk4": 2.785293563405282, "adams_bashforth2": 1,
+    "adams_bashforth3": 6 / 11,
+}  # fmt: skip
 
 
 def swinging(enforce):
