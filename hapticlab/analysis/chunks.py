@@ -54,20 +54,18 @@ class Chunk:
 def measured(chunk):
     """Run a chunk; return its group, its first point in it, and the metric at its points."""
     program, loaded = _ready(chunk.program, chunk.engine)
-    paddle, ticks = chunk.points.paddle, chunk.ticks
-    inputs = _inputs(paddle, ticks)
-    last, counts = [], []
-    for start in range(chunk.start, chunk.start + chunk.count, LANES):
-        stop = min(start + LANES, chunk.start + chunk.count)
-        lanes, states = chunk.points.parameters(program, chunk.starts, start, stop), None
+    points, paddle, ticks = chunk.points, chunk.points.paddle, chunk.ticks
+    inputs, stop = _inputs(paddle, ticks), chunk.start + chunk.count
+    parameters, last = points.parameters(program, chunk.starts, chunk.start, stop), []
+    for first in range(0, chunk.count, LANES):
+        lanes, states = parameters[:, first : first + LANES], None
         for tick in range(0, ticks, TICKS):
             rows = inputs[tick : tick + TICKS]
             outputs, states = loaded.run(len(rows), rows, lanes, states, every=len(rows))
         last.append(outputs[-1])
-        counts.append(np.broadcast_to(chunk.points.count(start, stop), stop - start))
     *numbers, fault = np.concatenate(last, axis=1)
-    measure = METRICS[chunk.metric](ticks, paddle.T)
-    found = measure.value(numbers, count=np.concatenate(counts), quarter=ticks // 4 * paddle.T)
+    count = points.count(chunk.start, stop)
+    found = METRICS[chunk.metric](ticks, paddle.T).value(numbers, count=count, quarter=ticks // 4 * paddle.T)
     return chunk.group, chunk.first, np.where(fault > 0, np.nan, found)
 
 

@@ -145,6 +145,7 @@ def test_a_script_without_a_guard_is_told(tmp_path):
     assert done.stderr.rstrip().splitlines()[-1].startswith("hapticlab.errors.AnalysisError: the worker processes died 3")
 
 
+@pytest.mark.slow  # starting a cluster takes seconds; processes of our own are killed above
 def test_a_cluster_survives_a_killed_worker(monkeypatch):
     """A scheduler, a nanny and two worker processes of Dask; the nanny starts the killed one again."""
     distributed = pytest.importorskip("distributed")
