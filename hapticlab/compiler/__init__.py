@@ -26,12 +26,12 @@ what is written by hand. Nothing is solved in symbols.
 (``dependence``, ``requirements``), for ``replay`` to run after the fact.
 
 **ExplicitForm -> Dynamics.** ``lower`` checks what was asked for, ``lowering`` is the tick, in the order it runs:
-sample (``handle``), force, outputs, and one period of motion. Expressions become values of a ``trace`` by
-``expressions`` (``phase`` and ``constants`` look after angles and numbers, ``simplify`` after every operation).
-Whatever must be differentiated, evaluated in numbers or shared is in ``graph`` (``differentiate``, ``algebra``).
-``dynamics`` answers one question: in this state at this instant, what are the accelerations? For M a = f alone that is
-``solve``; ``mass`` has looked whether there is an answer, ``first_sample`` where it starts, ``zeros`` leaves out what
-is structurally zero.
+sample (``handle``), force, outputs, and one period of motion; ``force_at`` has the force after it, or on average.
+Expressions become values of a ``trace`` by ``expressions`` (``phase`` and ``constants`` look after angles and numbers,
+``simplify`` after every operation). Whatever must be differentiated, evaluated in numbers or shared is in ``graph``
+(``differentiate``, ``algebra``). ``dynamics`` answers one question: in this state at this instant, what are the
+accelerations? For M a = f alone that is ``solve``; ``mass`` has looked whether there is an answer, ``first_sample``
+where it starts, ``zeros`` leaves out what is structurally zero.
 
 - A constraint: ``constraints`` chooses how it is kept, and refuses one that cannot be: ``consistency`` says why,
   ``assembly`` has walked the configurations. ``enforcing`` does what was chosen while it runs: a closed form
@@ -40,14 +40,16 @@ is structurally zero.
 - A contact: ``contacts`` is what dynamics knows of it. ``contact_starts`` and ``contact_steps`` have looked at the
   start and the step. Laws with a force are a case of f; of the others, see below.
 
-**Dynamics -> method.** ``methods`` holds the textbook's explicit steps, which ask dynamics for accelerations. ``exact``
-(of the parts that ``linear`` and ``coefficients`` find, by the ``exponential``) takes what is linear, ``switched`` what
-is linear between switches, by a map a mode where none can be reached, else as "taylor" does. "taylor" is
-``advance``: ``stiffness`` checks the motion and chooses the order; ``guards`` turns every comparison into a mode and
-the instant it ends; ``flow`` makes the polynomial of a piece in given modes by the recurrences of ``taylor``;
-``crossing`` finds its first root; ``located`` steps from one to the next. At a touch ``impacts`` differentiates what is
-needed once, ``touch`` says what happens in that instant (which contacts strike, rest, lose energy), ``impact`` has the
-laws of one blow, and ``complementarity`` solves for several.
+**Dynamics -> method.** ``methods`` tables the textbook's explicit ``steps``, which ask dynamics for accelerations;
+``damping`` takes dampers implicitly, ``multistep`` keeps rates of steps before, ``suited`` refuses what would lose its
+order; ``step_matrix``, ``stability_region`` and ``order`` say what a method is worth. ``exact`` (of the parts that
+``linear`` and ``coefficients`` find, by the ``exponential``) takes what is linear, ``switched`` what is linear between
+switches, by a map a mode where none can be reached, else as "taylor" does. "taylor" is ``advance``: ``stiffness``
+checks the motion and chooses the order; ``guards`` turns every comparison into a mode and the instant it ends; ``flow``
+makes the polynomial of a piece in given modes by the recurrences of ``taylor``; ``crossing`` finds its first root;
+``located`` steps from one to the next. At a touch ``impacts`` differentiates what is needed once, ``touch`` says what
+happens in that instant (which contacts strike, rest, lose energy), ``impact`` has the laws of one blow, and
+``complementarity`` solves for several.
 
 **Method -> Program.** ``tracing`` gathers states and inputs, named by ``channels``, and leaves out what no output sees;
 ``options`` has checked what was asked for. The result is an ``ir`` program:

@@ -34,7 +34,11 @@ def compile(
     Parameters
     ----------
     scene : Scene
-    method : {"euler", "semi_implicit_euler", "verlet", "heun", "rk4", "taylor", "exact", "exact+rk4", ...}
+    method : {"euler", "semi_implicit_euler", "semi_implicit_euler_damped", "verlet", "midpoint", "heun", "ssprk3", "rk4", \
+"nystrom4", "adams_bashforth2", "adams_bashforth3", "taylor", "exact", "exact+rk4", ...}
+        ``hl.methods()`` tables the explicit ones: order, cost, where each is stable; ``hl.order_of`` says what order the
+        error of a scene's force has. "semi_implicit_euler_damped" takes dampers implicitly, however stiff.
+        "nystrom4" is for accelerations free of velocities, the Adams-Bashforth methods are for motion without cases.
         "taylor" locates the instants at which walls, contacts and friction change the motion; between them it is exact
         to rounding where the motion is linear. :class:`~hapticlab.compiler.advance.Taylor` sets its order and events.
         "exact" advances linear equations of motion by their matrix exponential, whose constants it makes of parameters
