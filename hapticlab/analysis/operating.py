@@ -53,10 +53,10 @@ class Places:
         self.rates = [q.diff(t) for q in second]
         self.variables = [x(t), v(t), *second, *self.rates, *first]
         self.names = ["x", "v", *(channel_of(s, "f64").name for s in self.variables[2:])]
-        start = numbers(self.variables[2:], scene.values)
-        if start is None:
-            unbound = sorted(name for name in scene.parameters if name not in scene.values and not name.startswith("case_"))
+        unbound = sorted(set(scene.parameters) - set(scene.values) - {s.name for s in scene.switches})
+        if unbound:
             raise ParameterError(f"{', '.join(unbound)} has no value; bind it: scene({unbound[0]}=...)")
+        start = numbers(self.variables[2:], scene.values)
         self.start = np.r_[0.0, 0.0, start]
         #: what a step across a surface may change, positions before rates
         self.positions = np.array([s not in self.rates and s != v(t) and s not in tied for s in self.variables])

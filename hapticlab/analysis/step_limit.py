@@ -206,6 +206,8 @@ def _step_at(scene, point, method, T, J, seconds):
 
 def _mode_limit(method, J, step, h, mode, point):
     """Return the :class:`ModeLimit` of one point, from its step matrices."""
+    if not np.isfinite(J).all():
+        raise AnalysisError(f"the motion has no finite slope at {point}, {mode}; name places where it has, at={{...}}")
     values = np.linalg.eigvals(J)
     largest, fastest = np.abs(values).max(initial=0.0), np.abs(values.imag).max(initial=0.0)
     if method == Taylor.name:
