@@ -72,7 +72,8 @@ class Branches:
         if lanes == 1:
             return lines, condition, None
         if mask:
-            lines.append(f"{name}.lanes = and {type} {mask}, {condition}")
+            false = writer.const(False, "bool")  # a lane that does not need the arm around may hold poison here
+            lines.append(f"{name}.lanes = select {type} {mask}, {type} {condition}, {type} {false}")
             condition = f"{name}.lanes"
         lines += [
             f"{name}.bits = bitcast {type} {condition} to i{lanes}",
