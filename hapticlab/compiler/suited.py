@@ -49,7 +49,8 @@ def _check_free_of_velocity(method, form, graph):
             if graph(Partial(f, rate)).constant != 0:
                 terms = sp.Add.make_args(f)
                 term = next(term for term in terms if graph(Partial(term, rate)).constant != 0)
-                raise ProgramError(f"the acceleration of {type(q).__name__} depends on {rate}, through {short(term, 60)}; {cure}")
+                what = "the mean force" if q == IMPULSE else f"the acceleration of {type(q).__name__}"
+                raise ProgramError(f"{what} depends on {rate}, through {short(term, 60)}; {cure}")
 
 
 def _check_smooth(method, form, graph):

@@ -182,3 +182,60 @@ def test_a_touch_that_is_located_costs_nothing(wall, method):
     """At 1/40 of these steps the error is the rounding of F, 0.7 N."""
     assert float(order_of(thrown(wall), method)) == np.inf
     assert contact_error(wall, method, 0.47, 40) < 1e-12
+
+
+K_STOP = 400.0
+k_stop = hl.parameters("k_stop", units="N/m", values=K_STOP)
+#: the body of "damped", on its way by the handle into a stop
+PUSH = K * (x(t) - z)
+STOPPED = hl.Scene(
+    force=PUSH, eom=[sp.Eq(m * z.diff(t, 2), PUSH - c * z.diff(t) - k_stop * sp.Max(0, z - z_w))], name="stopped"
+)
+
+
+@lru_cache
+def stopped():
+    """Return (time of touch, force at t, impulse since 0) by DOP853, up to the touch and from it on."""
+
+    def rates(time, y):
+        pull = K_ * (handle(time)[0] - y[0])
+        return [y[1], (pull - C_ * y[1] - K_STOP * max(0.0, y[0] - WALL)) / M_, pull]
+
+    def touch(time, y):
+        return y[0] - WALL
+
+    touch.terminal, touch.direction = True, 1
+    options = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-15, "dense_output": True}
+    before = solve_ivp(rates, (0.05, 0.4), _at_50_ms(), events=touch, **options)
+    after = solve_ivp(rates, (before.t[-1], 0.4), before.y[:, -1], **options)
+    return before.t[-1], lambda s: K_ * (handle(s)[0] - after.sol(s)[0]), lambda s: after.sol(s)[2]
+
+
+def _at_50_ms():
+    """The start lies on the stop, which the body has left by then: 10 mm is where z begins."""
+    body = lambda s, y: [y[1], (K_ * (handle(s)[0] - y[0]) - C_ * y[1]) / M_, K_ * (handle(s)[0] - y[0])]  # noqa: E731
+    return solve_ivp(body, (0, 0.05), [0.01, 0, 0], method="DOP853", rtol=1e-13, atol=1e-16).y[:, -1]
+
+
+@pytest.mark.parametrize(
+    ("method", "hold", "force_at"),
+    [
+        ("rk4", "soh", "before"), ("rk4", "zoh", "before"), ("heun", "foh", "mean"), ("ssprk3", "soh", "mean"),
+        ("verlet", "soh", "after"), ("semi_implicit_euler_damped", "soh", "before"), ("taylor", "zoh", "before"),
+        ("taylor", "foh", "before"), ("taylor", "soh", "mean"), ("exact", "soh", "before"), ("exact", "foh", "mean"),
+        ("exact", "soh", "after"),
+    ],
+)  # fmt: skip
+def test_the_least_of_method_hold_instant_and_touch_is_the_order(method, hold, force_at):
+    touch, force, impulse = stopped()
+    options, errors = {"method": method, "hold": hold, "force_at": force_at}, []
+    for steps in (100, 200, 400) if method in ("taylor", "exact") else (400, 800, 1600):
+        T = touch / (steps + 0.47)
+        ticks = round(1.05 * steps)
+        time = np.arange(ticks + 1) * T
+        program = hl.compile(STOPPED, T=T, velocity="measured", dtype="float64", live=(), **options)
+        F = load(program).run(ticks + 1, np.array(handle(time))[: len(program.inputs)].T).outputs[-1, 0, 0]
+        end = time[-1]
+        errors.append(abs(F - ((impulse(end + T) - impulse(end)) / T if force_at == "mean" else force(end))))
+    claim = float(order_of(STOPPED, velocity="measured", **options))
+    assert measured(errors) == pytest.approx(claim, abs=0.1), (errors, claim)
