@@ -1,8 +1,8 @@
 """Parts of a sweep that run anywhere: a program, what its points are made of, and which of them; no trace, no point itself."""
 
-import functools
 import hashlib
 import pickle
+import threading
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,8 @@ from .measures import METRICS, WithFault
 
 #: lanes and ticks of one call of an engine
 LANES, TICKS = 2048, 2000
+#: programs that a process keeps compiled
+KEPT = 8
 #: instructions times ticks times points of a chunk: a few tenths of a second of machine code
 WORK = 8e9
 #: points of a chunk, whatever they cost
@@ -27,8 +29,8 @@ class Chunk:
     ----------
     group, first, count : int
         Which points of the sweep: of the group's, from the first one on so many.
-    program : bytes
-        The linked program, pickled; a process compiles each once.
+    program, digest : bytes
+        The linked program, pickled, and the digest of it and its inputs; a process compiles each once.
     points : Points
         Cut to the axes' parts in use; the paddle in it holds the seed of its noise.
     start : int
@@ -43,6 +45,7 @@ class Chunk:
     first: int
     count: int
     program: bytes
+    digest: bytes
     points: Points
     start: int
     starts: dict
@@ -53,9 +56,8 @@ class Chunk:
 
 def measured(chunk):
     """Run a chunk; return its group, its first point in it, and the metric at its points."""
-    program, loaded = _ready(chunk.program, chunk.engine)
-    points, paddle, ticks = chunk.points, chunk.points.paddle, chunk.ticks
-    inputs, stop = _inputs(paddle, ticks), chunk.start + chunk.count
+    program, loaded, inputs = _ready(chunk)
+    points, ticks, stop = chunk.points, chunk.ticks, chunk.start + chunk.count
     parameters, last = points.parameters(program, chunk.starts, chunk.start, stop), []
     for first in range(0, chunk.count, LANES):
         lanes, states = parameters[:, first : first + LANES], None
@@ -64,8 +66,8 @@ def measured(chunk):
             outputs, states = loaded.run(len(rows), rows, lanes, states, every=len(rows))
         last.append(outputs[-1])
     *numbers, fault = np.concatenate(last, axis=1)
-    count = points.count(chunk.start, stop)
-    found = METRICS[chunk.metric](ticks, paddle.T).value(numbers, count=count, quarter=ticks // 4 * paddle.T)
+    count, T = points.count(chunk.start, stop), program.T
+    found = METRICS[chunk.metric](ticks, T).value(numbers, count=count, quarter=ticks // 4 * T)
     return chunk.group, chunk.first, np.where(fault > 0, np.nan, found)
 
 
@@ -73,7 +75,7 @@ def linked(program, paddle, ticks, metric):
     """Return a scene's program on a paddle with a metric in it, its bytes, and a digest of it with its inputs and values."""
     made = link(program, paddle, WithFault(METRICS[metric](ticks, paddle.T)))
     what = (made.parameters, made.inputs, made.states, made.outputs, made.init, made.tick, made.values, made.T, ticks)
-    digest = hashlib.sha256(repr(what).encode() + _inputs(paddle, ticks).tobytes()).digest()[:16]
+    digest = hashlib.sha256(repr(what).encode() + paddle.inputs(ticks).tobytes()).digest()[:16]
     return made, pickle.dumps(made), digest
 
 
@@ -85,12 +87,16 @@ def chunk_size(program, ticks, points, workers):
     return int(min(max(size, FEWEST), MOST))
 
 
-@functools.lru_cache(maxsize=8)
-def _ready(program, engine):
-    program = pickle.loads(program)
-    return program, load_linked(program, engine)
+def _ready(chunk):
+    """Return a chunk's program, the engine that runs it and its inputs; kept, so that a process makes them once."""
+    key = chunk.digest, chunk.engine
+    with _MAKING:
+        if key not in _MADE:
+            if len(_MADE) == KEPT:
+                del _MADE[next(iter(_MADE))]  # the oldest: programs come one after the other
+            program = pickle.loads(chunk.program)
+            _MADE[key] = program, load_linked(program, chunk.engine), chunk.points.paddle.inputs(chunk.ticks)
+        return _MADE[key]
 
 
-@functools.lru_cache(maxsize=2)
-def _inputs(paddle, ticks):
-    return paddle.inputs(ticks)
+_MADE, _MAKING = {}, threading.Lock()

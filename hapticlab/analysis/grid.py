@@ -1,4 +1,7 @@
-"""The points of a sweep, without an object for each: those that share a program lie together and are counted through."""
+"""The points of a sweep, without an object for each: those that share a program lie together and are counted through.
+
+A file that a sweep goes on from knows its points by this count: whoever changes it gives the file a new format number.
+"""
 
 import functools
 import itertools

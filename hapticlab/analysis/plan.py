@@ -57,7 +57,7 @@ class Plan:
             for first, stop in _pieces(remaining(here, len(points)), size):
                 part, start = points.cut(first, stop)
                 count = stop - first
-                yield Chunk(group, first, count, packed, part, start, self.starts, ticks, self.metric, self.engine)
+                yield Chunk(group, first, count, packed, digest, part, start, self.starts, ticks, self.metric, self.engine)
 
     def put(self, result, record, shown):
         """Write a record's values where they belong, and move the bar; return how many they are."""

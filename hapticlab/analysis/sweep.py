@@ -1,5 +1,6 @@
 """One metric over the product of many parameter values: a lane a point, a run for every period and structure."""
 
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -143,16 +144,17 @@ def _filled(plan, what, workers, resume, progress):
     """Return the metric at every point: what the file has, and what the workers measure."""
     result, points, done = np.empty(plan.grid.points), plan.grid.points, 0
     with Partial(resume, what) as kept, progress_bar(points, progress, "point") as shown:
+        for record in kept.records:
+            done += plan.put(result, record, shown)
+        before, chunks = done, plan.chunks(kept.records, workers)
         try:
-            for record in kept.records:
-                done += plan.put(result, record, shown)
-            chunks = plan.chunks(kept.records, workers)
-            for group, first, values in spread(measured, chunks, workers, threads=plan.machine_code):
-                record = Record(group, first, plan.digests[group], values)
-                kept.add(record)
-                done += plan.put(result, record, shown)
+            with closing(spread(measured, chunks, workers, threads=plan.machine_code)) as results:
+                for group, first, values in results:
+                    record = Record(group, first, plan.digests[group], values)
+                    kept.add(record)
+                    done += plan.put(result, record, shown)
         except BaseException as stop:
-            if resume is not None:
+            if resume is not None and (done > before or isinstance(stop, KeyboardInterrupt)):
                 stop.add_note(f"{done} of {points} points are in {str(resume)!r}; the same call goes on from there")
             raise
     if done != points:

@@ -6,6 +6,7 @@ import operator
 import os
 import pickle
 import signal
+import threading
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 
@@ -82,7 +83,7 @@ def _in_processes(function, pieces, workers):
     pieces, under_way, breaks = enumerate(_sendable(pieces)), {}, 0
     while breaks < MOST_BREAKS:
         # spawned, never forked: a fork copies locks that other threads hold, and other systems than Linux have none
-        pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _ignore_interrupt)
+        pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _begin)
         try:
             todo = itertools.chain([*under_way.items()], pieces)
             for result in _submitted(pool, function, todo, under_way, 2 * workers):
@@ -133,6 +134,12 @@ def _finished(futures, under_way):
         yield result
 
 
-def _ignore_interrupt():
-    """Leave Ctrl-C to the process that started this one."""
+def _begin():
+    """Leave Ctrl-C to the process that started this one, and end with it, even if it is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with, args=[multiprocessing.parent_process()], daemon=True).start()
+
+
+def _end_with(parent):
+    parent.join()
+    os._exit(1)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.analysis import chunks
+from hapticlab.analysis import chunks, plan
 from hapticlab.analysis.partial import CRC, HEAD, Partial, Record, remaining
 
 WHAT = {"scene": "wall", "axis k": "4 from 1 to 2"}
@@ -129,7 +129,7 @@ def test_a_sweep_goes_on_where_it_was_interrupted(tmp_path, monkeypatch):
     assert sum(given) == 360 - done  # nothing was left to do
 
 
-def test_a_stale_file_is_refused_and_says_why(tmp_path):
+def test_a_stale_file_is_refused_and_says_why(tmp_path, monkeypatch):
     path = tmp_path / "map.sweep"
     swept(resume=path)
     for change, said in [
@@ -146,13 +146,16 @@ def test_a_stale_file_is_refused_and_says_why(tmp_path):
         with pytest.raises(hl.AnalysisError, match="another sweep"):  # what a line does not show is in the program
             swept(resume=path, **change)
     np.testing.assert_array_equal(swept(resume=path).values, swept().values)
+    monkeypatch.setattr(plan, "__version__", "99.0")
+    with pytest.raises(hl.AnalysisError, match=r"hapticlab: \d+\.\d+\.\d+ there, 99.0 here"):
+        swept(resume=path)
 
 
 KILLED = """
 import os, sys
 sys.path[:0] = {path!r}
 import test_partial as t
-from hapticlab.analysis import chunks
+from hapticlab.analysis import chunks, plan
 chunks.MOST = 64
 def dies(function, pieces):
     for piece in pieces[:3]:

@@ -40,6 +40,21 @@ def test_bits_do_not_depend_on_workers_and_chunks(most, workers, alone, monkeypa
     np.testing.assert_array_equal(swept(workers=workers), alone)
 
 
+def test_an_intent_that_has_changed_is_sampled_again():
+    class Moving:
+        amplitude = 1e-3
+
+        def __call__(self, times):
+            return self.amplitude * np.sin(30 * times)
+
+    intent = Moving()
+    paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand(k=50, b=1, intent=intent))
+    soft = swept(paddle=paddle, metric="peak_force", delay=0, T=1e-3)
+    intent.amplitude *= 2
+    wide = swept(paddle=paddle, metric="peak_force", delay=0, T=1e-3)
+    assert (wide > 1.5 * soft).all()
+
+
 def test_any_map_will_do(alone):
     def backwards(function, pieces):
         return [function(pickle.loads(pickle.dumps(piece))) for piece in reversed(pieces)]
