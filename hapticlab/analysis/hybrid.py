@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..compiler.instant import ROWS
 from ..errors import AnalysisError
 
 #: places within a step at which surfaces are looked at
@@ -37,64 +38,34 @@ class Field:
         self.inputs, self.states, self.outputs, self.tick = once
         self.guards, self.reactions = len(instant.kinds), len(instant.levels)
         self.sizes = n, m = instant.second, instant.first
-        ends = np.cumsum([2, 2 * n + m, self.guards, self.reactions])
-        self.y_at, self.flags_at, self.pushes_at = (slice(*pair) for pair in zip(ends, ends[1:], strict=False))
-        self.sides_at = slice(ends[-1], None)
-        self.last, self.units = np.zeros(self.reactions), np.eye(self.reactions)
+        ends = np.cumsum([2, 2 * n + m, self.guards, self.reactions, sum(level == 1 for level in instant.levels)])
+        self.y_at, self.flags_at, self.extra_at, self.sides_at = (
+            slice(*pair) for pair in zip(ends, ends[1:], strict=False)
+        )
+        self.held_at, self.units = slice(ends[-1], None), np.eye(self.reactions)
+        self.gaps = np.array(instant.levels, int) == 2
 
-    def __call__(self, t, y, mode, pushes):
-        """Return the outputs at t, the reactions being ``pushes``."""
+    def __call__(self, t, y, mode, extra=0.0):
+        """Return the outputs at t: reactions that are held keep their measures, others are free, ``extra`` beside them."""
         k, states = min(max(int(t / self.T), 0), len(self.rows) - 1), self.states
         self.inputs[:-1], self.inputs[-1] = self.rows[k], t - k * self.T
         states[:2], states[self.y_at] = divmod(k, self.instant.digit)[::-1], y
-        if len(states) > 2 + len(y):
-            states[self.flags_at], states[self.pushes_at], states[self.sides_at] = mode.flags, pushes, mode.sides
+        if self.guards:
+            states[self.flags_at] = mode.flags
+        if self.reactions:
+            states[self.extra_at], states[self.sides_at] = extra, mode.sides[~self.gaps]
+            states[self.held_at] = mode.held
         self.tick()
         return self.outputs.copy()
 
-    def rates(self, y, out):
-        """Return the rates of y from the outputs."""
-        n, m = self.sizes
-        return np.concatenate([y[n : 2 * n], out[1 : 1 + n + m]])
-
-    def slope(self, t, y, mode):
+    def rates(self, t, y, mode):
         """Return the rates of y at t."""
-        return self.rates(y, self._balanced(t, y, mode)[0])
-
-    def solved(self, t, y, mode):
-        """Return (outputs, pushes): reactions that are held keep their measures, others are free."""
-        out, pushes = self._balanced(t, y, mode)
-        return (self(t, y, mode, pushes) if mode.held.any() else out), pushes
-
-    def _balanced(self, t, y, mode):
-        """Return (outputs, pushes); of the outputs, what is linear in the reactions is right where some are held."""
-        out = self(t, y, mode, self.last)
-        if not self.reactions:
-            return out, self.last
-        held = mode.held
-        for _ in range(3):  # what is free may hold another reaction, as friction holds a normal force
-            pushes = np.where(held, self.last, self.part(out, "free"))
-            if np.array_equal(pushes, self.last):
-                break
-            self.last = pushes
-            out = self(t, y, mode, pushes)
-        if held.any():
-            which, rest = np.flatnonzero(held), self.stays(out)[held]
-            changes = np.array([self(t, y, mode, pushes + self.units[i]) - out for i in which])
-            slopes = np.array([self.stays(change)[held] for change in changes])
-            more = -rest / slopes[0] if len(rest) == 1 else np.linalg.solve(slopes.T, -rest)
-            pushes[held] += more
-            self.last, out = pushes, out + more @ changes
-        return out, pushes
+        n, m = self.sizes
+        return np.concatenate([y[n : 2 * n], self(t, y, mode)[1 : 1 + n + m]])
 
     def part(self, out, name):
         """Return one row of every reaction from the outputs."""
-        rows = out[1 + sum(self.sizes) + self.guards :].reshape(self.reactions, 6)
-        return rows[:, ("measure", "d1", "d2", "free", "inside", "lean").index(name)]
-
-    def stays(self, out):
-        """Return the derivative of each measure that vanishes while it is held."""
-        return np.where(np.array(self.instant.levels) == 2, self.part(out, "d2"), self.part(out, "d1"))
+        return out[1 + sum(self.sizes) + self.guards + ROWS.index(name) :: len(ROWS)]
 
     def measures(self, out):
         """Return the measures of the guards."""
@@ -103,12 +74,12 @@ class Field:
 
     def surfaces(self, t, y, mode):
         """Return what is positive while the mode lasts: one number per guard, one per reaction."""
-        out, _ = self.solved(t, y, mode)
+        out = self(t, y, mode)
         kinds = np.array([kind == "floor" for kind in self.instant.kinds], bool)
         u = self.measures(out)
         guards = np.where(kinds, 0.25 - u**2, np.where(mode.flags > 0, -u, u))
         m = self.part(out, "measure")
-        free = np.where(np.array(self.instant.levels) == 2, m, np.where(mode.full_sides > 0, m, -m))
+        free = np.where(self.gaps | (mode.sides > 0), m, -m)
         return np.concatenate([guards, np.where(mode.held, self.part(out, "inside"), free)])
 
 
@@ -118,19 +89,13 @@ class Mode:
 
     flags: np.ndarray
     held: np.ndarray
-    full_sides: np.ndarray
-    levels: tuple
-
-    @property
-    def sides(self):
-        """The sides of the slips."""
-        return self.full_sides[np.array(self.levels, int) == 1]
+    sides: np.ndarray
 
 
 class Hybrid:
     """Integrates a :class:`Field` from event to event."""
 
-    def __init__(self, field, *, rtol=1e-10, atol=1e-12):
+    def __init__(self, field, *, rtol=1e-10, atol=1e-13):
         self.field, self.rtol, self.atol = field, rtol, atol
 
     def run(self, start, times, breaks=()):
@@ -148,14 +113,14 @@ class Hybrid:
         return self.F
 
     def _first_mode(self):
-        field, levels = self.field, self.field.instant.levels
-        mode = Mode(np.zeros(field.guards), np.zeros(field.reactions, bool), np.zeros(field.reactions), levels)
+        field = self.field
+        mode = Mode(np.zeros(field.guards), np.zeros(field.reactions, bool), np.zeros(field.reactions))
         for k, kind in enumerate(field.instant.kinds):  # in order: a surface may lie in a case of another
-            u = field.measures(field.solved(0.0, self.y, mode)[0])[k]
+            u = field.measures(field(0.0, self.y, mode))[k]
             mode.flags[k] = np.floor(u + 0.5) if kind == "floor" else u < 0
         self.mode = mode
         self._sides()
-        for i in np.flatnonzero(np.abs(field.part(field.solved(0.0, self.y, mode)[0], "measure")) < 1e-14):
+        for i in np.flatnonzero(np.abs(field.part(field(0.0, self.y, mode), "measure")) < 1e-14):
             self._try(i)
         return mode
 
@@ -165,7 +130,7 @@ class Hybrid:
 
         field, mode = self.field, self.mode
         solver = DOP853(
-            lambda t, y: field.slope(t, y, mode), self.t, self.y, stop, rtol=self.rtol, atol=self.atol,
+            lambda t, y: field.rates(t, y, mode), self.t, self.y, stop, rtol=self.rtol, atol=self.atol,
             max_step=5e-3 if len(self.just) else np.inf,
         )  # fmt: skip
         while solver.status == "running":
@@ -191,7 +156,7 @@ class Hybrid:
         field = self.field
         while self.done < len(self.times) and self.times[self.done] <= end:
             at = self.times[self.done]
-            self.F[self.done] = field.solved(at, dense(at), self.mode)[0][0]
+            self.F[self.done] = field(at, dense(at), self.mode)[0]
             self.done += 1
 
     def _event(self, begin, end, dense):
@@ -228,7 +193,7 @@ class Hybrid:
         field, mode, guards = self.field, self.mode, self.field.guards
         self.just[:] = False
         self.just[fired] = True
-        out = field.solved(self.t, self.y, mode)[0]
+        out = field(self.t, self.y, mode)
         for i in (i for i in fired if i < guards):
             if field.instant.kinds[i] == "floor":
                 mode.flags[i] += np.sign(field.measures(out)[i])
@@ -237,8 +202,8 @@ class Hybrid:
         for i in (i - guards for i in fired if i >= guards):
             if mode.held[i]:
                 mode.held[i] = False
-                mode.full_sides[i] = field.part(out, "lean")[i] > 0
-            elif mode.levels[i] == 2:
+                mode.sides[i] = field.part(out, "lean")[i] > 0
+            elif field.gaps[i]:
                 self._impact(i)
             else:
                 self._try(i)
@@ -246,33 +211,31 @@ class Hybrid:
     def _try(self, i):
         """Hold a slip or gap that came to zero, if its reaction can; else let it go where it leans."""
         self.mode.held[i] = True
-        out = self.field.solved(self.t, self.y, self.mode)[0]
-        if self.field.part(out, "inside")[i] < 0 or (
-            self.mode.levels[i] == 2 and self.field.part(out, "d1")[i] > 1e-14
-        ):
+        out = self.field(self.t, self.y, self.mode)
+        if self.field.part(out, "inside")[i] < 0 or (self.field.gaps[i] and self.field.part(out, "d1")[i] > 1e-14):
             self.mode.held[i] = False
-            self.mode.full_sides[i] = self.field.part(out, "lean")[i] > 0
+            self.mode.sides[i] = self.field.part(out, "lean")[i] > 0
 
     def _sides(self):
-        out = self.field.solved(self.t, self.y, self.mode)[0]
-        self.mode.full_sides[:] = self.field.part(out, "measure") > 0
+        out = self.field(self.t, self.y, self.mode)
+        self.mode.sides[:] = self.field.part(out, "measure") > 0
 
     def _impact(self, i):
         """Newton's law of impact for one contact: its gap rate u becomes -e u, or rests where that is too slow to fly."""
         field, mode, n = self.field, self.mode, self.field.sizes[0]
-        if any(mode.held[j] for j, level in enumerate(mode.levels) if level == 2):
+        if mode.held[field.gaps].any():
             raise AnalysisError(f"at t = {self.t:.6g} s two contacts touch at once")
-        out, pushes = field.solved(self.t, self.y, mode)
-        change = field(self.t, self.y, mode, pushes + field.units[i]) - out
+        out = field(self.t, self.y, mode)
+        change = field(self.t, self.y, mode, field.units[i]) - out
         W, column = field.part(change, "d2")[i], change[1 : 1 + n]
         u, b, law = field.part(out, "d1")[i], field.part(out, "d2")[i], field.instant.bounces[i]
         rests = b < 0 and -law.e * u <= max(law.rest_speed, -b * field.T / 2)
         self.y[n : 2 * n] += column * (-(1 if rests else 1 + law.e) * u / W)
         mode.held[i] = rests
-        after = field.measures(field.solved(self.t, self.y, mode)[0])
+        after = field.measures(field(self.t, self.y, mode))
         for k, kind in enumerate(field.instant.kinds):  # cases of rates
             if kind == "side" and abs(after[k]) > 1e-12:
                 mode.flags[k] = after[k] < 0
         free = ~mode.held
-        sides = field.part(field.solved(self.t, self.y, mode)[0], "measure") > 0
-        mode.full_sides[free] = sides[free]
+        sides = field.part(field(self.t, self.y, mode), "measure") > 0
+        mode.sides[free] = sides[free]

@@ -93,7 +93,7 @@ def handle_motions(scene=None, paddle=None, *, band=BAND, travel=TRAVEL, seed=0)
         Of the hand [Hz], 0 < low < high. Its edges should have no common multiple with the sampling period, which would
         hide errors.
     travel : float
-        Of the paddle to either side [m], > 0. Amplitudes are 0.4 to 0.8 of it, or what the hand reaches at 0.3 m/s.
+        Of the paddle to either side [m], > 0. Amplitudes are 0.2 to 0.9 of it, or what the hand reaches at 0.3 m/s.
     seed : int
         Of the recorded-hand motion's phases.
 
@@ -111,7 +111,7 @@ def handle_motions(scene=None, paddle=None, *, band=BAND, travel=TRAVEL, seed=0)
         raise AnalysisError(f"band = {band}; needs 0 < low < high in Hz, such as (0.7, 7)")
     if not 0 < travel < math.inf:
         raise AnalysisError(f"travel = {travel}; needs a travel > 0 m, such as 0.05")
-    reach, knots = 0.4 * travel, (0.25, 0.5, 0.75)
+    reach, knots = 0.43 * travel, (0.25, 0.5, 0.75)
     rise = 2 * reach * minimum_jerk(t / knots[0])
     back = rise.subs(t, t - knots[1])
     push = sp.Piecewise((rise, t < knots[0]), (2 * reach, t < knots[1]), (2 * reach - back, t < knots[2]), (0, True))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiler.driven import DEGREE, coefficients, driven
+from ..compiler.driven import DEGREE, coefficients, driven, without_samples
 from ..compiler.engine import load
 from ..compiler.graph import Graph
 from ..compiler.instant import instant
@@ -19,6 +19,8 @@ STEP = 1.25e-4
 ORDER = 10
 #: part of the peak force to which two solvers must agree to certify each other
 TOLERANCE = 1e-6
+#: part of the peak force by which two solvers that agreed at first differ where rounding decides: chaos
+APART = 1e-3
 #: of the values of F, those at which the second solver is asked
 EVERY = 16
 
@@ -40,8 +42,10 @@ class Reference:
         Until when F is known [s]: from there on two solvers separate, or the scene faults.
     chaotic : bool
         They agreed first and separated later: rounding decides what comes after the horizon.
-    tolerance : float
-        Part of the peak force that ``certified`` asks for.
+    step : float
+        [s]
+    allowed : float
+        Difference of the solvers up to which ``certified`` is true [N].
     """
 
     motion: HandleMotion
@@ -51,8 +55,8 @@ class Reference:
     how: str
     horizon: float
     chaotic: bool = False
-    tolerance: float = TOLERANCE
     step: float = STEP
+    allowed: float = 0.0
 
     @property
     def peak(self):
@@ -61,8 +65,8 @@ class Reference:
 
     @property
     def certified(self):
-        """Whether two solvers agree to the tolerance."""
-        return self.agreement <= self.tolerance * self.peak
+        """Whether two solvers agree to the tolerance, as a part of the largest force of all motions asked for."""
+        return self.agreement <= self.allowed
 
     def certifies(self, error):
         """Tell whether the solvers agree ten times better than an error [N] that is to be reported."""
@@ -100,7 +104,8 @@ def references(scene, motions, *, step=STEP, tolerance=TOLERANCE):
     Parameters
     ----------
     scene : Scene
-        Every parameter bound. It must have a meaning between the samples: no signals, delays or past samples.
+        Every parameter bound. It must have a meaning between the samples: past samples and T become what they are
+        for T towards zero, signals have none.
     motions : sequence of HandleMotion
     step : float
         Between two values of F [s]; the sampling periods it is compared with are whole numbers of it.
@@ -137,10 +142,12 @@ class _References:
 
     def all(self, motions):
         """Return the reference of each motion."""
-        return [self.one(motion) for motion in motions]
+        found = [self._solved(motion) for motion in motions]
+        peak = float(max((np.nanmax(np.abs(F), initial=0.0) for _, _, F, *_ in found), default=0.0))
+        return [self._reference(*one, self.tolerance * peak) for one in found]
 
-    def one(self, motion):
-        """Return the reference of one motion."""
+    def _solved(self, motion):
+        """Return (motion, times, F, F of the second solver every EVERY values or None, how)."""
         step = self.step
         times = step * np.arange(round(motion.duration / step) + 1)
         rows = coefficients(motion.derivatives(times + step / 2, DEGREE), step)
@@ -148,10 +155,9 @@ class _References:
         inputs = np.column_stack([at.T, rows])[:, : len(self.program.inputs)]
         F = self.first.run(len(times), inputs).outputs[:, 0, 0]
         try:
-            other, how = self._other(motion, times[::EVERY], rows, at)
+            return motion, times, F, *self._other(motion, times[::EVERY], rows, at)
         except (AnalysisError, ProgramError) as error:
-            return self._single(motion, times, F, str(error))
-        return self._compared(motion, times, F, other, how)
+            return motion, times, F, None, f"one solver: {error}"
 
     def _other(self, motion, times, rows, at):
         """Return (F at times, how) by the second solver."""
@@ -160,7 +166,7 @@ class _References:
             bound = {p: self.scene.values[name] for name, p in self.scene.parameters.items()}
             held = {x(n): at[0], v(n): at[1], x(t): at[0], v(t): at[1], acceleration(t): at[2]}
             whole = {t: self.step * np.arange(at.shape[1])}
-            (found,) = Graph().evaluate([form.force], bound | held | whole)
+            (found,) = Graph().evaluate([without_samples(form.force)], bound | held | whole)
             return np.broadcast_to(found, at.shape[1:])[::EVERY], "force of the handle alone, evaluated by two routes"
         if self.second is None:
             self.second = instant(self.scene, T=self.step)
@@ -169,33 +175,16 @@ class _References:
         F = Hybrid(field_).run(self.second.start(at[0, 0], at[1, 0]), times, motion.breaks)
         return F, "Taylor series with located events, and scipy's DOP853"
 
-    def _single(self, motion, times, F, why):
-        horizon = _finite_until(times, F)
-        return Reference(motion, times, F, np.inf, f"one solver: {why}", horizon, False, self.tolerance, self.step)
-
-    def _compared(self, motion, times, F, other, how):
-        ok = _finite_until(times, F)
-        apart = np.abs(F[::EVERY] - other)
-        coarse = times[::EVERY]
-        apart = apart[coarse <= ok]
-        peak = np.abs(F[times <= ok]).max(initial=0.0)
-        sofar = np.maximum.accumulate(np.where(np.isfinite(apart), apart, np.inf))
-        beyond = np.flatnonzero(sofar > self.tolerance * peak)
-        chaotic, horizon = False, ok
-        if len(beyond) and beyond[0] > len(coarse) // 10 and sofar[beyond[0] // 2] < 1e-2 * self.tolerance * peak:
-            chaotic, horizon = True, float(coarse[beyond[0] - 1])
-            sofar = sofar[: beyond[0]]
-        return Reference(
-            motion,
-            times,
-            F,
-            float(sofar[-1]) if len(sofar) else np.inf,
-            how,
-            horizon,
-            chaotic,
-            self.tolerance,
-            self.step,
-        )
+    def _reference(self, motion, times, F, other, how, allowed):
+        """Return the Reference of what was found; ``allowed`` is the difference that counts as agreement [N]."""
+        horizon, chaotic, agreement, coarse = _finite_until(times, F), False, np.inf, times[::EVERY]
+        if other is not None:
+            apart = np.abs(F[::EVERY] - other)[coarse <= horizon]
+            most = np.maximum.accumulate(np.where(np.isfinite(apart), apart, np.inf))
+            within = int(np.searchsorted(most, allowed, "right"))  # how many agree before the first that do not
+            chaotic = len(most) // 10 < within < len(most) and most[-1] > APART / self.tolerance * allowed
+            horizon, agreement = (float(coarse[within - 1]), most[within - 1]) if chaotic else (horizon, most[-1])
+        return Reference(motion, times, F, float(agreement), how, horizon, chaotic, self.step, allowed)
 
 
 def _slow_enough(scene, step):

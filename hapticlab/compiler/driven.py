@@ -1,9 +1,12 @@
 """A scene whose handle moves as a given function of time, without hold: what a program's samples stand for."""
 
+from dataclasses import replace
+
 import numpy as np
+import sympy as sp
 
 from ..errors import ProgramError
-from ..scene.symbols import acceleration, n, t, v, x
+from ..scene.symbols import T, acceleration, delay, lag_of, n, t, v, x
 from .advance import Taylor
 from .handle import Handle
 from .ir import Channel
@@ -12,6 +15,9 @@ from .modes import excluded, rests_on
 
 #: of the polynomial that the handle follows over a period
 DEGREE = 6
+#: stands for a period that goes to zero [s], where a difference over it does not cancel: the roundings balance here
+SHORT = 1e-8
+RATES = {x: v, v: acceleration}
 
 
 class Followed(Handle):
@@ -24,7 +30,7 @@ class Followed(Handle):
 
     def sample(self, signal, lag=0):
         if lag:
-            raise _past(f"{signal.__name__}(n-{lag})")
+            raise ProgramError(f"{signal.__name__}(n-{lag}): a past sample has no meaning between the samples")
         return super().sample(signal)
 
     def acceleration(self):
@@ -38,10 +44,6 @@ class Followed(Handle):
         theta = (tau - T / 2) * (1 / T)
         now = [_polynomial(c, theta) for c in (row, rate, second)]
         return dict(zip((x(t), v(t), acceleration(t), x(n), v(n)), (*now, *now[:2]), strict=True))
-
-
-def _past(what):
-    return ProgramError(f"{what}: a past sample has no meaning between the samples")
 
 
 def _polynomial(c, theta):
@@ -91,20 +93,50 @@ def driven(scene, *, T, substeps=1, order=None):
     Raises
     ------
     ProgramError
-        The scene has a part that lives at the samples alone: a signal, a delay, a past sample.
+        The scene has a part that lives at the samples alone: a signal, or the rate of a delay.
     """
     lowering, ranges = lowering_of(scene, T, substeps, order, Followed)
     return lowering.program(ranges)
 
 
 def lowering_of(scene, T, substeps, order, handle):
-    """Return (lowering, ranges) of a scene under a handle of a class, all its values constants."""
-    form, decisions = excluded(scene, T, ())
+    """Return (lowering, ranges) of a scene without samples under a handle of a class, all its values constants."""
+    form, decisions = excluded(replace(scene, watch={}), T, ())
     if form.updates:
-        raise _past(str(next(iter(form.updates))))
+        signal = next(iter(form.updates))
+        raise ProgramError(f"{signal} is a sequence of samples, and has no meaning between them")
+    form = replace(
+        form, force=without_samples(form.force), f=tuple(map(without_samples, form.f)),
+        M=tuple(tuple(map(without_samples, row)) for row in form.M),
+    )  # fmt: skip
     lowering = Lowering(
         scene, form, exact=False, method=Taylor(order=order), T=T, substeps=substeps, hold="soh", dtype="float64",
         velocity="measured", live=(), force_at="before",
     )  # fmt: skip
     lowering.handle = handle(lowering.tracing)
     return lowering, rests_on(form, decisions)
+
+
+def without_samples(expr):
+    """Return what an expression of present and past samples becomes as the sampling period goes to zero.
+
+    A past sample is x(n) - k T v(n), so that a backward difference is the velocity and a predictor the position.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> from hapticlab import n, x
+    >>> without_samples(2 * x(n) - x(n - 1)), without_samples((x(n) - x(n - 1)) / hl.T)
+    (x(n), v(n))
+    """
+    before = {s: s.func(n) - lag_of(s) * T * RATES[type(s)](n) for s in expr.atoms(x, v) if lag_of(s)}
+    delayed = expr.has(delay)
+    expr = expr.xreplace(before)
+    while expr.has(delay):
+        expr = expr.xreplace({d: d.args[0] for d in expr.atoms(delay) if not d.args[0].has(delay)})
+    if not expr.has(T):
+        return expr
+    differences = any(p.base == T and p.exp.could_extract_minus_sign() for p in expr.atoms(sp.Pow))
+    if differences and delayed:
+        raise ProgramError(f"{expr} takes the difference of a delay, whose rate is not known between the samples")
+    return expr.xreplace({T: sp.Float(SHORT) if differences else sp.S.Zero})

@@ -11,14 +11,19 @@ import numpy as np
 
 from ..errors import ProgramError
 from ..scene.contact_laws import rigid
-from ..scene.symbols import t
+from ..scene.symbols import acceleration, t
 from .driven import DEGREE, Followed, lowering_of
 from .flow import motion_of
-from .ir import Block, Channel, Instruction, Program
+from .ir import Channel, Program
 from .phase import TICKS, digit
+from .solve import solve
 from .stiffness import numbers
 from .taylor import Series
-from .trace import Value
+from .trace import Builder, Value, select
+
+#: what is known of every reaction
+ROWS = ("measure", "d1", "d2", "free", "inside", "lean")
+PER_REACTION = len(ROWS)
 
 
 class AtInstant(Followed):
@@ -33,6 +38,9 @@ class AtInstant(Followed):
         if lag:
             return super().sample(signal, lag)
         return self.leaves(self.tau)[signal(t)]
+
+    def acceleration(self):
+        return self.leaves(self.tau)[acceleration(t)]
 
 
 @dataclass(frozen=True)
@@ -51,9 +59,10 @@ class Instant:
     ----------
     program : Program
         Inputs: :func:`~hapticlab.compiler.driven.coefficients` of the handle's period, and tau [s] in it. States: the
-        number of the period in two digits, the state (q, w, s), a mode for every guard, a reaction and a side for every reaction.
-        Outputs: F, the rates of (w, s), the measure of every guard, and for every reaction its measure, the measure's
-        first and second derivative, ``free``, ``inside`` and ``lean``.
+        number of the period in two digits, the state (q, w, s), a mode for every guard; for every reaction what pushes
+        beside it, for every slip its side, for every reaction whether it is held. Outputs: F, the rates of (w, s), the
+        measure of every guard, and the ``ROWS`` of every reaction: measure, first and second derivative of that, what it
+        is when free, what is positive while it may be held, and which way it leans.
     second, first : int
         Coordinates of second and of first order.
     kinds : tuple of str
@@ -139,45 +148,76 @@ def _derivatives(motion):
 
 
 def _program(name, lowering, motion, outputs):
-    """Return the program with every leaf of the motion a state."""
-    tracing, dynamics = lowering.tracing, lowering.dynamics
-    own = [*motion.q, *motion.w, *motion.s]
-    leaves = [*own, *(g.leaf for g in motion.guards), *(r.leaf for r in motion.reactions)]
+    """Return the program with every leaf of the motion a state, its reactions found."""
+    tracing, builder = lowering.tracing, Builder("f64")
+    held = len(motion.reactions)
+    leaves = [*motion.q, *motion.w, *motion.s, *(g.leaf for g in motion.guards), *(r.leaf for r in motion.reactions)]
     leaves += [r.side for r in motion.reactions if r.side is not None]
-    block = tracing.tick.block(outputs)
-    inputs = tracing.inputs
+    raw = _block(lowering, motion, outputs, leaves)
+    types = [*["f64"] * len(TICKS), *(leaf.type for leaf in leaves), *["bool"] * held]
+    states = [builder.leaf("state", k, type) for k, type in enumerate(types)]
+    inputs = [builder.leaf("input", k, "f64") for k in range(DEGREE + 2)]
+    at = {leaf.id: k for k, leaf in enumerate(leaves)}
+    places = [len(TICKS) + at[r.leaf.id] for r in motion.reactions]
+
+    def evaluated(pushes):
+        given = dict(zip(places, pushes, strict=True))
+        return builder.inline(raw, param=[], input=inputs, state=[given.get(k, s) for k, s in enumerate(states)])[0]
+
+    found = _balanced(motion.reactions, evaluated, [states[p] for p in places], states[len(types) - held :])
+    channels = tuple(Channel(f"state_{k}", "1", type) for k, type in enumerate(types))
+    named = tuple(Channel(f"output_{k}", "1", "f64") for k in range(len(outputs)))
+    init = Builder("f64")
+    zero = init.block((), [init.const(False if type == "bool" else 0.0, type) for type in types])
+    tick = builder.block(found, states)
+    return Program(name, tuple(tracing.inputs[3:]), (), channels, named, zero, tick, tracing.T).verify()
+
+
+def _block(lowering, motion, outputs, leaves):
+    """Return the block of the outputs, each leaf of the motion a state: the period's number, then ``leaves``."""
+    tracing, dynamics = lowering.tracing, lowering.dynamics
     place = {("input", 3 + k): ("input", k) for k in range(DEGREE + 2)}
     place[_key(motion.tau)] = ("input", DEGREE + 1)
     place |= {_key(leaf): ("state", len(TICKS) + k) for k, leaf in enumerate(leaves)}
     reactions = [e.force for e in (*dynamics.contacts.contacts, *dynamics.contacts.frictions)]
-    for k, key in enumerate(tracing._states):
+    for k, key in enumerate(tracing.keys):
         if key in TICKS:
             place["state", k] = ("state", TICKS.index(key))
         elif key in dynamics.states:
             place["state", k] = ("state", len(TICKS) + dynamics.states.index(key))
         elif key in reactions:
             place["state", k] = place[_key(motion.reactions[reactions.index(key)].leaf)]
-    instructions = tuple(_placed(i, place) for i in block.instructions)
-    states = [
-        *(Channel(name, "1", tracing.real) for name in TICKS),
-        *(Channel(f"y_{k}", "1", leaf.type) for k, leaf in enumerate(leaves)),
-    ]
-    kept = [_leaf("state", c.type, k) for k, c in enumerate(states)]
-    zero = [_leaf("const", c.type, 0, False if c.type == "bool" else 0.0) for c in states]
-    n = len(instructions)
-    tick = Block((*instructions, *kept), block.outputs, tuple(range(n, n + len(kept))))
-    named = tuple(Channel(f"o_{k}", "1", tracing.real) for k in range(len(outputs)))
-    init = Block(tuple(zero), (), tuple(range(len(zero))))
-    return Program(name, tuple(inputs[3:]), (), tuple(states), named, init, tick, tracing.T).verify()
+    block = tracing.tick.block(outputs)
+    return replace(block, instructions=tuple(_placed(i, place) for i in block.instructions))
+
+
+def _balanced(reactions, evaluated, extra, held):
+    """Return the outputs with the reactions that keep the measures of those held, and what is given to the others."""
+    if not reactions:
+        return evaluated([])
+    count, every = len(reactions), range(len(reactions))
+
+    def part(out, i, name):
+        return out[len(out) - PER_REACTION * (count - i) + ROWS.index(name)]
+
+    def stays(out):
+        return [part(out, i, "d2" if r.level == 2 else "d1") for i, r in enumerate(reactions)]
+
+    free = [0.0] * count
+    for _ in range(2):  # what is free may hold another reaction, as friction holds a normal force
+        out = evaluated([select(h, 0.0, value) for h, value in zip(held, free, strict=True)])
+        free = [part(out, i, "free") for i in every]
+    start = [select(h, 0.0, value) for h, value in zip(held, free, strict=True)]
+    rest = stays(evaluated(start))
+    columns = [stays(evaluated([value + 1.0 if i == j else value for i, value in enumerate(start)])) for j in every]
+    A = [[select(held[i], columns[j][i] - rest[i], float(i == j)) for j in every] for i in every]
+    more = solve(A, [select(h, -r, 0.0) for h, r in zip(held, rest, strict=True)])
+    return evaluated([a + b + c for a, b, c in zip(start, more, extra, strict=True)])
 
 
 def _key(leaf):
     i = leaf.builder.instructions[leaf.id]
     return i.op, i.index
-
-
-def _leaf(op, type, index, value=0):
-    return Instruction(op, (), type, value, index)
 
 
 def _placed(i, place):

@@ -46,6 +46,11 @@ class Tracing:
                 self._waiting.append((key, next))
         return self.tick.leaf("state", self._numbers[key], self._states[key][0].type)
 
+    @property
+    def keys(self):
+        """The keys of the states, in order."""
+        return tuple(self._states)
+
     def set_next(self, key, value):
         """Give a state the value it has at the next tick."""
         self._states[key][2] = value
