@@ -119,6 +119,9 @@ def sweep(
     Sweep(energy [J] over k (2) x T (2), 1 s each)
     >>> bool((np.diff(grid.values, axis=1) > 0).all())      # a longer hold generates more
     True
+    >>> fine = {"k": np.linspace(100, 400, 50), "b": np.linspace(0.1, 0.5, 40)}
+    >>> hl.sweep(hl.wall(), paddle, metric="energy", v=0.1, duration=0.1, workers=2, **fine)  # resume="walls.sweep" keeps it
+    Sweep(energy [J] over k (50) x b (40), 0.1 s each)
     """
     if metric not in METRICS:
         raise AnalysisError(f"metric = {metric!r}; needs one of {', '.join(METRICS)}")

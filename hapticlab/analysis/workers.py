@@ -30,6 +30,7 @@ def number_of(workers):
         return os.cpu_count() or 1
     if number < 1:
         like = " (give its map: workers=pool.map)" if callable(getattr(workers, "map", None)) else ""
+        like = " (workers=client.get_executor().map)" if hasattr(workers, "get_executor") else like
         raise AnalysisError(
             f"workers = {workers!r}; needs a whole number >= 1, -1 for every processor, or a function like map{like}"
         )
@@ -62,7 +63,13 @@ def spread(function, pieces, workers, *, threads=True):
 
 def _mapped(function, pieces, workers):
     try:
-        yield from workers(function, pieces)
+        for result in workers(function, pieces):
+            if callable(getattr(result, "result", None)):
+                raise AnalysisError(
+                    f"workers gave back {result!r}; needs a map that returns results, not promises of them. Of a Dask client "
+                    "that is workers=client.get_executor().map"
+                )
+            yield result
     except BrokenExecutor as error:
         raise AnalysisError(
             "a worker of the pool given as workers was killed, and such a pool ends with it; make a new one and sweep again, "

@@ -6,6 +6,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import tracemalloc
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 
@@ -68,6 +69,11 @@ def test_any_map_will_do(alone):
 def test_a_map_that_loses_results_is_found_out():
     with pytest.raises(hl.AnalysisError, match=r"workers gave back \d+ of 540 points; needs a map that returns every"):
         swept(workers=lambda function, pieces: map(function, pieces[1:]))
+
+
+def test_a_map_of_promises_is_refused():
+    with ThreadPoolExecutor(1) as pool, pytest.raises(hl.AnalysisError, match=r"not promises.*client\.get_executor\(\)\.map"):
+        swept(workers=lambda function, pieces: [pool.submit(function, piece) for piece in pieces])
 
 
 def test_what_workers_may_be():
@@ -137,6 +143,28 @@ def test_a_pool_that_breaks_says_so(tmp_path):
     with pytest.raises(hl.AnalysisError, match="worker of the pool given as workers was killed.*resume=") as stop:
         swept(workers=breaks, resume=tmp_path / "a")
     assert "points are in" in stop.value.__notes__[0]
+
+
+@pytest.mark.slow
+def test_a_million_points(tmp_path):
+    """Interrupted and resumed, in memory for the result and a few chunks; any point as when it runs alone."""
+    k, b = np.geomspace(50, 3000, 1000), np.linspace(0.05, 1.0, 1000)
+    given = {"metric": "energy", "duration": 0.1, "T": 1e-3, "delay": 4e-4, "workers": 2}
+
+    def interrupted(function, pieces):
+        yield from map(function, pieces[:20])
+        raise KeyboardInterrupt
+
+    tracemalloc.start()
+    with pytest.raises(KeyboardInterrupt):
+        swept(k=k, b=b, resume=tmp_path / "a", **{**given, "workers": interrupted})
+    whole = swept(k=k, b=b, resume=tmp_path / "a", **given)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 60e6  # the result takes 8, what the file had 8
+    assert (tmp_path / "a").stat().st_size < 8e6 + 20_000
+    for i, j in np.random.default_rng(2).integers(0, 1000, (20, 2)):
+        assert swept(k=k[i], b=b[j], **given) == whole[i, j]
 
 
 @pytest.mark.slow
