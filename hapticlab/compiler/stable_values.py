@@ -25,6 +25,8 @@ MOST_MODES, MOST_STATES, PLACES = 8, 40, 32
 FAR = 1e6
 #: places between the value bound and an end, and how often the two next to the limit are looked between
 POINTS, ROUNDS = 7, 5
+#: parts of the way to the limits at which places between them are looked at
+CLOSER = (1.0, 0.99, 0.97, 0.93, 0.85, 0.7, 0.5, 0.25)
 #: limits that a note names are within so many times the value bound
 NEAR = 1e2
 #: steps looked at for the margin, times the largest |eigenvalue|, and how the limit is closed in
@@ -143,7 +145,12 @@ def kept_stable(program, lowering):
         return replace(program, facts=facts, notes=(*program.notes, note))
     settable = {c.name: c for c in program.parameters}
     ends = [(name, side, settable[name]) for name in steps.live if name in settable for side in (0, 1)]
-    limits = _apart(steps, _alone(steps, ends, values), values)
+    limits = _alone(steps, ends, values)
+    begun = {key: origin(0.0, end) for (key, _), end in limits.items() if values[key] == 0}
+    if begun:  # a logarithmic way does not begin at zero: what is bound to it counts as a little more
+        values = {**values, **begun}
+        limits = _alone(steps, ends, values)
+    limits = _apart(steps, limits, values)
     kept = {key: (limits.get((key, 0), -math.inf), values[key], limits.get((key, 1), math.inf)) for key, _ in limits}
     near = {key: end for key, end in limits.items() if 1 / NEAR < abs(end / (values[key[0]] or end)) < NEAR}
     ends = [f"{key} {'<=' if side else '>='} {end:.4g} {settable[key].unit}" for (key, side), end in near.items()]
@@ -197,31 +204,43 @@ def _apart(steps, limits, values):
     """Return the limits, closer where a place between several of them is unstable."""
     if len({name for name, _ in limits}) < 2:
         return limits
-    generator = np.random.default_rng(29)
-    parts = generator.dirichlet(np.full(len(limits), 0.4), PLACES)
-    for _ in range(8):
-        given = {name: np.full(PLACES, values[name]) for name, _ in limits}
-        for part, ((name, _), end) in zip(parts.T, limits.items(), strict=True):
-            given[name] = along(given[name], values[name], end, part)
-        if not steps.unstable(PLACES, **given).any():
-            break
-        limits = {key: float(along(values[key[0]], values[key[0]], end, 0.8)) for key, end in limits.items()}
-    return limits
+    parts = np.random.default_rng(29).dirichlet(np.full(len(limits), 0.4), PLACES)
+    for closer in CLOSER:
+        if not steps.unstable(PLACES, **_places(limits, values, closer * parts)).any():
+            return {(name, side): float(_along(values[name], end, closer)) for (name, side), end in limits.items()}
+    return {(name, side): values[name] for name, side in limits}
 
 
-def along(start, value, end, part):
-    """Return a start moved by a part of the way from a value to an end, geometric where both have one sign."""
-    return start * (end / value) ** part if value * end > 0 else start + (end - value) * part
+def _places(limits, values, parts):
+    """Return name -> places, each parameter the part of the way to the limit that it is nearer to, shape (places,)."""
+    found, farthest = {}, {}
+    for part, ((name, _), end) in zip(parts.T, limits.items(), strict=True):
+        ahead = part > farthest.get(name, 0.0)
+        found[name] = np.where(ahead, _along(values[name], end, part), found.get(name, values[name]))
+        farthest[name] = np.maximum(part, farthest.get(name, 0.0))
+    return found
+
+
+def origin(value, end):
+    """Return where the way to a limit begins: at the value bound, or a thousandth of the way past zero."""
+    return value if value * end > 0 else end / 1e3
+
+
+def _along(value, end, part):
+    """Return a place a part of the way from a value to its limit."""
+    start = origin(value, end)
+    return start * (end / start) ** part
 
 
 def part_of_the_way(now, value, end):
-    """Return how far a parameter is from the value bound to its limit: 0 there, 1 at the limit, negative away from it.
+    """Return how far a parameter is on the way to its limit: 0 at the value bound, 1 at the limit, negative away from it.
 
     Examples
     --------
-    >>> part_of_the_way(200.0, 100.0, 400.0), part_of_the_way(3.0, 0.0, 4.0)
-    (0.5, 0.75)
+    >>> part_of_the_way(200.0, 100.0, 400.0), part_of_the_way(-1.0, 0.0, 4.0)
+    (0.5, -inf)
     """
-    if value * end > 0 and now * value > 0:
-        return math.log(now / value) / math.log(end / value) if end != value else math.inf * (now != value)
-    return (now - value) / (end - value) if end != value else math.inf * (now != value)
+    start = origin(value, end)
+    if now * end <= 0:
+        return -math.inf
+    return math.log(now / start) / math.log(end / start) if end != start else math.inf * (now != start)

@@ -1,0 +1,59 @@
+"""Parameters set while a scene runs: past what keeps a step stable they are refused, one alone and together."""
+
+from dataclasses import replace
+
+import pytest
+import sympy as sp
+
+import hapticlab as hl
+from hapticlab import t, v, x
+from hapticlab.compiler.stable_values import part_of_the_way
+from hapticlab.device.live import check_margin, checked
+from hapticlab.errors import PaddleError, ParameterError
+
+z = hl.coordinate("z", unit="m")
+K, B, m = hl.parameters("K B m", units="N/m N*s/m kg", values=(500, 0.0, 0.05))
+
+
+def program(method="semi_implicit_euler", **values):
+    F = K * (x(t) - z) + B * (v(t) - z.diff(t))
+    return hl.compile(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)], name="coupler")(**values), method, T=1e-3, live="K m")
+
+
+def test_one_past_its_limit():
+    """K <= 4 m/h^2 = 200 kN/m, m >= K h^2/4 = 0.125 g."""
+    known = program()
+    assert checked(known, {"K": 190_000}) == {"K": 190_000.0}
+    with pytest.raises(ParameterError, match=r"K = 210000: a step is stable for K <= (2e\+05|1\.99\d*e\+05).*more substeps"):
+        checked(known, {"K": 210_000})
+    with pytest.raises(ParameterError, match=r"m = 0\.0001: a step is stable for m >= 0\.000125"):
+        checked(known, {"m": 1e-4})
+
+
+def test_two_that_are_stable_alone():
+    """K/m may grow 400-fold: 30-fold of each would be 900."""
+    known = program()
+    checked(known, {"K": 15_000}), checked(known, {"m": 0.05 / 30})
+    with pytest.raises(ParameterError, match=r"K = 1.5e\+04 \(57 %\), m = 0.001667 \(57 %\): .* add up to 11[34] %"):
+        checked(known, {"K": 15_000, "m": 0.05 / 30})
+    # what was set before counts
+    values = [15_000.0 if c.name == "K" else value for c, value in zip(known.parameters, known.values, strict=True)]
+    with pytest.raises(ParameterError, match="add up to"):
+        checked(replace(known, values=tuple(values)), {"m": 0.05 / 30})
+    # a softer spring does not make room: its part is nothing, never negative
+    assert checked(known, {"K": 50, "m": 0.05 / 300}) == {"K": 50.0, "m": 0.05 / 300}
+
+
+def test_parts_of_the_way():
+    assert part_of_the_way(50.0, 100.0, 400.0) == pytest.approx(-0.5)
+    assert part_of_the_way(0.0, 100.0, 400.0) < 0 < part_of_the_way(1e3, 100.0, 400.0)
+    # past zero the way begins at a thousandth of the limit
+    assert part_of_the_way(0.05, 0.0, 5.0) == pytest.approx(1 / 3) and part_of_the_way(-2.0, 1.0, -2.0) == 1.0
+
+
+def test_a_board_is_not_given_what_is_unstable_as_bound():
+    check_margin(program())
+    with pytest.raises(PaddleError, match=r"coupler: unstable as bound: .* its longest step is 0\.00063\d* s.*passive=True"):
+        check_margin(program(K=500_000))
+    with pytest.raises(PaddleError, match="gains energy in every step"):
+        check_margin(program("euler"))
