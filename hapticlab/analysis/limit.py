@@ -62,7 +62,7 @@ def check_number(name, value, unit, need, allowed):
     """Return the value as a float, or say what it has to be."""
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not (math.isfinite(number) and allowed(number)):
         raise AnalysisError(f"{name} = {value} {unit}; {need}")

@@ -199,5 +199,5 @@ def _in_si(given, unit, name):
         return numbers.reshape(np.shape(given)) if not isinstance(given, str) else numbers[0]
     try:
         return np.asarray(given, float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise AnalysisError(f"{name} = {given!r}; an axis needs one or more finite numbers [{unit}]") from None

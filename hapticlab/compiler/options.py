@@ -25,9 +25,13 @@ def choice(name, given, known):
 
 def period(T):
     """Return the sampling period as a float [s], from a real number > 0 of any library."""
-    if isinstance(T, bool) or not (isinstance(T, Real) and math.isfinite(T) and T > 0):
-        raise ParameterError(f"T = {T} s; a sampling period needs T > 0, such as T=1e-3")
-    return float(T)
+    try:
+        seconds = math.nan if isinstance(T, bool) or not isinstance(T, Real) else float(T)
+    except OverflowError:  # a whole number past 1e308
+        seconds = math.inf
+    if not (math.isfinite(seconds) and seconds > 0):
+        raise ParameterError(f"T = {T if seconds < math.inf else seconds} s; a sampling period needs T > 0, such as T=1e-3")
+    return seconds
 
 
 def steps(substeps):

@@ -111,7 +111,7 @@ def require(name, value, unit, owner, reason="", low=-math.inf, above=None):
     bound = bound if above is None else f"{name} > {above:g}"
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise PaddleError(f"{name} = {value!r}; {owner} needs {bound}, a number in{unit}.") from None
     if not math.isfinite(number) or number < low or (above is not None and number <= above):
         reason = reason if math.isfinite(number) else "It must be finite."

@@ -68,6 +68,8 @@ def amount(given, unit, where):
             raise SceneError(f"{where} = {number}; needs a finite number in {unit}")
         return sp.S.Zero if number == 0 else Amount(number, unit) if unit not in ("1", "rad") else turned(number)
     expr = expression(given, where)
+    if expr.is_number and not expr.is_real:
+        raise SceneError(f"{where} = {expr}; needs a finite real number in {unit}")
     if expr.is_number and unit not in ("1", "rad"):
         return amount(float(expr), unit, where)
     agree_with(expr, unit, where)

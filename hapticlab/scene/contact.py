@@ -210,6 +210,8 @@ class friction(_InASum):
         _check_slip(self.slip, self.name)
         unit = self.unit
         for part in ("F_c", "F_s"):
+            if not isinstance(getattr(self, part), sp.Expr):
+                raise SceneError(f"{self.name}: {part} = {getattr(self, part)!r}; needs a force such as '0.5 N'")
             if getattr(self, part).is_negative:
                 raise SceneError(f"{self.name}: {part} = {getattr(self, part)}; friction opposes the slip: needs {part} >= 0")
             check_constant(getattr(self, part), unit, f"{self.name}, {part}")

@@ -155,9 +155,9 @@ EVENT_LAWS = (impulse, micro_impulse, rigid)
 
 def _take_restitution(law):
     e = expression(law.e, "e")
-    if e.is_number and not 0 <= e <= 1:
+    if e.is_number and not (e.is_real and 0 <= e <= 1):
         through = "below 0 the bodies would pass through each other"
-        why = "above 1 every bounce would feed energy to the user" if e > 1 else through
+        why = "above 1 every bounce would feed energy to the user" if e.is_real and e > 1 else through
         raise SceneError(f"e = {shown(e)}; restitution lies in 0..1: {why}")
     if isinstance(e, Parameter) and not (e.low >= 0 and e.high <= 1):
         raise SceneError(

@@ -215,4 +215,4 @@ def check_constant(expr, unit, where):
 
 def shown(number):
     """Return a number as a message has it."""
-    return f"{float(number):g}"
+    return f"{float(number):g}" if sp.sympify(number).is_real else str(number)

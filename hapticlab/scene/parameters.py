@@ -127,7 +127,7 @@ def _parameter(name, unit, value, limits):
     kind, _ = kind_of(unit)
     try:
         low, high = map(float, limits) if limits is not None else ((0.0 if kind else -math.inf), math.inf)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ParameterError(f"{name}: range {limits!r}; needs (low, high) in {unit}, such as (0, 10)") from None
     if not low <= high:
         raise ParameterError(f"{name}: range ({low}, {high}) is empty; give (low, high) with low <= high")

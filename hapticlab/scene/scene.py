@@ -6,7 +6,17 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 
 from ..errors import ParameterError, SceneError
-from .checks import applied, check_size, check_symbols, check_units, equations, is_model, named, parameters_in, written_in
+from .checks import (
+    applied,
+    check_size,
+    check_symbols,
+    check_units,
+    equations,
+    is_model,
+    named,
+    parameters_in,
+    written_in,
+)
 from .explicit import explicit_form
 from .frozen import Frozen
 from .units import unit_of

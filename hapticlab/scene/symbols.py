@@ -68,7 +68,7 @@ def _start(given, unit, where):
 def _is_range(given):
     try:
         low, high = map(float, given)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return False
     return low < high
 
@@ -227,6 +227,8 @@ class delay(sp.Function):
     def eval(cls, argument):
         if isinstance(argument, CONDITIONS):
             raise SignalError(f"delay({argument}): a condition has no delay; write hl.delay(hl.when({argument}, 1, 0)) > 0")
+        if not isinstance(argument, sp.Expr):
+            raise SignalError(f"delay({argument!r}): needs an expression, such as hl.delay(k * x(n))")
         return argument if argument.is_number else None
 
     def _eval_derivative(self, s):
