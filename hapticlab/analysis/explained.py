@@ -1,9 +1,11 @@
 """One row of a trade-off in sentences: what was found, where it comes from, and what would change it."""
 
-from .tradeoff_rows import duration, percent
+from .tradeoff_rows import duration, exactness, percent
 
 #: an order this far below what is claimed is pointed at
 MISSED = 0.3
+#: errors that differ by less are the same
+SAME = 1.2
 
 
 def explained(row, others, every):
@@ -30,13 +32,15 @@ def _error(row, others):
         f"error of the force at the samples {percent(row.err_max)} of the greatest, rms {percent(row.err_rms)}; "
         f"held over the period {percent(row.err_hold)}, which only a shorter T makes less"
     )
-    same = [r for r in others if r.ran and (r.T, r.target, r.precision) == (row.T, row.target, row.precision)]
-    holds = {r.hold: min(o.err_max for o in same if o.hold == r.hold) for r in same}
-    if row.err_max <= 1.2 * holds[row.hold] and min(holds.values()) < row.err_max / 1.2:
-        best = min(holds, key=holds.get)
-        yield f"no method does better with hold={row.hold!r}; hold={best!r} comes to {percent(holds[best])} at this T"
-    elif row.err_max > 1.2 * holds[row.hold]:
-        yield f"of that, hold={row.hold!r} alone makes {percent(holds[row.hold])}: the rest is of the method's steps"
+    of_hold = {}  # the error of the most exact method with each hold, which is the hold's own
+    for r in sorted(others, key=lambda r: (exactness(r.method), r.substeps)):
+        if r.ran and (r.T, r.target, r.precision, r.force_at) == (row.T, row.target, row.precision, row.force_at):
+            of_hold[r.hold] = r.err_max
+    own, best = of_hold[row.hold], min(of_hold, key=of_hold.get)
+    if row.err_max > SAME * own:
+        yield f"hold={row.hold!r} alone makes {percent(own)} of that: the rest is of the method's steps"
+    elif of_hold[best] < row.err_max / SAME:
+        yield f"exact methods have {percent(own)} with hold={row.hold!r}, and with hold={best!r} {percent(of_hold[best])}"
     if row.sensor_floor > 0:
         side = "below" if row.err_max < row.sensor_floor else "above"
         yield f"{side} what the encoder alone makes, {percent(row.sensor_floor)}"

@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from .tradeoff_rows import NOT_TRIED, OK, percent
+from .tradeoff_rows import NOT_TRIED, OK, exactness, percent
 from .trials import Trial, tried, tried_again
 
 #: errors that differ by less are the same
@@ -47,11 +47,10 @@ def all_tried(settings, share, done):
 
 
 def _floors(trials):
-    """Return the least error with each period, hold and instant of the force: that of the hold itself, to begin with."""
+    """Return the error that a hold alone makes, with each period and instant of the force: of the most exact method that ran."""
     floors = {}
-    for trial in trials:
-        key, error = _shared(trial.setting), trial.error[0]
-        floors[key] = min(floors.get(key, math.inf), error if trial.status == OK else math.inf)
+    for trial in sorted(trials, key=lambda trial: exactness(trial.setting.method)):
+        floors[_shared(trial.setting)] = trial.error[0] if trial.status == OK else floors.get(_shared(trial.setting), math.inf)
     return floors
 
 

@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..compiler.cost import BOARDS
 from ..compiler.force_at import FORCE_AT
@@ -86,7 +86,7 @@ def tradeoff(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3)
-    >>> found = hl.tradeoff(hl.wall()(k=150, x_o=0.01), paddle, T=[1e-3], targets=["uno"], workers=1)
+    >>> found = hl.tradeoff(hl.library.detents(), paddle, T=[1e-3], targets=["uno"], workers=1)
     >>> print(found.table[0].status, found.choose().row.T)
     ok 0.001
     """
@@ -180,6 +180,15 @@ class Tradeoff:
         """
         target = choice("target", self.targets[0] if target is None else target, self.targets)
         return chosen(self.table, target, self._asked(tolerance, load, passive, margin), self.bench.options)
+
+    def measured(self, row, cycles):
+        """Return the trade-off with what a tick of one row's program took on its board [cycles], beside what was predicted."""
+        if row.cycles is None or not any(one is row for one in self.table):
+            raise AnalysisError(f"{row.name} on {row.target} is no row of this trade-off that a board runs; take one of .table")
+        hz = BOARDS[row.target].hz
+        load = row.load + (cycles - (row.measured or row.cycles)) / (hz * row.T)
+        new = replace(row, measured=float(cycles), seconds=cycles / hz, load=load)
+        return replace(self, table=Table(new if one is row else one for one in self.table))
 
     def explain(self, row):
         """Return what a row says, in sentences."""

@@ -5,6 +5,8 @@ import itertools
 import math
 from dataclasses import asdict, astuple, dataclass, fields, replace
 
+from ..compiler.methods import METHODS
+
 OK, TOO_LARGE, NOT_TRIED = "ok", "does not fit", "not tried"
 #: statuses of settings that ran, and whose errors are measured
 RAN = (OK, TOO_LARGE, "uncertified", "chaotic")
@@ -130,6 +132,12 @@ def _line(row):
 
 def _plain(number, form):
     return "-" if number is None or number != number else f"{number:{form}}"
+
+
+def exactness(method):
+    """Return a number that is larger for a method whose own error is less."""
+    exact = {"taylor": 10, "exact": 11}
+    return exact[method] if method in exact else METHODS[method.removeprefix("exact+")].order
 
 
 def percent(part):
