@@ -6,12 +6,15 @@ from .analysis.chatter import chatter
 from .analysis.energy import energy
 from .analysis.impedance import impedance
 from .analysis.methods import methods
+from .analysis.motions import HandleMotion, handle_motions
 from .analysis.passivity import passivity_limit
 from .analysis.pictures import picture
 from .analysis.plots import plot
 from .analysis.port import port_damping
+from .analysis.port_error import force_error, sensor_floor
 from .analysis.port_passivity import port_passivity
 from .analysis.reduction import reduction
+from .analysis.reference import reference
 from .analysis.stability import stability_limit
 from .analysis.step_limit import step_limit
 from .analysis.sweep import sweep
@@ -75,6 +78,7 @@ __all__ = [
     "EngineMissingError",
     "HalfPlane",
     "Hand",
+    "HandleMotion",
     "HapticlabError",
     "LinkError",
     "MassError",
@@ -111,11 +115,13 @@ __all__ = [
     "energy",
     "energy_books",
     "felt_impulse",
+    "force_error",
     "force_filter",
     "friction",
     "from_mechanics",
     "gap",
     "ground",
+    "handle_motions",
     "hunt_crossley",
     "impedance",
     "impulse",
@@ -138,10 +144,12 @@ __all__ = [
     "proxy_wall",
     "pulse_time",
     "reduction",
+    "reference",
     "replacement",
     "replay",
     "requires",
     "rigid",
+    "sensor_floor",
     "signal",
     "stability_limit",
     "step_limit",
