@@ -51,8 +51,9 @@ class HandleMotion:
     breaks: tuple = ()
 
     def __post_init__(self):
-        strangers = sp.sympify(self.x).free_symbols - {t}
-        if strangers or sp.sympify(self.x).atoms(sp.core.function.AppliedUndef):
+        expr = sp.sympify(self.x)
+        moving = any(hasattr(type(e), "role") for e in expr.atoms(sp.Function))
+        if moving or expr.free_symbols - {t}:
             raise AnalysisError(
                 f"{self.name}: x = {self.x}; a motion of the handle is an expression of hl.t and numbers"
             )

@@ -15,7 +15,7 @@ ORDER = 8
 
 
 @dataclass(frozen=True)
-class PortError:
+class ForceError:
     """Errors of a force, in N, and the size of what it was compared with.
 
     Attributes
@@ -57,7 +57,7 @@ class PortError:
         return text + ("" if self.certified else "; uncertified")
 
 
-def port_error(program, reference, T=None, *, delay=0.0, engine="auto"):
+def force_error(program, reference, T=None, *, delay=0.0, engine="auto"):
     """Compare the force of a program with a reference, under the reference's motion of the handle.
 
     Parameters
@@ -73,7 +73,7 @@ def port_error(program, reference, T=None, *, delay=0.0, engine="auto"):
 
     Returns
     -------
-    PortError
+    ForceError
 
     Raises
     ------
@@ -88,7 +88,7 @@ def port_error(program, reference, T=None, *, delay=0.0, engine="auto"):
     >>> scene, motion = hl.library.mass_spring_damper(), handle_motions()[1]
     >>> good, poor = (hl.compile(scene, T=1e-3, hold=hold) for hold in ("soh", "zoh"))
     >>> truth = reference(scene, motion)
-    >>> port_error(good, truth).max < 0.02 * port_error(poor, truth).max
+    >>> force_error(good, truth).max < 0.02 * force_error(poor, truth).max
     True
     """
     if hasattr(program, "tick"):
@@ -96,7 +96,7 @@ def port_error(program, reference, T=None, *, delay=0.0, engine="auto"):
     else:
         F = np.asarray(program, float)
         if T is None:
-            raise AnalysisError("forces alone do not say their period; give T, such as port_error(F, reference, 1e-3)")
+            raise AnalysisError("forces alone do not say their period; give T, such as force_error(F, reference, 1e-3)")
     return compared(F, reference, T, delay)
 
 
@@ -119,7 +119,7 @@ def counted(x, counts_per_metre, rounding="floor"):
 
 
 def compared(F, reference, T, delay=0.0):
-    """Return the :class:`PortError` of forces F(n), one a period T."""
+    """Return the :class:`ForceError` of forces F(n), one a period T."""
     step = reference.step
     per, late = round(T / step), round(delay / step)
     if per < 1 or abs(per * step - T) > 1e-9 * T or abs(late * step - delay) > 1e-9 * step:
@@ -145,7 +145,7 @@ def compared(F, reference, T, delay=0.0):
         size, hold = np.abs(at_samples), np.abs(between)
         errors = size.max(), np.sqrt(np.mean(size**2)), hold.max(initial=0.0), np.sqrt(np.mean(hold**2))
     errors = [float(e) if math.isfinite(e) else math.inf for e in errors]
-    return PortError(*errors, peak, unstable, reference.certifies(errors[0]))
+    return ForceError(*errors, peak, unstable, reference.certifies(errors[0]))
 
 
 @dataclass(frozen=True)
