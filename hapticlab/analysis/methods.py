@@ -85,7 +85,7 @@ def _draw_region(axes, method, style):
 _BESIDE = (
     "gain: part of its energy that a spring gains in a step, in the long run; w: its frequency [rad/s]; h: step [s]",
     "nystrom4: only where accelerations are free of velocities (else its order would be 2)",
-    "adams_bashforth: only without contacts and cases; the rates before the first sample are found by RK4",
+    "adams_bashforth: only without contacts and cases; with one step a period it looks at samples alone, whatever the hold",
     "beside them exact and taylor: no error but rounding where motion is linear, whatever wh (exact) or for wh < 1 (taylor)",
 )
 

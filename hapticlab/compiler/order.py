@@ -17,6 +17,7 @@ from .first_sample import numbers
 from .graph import Graph, driven
 from .mass import start_of
 from .methods import METHODS
+from .modes import excluded
 from .suited import KINKS
 
 #: error of x(t) and of v(t) within a period, as a power of T
@@ -46,6 +47,8 @@ class Order:
 
     def __str__(self):
         least = float(self)
+        if least == math.inf:
+            return "no error but rounding"
         first = [name for name, order in self.limits.items() if order == least]
         others = [f"{name}: {order:g}" for name, order in self.limits.items() if order > least and order < math.inf]
         return f"{least:g} ({'; '.join([', '.join(first), *others])})"
@@ -79,7 +82,7 @@ def order_of(scene, method="rk4", *, hold="soh", velocity="backward_difference",
     >>> print(hl.order_of(scene, "rk4"))
     3 (x(t) of hold soh; method rk4: 4)
     """
-    form = scene.explicit()
+    form, _ = excluded(scene, options.get("T", 1e-3), ())
     graph = Graph(scene.values)
     form = part_of(form, Dependence(form, graph).needed)
     moving = graph.variables_of([*form.f, *sum(form.M, ()), *(g for model in form.models for g in model.constraints)])

@@ -102,6 +102,20 @@ def test_the_reaction_of_a_constraint_on_average():
         np.testing.assert_allclose(out[2:], (2 * M_ + K_ * expected)[2:], rtol=1e-12)
 
 
+@pytest.mark.parametrize("damping", [0.5, 1.0])
+def test_the_damping_a_device_needs_is_the_closed_form(damping):
+    """Semi-implicit Euler on a coupler, sample held: b = b0/(1 - m0/m) before, b0 (1 - 2 m0/m)/(1 - m0/m) after the step,
+
+    with b0 = K T/2 + B and m0 = b0 T/2. What is felt on average is what is felt before, for the step adds h F(n) alone.
+    """
+    b_0 = K_ * T / 2 + damping
+    ratio = b_0 * T / 2 / M_
+    closed = {"before": b_0 / (1 - ratio), "after": b_0 * (1 - 2 * ratio) / (1 - ratio), "mean": b_0 / (1 - ratio)}
+    for force_at, needed in closed.items():
+        found = hl.port_damping(BODY(B=damping), T=T, method="semi_implicit_euler", hold="zoh", force_at=force_at)
+        assert found == pytest.approx(needed, rel=1e-12)
+
+
 def test_a_sweep_and_a_paddle_take_it():
     paddle = hl.SimulatedPaddle(m=0.05, b=1.0, T=T, hand=hl.Hand(push=1.0))
     log = paddle.run(BODY, duration=0.05, force_at="mean", progress=False)

@@ -13,6 +13,7 @@ from hapticlab import t, v, x
 from hapticlab.compiler.engine import load
 from hapticlab.compiler.methods import METHODS
 from hapticlab.compiler.order import order_of
+from hapticlab.errors import ParameterError
 
 M_, K_, B_, C_, D_ = 0.05, 60.0, 0.4, 0.3, 2.0
 m, K, B, c, d = hl.parameters("m K B c d", units="kg N/m N*s/m N*s/m 1/m", values=(M_, K_, B_, C_, D_))
@@ -42,6 +43,18 @@ def handle(time):
     """A push of 40 mm from rest, with three derivatives that start at zero, as the histories of a program suppose."""
     s, rate = np.sin(6.0 * time), 6.0 * np.cos(6.0 * time)
     return 0.04 * s**4, 0.16 * s**3 * rate
+
+
+def test_it_says_what_sets_the_order():
+    assert str(order_of(FORCES["damped"], "rk4", hold="foh")) == "2 (x(t) of hold foh; method rk4: 4)"
+    assert str(order_of(FORCES["damped"], "adams_bashforth3", hold="zoh")) == "3 (method adams_bashforth3)"
+    assert str(order_of(FORCES["damped"], "adams_bashforth3", hold="zoh", substeps=2)) == (
+        "1 (x(t) of hold zoh; method adams_bashforth3: 3)"
+    )
+    assert str(order_of(hl.Scene(force=K * x(hl.n)))) == "no error but rounding"
+    assert "states a period late" in order_of(FORCES["spring"], force_at="after").limits
+    with pytest.raises(ParameterError, match="K is not live, so it needs a value"):
+        order_of(hl.Scene(force=hl.parameters("K", units="N/m") * x(hl.n)))
 
 
 @lru_cache
