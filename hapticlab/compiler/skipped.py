@@ -66,11 +66,26 @@ class Demand:
     def __init__(self, block):
         self.instructions = block.instructions
         self._bits = {}  # of (condition, chosen)
-        self.of = self._demanded(block)
-        self._forget_small()
+        apart = {}
+        while True:  # without a choice that must be made before it is known, all others are looked for again
+            self.of = self._demanded(block, apart)
+            self._forget_small()
+            unknown = self._unknown()
+            if not unknown:
+                break
+            apart |= {k: apart.get(k, 0) | bits for k, bits in unknown.items()}
         self._conditions = functools.cache(lambda needed: [self.choices[bit][0] for bit in _bits(needed)])
 
-    def _demanded(self, block):
+    def _unknown(self):
+        """Return position -> those of its choices whose conditions are known only where more is chosen."""
+        found = {}
+        for k, needed in enumerate(self.of):
+            for bit in _bits(needed or 0):
+                if self.of[self.choices[bit][0]] & ~needed:
+                    found[k] = found.get(k, 0) | 1 << bit
+        return found
+
+    def _demanded(self, block, apart):
         """Return the choices that every use of each position makes; None where there is no use."""
         of = [None] * len(block.instructions)
         for k in (*block.outputs, *block.states):
@@ -78,6 +93,7 @@ class Demand:
         for k in reversed(range(len(of))):
             if of[k] is None:
                 continue
+            of[k] &= ~apart.get(k, 0)
             i = block.instructions[k]
             first, *rest = in_lazy_order(block.instructions, i) or [None]
             if first is not None:
