@@ -332,7 +332,7 @@ def test_version_and_help(tmp_path):
     helped = command("-h", folder=tmp_path)
     assert helped.returncode == 0
     assert "demo" in helped.stdout
-    for name, other in (("demo", "run"), ("run", "demo")):
+    for name, other in (("demo", "run"), ("run", "demo"), ("tradeoff", "run")):
         told = command(name, "-h", folder=tmp_path).stdout
         assert f"(default: hapticlab-{name})" in " ".join(told.split())
         assert f"hapticlab-{other}" not in told
@@ -538,3 +538,36 @@ def test_calibrate_refuses_a_simulated_board(answering, capsys):
     assert cli.main(["calibrate", "--port", "sim://hapkit", "--only", "stops"]) == 1
     told = capsys.readouterr().err
     assert told == "hapticlab: sim://hapkit has no handle to lead; calibrate a board that is plugged in\n"
+
+
+# ---------------------------------------------------------------- speed against accuracy
+
+SPRING = """
+import hapticlab as hl
+k = hl.parameters("k", units="N/m", values=150)
+scene = hl.Scene(force=k * hl.x(hl.n), name="spring")
+paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3, counts_per_metre=1e5)
+"""
+
+
+def test_tradeoff_prints_what_it_chose_and_draws_it(tmp_path):
+    (tmp_path / "spring.py").write_text(SPRING)
+    done = command("tradeoff", "spring.py", "--T", "2e-3", "1e-3", "--targets", "uno", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "hl.compile(scene, method='rk4', T=0.002," in done.stdout and "none beats" in done.stdout
+    assert (tmp_path / "hapticlab-tradeoff" / "spring-tradeoff.png").read_bytes().startswith(PNG)
+    with open(tmp_path / "hapticlab-tradeoff" / "spring-tradeoff.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [(float(row["T"]), row["passive"]) for row in rows] == [(2e-3, "True"), (1e-3, "True")]
+
+
+def test_tradeoff_says_as_json_what_to_relax(tmp_path, capsys):
+    path = tmp_path / "stiff.py"
+    path.write_text(SPRING.replace("150", "900"))
+    assert cli.main(["tradeoff", str(path), "--T", "1e-3", "--targets", "uno", "--json", "--out", str(tmp_path)]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    answer = facts["chosen"]["uno"]
+    assert answer["feasible"] is False and facts["rows"] == 1
+    assert "b >= 0.45 N s/m, this one has 0.3 N s/m" in answer["relax"][0]  # k T/2
+    assert cli.main(["tradeoff", str(path), "--T", "1e-3", "--targets", "uno", "--any-hand", "--json", "--out", str(tmp_path)]) == 0
+    assert json.loads(capsys.readouterr().out)["chosen"]["uno"]["options"]["T"] == 1e-3

@@ -147,7 +147,7 @@ def test_predicted_cycles_are_those_of_the_cost_model_and_load_is_their_share(fo
 
 
 def test_passivity_is_that_of_the_tick_map(found):
-    for one in found.table.where(target="uno", substeps=1, T=1e-3):
+    for one in filter(lambda one: one.ran, found.table.where(target="uno", substeps=1, T=1e-3)):
         options = {name: getattr(one, name) for name in ("method", "hold")}
         assert one.b_req == pytest.approx(hl.port_damping(found.bench.scene, T=1e-3, **options), rel=1e-6)
 
