@@ -60,7 +60,8 @@ class StableValues:
         self.cases = []
         for modes in itertools.islice(modes_of(motion), MOST_MODES):
             for at in states:
-                at = at if self.linear else onto_surfaces(motion, modes, at, number)
+                with np.errstate(all="ignore"):  # at the tip of a root there is no slope to follow
+                    at = at if self.linear else onto_surfaces(motion, modes, at, number)
                 leaves = dict(zip(self.moving, [*at[0], *at[1], *at[2]], strict=True))
                 self.cases.append(leaves | {_leaf(leaf): value for leaf, value in modes.items()})
         different = {}
