@@ -5,11 +5,16 @@ end of the step, taken along its slope, it only stops. What drives (a negative d
 since a step that trusts it divides by 1 - h d, and explodes where that is zero.
 """
 
+import sympy as sp
+
 from ..scene.derivative import Partial
 from ..scene.symbols import t
 from .first_sample import numbers
-from .trace import minimum, sqrt
+from .trace import minimum, select, sqrt
 from .zeros import is_zero, minus, plus, scaled
+
+#: a slope past this is that of no damper, nor is nan
+STEEP = 1e18
 
 
 def stiffened(M, f, coordinates, orders, translate, h, values):
@@ -32,7 +37,7 @@ def stiffened(M, f, coordinates, orders, translate, h, values):
     M, f = ([[sign * m for m in row] for sign, row in zip(signs, M, strict=True)],
             [sign * e for sign, e in zip(signs, f, strict=True)])  # fmt: skip
     rates = [q.diff(t) if order == 2 else None for q, order in zip(coordinates, orders, strict=True)]
-    slopes = [[translate(Partial(e, rate)) if own and rate else 0.0 for rate in rates] for own, e in zip(rates, f, strict=True)]
+    slopes = [[_slope(e, rate, translate) if own and rate else 0.0 for rate in rates] for own, e in zip(rates, f, strict=True)]
     M = [list(map(translate, row)) for row in M]
 
     def scale(i, j):
@@ -79,6 +84,14 @@ def dissipative(slopes, scale):
         outweighs = -weight if not is_zero(weight) else 0.0
         D[i][i] = outweighs if is_zero(slopes[i][i]) else minimum(slopes[i][i], outweighs)
     return D
+
+
+def _slope(e, rate, translate):
+    """Return the slope of a force by a rate; 0 at the tip of a root, such as a drag by sqrt(u'^2 + w'^2) has at rest."""
+    slope = translate(Partial(e, rate))
+    if all(power.exp.is_integer for power in e.atoms(sp.Pow)):
+        return slope
+    return select(abs(slope) < STEEP, slope, 0.0)
 
 
 def _sign(m, values):

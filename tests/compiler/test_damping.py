@@ -130,3 +130,22 @@ def test_an_embedded_joint_is_damped_through_its_constraint():
         )  # fmt: skip
         out = ran(hl.Scene(force=b * hl.v(n), eom=[rod], watch={"w": u.diff(t)}), 4)
         np.testing.assert_allclose(out[:, 0], (0.02 / (0.02 + T * 200.0)) ** np.arange(4), rtol=1e-11)
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+def test_a_drag_with_a_tip_at_rest_has_no_slope_there(dtype):
+    """-c |w| w in a plane, |w| = sqrt(w1^2 + w2^2): its slope is 0/0 at rest."""
+    c = hl.parameters("c", units="N*s^2/m^2", values=50.0)
+
+    def drag(q):
+        speed = sp.sqrt(q[0].diff(t) ** 2 + q[1].diff(t) ** 2)
+        return [-c * speed * q[0].diff(t), -c * speed * q[1].diff(t)]
+
+    still = ran(bodies(masses=(0.01, 0.01), start=(0, 0), rates=(0, 0), forces=drag), 3, dtype=dtype)
+    np.testing.assert_array_equal(still, np.zeros((3, 3)))
+    rate, expected = 1.0, []
+    for _ in range(5):  # slopes: -2 c w along the motion
+        expected.append(rate)
+        rate -= T * 50.0 * rate**2 / (0.01 + T * 100.0 * rate)
+    moving = ran(bodies(masses=(0.01, 0.01), start=(0, 0), rates=(1.0, 0), forces=drag), 5, dtype=dtype)
+    np.testing.assert_allclose(moving[:, 0], expected, rtol=1e-6 if dtype == "float32" else 1e-13)
