@@ -15,6 +15,8 @@ from .limit import whole_and_fraction
 
 #: a pole nearer to the unit circle does not decay, and its resonance has no bound
 LOSSLESS = 1e-9
+#: a second place of the handle, no whole number of any period
+TRIAL = -0.437219
 #: frequencies looked at, beside those around every pole
 POINTS = 1000
 
@@ -76,26 +78,27 @@ def required(A, B, C, D, T, delay=0.0, points=POINTS):
     lossless = seen[np.abs(seen) > 1 - LOSSLESS]
     if len(lossless):
         return np.inf, float(np.abs(np.angle(lossless)).max())
-    whole, fraction = whole_and_fraction(delay, T)
-
-    def needed(theta):
-        z = np.exp(1j * np.atleast_1d(theta))
-        inside = np.linalg.solve(z[:, None, None] * np.eye(len(A)) - A, B[None, :, None])[..., 0] if len(A) else np.zeros((1, 0))
-        H = (inside @ C + D) * z ** -float(whole)
-        averaged = H * ((1 - fraction) + fraction / z)
-        asked = T / 2 * (averaged.real - averaged.imag / np.tan(theta / 2))  # 1/(1 - e^(j a)) is 1/2 + j cot(a/2)/2
-        return (asked + np.sqrt(asked**2 + T**2 * fraction * (1 - fraction) * abs(H) ** 2)) / 2 if fraction else asked
-
     poles = np.linalg.eigvals(A) if len(A) else np.zeros(0)
     around = [np.abs(np.angle(p)) + (1 - abs(p)) * s * np.geomspace(1e-2, 30, 40) for p in poles for s in (-1, 1)]
     theta = np.concatenate([np.geomspace(1e-5, np.pi, points), np.linspace(1e-3, np.pi, points), *around])
     theta = np.unique(theta[(theta > 0) & (theta <= np.pi)])
     for _ in range(4):  # look closer around the worst
-        values = needed(theta)
+        values = asked(A, B, C, D, T, theta, delay)
         worst = int(values.argmax())
         at = theta[worst]
         theta = np.linspace(theta[max(worst - 1, 0)], theta[min(worst + 1, len(theta) - 1)], 60)
     return float(max(values.max(), 0.0)), float(at)
+
+
+def asked(A, B, C, D, T, theta, delay=0.0):
+    """Return the damping [N s/m] that each frequency w asks of a device, theta = w T of shape (P,)."""
+    whole, fraction = whole_and_fraction(delay, T)
+    z = np.exp(1j * theta)
+    inside = np.linalg.solve(z[:, None, None] * np.eye(len(A)) - A, B[None, :, None])[..., 0] if len(A) else np.zeros((1, 0))
+    H = (inside @ C + D) * z ** -float(whole)
+    averaged = H * ((1 - fraction) + fraction / z)
+    linear = T / 2 * (averaged.real - averaged.imag / np.tan(theta / 2))  # 1/(1 - e^(j a)) is 1/2 + j cot(a/2)/2
+    return (linear + np.sqrt(linear**2 + T**2 * fraction * (1 - fraction) * abs(H) ** 2)) / 2 if fraction else linear
 
 
 def tick_map(program):
@@ -112,11 +115,11 @@ def tick_map(program):
     mixed = generator.normal(size=(S, 3))
     states = np.column_stack([np.zeros((S, 1)), np.eye(S), mixed])
     loaded, values = load(program), np.repeat(np.array(program.values)[:, None], states.shape[1], axis=1)
-    runs = [loaded.run(1, [[x]], values, states) for x in (0.0, 1.0, -0.5)]
+    runs = [loaded.run(1, [[x]], values, states) for x in (0.0, 1.0, TRIAL)]
     still, pushed, pulled = (np.vstack([run.states, run.outputs[0, :1]]) for run in runs)
     rest, by_input = still - still[:, :1], pushed - still
     whole, scale = rest[:, 1 : S + 1], 1e-9 * max(np.abs(still).max(), np.abs(pushed).max())
-    pairs = ((whole @ mixed, rest[:, S + 1 :]), (by_input, by_input[:, :1]), (still - pulled, by_input / 2))
+    pairs = ((whole @ mixed, rest[:, S + 1 :]), (by_input, by_input[:, :1]), (pulled - still, TRIAL * by_input))
     if not all(np.allclose(one, other, rtol=0, atol=scale) for one, other in pairs):
         raise AnalysisError(
             f"{program.name} is not linear: its answer to two states is not the sum of its answers to each"

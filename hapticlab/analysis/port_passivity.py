@@ -11,6 +11,7 @@ from ..errors import AnalysisError
 from ..scene.scene import Scene
 from ..scene.written import no_scene
 from .limit import check_number
+from .limit_plots import plot_port
 from .linearization import motion_at, tick_at
 from .operating import WORTH, kind_of, operating_points, probes_of
 from .passive_hands import UNSTABLE, radii, single
@@ -124,6 +125,10 @@ class PortPassivity:
         return "\n".join(lines)
 
     __repr__ = __str__
+
+    def plot(self):
+        """Draw the damping that each frequency asks of a device, in every mode."""
+        return plot_port(self)
 
 
 def port_passivity(scene, paddle=None, *, T=None, at=None, **options):

@@ -1,6 +1,6 @@
 """The longest step that a method takes stably on a scene, predicted from its equations of motion before it runs."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,12 +14,13 @@ from ..compiler.step_matrix import longest_step, step_matrix
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from ..scene.written import no_scene
+from .limit_plots import plot_step_limit
 from .linearization import motion_at, slopes_of
 from .operating import WORTH, kind_of, operating_points, probes_of
 from .switches import switched
 
-#: h_max/h at and above which a nonlinear scene needs no further test; below 1 it is refused
-AMPLE = 2.0
+#: kind of scene -> h_max/h at and above which it needs no further test; below 1 it is refused
+AMPLE = {"linear": 1.0, "piecewise linear": 1.5, "small-signal": 2.0}
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +42,8 @@ class ModeLimit:
         where the method damps. 0 without an oscillation.
     steps_per_contact : float
         Steps in half a period of the fastest oscillation, which is how long a contact lasts; inf without one.
+    step : callable ``h -> step matrices``
+        For an array of steps [s].
     """
 
     mode: str
@@ -50,6 +53,7 @@ class ModeLimit:
     margin: float
     energy_gain: float
     steps_per_contact: float
+    step: callable = field(repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +94,7 @@ class StepLimit:
 
     @property
     def margin(self):
-        """h_max/h: 2 and above is ample, below 1 unstable."""
+        """h_max/h: below 1 unstable."""
         return self.worst.margin
 
     @property
@@ -105,11 +109,15 @@ class StepLimit:
 
     @property
     def verdict(self):
-        """``"stable"``; ``"close"``: a margin under 2 on a scene that is not linear, few steps a contact; ``"unstable"``."""
+        """``"unstable"``, ``"close"`` or ``"stable"``.
+
+        Close is a margin under 2 where motions are not linear, under 1.5 where only modes are (switching between them pumps
+        energy), or fewer than ten steps in a contact.
+        """
         if self.margin < 1:
             return "unstable"
-        close = self.small_signal and self.margin < AMPLE
-        return "close" if close or self.steps_per_contact < STEPS_PER_CONTACT else "stable"
+        close = self.margin < AMPLE[self.kind] or self.steps_per_contact < STEPS_PER_CONTACT
+        return "close" if close else "stable"
 
     def __float__(self):
         return float(self.h_max)
@@ -124,6 +132,10 @@ class StepLimit:
         return "\n".join(lines)
 
     __repr__ = __str__
+
+    def plot(self):
+        """Draw the largest |eigenvalue| of a step against its length, in every mode."""
+        return plot_step_limit(self)
 
 
 def step_limit(scene, method="rk4", *, T, substeps=1, hold="soh", at=None, **options):
@@ -216,7 +228,7 @@ def _mode_limit(method, J, step, h, mode, point):
         h_max = np.inf if method == EXACT else longest_step(step, J)
     gain = energy_gain(values, np.linalg.eigvals(step(np.array([h]))[0]), h)
     per_contact = np.pi / (fastest * h) if fastest else np.inf
-    return ModeLimit(mode, point, values, float(h_max), float(h_max / h), gain, float(per_contact))
+    return ModeLimit(mode, point, values, float(h_max), float(h_max / h), gain, float(per_contact), step)
 
 
 def energy_gain(values, multipliers, h):

@@ -84,6 +84,13 @@ def growing(R):
     return np.where(whole, outside.sum(axis=-1), R.shape[-1])
 
 
+def radius(R):
+    """Return the largest |eigenvalue| of matrices, shape (..., M, M); inf where one has overflowed."""
+    whole = np.isfinite(R).all(axis=(-2, -1))
+    found = np.abs(np.linalg.eigvals(np.where(whole[..., None, None], R, 0.0))).max(axis=-1, initial=0.0)
+    return np.where(whole, found, np.inf)
+
+
 def longest_step(step, J, grid=GRID, closing=(62, 62, 62)):
     """Return the longest stable step [s] of the motion y' = J y; inf where there is none, 0 where no step is stable.
 

@@ -134,6 +134,14 @@ def test_what_falls_by_itself_and_what_is_unstable():
     assert unstable.b_req == np.inf and "unstable with the handle held" in unstable.worst.reason
 
 
+def test_the_picture_peaks_at_what_is_asked_for():
+    port = hl.port_passivity(coupler(), paddle(delay=0.3e-3), hold="zoh")
+    line, device = port.plot().axes[0].lines
+    frequency, b = line.get_data()
+    assert b.max() == pytest.approx(port.b_req, rel=0.02) and device.get_ydata()[0] == 0.2
+    assert frequency[b.argmax()] == pytest.approx(port.frequency, rel=0.02)
+
+
 def test_refusals():
     with pytest.raises(AnalysisError, match=r"hl\.port_passivity"):
         hl.port_passivity("scene", T=T)

@@ -108,6 +108,14 @@ def test_a_scene_that_is_not_linear_says_where_it_was_looked_at():
     assert limit.modes[2].h_max == pytest.approx(2 / 100, rel=1e-4)
 
 
+def test_the_picture_crosses_one_at_the_longest_step():
+    limit = hl.step_limit(coupler(), "rk4", T=1e-3)
+    line, step = limit.plot().axes[0].lines
+    h, radius = line.get_data()
+    assert h[np.argmax(radius > 1)] == pytest.approx(1e3 * limit.h_max, rel=0.05)
+    assert step.get_xdata()[0] == 1.0
+
+
 def test_what_is_exact_has_no_longest_step_and_taylor_takes_a_radian():
     scene = coupler(B=0)
     assert hl.step_limit(scene, "exact", T=0.5).h_max == np.inf
