@@ -124,7 +124,8 @@ def advance(
     motion = motion_of(builder, rates, len(groups[0]), len(groups[2]), contacts)
     check_smooth(motion, name)
     if isinstance(method, Switched):
-        return switched(method, tracing, motion, groups, h, name, impact and impact(motion), after)
+        number = numbers(builder.instructions, tracing.at_start(values))
+        return switched(method, tracing, motion, groups, h, name, impact and impact(motion), after, number)
     linear = is_linear(motion)
 
     def fastest(values):
@@ -167,9 +168,10 @@ def held_state(tracing, k):
     return tracing.state(("held", k), Channel(f"held({k})", "1", "bool"), tracing.init.const(False))
 
 
-def switched(method, tracing, motion, groups, h, name, impact, after):
+def switched(method, tracing, motion, groups, h, name, impact, after, number):
     """Trace one period of a motion that is linear between switches; see :func:`advance`."""
-    maps = Maps(motion, h, (method.reason, method.cure), tracing.parameters)
+    start = [number(value.id) for part in groups for value in part]
+    maps = Maps(motion, h, (method.reason, method.cure), tracing.parameters, start, number)
     events = method.events or _EVENTS[len(motion.guards) + len(motion.reactions) > 2]
     turns = maps.omega * h
     stepper = Stepper(

@@ -15,64 +15,19 @@ import numpy as np
 
 from ..errors import ProgramError
 from .conditions import any_of, one_of
-from .exponential import exponential, held
+from .exponential import held
 from .stiffness import is_linear
+from .strays import power_strays, strays
 from .taylor import Series
 from .trace import Value, minimum, reachable, select
 from .zeros import dot, is_zero, plus, times
 
-#: most surfaces; twice as many modes have a map of their own with each
-MOST_SURFACES = 4
+#: most surfaces: their modes are counted one by one
+MOST_SURFACES = 12
+#: most maps: of the modes, those nearest to the one at the start
+MOST_MAPS = 16
 #: highest power of time that drives a motion
 DEGREE = 6
-#: what rounding may add to a bound
-INFLATED = 1 + 1e-6
-
-
-def strays(A, c, h, degree, scale):
-    """Return how far c y strays from its chord over [0, h], at most, a unit of each rate and of each drive.
-
-    y(tau) = y(0) + Psi_0(tau) y'(0) + sum of Psi_j(tau) r_j for y'' = A y' + r_1 + r_2 tau + ..., the Psi_j of
-    :func:`~hapticlab.compiler.exponential.held`. The largest of places h/16 apart or nearer; between two of them the
-    second derivative bounds the rest, |row e^(H s)| <= |row| e^(|H| s).
-
-    Parameters
-    ----------
-    A : array of shape (S, S)
-    c : array of shape (S,)
-    h : float
-        Period [s].
-    degree : int
-        Of the drive.
-    scale : array of shape (S,)
-        Sizes of the states beside each other.
-
-    Returns
-    -------
-    array of shape (degree + 1, S)
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> A, one = np.array([[0.0, 1.0], [0.0, 0.0]]), np.ones(2)
-    >>> strays(A, np.array([1.0, 0.0]), 2.0, 0, one).round(3).tolist()  # h^2/8 = 0.5 for an acceleration of 1
-    [[0.0, 0.502]]
-    """
-    n, ratio = len(A), scale[None, :] / scale[:, None]
-    H = np.zeros((n * (degree + 2),) * 2)
-    H[:n, :n] = A * h * ratio
-    for k in range(degree + 1):
-        H[k * n : (k + 1) * n, (k + 1) * n : (k + 2) * n] = np.eye(n)
-    places = max(16, math.ceil(8 * np.abs(H[:n, :n]).sum(axis=1).max(initial=0.0)))
-    E, row = exponential(H / places), np.r_[c * scale, np.zeros(n * (degree + 1))]
-    rows = [row]
-    for _ in range(places):
-        rows.append(rows[-1] @ E)
-    rows = np.array(rows)
-    chord = np.linspace(0.0, 1.0, places + 1)[:, None] * (rows[-1] - rows[0])
-    between = (np.abs(rows @ H @ H) @ exponential(np.abs(H) / places)).max(axis=0) / (8 * places**2)
-    most = (np.abs(rows - rows[0] - chord).max(axis=0) + between)[n:].reshape(degree + 1, n)
-    return most * INFLATED * h ** np.arange(1, degree + 2)[:, None] / scale
 
 
 @dataclass(frozen=True)
@@ -100,9 +55,13 @@ class Maps:
         Why it is not one linear system, and what to do where it is not linear in every mode either.
     parameters : sequence of Parameter
         Of its scene.
+    start : sequence of float
+        The state at the first sample.
+    number : callable position -> float
+        What results of the program are there.
     """
 
-    def __init__(self, motion, h, why, parameters):
+    def __init__(self, motion, h, why, parameters, start, number):
         self.motion, self.h, self.why, self.parameters = motion, h, why, parameters
         self.leaves = [*motion.q, *motion.w, *motion.s]
         self.choices = [g.leaf for g in motion.guards] + [r.side for r in motion.reactions if r.side is not None]
@@ -111,14 +70,14 @@ class Maps:
             raise self._refused()
         if len(self.choices) > MOST_SURFACES:
             raise ProgramError(
-                f"{why[0]}; method='exact' makes a map for each of the modes of at most {MOST_SURFACES} surfaces (cases, Max, "
-                f"Min, contacts, frictions), and there are {len(self.choices)}: use method='taylor'"
+                f"{why[0]}; method='exact' takes the modes of at most {MOST_SURFACES} surfaces (cases, Max, Min, contacts, "
+                f"frictions), and there are {len(self.choices)}: use method='taylor'"
             )
         self.surfaces = list(self._surfaces())
-        self.modes = [
-            self._mode(dict(zip(self.choices, map(np.bool_, sides), strict=True)))
-            for sides in itertools.product((False, True), repeat=len(self.choices))
-        ]
+        first = self._sides(start, number)
+        self.walls = self._walls(self._mode(first))
+        near = sorted(filter(self._possible, itertools.product((False, True), repeat=len(first))), key=_changes_from(first))
+        self.modes, self.complete = {sides: self._mode(sides) for sides in near[:MOST_MAPS]}, len(near) <= MOST_MAPS
 
     def _refused(self):
         return ProgramError("".join(self.why))
@@ -126,7 +85,7 @@ class Maps:
     @property
     def omega(self):
         """The largest |eigenvalue| [rad/s] of all modes."""
-        return max(mode.omega for mode in self.modes)
+        return max(mode.omega for mode in self.modes.values())
 
     def _surfaces(self):
         """Yield (distance, leaf that says on which side it is, whether that side is the positive one, idle cases)."""
@@ -135,12 +94,35 @@ class Maps:
         for r in self.motion.reactions:
             yield r.measure, r.side, True, ()
 
-    def _series(self, rows, sides, order):
+    def _walls(self, mode):
+        """Return (number of the choice, direction, place) of each surface that stands still: it is met at row y = place."""
+        motion, found = self.motion, []
+        still = self._at([0.0] * len(self.leaves), 0.0, mode.sides, 1)
+        leaves = {leaf.id for leaf in self.choices} | {r.leaf.id for r in motion.reactions}
+        for k, (surface, row) in enumerate(zip(self.surfaces, mode.rows, strict=True)):
+            place, moves = still.of(surface[0], 1)
+            place, size = place.constant if isinstance(place, Value) else place, np.linalg.norm(row)
+            fixed = leaves.isdisjoint(reachable(motion.builder.instructions, [surface[0].id]))
+            if k < len(motion.guards) and fixed and place is not None and is_zero(moves) and size:
+                turned = -1.0 if row[np.flatnonzero(row)[0]] < 0 else 1.0
+                found.append((k, tuple(np.round(turned * row / size, 9)), turned, -turned * place / size))
+        return found
+
+    def _possible(self, sides):
+        """Tell whether a state can be on these sides of all surfaces that stand still: of walls in a row, not on any two."""
+        within = {}
+        for k, direction, turned, place in self.walls:
+            low, high = within.get(direction, (-math.inf, math.inf))
+            below = sides[k] == (turned > 0)  # the side that is true is the negative one
+            within[direction] = (low, min(high, place)) if below else (max(low, place), high)
+        return all(low <= high for low, high in within.values())
+
+    def _series(self, rows, sides, order, number=None):
         """Return the series of a motion whose state stays as ``rows`` has it, nothing held, known to an order."""
         motion = self.motion
         rows |= {leaf.id: [value] + [0.0] * order for leaf, value in sides.items()}
         rows |= {r.leaf.id: [] for r in motion.reactions}
-        series = Series(motion.builder.instructions, rows, motion.builder.result)
+        series = Series(motion.builder.instructions, rows, number or motion.builder.result)
         for k in range(order + 1):
             for r in motion.reactions:
                 rows[r.leaf.id].append(series.of(r.free, k)[k])
@@ -148,7 +130,7 @@ class Maps:
 
     def _mode(self, sides):
         """Return a mode: its matrix and rows column by column, the slopes by one state at a time."""
-        motion, columns = self.motion, []
+        motion, columns, sides = self.motion, [], dict(zip(self.choices, map(np.bool_, sides), strict=True))
         rates, measures = [*motion.a, *motion.ds], [surface[0] for surface in self.surfaces]
         for varied in self.leaves:
             rows = {leaf.id: [0.0, float(leaf is varied)] for leaf in self.leaves} | {motion.tau.id: [0.0, 0.0]}
@@ -177,16 +159,22 @@ class Maps:
 
     def over(self, state):
         """Return (state after the period, room): in the modes at the sample, ``room`` > 0 if they hold over the period."""
-        motion, values, sides = self.motion, [*state[0], *state[1], *state[2]], {}
-        for g in motion.guards:
-            first, second = (self._at(values, 0.0, sides).of(part, 0)[0] for part in (g.first, g.second))
+        values, n = [*state[0], *state[1], *state[2]], len(self.motion.q)
+        moved = {sides: self._moved(mode, values) for sides, mode in self.modes.items()}
+        *after, room = self._chosen(self._sides(values), moved, [*values, -1.0])
+        return (after[:n], after[n : 2 * n], after[2 * n :]), room
+
+    def _sides(self, values, number=None):
+        """Return on which sides a state is, as the comparisons have it."""
+        sides = {}
+        for g in self.motion.guards:
+            at = self._at(values, 0.0, sides, number=number)
+            first, second = (at.of(part, 0)[0] for part in (g.first, g.second))
             sides[g.leaf] = first < second if g.strict else first <= second
-        for r in motion.reactions:
+        for r in self.motion.reactions:
             if r.side is not None:
-                sides[r.side] = 0.0 < self._at(values, 0.0, sides).of(r.measure, 0)[0]
-        moved = self._chosen([sides[leaf] for leaf in self.choices], [self._moved(mode, values) for mode in self.modes])
-        n, after = len(motion.q), moved[:-1]
-        return (after[:n], after[n : 2 * n], after[2 * n :]), moved[-1]
+                sides[r.side] = 0.0 < self._at(values, 0.0, sides, number=number).of(r.measure, 0)[0]
+        return tuple(sides.values())
 
     def step(self, stepper, state, held):
         """Return (state, held, unlocated) after a period: by a map where that is sure, else with switches located."""
@@ -203,23 +191,28 @@ class Maps:
 
     def longest(self, flags):
         """Return the part of the period in which a motion in the modes of these flags turns by a radian, at most 1."""
-        sides = len(self.choices) - len(self.motion.guards)
-        parts = [min(1.0, 1.0 / (mode.omega * self.h)) if mode.omega else 1.0 for mode in self.modes]
-        parts = np.reshape(parts, (-1, 2**sides)).min(axis=1)
-        return self._chosen(flags, [[float(part)] for part in parts])[0]
+        parts = {}
+        for sides, mode in self.modes.items():
+            part = min(1.0, 1.0 / (mode.omega * self.h)) if mode.omega else 1.0
+            parts[sides[: len(flags)]] = [min(part, *parts.get(sides[: len(flags)], [1.0]))]
+        return self._chosen(flags, parts, min(parts.values()))[0]
 
-    def _chosen(self, flags, results):
-        """Return one of 2^n lists of results, by n flags."""
+    def _chosen(self, flags, results, other):
+        """Return one of several lists of results, by flags; ``other`` where there is none, unless that cannot be."""
+        if not results:
+            return other
         if not len(flags):
-            return results[0]
-        half = len(results) // 2
-        below, above = (self._chosen(flags[1:], part) for part in (results[:half], results[half:]))
-        return [a if a is b else select(flags[0], a, b) for a, b in zip(above, below, strict=True)]
+            return results[()]
+        above, below = ({sides[1:]: r for sides, r in results.items() if sides[0] == side} for side in (True, False))
+        if self.complete and not (above and below):
+            return self._chosen(flags[1:], above or below, other)
+        pairs = zip(self._chosen(flags[1:], above, other), self._chosen(flags[1:], below, other), strict=True)
+        return [a if a is b else select(flags[0], a, b) for a, b in pairs]
 
-    def _at(self, values, tau, sides, order=0):
+    def _at(self, values, tau, sides, order=0, number=None):
         rows = {leaf.id: [value] + [0.0] * order for leaf, value in zip(self.leaves, values, strict=True)}
         rows |= {self.motion.tau.id: [tau, *[self.h, *[0.0] * DEGREE][:order]]}
-        return self._series(rows, sides, order)
+        return self._series(rows, sides, order, number)
 
     def _moved(self, mode, values):
         """Return the state after a period in a mode, and the room that its surfaces leave at least."""
@@ -251,7 +244,7 @@ class Maps:
             bound = strays(mode.A, row, self.h, degree, scale) * np.array(units)[:, None]
             stray = _sum(dot([float(f) for f in E], [_size(c) for c in change]) for E, change in zip(bound, changes, strict=True))
             for k in range(2, DEGREE):
-                stray = plus(stray, times(_power_strays(k), _size(first[k])))
+                stray = plus(stray, times(power_strays(k), _size(first[k])))
             room = minimum(minimum(first[0], last) - stray, room)
         return [*after, room]
 
@@ -259,6 +252,11 @@ class Maps:
         two = len(self.motion.q)
         frequency = max(1 / self.h, math.sqrt(np.abs(A[two : 2 * two, :two]).max(initial=0.0)))
         return np.r_[np.ones(two), np.full(two, frequency), np.ones(len(A) - 2 * two)]
+
+
+def _changes_from(first):
+    """Return what counts the sides that differ from these."""
+    return lambda sides: sum(bool(a) != bool(b) for a, b in zip(sides, first, strict=True))
 
 
 def linear_between(facts):
@@ -278,9 +276,3 @@ def _sum(parts):
     for part in parts:
         total = plus(total, part)
     return total
-
-
-def _power_strays(k):
-    """Return how far theta^k strays from its chord over [0, 1]."""
-    place = k ** (-1 / (k - 1))
-    return (place - place**k) * INFLATED
