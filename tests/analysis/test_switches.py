@@ -29,7 +29,8 @@ def meeting():
     push = hl.when(z >= y, k * (z - y))
     wall = hl.when(x(n) > x_o, k * (x(n) - x_o) + B * v(n))
     pulled = sp.Min(k * (y - x_o), 2 * k * (y - x_o))
-    return hl.Scene(force=F + wall, eom=[sp.Eq(m * z.diff(t, 2), F - push), sp.Eq(m * y.diff(t, 2), push - pulled)], name="meeting")
+    eom = [sp.Eq(m * z.diff(t, 2), F - push), sp.Eq(m * y.diff(t, 2), push - pulled)]
+    return hl.Scene(force=F + wall, eom=eom, name="meeting")
 
 
 def plain():
