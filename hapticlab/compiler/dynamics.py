@@ -73,7 +73,8 @@ class Dynamics:
             check_starts(form, lowering.scene.values)
             self.largest = check_contacts(form, lowering.scene.values, self.h, lowering.tracing.T, method)
         self._now = None
-        self.at_the_sample = None  # (q, w, s) and (a, ds) of the first stage that is traced
+        self.at_the_sample = None  # (q, w, s) and (a, ds), without implicit damping, of the first stage that is traced
+        self.masses = None  # those of ``second`` there, where no constraint adds to them
 
     def _enforced(self, constraints):
         form, lowering = self.form, self.lowering
@@ -140,6 +141,14 @@ class Dynamics:
     def rates(self, tau, q, w, s, at=None):
         """Return (a, ds): the accelerations of ``second`` and the rates of ``first``; ``at`` makes the translator."""
         translate, implicit = (at or self.at)(tau, q, w, s), getattr(self.method, "implicit_damping", False)
+        found = self._solved(translate, implicit)
+        if at is None and self.at_the_sample is None:
+            self.at_the_sample = (q, w, s), self._solved(translate, False) if implicit else found
+            self.masses = None if self.enforced else self._values(translate, self.second)[0]
+        return found
+
+    def _solved(self, translate, implicit):
+        """Return (a, ds) at the instant of a translator."""
         a, ds = [], []
         if self.enforced:
             M, f = self._values(translate, self.enforced.coordinates, implicit)
@@ -152,11 +161,7 @@ class Dynamics:
         found = dict(zip(self.others, solution, strict=True))
         if implicit and IMPULSE in found:
             found[IMPULSE] = self._felt_at_the_end(translate, found)
-        a = [*a, *(found[q] for q in self.second if q in found)]
-        ds = [*ds, *(found[q] for q in self.first if q in found)]
-        if at is None and self.at_the_sample is None:
-            self.at_the_sample = (q, w, s), (a, ds)
-        return a, ds
+        return [*a, *(found[q] for q in self.second if q in found)], [*ds, *(found[q] for q in self.first if q in found)]
 
     def reaction(self, expr, translate, instant):
         """Return the reaction of a constraint at the instant of a translator."""

@@ -46,13 +46,12 @@ class StableValues:
         dynamics, tracing = lowering.dynamics, lowering.tracing
         self.instructions, self.h, self.method = tracing.tick.instructions, dynamics.h, dynamics.method
         self.motion = motion = _at_the_sample(tracing.tick, *dynamics.at_the_sample)
-        if self.method.implicit_damping:  # its rates are those of this step
-            self.method = replace(self.method, implicit_damping=False)
         self.given = tracing.at_start(lowering.scene.values)
         self.number = {p.name: k for k, p in enumerate(tracing.parameters)}
         self.live = [p.name for p in live_in(motion, tracing.parameters)]
         self.moving = [_leaf(v) for v in (*motion.q, *motion.w, *motion.s)]
         number = numbers(self.instructions, self.given)
+        self.mass = _masses(dynamics.masses, number) if self.method.implicit_damping and dynamics.masses else None
         start = tuple([number(lowering.state(s).id) for s in group] for group in _groups(dynamics))
         self.linear = is_linear(motion)
         ranges = [(type(q).low, type(q).high) for q in dynamics.second]
@@ -88,7 +87,7 @@ class StableValues:
             known = np.isfinite(J).all(axis=(1, 2))
             J = np.where(known[:, None, None], J, 0.0)
             with np.errstate(all="ignore"):
-                R = step_matrix(self.method, J, len(self.motion.q), self.h)
+                R = step_matrix(self.method, J, len(self.motion.q), self.h, self.mass)
             count = growing(R)
             some = np.flatnonzero(count)
             found |= ~known
@@ -101,9 +100,15 @@ class StableValues:
         for (J,) in self.jacobians():
             if np.isfinite(J).all():
                 with np.errstate(all="ignore"):
-                    longest = longest_step(lambda h, J=J: step_matrix(self.method, J, n, h), J, STEPS, CLOSING)
+                    longest = longest_step(lambda h, J=J: step_matrix(self.method, J, n, h, self.mass), J, STEPS, CLOSING)
                 least = min(least, longest / self.h)
         return least
+
+
+def _masses(M, number):
+    """Return the mass matrix at the start, rows turned over that were written with a minus sign."""
+    M = np.array([[number(m.id) for m in row] for row in M], float)
+    return np.where(np.diag(M) < 0, -1.0, 1.0)[:, None] * M
 
 
 def _at_the_sample(builder, state, rates):

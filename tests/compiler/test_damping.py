@@ -149,3 +149,15 @@ def test_a_drag_with_a_tip_at_rest_has_no_slope_there(dtype):
         rate -= T * 50.0 * rate**2 / (0.01 + T * 100.0 * rate)
     moving = ran(bodies(masses=(0.01, 0.01), start=(0, 0), rates=(1.0, 0), forces=drag), 5, dtype=dtype)
     np.testing.assert_allclose(moving[:, 0], expected, rtol=1e-6 if dtype == "float32" else 1e-13)
+
+
+@pytest.mark.parametrize("zeta", [0.2, 1.0])
+def test_the_margin_of_a_program_knows_the_damping_is_implicit(zeta):
+    """2 (sqrt(1 + zeta^2) + zeta)/(omega h), omega h = 0.5; equal and opposite as the equation may be written."""
+    m, K = 0.05, 0.05 * 500.0**2
+    mass, k, b = hl.parameters("m K b", units="kg N/m N*s/m", values=(m, K, 2 * zeta * np.sqrt(K * m)))
+    z = hl.coordinate("z", unit="m")
+    pull = k * (hl.x(t) - z)
+    for eom in (sp.Eq(mass * z.diff(t, 2), pull - b * z.diff(t)), sp.Eq(pull - b * z.diff(t), mass * z.diff(t, 2))):
+        program = hl.compile(hl.Scene(force=pull, eom=[eom]), METHOD, T=T)
+        assert program.facts["margin"] == pytest.approx(4 * (np.sqrt(1 + zeta**2) + zeta), rel=5e-3)  # three digits
