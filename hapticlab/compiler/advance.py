@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from ..errors import ProgramError
+from ..errors import ProgramError, ProgramLimitError
 from .crossing import FEWER_STEPS, STEPS
 from .flow import motion_of
 from .ir import Channel
@@ -27,6 +27,8 @@ from .trace import select
 
 #: most located events of a step: what touches may leave within it, and something else may happen too
 _EVENTS = (2, 3)
+#: most radians a period that is followed piece by piece, at some 1500 instructions each
+MOST_TURNS = 50
 
 
 @dataclass(frozen=True)
@@ -174,6 +176,12 @@ def switched(method, tracing, motion, groups, h, name, impact, after, number):
     maps = Maps(motion, h, (method.reason, method.cure), tracing.parameters, start, number)
     events = method.events or _EVENTS[len(motion.guards) + len(motion.reactions) > 2]
     turns = maps.omega * h
+    if turns > MOST_TURNS:
+        raise ProgramLimitError(
+            f"{name}: its fastest part turns with omega = {maps.omega:.4g} rad/s, by {turns:.4g} rad in a period of {h:g} s; "
+            f"method='exact' locates switches in pieces of a radian, {MOST_TURNS} at most: take T <= "
+            f"{MOST_TURNS / maps.omega:.2g} s, a softer contact, or one that does not give (hl.impulse, hl.rigid)"
+        )
     stepper = Stepper(
         motion, h, order_for(min(turns, 1.0) / 2, tracing.real, True), events, impact,
         longest=maps.longest, pieces=events + max(1, math.ceil(turns)),

@@ -66,7 +66,9 @@ class Maps:
         self.leaves = [*motion.q, *motion.w, *motion.s]
         self.choices = [g.leaf for g in motion.guards] + [r.side for r in motion.reactions if r.side is not None]
         measures = [g.measure for g in motion.guards] + [r.measure for r in motion.reactions]
-        if any(g.kind == "floor" for g in motion.guards) or not is_linear(motion, measures):
+        leaves = {r.leaf.id for r in motion.reactions}
+        pushed = reachable(motion.builder.instructions, [r.free.id for r in motion.reactions])
+        if any(g.kind == "floor" for g in motion.guards) or not is_linear(motion, measures) or not leaves.isdisjoint(pushed):
             raise self._refused()
         if len(self.choices) > MOST_SURFACES:
             raise ProgramError(
