@@ -7,6 +7,7 @@ import numpy as np
 from ..compiler.channels import channel_of
 from ..compiler.first_sample import numbers
 from ..compiler.graph import Graph
+from ..compiler.phase import TICKS
 from ..errors import AnalysisError, ParameterError
 from ..scene.parameters import Parameter, T
 from ..scene.symbols import delay, t, v, x
@@ -145,7 +146,7 @@ def _columns(points):
 
 
 def _point(places, p, mode, words):
-    values = dict(zip(places.names, map(float, p), strict=True))
+    values = dict(zip(places.names, map(float, p), strict=True)) | {TICKS[0]: 0.0}
     moved = [f"{name} = {value:.4g}" for name, value, start in zip(places.names, p, places.start, strict=True) if value != start]
     return OperatingPoint(mode, values, words or ", ".join(moved) or "the start")
 
@@ -179,20 +180,21 @@ def _around(places):
 
 
 def probes_of(points):
-    """Return for each mode two places anywhere, where what is linear in it has the slopes it has elsewhere."""
+    """Return for each mode two places anywhere, at any time, where what is linear in it has the slopes it has elsewhere."""
     generator, found = np.random.default_rng(23), []
     for mode in dict.fromkeys(p.mode for p in points):
         values = next(p.values for p in points if p.mode == mode)
         for _ in range(2):
             moved = {name: value + generator.uniform(0.3, 0.9) for name, value in values.items()}
+            moved[TICKS[0]] = float(generator.integers(1, 1000))
             found.append(OperatingPoint(mode, moved, "a probe"))
     return found
 
 
-def kind_of(points, probes, slopes):
+def kind_of(scene, points, probes, slopes):
     """Return what a linearisation is worth, from the slopes at the points and then at the probes, first axis.
 
-    ``"linear"``, ``"piecewise linear"``, or ``"small-signal"`` where slopes change within a mode.
+    ``"linear"``, ``"piecewise linear"``, or ``"small-signal"`` where slopes change within a mode, or with time.
     """
     places = [*points, *probes]
     first = {p.mode: k for k, p in reversed([*enumerate(places)])}
@@ -201,4 +203,4 @@ def kind_of(points, probes, slopes):
         scale = 1e-9 * np.abs(other).max(initial=0.0)
         if not np.allclose(one, other, rtol=0, atol=scale):
             return "small-signal"
-    return "linear" if len(first) == 1 else "piecewise linear"
+    return "linear" if len(first) == 1 and not scene.instants else "piecewise linear"

@@ -180,7 +180,7 @@ def port_passivity(scene, paddle=None, *, T=None, at=None, **options):
         for p, tick, slopes in zip(points, ticks, J, strict=False)
     )
     own = [None if paddle is None else float(getattr(paddle, name)) for name in ("b", "m")]
-    return PortPassivity(scene.name, T, delay, modes, kind_of(points, probes, flat), *own)
+    return PortPassivity(scene.name, T, delay, modes, kind_of(known, points, probes, flat), *own)
 
 
 def _limit(mode, point, tick, J, T, delay, handle):

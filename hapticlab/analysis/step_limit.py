@@ -188,7 +188,7 @@ def step_limit(scene, method="rk4", *, T, substeps=1, hold="soh", at=None, **opt
         _mode_limit(name, slopes, step, h, known.named(p.mode), p.words)
         for p, slopes, step in zip(points, J, steps_at, strict=False)
     )
-    return StepLimit(scene.name, name, T, h, modes, kind_of(points, probes, J))
+    return StepLimit(scene.name, name, T, h, modes, kind_of(known, points, probes, J))
 
 
 def _method(method):

@@ -43,6 +43,11 @@ class Switched(Scene):
         """The parameters in use and the switches, name -> Parameter."""
         return {**super().parameters, **{s.name: s for s in self.switches}}
 
+    @property
+    def instants(self):
+        """The names of contacts that strike in an instant and of frictions that stick: they are looked at free of both."""
+        return [c.name for model in self.form.models for c in model.contacts if not c.is_force]
+
     def set(self, mode):
         """Return the scene with its switches as a mode has them."""
         return replace(self, values={**self.values, **self.values_of(mode)})
@@ -52,11 +57,11 @@ class Switched(Scene):
         return {s.name: float(on) for s, on in zip(self.switches, mode, strict=True)}
 
     def named(self, mode):
-        """Return a mode in words: the conditions that hold in it."""
-        if not self.switches:
-            return "everywhere"
-        holding = [short(c, 60) for c, on in zip(self.switches.values(), mode, strict=True) if on]
-        return " and ".join(holding) or "none of " + ", ".join(short(c, 40) for c in self.switches.values())
+        """Return a mode in words: the conditions that hold in it, and what moves freely."""
+        conditions = [c.doit() for c in self.switches.values()]
+        holding = [short(c, 60) for c, on in zip(conditions, mode, strict=True) if on]
+        words = " and ".join(holding) or "none of " + ", ".join(short(c, 40) for c in conditions) if conditions else "everywhere"
+        return f"{words}, {' and '.join(self.instants)} free" if self.instants else words
 
 
 def switched(scene):

@@ -4,6 +4,7 @@ import numpy as np
 
 from .channels import channel_of
 from .guards import Leaves
+from .phase import TICKS
 from .tangents import tangents
 from .trace import Value
 
@@ -51,7 +52,7 @@ class Slopes:
         Parameters
         ----------
         states : dict name -> float or array of shape (P,)
-            Handle x and v, and the states by name.
+            Handle x and v, the states by name, and the tick where it is not the first.
         h : float or array of shape (P,)
             Step [s], for implicit damping; 0 for the motion itself.
         points : int
@@ -64,6 +65,7 @@ class Slopes:
         if not S:
             return J
         leaves = self.tracing.at_start(self.values) | self.still | {_leaf(self.h): h}
+        leaves |= {("state", k): states[key] for k, key in enumerate(self.tracing.keys) if key == TICKS[0] and key in states}
         leaves |= {("input", k): states.get(name, 0.0) for k, name in enumerate(("x", "v"))}
         number = {p.name: k for k, p in enumerate(self.tracing.parameters)}
         leaves |= {("param", number[name]): value for name, value in parameters.items() if name in number}

@@ -108,6 +108,15 @@ def test_a_scene_that_is_not_linear_says_where_it_was_looked_at():
     assert limit.modes[2].h_max == pytest.approx(2 / 100, rel=1e-4)
 
 
+def test_what_changes_with_time_and_what_strikes_is_not_called_exact():
+    """Mathieu's spring; a ball that bounces by impulses, looked at in the air."""
+    f = hl.parameters("f", units="Hz", values=3)
+    F = K * (x(t) - z) * (1 + sp.sin(2 * sp.pi * f * t) / 2)
+    assert hl.step_limit(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)]), T=1e-3).small_signal
+    ball = hl.step_limit(hl.library.ball_on_the_paddle(), "taylor", T=1e-3)
+    assert ball.kind == "piecewise linear" and ball.worst.mode == "everywhere, touch free"
+
+
 def test_the_picture_crosses_one_at_the_longest_step():
     limit = hl.step_limit(coupler(), "rk4", T=1e-3)
     line, step = limit.plot().axes[0].lines
