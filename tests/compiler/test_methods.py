@@ -233,3 +233,11 @@ def test_a_multistep_method_starts_along_a_handle_that_moves():
     rate = lambda q: (x0 + v0 * q - true(q)) / a  # noqa: E731
     first = s0 + 1e-3 * (23 * rate(0.0) - 16 * rate(-1e-3) + 5 * rate(-2e-3)) / 12
     assert load(program).run(2, inputs[:2, : len(program.inputs)]).outputs[1, 1, 0] == pytest.approx(first, rel=1e-11)
+
+
+@pytest.mark.parametrize("method", ["semi_implicit_euler_damped", "ssprk3", "adams_bashforth3"])
+def test_the_engines_agree_to_the_bit(method):
+    motion = np.array([0.01 * (1 - np.cos(0.02 * np.arange(60)))]).T
+    program = hl.compile(DRIVEN, method, T=1e-3, force_at="mean")
+    one, *others = (load(program, engine).run(60, motion).outputs for engine in ("interpreter", "llvm", "vm"))
+    assert np.ptp(one[:, 1]) > 0 and all((one == other).all() for other in others)
