@@ -4,10 +4,12 @@ from dataclasses import replace
 
 import pytest
 import sympy as sp
+from bad_line import lossy_port
 
 import hapticlab as hl
 from hapticlab import t, v, x
 from hapticlab.compiler.stable_values import part_of_the_way
+from hapticlab.device.board import SerialPaddle
 from hapticlab.device.live import check_margin, checked
 from hapticlab.errors import PaddleError, ParameterError
 
@@ -15,9 +17,13 @@ z = hl.coordinate("z", unit="m")
 K, B, m = hl.parameters("K B m", units="N/m N*s/m kg", values=(500, 0.0, 0.05))
 
 
-def program(method="semi_implicit_euler", **values):
+def scene(**values):
     F = K * (x(t) - z) + B * (v(t) - z.diff(t))
-    return hl.compile(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)], name="coupler")(**values), method, T=1e-3, live="K m")
+    return hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)], name="coupler")(**values)
+
+
+def program(method="semi_implicit_euler", **values):
+    return hl.compile(scene(**values), method, T=1e-3, live="K m")
 
 
 def test_one_past_its_limit():
@@ -57,3 +63,27 @@ def test_a_board_is_not_given_what_is_unstable_as_bound():
         check_margin(program(K=500_000))
     with pytest.raises(PaddleError, match="gains energy in every step"):
         check_margin(program("euler"))
+
+
+@pytest.fixture
+def board():
+    port = lossy_port()
+    with SerialPaddle("sim://hapkit", port=port) as made:
+        made.home(at=port.handle.x)
+        yield made
+
+
+def test_a_board_refuses_both(board):
+    """What is unstable as bound does not start, but with the motor off; past a limit nothing is set, and what runs goes on."""
+    with pytest.raises(PaddleError, match="unstable as bound"):
+        board.start(scene(K=500_000), method="semi_implicit_euler", live="K")
+    board.start(scene(K=500_000), method="semi_implicit_euler", live="K", passive=True)
+    board.stop()
+    board.start(scene(K=20, B=0.01), method="semi_implicit_euler", live="K")
+    board.wait(0.05)
+    with pytest.raises(ParameterError, match=r"K = 900000: a step is stable for K <= "):
+        board.set(K=900_000)
+    board.set(K=25)
+    board.wait(0.05)
+    log = board.stop()
+    assert log.fault is None and [values for _, values in log.changes] == [{"K": 25.0}]
