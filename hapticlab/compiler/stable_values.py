@@ -168,16 +168,22 @@ def _alone(steps, ends, values):
     """Return (name, side) -> how far a parameter may go alone, of those that have a limit before their declared end."""
     near = [values[name] for name, _, _ in ends]
     far = [_far(values[name], c.high if side else c.low, side) for name, side, c in ends]
-    open_, found = list(range(len(ends))), {}
+
+    def unstable(numbers, places):
+        """Tell of places of each of some ends, shape (ends, places), which are unstable."""
+        given = {name: np.full(places.size, values[name]) for name, _, _ in ends}
+        for row, k in enumerate(numbers):
+            given[ends[k][0]][row * places.shape[1] : (row + 1) * places.shape[1]] = places[row]
+        return steps.unstable(places.size, **given).reshape(places.shape)
+
+    every = np.arange(len(ends))
+    ahead = np.reshape([_between(near[k], far[k])[[POINTS // 2, -1]] for k in every], (-1, 2))
+    open_, found = [*every[unstable(every, ahead).any(axis=1)]], {}
     for _ in range(ROUNDS):
         if not open_:
             break
-        places = [_between(near[k], far[k]) for k in open_]
-        given = {name: np.full(POINTS * len(open_), values[name]) for name, _, _ in ends}
-        for row, (k, place) in enumerate(zip(open_, places, strict=True)):
-            given[ends[k][0]][row * POINTS : (row + 1) * POINTS] = place
-        bad = steps.unstable(POINTS * len(open_), **given).reshape(-1, POINTS)
-        for k, place, row in zip([*open_], places, bad, strict=True):
+        places = np.array([_between(near[k], far[k]) for k in open_])
+        for k, place, row in zip([*open_], places, unstable(open_, places), strict=True):
             first = int(np.argmax(row)) if row.any() else POINTS
             if first == POINTS or place[first] == 0:
                 open_.remove(k)  # stable up to its declared end; a mass of zero is refused anyway
