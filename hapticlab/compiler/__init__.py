@@ -52,7 +52,10 @@ happens in that instant (which contacts strike, rest, lose energy), ``impact`` h
 ``complementarity`` solves for several.
 
 **Method -> Program.** ``tracing`` gathers states and inputs, named by ``channels``, and leaves out what no output sees;
-``options`` has checked what was asked for. The result is an ``ir`` program:
+``options`` has checked what was asked for. How long a step may be, and what live parameters may be set to, is known
+before it runs: ``tangents`` differentiates the instructions in numbers (``slopes``, of the motion), ``step_matrix`` takes
+a method's step of what comes out, and ``stable_values`` looks for where it stops to be stable. The result is an ``ir``
+program:
 
 >>> program = hl.compile(scene, "taylor", T=1e-3)
 >>> [c.name for c in program.outputs]
