@@ -14,7 +14,7 @@ from .measures import METRICS, WithFault
 #: lanes and ticks of one call of an engine
 LANES, TICKS = 2048, 2000
 #: programs that a process keeps compiled
-KEPT = 8
+KEPT = 4
 #: instructions times ticks times points of a chunk: a few tenths of a second of machine code
 WORK = 8e9
 #: points of a chunk, whatever they cost

@@ -96,7 +96,7 @@ def identity(plan, scene):
         "hapticlab": __version__,
         "scene": scene.name,
         "metric": plan.metric,
-        "duration": f"{plan.duration!r} s",
+        "duration": f"{float(plan.duration)} s",
         "options": ", ".join(f"{name} = {a}" for name, a in plan.options.items()) or "none",
         "start": ", ".join(f"{name} = {a!r}" for name, a in plan.starts.items()),
         "paddle": " ".join(str(grid.paddle).split()),

@@ -7,6 +7,7 @@ chatter boundary at half its true stiffness or beyond any. The coefficients are 
 program serves every mass, damping and period, and lanes may sweep them.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,18 +45,38 @@ def transition(M, b, k, h):
     (10.0, 0.02)
     """
     # In time over h, with v h, u h^2/M and d h^3/M as coordinates, every entry is of order one and so keeps its
-    # relative accuracy; in SI units h^3/6M would drown beside 1.
+    # relative accuracy; in SI units h^3/6M would drown beside 1. On a spring that oscillates within h, v h/(w h).
     M, b, k, h = np.broadcast_arrays(*(np.asarray(a, float) for a in (M, b, k, h)))
+    kappa, beta, free = k * h * h / M, b * h / M, k == 0
+    s = np.sqrt(np.maximum(kappa, 1.0))
     A = np.zeros((*h.shape, 4, 4))
-    A[..., 0, 1] = A[..., 1, 2] = A[..., 2, 3] = 1
-    A[..., 1, 0], A[..., 1, 1] = -k * h * h / M, -b * h / M
+    A[..., 0, 1], A[..., 1, 2], A[..., 2, 3] = s, 1 / s, 1
+    A[..., 1, 0], A[..., 1, 1] = -kappa / s, np.where(free, 0.0, -beta)
     E = exponential(A)
-    E[(b == 0) & (k == 0), :2] = (1, 1, 1 / 2, 1 / 6), (0, 1, 1, 1 / 2)  # a mass alone coasts, without any rounding
-    scale = {"x": 1.0, "v": h, "u": h * h / M, "d": h**3 / M}
-    row = {"x": (0, 1.0), "v": (1, np.where(h > 0, 1 / np.where(h > 0, h, 1.0), 0.0))}
+    E[free, :2] = dragged(beta[free])
+    scale = {"x": 1.0, "v": h / s, "u": h * h / M, "d": h**3 / M}
+    row = {"x": (0, 1.0), "v": (1, np.where(h > 0, s / np.where(h > 0, h, 1.0), 0.0))}
     column = {name: position for position, name in enumerate("xvud")}
     found = {e: E[..., row[e[0]][0], column[e[1]]] * scale[e[1]] * row[e[0]][1] for e in PHI}
     return found if h.ndim else {e: float(c) for e, c in found.items()}
+
+
+def dragged(beta):
+    """Return the first rows of e^A without a spring, shape (n, 2, 4), for an array of b h/M >= 0, however large.
+
+    phi_0 = e^-beta and phi_j = (1/(j-1)! - phi_j-1)/beta; downwards from the series of phi_3 where that would cancel. A
+    mass alone coasts without any rounding: 1, 1, 1/2, 1/6.
+    """
+    series, small = np.zeros_like(beta), np.minimum(beta, 1.0)
+    for j in range(20, 2, -1):  # by Horner's rule, up to beta^17/20!
+        series = 1 / math.factorial(j) - small * series
+    up, down, large = [np.exp(-beta)], [series], np.maximum(beta, 1.0)
+    for j in range(3):
+        up.append((1 / math.factorial(j) - up[-1]) / large)
+        down.insert(0, 1 / math.factorial(2 - j) - small * down[0])
+    phi = [np.where(beta < 1, low, high) for low, high in zip(down, up, strict=True)]
+    one, zero = np.ones_like(beta), np.zeros_like(beta)
+    return np.moveaxis(np.array([[one, *phi[1:]], [zero, *phi[:3]]]), -1, 0)
 
 
 @dataclass(frozen=True)

@@ -66,6 +66,14 @@ def test_damage_is_noticed(tmp_path):
         assert len(read(tmp_path / "damaged")) == before
 
 
+def test_two_at_once_do_each_other_no_harm(tmp_path):
+    with Partial(tmp_path / "a", WHAT) as one, Partial(tmp_path / "a", WHAT) as other:
+        for record in RECORDS:
+            one.add(record)
+            other.add(record)
+    assert len(read(tmp_path / "a")) == 2 * len(RECORDS)
+
+
 def test_what_is_left():
     random = np.random.default_rng(5)
     for _ in range(50):
