@@ -3,6 +3,7 @@
 ``enforce="auto"`` takes the closed form where there is one, else multipliers with a projection after every tick.
 """
 
+import functools
 import itertools
 import math
 
@@ -59,17 +60,16 @@ def enforcement(
     constraints, coordinates = tuple(constraints), tuple(coordinates)
     constraints = tuple(sorted(constraints, key=lambda g: not is_holonomic(g)))
     positions = [g for g in constraints if is_holonomic(g)]
-    assembly = assembled(constraints, coordinates, start)
-    check_independent(assembly, constraints, positions, coordinates)
+    assembly = _assembled(constraints, coordinates, tuple(start.items()))
     definite = _definite(M) if definite is None else definite
     weight = 0.0 if definite or M is None else _weight(M, assembly, coordinates)
     reason = "a constraint of rates has none" if len(positions) < len(constraints) else ""
     if enforce in ("auto", "embed") and not reason:
         try:
-            embedding = embed(constraints, coordinates, start)
+            embedding, note = _closed(constraints, coordinates, tuple(start.items()))
             _check_wraps(embedding.wraps, used)
-            check_rates(assembly, constraints, coordinates, start, embedding.drivers)
-            return Closed(coordinates, embedding, definite), (_note_of(embedding),)
+            _check_rates(constraints, coordinates, tuple(start.items()), embedding.drivers)
+            return Closed(coordinates, embedding, definite), (note,)
         except NotClosed as why:
             reason = str(why)
     if enforce == "embed":
@@ -92,6 +92,29 @@ def enforcement(
         return Multipliers(coordinates, constraints, alpha, weight), (note, *faults)
     note = "constraints enforced by multipliers and one projection per tick"
     return Multipliers(coordinates, constraints, None, weight), (f"{note}: {reason}" if reason else note, *faults)
+
+
+# what follows from the mechanism and its start alone: a trade-off or a sweep compiles the same one again and again
+
+
+@functools.lru_cache(maxsize=8)
+def _assembled(constraints, coordinates, start):
+    """Return the constraints as functions of arrays, independent of each other; ``start`` as items of a dict."""
+    assembly = assembled(constraints, coordinates, dict(start))
+    check_independent(assembly, constraints, [g for g in constraints if is_holonomic(g)], coordinates)
+    return assembly
+
+
+@functools.lru_cache(maxsize=8)
+def _closed(constraints, coordinates, start):
+    """Return the closed form and the note that says so."""
+    embedding = embed(constraints, coordinates, dict(start))
+    return embedding, _note_of(embedding)
+
+
+@functools.lru_cache(maxsize=8)
+def _check_rates(constraints, coordinates, start, drivers):
+    check_rates(_assembled(constraints, coordinates, start), constraints, coordinates, dict(start), drivers)
 
 
 def _check_wraps(wraps, used):
