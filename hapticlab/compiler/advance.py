@@ -28,7 +28,7 @@ from .trace import select
 #: most located events of a step: what touches may leave within it, and something else may happen too
 _EVENTS = (2, 3)
 #: most radians a period that is followed piece by piece, at some 1500 instructions each
-MOST_TURNS = 50
+MOST_TURNS = 32
 
 
 @dataclass(frozen=True)
@@ -174,8 +174,9 @@ def switched(method, tracing, motion, groups, h, name, impact, after, number):
     """Trace one period of a motion that is linear between switches; see :func:`advance`."""
     start = [number(value.id) for part in groups for value in part]
     maps = Maps(motion, h, (method.reason, method.cure), tracing.parameters, start, number)
-    events = method.events or _EVENTS[len(motion.guards) + len(motion.reactions) > 2]
     turns = maps.omega * h
+    # a contact lasts half a turn of its mode, and has two events
+    events = method.events or _EVENTS[len(motion.guards) + len(motion.reactions) > 2] + int(2 * turns / math.pi)
     if turns > MOST_TURNS:
         raise ProgramLimitError(
             f"{name}: its fastest part turns with omega = {maps.omega:.4g} rad/s, by {turns:.4g} rad in a period of {h:g} s; "
