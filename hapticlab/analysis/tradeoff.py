@@ -45,8 +45,8 @@ def tradeoff(
     solvers agree on, and with what the paddle's encoder alone makes of it. On boards cost is predicted, as
     :func:`~hapticlab.compiler.cost.cost` does; here it is timed.
 
-    Settings of more substeps are left out where fewer already have the error of the hold itself, and float64 where
-    rounding is no part of the error: ``status`` says "not tried", and ``why``.
+    A setting is left out where a cheaper method or fewer substeps already have the error of the hold itself, and float64
+    where rounding is no part of the error: ``status`` says "not tried", and ``why``.
 
     Parameters
     ----------
@@ -98,13 +98,21 @@ def tradeoff(
     boards = tuple(name for name in targets if name != PC)
     settings = _settings(scene, methods, T, substeps, holds, force_at, precision)
     with progress_bar(len(settings), progress, "setting") as shown:
-        known = references(scene, motions or handle_motions(scene, paddle), step=_step(T))
+        motions = tuple(motions or handle_motions(scene, paddle))
+        with shared_out((scene, _step(T)), workers) as share:
+            halves = list(share(_references, [motions[::2], motions[1::2]]))
+        known = [reference for half in halves for reference in half]
         bench = Bench(scene, paddle, tuple(known), boards, every, velocity, live)
         with shared_out(bench, workers) as share:
             trials = all_tried(settings, share, shown.update)
             keys = list(dict.fromkeys((s.T, s.hold) for s in settings))
             floors = dict(zip(keys, share(sensor_floor, keys), strict=True))
     return Tradeoff(scene.name, Table(rows_of(bench, trials, floors, targets)), targets, tolerance, bench)
+
+
+def _references(common, motions):
+    scene, step = common
+    return references(scene, motions, step=step) if motions else []
 
 
 def _settings(scene, methods, T, substeps, holds, force_at, precision):
