@@ -4,11 +4,13 @@ import math
 import operator
 from numbers import Real
 
-from ..errors import ParameterError, ProgramError
+from ..errors import ParameterError, ProgramError, ProgramLimitError
 from ..scene.symbols import Parameter
 
 #: of a period, that an error may propose: more of any method are more instructions than a program may have
 MOST_SUBSTEPS = 1000
+#: each is an instruction at least
+_MOST_STEPS = 50_000
 
 
 def proposed(substeps, instead):
@@ -42,6 +44,8 @@ def steps(substeps):
         count = 0
     if count < 1:
         raise ProgramError(f"substeps = {substeps!r}; needs a whole number >= 1")
+    if count > _MOST_STEPS:
+        raise ProgramLimitError(f"substeps = {count}: a program has at most 50000 instructions; take fewer substeps")
     return count
 
 

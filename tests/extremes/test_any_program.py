@@ -23,7 +23,7 @@ FINITE = {"f32": st.floats(width=32, allow_nan=False, allow_infinity=False),
           "f64": st.floats(allow_nan=False, allow_infinity=False),
           "bool": st.integers(0, 1), "i32": st.integers(-(2**31), 2**31 - 1)}  # fmt: skip
 ANY = FINITE | {"f32": st.floats(width=32), "f64": st.floats(), "bool": st.booleans()}
-EVERY_DRAW = settings(derandomize=True, deadline=None, suppress_health_check=list(HealthCheck), max_examples=40)
+EVERY_DRAW = settings(derandomize=True, deadline=None, suppress_health_check=list(HealthCheck), max_examples=25)
 MANY_DRAWS = settings(EVERY_DRAW, max_examples=1500)
 
 
@@ -190,7 +190,7 @@ def test_a_damaged_program_is_refused_in_words_or_runs_as_any_other(program, han
 # any finite numbers at the boundary of an engine
 
 
-@settings(EVERY_DRAW, max_examples=25)
+@EVERY_DRAW
 @given(programs(), st.lists(st.floats(), min_size=2 * TICKS, max_size=2 * TICKS), st.floats())
 def test_any_float64_at_all_is_taken_or_refused_alike(program, numbers, value):
     """Also nan, infinities, and what float32 has not: each engine takes it as float32 does."""

@@ -62,7 +62,7 @@ def test_an_elastic_ball_bounces_for_ever():
     np.testing.assert_allclose(found["h"], 0.04 - G * tau**2 / 2, rtol=0, atol=1e-11)
 
 
-@pytest.mark.parametrize("stiffness", [1e4, 1e6, 1e7])
+@pytest.mark.parametrize("stiffness", [1e4, 1e6, pytest.param(1e7, marks=pytest.mark.slow)])
 def test_a_contact_shorter_than_a_tick_gives_back_the_height(stiffness):
     """It lasts 7, 0.7 and 0.2 ms of 1 ms. Between contacts the energy is m g 40 mm, whenever they were."""
     found = falls(hl.penalty(k=f"{stiffness} N/m"), ticks=1000, method="exact", live=())
@@ -83,7 +83,7 @@ def test_contacts_at_the_same_instant_do_not_depend_on_their_order(law, many):
     tops = [hl.Contact(ball - x(t), law, name=f"top{i}") for i, ball in enumerate(balls)]
     L = sum(a * ball.diff(t) ** 2 / 2 - a * g * ball for a, ball in zip(masses, balls, strict=True))
     runs = []
-    for order in list(permutations(range(many)))[:: many - 1]:
+    for order in list(permutations(range(many)))[:: 4 - 3 * (many == 2)]:
         eom = hl.lagrange(L, contacts=[tops[i] for i in order])
         found = watched(
             hl.Scene(force=0 * K * balls[0], eom=[eom], watch=balls), ticks=150, method=hl.Taylor(events=many)

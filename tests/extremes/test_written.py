@@ -185,12 +185,16 @@ def test_a_mass_that_is_gone_stops_the_motor():
 # sheer size
 
 
-def test_a_hundred_thousand_terms_are_refused_in_no_time():
-    terms = [
-        sp.Mul(i + 1, sp.sin(sp.Mul(i + 1, u, evaluate=False), evaluate=False), evaluate=False) for i in range(25_000)
-    ]
+def polynomial(terms):
+    """Return a sum of as many different powers, as sympy leaves it where nothing is evaluated."""
+    powers = [sp.Mul(i, sp.Pow(u, i, evaluate=False), evaluate=False) for i in map(sp.Integer, range(2, terms + 2))]
+    return sp.Mul(F0, sp.Add(*powers, evaluate=False), evaluate=False)
+
+
+@pytest.mark.parametrize("terms", [34_000, pytest.param(100_000, marks=pytest.mark.slow)])
+def test_sums_that_no_program_can_hold_are_refused_before_they_are_looked_into(terms):
     with pytest.raises(SceneError, match="more than 100000 different parts.*fewer terms"):
-        hl.Scene(force=sp.Mul(F0, sp.Add(*terms, evaluate=False), evaluate=False))
+        hl.Scene(force=polynomial(terms))
 
 
 def test_a_power_of_a_hundred_thousand_is_short():
@@ -207,6 +211,6 @@ def test_a_nest_too_deep_says_how_to_write_it():
         hl.compile(hl.Scene(force=k * deep), T=1e-3)
 
 
-def test_three_hundred_walls_in_a_row_are_one_program():
-    force = sum((hl.when(x(n) > x_o * i, F0) for i in range(300)), 0 * F0)
-    assert felt(force, [0.0, 0.005, 1.005, 10.0]).tolist() == [0, 1, 101, 300]
+def test_a_hundred_walls_in_a_row_are_one_program():
+    force = sum((hl.when(x(n) > x_o * i, F0) for i in range(100)), 0 * F0)
+    assert felt(force, [0.0, 0.005, 0.995, 10.0]).tolist() == [0, 1, 100, 100]
