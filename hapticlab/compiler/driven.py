@@ -130,13 +130,13 @@ def without_samples(expr):
     (x(n), v(n))
     """
     before = {s: s.func(n) - lag_of(s) * T * RATES[type(s)](n) for s in expr.atoms(x, v) if lag_of(s)}
-    delayed = expr.has(delay)
     expr = expr.xreplace(before)
+    if expr.has(delay) and _over_T(expr):
+        raise ProgramError(f"{expr} takes the difference of a delay, whose rate is not known between the samples")
     while expr.has(delay):
         expr = expr.xreplace({d: d.args[0] for d in expr.atoms(delay) if not d.args[0].has(delay)})
-    if not expr.has(T):
-        return expr
-    differences = any(p.base == T and p.exp.could_extract_minus_sign() for p in expr.atoms(sp.Pow))
-    if differences and delayed:
-        raise ProgramError(f"{expr} takes the difference of a delay, whose rate is not known between the samples")
-    return expr.xreplace({T: sp.Float(SHORT) if differences else sp.S.Zero})
+    return expr.xreplace({T: sp.Float(SHORT) if _over_T(expr) else sp.S.Zero}) if expr.has(T) else expr
+
+
+def _over_T(expr):
+    return any(p.base == T and p.exp.could_extract_minus_sign() for p in expr.atoms(sp.Pow))
