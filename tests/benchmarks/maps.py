@@ -19,6 +19,7 @@ import scenes
 from timing import SCALE, best_of, imported, row
 
 import hapticlab as hl
+from hapticlab.analysis import chunks
 from hapticlab.device.plant import transition
 
 SIDE, TICKS, V0 = 1000, 1000, 0.1
@@ -41,10 +42,15 @@ def axes(points):
 
 
 def ours(points, **given):
-    """Return the sweep."""
+    """Return the sweep as it is for the first time: a second one finds the machine code made."""
     (k, b), paddle = axes(points), hl.SimulatedPaddle(m=0.05, b=0.1, T=scenes.T, hand=HAND)
     scene, fixed = scenes.wall()(x_o=0.0), {"metric": "peak_force", "progress": False, "v": V0}
-    return lambda: hl.sweep(scene, paddle, k=k, b=b, **fixed, **given).values.ravel()
+
+    def call():
+        chunks._MADE.clear()
+        return hl.sweep(scene, paddle, k=k, b=b, **fixed, **given).values.ravel()
+
+    return call
 
 
 def lanes(points):
