@@ -75,7 +75,8 @@ Fig. 23.7 of the chapter has three processes, each with its model. Here they are
   ``enforcing`` and ``solve``, stepped by ``methods``, ``exact`` or ``located``.
 
 **Program -> numbers.** ``engine`` chooses one of three that give the same bits: ``interpreter`` (the reference),
-``llvm`` (``llvm_emit``, ``side_by_side``), and the board's own code on this computer, ``vm`` and ``native``
-(``toolchain``). The functions that all share are in ``elementary``. For a board ``bytecode`` writes the program,
+``llvm`` (``llvm_emit``, ``side_by_side``; ``branches`` around what ``skipped`` finds that only one case needs), and the
+board's own code on this computer, ``vm`` and ``native`` (``toolchain``). The functions that all share are in
+``elementary``. For a board ``bytecode`` writes the program,
 ``cheaders`` its tables; ``cost`` (``angles``, ``traffic``) says what it takes there, ``fit`` what would.
 """
