@@ -173,7 +173,8 @@ def _words(name, row, asked):
     if name == "tolerance":
         return f"tolerance {percent(row.err_max + row.doubt)} instead of {percent(asked.allowed(row))}"
     if name == "load":
-        return row.why or f"load {percent(row.load)} instead of {percent(asked.load)}"
+        longer = f"T = {row.T * row.load / asked.load * 1e3:.3g} ms or longer, to be tried" if row.load < math.inf else ""
+        return row.why or f"load {percent(row.load)} instead of {percent(asked.load)}, or {longer}"
     if name == "passive":
         part = f", or its stiffness, damping and mass all times {row.b_device / row.b_req:.2g}" if row.b_device else ""
         asks = f"a device with b >= {row.b_req:.3g} N s/m, this one has {row.b_device:.3g} N s/m"

@@ -65,17 +65,26 @@ def _panel(axes, target, rows, methods, asked):
             )  # fmt: skip
             if BARRED[row.force_at]:
                 axes.plot(*_places([row]), BARRED[row.force_at], color="black", markersize=8, zorder=4)
-    floors = {row.T: row.sensor_floor for row in rows if row.sensor_floor > 0}
-    for T, floor in floors.items():
-        axes.axhline(100 * floor, color="#4d4d4d", linestyle="--", linewidth=1.0, zorder=1)
-        axes.annotate(
-            f"sensor, {T * 1e3:g} ms", (0.995, 100 * floor), xycoords=("axes fraction", "data"), ha="right", va="bottom",
-            fontsize="x-small", color="#4d4d4d",
-        )  # fmt: skip
+    _sensor(axes, {row.T: row.sensor_floor for row in rows if row.sensor_floor > 0})
     axes.axhline(100 * asked.tolerance, color="black", linestyle=":", linewidth=1.0, zorder=1)
     axes.axvline(100 * asked.load, color="black", linestyle=":", linewidth=1.0, zorder=1)
     axes.set(title=target, xlabel="load [% of the period]")
     log_scales(axes)
+
+
+def _sensor(axes, floors):
+    """Draw what the encoder alone makes of error at each period, those that lie near each other under one label."""
+    labels = []
+    for T, floor in sorted(floors.items(), key=lambda item: item[1]):
+        axes.axhline(100 * floor, color="#4d4d4d", linestyle="--", linewidth=1.0, zorder=1)
+        if labels and floor < 1.6 * labels[-1][0]:
+            labels[-1][:] = [floor, [*labels[-1][1], T]]
+        else:
+            labels.append([floor, [T]])
+    for floor, periods in labels:
+        text = "sensor at " + ", ".join(f"{T * 1e3:g}" for T in sorted(periods)) + " ms"
+        style = {"ha": "right", "va": "bottom", "fontsize": "x-small", "color": "#4d4d4d"}
+        axes.annotate(text, (0.995, 100 * floor), xycoords=("axes fraction", "data"), **style)
 
 
 def front(rows):
