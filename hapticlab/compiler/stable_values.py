@@ -20,7 +20,7 @@ from .tangents import tangents
 from .trace import Value
 
 #: looked at: modes, states of a motion, places between the limits
-MOST_MODES, MOST_STATES, PLACES = 8, 40, 32
+MOST_MODES, MOST_STATES, PLACES = 64, 40, 32
 #: an end without a declared limit is looked at up to so many times the value bound
 FAR = 1e6
 #: places between the value bound and an end, and how often the two next to the limit are looked between
@@ -56,29 +56,39 @@ class StableValues:
         self.linear = is_linear(motion)
         ranges = [(type(q).low, type(q).high) for q in dynamics.second]
         states = [start, *([] if self.linear else around(start, ranges, bool(dynamics.enforced)))]
-        self.cases = []
+        cases = []
         for modes in itertools.islice(modes_of(motion), MOST_MODES):
             for at in states:
                 with np.errstate(all="ignore"):  # at the tip of a root there is no slope to follow
                     at = at if self.linear else onto_surfaces(motion, modes, at, number)
                 leaves = dict(zip(self.moving, [*at[0], *at[1], *at[2]], strict=True))
-                self.cases.append(leaves | {_leaf(leaf): value for leaf, value in modes.items()})
-        different = {}
-        for case, J in zip(self.cases, self.jacobians(), strict=True):
-            different.setdefault(J.tobytes(), case)
-        self.cases = list(different.values())
+                cases.append(leaves | {_leaf(leaf): value for leaf, value in modes.items()})
+        self.cases = {leaf: np.array([case[leaf] for case in cases]) for leaf in cases[0]}
+        kept = self._telling(len(cases))
+        self.cases = {leaf: values[kept] for leaf, values in self.cases.items()}
+        self.count = len(kept)
+
+    def _telling(self, count):
+        """Return the numbers of the first case and of the stiffest that differ: a few where there are many states."""
+        self.count, different = count, {}
+        for k, (J,) in enumerate(self.jacobians()):
+            different.setdefault(J.tobytes(), (np.linalg.norm(J), k))
+        first, *others = different.values()
+        few = 7 if len(self.moving) <= 8 else 2
+        stiffest = sorted(others, key=lambda pair: (not np.isfinite(pair[0]), pair[0]), reverse=True)[:few]
+        return [first[1], *(k for _, k in stiffest)]
 
     def jacobians(self, lanes=1, **values):
-        """Yield J of every case, shape (lanes, S, S), with parameters of shape (lanes,)."""
-        n, S = len(self.motion.q), len(self.moving)
+        """Return J of every case, shape (cases, lanes, S, S), with parameters of shape (lanes,)."""
+        n, S, points = len(self.motion.q), len(self.moving), self.count * lanes
         wanted = [rate.id for rate in (*self.motion.a, *self.motion.ds)]
-        given = self.given | {("param", self.number[name]): value for name, value in values.items()}
-        for case in self.cases:
-            _, slopes = tangents(self.instructions, wanted, given | case, self.moving, lanes)
-            J = np.zeros((lanes, S, S))
-            J[:, :n, n : 2 * n] = np.eye(n)
-            J[:, n:] = np.moveaxis(slopes, 2, 0)
-            yield J
+        given = self.given | {leaf: np.repeat(column, lanes) for leaf, column in self.cases.items()}
+        given |= {("param", self.number[name]): np.tile(value, self.count) for name, value in values.items()}
+        _, slopes = tangents(self.instructions, wanted, given, self.moving, points)
+        J = np.zeros((points, S, S))
+        J[:, :n, n : 2 * n] = np.eye(n)
+        J[:, n:] = np.moveaxis(slopes, 2, 0)
+        return J.reshape(self.count, lanes, S, S)
 
     def unstable(self, lanes=1, **values):
         """Return for each lane whether some case is unstable there, or has no finite slope."""
@@ -97,10 +107,11 @@ class StableValues:
     def margin(self):
         """Return h_max/h at the values bound, the least over the cases where it is known; inf without a limit."""
         n, least = len(self.motion.q), np.inf
+        places = (STEPS, CLOSING) if len(self.moving) <= 16 else (STEPS[::2], (9,))
         for (J,) in self.jacobians():
             if np.isfinite(J).all():
                 with np.errstate(all="ignore"):
-                    longest = longest_step(lambda h, J=J: step_matrix(self.method, J, n, h, self.mass), J, STEPS, CLOSING)
+                    longest = longest_step(lambda h, J=J: step_matrix(self.method, J, n, h, self.mass), J, *places)
                 least = min(least, longest / self.h)
         return least
 
