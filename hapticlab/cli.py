@@ -91,8 +91,8 @@ def tradeoff(parser, options):
     file, path = _opened(parser, options), Path(options.file)
     folder = _folder(options)
     given = {"methods": options.methods, "T": options.periods, "targets": options.targets}
-    given = {name: several for name, several in given.items() if several}
-    found = measure_tradeoff(file.scene, file.paddle, tolerance=options.tolerance, every=options.every, **given)
+    given = {name: several for name, several in given.items() if several} | {"live": options.live, "every": options.every}
+    found = measure_tradeoff(file.scene, file.paddle, tolerance=options.tolerance, **given)
     asked = {"load": options.load, "passive": not options.any_hand}
     figure = folder / f"{path.stem}-tradeoff.png"
     found.plot(**asked).savefig(figure)
@@ -221,6 +221,7 @@ def _add_tradeoff(commands, shared):
     made.add_argument("--T", dest="periods", type=float, nargs="+", metavar="SECONDS", help="sampling periods [s]")
     targets = (PC, *(name for name, given in BOARDS.items() if given.hz))
     made.add_argument("--targets", nargs="+", choices=targets, help="this computer and boards (default: all)")
+    made.add_argument("--live", nargs="+", default=(), metavar="NAME", help="parameters that stay settable (default: none)")
     made.add_argument("--every", type=_whole, default=10, metavar="N", help="one sample of telemetry in N ticks (default: 10)")
     made.set_defaults(command=tradeoff, parser=made, T=None, duration=None)
     return made

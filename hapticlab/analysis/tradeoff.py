@@ -37,7 +37,7 @@ SHORTEST = 1e-5
 def tradeoff(
     scene, paddle, *, methods="auto", T=(2e-3, 1e-3, 5e-4), substeps=(1, 2, 4), holds=HOLDS, force_at=("before",),
     precision=PRECISIONS, targets=(PC, "uno", "cortex-m0+", "cortex-m4f"), motions=None, tolerance=1e-2,
-    velocity="backward_difference", every=10, live=None, workers=None, progress=True,
+    velocity="backward_difference", every=10, live=(), workers=None, progress=True,
 ):  # fmt: skip
     """Measure speed against accuracy of a scene: error of the force, cost, stability and passivity of every setting.
 
@@ -65,8 +65,11 @@ def tradeoff(
         :func:`~hapticlab.analysis.motions.handle_motions` unless given.
     tolerance : float
         Part of the greatest force, for the printed choice and the plot.
-    velocity, live
-        Of :func:`hapticlab.compile`; "exact" takes all parameters as constants whatever ``live`` is.
+    velocity : str
+        Of :func:`hapticlab.compile`.
+    live : str or sequence of names, or None for all
+        Parameters that stay settable while running, none unless given: constants make every method cheaper, and "exact"
+        possible.
     every : int
         Ticks per sample of telemetry, part of a board's load.
     workers : int, optional

@@ -72,7 +72,7 @@ class Bench:
     boards: tuple
     every: int
     velocity: str
-    live: object = None
+    live: object = ()
 
     @functools.cached_property
     def peak(self):
@@ -95,10 +95,9 @@ class Bench:
         return Limits(self.scene)
 
     def options(self, setting):
-        """Return the options of :func:`hapticlab.compile` of a setting or a row; "exact" makes constants of parameters."""
-        live = () if setting.method.startswith("exact") else self.live
+        """Return the options of :func:`hapticlab.compile` of a setting or a row."""
         made = {name: getattr(setting, name) for name in ("method", "T", "substeps", "hold", "force_at")}
-        return made | {"dtype": setting.precision, "velocity": self.velocity, "live": live}
+        return made | {"dtype": setting.precision, "velocity": self.velocity, "live": self.live}
 
     @functools.lru_cache(maxsize=8)  # noqa: B019  it lives as long as its worker
     def samples(self, T):
