@@ -135,7 +135,7 @@ def port_passivity(scene, paddle=None, *, T=None, at=None, **options):
     """Least damping b_req [N s/m] of a device for a scene to be passive in every passive hand, in every mode of its contacts.
 
     Colgate and Schenkel's criterion on the tick of the compiled program, linearised at operating points; its cases are
-    held in their modes. Without encoder, friction of the device and saturation.
+    held in their modes. The velocity is the backward difference; without encoder, friction of the device and saturation.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from ..compiler.exact import EXACT
 from ..compiler.exponential import exponential
 from ..compiler.methods import METHODS
 from ..compiler.options import choice, period, steps
-from ..compiler.step_matrix import longest_step, step_matrix
+from ..compiler.step_matrix import GRID, longest_step, step_matrix
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from ..scene.written import no_scene
@@ -19,6 +19,8 @@ from .linearization import motion_at, slopes_of
 from .operating import WORTH, kind_of, operating_points, probes_of
 from .switches import switched
 
+#: states past which eigenvalues take their time
+MANY = 12
 #: kind of scene -> h_max/h at and above which it needs no further test; below 1 it is refused
 AMPLE = {"linear": 1.0, "piecewise linear": 1.5, "small-signal": 2.0}
 
@@ -225,7 +227,8 @@ def _mode_limit(method, J, step, h, mode, point):
     if method == Taylor.name:
         h_max = 1.0 / largest if largest else np.inf
     else:
-        h_max = np.inf if method == EXACT else longest_step(step, J)
+        few = (GRID[::3], (17, 17)) if len(J) > MANY else ()  # to a thousandth all the same
+        h_max = np.inf if method == EXACT else longest_step(step, J, *few)
     gain = energy_gain(values, np.linalg.eigvals(step(np.array([h]))[0]), h)
     per_contact = np.pi / (fastest * h) if fastest else np.inf
     return ModeLimit(mode, point, values, float(h_max), float(h_max / h), gain, float(per_contact), step)
