@@ -159,6 +159,7 @@ class _Loop:
         new = dict.fromkeys(self.states, builder.const(0.0, "f64"))
         new.update({f"scene.{c.name}": s for c, s in zip(self.program.states, scene, strict=True)})
         new.update({"plant.x": x, "plant.v": v, "tick": builder.const(0, "i32")})
+        new["fault"] = _fault(new["fault"], scene, 1.0 + len(self.program.outputs))
         if "sensed.x" in new:
             new["sensed.x"] = sample["x"]
         if self.measure:
@@ -219,12 +220,12 @@ class _Loop:
         yield Channel("fault", "1", "f64")
 
 
-def _fault(before, values):
-    """Return the latched fault: 0, or 1 + the position of the first value that is not finite."""
+def _fault(before, values, first=1.0):
+    """Return the latched fault: 0, or the number of the first value that is not finite, counted from ``first`` on."""
     found = 0.0
     for position, value in reversed(list(enumerate(values))):
         if value.type in LARGEST:
-            found = select(abs(value) <= LARGEST[value.type], found, position + 1.0)
+            found = select(abs(value) <= LARGEST[value.type], found, first + position)
     if not hasattr(found, "type"):
         return before
     return select(before > 0.0, before, found)

@@ -61,14 +61,25 @@ def test_no_number_stops_the_motor_in_its_tick(force, good, bad):
     stopped(host, "NOT_FINITE")
 
 
-def test_the_board_and_the_simulation_stop_in_the_same_tick_for_the_same_watched_channel():
-    scene = hl.Scene(force=k * x(n), watch={"depth": F0 * sp.sqrt(1 - u)})(k=1.0)
+early = hl.signal("early", unit="m", initial=x_o**2 / x(n))  # infinite where the handle starts at 0, and never felt
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        hl.Scene(force=k * x(n), watch={"depth": F0 * sp.sqrt(1 - u)}),
+        hl.Scene(force=k * hl.when(n > 0, early(n - 1)), eom=[sp.Eq(early(n), x(n))]),
+    ],
+    ids=["watched", "first state"],
+)
+def test_the_board_and_the_simulation_stop_in_the_same_tick(scene):
     paddle = hl.SimulatedPaddle(m=0.05, b=0.5, T=1e-3, hand=hl.Hand(push=1.0))
-    simulated = paddle.run(scene, duration=0.1)
+    simulated = paddle.run(scene(k=1.0), duration=0.1)
     with hl.connect("sim://hapkit", paddle=paddle) as board:
-        felt = board.run(scene, duration=0.1)
+        felt = board.run(scene(k=1.0), duration=0.1)
     first = simulated.fault.split(":")[0]
     assert first.startswith("tick ") and felt.fault.startswith(first) and "NOT_FINITE" in felt.fault
+    assert not simulated.F[int(first.split()[1]) :].any()
 
 
 @pytest.mark.parametrize("counts", [2**31 - 1, -(2**31), 2**30])
