@@ -1,4 +1,4 @@
-"""The motion of a scene by scipy's DOP853, mode by mode: a second opinion on what ``method="taylor"`` locates.
+"""The motion of a scene by scipy's solvers, mode by mode: a second opinion on what ``method="taylor"`` locates.
 
 In each mode the equations are smooth; a surface that is crossed is bracketed on the dense output and found by bisection
 of its sign (Hairer, Norsett and Wanner, *Solving Ordinary Differential Equations I*, ch. II.6 and II.10).
@@ -15,8 +15,10 @@ from ..errors import AnalysisError
 PLACES = np.linspace(0, 1, 5)[1:]
 #: most changes of mode within a millisecond: more is a motion along a surface that no mode describes
 MOST_EVENTS = 40
-#: most steps of DOP853 a second of motion: more is a motion too stiff for it
-MOST_STEPS = 5000
+#: most steps of DOP853 a second of motion: more is a motion too stiff for it, which LSODA takes over
+STIFF = 600
+#: most steps of both a second of motion
+MOST_STEPS = 20_000
 
 
 class Field:
@@ -126,10 +128,10 @@ class Hybrid:
 
     def _smooth(self, stop):
         """Go on to the next event, or to ``stop``."""
-        from scipy.integrate import DOP853
+        from scipy.integrate import DOP853, LSODA
 
-        field, mode = self.field, self.mode
-        solver = DOP853(
+        field, mode, stiff = self.field, self.mode, self.stiff
+        solver = (LSODA if stiff else DOP853)(
             lambda t, y: field.rates(t, y, mode), self.t, self.y, stop, rtol=self.rtol, atol=self.atol,
             max_step=5e-3 if len(self.just) else np.inf,
         )  # fmt: skip
@@ -138,7 +140,9 @@ class Hybrid:
             solver.step()
             self.steps += 1
             if self.steps > MOST_STEPS * (1 + self.times[-1]):
-                raise AnalysisError(f"at t = {before:.6g} s scipy's DOP853 has taken {self.steps} steps: it is stiff")
+                raise AnalysisError(
+                    f"at t = {before:.6g} s scipy has taken {self.steps} steps: the motion is too stiff"
+                )
             if solver.status == "failed":
                 raise AnalysisError(f"at t = {before:.6g} s the step became too small")
             dense = solver.dense_output()
@@ -151,6 +155,13 @@ class Hybrid:
                 return
             self.just[:] = False
             self.t, self.y = solver.t, solver.y
+            if self.stiff and not stiff:
+                return
+
+    @property
+    def stiff(self):
+        """Whether DOP853 takes too many steps."""
+        return self.steps > STIFF * (0.1 + self.times[-1])
 
     def _record(self, dense, end):
         field = self.field

@@ -99,7 +99,8 @@ def references(scene, motions, *, step=STEP, tolerance=TOLERANCE):
     """The force of a scene as its equations have it, for each of some motions of the handle: a list of :class:`Reference`.
 
     First solver: the Taylor series of the motion, events located, the handle a polynomial of degree 6 over each step.
-    Second: scipy's DOP853 on the accelerations compiled by themselves, events found on its dense output.
+    Second: scipy's DOP853, or LSODA where that is too stiff for it, on the accelerations compiled by themselves, events
+    found on its dense output.
 
     Parameters
     ----------
@@ -172,8 +173,9 @@ class _References:
             self.second = instant(self.scene, T=self.step)
             self.once = load(self.second.program).once()
         field_ = Field(self.second, rows, self.step, self.once)
-        F = Hybrid(field_).run(self.second.start(at[0, 0], at[1, 0]), times, motion.breaks)
-        return F, "Taylor series with located events, and scipy's DOP853"
+        solver = Hybrid(field_)
+        F = solver.run(self.second.start(at[0, 0], at[1, 0]), times, motion.breaks)
+        return F, f"Taylor series with located events, and scipy's {'LSODA' if solver.stiff else 'DOP853'}"
 
     def _reference(self, motion, times, F, other, how, allowed):
         """Return the Reference of what was found; ``allowed`` is the difference that counts as agreement [N]."""
