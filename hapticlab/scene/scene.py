@@ -95,7 +95,9 @@ class Scene:
     @property
     def parameters(self):
         """The parameters in use, name -> Parameter, in alphabetical order."""
-        return parameters_in(self._expressions())
+        if "_parameters" not in self.__dict__:  # looked for once: every compilation asks again and again
+            _set(self, "_parameters", parameters_in(self._expressions()))
+        return dict(self._parameters)
 
     @property
     def coordinates(self):
