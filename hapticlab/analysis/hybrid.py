@@ -16,7 +16,7 @@ PLACES = np.linspace(0, 1, 5)[1:]
 #: most changes of mode within a millisecond: more is a motion along a surface that no mode describes
 MOST_EVENTS = 40
 #: most steps of DOP853 a second of motion: more is a motion too stiff for it, which LSODA takes over
-STIFF = 600
+STIFF = 1500
 #: most steps of both a second of motion
 MOST_STEPS = 20_000
 

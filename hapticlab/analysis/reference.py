@@ -1,5 +1,6 @@
 """The force that a scene would give without samples: two solvers that share no step, and how far they agree."""
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,8 @@ ORDER = 10
 TOLERANCE = 1e-6
 #: part of the peak force by which two solvers that agreed at first differ where rounding decides: chaos
 APART = 1e-3
+#: into which a step is divided where the motion is fast
+MOST_PARTS = 256
 #: of the values of F, those at which the second solver is asked
 EVERY = 16
 
@@ -135,11 +138,11 @@ class _References:
     def __init__(self, scene, step, tolerance):
         self.scene, self.step, self.tolerance = scene, step, tolerance
         try:
-            self.program = _slow_enough(scene, step)
+            self.program, self.parts = _slow_enough(scene, step)
         except ProgramError as error:
             raise AnalysisError(f"{scene.name} has no reference: {error}") from error
         self.first = load(self.program)
-        self.second, self.why = None, ""
+        self.fine, self.second = step / self.parts, None
 
     def all(self, motions):
         """Return the reference of each motion."""
@@ -149,12 +152,13 @@ class _References:
 
     def _solved(self, motion):
         """Return (motion, times, F, F of the second solver every EVERY values or None, how)."""
-        step = self.step
-        times = step * np.arange(round(motion.duration / step) + 1)
-        rows = coefficients(motion.derivatives(times + step / 2, DEGREE), step)
+        fine, parts = self.fine, self.parts
+        times = fine * np.arange(parts * round(motion.duration / self.step) + 1)
+        rows = coefficients(motion.derivatives(times + fine / 2, DEGREE), fine)
         at = np.array(motion.at(times))
         inputs = np.column_stack([at.T, rows])[:, : len(self.program.inputs)]
-        F = self.first.run(len(times), inputs).outputs[:, 0, 0]
+        F = self.first.run(len(times), inputs).outputs[::parts, 0, 0]
+        times, at = times[::parts], at[:, ::parts]
         try:
             return motion, times, F, *self._other(motion, times[::EVERY], rows, at)
         except (AnalysisError, ProgramError) as error:
@@ -170,9 +174,9 @@ class _References:
             (found,) = Graph().evaluate([without_samples(form.force)], bound | held | whole)
             return np.broadcast_to(found, at.shape[1:])[::EVERY], "force of the handle alone, evaluated by two routes"
         if self.second is None:
-            self.second = instant(self.scene, T=self.step)
+            self.second = instant(self.scene, T=self.fine)
             self.once = load(self.second.program).once()
-        field_ = Field(self.second, rows, self.step, self.once)
+        field_ = Field(self.second, rows, self.fine, self.once)
         solver = Hybrid(field_)
         F = solver.run(self.second.start(at[0, 0], at[1, 0]), times, motion.breaks)
         return F, f"Taylor series with located events, and scipy's {'LSODA' if solver.stiff else 'DOP853'}"
@@ -190,15 +194,16 @@ class _References:
 
 
 def _slow_enough(scene, step):
-    """Return the driven program with as many substeps as its fastest part asks for."""
-    substeps = 1
+    """Return (driven program, parts): its period is so many parts of the step that its fastest part is slow in it."""
+    parts = 1
     while True:
         try:
-            return driven(scene, T=step, substeps=substeps, order=ORDER)
+            return driven(scene, T=step / parts, order=ORDER), parts
         except ProgramError as error:
-            if "substeps=" not in str(error) or substeps >= 64:
+            more = re.search(r"take substeps=(\d+)", str(error))
+            if not more or parts >= MOST_PARTS:
                 raise
-        substeps *= 2
+            parts *= max(int(more[1]), 2)
 
 
 def _finite_until(times, F):
