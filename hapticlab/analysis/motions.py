@@ -87,9 +87,8 @@ def handle_motions(scene=None, paddle=None, *, band=BAND, travel=TRAVEL, seed=0)
 
     Parameters
     ----------
-    scene : Scene, optional
-        Not asked for anything yet: motions are those of the paddle and the hand.
-    paddle : PaddleProfile or SimulatedPaddle, optional
+    scene, paddle : optional
+        What they are for. A hand moves alike whatever it feels, so nothing depends on them.
     band : (low, high)
         Of the hand [Hz], 0 < low < high. Its edges should have no common multiple with the sampling period, which would
         hide errors.

@@ -51,6 +51,9 @@ makes the polynomial of a piece in given modes by the recurrences of ``taylor``;
 happens in that instant (which contacts strike, rest, lose energy), ``impact`` has the laws of one blow, and
 ``complementarity`` solves for several.
 
+A motion without samples, to compare a program's force with: ``driven`` lets the handle follow a given path inside the
+step, ``instant`` leaves the stepping to whoever asks.
+
 **Method -> Program.** ``tracing`` gathers states and inputs, named by ``channels``, and leaves out what no output sees;
 ``options`` has checked what was asked for. How long a step may be, and what live parameters may be set to, is known
 before it runs: ``tangents`` differentiates the instructions in numbers (``slopes``, of the motion), ``step_matrix`` takes
