@@ -108,6 +108,8 @@ def _no_better(trial, floors, found):
         return ""
     if error <= SAME * floors[_shared(s)]:
         return f"substeps={s.substeps} already has the error that hold={s.hold!r} alone makes, {percent(error)}"
+    if s.method in METHODS and METHODS[s.method].steps > 1:
+        return f"{s.method} evaluates once a step: for what substeps cost, a shorter T shortens the hold too"
     before = [t for t in found.values() if t.setting.substeps < s.substeps and replace(t.setting, substeps=s.substeps) == s]
     if any(t.error[0] <= SAME * error for t in before):
         return f"substeps={s.substeps} is no better than fewer, {percent(error)}"

@@ -28,6 +28,8 @@ from .work_precision import front, plot_work_precision
 PC = "pc"
 #: float64 is the pc's alone
 PRECISIONS = ("float32", "float64")
+#: methods that "auto" leaves out: one that fails, and one of the order and the cost of another
+LEFT_OUT = ("euler", "midpoint")
 #: the held force is compared at so many places of the shortest period, at least
 PLACES = 4
 #: shortest step between two values of the reference [s]
@@ -55,7 +57,7 @@ def tradeoff(
     paddle : SimulatedPaddle or PaddleProfile
         Its damping b [N s/m] and its encoder.
     methods : "auto" or sequence of str
-        Of :func:`hapticlab.compile`; all but forward Euler unless given.
+        Of :func:`hapticlab.compile`; all but forward Euler, and midpoint beside Heun, unless given.
     T : sequence of float
         Sampling periods [s], whole numbers of 10 us or of a quarter of the shortest.
     substeps, holds, force_at, precision : sequences
@@ -121,7 +123,7 @@ def _references(common, motions):
 def _settings(scene, methods, T, substeps, holds, force_at, precision):
     """Return every setting; of a scene without motion, one for each T."""
     if methods == "auto":
-        methods = (*(name for name in METHODS if name != "euler"), "exact", "taylor")
+        methods = (*(name for name in METHODS if name not in LEFT_OUT), "exact", "taylor")
     given = {"methods": methods, "substeps": substeps, "holds": holds, "force_at": force_at, "precision": precision}
     for name, several in given.items():
         if isinstance(several, str) or not tuple(several):
