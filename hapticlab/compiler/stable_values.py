@@ -14,7 +14,7 @@ import numpy as np
 
 from .flow import Motion
 from .guards import Leaves, freeze
-from .step_matrix import growing, longest_step, rising, step_matrix
+from .step_matrix import growing, longest_step, radius, rising, step_matrix
 from .stiffness import around, is_linear, live_in, modes_of, numbers, onto_surfaces
 from .tangents import tangents
 from .trace import Value
@@ -27,6 +27,10 @@ FAR = 1e6
 POINTS, ROUNDS = 7, 5
 #: parts of the way to the limits at which places between them are looked at
 CLOSER = (1.0, 0.99, 0.97, 0.93, 0.85, 0.7, 0.5, 0.25)
+#: what doubles more slowly [s] may run: Heun's method on an undamped spring is unstable, and any hand damps more
+SLOW = 10.0
+#: how the note of a program begins that is unstable as bound
+UNSTABLE = "unstable as bound: "
 #: limits that a note names are within so many times the value bound
 NEAR = 1e2
 #: steps looked at for the margin, times the largest |eigenvalue|, and how the limit is closed in
@@ -91,14 +95,14 @@ class StableValues:
         return J.reshape(self.count, lanes, S, S)
 
     def unstable(self, lanes=1, **values):
-        """Return for each lane whether some case is unstable there, or has no finite slope."""
+        """Return for each lane whether in some case steps make grow what doubles within SLOW, or there is no finite slope."""
         found = np.zeros(lanes, bool)
         for J in self.jacobians(lanes, **values):
             known = np.isfinite(J).all(axis=(1, 2))
             J = np.where(known[:, None, None], J, 0.0)
             with np.errstate(all="ignore"):
                 R = step_matrix(self.method, J, len(self.motion.q), self.h, self.mass)
-            count = growing(R)
+            count = growing(R, math.expm1(self.h * math.log(2.0) / SLOW))
             some = np.flatnonzero(count)
             found |= ~known
             found[some] |= count[some] > rising(J[some])
@@ -114,6 +118,16 @@ class StableValues:
                     longest = longest_step(lambda h, J=J: step_matrix(self.method, J, n, h, self.mass), J, *places)
                 least = min(least, longest / self.h)
         return least
+
+    def doubles(self):
+        """Return the time [s] in which what only the steps make grow doubles, in the case where it is fastest."""
+        most = 1.0
+        for (J,) in self.jacobians():
+            if np.isfinite(J).all():
+                with np.errstate(all="ignore"):
+                    R = step_matrix(self.method, J, len(self.motion.q), self.h, self.mass)
+                most = max(most, radius(R, besides=int(rising(J))))
+        return self.h * math.log(2.0) / math.log(most) if most > 1.0 else math.inf
 
 
 def _masses(M, number):
@@ -156,10 +170,15 @@ def kept_stable(program, lowering):
         return program
     facts = {**program.facts, "margin": float(f"{margin:.3g}")}
     name, h = dynamics.method.name, dynamics.h
+    notes = program.notes
     if margin < 1:
-        cure = "it gains energy in every step" if margin == 0 else f"its longest step is {margin * h:.3g} s"
-        note = f"unstable as bound: {name} in steps of {h:g} s, {cure}; take more substeps, a shorter T or another method"
-        return replace(program, facts=facts, notes=(*program.notes, note))
+        doubles = steps.doubles()
+        why = f"what vibrates doubles in {doubles:.2g} s"
+        why = why if margin == 0 else f"its longest step is {margin * h:.3g} s, and {why}"
+        notes += (f"{UNSTABLE}{name} in steps of {h:g} s, {why}; take more substeps, a shorter T or another method",)
+        facts["doubles_s"] = float(f"{doubles:.3g}")
+        if doubles < SLOW:
+            return replace(program, facts=facts, notes=notes)
     settable = {c.name: c for c in program.parameters}
     ends = [(name, side, settable[name]) for name in steps.live if name in settable for side in (0, 1)]
     limits = _alone(steps, ends, values)
@@ -172,7 +191,7 @@ def kept_stable(program, lowering):
     near = {key: end for key, end in limits.items() if 1 / NEAR < abs(end / (values[key[0]] or end)) < NEAR}
     ends = [f"{key} {'<=' if side else '>='} {end:.4g} {settable[key].unit}" for (key, side), end in near.items()]
     said = f"{name} in steps of {h:g} s is stable for {', '.join(ends)}, each with the others as bound; more substeps allow more"
-    return replace(program, facts=facts, notes=(*program.notes, *([said] if ends else [])), limits=kept)
+    return replace(program, facts=facts, notes=(*notes, *([said] if ends else [])), limits=kept)
 
 
 def _alone(steps, ends, values):

@@ -77,17 +77,18 @@ def rising(J):
     return (values.real > GROWS * np.abs(values).max(axis=-1, keepdims=True, initial=1e-300)).sum(axis=-1)
 
 
-def growing(R):
-    """Return how many eigenvalues of step matrices are outside the unit circle; all where one has overflowed."""
+def growing(R, grows=GROWS):
+    """Return how many eigenvalues of step matrices are outside the unit circle, by ``grows``; all where one has overflowed."""
     whole = np.isfinite(R).all(axis=(-2, -1))
-    outside = np.abs(np.linalg.eigvals(np.where(whole[..., None, None], R, 0.0))) > 1.0 + GROWS
+    outside = np.abs(np.linalg.eigvals(np.where(whole[..., None, None], R, 0.0))) > 1.0 + grows
     return np.where(whole, outside.sum(axis=-1), R.shape[-1])
 
 
-def radius(R):
-    """Return the largest |eigenvalue| of matrices, shape (..., M, M); inf where one has overflowed."""
+def radius(R, besides=0):
+    """Return the largest |eigenvalue| of matrices, shape (..., M, M), ``besides`` so many larger; inf where one overflowed."""
     whole = np.isfinite(R).all(axis=(-2, -1))
-    found = np.abs(np.linalg.eigvals(np.where(whole[..., None, None], R, 0.0))).max(axis=-1, initial=0.0)
+    sizes = np.sort(np.abs(np.linalg.eigvals(np.where(whole[..., None, None], R, 0.0))), axis=-1)
+    found = sizes[..., -1 - besides] if sizes.shape[-1] > besides else np.zeros(whole.shape)
     return np.where(whole, found, np.inf)
 
 

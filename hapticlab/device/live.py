@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..compiler.stable_values import part_of_the_way
+from ..compiler.stable_values import SLOW, UNSTABLE, part_of_the_way
 from ..errors import PaddleError, ParameterError
 from ..scene.parameters import Parameter
 
@@ -68,10 +68,9 @@ def check_stable(program, numbers):
 
 
 def check_margin(program):
-    """Refuse a program whose steps are unstable as its values are bound."""
-    margin = program.facts.get("margin", np.inf)
-    if margin < 1:
-        why = next((note for note in program.notes if note.startswith("unstable as bound: ")), "unstable as bound")
+    """Refuse a program whose steps are unstable as its values are bound, and grow within the time of a touch."""
+    if program.facts.get("doubles_s", np.inf) < SLOW:
+        why = next(note for note in program.notes if note.startswith(UNSTABLE))
         raise PaddleError(f"{program.name}: {why}. A motor would follow what grows; passive=True runs with the motor off.")
 
 

@@ -7,6 +7,7 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab import t, v, x
 from hapticlab.compiler.engine import load
+from hapticlab.compiler.stable_values import SLOW
 
 T = 1e-3
 z = hl.coordinate("z", unit="m")
@@ -88,7 +89,19 @@ def test_what_is_unstable_as_bound_is_noted():
     assert program.facts["margin"] < 1 and not program.limits
     assert program.notes[-1].startswith("unstable as bound: semi_implicit_euler in steps of 0.001 s, its longest step is 0.0006")
     gaining = hl.compile(coupler(B=0), "euler", T=T)
-    assert gaining.facts["margin"] == 0 and "gains energy in every step" in gaining.notes[-1]
+    assert gaining.facts["margin"] == 0 and not gaining.limits
+    # |1 + i y| of Euler's step on a spring
+    doubles = T * np.log(2) / np.log(np.hypot(1, np.sqrt(500 / 0.05) * T))
+    assert gaining.facts["doubles_s"] == pytest.approx(doubles, rel=5e-3)
+
+
+def test_what_grows_slowly_is_noted_and_limited_to_slow_growth():
+    """Heun's step multiplies what vibrates by (1 + y^4/4)^(1/2), y = omega h."""
+    program = hl.compile(coupler(B=0), "heun", T=T, live="K")
+    assert program.facts["margin"] == 0 and "what vibrates doubles in" in program.notes[0]
+    assert program.facts["doubles_s"] == pytest.approx(2 * T * np.log(2) / np.log1p(0.1**4 / 4), rel=5e-3)
+    y = (4 * np.expm1(2 * T * np.log(2) / SLOW)) ** 0.25
+    assert program.limits["K"][2] == pytest.approx(0.05 * (y / T) ** 2, rel=0.02)
 
 
 def test_nothing_is_said_where_nothing_is_known_or_needed():
