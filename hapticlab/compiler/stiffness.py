@@ -10,6 +10,7 @@ from .ir import LEAVES
 from .options import proposed
 from .taylor import AT_ONCE, Series
 from .trace import reachable
+from .zeros import ZERO
 
 #: orders of the series: for linear motions what the truncation asks for, else what also serves products and functions
 ORDERS = {"f64": (6, 16), "f32": (4, 9)}
@@ -57,8 +58,9 @@ def _varied(motion, modes, at, number):
         leaf.id: [np.float64(value), unit]
         for leaf, value, unit in zip(leaves, values, np.eye(len(leaves)), strict=True)
     }
-    rows[motion.tau.id] = [0.0, 0.0]
-    rows |= {leaf.id: [value, 0.0] for leaf, value in modes.items()}
+    # float zeros of numpy: what divides by them is inf, as on every engine
+    rows[motion.tau.id] = [ZERO, ZERO]
+    rows |= {leaf.id: [value, ZERO] for leaf, value in modes.items()}
     return Series(motion.builder.instructions, rows, number)
 
 

@@ -44,3 +44,12 @@ def test_of_many_ranges_each_end_is_looked_at():
     assert len(found) == 2 + 2 * 5
     assert found[0] == {"a": 0, "b": 1, "c": 2, "d": 3, "f": 4} and {"d": 13} in found
     assert len(list(extremes(many[:3]))) == 8
+
+
+def test_a_place_where_something_is_divided_by_nothing_is_looked_at():
+    """A mode is looked at in which the denominator is the constant 0; where that has no slope, it tells nothing."""
+    z, (K, m, d) = hl.coordinate("z", unit="m"), hl.parameters("K m d", units="N/m kg m", values=(500, 0.05, 0.01))
+    pushed = hl.when(d**2 / sp.Max(z, 0) > d, K * d, 0) + K * z**3 / d**2
+    program = hl.compile(hl.Scene(K * (x(n) - z), [sp.Eq(m * z.diff(t, 2), K * (x(t) - z) - pushed)]), T=1e-3)
+    # rk4 is stable on a spring up to omega h = 2.83, and at rest in the middle omega = 100 rad/s
+    assert program.facts["margin"] == pytest.approx(2 * math.sqrt(2) / (100 * 1e-3), rel=2e-3)
