@@ -4,7 +4,6 @@ A file that a sweep goes on from knows its points by this count: whoever changes
 """
 
 import functools
-import itertools
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -125,8 +124,10 @@ class Grid:
         self.shape = tuple(len(a) for a in axes.values())
         self.points = int(np.prod(self.shape))
         own = {name: a for name, a in axes.items() if name in PADDLE_AXES}
-        for end, late in itertools.product((np.min, np.max), repeat=2):  # refuses what lies out of range, and a delay too
-            self.paddle = replace(paddle, **{name: (late if name == "delay" else end)(a).item() for name, a in own.items()})
+        # refuses what lies out of range: the ends, a delay beside each T, and the least m beside the longest T
+        for fixed in ({"m": np.min, "T": np.max}, {"delay": np.min}, {"delay": np.max}, {}):
+            for end in (np.min, np.max):
+                self.paddle = replace(paddle, **{name: fixed.get(name, end)(a).item() for name, a in own.items()})
 
     def groups(self):
         """Return the points as a list of Points, each of one program and one set of inputs."""

@@ -20,6 +20,8 @@ TERMS = {8: 0.028, 12: 0.2, 20: 1.0}
 NEWTON_STEPS = 6
 #: pieces of a period; beyond, the linked program would be past a hundred thousand instructions
 MOST_PIECES = 64
+#: a bound told in three digits is still inside
+ROUNDED_UP = 1.006
 
 
 class Piece(NamedTuple):
@@ -40,16 +42,32 @@ def resolution(length, M, b, k):
     The derivatives of v grow by at most g h from one to the next, where g solves g^2 = (b/M) g + k/M; h is chosen so
     that g h <= 1, which also leaves room for one zero of a homogeneous solution only.
     """
-    g = (b / M + np.sqrt((b / M) ** 2 + 4 * k / M)) / 2
+    g = growth(M, b, k)
     pieces = np.maximum(1, np.ceil(g * length)).astype(int)
-    if np.max(pieces) > MOST_PIECES:
-        g = np.broadcast_to(g, pieces.shape).flat[np.argmax(pieces)]
-        raise PaddleError(
-            f"coulomb > 0 on a handle that settles in {1 / g:.3g} s would cut the period into {np.max(pieces)} pieces; at most "
-            f"{MOST_PIECES}. Use T <= {MOST_PIECES / g:.3g} s, more mass, a softer or less damped hand, or coulomb=0."
-        )
     enough = np.searchsorted(list(TERMS.values()), g * length / pieces)
     return pieces, np.array(list(TERMS))[enough]
+
+
+def growth(M, b, k):
+    """Return by how much the derivatives of v grow, each beside the one before [1/s]."""
+    with np.errstate(over="ignore"):
+        rate = np.asarray(b, float) / M
+        return (rate + np.sqrt(rate**2 + 4 * np.asarray(k, float) / M)) / 2
+
+
+def check_pieces(length, M, b, k, *, m, T):
+    """Refuse a stretch [s] of more than MOST_PIECES, naming the handle's m and T; of arrays, where it has the most."""
+    arrays = np.broadcast_arrays(growth(M, b, k), length, M, b, k, m, T)
+    g, length, M, b, k, m, T = (a.flat[np.argmax(arrays[0] * arrays[1])].item() for a in arrays)
+    if not g * length <= MOST_PIECES:
+        most = MOST_PIECES / length
+        least = m - M + (b + k / most) / most
+        sooner = f"T <= {T * MOST_PIECES / (g * length) / ROUNDED_UP:.3g} s, " if math.isfinite(g) else ""
+        raise PaddleError(
+            f"m = {m:g} kg, T = {T:g} s, coulomb > 0, and b = {b:g} N s/m with the hand's: the handle settles in {1 / g:.3g} s, "
+            f"which would cut the period into {g * length:.3g} pieces; at most {MOST_PIECES}. Use m >= "
+            f"{least * ROUNDED_UP:.3g} kg, {sooner}a softer or less damped hand, or coulomb=0."
+        )
 
 
 def slide(piece, x, v, u, d=None):

@@ -44,7 +44,7 @@ class Paddle(ABC):
 
     def ticks(self, duration):
         """Return the number of samples in a duration [s]."""
-        if not (isinstance(duration, (int, float, np.number)) and math.isfinite(duration) and duration > 0):
+        if not (isinstance(duration, (int, float, np.number)) and math.isfinite(duration / self.T) and duration > 0):
             raise PaddleError(f"duration = {duration!r} s; needs a finite duration > 0 s.")
         ticks = math.floor(duration / self.T + 0.5)
         if ticks < 1:

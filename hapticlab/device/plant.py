@@ -7,76 +7,16 @@ chatter boundary at half its true stiffness or beyond any. The coefficients are 
 program serves every mass, damping and period, and lanes may sweep them.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiler.exponential import exponential
 from ..compiler.ir import Channel
 from . import friction
+from .transition import PHI, transition
 
-#: entry of the transition -> its unit; u is a force, d the rate of a force
-PHI = {
-    "xx": "1", "xv": "s", "xu": "m/N", "xd": "m s/N", "vx": "1/s", "vv": "1", "vu": "m/(N s)", "vd": "m/N",
-}  # fmt: skip
 #: a remainder of delay/T this close to a whole sample is rounding
 WHOLE = 1e-9
-
-
-def transition(M, b, k, h):
-    """Return the exact map over h seconds of M x'' = u + d t - b x' - k x, as {entry: coefficient}.
-
-    Parameters
-    ----------
-    M, b, k, h : float or array
-        Mass [kg] > 0, damping [N s/m], stiffness [N/m], duration [s] >= 0.
-
-    Returns
-    -------
-    dict of str to float or array
-        x(h) = xx x + xv v + xu u + xd d and v(h) = vx x + vv v + vu u + vd d.
-
-    Examples
-    --------
-    >>> from hapticlab.device.plant import transition
-    >>> phi = transition(M=0.05, b=0.0, k=0.0, h=1e-3)
-    >>> round(phi["xu"] * 1e6, 9), round(phi["vu"], 9)      # h**2/2M and h/M
-    (10.0, 0.02)
-    """
-    # In time over h, with v h, u h^2/M and d h^3/M as coordinates, every entry is of order one and so keeps its
-    # relative accuracy; in SI units h^3/6M would drown beside 1. On a spring that oscillates within h, v h/(w h).
-    M, b, k, h = np.broadcast_arrays(*(np.asarray(a, float) for a in (M, b, k, h)))
-    kappa, beta, free = k * h * h / M, b * h / M, k == 0
-    s = np.sqrt(np.maximum(kappa, 1.0))
-    A = np.zeros((*h.shape, 4, 4))
-    A[..., 0, 1], A[..., 1, 2], A[..., 2, 3] = s, 1 / s, 1
-    A[..., 1, 0], A[..., 1, 1] = -kappa / s, np.where(free, 0.0, -beta)
-    E = exponential(A)
-    E[free, :2] = dragged(beta[free])
-    scale = {"x": 1.0, "v": h / s, "u": h * h / M, "d": h**3 / M}
-    row = {"x": (0, 1.0), "v": (1, np.where(h > 0, s / np.where(h > 0, h, 1.0), 0.0))}
-    column = {name: position for position, name in enumerate("xvud")}
-    found = {e: E[..., row[e[0]][0], column[e[1]]] * scale[e[1]] * row[e[0]][1] for e in PHI}
-    return found if h.ndim else {e: float(c) for e, c in found.items()}
-
-
-def dragged(beta):
-    """Return the first rows of e^A without a spring, shape (n, 2, 4), for an array of b h/M >= 0, however large.
-
-    phi_0 = e^-beta and phi_j = (1/(j-1)! - phi_j-1)/beta; downwards from the series of phi_3 where that would cancel. A
-    mass alone coasts without any rounding: 1, 1, 1/2, 1/6.
-    """
-    series, small = np.zeros_like(beta), np.minimum(beta, 1.0)
-    for j in range(20, 2, -1):  # by Horner's rule, up to beta^17/20!
-        series = 1 / math.factorial(j) - small * series
-    up, down, large = [np.exp(-beta)], [series], np.maximum(beta, 1.0)
-    for j in range(3):
-        up.append((1 / math.factorial(j) - up[-1]) / large)
-        down.insert(0, 1 / math.factorial(2 - j) - small * down[0])
-    phi = [np.where(beta < 1, low, high) for low, high in zip(down, up, strict=True)]
-    one, zero = np.ones_like(beta), np.zeros_like(beta)
-    return np.moveaxis(np.array([[one, *phi[1:]], [zero, *phi[:3]]]), -1, 0)
 
 
 @dataclass(frozen=True)
@@ -208,7 +148,9 @@ def decided(paddle):
     pieces, terms, coulomb = 1, 0, np.asarray(paddle.coulomb) > 0
     if coulomb.any():
         length = np.maximum(fraction, 1 - fraction) * paddle.T
-        pieces, terms = friction.resolution(np.where(coulomb, length, 0.0), *dynamics(paddle))
+        length, moved = np.where(coulomb, length, 0.0), dynamics(paddle)
+        friction.check_pieces(length, *moved, m=paddle.m, T=paddle.T)
+        pieces, terms = friction.resolution(length, *moved)
         pieces, terms = np.where(coulomb, pieces, 1), np.where(coulomb, terms, 0)
     return tuple(np.asarray(a) for a in (whole, np.asarray(fraction) > 0, coulomb, pieces, terms))
 

@@ -8,13 +8,15 @@ from ..compiler.bounds import BEYOND
 from ..compiler.elementary import TABLES
 from ..errors import PaddleError
 from ..records import PaddleProfile, Telemetry
+from .friction import ROUNDED_UP
 from .hand import Hand, require
 from .lanes import device_values
 from .link import link, load_linked
 from .paddle import Paddle
-from .plant import delay_parts, plant_of
+from .plant import delay_parts, dynamics, plant_of
 from .profiles import profile as named_profile
 from .progress import progress_bar
+from .transition import smallest_mass
 
 __all__ = ["SimulatedPaddle", "link", "load_linked"]
 
@@ -121,11 +123,22 @@ class SimulatedPaddle(Paddle):
             raise PaddleError(f"rounding = {self.rounding!r}; an encoder needs 'floor' or 'nearest'.")
         if self.hand is not None and not isinstance(self.hand, Hand):
             raise PaddleError(f"hand = {self.hand!r}; needs a Hand, as in hand=hl.Hand(push=2.0).")
+        self._check_mass()
         if not isinstance(self.seed, (int, np.integer)) or self.seed < 0:
             raise PaddleError(f"seed = {self.seed!r}; needs a whole number >= 0.")
 
     def _take(self, name, unit, reason="", **bounds):
         object.__setattr__(self, name, require(name, getattr(self, name), unit, "a paddle", reason, **bounds))
+
+    def _check_mass(self):
+        M, b, k = dynamics(self)
+        least = float(smallest_mass(b, k, self.T))
+        if least > M:
+            raise PaddleError(
+                f"m = {self.m:g} kg; with b = {b:g} N s/m and k = {k:g} N/m of handle and hand its motion over T = {self.T:g} s "
+                f"is lost in rounding. A simulated paddle needs m >= {least * ROUNDED_UP:.3g} kg here, a smaller T or a softer "
+                "hand."
+            )
 
     @classmethod
     def from_profile(cls, profile, **changes):
@@ -201,7 +214,7 @@ class SimulatedPaddle(Paddle):
         ticks = self.ticks(duration)
         if ticks > LONGEST_RUN:
             raise PaddleError(
-                f"duration = {duration:g} s is {ticks} samples; a run keeps at most {LONGEST_RUN} "
+                f"duration = {duration:g} s is {ticks:.3g} samples; a run keeps at most {LONGEST_RUN} "
                 f"({LONGEST_RUN * self.T:g} s here). Run less, or measure with hl.sweep, which keeps none."
             )
         program = self.program(scene, **options)

@@ -1,6 +1,7 @@
 """Coulomb friction: closed forms of stopping, sticking and breaking away, and an integration with located events."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -196,5 +197,19 @@ def test_every_period_of_a_run(spring):
 
 def test_too_many_pieces_are_refused():
     paddle = SimulatedPaddle(m=1e-6, b=1.0, T=1e-3, coulomb=0.1)
-    with pytest.raises(PaddleError, match="settles in 1e-06 s would cut the period into 1000 pieces; at most 64"):
+    words = "m = 1e-06 kg, T = 0.001 s.* settles in 1e-06 s.* into 1e[+]03 pieces; .*Use m >= 1.57e-05 kg, T"
+    with pytest.raises(PaddleError, match=words):
         _ = paddle.plant
+    with pytest.raises(PaddleError, match="m = 1e-200 kg.*into inf pieces"):
+        _ = SimulatedPaddle(m=1e-200, b=1e90, T=1e-3, coulomb=0.1).plant
+
+
+@pytest.mark.parametrize("hand", [None, Hand(m=1e-5, b=0.3, k=900.0)])
+def test_what_the_refusal_says_is_taken(hand):
+    given = {"m": 1e-9, "b": 1.0, "T": 1e-3, "coulomb": 0.1, "hand": hand}
+    with pytest.raises(PaddleError) as refused:
+        _ = SimulatedPaddle(**given).plant
+    said = {name: float(number) for name, number in re.findall(r"(m|T) [<>]= (\S+)", str(refused.value))}
+    for name, number in said.items():
+        assert 60 <= SimulatedPaddle(**{**given, name: number}).plant.pieces <= friction.MOST_PIECES
+    assert len(said) == 2

@@ -1,6 +1,7 @@
 """The simulated paddle: validation, sensing, limits, faults, energy and reproducibility."""
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
@@ -215,8 +216,33 @@ def test_what_belongs_to_the_paddle_or_to_no_run_is_refused(spring):
     paddle = SimulatedPaddle(**PLAIN)
     with pytest.raises(PaddleError, match="T is the paddle's own, 0.001"):
         paddle.run(Scene(force=parameters("k", units="N/m", values=1.0) * x(n)), duration=1, T=5e-4)
-    with pytest.raises(PaddleError, match="100000000000 samples; a run keeps at most 10000000 .*hl.sweep"):
+    with pytest.raises(PaddleError, match=r"is 1e\+11 samples; a run keeps at most 10000000 .*hl.sweep"):
         paddle.run(spring(1.0), duration=1e8)
     with pytest.raises(PaddleError, match="engine = 'vm'; a simulated paddle, float64 inside"):
         paddle.run(spring(1.0), duration=1, engine="vm")
+    with pytest.raises(PaddleError, match=r"is 1e\+303 samples; a run"):
+        paddle.run(spring(1.0), duration=1e300)
+    with pytest.raises(PaddleError, match=r"duration = 1e\+308 s; needs a finite"):
+        paddle.run(spring(1.0), duration=1e308)
 
+
+@pytest.mark.parametrize(
+    ("given", "least"),
+    [({"b": 0.0, "hand": Hand(k=1e13)}, 1e-11), ({"b": 0.1, "m": 5e-324}, 1e-303), ({"b": 0.1, "hand": Hand(k=1e13)}, None)],
+)
+def test_a_mass_that_no_number_can_move_is_refused(given, least):
+    given = {"m": 1e-12, "T": 1e-3, **given}
+    if least is None:
+        assert SimulatedPaddle(**given)
+        return
+    with pytest.raises(PaddleError, match=r"m = .*needs m >= (\S+) kg") as refused:
+        SimulatedPaddle(**given)
+    said = float(re.search(r"m >= (\S+) kg", str(refused.value))[1])
+    assert least <= said < 1.02 * least and SimulatedPaddle(**{**given, "m": said})
+
+
+def test_a_hand_s_spring_moves_a_handle_without_mass():
+    """x = push/k (1 - e^(-k t/b)): what is left of the motion without a mass."""
+    paddle = SimulatedPaddle(m=1e-12, b=1e3, T=1e-3, hand=Hand(k=200.0, push=1.0))
+    log = paddle.run(Scene(force=parameters("k", units="N/m", values=0.0) * x(n)), duration=2, progress=False)
+    np.testing.assert_allclose(log.x[1:], -np.expm1(-0.2 * log.t[1:]) / 200, rtol=1e-7)  # recorded in single precision
