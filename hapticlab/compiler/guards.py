@@ -95,7 +95,7 @@ class _Surface:
     in_logic: bool = False
 
 
-def freeze(builder, targets, moving, rates, new):
+def freeze(builder, targets, moving, rates, new, where=None):
     """Return (targets, guards, reactions) with every comparison of what moves replaced by a leaf.
 
     Parameters
@@ -108,8 +108,10 @@ def freeze(builder, targets, moving, rates, new):
     rates : iterable of Value
         Those whose derivatives the targets are: a surface of them can be slid along.
     new : Leaves
+    where : list of Value, optional
+        Those of the targets whose comparisons are replaced, wherever they come again; any other stays a comparison.
     """
-    frozen = _Freezing(builder, targets, {m.id for m in moving}, {r.id for r in rates}, new)
+    frozen = _Freezing(builder, targets, {m.id for m in moving}, {r.id for r in rates}, new, where or targets)
     if not frozen.surfaces:
         return list(targets), [], []
     for p in frozen.order:
@@ -145,13 +147,14 @@ def _reached_in(instructions, positions, leaf, value):
 
 
 class _Freezing:
-    def __init__(self, builder, targets, moving, rates, new):
+    def __init__(self, builder, targets, moving, rates, new, where):
         self.builder, self.instructions, self.new = builder, builder.instructions, new
         self.order = reachable(self.instructions, [t.id for t in targets])
         self.moves, self.of_rates = self._reached(moving), self._reached(rates)
         self.guards, self.reactions, self.leaves, self.known = [], [], {}, {}
         self.zero = builder.const(0.0).id
-        self.surfaces = self._surfaces()
+        self.surfaces = None  # while they are looked for, every comparison is one
+        self.surfaces = self._surfaces(reachable(self.instructions, [t.id for t in where]))
 
     def _reached(self, leaves):
         reached = set(leaves)
@@ -167,7 +170,8 @@ class _Freezing:
             key, sense = self._surface_of(i.args[0])
             return key, None if key is None else not sense
         if i.op in ("lt", "le") and p in self.moves:
-            return self._ordered(*i.args)
+            key, sense = self._ordered(*i.args)
+            return (key, sense) if self.surfaces is None or key in self.surfaces else (None, None)
         return None, None
 
     def _ordered(self, a, b):
@@ -182,9 +186,9 @@ class _Freezing:
                 break
         return (min(a, b), max(a, b)), a < b
 
-    def _surfaces(self):
+    def _surfaces(self, positions):
         found, conditions = {}, {}
-        for p in self.order:
+        for p in positions:
             i = self.instructions[p]
             if p not in self.moves:
                 continue
@@ -233,10 +237,10 @@ class _Freezing:
             return leaf if sense else ~leaf
         if i.op == "select":
             return self._case(i, assumed)
-        if i.op == "floor":
+        if i.op == "floor" and p in self.surfaces:
             return self._leaf(p)
         args = [self.rewritten(a, assumed) for a in i.args]
-        if i.op == "abs":
+        if i.op == "abs" and self._ordered(i.args[0], self.zero)[0] in self.surfaces:
             return self._either(*self._ordered(i.args[0], self.zero), lambda _: -args[0], lambda _: args[0], assumed)
         return self.builder.emit(i.op, *args, type=i.type) if args else self.builder.result(p)
 

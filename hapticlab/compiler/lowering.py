@@ -22,9 +22,9 @@ from .held import notes_on
 from .ir import Channel
 from .modes import folded, within
 from .phase import Clock, counted, digit
-from .stable_values import kept_stable
 from .trace import cast
 from .tracing import Tracing
+from .value_limits import kept_stable
 
 REAL_OF = {"float32": "f32", "float64": "f64"}
 

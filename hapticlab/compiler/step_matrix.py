@@ -84,6 +84,38 @@ def growing(R, grows=GROWS):
     return np.where(whole, outside.sum(axis=-1), R.shape[-1])
 
 
+def excess(R, J, h, allowed):
+    """Return the largest |eigenvalue| of step matrices beside those of what rises in truth, shape (N,); inf where one overflowed.
+
+    Of what rises as exp(lambda t), the eigenvalue nearest to exp(lambda h) is left out where it grows at most twice as fast.
+
+    Parameters
+    ----------
+    R : array of shape (N, M, M)
+    J : array of shape (N, S, S)
+        Of the motion.
+    h : float
+        Step [s].
+    allowed : float
+        Up to which nothing needs to be left out.
+    """
+    whole = np.isfinite(R).all(axis=(-2, -1))
+    roots = np.linalg.eigvals(np.where(whole[..., None, None], R, 0.0))
+    found = np.where(whole, np.abs(roots).max(axis=-1, initial=0.0), np.inf)
+    some = np.flatnonzero(whole & (found > allowed))
+    values, roots = np.linalg.eigvals(J[some]), roots[some].astype(complex)
+    rises = values.real > GROWS * np.abs(values).max(axis=-1, keepdims=True, initial=1e-300)
+    rows = np.arange(len(some))
+    for value, rise in zip(values.T, rises.T, strict=True):
+        if rise.any():
+            true = np.exp(np.minimum(h * value.real, 300.0) + 1j * h * value.imag)
+            nearest = np.abs(roots - true[:, None]).argmin(axis=-1)
+            as_true = rise & (np.abs(roots[rows, nearest]) <= np.abs(true) ** 2)
+            roots[rows[as_true], nearest[as_true]] = 0.0
+    found[some] = np.abs(roots).max(axis=-1, initial=0.0)
+    return found
+
+
 def radius(R, besides=0):
     """Return the largest |eigenvalue| of matrices, shape (..., M, M), ``besides`` so many larger; inf where one overflowed."""
     whole = np.isfinite(R).all(axis=(-2, -1))

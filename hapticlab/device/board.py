@@ -143,8 +143,8 @@ class SerialPaddle(Paddle):
             force_max = require("force_max", force_max, "N", "a run", "passive=True runs with the motor off.", low=0)
         with guarded(self._abandon):
             program = self._checked(scene, every, check_fit, options)
-            if program is not None and not passive:
-                check_margin(program)
+            if not passive:
+                check_margin(self._program if program is None else program)
             self.clear()
             if not passive and self.settings is not None:
                 self.home()

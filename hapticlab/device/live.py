@@ -2,12 +2,15 @@
 
 import numpy as np
 
-from ..compiler.stable_values import SLOW, UNSTABLE, part_of_the_way
+from ..compiler.stable_values import SLOW, SMALL_MOTIONS
+from ..compiler.value_limits import UNSTABLE, part_of_the_way
 from ..errors import PaddleError, ParameterError
 from ..scene.parameters import Parameter
 
 #: parameters in one SET
 MOST_AT_ONCE = 8
+#: what to do about values with which a step would be unstable
+HOW = "compile with these values bound, or with more substeps"
 
 
 def named_values(program):
@@ -43,34 +46,78 @@ def checked(program, values):
 
 
 def check_stable(program, numbers):
-    """Refuse values past what keeps a step stable: of one alone, or with what the others are set to.
+    """Refuse values with which, beside what the others are set to, a step would be unstable.
 
-    Each parameter takes a part of the way from the value it was bound to to its limit; the parts may add up to 1.
+    Of a program that was pickled, which has no steps to ask, each parameter takes a part of the way from the value it was
+    bound to to its limit, and the parts may add up to 1.
     """
-    values, parts = named_values(program) | numbers, {}
+    values, steps = named_values(program) | numbers, getattr(program.limits, "steps", None)
+    if steps is None:
+        _check_parts(program, numbers, values)
+        return
+    if not steps.known_at(values) or numbers.keys().isdisjoint(steps.live):
+        return
+    growth = steps.growth(values)
+    if growth <= steps.allowed or growth <= _growth_now(program, steps):
+        return
+    changed = [*numbers, *(name for name in steps.live if name not in numbers and values[name] != steps.values.get(name))]
+    changed = [name for name in changed if name in steps.live]
+    if steps.taylor:
+        why = f"a step of {steps.h:g} s turns by {growth:.3g} rad; method='taylor' needs at most 1"
+    else:
+        why = f"what vibrates doubles in {steps.doubles(growth):.2g} s"
+    why += "" if steps.linear else f" ({SMALL_MOTIONS})"
+    past = next((one for one in (_past(program, name, values[name]) for name in changed) if one), None)
+    shown = ", ".join(f"{name} = {values[name]:.4g}" for name in changed)
+    back = "move one back" if len(changed) > 1 else "move it back"
+    raise ParameterError(f"{past or f'{shown}: a step is unstable'}; {why}: {back}, {HOW}")
+
+
+def _growth_now(program, steps):
+    """Return how much a step makes grow with the values that are set: what grew before may grow less."""
+    now = named_values(program)
+    known = steps.known_at(now)
+    growth = steps.growth(now) if known else 0.0
+    return growth if growth > steps.allowed else 0.0
+
+
+def _past(program, name, value):
+    """Return in words that a value is past its own limit, or None."""
+    low, bound, high = program.limits.get(name, (-np.inf, value, np.inf))
+    if low * (1 - 1e-9 * np.sign(low)) <= value <= high * (1 + 1e-9 * np.sign(high)):
+        return None
+    return f"{name} = {value:g}: a step is stable for {name} {f'<= {high:.4g}' if value > bound else f'>= {low:.4g}'}"
+
+
+def _check_parts(program, numbers, values):
+    parts = {}
     for name, (low, bound, high) in program.limits.items():
         toward = [part_of_the_way(values[name], bound, end) for end in (low, high) if np.isfinite(end)]
         parts[name] = max(toward, default=0.0)
     taken = {name: part for name, part in parts.items() if part > 1e-9}
     if sum(taken.values()) <= 1 + 1e-9 or taken.keys().isdisjoint(numbers):
         return
-    how = "compile with these values bound, or with more substeps"
     for name in taken.keys() & numbers.keys():
-        if taken[name] > 1 + 1e-9:
-            low, bound, high = program.limits[name]
-            need = f"<= {high:.4g}" if values[name] > bound else f">= {low:.4g}"
-            raise ParameterError(f"{name} = {values[name]:g}: a step is stable for {name} {need}; {how}")
+        past = _past(program, name, values[name])
+        if past is not None:
+            raise ParameterError(f"{past}; {HOW}")
     shown = ", ".join(f"{name} = {values[name]:.4g} ({100 * part:.0f} %)" for name, part in taken.items())
     raise ParameterError(
         f"{shown}: a step may be unstable. Each takes a part of the way to its own limit, and the parts add up to "
-        f"{100 * sum(taken.values()):.0f} %; needs 100 % at most: move one back, {how}"
+        f"{100 * sum(taken.values()):.0f} %; needs 100 % at most: move one back, {HOW}"
     )
 
 
 def check_margin(program):
-    """Refuse a program whose steps are unstable as its values are bound, and grow within the time of a touch."""
-    if program.facts.get("doubles_s", np.inf) < SLOW:
-        why = next(note for note in program.notes if note.startswith(UNSTABLE))
+    """Refuse a program whose steps are unstable as its values are, and grow within the time of a touch."""
+    doubles, steps = program.facts.get("doubles_s", np.inf), getattr(program.limits, "steps", None)
+    values = named_values(program)
+    if steps is not None and not steps.taylor and steps.known_at(values):
+        growth = steps.growth(values)
+        doubles = steps.doubles(growth) if growth > steps.allowed else np.inf
+    if doubles < SLOW:
+        otherwise = f"{UNSTABLE}what vibrates doubles in {doubles:.2g} s; take more substeps"
+        why = next((note for note in program.notes if note.startswith(UNSTABLE)), otherwise)
         raise PaddleError(f"{program.name}: {why}. A motor would follow what grows; passive=True runs with the motor off.")
 
 

@@ -4,6 +4,7 @@ from ..compiler.bytecode import encode
 from ..compiler.fit import fit
 from ..compiler.ir import Program
 from ..errors import PaddleError
+from .live import check_margin
 from .upload import STORE_PATIENCE, upload
 
 #: what starts it, for whoever stands beside it
@@ -27,7 +28,7 @@ def keep(paddle, scene, **options):
     Raises
     ------
     PaddleError
-        If a scene runs, or the motor's sign was never checked.
+        If a scene runs, the motor's sign was never checked, or its steps are unstable.
     ProgramLimitError
         If a step could be late, with whatever operands: nobody is there to see that it was.
     LinkError
@@ -46,6 +47,7 @@ def keep(paddle, scene, **options):
             "run `hapticlab calibrate` first."
         )
     program = paddle.program(scene, live=(), **options)
+    check_margin(program)
     known = {} if isinstance(scene, Program) else {"T": paddle.T, "velocity": paddle.velocity, "live": (), **options}
     fit(scene, promise=True, **paddle._board(), **known)
     upload(paddle.exchange, "STANDALONE", encode(program, word_bits=8 * paddle.board["word_bytes"]))

@@ -104,6 +104,73 @@ def test_what_grows_slowly_is_noted_and_limited_to_slow_growth():
     assert program.limits["K"][2] == pytest.approx(0.05 * (y / T) ** 2, rel=0.02)
 
 
+@pytest.mark.parametrize("name", ["mass_spring_damper", "rolling", "pendulum_on_the_handle", "gears", "two_masses"])
+def test_the_margin_is_that_of_step_limit(name):
+    """Of the same motion at the same places, the start and where all hangs straight, implicit damping included."""
+    scene = getattr(hl.library, name)()
+    places = [{}, {"theta": 0.0}] if name.startswith("pendulum") else {}
+    for method in ("semi_implicit_euler_damped", "rk4"):
+        margin = hl.compile(scene, method, T=T).facts["margin"]
+        assert margin == pytest.approx(hl.step_limit(scene, method, T=T, at=places).margin, rel=0.01)
+
+
+def test_rolling_is_stable_at_2_ms():
+    program = hl.compile(hl.library.rolling(), "semi_implicit_euler_damped", T=2e-3)
+    assert program.facts["margin"] > 20 and "doubles_s" not in program.facts
+
+
+def test_a_lighter_body_has_its_own_implicit_damping():
+    """At h b/m = 50 a mass bound at a hundredth of it would say otherwise."""
+    program = hl.compile(coupler(), "semi_implicit_euler_damped", T=T, dtype="float64", live="K m", hold="zoh")
+    steps = program.limits.steps
+    for values in ({"m": 8e-6}, {"m": 1e-3, "K": 4e5}, {"m": 1e-3, "K": 4e6}, {"m": 5.0, "K": 2e7}):
+        largest = radius(program, **values)
+        assert steps.growth(values) == pytest.approx(largest, rel=1e-9)
+        assert (steps.growth(values) > steps.allowed) == (largest > 1 + 1e-4)
+
+
+def test_a_window_of_growth_between_stable_springs_is_found():
+    """Heun's step gains about omega h = 1 on a spring that is damped a little by its damper, which gains nothing at 2.2."""
+    program = hl.compile(coupler(K=20, B=0.02), "heun", T=T, live="K", dtype="float64", hold="zoh")
+    limit = program.limits["K"][2]
+    assert radius(program, K=limit) < 1 + 7e-5 < radius(program, K=1.05 * limit)
+    assert program.limits.steps.growth({"K": 1.05 * limit}) == pytest.approx(radius(program, K=1.05 * limit), rel=1e-9)
+
+
+def test_what_is_bound_to_zero_does_not_vibrate_and_is_limited():
+    program = hl.compile(coupler(K=0, B=0), "semi_implicit_euler", T=T, live="K")
+    assert "margin" not in program.facts and program.limits["K"][2] == pytest.approx(4 * 0.05 / T**2, rel=0.01)
+
+
+def test_a_wall_that_is_bound_to_nothing_is_seen_where_it_is_set():
+    program = hl.compile(coupler(wall=True, B=0)(k=0), "semi_implicit_euler", T=T, live="k x_o", dtype="float64")
+    steps = program.limits.steps
+    assert steps.growth({"k": 1e5}) < steps.allowed < steps.growth({"k": 3e5})
+
+
+def test_what_rises_slowly_hides_no_blow_up():
+    """A coordinate that rises at 0.01 1/s beside a spring past its limit, which doubles at once."""
+    u, rise = hl.coordinate("u", unit="m"), hl.parameters("rise", units="1/s^2", values=1e-4)
+    F = K * (x(t) - z)
+    eom = [sp.Eq(m * z.diff(t, 2), F), sp.Eq(u.diff(t, 2), rise * u)]
+    for stiffness, least, most in ((1e6, 0.0, 1e-3), (500, np.inf, np.inf)):
+        scene = hl.Scene(force=F, eom=eom, watch=[u])(K=stiffness)
+        program = hl.compile(scene, "semi_implicit_euler", T=T, live="K", dtype="float64")
+        assert least <= program.facts.get("doubles_s", np.inf) <= most
+        steps = program.limits.steps
+        assert steps.growth({"K": 1e6}) > 10 and steps.growth({"K": 500}) <= steps.allowed
+
+
+def test_nothing_is_claimed_of_what_is_fed_back_by_samples():
+    y = hl.signal("y", unit="m")
+    for held, more in ((hl.delay(z), []), (y(hl.n), [sp.Eq(y(hl.n), z)])):
+        F = K * (x(t) - z)
+        scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F - k * held), *more])
+        program = hl.compile(scene, "semi_implicit_euler", T=T, live="K")
+        assert "margin" not in program.facts and not program.limits and program.limits.steps is None
+        assert any("fed back by" in note for note in program.notes)
+
+
 def test_nothing_is_said_where_nothing_is_known_or_needed():
     stiffness = hl.parameters("K_1", units="N/m")
     F = stiffness * (x(t) - z)
@@ -129,3 +196,4 @@ def test_a_pendulum_is_looked_at_at_rest_too():
     program = hl.compile(scene, "euler", T=T, live="c", dtype="float64")
     assert program.facts["margin"] == pytest.approx(2 / (1e-3 / 0.01 / 1e-4) / T, rel=0.01)
     assert program.limits["c"][2] == pytest.approx(2 * 1e-4 * 0.01 / T, rel=0.01)
+    assert any("stable for small motions about the places looked at" in note for note in program.notes)

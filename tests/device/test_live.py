@@ -1,5 +1,6 @@
 """Parameters set while a scene runs: past what keeps a step stable they are refused, one alone and together."""
 
+import pickle
 from dataclasses import replace
 
 import pytest
@@ -8,7 +9,7 @@ from bad_line import lossy_port
 
 import hapticlab as hl
 from hapticlab import t, v, x
-from hapticlab.compiler.stable_values import part_of_the_way
+from hapticlab.compiler.value_limits import part_of_the_way
 from hapticlab.device.board import SerialPaddle
 from hapticlab.device.live import check_margin, checked
 from hapticlab.errors import PaddleError, ParameterError
@@ -37,17 +38,61 @@ def test_one_past_its_limit():
 
 
 def test_two_that_are_stable_alone():
-    """K/m may grow 400-fold: 30-fold of each would be 900."""
+    """K/m may grow 400-fold: 30-fold of each would be 900, 19-fold 361."""
     known = program()
-    checked(known, {"K": 15_000}), checked(known, {"m": 0.05 / 30})
-    with pytest.raises(ParameterError, match=r"K = 1.5e\+04 \(57 %\), m = 0.001667 \(57 %\): .* add up to 11[34] %"):
+    checked(known, {"K": 15_000}), checked(known, {"m": 0.05 / 30}), checked(known, {"K": 9_500, "m": 0.05 / 19})
+    with pytest.raises(ParameterError, match=r"K = 1.5e\+04, m = 0.001667: a step is unstable; .*move one back, .*substeps"):
         checked(known, {"K": 15_000, "m": 0.05 / 30})
     # what was set before counts
     values = [15_000.0 if c.name == "K" else value for c, value in zip(known.parameters, known.values, strict=True)]
-    with pytest.raises(ParameterError, match="add up to"):
+    with pytest.raises(ParameterError, match=r"m = 0.001667, K = 1.5e\+04: a step is unstable"):
         checked(replace(known, values=tuple(values)), {"m": 0.05 / 30})
-    # a softer spring does not make room: its part is nothing, never negative
+    # past its own limit, it is stable beside a softer spring
+    assert checked(known, {"K": 50, "m": 0.05 / 3000}) == {"K": 50.0, "m": 0.05 / 3000}
+
+
+def test_what_moves_away_from_its_limit_makes_no_room():
+    """A damper and a heavier body are both stable alone; k_2 grows past what heun allows where its damper goes."""
+    B_2 = {"B": 4.0, "m": 0.05}
+    known = hl.compile(scene(**B_2), "heun", T=1e-3, live="K m B")
+    assert checked(known, {"K": 2000})
+    with pytest.raises(ParameterError, match="K = 2000, B = 0.001: a step is unstable"):
+        checked(known, {"K": 2000, "B": 1e-3})
+
+
+def test_a_pickled_program_goes_by_parts():
+    known = pickle.loads(pickle.dumps(program()))
+    assert type(known.limits) is dict and known.limits == program().limits
+    with pytest.raises(ParameterError, match=r"K = 1.5e\+04 \(57 %\), m = 0.001667 \(57 %\): .* add up to 11[34] %"):
+        checked(known, {"K": 15_000, "m": 0.05 / 30})
+    with pytest.raises(ParameterError, match=r"K = 210000: a step is stable for K <= "):
+        checked(known, {"K": 210_000})
     assert checked(known, {"K": 50, "m": 0.05 / 300}) == {"K": 50.0, "m": 0.05 / 300}
+
+
+def test_taylor_goes_by_its_radian():
+    """omega h = (5e7/0.05)^(1/2) 1 ms = 31.6 rad."""
+    known = program("taylor")
+    assert checked(known, {"K": 49_000}) == {"K": 49_000.0}
+    with pytest.raises(ParameterError, match=r"K = 5e\+07: .*turns by 31.6 rad; method='taylor' needs at most 1"):
+        checked(known, {"K": 5e7})
+
+
+def test_what_has_no_value_yet_is_looked_at_when_it_has():
+    K_1 = hl.parameters("K_1", units="N/m")
+    F = K_1 * (x(t) - z)
+    known = hl.compile(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)]), "verlet", T=1e-3, live="K_1 m")
+    assert any("K_1 has no value; it is looked at when it is set" in note for note in known.notes)
+    assert checked(known, {"m": 1e-6}) and checked(known, {"K_1": 190_000})
+    with pytest.raises(ParameterError, match=r"K_1 = 2.1e\+05: a step is unstable"):
+        checked(known, {"K_1": 210_000})
+
+
+def test_what_is_unstable_already_may_become_less_so():
+    known = program(K=500_000)
+    assert checked(known, {"K": 400_000}) and checked(known, {"K": 500})
+    with pytest.raises(ParameterError, match="a step is unstable"):
+        checked(known, {"K": 600_000})
 
 
 def test_parts_of_the_way():
@@ -79,6 +124,8 @@ def test_a_board_refuses_both(board):
         board.start(scene(K=500_000), method="semi_implicit_euler", live="K")
     board.start(scene(K=500_000), method="semi_implicit_euler", live="K", passive=True)
     board.stop()
+    with pytest.raises(PaddleError, match="unstable as bound"):  # what is on the board already, too
+        board.start()
     board.start(scene(K=20, B=0.01), method="semi_implicit_euler", live="K")
     board.wait(0.05)
     with pytest.raises(ParameterError, match=r"K = 900000: a step is stable for K <= "):

@@ -55,6 +55,14 @@ def test_it_is_refused_where_it_would_not_be_safe():
             paddle.keep(SPRING(k=40))
 
 
+def test_an_unstable_scene_is_not_kept():
+    z, K, m = hl.coordinate("z", unit="m"), *hl.parameters("K m", units="N/m kg", values=(5e5, 0.05))
+    F = K * (hl.x(hl.t) - z)
+    coupler = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)])
+    with hl.connect("sim://hapkit") as paddle, pytest.raises(PaddleError, match="unstable as bound"):
+        paddle.keep(coupler, method="semi_implicit_euler")
+
+
 def test_a_scene_that_could_be_late_is_not_kept():
     """Nobody stands by to see an overrun; of a board whose speed is not known nothing is said."""
     slow = sum(hl.parameters("A", units="N") * sp.sin(j * hl.x(hl.n) / hl.parameters("x_o", units="m")) for j in range(1, 9))
