@@ -12,6 +12,8 @@ from ..errors import AnalysisError
 
 #: of the Taylor series that a sensor floor is measured with
 ORDER = 8
+#: a force so many times the peak of the reference is no answer
+WILD = 100
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,7 @@ def force_error(program, reference, T=None, *, delay=0.0, engine="auto"):
     T : float
         Sampling period [s], of forces; a program has its own.
     delay : float
-        After which a force is felt [s], for the held error: a whole number of the reference's steps.
+        After which a force is felt [s], for the held error.
     engine : {"auto", "llvm", "interpreter", "vm"}
 
     Returns
@@ -121,10 +123,10 @@ def counted(x, counts_per_metre, rounding="floor"):
 def compared(F, reference, T, delay=0.0):
     """Return the :class:`ForceError` of forces F(n), one a period T."""
     step = reference.step
-    per, late = round(T / step), round(delay / step)
-    if per < 1 or abs(per * step - T) > 1e-9 * T or abs(late * step - delay) > 1e-9 * step:
+    per = round(T / step)
+    if per < 1 or abs(per * step - T) > 1e-9 * T:
         raise AnalysisError(
-            f"T = {T:g} s and delay = {delay:g} s; the reference is known every {step:g} s: take a step that divides them, "
+            f"T = {T:g} s; the reference is known every {step:g} s: take a step that divides it, "
             f"reference(scene, motion, step={T / 8:g})"
         )
     ticks = min(len(F), (len(reference.t) - 1) // per + 1, math.floor(reference.horizon / T * (1 + 1e-12)) + 1)
@@ -133,19 +135,25 @@ def compared(F, reference, T, delay=0.0):
             f"the reference is known up to {reference.horizon:g} s only; T = {T:g} s is too long for it"
         )
     F, peak = F[:ticks], reference.peak
-    wild = np.flatnonzero(~(np.abs(F) <= 100 * peak)) if peak else np.flatnonzero(~np.isfinite(F))
+    wild = np.flatnonzero(~(np.abs(F) <= WILD * peak)) if peak else np.flatnonzero(~np.isfinite(F))
     unstable = T * float(wild[0]) if len(wild) else math.nan
     true = reference.F[: ticks * per : per][:ticks]
     with np.errstate(invalid="ignore", over="ignore"):
         at_samples = F - true
         held = np.repeat(F, per)
-        felt = reference.F[late : late + len(held)]
-        felt = felt[: max(round(reference.horizon / step) + 1 - late, 0)]
-        between = held[: len(felt)] - felt
+        between = held - _felt(reference, len(held), delay)
+        between = between[: max(math.floor((reference.horizon - delay) / step + 1e-9) + 1, 0)]
         size, hold = np.abs(at_samples), np.abs(between)
         errors = size.max(), np.sqrt(np.mean(size**2)), hold.max(initial=0.0), np.sqrt(np.mean(hold**2))
     errors = [float(e) if math.isfinite(e) else math.inf for e in errors]
     return ForceError(*errors, peak, unstable, reference.certifies(errors[0]))
+
+
+def _felt(reference, count, delay):
+    """Return F at the times at which held forces are felt, between two values of it along a line; the last one past its end."""
+    late = delay / reference.step
+    late = round(late) if abs(late - round(late)) < 1e-9 else late
+    return np.interp(np.arange(count) + late, np.arange(len(reference.F)), reference.F)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 from ..compiler.driven import DEGREE, coefficients, driven, without_samples
 from ..compiler.engine import load
 from ..compiler.graph import Graph
+from ..compiler.graph import driven as turning
 from ..compiler.instant import instant
 from ..errors import AnalysisError, ProgramError
 from ..scene.symbols import acceleration, n, t, v, x
@@ -67,6 +68,11 @@ class Reference:
         return float(np.abs(self.F[self.t <= self.horizon]).max(initial=0.0))
 
     @property
+    def faulted(self):
+        """Whether the force stops being a number before the motion ends."""
+        return not np.isfinite(self.F).all()
+
+    @property
     def certified(self):
         """Whether two solvers agree to the tolerance, as a part of the largest force of all motions asked for."""
         return self.agreement <= self.allowed
@@ -89,6 +95,7 @@ class Reference:
     def __str__(self):
         verdict = "certified" if self.certified else "uncertified"
         until = f", chaotic from {self.horizon:.3g} s on" if self.chaotic else ""
+        until += f", no number from {self.horizon:.3g} s on: the scene faults there" if self.faulted else ""
         agreed = f"two solvers agree to {self.agreement:.2g} N of {self.peak:.3g} N"
         return f"{self.motion.name}: {verdict}, {agreed}{until} ({self.how})"
 
@@ -109,7 +116,7 @@ def references(scene, motions, *, step=STEP, tolerance=TOLERANCE):
     ----------
     scene : Scene
         Every parameter bound. It must have a meaning between the samples: past samples and T become what they are
-        for T towards zero, signals have none.
+        for T towards zero, so that past samples and delayed forces are those of now; signals have no meaning.
     motions : sequence of HandleMotion
     step : float
         Between two values of F [s]; the sampling periods it is compared with are whole numbers of it.
@@ -170,8 +177,13 @@ class _References:
         if not form.coordinates:
             bound = {p: self.scene.values[name] for name, p in self.scene.parameters.items()}
             held = {x(n): at[0], v(n): at[1], x(t): at[0], v(t): at[1], acceleration(t): at[2]}
-            whole = {t: self.step * np.arange(at.shape[1])}
-            (found,) = Graph().evaluate([without_samples(form.force)], bound | held | whole)
+            graph, wanted = Graph(), [without_samples(form.force)]
+            whole = self.step * np.arange(at.shape[1])
+            angles = {
+                u: 2 * np.pi * float(u.args[0].subs(bound)) * whole
+                for u in graph.variables_of(wanted) if isinstance(u, turning)
+            }  # fmt: skip
+            (found,) = graph.evaluate(wanted, bound | held | {t: whole} | angles)
             return np.broadcast_to(found, at.shape[1:])[::EVERY], "force of the handle alone, evaluated by two routes"
         if self.second is None:
             self.second = instant(self.scene, T=self.fine)

@@ -120,7 +120,7 @@ def lowering_of(scene, T, substeps, order, handle):
 def without_samples(expr):
     """Return what an expression of present and past samples becomes as the sampling period goes to zero.
 
-    A past sample is x(n) - k T v(n), so that a backward difference is the velocity and a predictor the position.
+    A past sample is x(n) - k T v(n), so that a backward difference is the velocity and a predictor the position; n T is t.
 
     Examples
     --------
@@ -130,7 +130,8 @@ def without_samples(expr):
     (x(n), v(n))
     """
     before = {s: s.func(n) - lag_of(s) * T * RATES[type(s)](n) for s in expr.atoms(x, v) if lag_of(s)}
-    expr = expr.xreplace(before)
+    clocks = {e: e / (n * T) * t for e in expr.atoms(sp.Mul) if n in e.args and T in e.args}
+    expr = expr.xreplace(before | clocks)
     if expr.has(delay) and _over_T(expr):
         raise ProgramError(f"{expr} takes the difference of a delay, whose rate is not known between the samples")
     while expr.has(delay):

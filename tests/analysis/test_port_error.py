@@ -123,7 +123,7 @@ def test_counts_are_floors_or_the_nearest():
     ("made", "said"),
     [
         (lambda: force_error(TRUE.F, TRUE), "do not say their period"),
-        (lambda: force_error(TRUE.F, TRUE, 3e-4), "take a step that divides them"),
+        (lambda: force_error(TRUE.F, TRUE, 3e-4), "take a step that divides it"),
         (lambda: sensor_floor(SPRING, TRUE, 0.0, 1e-3), "number > 0 of counts"),
     ],
 )

@@ -69,6 +69,15 @@ def test_a_filter_of_the_force_has_the_force_as_its_limit():
     assert np.array_equal(reference(hl.force_filter(plain), SINE).F, 200 * SINE.at(reference(plain, SINE).t)[0])
 
 
+@pytest.mark.parametrize("clock", [hl.t, hl.n * hl.T])
+def test_a_force_that_time_drives_is_the_sine_it_is(clock):
+    A, w, k = hl.parameters("A w k", units="N rad/s N/m", values=(1.0, 50.0, 200.0))
+    motion = handle_motions()[1]
+    found = reference(hl.Scene(force=k * x(n) + A * sp.sin(w * clock)), motion)
+    true = 200 * motion.at(found.t)[0] + np.sin(50 * found.t)
+    assert found.certified and np.abs(found.F - true).max() < 1e-12
+
+
 def test_a_signal_has_no_reference():
     y, k = hl.signal("y", unit="m"), hl.parameters("k", units="N/m", values=200)
     scene = hl.Scene(force=k * y(n), eom=[sp.Eq(y(n), (y(n - 1) + x(n)) / 2)])

@@ -28,6 +28,7 @@ def test_what_samples_become_as_the_period_goes_to_zero():
     assert without_samples(sp.Rational(3, 2) * x(n) - x(n - 1) / 2) == x(n)
     assert without_samples((x(n) - x(n - 2)) / (2 * T)) == v(n)
     assert without_samples(x(n) + T / 2 * v(n)) == x(n)
+    assert without_samples(k * sp.sin(3 * n * T)) == k * sp.sin(3 * t)
     assert without_samples(hl.delay(hl.delay(k * v(n)))) == k * v(n)
     assert "acceleration" in str(without_samples((v(n) - v(n - 1)) / T))
     with pytest.raises(ProgramError, match="difference of a delay"):
