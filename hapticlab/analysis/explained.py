@@ -79,3 +79,5 @@ def _cost(row, every):
 def _passivity(row):
     answer = "passive in every passive hand" if row.passive else "not passive in every hand"
     yield f"needs a device with b >= {row.b_req:.3g} N s/m, and has {row.b_device:.3g} N s/m: {answer}"
+    if row.b_where:
+        yield f"that is of small motions, the scene is not linear: the most is asked for at {row.b_where}"

@@ -175,7 +175,7 @@ class Tradeoff:
         choice("target", target, self.targets)
         return Table(front(row for row in self.table if row.target == target and row.status == OK))
 
-    def choose(self, *, tolerance=None, load=0.5, passive=True, target=None, margin=MARGIN):
+    def choose(self, *, tolerance=None, load=0.5, passive=True, target=None, margin=MARGIN, held=None):
         """Return the Configuration of least load that is good enough, or NotFeasible, which says what to relax.
 
         Parameters
@@ -190,9 +190,11 @@ class Tradeoff:
             The first unless given.
         margin : float
             Longest stable step over the step taken.
+        held : float, optional
+            Most error of the force held over each period, part of the greatest force; any unless given.
         """
         target = choice("target", self.targets[0] if target is None else target, self.targets)
-        return chosen(self.table, target, self._asked(tolerance, load, passive, margin), self.bench.options)
+        return chosen(self.table, target, self._asked(tolerance, load, passive, margin, held), self.bench.options)
 
     def measured(self, row, cycles):
         """Return the trade-off with what a tick of one row's program took on its board [cycles], beside what was predicted."""
@@ -211,8 +213,8 @@ class Tradeoff:
         """Draw error against load, a line for each method; see :func:`~hapticlab.analysis.work_precision.plot_work_precision`."""
         return plot_work_precision(self, targets or self.targets, self._asked(tolerance, load, passive, MARGIN))
 
-    def _asked(self, tolerance, load, passive, margin):
-        return Asked(self.tolerance if tolerance is None else tolerance, load, passive, margin)
+    def _asked(self, tolerance, load, passive, margin, held=None):
+        return Asked(self.tolerance if tolerance is None else tolerance, load, passive, margin, held)
 
     def summary(self, **asked):
         """Return for each target what none beats, and the choice, as text."""
@@ -221,6 +223,7 @@ class Tradeoff:
             f"{self.name}: {len(self.table)} rows ({', '.join(f'{count} {status}' for status, count in counts.items())})",
             f"greatest force {self.bench.peak:.3g} N; the solvers of its reference differ by {percent(self.bench.doubt)} of it",
             *(f"  {known}" for known in self.bench.runs),
+            *(f"  {note}" for note in self.bench.notes),
         ]
         for target in self.targets:
             lines += ["", f"{target}: what none beats", str(self.front(target)), str(self.choose(target=target, **asked))]

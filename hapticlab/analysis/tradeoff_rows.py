@@ -9,7 +9,7 @@ from ..compiler.methods import METHODS
 
 OK, TOO_LARGE, NOT_TRIED = "ok", "does not fit", "not tried"
 #: statuses of settings that ran, and whose errors are measured
-RAN = (OK, TOO_LARGE, "uncertified", "chaotic")
+RAN = (OK, TOO_LARGE, "uncertified", "chaotic", "faulted")
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,11 @@ class Row:
         Largest stable step over the step taken; steps in the shortest contact, inf where contacts are located or absent.
     b_req, b_device : float or None
         Damping [N s/m] that a device needs for passivity in every hand, and has.
+    b_where : str
+        Where a scene that is not linear asks for b_req: it is of small motions about there. Else empty.
     status : str
-        "ok", "unstable at t=...", "does not fit", "refused", "uncertified", "chaotic after ...", "not tried".
+        "ok", "unstable at t=...", "does not fit", "refused", "uncertified", "chaotic after ...", "faulted after ...",
+        "not tried".
     why : str
         The reason of a status other than "ok".
     """
@@ -69,6 +72,7 @@ class Row:
     steps_per_contact: float | None = None
     b_req: float | None = None
     b_device: float | None = None
+    b_where: str = ""
     status: str = OK
     why: str = ""
 
@@ -174,6 +178,7 @@ def rows_of(bench, trials, floors, targets):
             **asdict(s), target="pc", err_max=trial.error[0], err_rms=trial.error[1], err_hold=trial.error[2],
             doubt=bench.doubt, sensor_floor=floors[s.T, s.hold], order_seen=orders.get(s), order_claimed=trial.order,
             margin=trial.margin, steps_per_contact=trial.steps_per_contact, b_req=trial.b_req, b_device=bench.paddle.b,
+            b_where=trial.b_where,
             status=trial.status, why=trial.why,
         )  # fmt: skip
         row = _certain(row, bench)
@@ -191,6 +196,9 @@ def _certain(row, bench):
     if bench.chaotic is not None:
         why = "from there on two solvers of the reference differ; errors are those before"
         return replace(row, status=f"chaotic after {bench.chaotic:.3g} s", why=why)
+    if bench.faulted is not None:
+        why = "from there on the force of the reference is no number; errors are those before"
+        return replace(row, status=f"faulted after {bench.faulted:.3g} s", why=why)
     if row.err_max < 10 * bench.doubt:
         return replace(row, status="uncertified", why=f"the solvers of the reference differ by {percent(bench.doubt)}")
     return row
