@@ -4,7 +4,6 @@ import itertools
 
 import numpy as np
 
-from ..compiler.step_matrix import radius
 from .plots import STYLES, house_style, new_figure
 from .port import asked
 
@@ -27,12 +26,19 @@ def plot_step_limit(limit):
         axes = figure.subplots()
         for mode, style in zip(limit.modes, itertools.cycle(STYLES)):
             with np.errstate(all="ignore"):
-                axes.plot(1e3 * steps, radius(mode.step(steps)), label=f"{mode.mode}; {mode.point}", **style)
+                axes.plot(1e3 * steps, _radius(mode.step(steps)), label=f"{mode.mode}; {mode.point}", **style)
         axes.axvline(1e3 * limit.h, color="#8a8a8a", label="the step taken")
         axes.set(xscale="log", ylim=(0.0, 2.0), xlabel="step h [ms]", ylabel="largest |eigenvalue| of a step")
         axes.set_title(f"{limit.scene}, {limit.method}", fontsize="small")
         axes.legend(fontsize="small")
     return figure
+
+
+def _radius(R):
+    """Return the largest |eigenvalue| of matrices, inf where one has overflowed."""
+    whole = np.isfinite(R).all(axis=(-2, -1))
+    found = np.abs(np.linalg.eigvals(np.where(whole[..., None, None], R, 0.0))).max(axis=-1, initial=0.0)
+    return np.where(whole, found, np.inf)
 
 
 def plot_port(port):

@@ -43,21 +43,27 @@ def tick_at(scene, points, T, **options):
     **options
         Of :func:`hapticlab.compile`, but for T, live, dtype and velocity.
     """
+    return forces_and_ticks_at(scene, points, T, **options)[1:]
+
+
+def forces_and_ticks_at(scene, points, T, **options):
+    """Return (forces [N] of shape (P,), maps, handle): what :func:`tick_at` returns, and the force at each point."""
     method = options.get("method", "rk4")
     if not (isinstance(method, str) and method.startswith(EXACT)) or not scene.switches:
         live = tuple(s.name for s in scene.switches)
-        return tick_of(compile(scene, T=T, live=live, dtype="float64", **options), scene, points)
-    programs, maps = {}, []
-    for p in points:  # an exponential is that of one mode
-        if p.mode not in programs:
-            programs[p.mode] = compile(scene.set(p.mode), T=T, live=(), dtype="float64", **options)
-        made, handle = tick_of(programs[p.mode], scene, [p])
-        maps += made
-    return maps, handle
+        return forces_and_ticks_of(compile(scene, T=T, live=live, dtype="float64", **options), scene, points)
+    forces, maps = np.zeros(len(points)), [None] * len(points)
+    for mode in dict.fromkeys(p.mode for p in points):  # an exponential is that of one mode
+        program = compile(scene.set(mode), T=T, live=(), dtype="float64", **options)
+        those = [k for k, p in enumerate(points) if p.mode == mode]
+        forces[those], made, handle = forces_and_ticks_of(program, scene, [points[k] for k in those])
+        for k, one in zip(those, made, strict=True):
+            maps[k] = one
+    return forces, maps, handle
 
 
-def tick_of(program, scene, points):
-    """Return what :func:`tick_at` returns, of a program that is compiled: of a Switched scene, or of one without switches."""
+def forces_and_ticks_of(program, scene, points):
+    """Return the same of a program that is compiled: of a Switched scene, or of one without switches."""
     if len(program.inputs) != 1:
         raise AnalysisError(f"{program.name}: needs a program of x alone; leave velocity='measured' out")
     P, modes = len(points), _modes(scene, points)
@@ -71,10 +77,10 @@ def tick_of(program, scene, points):
         leaves["state", k] = _column(points, channel.name) if known else first[k].astype(kind)
     wanted = [program.tick.outputs[0], *(program.tick.states[k] for k in kept)]
     directions = [*(("state", k) for k in kept), ("input", 0)]
-    _, slopes = tangents(program.tick.instructions, wanted, leaves, directions, P)
+    values, slopes = tangents(program.tick.instructions, wanted, leaves, directions, P)
     whole = np.moveaxis(slopes, 2, 0)
     handle = np.array([k for k, state in enumerate(kept) if program.states[state].name.startswith(("x(n-", "v(n-"))], int)
-    return [(one[1:, :-1], one[1:, -1], one[0, :-1], one[0, -1]) for one in whole], handle
+    return values[0], [(one[1:, :-1], one[1:, -1], one[0, :-1], one[0, -1]) for one in whole], handle
 
 
 def _column(points, name):

@@ -4,14 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiler.channels import channel_of
-from ..compiler.first_sample import numbers
-from ..compiler.graph import Graph
 from ..compiler.phase import TICKS
-from ..errors import AnalysisError, ParameterError
-from ..scene.parameters import Parameter, T
-from ..scene.symbols import delay, t, v, x
-from .switches import BEYOND_SURFACE, MOST_MODES
+from ..errors import AnalysisError
+from .places import Places
+from .switches import MOST_MODES
 
 #: what a linearisation of each kind is worth
 WORTH = {
@@ -21,6 +17,11 @@ WORTH = {
 }
 #: places beside the start within declared ranges
 _WITHIN = 6
+#: how far the handle is taken to go to either side [m], and a position without a declared range, by its unit
+TRAVEL = 0.05
+FAR = {"m": TRAVEL, "rad": np.pi}
+#: places of the handle looked at, of a scene with states, and of a force of the handle alone, which costs nothing
+PLACES, PLACES_ALONE = 17, 401
 
 
 @dataclass(frozen=True)
@@ -35,81 +36,17 @@ class OperatingPoint:
         Handle x and v, coordinates and rates as a program's channels call them, SI.
     words : str
         What sets it apart from the start.
+    sampled : bool
+        Whether it is one of many over a travel, of which only those are told that ask for the most.
     """
 
     mode: tuple
     values: dict
     words: str
+    sampled: bool = False
 
 
-class Places:
-    """The states of a switched scene as vectors (x, v, q, q', s), and what its conditions are there."""
-
-    def __init__(self, scene, period):
-        self.scene, self.graph = scene, Graph()
-        form = scene.form
-        tied = {q for model in form.models if model.constraints for q in model.coordinates}
-        second = [q for q, order in zip(form.coordinates, form.orders, strict=True) if order == 2]
-        first = [q for q in form.coordinates if q not in second]
-        self.rates = [q.diff(t) for q in second]
-        self.variables = [x(t), v(t), *second, *self.rates, *first]
-        self.names = ["x", "v", *(channel_of(s, "f64").name for s in self.variables[2:])]
-        unbound = sorted(set(scene.parameters) - set(scene.values) - {s.name for s in scene.switches})
-        if unbound:
-            raise ParameterError(f"{', '.join(unbound)} has no value; bind it: scene({unbound[0]}=...)")
-        start = numbers(self.variables[2:], scene.values)
-        self.start = np.r_[0.0, 0.0, start]
-        #: what a step across a surface may change, positions before rates
-        self.positions = np.array([s not in self.rates and s != v(t) and s not in tied for s in self.variables])
-        self.speeds = np.array([(s in self.rates and s.expr not in tied) or s == v(t) for s in self.variables])
-        self.period = period
-        self.conditions = list(scene.switches.values())
-
-    def kind(self, k):
-        """Return the class of a coordinate, which has its declared range."""
-        return type(self.variables[k])
-
-    def measures(self, points):
-        """Return left less right side of every condition, shape (conditions, points), of points (variables, points)."""
-        return self._evaluate([c.lhs - c.rhs for c in self.conditions], points)
-
-    def modes(self, points):
-        """Return the mode of every point, a list of tuples."""
-        return [tuple(int(on) for on in column) for column in self._evaluate(self.conditions, points).T]
-
-    def _evaluate(self, exprs, points):
-        at = {leaf: self._at(leaf, points) for leaf in self.graph.variables_of(exprs)}
-        found = self.graph.evaluate(exprs, at)
-        return np.reshape([np.broadcast_to(row, points.shape[1:]) for row in found], (len(exprs), points.shape[1]))
-
-    def _at(self, leaf, points):
-        if leaf in self.variables:
-            return points[self.variables.index(leaf)]
-        if isinstance(leaf, (x, v)):  # past samples: the handle has been there
-            return points[int(isinstance(leaf, v))]
-        if isinstance(leaf, Parameter):
-            return self.period if leaf == T else self.scene.values[leaf.name]
-        if isinstance(leaf, delay):
-            return self._evaluate([leaf.args[0]], points)[0]
-        return numbers([leaf], self.scene.values)[0]
-
-    def across(self, point):
-        """Return the points just beyond each surface, on both sides, nearest to a point: shape (variables, crossings)."""
-        steps = 1e-6 * np.eye(len(point))
-        lanes = np.column_stack([point, point[:, None] + steps, point[:, None] - steps])
-        found, n = self.measures(lanes), len(point)
-        crossings = []
-        for row in found:
-            slope = (row[1 : n + 1] - row[n + 1 :]) / 2e-6
-            along = np.where(self.positions, slope, 0.0)
-            along = along if along.any() else np.where(self.speeds, slope, 0.0)
-            if along.any() and np.isfinite(along).all() and np.isfinite(row[0]):
-                for side in (-BEYOND_SURFACE, BEYOND_SURFACE):
-                    crossings.append(point + along * (side - row[0]) / (along @ along))
-        return np.reshape(crossings, (-1, n)).T
-
-
-def operating_points(scene, at=None, period=1e-3):
+def operating_points(scene, at=None, period=1e-3, travel=None, far=False):
     """Return the operating points of a switched scene.
 
     Its start with the handle at x = 0 comes first, then rest, and places within declared ranges; beyond every surface
@@ -122,9 +59,58 @@ def operating_points(scene, at=None, period=1e-3):
         Places to look at in place of these: handle x and v, coordinates and rates by name, what is missing as it starts.
     period : float
         T [s].
+    travel : float, optional
+        To either side [m]: places of the handle looked at, too, besides those given.
+    far : bool
+        Whether positions without a declared range are looked at 50 mm or half a turn to either side.
     """
     places = Places(scene, period)
     points = _given(places, at) if at is not None else _around(places)
+    found = _beyond_surfaces(places, points, at)
+    many = [] if at is not None else [*_along(places, travel), *(_afar(places) if far else ())]
+    modes = places.modes(np.column_stack(many)) if many and places.conditions else [()] * len(many)
+    seen = {p.mode for p in found}
+    for p, mode in zip(many, modes, strict=True):
+        if mode in seen or len(seen) < MOST_MODES:
+            seen.add(mode)
+            found.append(_point(places, p, mode, "", sampled=True))
+    return found
+
+
+def borders(scene, points, period=1e-3):
+    """Return pairs of operating points, the same place in the modes of both sides of a surface, one for each surface."""
+    places = Places(scene, period)
+    found = {}
+    for mode in dict.fromkeys(p.mode for p in points) if places.conditions else ():
+        values = next(p.values for p in points if p.mode == mode)
+        for p, sides in places.borders(np.array([values[name] for name in places.names])):
+            found.setdefault(sides, tuple(_point(places, p, side, "") for side in sides))
+    return list(found.values())
+
+
+def _along(places, travel):
+    """Return the start with the handle at places over its travel, but not of a linkage that would stay where it is."""
+    tied = {q for model in places.scene.form.models if model.constraints for q in model.coordinates}
+    if travel is None or tied - {places.variables[k] for k in places.carried}:
+        return []
+    alone = not places.scene.form.coordinates and not places.scene.form.updates
+    return list(places.with_handle_at(np.linspace(-travel, travel, PLACES_ALONE if alone else PLACES)))
+
+
+def _afar(places):
+    """Return the start with one position without a declared range far off, one after another."""
+    found = []
+    for k in np.flatnonzero(places.positions[2:]) + 2:
+        far = FAR.get(str(places.kind(k).unit), 0.0)
+        if not np.isfinite([places.kind(k).low, places.kind(k).high]).all():
+            for part in (-1.0, -0.5, 0.5, 1.0) if far else ():
+                p = places.rest.copy()
+                p[k] = part * far
+                found.append(p)
+    return found
+
+
+def _beyond_surfaces(places, points, at):
     if not places.conditions:
         return [_point(places, p, (), words) for words, p in points]
     found = [_point(places, p, mode, words) for (words, p), mode in zip(points, places.modes(_columns(points)), strict=True)]
@@ -145,10 +131,10 @@ def _columns(points):
     return np.column_stack([p for _, p in points])
 
 
-def _point(places, p, mode, words):
+def _point(places, p, mode, words, sampled=False):
     values = dict(zip(places.names, map(float, p), strict=True)) | {TICKS[0]: 0.0}
     moved = [f"{name} = {value:.4g}" for name, value, start in zip(places.names, p, places.start, strict=True) if value != start]
-    return OperatingPoint(mode, values, words or ", ".join(moved) or "the start")
+    return OperatingPoint(mode, values, words or ", ".join(moved) or "the start", sampled)
 
 
 def _given(places, at):
@@ -165,7 +151,7 @@ def _given(places, at):
 def _around(places):
     """Return (words, point) of the start, of rest, and of places within declared ranges of coordinates."""
     start, found = places.start, [("the start, x = 0", places.start)]
-    rest = np.where(places.speeds, 0.0, start)
+    rest = places.rest
     if (rest != start).any():
         found.append(("the start, at rest", rest))
     free = [k for k in np.flatnonzero(places.positions) if k > 0]
@@ -199,8 +185,31 @@ def kind_of(scene, points, probes, slopes):
     places = [*points, *probes]
     first = {p.mode: k for k, p in reversed([*enumerate(places)])}
     for k, p in enumerate(places):
-        one, other = slopes[k], slopes[first[p.mode]]
-        scale = 1e-9 * np.abs(other).max(initial=0.0)
-        if not np.allclose(one, other, rtol=0, atol=scale):
+        if not _alike(slopes[k], slopes[first[p.mode]]):
             return "small-signal"
     return "linear" if len(first) == 1 and not scene.instants else "piecewise linear"
+
+
+def _alike(one, other):
+    """Tell whether slopes are the same but for rounding; those that are no numbers are not."""
+    with np.errstate(invalid="ignore"):
+        return bool((np.abs(one - other) <= 1e-9 * np.abs(other).max(initial=0.0)).all())
+
+
+def telling(points, slopes):
+    """Return which points to look at closer: all but sampled ones whose slopes are no numbers, or those of another in the mode.
+
+    Parameters
+    ----------
+    points : sequence of OperatingPoint
+    slopes : sequence of array
+        Of each point, all of one shape.
+    """
+    kept, seen = [], {}
+    for k, p in enumerate(points):
+        others, one = seen.setdefault(p.mode, []), slopes[k]
+        finite = np.isfinite(one).all()
+        if not p.sampled or (finite and not any(_alike(one, other) for other in others)):
+            kept.append(k)
+            others += [one] if finite else []
+    return kept

@@ -17,6 +17,8 @@ from .limit import whole_and_fraction
 LOSSLESS = 1e-9
 #: a second place of the handle, no whole number of any period
 TRIAL = -0.437219
+#: part of the stiffnesses that make up a static one, which is rounding
+ROUNDING = 1e-7
 #: frequencies looked at, beside those around every pole
 POINTS = 1000
 
@@ -44,7 +46,7 @@ def port_damping(scene, *, T=1e-3, **options):
     Raises
     ------
     AnalysisError
-        The scene is not linear, or unstable.
+        The scene is not linear, or unstable, or of negative stiffness, with which no damping is enough.
 
     Examples
     --------
@@ -57,7 +59,30 @@ def port_damping(scene, *, T=1e-3, **options):
     pole = unstable_pole(A, B, C)
     if pole is not None:
         raise AnalysisError(f"{scene.name}: unstable with the handle held (a pole at {pole:.6g}); T is too long for it")
+    stiffness = static_stiffness(A, B, C, D)
+    if stiffness < 0:
+        raise AnalysisError(
+            f"{scene.name}: {negative(stiffness)}, and no damping of a device keeps it; needs k >= 0 felt at rest"
+        )
     return required(A, B, C, D, T)[0]
+
+
+def static_stiffness(A, B, C, D):
+    """Return the force per displacement [N/m] that a handle feels which has been moved and waited: H(1), 0.0 by rounding.
+
+    What is not seen at the port may stay where it is, as a free mass: of all places of rest the nearest is taken. Where
+    there is none, a pole at z = 1 is seen, which no damping is enough for anyway (:func:`required`): nan.
+    """
+    rest = np.linalg.lstsq(np.eye(len(A)) - A, B, rcond=1e-13)[0] if len(A) else B
+    if len(A) and np.abs(A @ rest + B - rest).max() > ROUNDING * max(np.abs(B).max(), np.abs(rest).max()):
+        return np.nan
+    stiffness, size = float(C @ rest + D), np.abs(C) @ np.abs(rest) + abs(D)
+    return 0.0 if abs(stiffness) <= ROUNDING * size else stiffness
+
+
+def negative(stiffness):
+    """Return in words what a negative static stiffness [N/m] does."""
+    return f"negative stiffness, {stiffness:.4g} N/m: a free handle falls"
 
 
 def unstable_pole(A, B, C, allowed=0):

@@ -1,52 +1,21 @@
 """Whether a device pays for what sampling adds, in every mode of a scene: the compiled tick, linearised, at its port."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ..compiler.options import period
-from ..compiler.step_matrix import rising
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from ..scene.written import no_scene
 from .limit import check_number
 from .limit_plots import plot_port
-from .linearization import motion_at, tick_at
-from .operating import WORTH, kind_of, operating_points, probes_of
+from .linearization import forces_and_ticks_at
+from .operating import WORTH
 from .passive_hands import UNSTABLE, radii, single
-from .port import required, unstable_pole
+from .port_limits import WORST, Looked
 from .switches import switched
-
-#: why a mode asks for what it asks, unless it is worse
-WORST = "worst frequency"
-
-
-@dataclass(frozen=True, eq=False)
-class PortLimit:
-    """One operating point in one mode.
-
-    Attributes
-    ----------
-    mode, point : str
-        The conditions that hold, and where that was looked at.
-    b_req : float
-        Least damping of a device [N s/m] with which the sampled scene is passive; inf where none is enough, nan where
-        the scene falls from there by itself.
-    floor : float
-        What the force asks for that follows the handle alone, its bodies held: k T/2 + b of a spring and a damper.
-    frequency : float
-        Where b_req is asked for [Hz].
-    reason : str
-    """
-
-    mode: str
-    point: str
-    b_req: float
-    floor: float
-    frequency: float
-    reason: str
-    tick: tuple = field(repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +32,8 @@ class PortPassivity:
         What it is worth: exact; exact within each mode; of small motions about the operating points.
     b_device, m : float or None
         Damping [N s/m] and mass [kg] of the paddle.
+    travel : float or None
+        The handle was looked at as far to either side [m]; None where places were given.
     """
 
     scene: str
@@ -72,11 +43,12 @@ class PortPassivity:
     kind: str
     b_device: float | None = None
     m: float | None = None
+    travel: float | None = None
 
     @property
     def worst(self):
-        """The mode that asks for the most."""
-        return max(self.modes, key=lambda m: -1.0 if np.isnan(m.b_req) else m.b_req)
+        """The mode that asks for the most; one that falls before all others."""
+        return max(self.modes, key=lambda m: (np.isnan(m.b_req), m.b_req))
 
     @property
     def b_req(self):
@@ -108,16 +80,20 @@ class PortPassivity:
         """Least damping [N s/m] with which the handle of this mass is stable in every mass and spring that was tried."""
         if self.m is None:
             return None
-        asking = [m for m in self.modes if not np.isnan(m.b_req)]
+        # from where a nonlinear scene moves on it is not a question of damping
+        asking = [m for m in self.modes if np.isnan(m.b_req) or not m.stiffness < 0]
+        if any(np.isinf(m.floor) for m in asking):  # the force jumps
+            return np.inf
         return max((stable_damping(m.tick, self.m, self.T, self.delay, m.b_req) for m in asking), default=np.nan)
 
     def __float__(self):
         return float(self.b_req)
 
     def __str__(self):
-        enough = "passive" if self.passive else "not passive"
+        enough = {True: "passive", False: "not passive", None: "no damping makes it passive"}[self.passive]
         has = "" if self.b_device is None else f"; the device has {self.b_device:.4g}: {enough}"
-        head = f"{self.scene}, T = {1e3 * self.T:g} ms: needs b = {self.b_req:.4g} N s/m{has} ({WORTH[self.kind]})"
+        head = f"{self.scene}, T = {1e3 * self.T:g} ms: needs b = {self.b_req:.4g} N s/m{has} ({WORTH[self.kind]}"
+        head += ")" if self.travel is None else f"; handle within +-{1e3 * self.travel:g} mm)"
         lines = [head, f"  {'b [N s/m]':>10} {'floor':>8} {'at [Hz]':>8}  mode; where"]
         for m in self.modes:
             reason = "" if m.reason == WORST else f" ({m.reason})"
@@ -170,35 +146,10 @@ def port_passivity(scene, paddle=None, *, T=None, at=None, **options):
     T = period(paddle.T if T is None else T)
     delay = check_number("delay", getattr(paddle, "delay", 0.0), "s", "needs delay >= 0", lambda d: d >= 0)
     known = switched(scene)
-    points = operating_points(known, at, T)
-    probes = probes_of(points)
-    J, _ = motion_at(known, points, T)
-    ticks, handle = tick_at(known, [*points, *probes], T, **options)
-    flat = [np.concatenate([part.ravel() for part in map(np.asarray, tick)]) for tick in ticks]
-    modes = tuple(
-        _limit(known.named(p.mode), p.words, tick, slopes, T, delay, handle)
-        for p, tick, slopes in zip(points, ticks, J, strict=False)
-    )
+    looked = Looked(known, at, T)
+    modes, kind = looked.limits(*forces_and_ticks_at(known, looked.all, T, **options), T, delay)
     own = [None if paddle is None else float(getattr(paddle, name)) for name in ("b", "m")]
-    return PortPassivity(scene.name, T, delay, modes, kind_of(known, points, probes, flat), *own)
-
-
-def _limit(mode, point, tick, J, T, delay, handle):
-    """Return the :class:`PortLimit` of one tick map; ``handle`` are the states that remember the handle alone."""
-    A, B, C, D = tick
-    if not all(np.isfinite(part).all() for part in (*tick, J)):
-        raise AnalysisError(f"the force has no finite slope at {point}, {mode}; name places where it has, at={{...}}")
-    held = np.ix_(handle, handle)
-    floor = required(A[held], B[handle], C[handle], D, T, delay)[0]
-    falls = int(rising(J)) if len(J) else 0
-    pole = unstable_pole(A, B, C, falls)
-    if pole is not None:
-        return PortLimit(mode, point, np.inf, floor, 0.0, f"unstable with the handle held, a pole at {pole:.6g}", tick)
-    if falls and unstable_pole(A, B, C) is not None:
-        return PortLimit(mode, point, np.nan, floor, 0.0, "falls by itself: no motion near it is passive", tick)
-    b_req, theta = required(A, B, C, D, T, delay)
-    reason = "a resonance without damping" if np.isinf(b_req) else WORST
-    return PortLimit(mode, point, b_req, floor, theta / (2 * np.pi * T), reason, tick)
+    return PortPassivity(scene.name, T, delay, modes, kind, *own, looked.travel)
 
 
 def stable_damping(tick, m, T, delay=0.0, b_req=np.inf):
@@ -206,17 +157,19 @@ def stable_damping(tick, m, T, delay=0.0, b_req=np.inf):
     added, turns = np.meshgrid([0.0, 0.1, 1.0, 10.0, 100.0], np.r_[0.0, np.geomspace(1e-2, 3.0, 14)])
     masses = m * (1 + added.ravel())
     hands = single(masses, masses * (turns.ravel() / T) ** 2)
-    top = b_req if np.isfinite(b_req) else 1e3 * (abs(tick[3]) * T + m / T)
+    most = 1e3 * (abs(tick[3]) * T + m / T)
 
     def unstable(b):
         return bool((radii(tick, hands, b, T, delay) > 1 + UNSTABLE).any())
 
-    levels = top * np.r_[np.geomspace(1.0, 1e-3, 13), 0.0]
+    # with b_req it is stable, were it not for what a linearisation falls by
+    top = b_req if 0 < b_req < np.inf and not unstable(b_req) else most
+    levels = top * np.r_[np.geomspace(1.0, 1e-7 if top == most else 1e-3, 25), 0.0]
     last = next((k for k, b in enumerate(levels) if unstable(b)), None)
     if last is None:
         return 0.0
     if last == 0:
-        return float(top) if np.isfinite(b_req) else np.inf
+        return np.inf
     high, low = levels[last - 1], levels[last]
     for _ in range(10):
         middle = (high + low) / 2

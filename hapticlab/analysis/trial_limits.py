@@ -3,15 +3,12 @@
 import functools
 import math
 
-import numpy as np
-
 from ..compiler.exact import EXACT
 from ..compiler.order import order_of
-from ..compiler.step_matrix import rising
 from ..errors import HapticlabError
-from .linearization import motion_at, tick_at, tick_of
-from .operating import operating_points
-from .port import required, unstable_pole
+from .linearization import forces_and_ticks_at, forces_and_ticks_of
+from .port import negative
+from .port_limits import Looked
 from .step_limit import step_limit
 from .switches import switched
 
@@ -20,18 +17,24 @@ POINTS = 150
 
 
 class Limits:
-    """Margins of steps and damping asked for, of all settings of one scene."""
+    """Margins of steps and damping asked for, of all settings of one scene.
 
-    def __init__(self, scene):
-        self.scene = scene
+    Parameters
+    ----------
+    scene : Scene
+    travel : float
+        To which the handle goes to either side [m].
+    delay : float
+        After which a force is felt [s].
+    """
+
+    def __init__(self, scene, travel, delay=0.0):
+        self.scene, self.travel, self.delay = scene, travel, delay
 
     @functools.cached_property
     def places(self):
-        """The scene with its cases as switches, its operating points, and how many motions there grow by themselves."""
-        known = switched(self.scene)
-        points = operating_points(known)
-        J, _ = motion_at(known, points, 1e-3)
-        return known, points, [int(rising(one)) if len(one) else 0 for one in J]
+        """Where the scene, its cases as switches, is looked at."""
+        return Looked(switched(self.scene), travel=self.travel)
 
     @functools.lru_cache(maxsize=64)  # noqa: B019  it lives as long as its bench
     def longest(self, method):
@@ -59,30 +62,22 @@ class Limits:
         return (None, None) if found is None else (found[0] / h, found[1] / h)
 
     def damping(self, setting, program):
-        """Return the damping of a device [N s/m] that a setting asks for; None where that cannot be told.
+        """Return (damping of a device [N s/m] that a setting asks for, where); the first None where that cannot be told.
 
-        Where the scene falls by itself, as a pole on a cart, no motion near it is passive.
+        ``where`` is empty but for a scene that is not linear within its cases: what it asks for is of small motions there.
+        Where the scene falls by itself, as a pole on a cart, no motion near it is passive; inf where its stiffness is
+        negative, or its force jumps.
         """
         try:
-            known, points, rises = self.places
+            known, points = self.places.known, self.places.all
             if known.switches or len(program.inputs) != 1:
                 names = ("method", "substeps", "hold", "force_at")
-                ticks, _ = tick_at(known, points, setting.T, **{name: getattr(setting, name) for name in names})
+                found = forces_and_ticks_at(known, points, setting.T, **{name: getattr(setting, name) for name in names})
             else:
-                ticks, _ = tick_of(program, known, points)
+                found = forces_and_ticks_of(program, known, points)
+            modes, kind = self.places.limits(*found, setting.T, self.delay, frequencies=POINTS)
         except HapticlabError:
-            return None
-        asked = [_asked(tick, falls, setting.T) for tick, falls in zip(ticks, rises, strict=True)]
-        known = [b for b in asked if b is not None]
-        return max(known) if known else None
-
-
-def _asked(tick, falls, T):
-    A, B, C, D = tick
-    if not all(np.isfinite(part).all() for part in tick):
-        return None
-    if unstable_pole(A, B, C, falls) is not None:
-        return math.inf
-    if falls and unstable_pole(A, B, C) is not None:
-        return None
-    return required(A, B, C, D, T, points=POINTS)[0]
+            return None, ""
+        asked = [(math.inf if one.reason == negative(one.stiffness) else one.b_req, one.point) for one in modes]
+        b, where = max((one for one in asked if not math.isnan(one[0])), key=lambda one: one[0], default=(None, ""))
+        return b, where if kind == "small-signal" else ""

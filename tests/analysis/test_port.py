@@ -7,7 +7,7 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab import n, t, v, x
 from hapticlab.analysis.passivity import required_damping
-from hapticlab.analysis.port import port_damping, tick_map
+from hapticlab.analysis.port import port_damping, static_stiffness, tick_map
 from hapticlab.errors import AnalysisError
 
 T = 1e-3
@@ -54,6 +54,21 @@ def test_the_exact_map_is_its_own_closed_form():
 def test_without_damping_no_device_is_enough():
     assert port_damping(coupler(B=0), method="exact") == np.inf
     assert port_damping(coupler(B=0.05), method="exact", hold="zoh") == pytest.approx(1.0, abs=0.01)  # its resonance
+
+
+def test_static_stiffness_is_that_of_springs_in_series():
+    """K and k of a body on the ground: K k/(K + k), negative with k; a free body follows, which leaves 0."""
+    k = hl.parameters("k", units="N/m", values=-100, ranges=(-1e4, 1e4))
+    F = K * (x(t) - z) + B * (v(t) - z.diff(t))
+    scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F - k * z - B / 5 * z.diff(t))])
+    for stiffness in (-100, 300):
+        tick = tick_map(hl.compile(scene(k=stiffness), T=T, live=(), dtype="float64"))
+        assert static_stiffness(*tick) == pytest.approx(500 * stiffness / (500 + stiffness), rel=1e-9)
+    assert static_stiffness(*tick_map(hl.compile(coupler(), T=T, live=(), dtype="float64"))) == 0.0
+    with pytest.raises(AnalysisError, match="negative stiffness, -125 N/m"):
+        port_damping(scene)
+    with pytest.raises(AnalysisError, match="negative stiffness, -200 N/m: a free handle falls"):
+        port_damping(hl.Scene(force=k * x(n))(k=-200))
 
 
 def test_refusals():
