@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import sympy as sp
 
 from ..compiler.advance import Taylor
 from ..compiler.contact_steps import STEPS_PER_CONTACT
@@ -10,13 +11,14 @@ from ..compiler.exact import EXACT
 from ..compiler.exponential import exponential
 from ..compiler.methods import METHODS
 from ..compiler.options import choice, period, steps
-from ..compiler.step_matrix import GRID, longest_step, step_matrix
+from ..compiler.step_matrix import GRID, GROWS, longest_step, rising, step_matrix
 from ..errors import AnalysisError
 from ..scene.scene import Scene
+from ..scene.symbols import delay
 from ..scene.written import no_scene
 from .limit_plots import plot_step_limit
-from .linearization import motion_at, slopes_of
-from .operating import WORTH, kind_of, operating_points, probes_of
+from .linearization import motion_at, slopes_of, tick_at
+from .operating import FAR, TRAVEL, WORTH, kind_of, operating_points, probes_of, telling
 from .switches import switched
 
 #: states past which eigenvalues take their time
@@ -70,6 +72,11 @@ class StepLimit:
     modes : tuple of ModeLimit
     kind : {"linear", "piecewise linear", "small-signal"}
         What the prediction is worth: exact; exact within each mode; of small motions about the operating points.
+    given : bool
+        Whether the operating points were given.
+    held : float or None
+        Where what is held from sample to sample, as a delay or a signal, moves the bodies: by how much a tick of T makes
+        the fastest growing motion larger that does not grow by itself. The equations of motion, and h_max, do not see it.
     """
 
     scene: str
@@ -78,6 +85,8 @@ class StepLimit:
     h: float
     modes: tuple
     kind: str
+    given: bool = False
+    held: float | None = None
 
     @property
     def small_signal(self):
@@ -116,7 +125,7 @@ class StepLimit:
         Close is a margin under 2 where motions are not linear, under 1.5 where only modes are (switching between them pumps
         energy), or fewer than ten steps in a contact.
         """
-        if self.margin < 1:
+        if self.margin < 1 or (self.held or 0.0) > 1 + GROWS:
             return "unstable"
         close = self.margin < AMPLE[self.kind] or self.steps_per_contact < STEPS_PER_CONTACT
         return "close" if close else "stable"
@@ -126,7 +135,12 @@ class StepLimit:
 
     def __str__(self):
         head = f"{self.scene}, {self.method} in steps of {1e3 * self.h:g} ms: {self.verdict}, h_max = {1e3 * self.h_max:.4g} ms"
-        lines = [f"{head}, margin {self.margin:.3g} ({WORTH[self.kind]})"]
+        looked = "" if self.given else f"; handle and positions without a range within {1e3 * TRAVEL:g} mm, {FAR['rad']:.4g} rad"
+        worth = WORTH[self.kind] if self.held is None else "of the equations of motion"
+        lines = [f"{head}, margin {self.margin:.3g} ({worth}{looked if self.small_signal else ''})"]
+        if self.held is not None:
+            grows = "grows" if self.held > 1 + GROWS else "does not grow"
+            lines.append(f"  h_max leaves out what is held from sample to sample; a tick of T = {1e3 * self.T:g} ms {grows}")
         lines.append(f"  {'h_max [ms]':>10} {'margin':>8} {'gain/step':>10} {'steps/contact':>13}  mode; where")
         for m in self.modes:
             where = m.mode if m.point in m.mode else f"{m.mode}; {m.point}"
@@ -158,8 +172,9 @@ def step_limit(scene, method="rk4", *, T, substeps=1, hold="soh", at=None, **opt
     hold : str
         Changes what drives the motion, not whether it is stable; taken so that options of hl.compile can be passed on.
     at : dict name -> float, or sequence of them, optional
-        Operating points: handle x and v, coordinates and rates by name. By default the start with the handle at x = 0,
-        rest, places within declared ranges, and one place in every mode that can be reached.
+        Operating points: handle x and v, coordinates and rates by name. By default the start with the handle at x = 0 and
+        within 50 mm, rest, places within declared ranges, else within 50 mm or half a turn, and one place in every mode that
+        can be reached.
     **options
         Others of :func:`hapticlab.compile`, which do not change the step.
 
@@ -182,15 +197,41 @@ def step_limit(scene, method="rk4", *, T, substeps=1, hold="soh", at=None, **opt
     T, h = period(T), period(T) / steps(substeps)
     name = _method(method)
     known = switched(scene)
-    points = operating_points(known, at, T)
+    points = operating_points(known, at, T, TRAVEL, far=True)
     probes = probes_of(points)
     J, seconds = motion_at(known, [*points, *probes], T)
-    steps_at = [_step_at(known, p, name, T, J[k], seconds) for k, p in enumerate(points)]
-    modes = tuple(
-        _mode_limit(name, slopes, step, h, known.named(p.mode), p.words)
-        for p, slopes, step in zip(points, J, steps_at, strict=False)
-    )
-    return StepLimit(scene.name, name, T, h, modes, kind_of(known, points, probes, J))
+    closer = telling(points, J[: len(points)])
+    kind = kind_of(known, [*(points[k] for k in closer), *probes], [], [*(J[k] for k in closer), *J[len(points) :]])
+    found = {}
+    for k in closer:
+        p = points[k]
+        step = _step_at(known, p, name, T, J[k], seconds)
+        found[k] = _mode_limit(name, J[k], step, h, known.named(p.mode), p.words, p.sampled)
+    held = _held(known, [points[k] for k in closer], J[closer], T, method, substeps, hold)
+    modes = tuple(found[k] for k in _told(points, found))
+    return StepLimit(scene.name, name, T, h, modes, kind, at is not None, held)
+
+
+def _told(points, found):
+    """Return the numbers of points that were asked for, and of the sampled ones of a mode that of the shortest step."""
+    many = [k for k in found if points[k].sampled]
+    told = [k for k in found if not points[k].sampled]
+    for mode in dict.fromkeys(points[k].mode for k in many):
+        worst = min((k for k in many if points[k].mode == mode), key=lambda k: found[k].margin)
+        others = [found[k].margin for k in told if points[k].mode == mode]
+        told += [worst] if found[worst].margin < min(others, default=np.inf) or not others else []
+    return told
+
+
+def _held(scene, points, J, T, method, substeps, hold):
+    """Return the largest |eigenvalue| of ticks, besides as many as grow by themselves; None where nothing held is felt."""
+    form = scene.form
+    leaves = {a for e in (*form.f, *(one for row in form.M for one in row)) for a in e.atoms(sp.Function)}
+    if not any(isinstance(a, delay) or getattr(type(a), "role", None) == "signal" for a in leaves):
+        return None
+    ticks, _ = tick_at(scene, points, T, method=method, substeps=substeps, hold=hold)
+    sizes = [np.sort(np.abs(np.linalg.eigvals(tick[0])))[::-1] for tick in ticks]
+    return max(float(one[int(rising(slopes)) :].max(initial=0.0)) for one, slopes in zip(sizes, J, strict=True))
 
 
 def _method(method):
@@ -218,8 +259,8 @@ def _step_at(scene, point, method, T, J, seconds):
     return lambda h: step_matrix(known, damped.jacobian(point.values, h, len(h), **switches), seconds, h)
 
 
-def _mode_limit(method, J, step, h, mode, point):
-    """Return the :class:`ModeLimit` of one point, from its step matrices."""
+def _mode_limit(method, J, step, h, mode, point, quick=False):
+    """Return the :class:`ModeLimit` of one point, from its step matrices; ``quick``, to a thousandth."""
     if not np.isfinite(J).all():
         raise AnalysisError(f"the motion has no finite slope at {point}, {mode}; name places where it has, at={{...}}")
     values = np.linalg.eigvals(J)
@@ -227,7 +268,7 @@ def _mode_limit(method, J, step, h, mode, point):
     if method == Taylor.name:
         h_max = 1.0 / largest if largest else np.inf
     else:
-        few = (GRID[::3], (17, 17)) if len(J) > MANY else ()  # to a thousandth all the same
+        few = (GRID[::3], (17, 17)) if quick or len(J) > MANY else ()
         h_max = np.inf if method == EXACT else longest_step(step, J, *few)
     gain = energy_gain(values, np.linalg.eigvals(step(np.array([h]))[0]), h)
     per_contact = np.pi / (fastest * h) if fastest else np.inf

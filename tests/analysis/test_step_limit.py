@@ -117,6 +117,37 @@ def test_what_changes_with_time_and_what_strikes_is_not_called_exact():
     assert ball.kind == "piecewise linear" and ball.worst.mode == "everywhere, touch free"
 
 
+def test_a_hardening_spring_is_looked_at_where_it_is_stiff():
+    """K + 3 k_3 z^2 at 50 mm: semi-implicit Euler is stable up to 2 sqrt(m/that)."""
+    k_3 = hl.parameters("k_3", units="N/m^3", values=1e6)
+    F = K * (x(t) - z)
+    scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F - k_3 * z**3)])
+    limit = hl.step_limit(scene, "semi_implicit_euler", T=1e-3)
+    assert limit.h_max == pytest.approx(2 * np.sqrt(0.05 / (500 + 3e6 * 0.05**2)), rel=1e-3)
+    assert limit.small_signal and "within 50 mm" in str(limit) and "0.05" in limit.worst.point
+    assert len(limit.modes) == 2  # the start, and where it is worst
+
+
+@pytest.mark.parametrize("kind", ["delay", "signal"])
+def test_what_is_held_and_felt_is_looked_at_in_the_tick(kind):
+    """A spring that feels its body a sample late gives it energy, which its own damping outweighs or not."""
+    felt = hl.signal("felt", unit="m")
+    k_d, c = hl.parameters("k_d c", units="N/m N*s/m", values=(2000, 0.1))
+    F = K * (x(t) - z)
+    late = hl.delay(z) if kind == "delay" else felt(hl.n - 1)
+    body = sp.Eq(m * z.diff(t, 2), F - c * z.diff(t) - k_d * late)
+    scene = hl.Scene(force=F, eom=[body] if kind == "delay" else [body, sp.Eq(felt(hl.n), z)])
+    verdicts = set()
+    for damping in (0.1, 10.0):
+        limit = hl.step_limit(scene(c=damping), T=1e-3)
+        program = hl.compile(scene(c=damping), T=1e-3, dtype="float64", live=())
+        expected = np.abs(np.linalg.eigvals(tick_map(program)[0])).max()
+        assert limit.held == pytest.approx(expected, rel=1e-9) and limit.margin > 1
+        assert limit.verdict == ("unstable" if expected > 1 else "stable") and "linear: exact" not in str(limit)
+        verdicts.add(limit.verdict)
+    assert len(verdicts) == 2
+
+
 def test_the_picture_crosses_one_at_the_longest_step():
     limit = hl.step_limit(coupler(), "rk4", T=1e-3)
     line, step = limit.plot().axes[0].lines
