@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from ..scene.symbols import Parameter, acceleration, n, t, v, x
+from ..scene.symbols import Parameter, acceleration, delay, n, t, v, x
 from .advance import Taylor
 from .channels import short
 from .dependence import Dependence, part_of
@@ -133,6 +133,8 @@ def _of_hold(variables, seen):
             limits[name] = order
         elif isinstance(variable, acceleration):
             limits["the handle's acceleration, estimated"] = 1
+        elif isinstance(variable, delay):
+            limits[f"{short(variable, 40)} a sample late, held over a period"] = 1
         elif role == "signal" or (isinstance(variable, (x, v)) and variable.has(n)):
             limits[f"{variable} {kept}"] = of_held
     return limits

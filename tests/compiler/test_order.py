@@ -145,6 +145,23 @@ def test_float32_has_the_order_where_truncation_dominates(force, method, hold, s
     assert min(errors) > 1e-5 and measured(errors) == pytest.approx(claim, abs=0.1), (errors, claim)
 
 
+@pytest.mark.parametrize("method", ["rk4", "adams_bashforth3"])
+def test_a_delay_costs_an_order(method):
+    """A spring whose other end is felt a sample late: beside the one that feels it at once, by DOP853."""
+    PULL_ = K * (x(t) - z)
+    scene = hl.Scene(force=PULL_, eom=[sp.Eq(m * z.diff(t, 2), PULL_ - c * z.diff(t) - K * hl.delay(z))])
+    rates = lambda s, y: [y[1], (K_ * (handle(s)[0] - 2 * y[0]) - C_ * y[1]) / M_]  # noqa: E731
+    end = solve_ivp(rates, (0, SPAN), [0.01, 0], method="DOP853", rtol=1e-12, atol=1e-15).y[0, -1]
+    errors = []
+    for steps in STEPS:
+        program = hl.compile(scene, method, T=SPAN / steps, dtype="float64", live=())
+        time = np.arange(steps + 1) * SPAN / steps
+        F = load(program).run(steps + 1, handle(time)[0][:, None]).outputs[-1, 0, 0]
+        errors.append(abs(F - K_ * (handle(SPAN)[0] - end)))
+    assert float(order_of(scene, method)) == 1 and "a sample late" in str(order_of(scene, method))
+    assert measured(errors) == pytest.approx(1, abs=0.1), errors
+
+
 WALL, SPEED, K_W, B_W = 0.01, 0.2, 2000.0, 1.0
 z_w, k_w, b_w, s_c = hl.parameters("z_w k_w b_w s_c", units="m N/m N*s/m m", values=(WALL, K_W, B_W, 1e-3))
 ball = hl.coordinate("y", unit="m", rate=hl.parameters("v_0", units="m/s", values=SPEED))
