@@ -1,7 +1,9 @@
 """The methods that hl.compile knows, as a table and a picture: order, cost, and where each is stable."""
 
 import itertools
+import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +15,52 @@ from .plots import STYLES, house_style, new_figure
 ZETA = np.geomspace(0.02, 5.0, 41)
 #: omega h at which the table says how much energy a step adds to a spring
 AT = (0.1, 0.5)
+
+
+@dataclass(frozen=True)
+class WithoutSteps:
+    """A method whose error is rounding: the exact map of what is linear, or a Taylor series as long as it takes.
+
+    Attributes
+    ----------
+    name : str
+    order, evaluations, cost : str
+        In words: there is no power of a step.
+    real, imaginary : float
+        The largest h b/m and omega h, as of :class:`~hapticlab.compiler.methods.Method`; inf where any is stable.
+    """
+
+    name: str
+    order: str
+    evaluations: str
+    cost: str
+    real: float
+    imaginary: float
+
+    def longest_step(self, zeta=0.0):
+        """Return the largest omega h of q'' = -omega^2 q - 2 zeta omega q'."""
+        return self.imaginary / max(1.0, zeta + math.sqrt(max(zeta**2 - 1.0, 0.0)))
+
+    def energy_gain(self, omega_h):
+        """Return the part of its energy that a spring-mass gains in a step: none."""
+        return 0.0
+
+
+WITHOUT_STEPS = {
+    m.name: m
+    for m in (
+        WithoutSteps(
+            "exact", "rounding", "1 product",
+            "a constant matrix on the S states, S^2 products; a series where a mode ends; only what is linear in each mode",
+            math.inf, math.inf,
+        ),
+        WithoutSteps(
+            "taylor", "rounding", "1 series",
+            "terms of each operation until rounding, so many times a step of rk4; events located inside the step",
+            1.0, 1.0,
+        ),
+    )
+}  # fmt: skip
 
 
 class Methods(Mapping):
@@ -32,10 +80,10 @@ class Methods(Mapping):
 
     def __str__(self):
         gains = "".join(f"{f'gain at wh={y:g}':>15}" for y in AT)
-        lines = [f"{'method':<28}{'order':>6}{'evaluations':>13}{'h b/m <':>10}{'wh <':>8}{gains}"]
+        lines = [f"{'method':<28}{'order':>9}{'evaluations':>13}{'h b/m <':>10}{'wh <':>8}{gains}"]
         for name, m in self.items():
             gains = "".join(f"{_gain(m, y):>15}" for y in AT)
-            lines.append(f"{name:<28}{m.order:>6}{m.evaluations:>13}{_shown(m.real):>10}{_shown(m.imaginary):>8}{gains}")
+            lines.append(f"{name:<28}{m.order:>9}{m.evaluations:>13}{_shown(m.real):>10}{_shown(m.imaginary):>8}{gains}")
         return "\n".join([*lines, *_BESIDE])
 
     __repr__ = __str__
@@ -46,7 +94,7 @@ class Methods(Mapping):
         Parameters
         ----------
         *names : str
-            All, unless given.
+            All that take steps, unless given; "exact" and "taylor" have no boundary to draw.
 
         Returns
         -------
@@ -59,7 +107,8 @@ class Methods(Mapping):
         >>> [axes.get_ylabel() for axes in figure.axes]
         ['Im(h λ)', 'largest stable ω h']
         """
-        chosen = {name: self[name] for name in names or self}
+        stepped = {name: m for name, m in self.items() if name not in WITHOUT_STEPS}
+        chosen = {name: stepped[choice("method to draw", name, stepped)] for name in names or stepped}
         with house_style():
             figure = new_figure(height=4.6, width=10.0)
             left, right = figure.subplots(1, 2)
@@ -86,12 +135,12 @@ _BESIDE = (
     "gain: part of its energy that a spring gains in a step, in the long run; w: its frequency [rad/s]; h: step [s]",
     "nystrom4: only where accelerations are free of velocities (else its order would be 2)",
     "adams_bashforth: only without contacts and cases; with one step a period it looks at samples alone, whatever the hold",
-    "beside them exact and taylor: no error but rounding where motion is linear, whatever wh (exact) or for wh < 1 (taylor)",
+    *(f"{m.name}: {m.cost}" for m in WITHOUT_STEPS.values()),
 )
 
 
 def methods():
-    """Return the explicit fixed-step methods by name, their limits found by taking steps of them.
+    """Return the methods by name: explicit fixed-step ones, their limits found by taking steps of them, "exact" and "taylor".
 
     Returns
     -------
@@ -105,7 +154,7 @@ def methods():
     >>> known["rk4"].order, round(known["rk4"].imaginary, 3), known["semi_implicit_euler_damped"].real
     (4, 2.828, inf)
     """
-    return Methods(METHODS)
+    return Methods({**METHODS, **WITHOUT_STEPS})
 
 
 def _shown(limit):
