@@ -109,7 +109,7 @@ def tradeoff(
         known = [reference for half in halves for reference in half]
         bench = Bench(scene, paddle, tuple(known), boards, every, velocity, live)
         with shared_out(bench, workers) as share:
-            trials = all_tried(settings, share, shown.update)
+            trials = all_tried(settings, share, shown.update, getattr(paddle, "b", math.inf))
             keys = list(dict.fromkeys((s.T, s.hold) for s in settings))
             floors = dict(zip(keys, share(sensor_floor, keys), strict=True))
     return Tradeoff(scene.name, Table(rows_of(bench, trials, floors, targets)), targets, tolerance, bench)

@@ -8,6 +8,8 @@ from dataclasses import asdict, astuple, dataclass, fields, replace
 from ..compiler.methods import METHODS
 
 OK, TOO_LARGE, NOT_TRIED = "ok", "does not fit", "not tried"
+#: percentages below this are not told apart
+LEAST_PERCENT = 0.001
 #: statuses of settings that ran, and whose errors are measured
 RAN = (OK, TOO_LARGE, "uncertified", "chaotic", "faulted")
 
@@ -145,14 +147,19 @@ def exactness(method):
 
 
 def percent(part):
-    """Return a part as a percentage of two digits, or a dash.
+    """Return a part as a percentage of two digits or whole, or a dash.
 
     Examples
     --------
-    >>> percent(0.01234), percent(3.2e-7), percent(float("nan"))
-    ('1.2 %', '3.2e-05 %', '-')
+    >>> percent(0.01234), percent(16.1), percent(3.2e-7), percent(float("nan"))
+    ('1.2 %', '1610 %', '< 0.001 %', '-')
     """
-    return "-" if part is None or part != part else f"{100 * part:.2g} %"
+    if part is None or part != part:
+        return "-"
+    number = 100 * part
+    if 0 < number < LEAST_PERCENT:
+        return f"< {LEAST_PERCENT} %"
+    return f"{number:.0f} %" if abs(number) >= 10 else f"{number:.2g} %"
 
 
 def duration(seconds):

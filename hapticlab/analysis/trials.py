@@ -7,12 +7,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..compiler.cost import cost
+from ..compiler.cost import costs
 from ..compiler.engine import load
 from ..compiler.lower import compile
 from ..compiler.vm import machine
-from ..errors import EngineMissingError, HapticlabError, ProgramLimitError
-from .port_error import compared, counted
+from ..errors import AnalysisError, EngineMissingError, HapticlabError, ProgramLimitError
+from ..scene.symbols import delay, lag_of, v, x
+from .port_error import WILD, compared, counted
 from .tradeoff_rows import OK
 from .trial_limits import Limits
 
@@ -37,6 +38,7 @@ class Trial:
     """What one setting was found to do.
 
     ``error`` holds the most, the root of the mean square and the most of the held force, as parts of the greatest force;
+    ``seconds`` is a tick's time on this computer, ``estimated`` where it was not run on the engine that would run it;
     ``costs`` for each board a Cost, or why there is none.
     """
 
@@ -45,11 +47,18 @@ class Trial:
     why: str = ""
     error: tuple = (math.nan, math.nan, math.nan)
     seconds: float = math.nan
+    estimated: bool = False
     costs: dict = field(default_factory=dict)
     b_req: float | None = None
+    b_where: str = ""
     margin: float | None = None
     steps_per_contact: float | None = None
     order: float | None = None
+
+    @property
+    def ran(self):
+        """Whether it ran to the end."""
+        return self.status == OK
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +83,14 @@ class Bench:
     velocity: str
     live: object = ()
 
+    def __post_init__(self):
+        if not self.peak > 0:
+            motions = ", ".join(known.motion.name for known in self.runs)
+            raise AnalysisError(
+                f"{self.scene.name}: its force stays 0 N or is no number during {motions}, so there is nothing to compare; "
+                "give motions=[HandleMotion(...)] that bring the handle to where it acts"
+            )
+
     @functools.cached_property
     def peak(self):
         """Greatest force of the reference [N]."""
@@ -89,10 +106,36 @@ class Bench:
         """From when on rounding decides the motion [s]; None where it does not."""
         return min((known.horizon for known in self.runs if known.chaotic), default=None)
 
+    @property
+    def faulted(self):
+        """From when on the force of the reference is no number [s]; None where it always is one."""
+        return min((known.horizon for known in self.runs if known.faulted), default=None)
+
+    @property
+    def delay(self):
+        """After which the paddle's force is felt [s]."""
+        return float(getattr(self.paddle, "delay", 0.0))
+
+    @property
+    def notes(self):
+        """What is to be known of the whole, in sentences."""
+        told, most = [], getattr(self.paddle, "force_max", None)
+        if most and self.peak > most:
+            told += [f"the paddle gives {most:.3g} N at most: what is above is not felt, and no error here counts it"]
+        if any(_lagged(expr) for expr in _equations(self.scene)):
+            told += ["past samples and delayed forces are those of now in the reference: what they are late by counts as error"]
+        return told
+
     @functools.cached_property
     def limits(self):
         """Of stability and passivity, for all settings."""
-        return Limits(self.scene)
+        travel = max(float(np.abs(known.motion.at(known.t)[0]).max()) for known in self.runs)
+        return Limits(self.scene, travel, self.delay)
+
+    @functools.cached_property
+    def same(self):
+        """Pairs of holds that were found to compile to the same instructions."""
+        return set()
 
     def options(self, setting):
         """Return the options of :func:`hapticlab.compile` of a setting or a row."""
@@ -106,60 +149,121 @@ class Bench:
         return [np.stack(known.motion.at(T * np.arange(n))[:2], 1) for n, known in zip(counts, self.runs, strict=True)]
 
 
-def tried(bench, setting, again=False):
-    """Return the Trial of a setting: compiled, run, compared, timed, and costed for the boards."""
-    try:
-        program = compile(bench.scene, **bench.options(setting))
-        loaded = load(program, _engine(program))
-    except HapticlabError as refusal:
-        return Trial(setting, "refused", str(refusal))
-    boards = bench.boards if setting.precision == "float32" else ()
-    trial = Trial(setting, costs={board: _cost(program, board, bench.every) for board in boards})
-    columns, errors = [0 if c.name == "x" else 1 for c in program.inputs], []
+def tried(bench, settings, again=False):
+    """Return the Trials of settings that differ in the hold: those that compile to the same instructions are run once."""
+    trials, programs = [], []
+    for setting in settings:
+        twin = next((trial for trial, _ in programs if _pair(trial.setting, setting) in bench.same), None)
+        try:
+            if not twin:
+                program = compile(bench.scene, **bench.options(setting))
+                twin = next((trial for trial, other in programs if other == (program.init, program.tick)), None)
+            trial = _with_order(bench, twin, setting) if twin else _tried(bench, setting, program, again)
+        except HapticlabError as refusal:
+            trials.append(Trial(setting, "refused", str(refusal)))
+            continue
+        if twin:
+            bench.same.add(_pair(twin.setting, setting))
+        else:
+            programs.append((trial, (program.init, program.tick)))
+        trials.append(trial)
+    return trials
+
+
+def _pair(one, other):
+    """Return what says that two settings that differ in the hold are one program, for every period."""
+    return one.method, one.substeps, one.force_at, one.precision, one.hold, other.hold
+
+
+def _with_order(bench, trial, setting):
+    """Return a trial as that of a setting, with the order that is claimed for it."""
+    claimed = bench.limits.order(setting.method, setting.hold, setting.force_at, bench.velocity) if trial.ran else None
+    return replace(trial, setting=setting, order=claimed)
+
+
+def _tried(bench, setting, program, again):
+    """Return the Trial of a program: run, compared, timed, and costed for the boards."""
+    loaded = load(program, _engine(program))
+    trial = Trial(setting, costs=_costs(program, bench) if setting.precision == "float32" else {})
+    errors = []
     for samples, known in zip(bench.samples(setting.T), bench.runs, strict=True):
-        F = loaded.run(len(samples), samples[:, columns]).outputs[:, 0, 0]
-        error = compared(F, known, setting.T)
+        samples = of_program(program, samples)
+        F = loaded.run(len(samples), samples).outputs[:, 0, 0]
+        error = compared(F, known, setting.T, bench.delay)
         if error.unstable_at == error.unstable_at:
             why = f"during {known.motion.name} its force passes a hundred times the greatest, {known.peak:.3g} N"
             return replace(trial, status=f"unstable at t={error.unstable_at:.3g} s", why=why)
         errors.append((error.max, error.rms, error.hold))
     most, rms, hold = np.transpose(errors) / bench.peak
     error = float(most.max()), float(np.sqrt(np.mean(rms**2))), float(hold.max())
-    trial = replace(trial, error=error, seconds=_seconds(loaded, samples[:, columns]))
+    trial = replace(trial, error=error, seconds=_seconds(loaded, samples), estimated=loaded.name == "vm")
     if again:
         return trial
     margin, in_contact = bench.limits.steps(setting)
-    order = bench.limits.order(setting.method, setting.hold, setting.force_at, bench.velocity)
-    b_req = bench.limits.damping(setting, program)
-    return replace(trial, margin=margin, steps_per_contact=in_contact, b_req=b_req, order=order)
+    b_req, where = bench.limits.damping(setting, program)
+    trial = replace(trial, margin=margin, steps_per_contact=in_contact, b_req=b_req, b_where=where)
+    return _with_order(bench, trial, setting)
 
 
-def tried_again(bench, setting):
-    """Return the Trial of a setting that was tried with another precision: without what is the same in both."""
-    return tried(bench, setting, again=True)
+def tried_again(bench, settings):
+    """Return the Trials of settings that were tried with another precision: without what is the same in both."""
+    return tried(bench, settings, again=True)
+
+
+def timed(bench, settings):
+    """Return Trials that hold the time of a tick on the engine that would run it here, that of the first for all."""
+    program = compile(bench.scene, **bench.options(settings[0]))
+    seconds = _seconds(load(program), of_program(program, bench.samples(settings[0].T)[-1]))
+    return [Trial(setting, seconds=seconds) for setting in settings]
+
+
+def of_program(program, samples):
+    """Return of samples of (x, v) those that a program takes."""
+    return samples[:, [0 if c.name == "x" else 1 for c in program.inputs]]
 
 
 def sensor_floor(bench, key):
     """Return which part of the greatest force an encoder alone makes of error, with a period and a hold.
 
-    It is the difference of two runs of one program, on true positions and on counted ones.
+    It is the difference of two runs of one program without error of its own steps, on true positions and on counted
+    ones; nan where such a program is refused, or goes wild.
     """
     T, hold = key
     counts = getattr(bench.paddle, "counts_per_metre", None)
     if not counts:
         return math.nan
-    options = {"T": T, "hold": hold, "velocity": "backward_difference", "live": ()}
-    try:
-        program = compile(bench.scene, "rk4", **options)
-    except HapticlabError:
-        program = compile(bench.scene, "taylor", **options)
-    loaded = load(program, _engine(program))
-    most = 0.0
+    options = {"T": T, "hold": hold, "velocity": bench.velocity, "live": ()}
+    program = _first(bench.scene, ("exact", "taylor") if bench.scene.coordinates else ("rk4",), options)
+    if program is None:
+        return math.nan
+    loaded, most = load(program, _engine(program)), 0.0
     for samples in bench.samples(T):
-        x = samples[:, :1]
-        true, seen = (loaded.run(len(x), rows).outputs[:, 0, 0] for rows in (x, counted(x, counts, bench.paddle.rounding)))
-        most = max(most, float(np.abs(seen - true).max()))
+        seen = np.column_stack([counted(samples[:, 0], counts, bench.paddle.rounding), samples[:, 1]])
+        both = [loaded.run(len(rows), of_program(program, rows)).outputs[:, 0, 0] for rows in (samples, seen)]
+        if not np.abs(both).max() <= WILD * bench.peak:
+            return math.nan
+        most = max(most, float(np.abs(both[1] - both[0]).max()))
     return most / bench.peak
+
+
+def _first(scene, methods, options):
+    """Return the program by the first of some methods that takes the scene, None where none does."""
+    for method in methods:
+        try:
+            return compile(scene, method, **options)
+        except HapticlabError:
+            continue
+    return None
+
+
+def _equations(scene):
+    form = scene.explicit()
+    return [form.force, *form.f, *form.updates.values()]
+
+
+def _lagged(expr):
+    """Tell whether an expression takes samples of before, or a delayed force."""
+    return expr.has(delay) or any(lag_of(sample) for sample in expr.atoms(x, v))
 
 
 def _engine(program):
@@ -177,11 +281,13 @@ def machine_is_here():
     return True
 
 
-def _cost(program, board, every):
+def _costs(program, bench):
+    """Return for each board the cost, or in words why it takes no such program."""
     try:
-        return replace(cost(program, board, every=every), program=None)
+        found = costs(program, bench.boards, every=bench.every)
     except ProgramLimitError as refusal:
-        return str(refusal)
+        return dict.fromkeys(bench.boards, str(refusal))
+    return {board: replace(one, program=None) for board, one in zip(bench.boards, found, strict=True)}
 
 
 def _seconds(loaded, inputs):

@@ -16,21 +16,21 @@ def reference_motion(ticks, T):
     return 4e-3 * sum(np.sin(w * at + phase) for w, phase in ((3, 3.1), (7, 5.7), (11, 0.9), (17, 5.7), (29, 1.9)))
 
 
-def far_angles(program, of):
-    """Return the cycles that sines and cosines take more, since some angles are beyond an eighth of a turn.
+def far_angles(program):
+    """Return (operation, part of the ticks) of each sine and cosine: how often its angle is beyond an eighth of a turn.
 
-    The machine of this computer runs the program for a second. Where it cannot, or a parameter has no value, none are.
+    The machine of this computer runs the program for a second. Where it cannot, or a parameter has no value, there is none.
     """
     turned = [i for i in program.tick.instructions if i.op in ("sin", "cos")]
     if not turned or len(program.inputs) != 1 or any(v != v for v in program.values):
-        return 0
+        return []
     outputs = tuple(Channel(f"angle{k}") for k in range(len(turned)))
     tick = replace(program.tick, outputs=tuple(i.args[0] for i in turned))
     try:
         machine = load(replace(program, tick=tick, outputs=outputs), "vm")
     except EngineMissingError:
-        return 0
+        return []
     ticks = max(10, round(1 / program.T))
     angles = machine.run(ticks, reference_motion(ticks, program.T)[:, None]).outputs[..., 0]
     far = (np.abs(angles) > math.pi / 4).mean(axis=0)
-    return sum((of[i.op][2] - of[i.op][0]) * part for i, part in zip(turned, far, strict=True))
+    return [(i.op, float(part)) for i, part in zip(turned, far, strict=True)]

@@ -199,10 +199,9 @@ def _check_limits(program, counts, word_bits):
     most = 1 << word_bits
     if size["registers"] > min(most, 65535):
         over = size["registers"] - min(most, 65535)
-        cure = "encode it with word_bits=16 for a larger board, or u" if word_bits == 8 else "U"
         raise ProgramLimitError(
             f"{program.name}: {size['registers']} registers; {'an 8' if word_bits == 8 else 'a 16'}-bit word numbers "
-            f"{min(most, 65535)}, {over} too many: {cure}se fewer parameters, states or substeps"
+            f"{min(most, 65535)}, {over} too many: use fewer parameters, states or substeps"
         )
     for name, count in size.items():
         if count > 65535:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ..errors import ProgramError
 from .angles import far_angles
+from .boards import BOARDS, Board
 from .bytecode import encode, instructions_of, layout, words_of
 from .ir import Program
 from .traffic import Traffic
@@ -25,45 +26,6 @@ TYPICAL_ERROR = 0.1
 SEARCH_MARGIN = 0.02
 #: x and v, which a sample holds beside the program's outputs
 OWN_CHANNELS = 2
-
-
-@dataclass(frozen=True)
-class Board:
-    """What a board gives a program.
-
-    Attributes
-    ----------
-    name : str
-    hz : float or None
-        Processor clock [Hz]; None where time is not the program's to fill.
-    word_bits : int
-        Of a program's words: 8 numbers 256 registers.
-    arena : int
-        Memory of one program, its bytes and its registers [bytes].
-    channels : int
-        Numbers in a sample: x, v, F and what is watched.
-    T_max : float
-        Longest period [s].
-    """
-
-    name: str
-    hz: float | None
-    word_bits: int
-    arena: int
-    channels: int
-    T_max: float = 10e-3
-
-
-#: arena, channels and T_max are those of firmware/boards/*/board_constants.h; a test compares them
-BOARDS = {
-    b.name: b
-    for b in (
-        Board("uno", 16e6, 8, 848, 8),
-        Board("cortex-m0+", 125e6, 8, 16_384, 16),
-        Board("cortex-m4f", 168e6, 8, 16_384, 16),
-        Board("host", None, 16, 1 << 20, 16),
-    )
-}
 
 
 @dataclass(frozen=True)
@@ -236,8 +198,7 @@ def cost(program, board="uno", *, every=1, edges_per_second=0.0):
     every : int
         Ticks per telemetry sample, >= 1.
     edges_per_second : float
-        Of a quadrature encoder at the handle's greatest speed, >= 0: each interrupts a step. A magnetoresistive sensor has
-        none.
+        Of a quadrature encoder at the handle's greatest speed, >= 0: each interrupts a step.
 
     Returns
     -------
@@ -255,12 +216,22 @@ def cost(program, board="uno", *, every=1, edges_per_second=0.0):
     >>> taken.fits, taken.promised, taken.arena
     (True, True, 136)
     """
-    given = board_named(board)
+    return costs(program, [board], every=every, edges_per_second=edges_per_second)[0]
+
+
+def costs(program, boards, *, every=1, edges_per_second=0.0):
+    """Return the :func:`cost` on each of several boards, of a program that is encoded once."""
+    given = [*map(board_named, boards)]
     if not (isinstance(every, int) and every >= 1):
         raise ProgramError(f"every = {every!r}; needs a whole number of ticks per sample, at least 1")
     if not edges_per_second >= 0:
         raise ProgramError(f"edges_per_second = {edges_per_second!r}; needs a number of edges, at least 0")
-    data = encode(program, word_bits=given.word_bits)
+    data = {bits: encode(program, word_bits=bits) for bits in {board.word_bits for board in given}}
+    far = far_angles(program) if any(board.hz for board in given) else []
+    return [_cost(program, board, data[board.word_bits], far, every, edges_per_second) for board in given]
+
+
+def _cost(program, given, data, far, every, edges_per_second):
     at = layout(data)
     size = at.size
     shape = size["registers"], len(data), size["outputs"]
@@ -274,11 +245,10 @@ def cost(program, board="uno", *, every=1, edges_per_second=0.0):
     outside = around["tick"] + states + size["tick_moves"] * around["move"]
     outside += sum(around[f"output {c.type}"] for c in program.outputs)
     first = around["init"] + states + size["init_moves"] * around["move"] + sum(of[op][1] for op in init)
-    typical = round(outside + sum(of[op][0] for op in tick) + far_angles(program, of))
+    typical = round(outside + sum(of[op][0] for op in tick) + sum((of[op][2] - of[op][0]) * part for op, part in far))
     worst = outside + sum(of[op][1] for op in tick)
     bounds = [math.ceil(cycles * (1 + SEARCH_MARGIN)) for cycles in (worst, first)]
-    channels = size["outputs"] + OWN_CHANNELS
-    traffic = Traffic.of(table, channels=channels, parameters=len(program.parameters), every=every)
+    traffic = Traffic.of(table, channels=size["outputs"] + OWN_CHANNELS, parameters=len(program.parameters), every=every)
     return Cost(
         program.name, given, at.period_us * 1e-6, len(tick), *shape, typical, *bounds,
         tuple(table["step"]), traffic, table["late"], table["edge"] * edges_per_second, table["source"], program,

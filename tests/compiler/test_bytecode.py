@@ -80,7 +80,7 @@ def test_moves_in_sequence_are_the_moves_at_once(size):
 
 def test_a_program_past_8_bit_registers_is_refused_by_how_much():
     p = chain(300, kept=True)
-    with pytest.raises(ProgramLimitError, match="301 registers; an 8-bit word numbers 256, 45 too many: encode it"):
+    with pytest.raises(ProgramLimitError, match="301 registers; an 8-bit word numbers 256, 45 too many: use fewer"):
         encode(p, word_bits=8)
     assert layout(encode(p)).size["registers"] == 301
 
