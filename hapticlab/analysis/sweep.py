@@ -14,7 +14,7 @@ from ..scene.units import in_si
 from .chunks import measured
 from .grid import PADDLE_AXES, START_AXES, Grid
 from .measures import METRICS
-from .partial import Partial, Record
+from .partial import Partial
 from .plan import Plan, identity
 from .plots import plot_sweep
 from .workers import number_of, spread
@@ -88,11 +88,13 @@ def sweep(
         So many at once, -1 for one a processor: threads, which is all that machine code needs; processes where
         llvmlite is missing (a script then needs ``if __name__ == "__main__":``). Or what maps a function over a sequence as
         ``map`` does: ``pool.imap_unordered`` of a multiprocessing pool, ``executor.map``, or a Dask cluster's
-        ``client.get_executor().map``, where hapticlab must be installed too. A chunk sent to one carries a program, the
-        axes' values that it takes, the paddle with its seed, and a range of points.
+        ``client.get_executor().map``, where hapticlab must be installed too. It is called again and again, with 256
+        chunks at most. A chunk carries a program, the axes' values that it takes, the paddle with its seed, and a range of
+        points.
     resume : path, optional
         A file that keeps what is finished. The same call goes on from it, whatever stopped it: Ctrl-C, a crash, a reboot;
-        workers may differ. A file of another sweep, or of another version of hapticlab, is refused.
+        workers may differ. A file of another sweep, or of another version of hapticlab, is refused. Two calls at once on
+        one file do each other no harm, and the work twice.
     method, substeps, hold, force_at : optional
         As :func:`hapticlab.compile` takes them, the same for every point; method="taylor" sweeps impacts and sticking
         friction. With method="exact" parameters of the scene that are no axis are constants.
@@ -145,17 +147,21 @@ def sweep(
 
 def _filled(plan, what, workers, resume, progress):
     """Return the metric at every point: what the file has, and what the workers measure."""
-    result, points, done = np.empty(plan.grid.points), plan.grid.points, 0
+    points, done = plan.grid.points, 0
+    result, known = np.full(points, np.nan), np.zeros(points, bool)
     with Partial(resume, what) as kept, progress_bar(points, progress, "point") as shown:
         for record in kept.records:
-            done += plan.put(result, record, shown)
+            done += plan.put(result, record, known)
+        shown.update(done)
         before, chunks = done, plan.chunks(kept.records, workers)
         try:
             with closing(spread(measured, chunks, workers, threads=plan.machine_code)) as results:
-                for group, first, values in results:
-                    record = Record(group, first, plan.digests[group], values)
+                for given in results:
+                    record = plan.taken(given)
                     kept.add(record)
-                    done += plan.put(result, record, shown)
+                    more = plan.put(result, record, known)
+                    done += more
+                    shown.update(more)
         except BaseException as stop:
             if resume is not None and (done > before or isinstance(stop, KeyboardInterrupt)):
                 stop.add_note(f"{done} of {points} points are in {str(resume)!r}; the same call goes on from there")

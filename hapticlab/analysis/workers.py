@@ -7,6 +7,7 @@ import os
 import pickle
 import signal
 import threading
+from collections.abc import Iterable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 
@@ -16,6 +17,8 @@ from ..errors import AnalysisError
 MOST_BREAKS = 3
 #: how long to wait at a time [s]; on Windows Ctrl-C is heard in between only
 LOOK = 0.2
+#: pieces that what maps like map gets at once: few at first, for something to be known soon, then twice as many each time
+FIRST_BATCH, LARGEST_BATCH = 16, 256
 
 
 def number_of(workers):
@@ -23,7 +26,7 @@ def number_of(workers):
     if callable(workers):
         return workers
     try:
-        number = operator.index(workers)
+        number = 0 if isinstance(workers, bool) else operator.index(workers)
     except TypeError:
         number = 0
     if number == -1:
@@ -45,14 +48,15 @@ def spread(function, pieces, workers, *, threads=True):
     function : callable
         Of a module, where it goes to other processes.
     pieces : iterable
-        Taken as they are needed, a few ahead; a callable ``workers`` gets them all at once, in a list, as Dask wants it.
+        Taken as they are needed, a few ahead; a callable ``workers`` gets them in lists, as Dask wants it, of up to
+        LARGEST_BATCH each.
     workers : int or callable
         So many threads or processes; or like ``map(function, pieces)``: of a pool, of an executor, of a cluster.
     threads : bool
         Whether a number means threads, which is enough where the work is done outside Python.
     """
     if callable(workers):
-        yield from _mapped(function, [*pieces], workers)
+        yield from _mapped(function, iter(pieces), workers)
     elif workers == 1:
         yield from map(function, pieces)
     elif threads:
@@ -62,14 +66,19 @@ def spread(function, pieces, workers, *, threads=True):
 
 
 def _mapped(function, pieces, workers):
+    size = FIRST_BATCH
     try:
-        for result in workers(function, pieces):
-            if callable(getattr(result, "result", None)):
-                raise AnalysisError(
-                    f"workers gave back {result!r}; needs a map that returns results, not promises of them. Of a Dask client "
-                    "that is workers=client.get_executor().map"
-                )
-            yield result
+        while batch := [*itertools.islice(pieces, size)]:
+            results, size = workers(function, batch), min(2 * size, LARGEST_BATCH)
+            if not isinstance(results, Iterable):
+                raise AnalysisError(f"workers gave back {results!r}; needs a map that gives back all results, one by one")
+            for result in results:
+                if callable(getattr(result, "result", None)):
+                    raise AnalysisError(
+                        f"workers gave back {result!r}; needs a map that returns results, not promises of them. Of a Dask client "
+                        "that is workers=client.get_executor().map"
+                    )
+                yield result
     except BrokenExecutor as error:
         raise AnalysisError(
             "a worker of the pool given as workers was killed, and such a pool ends with it; make a new one and sweep again, "

@@ -137,6 +137,21 @@ def test_a_sweep_goes_on_where_it_was_interrupted(tmp_path, monkeypatch):
     assert sum(given) == 360 - done  # nothing was left to do
 
 
+def test_a_file_that_two_have_filled_at_once(tmp_path, monkeypatch):
+    """Each point twice, in chunks of other lengths: it counts once."""
+    monkeypatch.setattr(chunks, "MOST", 64)
+    path, alone = tmp_path / "map.sweep", swept(resume=tmp_path / "map.sweep")
+    monkeypatch.setattr(chunks, "MOST", 50)
+    with pytest.raises(KeyboardInterrupt):
+        swept(workers=stopped_after(4), resume=tmp_path / "other.sweep")
+    head, _, records = (tmp_path / "other.sweep").read_bytes().partition(b"\n")
+    assert path.read_bytes().startswith(head) and len(records) > 4 * 40 * 8
+    path.write_bytes(path.read_bytes() + records)
+    before = path.stat().st_size
+    np.testing.assert_array_equal(swept(resume=path).values, alone.values)
+    assert path.stat().st_size == before
+
+
 def test_a_stale_file_is_refused_and_says_why(tmp_path, monkeypatch):
     path = tmp_path / "map.sweep"
     swept(resume=path)

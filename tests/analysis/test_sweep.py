@@ -259,6 +259,8 @@ def test_how_a_sweep_is_compiled():
         np.testing.assert_array_equal(grid.values, alone)
     with pytest.raises(ProgramError, match="method = 'rk5'"):
         sweep(scene, PUSHED, b=[0.1], method="rk5")
+    with pytest.raises(ProgramError, match="K in it may be no axis of the sweep: use method='taylor', or one call for each"):
+        sweep(scene, PUSHED, K=[300.0, 400.0], method="exact", **options)
     hold = parameters("hold", units="N/m")
     own = sweep(Scene(force=hold * x(n)), PUSHED, metric="peak_force", hold=[100.0, 900.0], **options)
     assert list(own.axes) == ["hold"] and own.values[0] < own.values[1]
@@ -267,3 +269,27 @@ def test_how_a_sweep_is_compiled():
 def test_the_engine_of_a_sweep_takes_doubles():
     with pytest.raises(PaddleError, match="engine = 'vm'; a simulated paddle, float64 inside, runs on auto, llvm"):
         sweep(wall(), PUSHED, engine="vm", k=100.0)
+
+
+def test_an_exact_sweep_says_what_is_no_axis():
+    """Of a wall that the mass is on or off, where it is may be set, and what its motion is made of not."""
+    K, m, k, p = hl.parameters("K m_z k p_0", units="N/m kg N/m m", values=(500, 0.05, 2e3, 0.01))
+    z = hl.coordinate("z", unit="m")
+    scene = Scene(force=K * (x(n) - z), eom=[sp.Eq(m * z.diff(t, 2), K * (x(t) - z) - hl.when(z >= p, k * (z - p), 0))])
+    given = {"metric": "peak_force", "duration": 0.05, "v": 0.3, "progress": False, "method": "exact"}
+    assert len(set(sweep(scene, PUSHED, p_0=[1e-3, 2e-3], **given).values)) == 2
+    with pytest.raises(ProgramError, match="and k in it may be no axis of the sweep: use method='taylor'"):
+        sweep(scene, PUSHED, k=[100.0, 200.0], p_0=[1e-3, 2e-3], **given)
+
+
+def test_a_sweep_without_end_is_refused():
+    with pytest.raises(AnalysisError, match=r"is 1e\+303 samples of T = 0.001 s; a sweep runs at most 1e\+12"):
+        sweep(wall(), PUSHED, duration=1e300, k=[100.0])
+
+
+def test_a_light_handle_is_refused_by_its_value_on_the_axes():
+    with pytest.raises(PaddleError, match=r"m = 1e-09 kg, T = 0.002 s, coulomb > 0, .*Use m >= .* kg, T <="):
+        sweep(wall(), PUSHED, k=100.0, coulomb=[0.0, 0.1], m=[0.05, 1e-9], T=[1e-3, 2e-3])
+    sprung = replace(PUSHED, hand=Hand(k=1e13))
+    with pytest.raises(PaddleError, match="m = 1e-12 kg; with b = 0 N s/m.* T = 0.001 s .*needs m >= 1.01e-11 kg"):
+        sweep(wall(), sprung, k=100.0, m=[1e-12, 1.0], b=[0.0, 1e9], T=[1e-5, 1e-3])

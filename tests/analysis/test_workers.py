@@ -6,8 +6,9 @@ import pickle
 import signal
 import subprocess
 import sys
+import threading
 import tracemalloc
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
@@ -16,6 +17,7 @@ import pytest
 import hapticlab as hl
 from hapticlab.analysis import chunks
 from hapticlab.analysis import sweep as module
+from hapticlab.analysis import workers as workers_module
 from hapticlab.analysis.chunks import measured
 from hapticlab.analysis.workers import number_of, spread
 
@@ -71,6 +73,70 @@ def test_a_map_that_loses_results_is_found_out():
         swept(workers=lambda function, pieces: map(function, pieces[1:]))
 
 
+def first_again(function, pieces):
+    return [function(pieces[0])] * len(pieces)
+
+
+def shortened(function, pieces):
+    """As many points as there are, if they are only counted: a result without its last one, and that of another chunk."""
+    for piece in pieces:
+        group, first, values = function(piece)
+        yield group, first, values[:-1]
+        yield group, first, values[:1]
+
+
+def one_more(function, pieces):
+    return [*map(function, pieces), function(pieces[0])]
+
+
+def of_another(function, pieces):
+    return [(group, first + 1, values) for group, first, values in map(function, pieces)]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (first_again, "a chunk twice, or one they did not get"),
+        (one_more, "a chunk twice, or one they did not get"),
+        (of_another, "a chunk twice, or one they did not get"),
+        (shortened, r"an array of shape \(\d+,\) for a chunk of \d+ points"),
+        (lambda function, pieces: None, "None; needs a map that gives back all results"),
+        (lambda function, pieces: [None for _ in pieces], "None; needs a map that returns what the function does"),
+        (lambda function, pieces: [ValueError("no " * 90)], r"ValueError\('no.* \.\.\.; needs"),
+        (lambda function, pieces: [(0, 0, "none")], r"\(0, 0, 'none'\); needs"),
+        (lambda function, pieces: [([], 0, 1.0)], r"\(\[\], 0, 1.0\); needs"),
+    ],
+)
+def test_only_what_was_measured_is_taken(wrong, words, tmp_path, monkeypatch):
+    """And only that is kept in the file."""
+    few = {"k": AXES["k"][:40], "T": 1e-3, "duration": 0.05, "metric": "peak_force"}
+    alone = swept(**few)
+    monkeypatch.setattr(chunks, "MOST", 20)
+    monkeypatch.setattr(chunks, "FEWEST", 20)
+    with pytest.raises(hl.AnalysisError, match=f"workers gave back {words}"):
+        swept(workers=wrong, resume=tmp_path / "a", **few)
+    np.testing.assert_array_equal(swept(resume=tmp_path / "a", **few), alone)
+
+
+def test_a_map_gets_the_chunks_in_lists_that_grow(monkeypatch):
+    """Before a list is asked for, all results of the one before are out."""
+    monkeypatch.setattr(workers_module, "LARGEST_BATCH", 40)
+    taken, sizes = [], []
+
+    def pieces():
+        for number in range(200):
+            taken.append(number)
+            yield number
+
+    def mapped(function, batch):
+        sizes.append(len(batch))
+        return map(function, batch)
+
+    for number, result in enumerate(spread(abs, pieces(), mapped)):
+        assert result == number and len(taken) == sum(sizes)
+    assert sizes == [16, 32, 40, 40, 40, 32]
+
+
 def test_a_map_of_promises_is_refused():
     with ThreadPoolExecutor(1) as pool, pytest.raises(hl.AnalysisError, match=r"not promises.*client\.get_executor\(\)\.map"):
         swept(workers=lambda function, pieces: [pool.submit(function, piece) for piece in pieces])
@@ -78,7 +144,7 @@ def test_a_map_of_promises_is_refused():
 
 def test_what_workers_may_be():
     assert (number_of(3), number_of(np.int64(2)), number_of(-1)) == (3, 2, os.cpu_count())
-    for wrong in (0, -2, 2.0, "two", None):
+    for wrong in (0, -2, 2.0, "two", None, True):
         with pytest.raises(hl.AnalysisError, match="needs a whole number >= 1, -1 for every processor, or a function like map"):
             number_of(wrong)
     with ThreadPoolExecutor(1) as pool, pytest.raises(hl.AnalysisError, match=r"give its map: workers=pool\.map"):
@@ -86,22 +152,30 @@ def test_what_workers_may_be():
 
 
 def test_an_interrupt_ends_the_threads_and_keeps_what_they_had(tmp_path, alone, monkeypatch):
-    """A real signal, while the main thread waits for the others."""
+    """A real signal, in the main thread where it waits for the others; list.append is one step for all threads."""
     monkeypatch.setattr(chunks, "MOST", 20)
     monkeypatch.setattr(chunks, "FEWEST", 20)
-    calls = []
+    threads, begun, finished = {*threading.enumerate()}, [], []
 
-    def interrupting(chunk):
-        calls.append(chunk)
-        if len(calls) == 8:
-            signal.raise_signal(signal.SIGINT)
+    def counted(chunk):
+        begun.append(chunk)
         return measured(chunk)
 
-    monkeypatch.setattr(module, "measured", interrupting)
-    with pytest.raises(KeyboardInterrupt):
+    def interrupted(futures, *given):
+        found = wait(futures, *given)
+        finished.extend(found.done)
+        if len(finished) >= 8:
+            signal.raise_signal(signal.SIGINT)
+        return found
+
+    monkeypatch.setattr(module, "measured", counted)
+    monkeypatch.setattr(workers_module, "wait", interrupted)
+    with pytest.raises(KeyboardInterrupt) as stop:
         swept(workers=2, resume=tmp_path / "a")
-    assert 8 <= len(calls) < 27  # of 27 and more
-    monkeypatch.setattr(module, "measured", measured)
+    assert threads >= {*threading.enumerate()}
+    assert len(begun) <= len(finished) + 4  # those under way, of 27 and more
+    assert "points are in" in stop.value.__notes__[0] and int(stop.value.__notes__[0].split()[0]) >= 20
+    monkeypatch.undo()
     np.testing.assert_array_equal(swept(workers=2, resume=tmp_path / "a"), alone)
 
 
