@@ -10,6 +10,7 @@ from .ir import Channel
 from .located import Stepper
 from .remainder import remainder_for
 from .stiffness import (
+    MOST_INSTRUCTIONS,
     around,
     check_size,
     check_smooth,
@@ -29,6 +30,8 @@ from .trace import select
 _EVENTS = (2, 3)
 #: most radians a period that is followed piece by piece, at some 1500 instructions each
 MOST_TURNS = 32
+#: instructions of each surface, in each piece, an order of the series: at least, and of all but frictions at most
+_LEAST, _MOST = 73, 100
 
 
 @dataclass(frozen=True)
@@ -174,25 +177,48 @@ def switched(method, tracing, motion, groups, h, name, impact, after, number):
     """Trace one period of a motion that is linear between switches; see :func:`advance`."""
     start = [number(value.id) for part in groups for value in part]
     maps = Maps(motion, h, (method.reason, method.cure), tracing.parameters, start, number)
-    turns = maps.omega * h
-    # a contact lasts half a turn of its mode, and has two events
-    events = method.events or _EVENTS[len(motion.guards) + len(motion.reactions) > 2] + int(2 * turns / math.pi)
+    turns, surfaces = maps.omega * h, len(motion.guards) + len(motion.reactions)
     if turns > MOST_TURNS:
         raise ProgramLimitError(
             f"{name}: its fastest part turns with omega = {maps.omega:.4g} rad/s, by {turns:.4g} rad in a period of {h:g} s; "
             f"method='exact' locates switches in pieces of a radian, {MOST_TURNS} at most: take T <= "
             f"{MOST_TURNS / maps.omega:.2g} s, a softer contact, or one that does not give (hl.impulse, hl.rigid)"
         )
-    stepper = Stepper(
-        motion, h, order_for(min(turns, 1.0) / 2, tracing.real, True), events, impact,
-        longest=maps.longest, pieces=events + max(1, math.ceil(turns)),
-    )  # fmt: skip
+    _check_pieces(name, surfaces, turns, h, tracing.real)
+    order, events, pieces = _pieces(surfaces, turns, tracing.real)
+    stepper = Stepper(motion, h, order, events, impact, longest=maps.longest, pieces=pieces)
     held = [held_state(tracing, k) for k in range(len(motion.reactions))]
     groups, held, missed = maps.step(stepper, groups, held)
-    check_size(motion, tracing.tick, name)
+    check_size(motion, tracing.tick, name, method.name)
     for k, value in enumerate(held):
         tracing.set_next(("held", k), value)
     if after:
         after(stepper.reactions(tracing.tick.const(h), groups, held)[: motion.given])
     facts = {"maps": len(maps.modes), "order": stepper.order, "events": events, "pieces": stepper.pieces}
     return groups, facts | ({"omega": float(f"{maps.omega:.4g}")} if turns else {}), missed
+
+
+def _pieces(surfaces, turns, real):
+    """Return (order, events, pieces) of a period that turns by so many radians; the events of one contact each half turn."""
+    events = _EVENTS[surfaces > 2] + int(2 * turns / math.pi)
+    return order_for(min(turns, 1.0) / 2, real, True), events, events + max(1, math.ceil(turns))
+
+
+def _check_pieces(name, surfaces, turns, h, real):
+    """Refuse surfaces and pieces that are past the size of a program, before any of them is traced."""
+
+    def size(surfaces, turns, each):
+        order, _, pieces = _pieces(surfaces, turns, real)
+        return each * surfaces * order * pieces
+
+    least = size(surfaces, turns, _LEAST)
+    if least <= MOST_INSTRUCTIONS:
+        return
+    shorter = next((k for k in range(2, 1000) if size(surfaces, turns / k, _MOST) <= MOST_INSTRUCTIONS), None)
+    fewer = next(count for count in range(surfaces, -1, -1) if size(count, turns, _MOST) <= MOST_INSTRUCTIONS)
+    cures = [f"T <= {h / shorter:.2g} s"] * bool(shorter) + [f"{fewer} surfaces at most"] * bool(fewer) + ["a softer contact"]
+    raise ProgramLimitError(
+        f"{name}: method='exact' locates switches at {surfaces} surfaces (cases, Max, Min, contacts, frictions) in "
+        f"{_pieces(surfaces, turns, real)[2]} pieces of a period of {h:g} s, {least} instructions or more, and a program has "
+        f"{MOST_INSTRUCTIONS} at most: take {', '.join(cures[:-1])} or {cures[-1]}"
+    )

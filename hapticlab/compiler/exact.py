@@ -227,7 +227,8 @@ def linear_part(scene, form, constants, T, rest, graph):
     if reasons and any(located(model.contacts) for model in coupled(form)):
         raise _NotLinear(reason, "use method='taylor', which locates that and is exact where motion is linear")
     if reasons and not rows:
-        raise _NotLinear(reason, "nothing is left for method='exact', use 'rk4'")
+        other = "'taylor', which locates that" if any(f.has(*JUMPS) for f in form.f) else "'rk4'"
+        raise _NotLinear(reason, f"nothing is left for method='exact', use {other}")
     if reasons and rest is None:
         raise _NotLinear(reason, f"method='exact+rk4' takes {names} exactly and the rest by rk4")
     live = coefficients.live(rows)

@@ -1,5 +1,7 @@
 """Lower a scene to a program: the sample is taken, the force computed from it, then the equations of motion advance."""
 
+from dataclasses import replace
+
 from ..errors import ProgramError, SceneError
 from ..scene.scene import Scene
 from ..scene.written import no_scene
@@ -10,7 +12,7 @@ from .handle import HOLDS, VELOCITIES
 from .lowering import REAL_OF, Lowering
 from .methods import METHODS
 from .modes import excluded, rests_on
-from .options import choice, live_names, period, steps
+from .options import choice, live_names, period, steps, unusual
 from .pairs import Contacts
 
 
@@ -44,8 +46,8 @@ def compile(
         "exact" advances linear equations of motion by their matrix exponential, whose constants it makes of parameters
         that are not ``live``: no step error at any stiffness. Of what is linear between switches (walls, contacts,
         friction) it makes a map a mode, and locates the switches. With "+rk4" rk4 takes what is not linear.
-    T : float
-        Sampling period [s], > 0.
+    T : float or str
+        Sampling period [s], > 0, or a text with its unit, ``"1 ms"``.
     substeps : int
         Steps per period, >= 1.
     hold : {"zoh", "foh", "soh"}
@@ -106,9 +108,9 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at, u
                 model.contacts.check(scene.values)
         other = Taylor() if other == Taylor.name else other
         other = other if isinstance(other, Taylor) else METHODS.get(other)
-        return Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live, force_at).program(
-            rests_on(form, decisions)
-        )
+        lowering = Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live, force_at)
+        program = lowering.program(rests_on(form, decisions))
+        return replace(program, notes=(*program.notes, *unusual(T, len(program))))
     except RecursionError:
         raise ProgramError(
             f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals, "

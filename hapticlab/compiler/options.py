@@ -6,11 +6,16 @@ from numbers import Real
 
 from ..errors import ParameterError, ProgramError, ProgramLimitError
 from ..scene.symbols import Parameter
+from ..scene.units import in_si
 
 #: of a period, that an error may propose: more of any method are more instructions than a program may have
 MOST_SUBSTEPS = 1000
 #: each is an instruction at least
 _MOST_STEPS = 50_000
+#: sampling periods [s] that haptic loops have; any other is said to be unusual
+USUAL = (1e-5, 0.1)
+#: instructions a tick, past which a program says that it is large
+LARGE = 50_000
 
 
 def proposed(substeps, instead):
@@ -26,9 +31,20 @@ def choice(name, given, known):
 
 
 def period(T):
-    """Return the sampling period as a float [s], from a real number > 0 of any library."""
+    """Return the sampling period as a float [s], from a real number > 0 of any library or a text with a unit.
+
+    Examples
+    --------
+    >>> from hapticlab.compiler.options import period
+    >>> period("0.5 ms")
+    0.0005
+    """
+    if isinstance(T, str):
+        return period(in_si(T, "s", "T"))
+    if isinstance(T, bool) or not isinstance(T, Real):
+        raise ParameterError(f"T = {T!r}; a sampling period is a number in s or a text with its unit, T=1e-3 or T='1 ms'")
     try:
-        seconds = math.nan if isinstance(T, bool) or not isinstance(T, Real) else float(T)
+        seconds = float(T)
     except OverflowError:  # a whole number past 1e308
         seconds = math.inf
     if not (math.isfinite(seconds) and seconds > 0):
@@ -45,8 +61,19 @@ def steps(substeps):
     if count < 1:
         raise ProgramError(f"substeps = {substeps!r}; needs a whole number >= 1")
     if count > _MOST_STEPS:
-        raise ProgramLimitError(f"substeps = {count}: a program has at most 50000 instructions; take fewer substeps")
+        raise ProgramLimitError(f"substeps = {count}: needs {_MOST_STEPS} a period at most; take fewer substeps")
     return count
+
+
+def unusual(T, size):
+    """Return notes on a sampling period [s] that no haptic loop has, and on a program of very many instructions."""
+    notes = []
+    if not USUAL[0] <= T <= USUAL[1]:
+        why = "no board computes a force so often" if T < USUAL[0] else "a hand feels each sample as a step"
+        notes.append(f"T = {T:g} s: {why}; a haptic loop has 10 us to 100 ms, usually T=1e-3 [s]")
+    if size > LARGE:
+        notes.append(f"{size} instructions a tick: slow to compile and far past any board; fewer surfaces, a shorter T or rk4")
+    return notes
 
 
 def live_names(live):

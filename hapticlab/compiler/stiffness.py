@@ -220,9 +220,14 @@ def order_for(omega_h, real, linear):
 def is_linear(motion, measures=()):
     """Tell whether the motion of every mode is linear in its state, driven by polynomials of time at most; measures too."""
     instructions = motion.builder.instructions
+    reached = reachable(instructions, [value.id for value in (*motion.a, *motion.ds, *measures)])
+    mixed = _mixed(motion, reached)
     moving = {leaf.id for leaf in (*motion.q, *motion.w, *motion.s, *(r.leaf for r in motion.reactions))}
     timely = {motion.tau.id}
-    for p in reachable(instructions, [value.id for value in (*motion.a, *motion.ds, *measures)]):
+    for p in reached:
+        if p in mixed:
+            moving.add(p)
+            continue
         i = instructions[p]
         which = [a in moving or a in timely for a in i.args]
         if not any(which):
@@ -236,14 +241,34 @@ def is_linear(motion, measures=()):
     return True
 
 
-def check_size(motion, builder, name):
+def _mixed(motion, reached):
+    """Return the products, of a mixture of cases and the jump between them, that stand for the mixture's unknown.
+
+    Free, a mixture is 0 or 1, and its product no more than the jump is. Held, the product is what keeps a coordinate at
+    rest, as linear as an unknown friction is: where the mixture enters nowhere else, and nothing of the jump moves then.
+    """
+    instructions, found = motion.builder.instructions, set()
+    leaves = {leaf.id for leaf in (*motion.q, *motion.w, *motion.s, motion.tau, *(r.leaf for r in motion.reactions))}
+    for k, number in motion.stops.items():
+        leaf, users = motion.reactions[number].leaf.id, []
+        if number >= motion.given and k < len(motion.w):
+            users = [p for p in reached if leaf in instructions[p].args]
+        if len(users) == 1 and instructions[users[0]].op == "mul":
+            jump = [a for a in instructions[users[0]].args if a != leaf]
+            if leaves & {*reachable(instructions, jump)} <= {motion.q[k].id, motion.w[k].id} and jump:
+                found.add(users[0])
+    return found
+
+
+def check_size(motion, builder, name, method="taylor"):
     """Refuse a motion with more surfaces than a program can follow."""
     if len(builder.instructions) > MOST_INSTRUCTIONS:
         surfaces = len(motion.guards) + len(motion.reactions)
+        fewer = "fewer of them, a lower order or fewer events" if method == "taylor" else "fewer of them or a shorter T"
         raise ProgramLimitError(
-            f"{name}: method='taylor' follows {surfaces} surfaces (cases, Max, Min, contacts) through every piece of a step, "
-            f"which is more than {MOST_INSTRUCTIONS} instructions; needs fewer of them, a lower order or fewer events: "
-            "method=Taylor(order=6, events=1), or method='rk4' with substeps"
+            f"{name}: method={method!r} follows {surfaces} surfaces (cases, Max, Min, contacts) through every piece of a step, "
+            f"which is more than {MOST_INSTRUCTIONS} instructions; needs {fewer}, method=Taylor(order=6, events=1), or "
+            "method='rk4' with substeps"
         )
 
 

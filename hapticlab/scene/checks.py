@@ -11,7 +11,7 @@ from .symbols import Parameter, T, delay, lag_of, n, t, v, x
 from .units import agree, dimension
 from .written import CONDITIONS, RESERVED, check_name, expression
 
-#: of a scene's expressions, a part that stands in several places counted once: a program has 50 000 instructions at most
+#: of a scene's expressions, a part that stands in several places counted once: each is an instruction or more of a tick
 MOST_PARTS = 100_000
 _NOT_REAL = (sp.I, sp.zoo, sp.nan, sp.oo, -sp.oo)
 
@@ -33,8 +33,8 @@ def check_size(expressions):
         waiting.extend(part.args)
         if len(seen) > MOST_PARTS:
             raise SceneError(
-                f"the force and the equations have more than {MOST_PARTS} different parts, far past the 50000 instructions of a "
-                "program; a long sum or series needs fewer terms, a table of values a hl.Curve"
+                f"the force and the equations have more than {MOST_PARTS} different parts, each an instruction of every tick "
+                "or more; a long sum or series needs fewer terms, a table of values a hl.Curve"
             )
 
 

@@ -148,8 +148,9 @@ def test_a_massless_coupler_is_a_first_order_scene():
         ({"T": 1e-3, "substeps": 0}, "substeps = 0; needs a whole number >= 1"),
         ({"T": 1e-3, "substeps": 2.5}, "needs a whole number"),
         ({"T": 1e-3, "substeps": True}, "needs a whole number"),
-        ({"T": True}, "needs T > 0"),
-        ({"T": "1 ms"}, "needs T > 0"),
+        ({"T": True}, "T = True; a sampling period is a number in s or a text"),
+        ({"T": None}, "T = None; a sampling period is a number in s or a text"),
+        ({"T": "1 N"}, "T = '1 N'; needs a quantity in s"),
         ({"T": 1e-3, "method": ["rk4"]}, "needs one of euler"),
         ({"T": 1e-3, "live": 5}, "live = 5; needs names of parameters"),
         ({"T": 1e-3, "live": [5]}, "needs names of parameters"),
@@ -159,6 +160,17 @@ def test_a_massless_coupler_is_a_first_order_scene():
 def test_an_option_that_is_not_one_is_refused(options, words):
     with pytest.raises(HapticlabError, match=words):
         hl.compile(mass, **options)
+
+
+def test_a_period_may_be_a_text_with_its_unit():
+    assert hl.compile(hl.wall(), T="0.5 ms").T == 0.5e-3
+
+
+@pytest.mark.parametrize(("T", "said"), [(9e-6, "no board"), (0.2, "as a step"), (1e-5, None), (0.1, None)])
+def test_a_period_that_no_loop_has_is_noted(T, said):
+    noted = [note for note in hl.compile(hl.wall(), T=T, dtype="float64").notes if note.startswith(f"T = {T:g} s")]
+    assert [said in note for note in noted] == ([True] if said else [])
+
 
 
 def test_options_may_be_numbers_of_any_library_and_parameters_themselves():

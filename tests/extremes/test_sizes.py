@@ -167,7 +167,7 @@ def test_a_value_out_of_its_range_is_refused_where_it_is_bound(values, words):
         (dict(), dict(T=math.nan), "T = nan s"),
         (dict(), dict(T=1e-320), "T = .* is 0 in float32"),
         (dict(), dict(T=1e300), "T = 1e[+]300 s is inf in float32"),
-        (dict(), dict(substeps=10**9), "at most 50000 instructions; take fewer substeps"),
+        (dict(), dict(substeps=10**9), "needs 50000 a period at most; take fewer substeps"),
     ],
 )
 def test_a_size_that_no_program_can_have_is_refused_when_it_is_compiled(values, options, words):
