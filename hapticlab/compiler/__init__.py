@@ -57,8 +57,8 @@ step, ``instant`` leaves the stepping to whoever asks.
 **Method -> Program.** ``tracing`` gathers states and inputs, named by ``channels``, and leaves out what no output sees;
 ``options`` has checked what was asked for. How long a step may be, and what live parameters may be set to, is known
 before it runs: ``tangents`` differentiates the instructions in numbers (``slopes``, of the motion), ``step_matrix`` takes
-a method's step of what comes out, and ``stable_values`` looks for where it stops to be stable. The result is an ``ir``
-program:
+a method's step of what comes out, ``stable_values`` tells at which values it is stable, and ``value_limits`` how far each
+may go. The result is an ``ir`` program:
 
 >>> program = hl.compile(scene, "taylor", T=1e-3)
 >>> [c.name for c in program.outputs]

@@ -70,8 +70,9 @@ class StableValues:
         self.known = None
 
     def known_at(self, values):
-        """Tell whether all live parameters of the motion have a value."""
-        return all(math.isfinite(values.get(name, math.nan)) for name in self.live)
+        """Tell whether all live parameters of the motion have a value, one of these or that bound."""
+        known = {**self.values, **values}
+        return all(math.isfinite(known.get(name, math.nan)) for name in self.live)
 
     def cases(self, values):
         """Return leaf -> values, one for each mode and place that is looked at: all, with parameters bound to ``values``."""

@@ -60,8 +60,8 @@ def check_stable(program, numbers):
     growth = steps.growth(values)
     if growth <= steps.allowed or growth <= _growth_now(program, steps):
         return
-    changed = [*numbers, *(name for name in steps.live if name not in numbers and values[name] != steps.values.get(name))]
-    changed = [name for name in changed if name in steps.live]
+    others = [name for name in values if name not in numbers and values[name] != steps.values.get(name)]
+    changed = [name for name in (*numbers, *others) if name in steps.live]
     if steps.taylor:
         why = f"a step of {steps.h:g} s turns by {growth:.3g} rad; method='taylor' needs at most 1"
     else:

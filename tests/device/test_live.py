@@ -88,6 +88,17 @@ def test_what_has_no_value_yet_is_looked_at_when_it_has():
         checked(known, {"K_1": 210_000})
 
 
+def test_a_parameter_that_no_output_sees_hides_nothing():
+    """The motion of u is left out of the program, and with it its stiffness."""
+    u, k_u = hl.coordinate("u", unit="m"), hl.parameters("k_u", units="N/m", values=20)
+    F = K * (x(t) - z)
+    eom = [sp.Eq(m * z.diff(t, 2), F), sp.Eq(m * u.diff(t, 2), -k_u * u)]
+    known = hl.compile(hl.Scene(force=F, eom=eom), "verlet", T=1e-3)
+    assert "k_u" not in [c.name for c in known.parameters]
+    with pytest.raises(ParameterError, match="K = 210000: a step is stable for K <= "):
+        checked(known, {"K": 210_000})
+
+
 def test_what_is_unstable_already_may_become_less_so():
     known = program(K=500_000)
     assert checked(known, {"K": 400_000}) and checked(known, {"K": 500})
