@@ -47,6 +47,24 @@ def _moves(variable):
     return variable in (t, x(t), v(t)) or isinstance(variable, driven) or role in ("coordinate", "reaction")
 
 
+def hints(lowering, hold):
+    """Return notes on a hold that goes badly with the instant of the force, or with substeps."""
+    form, substeps = lowering.form, lowering.substeps
+    led = [a for a in lowering.graph.variables_of(form.f) if a in (x(t), v(t))]
+    if not led:
+        return
+    if lowering.force_at == "after" and hold != "zoh":
+        yield (
+            f"force_at = 'after' with hold = {hold!r}: lightly damped bodies ask a device for more damping than with 'before', "
+            "or with hold='zoh'; hl.port_passivity tells how much"
+        )
+    if substeps > 1 and hold == "zoh" and lowering.method is not None:
+        yield (
+            f"hold = 'zoh' sets the error, of order 1: {substeps} substeps shorten the step for stability and contacts, not the "
+            "error, which hold='foh' or 'soh' makes smaller"
+        )
+
+
 def at_the_end(lowering):
     """Return what translates the force once the period is traced: states at its end, all else as at the sample."""
     dynamics = lowering.dynamics

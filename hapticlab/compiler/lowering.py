@@ -15,7 +15,7 @@ from .contact_steps import limited
 from .dynamics import Dynamics
 from .exact import EXACT, exact_or_switched
 from .expressions import Translator
-from .force_at import IMPULSE, at_the_end, averaged
+from .force_at import IMPULSE, at_the_end, averaged, hints
 from .graph import Graph
 from .handle import Handle
 from .held import notes_on
@@ -55,6 +55,7 @@ class Lowering:
             self.facts = {"velocity": velocity, "dtype": dtype}
         elif force_at != "before":
             self.facts["force_at"] = force_at
+        self.hints = tuple(hints(self, hold))
         self.at_start = Translator(self.tracing.init, self._leaf_at_start, bound=scene.values, graph=self.graph)
         self.at_sample = self.translator(self._leaf_at_sample)
         self.resolving, self.resolved = [], set()
@@ -87,7 +88,7 @@ class Lowering:
             if value == value:
                 self._entering(channel.name, value)
         exact = self.exact.notes if self.exact else ()
-        lengths = notes_on(self.scene, self.folded)
+        lengths = (*self.hints, *notes_on(self.scene, self.folded))
         return replace(program, notes=(*program.notes, *exact, *self.dynamics.notes, *lengths, *notes_of(ranges)))
 
     def translator(self, leaf, after=0.0):

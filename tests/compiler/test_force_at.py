@@ -131,6 +131,26 @@ def test_it_is_told_and_checked():
         hl.compile(BODY, T=T, force_at="late")
 
 
+def test_what_goes_badly_together_is_said():
+    """After with a hold that foresees asks for more of a lightly damped body; under zoh substeps leave the error as it is."""
+    light = BODY(B=0.05)
+    asked = {
+        (force_at, hold): hl.port_damping(light, T=T, force_at=force_at, hold=hold)
+        for force_at in ("before", "after") for hold in ("zoh", "foh", "soh")
+    }  # fmt: skip
+    for (force_at, hold), b in asked.items():
+        notes = str(hl.compile(light, T=T, force_at=force_at, hold=hold).notes)
+        worse = force_at == "after" and b > 1.5 * max(asked["before", hold], asked["after", "zoh"])
+        assert ("more damping" in notes) == worse == (force_at == "after" and hold != "zoh")
+    exact = hl.compile(light, "exact", T=T, force_at="after", live=())
+    assert "more damping" in str(exact.notes)
+    F = {n: ran(BODY, "rk4", "before", hold="zoh", substeps=n)[:, 0] for n in (1, 2, 8)}
+    assert np.abs(F[2] - F[1]).max() < 1e-3 * np.abs(F[1] - ran(BODY, "rk4", "before", hold="soh")[:, 0]).max()
+    for substeps, hold in ((1, "zoh"), (2, "zoh"), (2, "foh")):
+        said = "substeps shorten the step" in str(hl.compile(BODY, T=T, substeps=substeps, hold=hold).notes)
+        assert said == (substeps > 1 and hold == "zoh")
+
+
 def test_a_micro_impulse_has_no_mean():
     high = hl.coordinate("z", unit="m", initial=hl.parameters("h", units="m", values=0.01))
     hovers = hl.Contact(high, hl.micro_impulse(e=0.4), name="hovers")
