@@ -41,7 +41,8 @@ _NOT_NEGATIVE = {
 class SimulatedPaddle(Paddle):
     """The sampled-data handle of Fig. 23.6: M x'' = push - F - b x' - coulomb sign(x') - k_h (x - intent) - ...
 
-    Exact between samples for any m, b, T: matrix exponential without Coulomb friction; with it, stops, sticking and
+    Exact between samples for any m, b, T: without Coulomb friction by the matrix exponential, and closed forms where it
+    would lose its digits (a light handle that is damped, or on a stiff spring); with it, stops, sticking and
     break-away are located inside the sample. Only what is given is compiled in; ``print(paddle)`` says what that is.
 
     Parameters
@@ -74,7 +75,7 @@ class SimulatedPaddle(Paddle):
     Raises
     ------
     PaddleError
-        For every value out of its range.
+        For every value out of its range, and a mass too small for numbers to move: the least that will do is named.
 
     Examples
     --------
