@@ -3,9 +3,12 @@
 import itertools
 import math
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from numbers import Real
 
 from ..compiler.cost import BOARDS
+from ..compiler.exact import EXACT
 from ..compiler.force_at import FORCE_AT
 from ..compiler.handle import HOLDS
 from ..compiler.methods import METHODS
@@ -14,14 +17,15 @@ from ..device.progress import progress_bar
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from ..scene.written import no_scene
+from .bench import Bench
 from .choice import MARGIN, Asked, chosen
 from .copies import shared_out
 from .explained import explained
-from .motions import handle_motions
+from .motions import HandleMotion, handle_motions
 from .reference import references
 from .rounds import all_tried
-from .tradeoff_rows import OK, Table, percent, rows_of
-from .trials import Bench, Setting, sensor_floor
+from .tradeoff_rows import LEGEND, OK, Row, Table, percent, rows_of
+from .trials import Setting, sensor_floor
 from .work_precision import front, plot_work_precision
 
 #: the target that is no board: this computer
@@ -45,7 +49,7 @@ def tradeoff(
 
     The handle is led along motions; the force of each compiled setting is compared with a reference that two independent
     solvers agree on, and with what the paddle's encoder alone makes of it. On boards cost is predicted, as
-    :func:`~hapticlab.compiler.cost.cost` does; here it is timed.
+    :func:`~hapticlab.compiler.cost.cost` does; here it is timed, where a setting can be the least, and estimated elsewhere.
 
     A setting is left out where a cheaper method or fewer substeps already have the error of the hold itself, and float64
     where rounding is no part of the error: ``status`` says "not tried", and ``why``.
@@ -58,12 +62,12 @@ def tradeoff(
         Its damping b [N s/m] and its encoder.
     methods : "auto" or sequence of str
         Of :func:`hapticlab.compile`; all but forward Euler, and midpoint beside Heun, unless given.
-    T : sequence of float
+    T : float or sequence of float
         Sampling periods [s], whole numbers of 10 us or of a quarter of the shortest.
     substeps, holds, force_at, precision : sequences
         Of :func:`hapticlab.compile`; precision is its ``dtype``.
-    targets : sequence of {"pc", "uno", "cortex-m0+", "cortex-m4f"}
-    motions : sequence of HandleMotion, optional
+    targets : one or a sequence of {"pc", "uno", "cortex-m0+", "cortex-m4f"}
+    motions : HandleMotion or sequence of them, optional
         :func:`~hapticlab.analysis.motions.handle_motions` unless given.
     tolerance : float
         Part of the greatest force, for the printed choice and the plot.
@@ -74,8 +78,8 @@ def tradeoff(
         possible.
     every : int
         Ticks per sample of telemetry, part of a board's load.
-    workers : int, optional
-        Processes, 2 where they can be copied.
+    workers : int or callable, optional
+        Processes, 2 where they can be copied; or what maps, as ``map`` does.
     progress : bool
         Show a bar when it lasts longer than two seconds.
 
@@ -95,24 +99,56 @@ def tradeoff(
     >>> print(found.table[0].status, found.choose().row.T)
     ok 0.001
     """
-    if not isinstance(scene, Scene):
-        raise AnalysisError(no_scene(scene, "write hl.tradeoff(hl.Scene(force=...), paddle)"))
-    T, targets = tuple(period(one) for one in T), tuple(targets)
+    _check(scene, paddle)
+    Asked(tolerance, load=1.0, passive=True)  # refuses a tolerance that is none
+    T, targets = tuple(period(one) for one in _several(T)), _several(targets)
     for name in targets:
         choice("target", name, (PC, *(board for board in BOARDS if BOARDS[board].hz)))
     boards = tuple(name for name in targets if name != PC)
     settings = _settings(scene, methods, T, substeps, holds, force_at, precision)
-    with progress_bar(len(settings), progress, "setting") as shown:
-        motions = tuple(motions or handle_motions(scene, paddle))
-        with shared_out((scene, _step(T)), workers) as share:
-            halves = list(share(_references, [motions[::2], motions[1::2]]))
-        known = [reference for half in halves for reference in half]
-        bench = Bench(scene, paddle, tuple(known), boards, every, velocity, live)
-        with shared_out(bench, workers) as share:
-            trials = all_tried(settings, share, shown.update, getattr(paddle, "b", math.inf))
-            keys = list(dict.fromkeys((s.T, s.hold) for s in settings))
-            floors = dict(zip(keys, share(sensor_floor, keys), strict=True))
+    motions = _motions(motions, scene, paddle, T)
+    with shared_out((scene, _step(T)), workers) as share:
+        halves = list(share(_references, [motions[::2], motions[1::2]]))
+    bench = Bench(scene, paddle, tuple(itertools.chain(*halves)), boards, every, velocity, live)
+    with progress_bar(len(settings), progress, "setting") as shown, shared_out(bench, workers) as share:
+        trials = all_tried(settings, share, shown.update, paddle.b)
+        keys = list(dict.fromkeys((s.T, s.hold) for s in settings))
+        floors = dict(zip(keys, share(sensor_floor, keys), strict=True))
     return Tradeoff(scene.name, Table(rows_of(bench, trials, floors, targets)), targets, tolerance, bench)
+
+
+def _check(scene, paddle):
+    """Refuse what is no scene with all its values, or no paddle."""
+    if not isinstance(scene, Scene):
+        raise AnalysisError(no_scene(scene, "write hl.tradeoff(hl.Scene(force=...), paddle)"))
+    unbound = [str(name) for name in scene.parameters if name not in scene.values]
+    if unbound:
+        given, options = ", ".join(f"{name}=..." for name in unbound), " ".join(f"--set {name}=..." for name in unbound)
+        raise AnalysisError(f"{scene.name}: no value for {', '.join(unbound)}; bind them: scene({given}), or as a command {options}")
+    if not isinstance(getattr(paddle, "b", None), Real):
+        raise AnalysisError(f"paddle = {paddle!r}; needs a SimulatedPaddle or a PaddleProfile, such as hl.library.nominal")
+
+
+def _several(given):
+    """Return one thing, or a sequence of them, as a tuple."""
+    return (given,) if isinstance(given, (str, Real)) or not isinstance(given, Iterable) else tuple(given)
+
+
+def _motions(given, scene, paddle, T):
+    """Return the motions, or refuse what are none, and those that end before the first period."""
+    motions = _several(handle_motions(scene, paddle) if given is None else given)
+    wrong = [one for one in motions if not isinstance(one, HandleMotion)]
+    if wrong or not motions:
+        raise AnalysisError(f"motions = {given!r}; needs one HandleMotion(name, x, duration) or several")
+    short = next((one for one in motions if one.duration < 2 * max(T)), None)
+    if short:
+        raise AnalysisError(f"{short.name} lasts {short.duration:g} s; needs two periods at least, {2 * max(T):g} s")
+    return motions
+
+
+def _known(method):
+    """Return whether a method has a meaning."""
+    return method in (*METHODS, EXACT, "taylor") or str(method).removeprefix("exact+") in METHODS or not isinstance(method, str)
 
 
 def _references(common, motions):
@@ -128,6 +164,9 @@ def _settings(scene, methods, T, substeps, holds, force_at, precision):
     for name, several in given.items():
         if isinstance(several, str) or not tuple(several):
             raise AnalysisError(f"{name} = {several!r}; needs a sequence of at least one, such as {name}=[{several!r}]")
+    for method in methods:
+        if not _known(method):
+            choice("method", method, (*METHODS, EXACT, "taylor"))
     for hold, when, real in itertools.product(holds, force_at, precision):
         choice("hold", hold, HOLDS), choice("force_at", when, FORCE_AT), choice("precision", real, PRECISIONS)
     substeps = sorted(map(steps, substeps))
@@ -207,10 +246,14 @@ class Tradeoff:
 
     def explain(self, row):
         """Return what a row says, in sentences."""
+        if not isinstance(row, Row):
+            raise AnalysisError(f"row = {row!r}; needs a row, such as found.explain(found.table[0]) or found.front('pc')[0]")
         return explained(row, self.table, self.bench.every)
 
     def plot(self, *targets, tolerance=None, load=0.5, passive=True):
         """Draw error against load, a line for each method; see :func:`~hapticlab.analysis.work_precision.plot_work_precision`."""
+        for target in targets:
+            choice("target", target, self.targets)
         return plot_work_precision(self, targets or self.targets, self._asked(tolerance, load, passive, MARGIN))
 
     def _asked(self, tolerance, load, passive, margin, held=None):
@@ -224,9 +267,10 @@ class Tradeoff:
             f"greatest force {self.bench.peak:.3g} N; the solvers of its reference differ by {percent(self.bench.doubt)} of it",
             *(f"  {known}" for known in self.bench.runs),
             *(f"  {note}" for note in self.bench.notes),
+            *LEGEND,
         ]
         for target in self.targets:
-            lines += ["", f"{target}: what none beats", str(self.front(target)), str(self.choose(target=target, **asked))]
+            lines += ["", f"{target}: what none beats", self.front(target).brief(), str(self.choose(target=target, **asked))]
         return "\n".join(lines)
 
     def __str__(self):
