@@ -10,6 +10,8 @@ from .tradeoff_rows import TOO_LARGE, Row, percent
 MARGIN = 2.0
 #: steps that a contact takes at least where its instants are not located
 STEPS_PER_CONTACT = 10.0
+#: measured times that differ by less are the same
+NOISE = 1.2
 #: statuses that a choice tells of, with their reason
 UNSURE = ("uncertified", "chaotic", "faulted")
 #: part of the greatest force up to which an encoder's own error raises the tolerance
@@ -142,7 +144,7 @@ def chosen(rows, target, asked, options_of):
     good = [row for row in ran if not asked.excess(row)]
     here = [row for row in good if row.target == target]
     if here:
-        row = min(here, key=lambda row: (row.load, row.err_max))
+        row = _least(here)
         return Configuration(row, options_of(row), asked.allowed(row), tuple(_notes(row, asked)))
     mine = [row for row in ran if row.target == target]
     if not mine:
@@ -150,6 +152,14 @@ def chosen(rows, target, asked, options_of):
     nearest = min(mine, key=lambda row: (len(asked.excess(row)), sum(map(math.log, asked.excess(row).values()))))
     relax = [*_single(mine, asked), *_elsewhere(good)]
     return NotFeasible(target, nearest, tuple(relax or _each(nearest, asked)))
+
+
+def _least(rows):
+    """Return the row of least load; of times that were measured, those within NOISE of it go by their error."""
+    row = min(rows, key=lambda row: (row.load, row.err_max))
+    if row.cycles is not None:
+        return row
+    return min((one for one in rows if one.load <= NOISE * row.load), key=lambda one: one.err_max)
 
 
 def _reasons(rows):

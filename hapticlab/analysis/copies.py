@@ -1,5 +1,6 @@
 """Work shared out to copies of this process, which have at once what it knows: scenes, references, what was imported."""
 
+import functools
 import multiprocessing
 import sys
 from concurrent.futures import ProcessPoolExecutor
@@ -29,11 +30,14 @@ def shared_out(common, workers=None):
     ----------
     common : object
         What every call needs.
-    workers : int, optional
-        Copies that work at once, 2 unless given; 1 is this process itself. Only Linux copies a process safely, so that
-        elsewhere it is always 1: a new process would need seconds to begin, for seconds of work.
+    workers : int or callable, optional
+        What maps, as ``map``; or copies that work at once, 2 unless given; 1 is this process itself. Only Linux copies a
+        process safely, so that elsewhere it is always 1: a new process would need seconds to begin, for seconds of work.
     """
     workers = 2 if workers is None else number_of(workers)
+    if callable(workers):
+        yield lambda function, arguments: workers(functools.partial(function, common), arguments)
+        return
     if workers == 1 or "fork" not in multiprocessing.get_all_start_methods() or sys.platform == "darwin":
         yield lambda function, arguments: (function(common, argument) for argument in arguments)
         return

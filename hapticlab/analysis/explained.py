@@ -65,8 +65,10 @@ def _stability(row):
 
 
 def _cost(row, every):
+    if row.target == "pc":
+        about = "about, from the time of the boards' machine: " if row.estimated else ""
+        yield f"{about}{duration(row.seconds)} a tick on this computer, {percent(row.load)} of the period"
     if row.cycles is None:
-        yield f"{duration(row.seconds)} a tick on this computer, {percent(row.load)} of the period"
         return
     yield (
         f"{row.cycles:.0f} cycles a tick, predicted, {duration(row.seconds)}; with the rest of the step and telemetry every "

@@ -123,8 +123,10 @@ def _check(scene, paddle):
         raise AnalysisError(no_scene(scene, "write hl.tradeoff(hl.Scene(force=...), paddle)"))
     unbound = [str(name) for name in scene.parameters if name not in scene.values]
     if unbound:
-        given, options = ", ".join(f"{name}=..." for name in unbound), " ".join(f"--set {name}=..." for name in unbound)
-        raise AnalysisError(f"{scene.name}: no value for {', '.join(unbound)}; bind them: scene({given}), or as a command {options}")
+        given, command = ", ".join(f"{name}=..." for name in unbound), " ".join(f"--set {name}=..." for name in unbound)
+        raise AnalysisError(
+            f"{scene.name}: no value for {', '.join(unbound)}; bind them: scene({given}), on the command line {command}"
+        )
     if not isinstance(getattr(paddle, "b", None), Real):
         raise AnalysisError(f"paddle = {paddle!r}; needs a SimulatedPaddle or a PaddleProfile, such as hl.library.nominal")
 

@@ -50,6 +50,10 @@ class Row:
         "not tried".
     why : str
         The reason of a status other than "ok".
+    estimated : bool
+        Whether the time on the pc is no measurement: from the boards' machine, for settings that cannot be the least.
+    static : bool
+        Whether nothing moves in the scene: then method, substeps and hold mean nothing.
     """
 
     method: str
@@ -75,6 +79,8 @@ class Row:
     b_req: float | None = None
     b_device: float | None = None
     b_where: str = ""
+    estimated: bool = False
+    static: bool = False
     status: str = OK
     why: str = ""
 
@@ -91,7 +97,7 @@ class Row:
     @property
     def name(self):
         """The setting in a few words."""
-        parts = [self.method, self.hold, f"T = {self.T * 1e3:g} ms"]
+        parts = [*([] if self.static else [self.method, self.hold]), f"T = {self.T * 1e3:g} ms"]
         parts += [f"{self.substeps} substeps"] * (self.substeps > 1) + [f"force {self.force_at}"] * (self.force_at != "before")
         return ", ".join([*parts, self.precision])
 
@@ -103,12 +109,32 @@ _HEADS = (
 )  # fmt: skip
 
 
+#: left out where rows of one target are compared, which all ran
+_ASIDE = ("target", "rms", "cycles", "time", "contact", "passive", "status")
+LEGEND = (
+    "err max and held: error of the force at the samples, and held over the period; sensor: made by the encoder alone; all as",
+    "parts of the greatest force. order: seen/claimed, as a power of T; load: part of the period; margin: longest stable step",
+    "over the step taken; contact: steps in the shortest contact; b_req: damping that a device needs to be passive [N s/m]",
+)
+
+
 class Table(tuple):
     """Rows of a trade-off; printing it shows them, one a line."""
 
     def __str__(self):
-        heads = " ".join(f"{head:{'<' if head in ('method', 'status') else '>'}{width}}" for head, width in _HEADS)
-        return "\n".join([heads.rstrip(), *map(_line, self)])
+        return self._text(_HEADS)
+
+    def brief(self):
+        """Return the rows in lines of less than 120 columns, without their target and what is of little weight."""
+        aside = (*_ASIDE, "force") if all(row.force_at == "before" for row in self) else _ASIDE
+        return self._text([(head, width) for head, width in _HEADS if head not in aside])
+
+    def _text(self, heads):
+        lines = [{head: head for head, _ in heads}, *map(_cells, self)]
+        sides = {"method": "<", "status": "<"}
+        return "\n".join(
+            " ".join(f"{cells[head]:{sides.get(head, '>')}{width}}" for head, width in heads).rstrip() for cells in lines
+        )
 
     def where(self, **wanted):
         """Return the rows whose attributes have these values, as in ``table.where(target="uno", status="ok")``."""
@@ -123,17 +149,22 @@ class Table(tuple):
         return path
 
 
-def _line(row):
+def _cells(row):
+    """Return what a line shows of a row, by the head of its column."""
     order = f"{_plain(row.order_seen, '.1f')}/{_plain(row.order_claimed, 'g')}"
     cells = (
-        row.method, f"{row.T * 1e3:g}", row.substeps, row.hold, row.force_at, row.precision.replace("float", "f"), row.target,
+        "none needed" if row.static else row.method, f"{row.T * 1e3:g}", *_step_of(row), row.force_at,
+        row.precision.replace("float", "f"), row.target,
         *map(percent, (row.err_max, row.err_rms, row.err_hold, row.sensor_floor)), order,
         _plain(row.measured or row.cycles, ".0f"), duration(row.seconds), percent(row.load), _plain(row.margin, ".3g"),
         _plain(row.steps_per_contact, ".3g"), _plain(row.b_req, ".3g"),
         {None: "-", True: "yes", False: "no"}[row.passive], row.status,
     )  # fmt: skip
-    aligned = zip(cells, _HEADS, strict=True)
-    return " ".join(f"{cell:{'<' if head in ('method', 'status') else '>'}{width}}" for cell, (head, width) in aligned).rstrip()
+    return {head: cell for (head, _), cell in zip(_HEADS, cells, strict=True)}
+
+
+def _step_of(row):
+    return ("-", "-") if row.static else (row.substeps, row.hold)
 
 
 def _plain(number, form):
@@ -185,13 +216,13 @@ def rows_of(bench, trials, floors, targets):
             **asdict(s), target="pc", err_max=trial.error[0], err_rms=trial.error[1], err_hold=trial.error[2],
             doubt=bench.doubt, sensor_floor=floors[s.T, s.hold], order_seen=orders.get(s), order_claimed=trial.order,
             margin=trial.margin, steps_per_contact=trial.steps_per_contact, b_req=trial.b_req, b_device=bench.paddle.b,
-            b_where=trial.b_where,
+            b_where=trial.b_where, static=not bench.scene.coordinates,
             status=trial.status, why=trial.why,
         )  # fmt: skip
         row = _certain(row, bench)
         for target in targets:
             if target == "pc":
-                yield replace(row, seconds=trial.seconds, load=trial.seconds / s.T)
+                yield replace(row, seconds=trial.seconds, load=trial.seconds / s.T, estimated=trial.estimated)
             elif s.precision == "float32":
                 yield _on_board(replace(row, target=target), trial.costs.get(target))
 

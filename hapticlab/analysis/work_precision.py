@@ -14,7 +14,8 @@ ACROSS = 2
 def plot_work_precision(tradeoff, targets=None, asked=None):
     """Draw the error of the force against the load of the target, a panel for each.
 
-    A marker is a setting, its shape the hold, filled where stability, contacts, passivity and the board allow it. A line
+    A marker is a setting, its shape the hold, filled where stability, contacts, passivity and the board allow it, with a
+    black edge where its numbers are float64. A line
     goes along the settings of one method that none of its others beats. Dashed: the error that the encoder alone makes.
 
     Parameters
@@ -62,6 +63,7 @@ def _panel(axes, target, rows, methods, asked):
             axes.plot(
                 *_places([row]), MARKERS[row.hold], color=style["color"], markersize=5 if row in best else 3.2, zorder=3,
                 markerfacecolor=style["color"] if allowed else "white", markeredgewidth=0.8,
+                markeredgecolor="black" if row.precision == "float64" else style["color"],
             )  # fmt: skip
             if BARRED[row.force_at]:
                 axes.plot(*_places([row]), BARRED[row.force_at], color="black", markersize=8, zorder=4)
@@ -107,7 +109,9 @@ def _legend(figure, axes, methods, holds):
         return axes.plot([], [], label=label, **style)[0]
 
     signs = [sign(method, **style_of(number)) for number, method in enumerate(methods)]
-    black = {"color": "black", "linestyle": ""}
-    signs += [sign(f"hold {hold}", marker=mark, **black) for hold, mark in MARKERS.items() if hold in holds]
-    signs += [sign("not allowed", marker="o", markerfacecolor="white", **black), sign("asked for", color="black", linestyle=":")]
+    grey = {"color": "#999999", "linestyle": ""}
+    signs += [sign(f"hold {hold}", marker=mark, **grey) for hold, mark in MARKERS.items() if hold in holds]
+    signs += [sign("hollow: not allowed", marker="D", markerfacecolor="white", **grey)]
+    signs += [sign("black edge: float64", marker="D", markeredgecolor="black", **grey)]
+    signs += [sign("asked for", color="black", linestyle=":")]
     figure.legend(handles=signs, loc="outside lower center", ncols=4, fontsize="small", **FRAME)

@@ -5,4 +5,4 @@ def progress_bar(ticks, shown=True, unit="tick"):
     """Return a bar on stderr that appears after two seconds; use it in a ``with``, and ``update`` it by ticks done."""
     from tqdm import tqdm
 
-    return tqdm(total=ticks, delay=2, disable=not shown, unit=unit, unit_scale=True, leave=False)
+    return tqdm(total=ticks, delay=2, disable=not shown, unit=unit, unit_scale=ticks > 1000, leave=False)
