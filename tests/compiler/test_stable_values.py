@@ -137,6 +137,17 @@ def test_a_window_of_growth_between_stable_springs_is_found():
     assert program.limits.steps.growth({"K": 1.05 * limit}) == pytest.approx(radius(program, K=1.05 * limit), rel=1e-9)
 
 
+def test_what_turns_is_limited_where_it_first_grows():
+    """K + 1e4 K sin(alpha)^2 <= 4 m/h^2, stable again where alpha has turned to pi."""
+    alpha = hl.parameters("alpha", units="rad", values=0, ranges=(0, 3.14159))
+    F = K * (x(t) - z)
+    scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F - 1e4 * K * sp.sin(alpha) ** 2 * z)])
+    program = hl.compile(scene, "verlet", T=T, live="alpha", dtype="float64")
+    assert program.limits["alpha"][2] == pytest.approx(np.arcsin(np.sqrt((4 * 0.05 / T**2 - 500) / 5e6)), rel=0.01)
+    steps = program.limits.steps
+    assert steps.growth({"alpha": 3.14159}) <= steps.allowed < steps.growth({"alpha": 1.5})
+
+
 def test_what_is_bound_to_zero_does_not_vibrate_and_is_limited():
     program = hl.compile(coupler(K=0, B=0), "semi_implicit_euler", T=T, live="K")
     assert "margin" not in program.facts and program.limits["K"][2] == pytest.approx(4 * 0.05 / T**2, rel=0.01)
