@@ -49,8 +49,8 @@ class Configuration:
         row = self.row
         given = ", ".join(f"{name}={value!r}" for name, value in self.options.items())
         lines = [
-            f"{row.target}: {row.name}: error {percent(row.err_max)} <= {percent(self.tolerance)} at the samples; held over the "
-            f"period {percent(row.err_hold)}; load {percent(row.load)}"
+            f"{row.target}: {row.name}: error {percent(row.err_max)} at the samples, allowed {percent(self.tolerance)}; "
+            f"held over the period {percent(row.err_hold)}; load {percent(row.load)}"
         ]
         return "\n".join([*lines, f"  hl.compile(scene, {given})", *(f"  {note}" for note in self.notes)])
 

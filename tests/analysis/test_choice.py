@@ -26,7 +26,7 @@ def choose(rows, asked=ASKED):
 
 def test_a_choice_says_the_error_at_the_samples_and_that_of_the_held_force():
     choice = choose([row()])
-    assert "error 0.5 % <= 1 % at the samples; held over the period 8.8 %" in str(choice)
+    assert "error 0.5 % at the samples, allowed 1 %; held over the period 8.8 %" in str(choice)
     assert choice.facts()["err_hold"] == 0.088
 
 
