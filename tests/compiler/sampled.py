@@ -1,7 +1,13 @@
-"""A mass in two linear modes, sampled, to forty digits: each piece a power series, its end by mpmath's root finder."""
+"""What is linear between switches, sampled, without the package.
+
+:func:`motion`, a mass in two modes to forty digits: each piece a power series, its end by mpmath's root finder.
+:func:`followed`, any number of masses and modes to double precision: each piece an exponential, its end by bracketing.
+"""
 
 import mpmath as mp
 import numpy as np
+from scipy.linalg import expm
+from scipy.optimize import brentq
 
 ORDER = 90
 
@@ -61,3 +67,56 @@ def _first_root(gap, left, parts=128):
         return left
     low, high = (left * mp.mpf(int(below[0]) + k) / parts for k in (0, 1))
     return mp.findroot(lambda t: mp.polyval(gap[::-1], t), (low if below[0] else high / 1e6, high), solver="anderson", tol=1e-60)
+
+
+def followed(samples, T, hold, start, rates, rows, mode, after):
+    """Return y at the samples, and how many switches, of what is linear between them: exponentials and bracketed roots.
+
+    Y = [y, x, x', x'', 1] is what moves over a period, with the handle as ``hold`` has it.
+
+    Parameters
+    ----------
+    start : sequence of float, shape (S,)
+    rates : callable mode -> array of shape (S, S + 4)
+        y' by Y.
+    rows : callable mode -> array of shape (W, S + 4)
+        None of them times Y is negative while the mode lasts.
+    mode : callable (Y, mode of the period before or None) -> mode
+    after : callable (mode, Y, number of the row that became negative) -> (mode, y)
+    """
+    y, before, now, switches, found = np.array(start, float), [samples[0]] * 2, None, 0, []
+    for x in samples:
+        found.append(y)
+        (x1, x2), before = before, (x, before[0])
+        bend = (x - 2 * x1 + x2) / T**2 if hold == "soh" else 0.0
+        Y, left = np.r_[y, x, (x - x1) / T + bend * T / 2, bend, 1.0], T
+        now = mode(Y, now)
+        while left > 0:
+            H, S = np.zeros((len(Y), len(Y))), len(y)
+            H[:S], H[S, S + 1], H[S + 1, S + 2] = rates(now), hold != "zoh", 1.0
+            taken, row = _first_negative(H, rows(now), Y, left)
+            Y, left = expm(H * taken) @ Y, left - taken
+            if row is not None:
+                now, Y[:S] = after(now, Y, row)
+                switches += 1
+        y = Y[:S]
+    return np.array(found), switches
+
+
+def _first_negative(H, rows, Y, left, parts=64):
+    """Return when a row first becomes negative within ``left``, and which; looked for at so many places."""
+    step, places = expm(H * left / parts), [Y]
+    for k in range(parts):
+        places.append(step @ places[-1])
+        negative = np.flatnonzero(rows @ places[-1] < -1e-14 * np.abs(rows) @ np.abs(places[-1]))
+        if len(negative):
+            roots = [(left * k / parts + _root(H, rows[r], places[-2], left / parts), r) for r in negative]
+            return min(roots)
+    return left, None
+
+
+def _root(H, row, Y, length):
+    def at(tau):
+        return row @ expm(H * tau) @ Y
+
+    return brentq(at, 0.0, length, xtol=1e-18, rtol=1e-15) if at(0.0) > 0 else 0.0

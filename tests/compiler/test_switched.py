@@ -1,10 +1,10 @@
-"""``method="exact"`` of what is linear between switches, against forty digits, the exponential, and the located series."""
+"""``method="exact"`` of what is linear between switches, against forty digits and the exponential."""
 
 import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
-from sampled import motion
+from sampled import followed, motion
 from scipy.linalg import expm
 
 import hapticlab as hl
@@ -36,9 +36,9 @@ def compiled(scene, method="exact", **options):
     return hl.compile(scene, method, **{"T": T, "dtype": "float64", "live": ()} | options)
 
 
-def run(program, handle):
+def run(program, handle, engine="auto"):
     """Return the outputs at the samples, every switch located."""
-    outputs = load(program).run(len(handle), np.reshape(handle, (len(handle), -1))).outputs[:, :, 0]
+    outputs = load(program, engine).run(len(handle), np.reshape(handle, (len(handle), -1))).outputs[:, :, 0]
     assert not outputs[:, -1].any()
     return outputs[:, :-1]
 
@@ -130,10 +130,57 @@ def test_of_more_modes_than_maps_the_others_are_located():
     np.testing.assert_allclose(run(exact, SWING), run(series, SWING), rtol=0, atol=2e-13)
 
 
+def row(size, **entries):
+    """Return a row of Y = [y, x, x', x'', 1], by place: y0, y1, ..., x, v, one."""
+    places = {"x": size, "v": size + 1, "one": size + 3} | {f"y{k}": k for k in range(size)}
+    found = np.zeros(size + 4)
+    for name, value in entries.items():
+        found[places[name]] = value
+    return found
+
+
+def of_springs():
+    """Return what :func:`~sampled.followed` needs of ``springs``: y = [y, z, y', z'], a mode the walls that are touched."""
+    surfaces = np.array([row(4, y0=1, one=-0.012), row(4, y1=1, one=-0.01), row(4, y1=-1, one=-0.006)])
+    alone = row(4, x=500, y0=-3500, y1=3e3, v=1, y2=-1), row(4, y0=3e3, y1=-3e3)
+    pushes = (row(4, y0=-2e4, one=240), 0), (0, row(4, y1=-2e3, one=20, y3=-1)), (0, row(4, y1=-3e3, one=-18))
+
+    def rates(touched):
+        forces = [alone[k] + sum(push[k] for push, on in zip(pushes, touched, strict=True) if on) for k in (0, 1)]
+        return np.array([row(4, y2=1), row(4, y3=1), *(force / 0.05 for force in forces)])
+
+    def rows(touched):
+        return surfaces * np.where(touched, 1, -1)[:, None]
+
+    def after(touched, Y, k):
+        return tuple(on ^ (j == k) for j, on in enumerate(touched)), Y[:4]
+
+    return np.zeros(4), rates, rows, lambda Y, _: tuple(surfaces @ Y >= 0), after
+
+
 def rubbed():
     """Return a block that sticks and slides (Coulomb), drawn by the handle through a spring."""
     F_c = hl.parameters("F_c", units="N", values=0.5)
     return hl.Scene(K * (x(n) - z), [sp.Eq(m * z.diff(t, 2), K * (x(t) - z) - F_c * sp.sign(z.diff(t)) - b * z.diff(t))])
+
+
+def of_rubbed():
+    """Return what :func:`~sampled.followed` needs of ``rubbed``: y = [z, z'], a mode the sign of the slip, 0 sticks."""
+    drawn = row(2, x=500, y0=-500)
+
+    def rates(slip):
+        return np.array([row(2, y1=1), (drawn + row(2, y1=-1, one=-0.5 * slip)) / 0.05]) if slip else np.zeros((2, 6))
+
+    def rows(slip):
+        return np.array([row(2, y1=slip)] if slip else [row(2, one=0.5) - drawn, row(2, one=0.5) + drawn])
+
+    def still(Y):
+        return 0 if abs(drawn @ Y) <= 0.5 else int(np.sign(drawn @ Y))
+
+    def after(slip, Y, k):
+        return (still(Y) if slip else 1 - 2 * k), np.array([Y[0], 0.0])
+
+    return np.zeros(2), rates, rows, lambda Y, slip: slip or still(Y), after
 
 
 def struck():
@@ -144,16 +191,65 @@ def struck():
     return hl.Scene(K * (x(n) - u), [model])
 
 
+def of_struck():
+    """Return what :func:`~sampled.followed` needs of ``struck``: y = [u, u'], a mode whether it rests."""
+    lifted = row(2, x=500, y0=-500, one=-0.05 * 9.81)
+
+    def rates(rests):
+        return np.zeros((2, 6)) if rests else np.array([row(2, y1=1), lifted / 0.05])
+
+    def rows(rests):
+        return np.array([-lifted if rests else row(2, y0=1, one=0.005)])
+
+    def after(rests, Y, _):
+        # at rest after it: as slow as was asked for, or back within the period
+        flies = rests or -0.6 * Y[1] > max(0.02, -(lifted @ Y) / 0.05 * T / 2)
+        return not flies, np.array([Y[0], -0.6 * Y[1] if flies else 0.0])
+
+    return np.zeros(2), rates, rows, lambda Y, rests: bool(rests and lifted @ Y <= 0), after
+
+
+def every_hold(scene, known, felt, quick):
+    return [
+        (scene, known, felt, hold) if hold == quick else slow(scene, known, felt, hold) for hold in ("zoh", "foh", "soh")
+    ]
+
+
 @pytest.mark.parametrize(
-    ("scene", "hold"), [slow(springs, "zoh"), slow(springs, "soh"), (rubbed, "soh"), slow(rubbed, "foh"), (struck, "soh")]
+    ("scene", "known", "felt", "hold"),
+    [
+        *every_hold(springs, of_springs, (500, 1), "zoh"),
+        *every_hold(rubbed, of_rubbed, (500, 0), "foh"),
+        *every_hold(struck, of_struck, (500, 0), "soh"),
+    ],
 )
-def test_it_is_the_series_with_its_events_located(scene, hold):
+def test_it_is_what_exponentials_and_bracketed_roots_give(scene, known, felt, hold):
+    """Several walls and two masses, friction, impacts: with nothing of the package, to 1e-14 but for what rounding adds."""
     handle = SWING + 0.004 * np.sin(2 * np.pi * 11.7 * np.arange(300) * T)
-    exact, series = (
-        run(compiled(scene(), method, hold=hold), handle) for method in ("exact", hl.Taylor(events=2))
+    start, *rest = known()
+    states, switches = followed(handle, T, hold, start, *rest)
+    rate = np.diff(handle, prepend=handle[0]) / T
+    force = felt[0] * (handle - states[:, 0]) + felt[1] * (rate - states[:, len(start) // 2])
+    seen = run(compiled(scene(), hold=hold), handle)
+    assert switches >= 7 and abs(force).max() > 1.0
+    np.testing.assert_allclose(seen[:, 0], force, rtol=0, atol=5e-14 * abs(force).max())
+
+
+@pytest.mark.parametrize("returned", [2e4, slow(500.0)])
+def test_cases_inside_of_cases_are_as_linear_as_cases_in_a_row(returned):
+    """A spring that is another on the way back. Softer, it sticks where it turns, which only the nested form tells."""
+    stiff, back = hl.parameters("stiff back", units="N/m N/m", values=(1e4, returned))
+    out = sp.Piecewise((stiff * (z - x_o), z.diff(t) >= 0), (back * (z - x_o), True))
+    nested, row = sp.Piecewise((out, z >= x_o), (0, True)), sp.Piecewise(
+        (stiff * (z - x_o), (z >= x_o) & (z.diff(t) >= 0)), (back * (z - x_o), z >= x_o), (0, True)
+    )  # fmt: skip
+    scenes = [hl.Scene(FELT, [sp.Eq(m * z.diff(t, 2), FREE - push)]) for push in (nested, row)]
+    push_and_return = 0.015 * np.sin(2 * np.pi * 12 * np.arange(45) * T)
+    exact = run(compiled(scenes[0]), push_and_return, "interpreter")
+    other = compiled(scenes[1]) if returned > 1e4 else compiled(scenes[0], "taylor")
+    np.testing.assert_allclose(
+        exact, run(other, push_and_return, "interpreter"), rtol=0, atol=1e-13 * abs(exact).max()
     )
-    assert abs(series[:, 0]).max() > 1.0
-    np.testing.assert_allclose(exact, series, rtol=0, atol=2e-13 * abs(series).max())
 
 
 def test_float32_rounds_and_no_more():
@@ -171,7 +267,7 @@ def test_a_stiff_wall_takes_pieces_of_a_radian_and_says_so():
     ("eom", "live", "said"),
     [
         (FREE - WALL, ("k",), r"makes constants of each mode, and k may be set .* without k"),
-        (FREE - WALL - hl.when(z > x_o, k * z**2 / x_o, 0), (), r"is not linear: it jumps with .* use 'rk4'"),
+        (FREE - WALL - hl.when(z > x_o, k * z**2 / x_o, 0), (), r"is not linear: it jumps with .* use 'taylor'"),
         (FREE - sum(walls(13)), (), "at most 12 surfaces .* there are 13"),
         (FREE - hl.when(z >= x_o, k * (z - x_o) * x(n) / x_o, 0), (), "is not linear"),
     ],
@@ -184,6 +280,20 @@ def test_it_refuses_what_is_not_linear_or_not_constant_in_a_mode(eom, live, said
 def test_it_refuses_what_is_too_stiff_to_follow():
     with pytest.raises(ProgramLimitError, match=r"turns with omega = 1.414e\+05 rad/s, by 141.4 rad .* take T <= 0.00023 s"):
         compiled(wall(k=1e9))
+
+
+def test_it_refuses_more_surfaces_than_it_can_follow_before_it_follows_them():
+    many = hl.Scene(FELT, [sp.Eq(m * z.diff(t, 2), FREE - sum(walls(12)))], watch=[z])(k=1e6)
+    said = r"method='exact' .* 12 surfaces .* in 28 pieces .* take T <= 0.00025 s, 3 surfaces at most or a softer contact"
+    with pytest.raises(ProgramLimitError, match=said):
+        compiled(many)
+
+
+@pytest.mark.slow
+def test_what_it_proposes_instead_of_too_many_surfaces_compiles_and_says_that_it_is_large():
+    many, few = (hl.Scene(FELT, [sp.Eq(m * z.diff(t, 2), FREE - sum(walls(count)))])(k=1e6) for count in (12, 3))
+    program = compiled(many, T=0.00025)
+    assert f"{len(program)} instructions a tick" in program.notes[-1] and len(compiled(few)) < 2e5
 
 
 def test_a_place_may_be_live_where_a_slope_may_not():
