@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import AnalysisError
 from ..scene.symbols import delay, lag_of, v, x
+from .operating import TRAVEL
 from .trial_limits import Limits
 
 
@@ -77,9 +78,9 @@ class Bench:
 
     @functools.cached_property
     def limits(self):
-        """Of stability and passivity, for all settings."""
-        travel = max(float(np.abs(known.motion.at(known.t)[0]).max()) for known in self.runs)
-        return Limits(self.scene, travel, self.delay)
+        """Of stability and passivity, for all settings: over a paddle's travel, or further where the motions go further."""
+        reach = max(float(np.abs(known.motion.at(known.t)[0]).max()) for known in self.runs)
+        return Limits(self.scene, max(reach, TRAVEL), self.delay)
 
     @functools.cached_property
     def same(self):

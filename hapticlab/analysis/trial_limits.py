@@ -7,6 +7,7 @@ from ..compiler.exact import EXACT
 from ..compiler.order import order_of
 from ..errors import HapticlabError
 from .linearization import forces_and_ticks_at, forces_and_ticks_of
+from .operating import TRAVEL
 from .port import negative
 from .port_limits import Looked
 from .step_limit import step_limit
@@ -28,7 +29,7 @@ class Limits:
         After which a force is felt [s].
     """
 
-    def __init__(self, scene, travel, delay=0.0):
+    def __init__(self, scene, travel=TRAVEL, delay=0.0):
         self.scene, self.travel, self.delay = scene, travel, delay
 
     @functools.cached_property

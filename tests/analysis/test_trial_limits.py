@@ -11,9 +11,9 @@ from hapticlab.analysis.trials import Setting
 RK4 = Setting("rk4", 1e-3, 1, "soh", "before", "float32")
 
 
-def damping(scene, travel=0.05, delay=0.0, setting=RK4):
+def damping(scene, delay=0.0, setting=RK4):
     program = hl.compile(scene, setting.method, T=setting.T, hold=setting.hold, live=())
-    return Limits(scene, travel, delay).damping(setting, program)
+    return Limits(scene, delay=delay).damping(setting, program)
 
 
 @pytest.mark.parametrize("name", ["detents", "texture", "virtual_fixture", "buckling_beam", "mass_spring_damper"])

@@ -94,11 +94,14 @@ def test_a_scene_that_faults_is_compared_up_to_there_and_says_so():
 
 
 def test_what_a_cubic_spring_asks_for_is_that_of_its_steepest_place():
-    """At x = 0 its stiffness is nothing, at the end of the motion 3 a x^2: b = 3 a x^2 T/2."""
+    """At x = 0 its stiffness is nothing, at the end of the paddle's travel 3 a x^2: b = 3 a x^2 T/2; so it is further out."""
     a = hl.parameters("a", units="N/m^3", values=1e6)
-    found = tradeoff(hl.Scene(force=a * x(n) ** 3, name="hardening"), paddle(b=1.0))
+    scene = hl.Scene(force=a * x(n) ** 3, name="hardening")
+    found = tradeoff(scene, paddle(b=4.0))
     row = found.table[0]
-    reach = np.abs(SWING.at(np.linspace(0, 0.5, 1000))[0]).max()
-    assert row.b_req == pytest.approx(3e6 * reach**2 * 1e-3 / 2, rel=1e-2)
-    assert "x = " in row.b_where and row.b_where in found.explain(row)
+    assert row.b_req == pytest.approx(3e6 * 0.05**2 * 1e-3 / 2, rel=1e-6)
+    assert "x = -0.05" in row.b_where and row.b_where in found.explain(row)
+    wide = tradeoff(scene, motions=[SWING.scaled(8)])
+    reach = np.abs(SWING.scaled(8).at(wide.bench.runs[0].t)[0]).max()
+    assert wide.table[0].b_req == pytest.approx(3e6 * reach**2 * 1e-3 / 2, rel=1e-6)
     assert "small motions" in str(found.choose(tolerance=0.1, load=0.9))
