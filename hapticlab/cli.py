@@ -152,6 +152,16 @@ def _whole(text):
     return int(text)
 
 
+def _part(text):
+    try:
+        part = float(text)
+    except ValueError:
+        part = 0.0
+    if not part > 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is no part; needs a number > 0, such as 0.01")
+    return part
+
+
 def _setting(text):
     name, equals, value = text.partition("=")
     if not (name and equals and value):
@@ -214,8 +224,8 @@ def _add_tradeoff(commands, shared):
     text = "measure speed against accuracy of a scene file, and choose what is good enough at the least load"
     made = commands.add_parser("tradeoff", parents=[shared], help=text, description=text)
     made.add_argument("file", metavar="FILE.py")
-    made.add_argument("--tolerance", type=float, default=1e-2, metavar="PART", help="of the greatest force (default: 0.01)")
-    made.add_argument("--load", type=float, default=0.5, metavar="PART", help="of the period at most (default: 0.5)")
+    made.add_argument("--tolerance", type=_part, default=1e-2, metavar="PART", help="of the greatest force (default: 0.01)")
+    made.add_argument("--load", type=_part, default=0.5, metavar="PART", help="of the period at most (default: 0.5)")
     made.add_argument("--any-hand", action="store_true", help="do not ask for passivity in every hand")
     made.add_argument("--methods", nargs="+", metavar="NAME", help="integrators (default: all but forward Euler)")
     made.add_argument("--T", dest="periods", type=float, nargs="+", metavar="SECONDS", help="sampling periods [s]")

@@ -550,6 +550,13 @@ paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3, counts_per_metre=1e5)
 """
 
 
+@pytest.mark.parametrize("given", [["--tolerance", "0"], ["--load", "nan"], ["--tolerance", "much"]])
+def test_tradeoff_wants_parts(given, capsys):
+    with pytest.raises(SystemExit):
+        cli.main(["tradeoff", "spring.py", *given])
+    assert f"{given[1]!r} is no part; needs a number > 0" in capsys.readouterr().err
+
+
 def test_tradeoff_prints_what_it_chose_and_draws_it(tmp_path):
     (tmp_path / "spring.py").write_text(SPRING)
     done = command("tradeoff", "spring.py", "--T", "2e-3", "1e-3", "--targets", "uno", folder=tmp_path)

@@ -114,7 +114,7 @@ _ASIDE = ("target", "rms", "cycles", "time", "contact", "passive", "status")
 LEGEND = (
     "err max and held: error of the force at the samples, and held over the period; sensor: made by the encoder alone; all as",
     "parts of the greatest force. order: seen/claimed, as a power of T; load: part of the period; margin: longest stable step",
-    "over the step taken; contact: steps in the shortest contact; b_req: damping that a device needs to be passive [N s/m]",
+    "over the step taken; contact (in the table): steps in the shortest; b_req: damping a passive device needs [N s/m]",
 )
 
 

@@ -12,7 +12,7 @@ import hapticlab as hl
 from hapticlab.analysis.choice import Asked, chosen
 from hapticlab.analysis.motions import HandleMotion, handle_motions
 from hapticlab.analysis.tradeoff import tradeoff
-from hapticlab.analysis.tradeoff_rows import Row
+from hapticlab.analysis.tradeoff_rows import Row, Table
 from hapticlab.errors import AnalysisError, ProgramError
 
 SPRING = hl.Scene(force=hl.parameters("k", units="N/m", values=150) * hl.x(hl.n), name="spring")
@@ -237,11 +237,48 @@ def test_a_force_of_the_samples_alone_has_one_setting_a_period():
         ({"holds": "zoh"}, r"holds=\['zoh'\]"),
         ({"holds": []}, "needs a sequence of at least one"),
         ({"precision": ["float16"]}, "precision = 'float16'"),
+        ({"methods": ["rk5"]}, "method = 'rk5'; needs one of euler"),
+        ({"tolerance": 0}, "tolerance = 0; needs a number > 0"),
+        ({"tolerance": math.nan}, "tolerance = nan; needs a number > 0"),
+        ({"motions": [0.01]}, r"motions = \[0.01\]; needs one HandleMotion"),
+        ({"motions": HandleMotion("blink", 0.001 * hl.t, 1e-3)}, "blink lasts 0.001 s; needs two periods"),
+        ({"workers": "two"}, "workers = 'two'; needs a whole number"),
     ],
 )
 def test_what_cannot_be_asked_for_is_refused(given, word):
     with pytest.raises((AnalysisError, ProgramError), match=word):
         tradeoff(SPRING, hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3), progress=False, **given)
+
+
+def test_a_paddle_and_every_value_are_needed():
+    paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3)
+    with pytest.raises(AnalysisError, match="paddle = 'uno'; needs a SimulatedPaddle"):
+        tradeoff(SPRING, "uno", progress=False)
+    k, c = hl.parameters("k c", units="N/m N*s/m")
+    with pytest.raises(AnalysisError, match=r"no value for c, k; bind them: scene\(c=..., k=...\).* --set c=... --set k=..."):
+        tradeoff(hl.Scene(force=k * hl.x(hl.n) + c * hl.v(hl.n), name="damped"), paddle, progress=False)
+
+
+def test_one_of_a_thing_is_enough_and_the_front_is_short():
+    slow = HandleMotion("slow", 0.002 * hl.t, 0.1)
+    wall = tradeoff(
+        SPRING, hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3), targets="uno", T=1e-3, motions=slow, workers=map, progress=False,
+    )  # fmt: skip
+    (one,) = wall.table
+    lines = wall.front("uno").brief().splitlines()
+    assert lines[1].startswith("none needed") and "rk4" not in lines[1] and one.name == "T = 1 ms, float32"
+    everything = Table([row(method="semi_implicit_euler_damped", force_at="after", sensor_floor=1e-9), one])
+    assert max(map(len, everything.brief().splitlines())) < 120
+    with pytest.raises(AnalysisError, match=r"row = 0; needs a row, such as found.explain\(found.table\[0\]\)"):
+        wall.explain(0)
+    with pytest.raises(ProgramError, match="target = 'foo'; needs one of uno"):
+        wall.plot("foo")
+
+
+def test_of_measured_times_that_are_the_same_the_error_decides():
+    close = [row(target="pc", cycles=None, load=load, err_max=e) for load, e in ((1e-4, 9e-3), (1.1e-4, 4e-3), (1.3e-4, 1e-3))]
+    assert choose(close, target="pc").row is close[1]
+    assert choose([row(load=0.1, err_max=9e-3), row(load=0.11, err_max=4e-3)]).row.load == 0.1  # cycles are no measurement
 
 
 @pytest.mark.skipif(not hasattr(__import__("os"), "fork"), reason="needs processes that can be copied")
