@@ -78,13 +78,13 @@ def operating_points(scene, at=None, period=1e-3, travel=None, far=False):
 
 
 def borders(scene, points, period=1e-3):
-    """Return pairs of operating points, the same place in the modes of both sides of a surface, one for each surface."""
+    """Return (pair, whether x alone decides) of each surface: operating points, one place in the modes of both its sides."""
     places = Places(scene, period)
     found = {}
     for mode in dict.fromkeys(p.mode for p in points) if places.conditions else ():
         values = next(p.values for p in points if p.mode == mode)
-        for p, sides in places.borders(np.array([values[name] for name in places.names])):
-            found.setdefault(sides, tuple(_point(places, p, side, "") for side in sides))
+        for p, sides, by_x in places.borders(np.array([values[name] for name in places.names])):
+            found.setdefault(sides, (tuple(_point(places, p, side, "") for side in sides), by_x))
     return list(found.values())
 
 

@@ -93,7 +93,7 @@ class Places:
         return np.reshape(crossings, (-1, n)).T
 
     def borders(self, point):
-        """Return (place, modes of its two sides) on each surface that is nearest to a point."""
+        """Return (place, modes of its sides, whether x alone decides) on each nearest surface, from small to large x."""
         near = self.across(point)
         if not near.size:
             return []
@@ -101,8 +101,9 @@ class Places:
         for surface in surfaces.T:
             beside = self.across(surface, _BESIDE)
             first = np.abs(beside - surface[:, None]).max(axis=0).reshape(-1, 2).max(axis=1).argmin()
-            one, other = self.modes(beside[:, 2 * first : 2 * first + 2])
+            sides = beside[:, 2 * first : 2 * first + 2]
+            sides = sides[:, np.argsort(sides[0], kind="stable")]
+            one, other = self.modes(sides)
             if one != other:
-                at = beside[:, 2 * first : 2 * first + 2].mean(axis=1)
-                pairs.append((at, (one, other)))
+                pairs.append((sides.mean(axis=1), (one, other), bool((sides[1:, 0] == sides[1:, 1]).all())))
         return pairs

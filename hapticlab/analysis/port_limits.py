@@ -54,7 +54,7 @@ class Looked:
         self.known, self.travel = known, travel if at is None else None
         self.points = operating_points(known, at, T, self.travel)
         self.probes, self.borders = probes_of(self.points), borders(known, self.points, T)
-        self.all = [*self.points, *self.probes, *(p for pair in self.borders for p in pair)]
+        self.all = [*self.points, *self.probes, *(p for pair, _ in self.borders for p in pair)]
         self.slopes, _ = motion_at(known, self.points, T)
         self.alone = not known.form.coordinates and not known.form.updates
 
@@ -121,11 +121,15 @@ class Looked:
         return [told[k] for k in sorted(told)]
 
     def _jumps(self, forces, ticks):
-        """Return a limit for every surface on whose sides the force differs: of a slope without bound."""
+        """Return a limit for every surface on whose sides the force differs: of a slope without bound.
+
+        Where it drops as x grows, as on the rim of a groove, a late sample takes energy out, as where F' < 0.
+        """
         found, first = [], len(self.points) + len(self.probes)
-        for k, (one, other) in enumerate(self.borders):
+        for k, ((one, other), by_x) in enumerate(self.borders):
             low, high = forces[first + 2 * k : first + 2 * k + 2]
-            if abs(high - low) > JUMP * max(abs(low), abs(high), 1.0):
+            jump = high - low if by_x else abs(high - low)
+            if jump > JUMP * max(abs(low), abs(high), 1.0):
                 words = f"{self.known.named(one.mode)} | {self.known.named(other.mode)}"
                 reason = f"the force jumps by {abs(high - low):.4g} N: no damping is enough for a slope without bound"
                 found.append(PortLimit(words, one.words, np.inf, np.inf, 0.0, reason, ticks[first + 2 * k]))

@@ -192,6 +192,9 @@ def test_a_force_that_jumps_is_never_passive():
     assert port.worst.point == "x = 0.01" and port.b_stable == np.inf
     assert hl.port_passivity(hl.wall()(k=300, x_o=0.01, B=0.07), paddle()).b_req < 1
     assert hl.port_passivity(hl.library.virtual_fixture(), paddle(b=0.21)).passive
+    # out of a groove the force drops from k w to none, late, which takes energy out
+    groove = hl.port_passivity(hl.Scene(force=hl.when(sp.Abs(x(n)) <= x_o, K * x(n))), paddle(b=0.3))
+    assert groove.b_req == pytest.approx(500 * T / 2, rel=1e-9) and groove.passive
 
 
 def test_stable_damping_is_inf_where_none_is_enough():
