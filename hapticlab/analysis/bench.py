@@ -8,6 +8,7 @@ import numpy as np
 from ..errors import AnalysisError
 from ..scene.symbols import delay, lag_of, v, x
 from .operating import TRAVEL
+from .tradeoff_rows import percent
 from .trial_limits import Limits
 
 
@@ -50,6 +51,13 @@ class Bench:
     def doubt(self):
         """By which part of the greatest force the solvers of the reference differ."""
         return max(known.agreement for known in self.runs) / self.peak
+
+    @property
+    def certainty(self):
+        """How far the solvers of the reference agree, in words."""
+        if not np.isfinite(self.doubt):
+            return "a motion has one solver only, so that no error is certain"
+        return f"the solvers of its reference differ by {percent(self.doubt)} of it"
 
     @property
     def chaotic(self):

@@ -97,6 +97,7 @@ class Reference:
         until = f", chaotic from {self.horizon:.3g} s on" if self.chaotic else ""
         until += f", no number from {self.horizon:.3g} s on: the scene faults there" if self.faulted else ""
         agreed = f"two solvers agree to {self.agreement:.2g} N of {self.peak:.3g} N"
+        agreed = agreed if np.isfinite(self.agreement) else f"one solver has {self.peak:.3g} N at most"
         return f"{self.motion.name}: {verdict}, {agreed}{until} ({self.how})"
 
 

@@ -24,7 +24,7 @@ from .explained import explained
 from .motions import HandleMotion, handle_motions
 from .reference import references
 from .rounds import all_tried
-from .tradeoff_rows import LEGEND, OK, Row, Table, percent, rows_of
+from .tradeoff_rows import LEGEND, OK, Row, Table, rows_of
 from .trials import Setting, sensor_floor
 from .work_precision import front, plot_work_precision
 
@@ -266,7 +266,7 @@ class Tradeoff:
         counts = Counter(row.status.split(" at t")[0].split(" after")[0] for row in self.table)
         lines = [
             f"{self.name}: {len(self.table)} rows ({', '.join(f'{count} {status}' for status, count in counts.items())})",
-            f"greatest force {self.bench.peak:.3g} N; the solvers of its reference differ by {percent(self.bench.doubt)} of it",
+            f"greatest force {self.bench.peak:.3g} N; {self.bench.certainty}",
             *(f"  {known}" for known in self.bench.runs),
             *(f"  {note}" for note in self.bench.notes),
             *LEGEND,

@@ -93,6 +93,18 @@ def test_a_scene_that_faults_is_compared_up_to_there_and_says_so():
     assert "faulted after" in str(found.choose(passive=False, load=0.9))
 
 
+def test_where_one_of_the_solvers_gives_up_no_error_is_certain_and_nothing_is_chosen():
+    """z'' = (K (x - z) - ...)/m with a root that ends at z = c: the second solver cannot step up to it."""
+    z, (K, m, c) = hl.coordinate("z", unit="m"), hl.parameters("K m c", units="N/m kg m", values=(100, 0.05, 0.006))
+    F = K * (x(t) - z)
+    pushed = F - b * z.diff(t) - K * c * sp.sqrt(1 - z / c)
+    scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), pushed)], name="ends")(b=0.1)
+    found = tradeoff(scene, methods=["rk4"], substeps=[1], holds=["soh"])
+    assert "one solver only, so that no error is certain" in found.summary()
+    answer = found.choose(passive=False, load=2.0)
+    assert not answer and "only one of the two solved it" in str(answer) and "inf" not in str(answer)
+
+
 def test_what_a_cubic_spring_asks_for_is_that_of_its_steepest_place():
     """At x = 0 its stiffness is nothing, at the end of the paddle's travel 3 a x^2: b = 3 a x^2 T/2; so it is further out."""
     a = hl.parameters("a", units="N/m^3", values=1e6)
