@@ -1,5 +1,7 @@
 """The damping that a scene asks of a device: closed forms, numbers measured elsewhere, and random passive hands."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -10,6 +12,7 @@ from hapticlab.analysis.passive_hands import network, radii
 from hapticlab.analysis.passivity import required_damping
 from hapticlab.analysis.port import port_damping
 from hapticlab.analysis.port_passivity import stable_damping
+from hapticlab.analysis.trial_limits import Limits
 from hapticlab.errors import AnalysisError
 
 T = 1e-3
@@ -195,6 +198,19 @@ def test_a_force_that_jumps_is_never_passive():
     # out of a groove the force drops from k w to none, late, which takes energy out
     groove = hl.port_passivity(hl.Scene(force=hl.when(sp.Abs(x(n)) <= x_o, K * x(n))), paddle(b=0.3))
     assert groove.b_req == pytest.approx(500 * T / 2, rel=1e-9) and groove.passive
+
+
+def test_a_trade_off_asks_for_the_same():
+    """Infinite damping where stiffness is negative or the force jumps; nothing told where the scene falls; else b_req."""
+    k, f, x_o = hl.parameters("k f x_o", units="N/m N m", values=(-100, 2, 0.01), ranges=[(-1e4, 1e4), None, None])
+    setting = SimpleNamespace(T=T, method="rk4", substeps=1, hold="soh", force_at="before")
+    expected = (
+        (hl.Scene(force=k * x(n)), np.inf), (hl.Scene(force=hl.when(x(n) >= x_o, f)), np.inf), (hl.library.cart_pole(), None),
+        (hl.library.buckling_beam(), 330 * T / 2), (coupler(), hl.port_passivity(coupler(), T=T).b_req),
+    )  # fmt: skip
+    for scene, b in expected:
+        found, _ = Limits(scene).damping(setting, hl.compile(scene, T=T, live=(), dtype="float64"))
+        assert found == (b if b is None else pytest.approx(b, rel=1e-6)), scene.name
 
 
 def test_stable_damping_is_inf_where_none_is_enough():
