@@ -4,9 +4,11 @@
 :func:`followed`, any number of masses and modes to double precision: each piece an exponential, its end by bracketing.
 """
 
+import math
+
 import mpmath as mp
 import numpy as np
-from scipy.linalg import expm
+from scipy.linalg import matrix_balance
 from scipy.optimize import brentq
 
 ORDER = 90
@@ -95,7 +97,7 @@ def followed(samples, T, hold, start, rates, rows, mode, after):
             H, S = np.zeros((len(Y), len(Y))), len(y)
             H[:S], H[S, S + 1], H[S + 1, S + 2] = rates(now), hold != "zoh", 1.0
             taken, row = _first_negative(H, rows(now), Y, left)
-            Y, left = expm(H * taken) @ Y, left - taken
+            Y, left = _exponential(H * taken) @ Y, left - taken
             if row is not None:
                 now, Y[:S] = after(now, Y, row)
                 switches += 1
@@ -105,7 +107,7 @@ def followed(samples, T, hold, start, rates, rows, mode, after):
 
 def _first_negative(H, rows, Y, left, parts=64):
     """Return when a row first becomes negative within ``left``, and which; looked for at so many places."""
-    step, places = expm(H * left / parts), [Y]
+    step, places = _exponential(H * left / parts), [Y]
     for k in range(parts):
         places.append(step @ places[-1])
         negative = np.flatnonzero(rows @ places[-1] < -1e-14 * np.abs(rows) @ np.abs(places[-1]))
@@ -115,8 +117,21 @@ def _first_negative(H, rows, Y, left, parts=64):
     return left, None
 
 
+def _exponential(A):
+    """Return e^A by its series, of what is halved until it is short; of matrices as small, scipy's waits for its threads."""
+    A, (size, _) = matrix_balance(A, permute=False, separate=True)
+    halved = max(0, math.ceil(math.log2(np.abs(A).sum(axis=1).max() + 1e-300)) + 1)
+    term = found = np.eye(len(A))
+    for k in range(1, 16):
+        term = term @ A / (k * 2.0**halved)
+        found = found + term
+    for _ in range(halved):
+        found = found @ found
+    return size[:, None] * found / size
+
+
 def _root(H, row, Y, length):
     def at(tau):
-        return row @ expm(H * tau) @ Y
+        return row @ _exponential(H * tau) @ Y
 
     return brentq(at, 0.0, length, xtol=1e-18, rtol=1e-15) if at(0.0) > 0 else 0.0

@@ -224,7 +224,7 @@ def every_hold(scene, known, felt, quick):
     ],
 )
 def test_it_is_what_exponentials_and_bracketed_roots_give(scene, known, felt, hold):
-    """Several walls and two masses, friction, impacts: with nothing of the package, to 1e-14 but for what rounding adds."""
+    """Several walls and two masses, friction, impacts: with nothing of the package; a part in 1e12 is rounding of both."""
     handle = SWING + 0.004 * np.sin(2 * np.pi * 11.7 * np.arange(300) * T)
     start, *rest = known()
     states, switches = followed(handle, T, hold, start, *rest)
@@ -232,7 +232,7 @@ def test_it_is_what_exponentials_and_bracketed_roots_give(scene, known, felt, ho
     force = felt[0] * (handle - states[:, 0]) + felt[1] * (rate - states[:, len(start) // 2])
     seen = run(compiled(scene(), hold=hold), handle)
     assert switches >= 7 and abs(force).max() > 1.0
-    np.testing.assert_allclose(seen[:, 0], force, rtol=0, atol=5e-14 * abs(force).max())
+    np.testing.assert_allclose(seen[:, 0], force, rtol=0, atol=1e-12 * abs(force).max())
 
 
 @pytest.mark.parametrize("returned", [2e4, slow(500.0)])
