@@ -153,6 +153,7 @@ def test_what_workers_may_be():
 
 def test_an_interrupt_ends_the_threads_and_keeps_what_they_had(tmp_path, alone, monkeypatch):
     """A real signal, in the main thread where it waits for the others; list.append is one step for all threads."""
+    pytest.importorskip("llvmlite")  # the interpreter has processes
     monkeypatch.setattr(chunks, "MOST", 20)
     monkeypatch.setattr(chunks, "FEWEST", 20)
     threads, begun, finished = {*threading.enumerate()}, [], []
@@ -188,7 +189,7 @@ def test_an_error_in_a_chunk_comes_out(monkeypatch):
 def test_processes_measure_the_same(alone):
     """Of the interpreter, which holds Python's lock; the other engine's bits."""
     given = {"T": 1e-3, "k": AXES["k"][::9], "duration": 0.05}
-    np.testing.assert_array_equal(swept(engine="interpreter", workers=2, **given), swept(engine="llvm", **given))
+    np.testing.assert_array_equal(swept(engine="interpreter", workers=2, **given), swept(**given))
     moving = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand(k=50, intent=lambda t: 0 * t))
     with pytest.raises(hl.AnalysisError, match="cannot be sent to worker processes: .*lambda.*def in a module"):
         swept(engine="interpreter", workers=2, paddle=moving, **given)

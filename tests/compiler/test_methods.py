@@ -237,6 +237,7 @@ def test_a_multistep_method_starts_along_a_handle_that_moves():
 
 @pytest.mark.parametrize("method", ["semi_implicit_euler_damped", "ssprk3", "adams_bashforth3"])
 def test_the_engines_agree_to_the_bit(method):
+    pytest.importorskip("llvmlite")
     motion = np.array([0.01 * (1 - np.cos(0.02 * np.arange(60)))]).T
     program = hl.compile(DRIVEN, method, T=1e-3, force_at="mean")
     one, *others = (load(program, engine).run(60, motion).outputs for engine in ("interpreter", "llvm", "vm"))
