@@ -62,7 +62,8 @@ def plot_port(port):
                 axes.plot(frequency, b, label=f"{mode.mode}; {mode.point}", **style)
         if port.b_device is not None:
             axes.axhline(port.b_device, color="#8a8a8a", label="the device")
-        axes.set(xscale="log", xlabel="frequency [Hz]", ylabel="damping asked for [N s/m]")
+        most = 1.2 * max([port.b_device or 0.0, *(mode.b_req for mode in port.modes if np.isfinite(mode.b_req))]) or 1.0
+        axes.set(xscale="log", ylim=(-most, most), xlabel="frequency [Hz]", ylabel="damping asked for [N s/m]")
         axes.set_title(f"{port.scene}, T = {1e3 * port.T:g} ms", fontsize="small")
         axes.legend(fontsize="small")
     return figure

@@ -1,6 +1,5 @@
 """The methods that hl.compile knows, as a table and a picture: order, cost, and where each is stable."""
 
-import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,7 +8,7 @@ import numpy as np
 
 from ..compiler.methods import METHODS
 from ..compiler.options import choice
-from .plots import STYLES, house_style, new_figure
+from .plots import house_style, new_figure, style_of
 
 #: damping ratios of the right picture, and omega h past which nothing is drawn
 ZETA = np.geomspace(0.02, 5.0, 41)
@@ -112,7 +111,8 @@ class Methods(Mapping):
         with house_style():
             figure = new_figure(height=4.6, width=10.0)
             left, right = figure.subplots(1, 2)
-            for (name, method), style in zip(chosen.items(), itertools.cycle(STYLES)):
+            for number, (name, method) in enumerate(chosen.items()):
+                style = style_of(number)
                 _draw_region(left, method, style)
                 right.loglog(ZETA, [method.longest_step(zeta) or np.nan for zeta in ZETA], **style, label=name)
             left.set(xlabel="Re(h λ)", ylabel="Im(h λ)", aspect="equal", title="|R| = 1 of y' = λ y, stable inside")

@@ -260,6 +260,12 @@ def _label(name, unit):
     return scale, f"{NAMES.get(name, name)} [{shown}]"
 
 
+def style_of(number):
+    """Return a line that differs from the others in colour or dash, also in grey print."""
+    first, again = STYLES[number % len(STYLES)], STYLES[(number + number // len(STYLES)) % len(STYLES)]
+    return {"color": first["color"], "linestyle": again["linestyle"]}
+
+
 def house_style():
     """Return the context in which a figure of this package is drawn."""
     from matplotlib import rc_context

@@ -1,6 +1,6 @@
 """The figure of a trade-off: error against load, both logarithmic, a line for each method."""
 
-from .plots import FRAME, STYLES, house_style, log_scales, new_figure
+from .plots import FRAME, house_style, log_scales, new_figure, style_of
 
 MARKERS = {"zoh": "s", "foh": "^", "soh": "o"}
 #: with a force of the period's end or mean a marker has a bar through it
@@ -45,12 +45,6 @@ def plot_work_precision(tradeoff, targets=None, asked=None):
         figure.suptitle(tradeoff.name)
         _legend(figure, panels[0], methods, {row.hold for rows in shown.values() for row in rows})
     return figure
-
-
-def style_of(number):
-    """Return a line that differs from the others in colour or dash, also in grey print."""
-    first, again = STYLES[number % len(STYLES)], STYLES[(number + number // len(STYLES)) % len(STYLES)]
-    return {"color": first["color"], "linestyle": again["linestyle"]}
 
 
 def _panel(axes, target, rows, methods, asked):
