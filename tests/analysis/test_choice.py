@@ -1,23 +1,16 @@
 """Choices on tables made by hand: what they print, note and refuse, in which words."""
 
 import math
+from functools import partial
 
 import pytest
+from trade_rows import one_row
 
 from hapticlab.analysis.choice import Asked, chosen
-from hapticlab.analysis.tradeoff_rows import Row
 from hapticlab.errors import AnalysisError
 
 ASKED = Asked(1e-2, 0.5, True)
-
-
-def row(**changes):
-    given = {
-        "method": "verlet", "T": 1e-3, "substeps": 1, "hold": "soh", "force_at": "before", "precision": "float32",
-        "target": "uno", "err_max": 5e-3, "err_rms": 1e-3, "err_hold": 0.088, "doubt": 1e-9, "load": 0.3, "margin": 20.0,
-        "steps_per_contact": math.inf, "b_req": 0.2, "b_device": 0.3, "cycles": 4000, "seconds": 2.5e-4,
-    }  # fmt: skip
-    return Row(**given | changes)
+row = partial(one_row, err_hold=0.088)
 
 
 def choose(rows, asked=ASKED):

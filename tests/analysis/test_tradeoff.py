@@ -7,25 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy as sp
+from trade_rows import one_row as row
 
 import hapticlab as hl
 from hapticlab.analysis.choice import Asked, chosen
 from hapticlab.analysis.motions import HandleMotion, handle_motions
 from hapticlab.analysis.tradeoff import tradeoff
-from hapticlab.analysis.tradeoff_rows import Row, Table
+from hapticlab.analysis.tradeoff_rows import Table
 from hapticlab.errors import AnalysisError, ProgramError
 
 SPRING = hl.Scene(force=hl.parameters("k", units="N/m", values=150) * hl.x(hl.n), name="spring")
 ASKED = Asked(1e-2, 0.5, True)
-
-
-def row(**changes):
-    given = {
-        "method": "verlet", "T": 1e-3, "substeps": 1, "hold": "soh", "force_at": "before", "precision": "float32",
-        "target": "uno", "err_max": 5e-3, "err_rms": 1e-3, "err_hold": 0.05, "doubt": 1e-9, "load": 0.3, "margin": 20.0,
-        "steps_per_contact": math.inf, "b_req": 0.2, "b_device": 0.3, "cycles": 4000, "seconds": 2.5e-4,
-    }  # fmt: skip
-    return Row(**given | changes)
 
 
 def choose(rows, asked=ASKED, target="uno"):

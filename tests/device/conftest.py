@@ -1,12 +1,23 @@
-"""Scenes and programs the device tests run."""
+"""Scenes and programs the device tests run, and the board they run on."""
 
 import pytest
+from bad_line import lossy_port
 
 from hapticlab.compiler.ir import Channel, Program
 from hapticlab.compiler.lower import compile
 from hapticlab.compiler.trace import Builder, equal, select
+from hapticlab.device.board import SerialPaddle
 from hapticlab.scene.scene import Scene
 from hapticlab.scene.symbols import n, parameters, x
+
+
+@pytest.fixture
+def board():
+    """A paddle over a port that can lose what it carries, homed."""
+    port = lossy_port()
+    with SerialPaddle("sim://hapkit", port=port) as made:
+        made.home(at=port.handle.x)
+        yield made
 
 
 @pytest.fixture

@@ -5,12 +5,10 @@ from dataclasses import replace
 
 import pytest
 import sympy as sp
-from bad_line import lossy_port
 
 import hapticlab as hl
 from hapticlab import t, v, x
 from hapticlab.compiler.value_limits import part_of_the_way
-from hapticlab.device.board import SerialPaddle
 from hapticlab.device.live import check_margin, checked
 from hapticlab.errors import PaddleError, ParameterError
 
@@ -119,14 +117,6 @@ def test_a_board_is_not_given_what_is_unstable_as_bound():
         check_margin(program(K=500_000))
     with pytest.raises(PaddleError, match=r"what vibrates doubles in 0\.\d+ s"):
         check_margin(program("euler"))
-
-
-@pytest.fixture
-def board():
-    port = lossy_port()
-    with SerialPaddle("sim://hapkit", port=port) as made:
-        made.home(at=port.handle.x)
-        yield made
 
 
 def test_a_board_refuses_both(board):

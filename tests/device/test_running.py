@@ -8,7 +8,7 @@ import weakref
 
 import numpy as np
 import pytest
-from bad_line import Peer, lossy_port
+from bad_line import Peer
 
 import hapticlab as hl
 from hapticlab.device.board import SerialPaddle
@@ -22,14 +22,6 @@ from hapticlab.scene.symbols import n, parameters, x
 k, push = parameters("k push", units="N/m N")
 LEAN = Scene(force=k * x(n) + push, name="lean")
 OTHER = Scene(force=k * x(n) + push + k * (x(n) - x(n - 1)), name="other")
-
-
-@pytest.fixture
-def board():
-    port = lossy_port()
-    with SerialPaddle("sim://hapkit", port=port) as made:
-        made.home(at=port.handle.x)
-        yield made
 
 
 @pytest.fixture
