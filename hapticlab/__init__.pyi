@@ -7,7 +7,6 @@ from .analysis.energy import energy
 from .analysis.impedance import impedance
 from .analysis.methods import methods
 from .analysis.motions import HandleMotion, handle_motions
-from .analysis.passivity import passivity_limit
 from .analysis.pictures import picture
 from .analysis.plots import plot
 from .analysis.port import port_damping
@@ -15,7 +14,6 @@ from .analysis.port_error import force_error, sensor_floor
 from .analysis.port_passivity import port_passivity
 from .analysis.reduction import reduction
 from .analysis.reference import reference
-from .analysis.stability import stability_limit
 from .analysis.step_limit import step_limit
 from .analysis.sweep import sweep
 from .analysis.tradeoff import tradeoff
@@ -48,6 +46,8 @@ from .errors import (
     SignalError,
     UnitsError,
 )
+from .limits.passivity import passivity_limit
+from .limits.stability import stability_limit
 from .records import PaddleProfile, Telemetry
 from .scene.amount import Amount
 from .scene.contact import Contact, friction

@@ -6,16 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
-from .analysis.limit import Limit
-from .analysis.passivity import passivity_limit
-from .analysis.plots import STYLES, house_style, new_figure
-from .analysis.stability import stability_limit
 from .analysis.sweep import Sweep, sweep
 from .compiler.engine import load
 from .device.hand import Hand
 from .device.profiles import profile
 from .device.progress import progress_bar
 from .device.simulated import SimulatedPaddle
+from .drawing import STYLES, house_style, new_figure
+from .limits.limit import Limit
+from .limits.passivity import passivity_limit
+from .limits.stability import stability_limit
 from .scene.laws import wall
 from .scenefile import SceneFile, describe, load_scene, report_of, run_scene
 

@@ -7,8 +7,8 @@ import pytest
 import tqdm
 
 from hapticlab import demo
-from hapticlab.analysis.limit import Limit
 from hapticlab.analysis.sweep import Sweep
+from hapticlab.limits.limit import Limit
 
 
 def felt(limit, first_chattering):

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import AnalysisError
+from ..limits.limit import whole_and_fraction
 from ..records import check_record
-from .limit import whole_and_fraction
 
 
 @dataclass(frozen=True, eq=False)

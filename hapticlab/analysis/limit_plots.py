@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 
-from .plots import STYLES, house_style, new_figure
+from ..drawing import STYLES, house_style, new_figure
 from .port import asked
 
 

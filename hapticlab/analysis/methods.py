@@ -8,7 +8,7 @@ import numpy as np
 
 from ..compiler.methods import METHODS
 from ..compiler.options import choice
-from .plots import house_style, new_figure, style_of
+from ..drawing import house_style, new_figure, style_of
 
 #: damping ratios of the right picture, and omega h past which nothing is drawn
 ZETA = np.geomspace(0.02, 5.0, 41)

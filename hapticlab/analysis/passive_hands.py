@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..compiler.exponential import exponential
-from .limit import whole_and_fraction
+from ..limits.limit import whole_and_fraction
 
 #: a closed loop is unstable where an eigenvalue is this far outside the unit circle
 UNSTABLE = 1e-7

@@ -4,10 +4,10 @@ from difflib import get_close_matches
 
 import numpy as np
 
+from ..drawing import house_style, new_figure
 from ..errors import AnalysisError
 from ..library.entries import CATALOGUE
 from ..scene.units import in_si
-from .plots import house_style, new_figure
 
 
 def picture(name, **state):

@@ -11,7 +11,7 @@ from ..compiler.engine import load
 from ..compiler.lower import compile
 from ..compiler.phase import is_timed
 from ..errors import AnalysisError
-from .limit import whole_and_fraction
+from ..limits.limit import whole_and_fraction
 
 #: a pole nearer to the unit circle does not decay, and its resonance has no bound
 LOSSLESS = 1e-9
@@ -96,7 +96,7 @@ def required(A, B, C, D, T, delay=0.0, points=POINTS):
     """Return (b, theta): the least damping of a device [N s/m] and w T at the frequency that asks for it.
 
     A delay of d + f periods: ``H`` averaged over the two forces of a period, and one term more, see
-    :mod:`hapticlab.analysis.passivity`. A resonance without damping asks for inf. ``points`` is how many frequencies are
+    :mod:`hapticlab.limits.passivity`. A resonance without damping asks for inf. ``points`` is how many frequencies are
     looked at to begin with, twice, beside those around every pole.
     """
     seen = _seen_poles(A, B, C)

@@ -7,9 +7,9 @@ import numpy as np
 
 from ..compiler.options import period
 from ..errors import AnalysisError
+from ..limits.limit import check_number
 from ..scene.scene import Scene
 from ..scene.written import no_scene
-from .limit import check_number
 from .limit_plots import plot_port
 from .linearization import forces_and_ticks_at
 from .operating import WORTH

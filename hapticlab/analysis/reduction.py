@@ -6,9 +6,9 @@ import numpy as np
 
 from ..compiler.lower import compile
 from ..errors import AnalysisError
+from ..limits.limit import check_number
 from ..scene.scene import Scene
 from .impedance import port_of
-from .limit import check_number
 from .masses import modal, network_of, scene_of
 from .moments import candidates
 from .peaks import BESIDE, around, frequencies, held, infinite, outside, refined

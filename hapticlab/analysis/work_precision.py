@@ -1,6 +1,6 @@
 """The figure of a trade-off: error against load, both logarithmic, a line for each method."""
 
-from .plots import FRAME, house_style, log_scales, new_figure, style_of
+from ..drawing import FRAME, house_style, log_scales, new_figure, style_of
 
 MARKERS = {"zoh": "s", "foh": "^", "soh": "o"}
 #: with a force of the period's end or mean a marker has a bar through it

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.analysis.plots import new_figure
+from hapticlab.drawing import new_figure
 from hapticlab.library.entries import CATALOGUE
 
 #: parameters that a picture does not name: constants of nature, losses, starts

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from hapticlab.analysis.limit import Limit
 from hapticlab.analysis.plots import plot, plot_sweep
 from hapticlab.analysis.sweep import Sweep
 from hapticlab.errors import AnalysisError
+from hapticlab.limits.limit import Limit
 from hapticlab.records import Telemetry
 
 pytest.importorskip("matplotlib")

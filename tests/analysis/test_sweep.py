@@ -12,11 +12,11 @@ from scipy.interpolate import CubicSpline
 import hapticlab as hl
 from hapticlab.analysis.chatter import chatter
 from hapticlab.analysis.energy import energy
-from hapticlab.analysis.stability import stability_limit
 from hapticlab.analysis.sweep import sweep
 from hapticlab.device.hand import Hand
 from hapticlab.device.simulated import SimulatedPaddle
 from hapticlab.errors import AnalysisError, PaddleError, ParameterError, ProgramError
+from hapticlab.limits.stability import stability_limit
 from hapticlab.scene.laws import wall
 from hapticlab.scene.scene import Scene
 from hapticlab.scene.symbols import n, parameters, t, x

@@ -1,4 +1,4 @@
-"""Exact motion of a linear plant under a held force; the only place of the analysis where scipy opens."""
+"""Exact motion of a linear plant under a held force; the only place of the limits where scipy opens."""
 
 import numpy as np
 

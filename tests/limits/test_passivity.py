@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from hapticlab.analysis.passivity import passivity_limit, required_damping
 from hapticlab.errors import AnalysisError
+from hapticlab.limits.passivity import passivity_limit, required_damping
 from hapticlab.scene.taps import TAPS
 
 b, T = 0.13, 0.7e-3

@@ -2,8 +2,8 @@
 
 import pytest
 
-from hapticlab.analysis.limit import MOST_PERIODS, Limit, whole_and_fraction
 from hapticlab.errors import AnalysisError
+from hapticlab.limits.limit import MOST_PERIODS, Limit, whole_and_fraction
 
 
 def test_number_words_and_units():

@@ -7,9 +7,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from hapticlab.analysis.passivity import passivity_limit
-from hapticlab.analysis.stability import closed_loop_matrix, closed_loop_poles, stability_limit
 from hapticlab.errors import AnalysisError
+from hapticlab.limits.passivity import passivity_limit
+from hapticlab.limits.stability import closed_loop_matrix, closed_loop_poles, stability_limit
 from hapticlab.scene.taps import LEAD, TAPS
 
 

@@ -30,7 +30,7 @@ def stability_limit(paddle, *, law="zoh", B=0.0):
     """Largest stiffness at which this paddle in this hand is stable: the eigenvalues of the sampled loop.
 
     Linear, with the spring always acting: it ignores encoder, noise, Coulomb friction, force saturation and the hand's
-    push. A hand of another kind may be unstable sooner (:func:`~hapticlab.analysis.passivity.passivity_limit`), and a
+    push. A hand of another kind may be unstable sooner (:func:`~hapticlab.limits.passivity.passivity_limit`), and a
     unilateral wall under a law with memory chatters sooner.
 
     Parameters

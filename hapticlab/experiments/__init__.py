@@ -1,0 +1,1 @@
+"""WHAT A PERSON FEELS AND DOES: psychophysics, targets, juggling, shared control."""

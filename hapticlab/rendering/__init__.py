@@ -1,0 +1,1 @@
+"""LAWS OF A MODEL: force laws designed on what is known of the paddle and the hand."""

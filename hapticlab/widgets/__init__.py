@@ -1,0 +1,1 @@
+"""LIVE VIEWS in a notebook."""
