@@ -28,8 +28,11 @@ from .device.calibrate import calibrate
 from .device.connect import connect
 from .device.doctor import doctor
 from .device.hand import Hand
+from .device.hands import hand, hand_presets
+from .device.intents import MinimumJerk, Tremor
 from .device.paddle import Paddle
 from .device.profiles import profile
+from .device.reacting import Reacting
 from .device.simulated import SimulatedPaddle
 from .errors import (
     AnalysisError,
@@ -83,6 +86,7 @@ __all__ = [
     "LinkError",
     "MassError",
     "Mechanics",
+    "MinimumJerk",
     "Paddle",
     "PaddleError",
     "PaddleProfile",
@@ -91,6 +95,7 @@ __all__ = [
     "PortError",
     "ProgramError",
     "ProgramLimitError",
+    "Reacting",
     "Scene",
     "SceneError",
     "Segment",
@@ -100,6 +105,7 @@ __all__ = [
     "T",
     "Taylor",
     "Telemetry",
+    "Tremor",
     "UnitsError",
     "balance",
     "calibrate",
@@ -121,6 +127,8 @@ __all__ = [
     "from_mechanics",
     "gap",
     "ground",
+    "hand",
+    "hand_presets",
     "handle_motions",
     "hunt_crossley",
     "impedance",

@@ -16,6 +16,7 @@ from .paddle import Paddle
 from .plant import delay_parts, dynamics, plant_of
 from .profiles import profile as named_profile
 from .progress import progress_bar
+from .reacting import Reacting, run_reacting
 from .transition import smallest_mass
 
 __all__ = ["SimulatedPaddle", "link", "load_linked"]
@@ -222,7 +223,10 @@ class SimulatedPaddle(Paddle):
         linked = link(program, self)
         loaded = load_linked(linked, engine)
         parameters = (*program.values, *self.plant_values(x, v))
-        outputs = _run_in_chunks(loaded, self.inputs(ticks), parameters, CHUNK[loaded.name], progress)
+        if self.hand is not None and isinstance(self.hand.intent, Reacting):
+            outputs = run_reacting(loaded, self, parameters, ticks, [c.name for c in linked.outputs])
+        else:
+            outputs = _run_in_chunks(loaded, self.inputs(ticks), parameters, CHUNK[loaded.name], progress)
         return self._telemetry(program, linked, outputs)
 
     def _telemetry(self, program, linked, outputs):
