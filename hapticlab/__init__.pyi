@@ -9,7 +9,6 @@ from .analysis.methods import methods
 from .analysis.motions import HandleMotion, handle_motions
 from .analysis.pictures import picture
 from .analysis.plots import plot
-from .analysis.port import port_damping
 from .analysis.port_error import force_error, sensor_floor
 from .analysis.port_passivity import port_passivity
 from .analysis.reduction import reduction
@@ -50,6 +49,7 @@ from .errors import (
     UnitsError,
 )
 from .limits.passivity import passivity_limit
+from .limits.port import port_damping
 from .limits.stability import stability_limit
 from .records import PaddleProfile, Telemetry
 from .scene.amount import Amount

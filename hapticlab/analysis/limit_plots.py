@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 
 from ..drawing import STYLES, house_style, new_figure
-from .port import asked
+from ..limits.port import asked
 
 
 def plot_step_limit(limit):

@@ -53,7 +53,7 @@ def radii(tick, hands, b, T, delay=0.0):
     Parameters
     ----------
     tick : (A, B, C, D)
-        Of :mod:`hapticlab.analysis.port`.
+        Of :mod:`hapticlab.limits.port`.
     hands : (M, C, K)
         Each of shape (H, n, n), the handle being body 0.
     b : float or array of shape (H,)

@@ -6,9 +6,9 @@ import numpy as np
 
 from ..compiler.step_matrix import rising
 from ..errors import AnalysisError
+from ..limits.port import POINTS, negative, required, static_stiffness, unstable_pole
 from .linearization import motion_at
 from .operating import TRAVEL, borders, kind_of, operating_points, probes_of, telling
-from .port import POINTS, negative, required, static_stiffness, unstable_pole
 
 #: why a mode asks for what it asks, unless it is worse
 WORST = "worst frequency"

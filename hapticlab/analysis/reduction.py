@@ -7,12 +7,12 @@ import numpy as np
 from ..compiler.lower import compile
 from ..errors import AnalysisError
 from ..limits.limit import check_number
+from ..limits.port import port_damping
 from ..scene.scene import Scene
 from .impedance import port_of
 from .masses import modal, network_of, scene_of
 from .moments import candidates
 from .peaks import BESIDE, around, frequencies, held, infinite, outside, refined
-from .port import port_damping
 from .reduction_plot import plot_reduction
 
 #: below what a hand tells from another force, 7 to 10 %
@@ -85,7 +85,7 @@ class Reduction:
     def device_damping(self, T=1e-3):
         """Return the damping b [N s/m] that a device needs for (the full, the reduced) scene, each compiled.
 
-        See :func:`~hapticlab.analysis.port.port_damping`; ``inf`` without damping of the scene's own.
+        See :func:`~hapticlab.limits.port.port_damping`; ``inf`` without damping of the scene's own.
         """
         return tuple(port_damping(scene, T=T, method="exact") for scene in (self.full, self.scene))
 

@@ -6,9 +6,9 @@ import math
 from ..compiler.exact import EXACT
 from ..compiler.order import order_of
 from ..errors import HapticlabError
+from ..limits.port import negative
 from .linearization import forces_and_ticks_at, forces_and_ticks_of
 from .operating import TRAVEL
-from .port import negative
 from .port_limits import Looked
 from .step_limit import step_limit
 from .switches import switched

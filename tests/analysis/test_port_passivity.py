@@ -9,11 +9,11 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab import n, t, v, x
 from hapticlab.analysis.passive_hands import network, radii
-from hapticlab.analysis.port import port_damping
 from hapticlab.analysis.port_passivity import stable_damping
 from hapticlab.analysis.trial_limits import Limits
 from hapticlab.errors import AnalysisError
 from hapticlab.limits.passivity import required_damping
+from hapticlab.limits.port import port_damping
 
 T = 1e-3
 z, theta = hl.coordinate("z", unit="m"), hl.coordinate("theta", unit="rad", initial=0.2)

@@ -6,9 +6,9 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import t, v, x
-from hapticlab.analysis.port import tick_map
 from hapticlab.compiler.engine import load
 from hapticlab.errors import AnalysisError, HapticlabError, ParameterError
+from hapticlab.limits.port import tick_map
 
 z, theta = hl.coordinate("z", unit="m", initial=1e-3), hl.coordinate("theta", unit="rad", initial=0.3)
 K, B, m, k, x_o = hl.parameters("K B m k x_o", units="N/m N*s/m kg N/m m", values=(500, 0.4, 0.05, 40_000, 0.01))

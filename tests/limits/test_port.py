@@ -6,9 +6,9 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import n, t, v, x
-from hapticlab.analysis.port import port_damping, static_stiffness, tick_map
 from hapticlab.errors import AnalysisError
 from hapticlab.limits.passivity import required_damping
+from hapticlab.limits.port import port_damping, static_stiffness, tick_map
 
 T = 1e-3
 z = hl.coordinate("z", unit="m")

@@ -11,7 +11,7 @@ from ..compiler.engine import load
 from ..compiler.lower import compile
 from ..compiler.phase import is_timed
 from ..errors import AnalysisError
-from ..limits.limit import whole_and_fraction
+from .limit import whole_and_fraction
 
 #: a pole nearer to the unit circle does not decay, and its resonance has no bound
 LOSSLESS = 1e-9
