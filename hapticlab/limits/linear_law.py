@@ -1,0 +1,225 @@
+"""A linear position law of any memory, as the one thing that every exact bound reads: s' = A s + B x, F = C s + D x."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compiler.lower import compile
+from ..errors import AnalysisError
+from ..scene.taps import LEAD, TAPS
+from .limit import check_law, check_number
+from .port import static_stiffness, tick_map
+
+#: Eq. (23.8), the force filter, on F[n], F[n-1], F[n-2]
+FORCE_FILTER = (2.0, -1.5, 0.5)
+#: part of the largest weight below which a weight is rounding
+ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class LinearLaw:
+    """A force that is a linear function of the positions sampled so far, H(z): what the bounds of a law are read from.
+
+    A law that looks at an exact velocity, Eq. (23.3), has no H(z) in position and cannot be one.
+
+    Attributes
+    ----------
+    A, B, C : arrays of shape (n, n), (n,), (n,)
+        One tick: ``s[n+1] = A s[n] + B x[n]``, ``F[n] = C s[n] + D x[n]``; F in N, x in m.
+    D : float
+        [N/m]
+    T : float
+        Sampling period [s].
+    name : str
+
+    Examples
+    --------
+    >>> law = LinearLaw.of("ellis", K=100.0, T=1e-3)
+    >>> law.taps().tolist()
+    [200.0, -150.0, 50.0]
+    >>> print(law)
+    ellis, K = 100 N/m: F[n] = 200 x[n] - 150 x[n-1] + 50 x[n-2], T = 1 ms
+    """
+
+    A: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    D: float
+    T: float
+    name: str
+
+    @classmethod
+    def of(cls, law="zoh", *, K, T, B=0.0, velocity_filter=None, filtered=False):
+        """Return a law of the chapter with a virtual damper beside it.
+
+        Parameters
+        ----------
+        law : {"zoh", "backward_difference", "ellis"}
+            Eqs. (23.1), (23.5), (23.7).
+        K : float
+            Stiffness [N/m], any finite value.
+        T : float
+            Sampling period [s], > 0.
+        B : float
+            Virtual damper of either sign [N s/m], on the backward difference ``(x[n] - x[n-1])/T``.
+        velocity_filter : float, optional
+            Time constant tau [s] >= 0 of a first-order filter of that difference, by backward mapping:
+            ``v[n] = (tau v[n-1] + x[n] - x[n-1]) / (tau + T)``.
+        filtered : bool
+            The whole force, spring and damper, goes through Eq. (23.8).
+
+        Raises
+        ------
+        AnalysisError
+            For "half_sample", which is no position law, an unknown law and values out of range.
+        """
+        check_law(law)
+        if LEAD[law]:
+            raise AnalysisError(
+                f"law {law}, Eq. (23.3), looks at the exact velocity: it is no position law and has no H(z). "
+                "With a velocity estimated by backward difference it is the law backward_difference"
+            )
+        K = check_number("K", K, "N/m", "needs a finite stiffness", lambda v: True)
+        T = check_number("T", T, "s", "a sampling period needs T > 0", lambda v: v > 0)
+        B = check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
+        tau = check_number("velocity_filter", velocity_filter or 0.0, "s", "needs a time constant >= 0", lambda v: v >= 0)
+        name = f"{law}, K = {K:g} N/m" + (f", B = {B:g} N s/m" if B else "")
+        found = cls.of_taps(K * np.array(TAPS[law]), T=T) + filtered_damper(B, T, tau)
+        if tau and B:
+            name += f" of a velocity filtered over {1e3 * tau:g} ms"
+        if filtered:
+            found, name = found.then(FORCE_FILTER), f"force filter (23.8) of {name}"
+        return found.named(name)
+
+    @classmethod
+    def of_taps(cls, taps, *, T, name="taps"):
+        """Return the law F[n] = taps[0] x[n] + taps[1] x[n-1] + ..., weights in N/m."""
+        taps = np.atleast_1d(np.asarray(taps, dtype=float))
+        n = len(taps) - 1
+        return cls(np.eye(n, k=-1), np.eye(n, 1)[:, 0], taps[1:].copy(), float(taps[0]), float(T), name)
+
+    @classmethod
+    def of_scene(cls, scene, *, T=1e-3, **options):
+        """Return the law that a linear scene compiles to: hold, method and estimator of velocity included.
+
+        Parameters
+        ----------
+        scene : Scene
+            Linear, every parameter bound.
+        T : float
+            Sampling period [s].
+        **options
+            Of :func:`hapticlab.compile`: method, substeps, hold.
+
+        Raises
+        ------
+        AnalysisError
+            The scene is not linear, as a wall with a boundary: ``hl.wall(unilateral=None)`` is the law inside it.
+
+        Examples
+        --------
+        >>> import hapticlab as hl
+        >>> wall = hl.wall("backward_difference", unilateral=None)(k=100)
+        >>> LinearLaw.of_scene(wall, T=1e-3).taps().round(9).tolist()
+        [150.0, -50.0]
+        """
+        return cls(*tick_map(compile(scene, T=T, live=(), dtype="float64", **options)), float(T), scene.name)
+
+    def named(self, name):
+        """Return the same law under another name."""
+        return LinearLaw(self.A, self.B, self.C, self.D, self.T, name)
+
+    def __add__(self, other):
+        """Return both forces side by side."""
+        if self.T != other.T:
+            raise AnalysisError(f"laws of T = {self.T:g} s and {other.T:g} s; needs one sampling period for both")
+        A = np.block([[self.A, np.zeros((len(self.A), len(other.A)))], [np.zeros((len(other.A), len(self.A))), other.A]])
+        both = (np.r_[self.B, other.B], np.r_[self.C, other.C], self.D + other.D)
+        return LinearLaw(A, *both, self.T, f"{self.name} + {other.name}")
+
+    def __rmul__(self, gain):
+        """Return the force times a number."""
+        return LinearLaw(self.A, self.B, gain * self.C, gain * self.D, self.T, f"{gain:g} x {self.name}")
+
+    def then(self, taps):
+        """Return the law whose force is taps[0] F[n] + taps[1] F[n-1] + ..., as a delay or the filter of Eq. (23.8)."""
+        after = LinearLaw.of_taps(taps, T=self.T)
+        A = np.block([[self.A, np.zeros((len(self.A), len(after.A)))], [np.outer(after.B, self.C), after.A]])
+        ends = (np.r_[self.B, after.B * self.D], np.r_[after.D * self.C, after.C], after.D * self.D)
+        return LinearLaw(A, *ends, self.T, f"{self.name}, filtered")
+
+    def at(self, theta):
+        """Return H(e^(j theta)) [N/m], theta = w T of any shape; complex array of that shape.
+
+        At a pole on the unit circle, as an integrator's at theta = 0, there is no value: inf.
+        """
+        theta = np.asarray(theta, dtype=float)
+        if not len(self.A):
+            return np.full(theta.shape, self.D, dtype=complex)
+        z = np.exp(1j * theta)[..., None, None]
+        gap = z * np.eye(len(self.A)) - self.A
+        on_pole = np.abs(np.linalg.det(gap)) == 0
+        gap = np.where(on_pole[..., None, None], np.eye(len(self.A)), gap)
+        inside = np.linalg.solve(gap, np.broadcast_to(self.B[:, None], (*theta.shape, len(self.B), 1)))[..., 0]
+        return np.where(on_pole, np.inf, inside @ self.C + self.D)
+
+    def impulse(self, count):
+        """Return the first ``count`` forces [N/m] of a handle that was at one metre at the first sample alone."""
+        forces, state = [self.D], self.B
+        for _ in range(count - 1):
+            forces.append(float(self.C @ state))
+            state = self.A @ state
+        return np.array(forces[:count])
+
+    @property
+    def finite(self):
+        """Whether the force forgets a position after some samples."""
+        n = len(self.A)
+        response = np.abs(self.impulse(2 * n + 1))  # n + 1 terms of zero in a row: all that follow are (Cayley, Hamilton)
+        return bool(response[n + 1 :].max(initial=0.0) <= ROUNDING * response.max())
+
+    def taps(self):
+        """Return the weights [N/m] on x[n], x[n-1], ... of a law with a finite memory, array of shape (m,), m >= 1.
+
+        Raises
+        ------
+        AnalysisError
+            The law remembers for ever, as a filtered velocity does; read :meth:`impulse` or :meth:`at`.
+        """
+        if not self.finite:
+            raise AnalysisError(f"{self.name}: its memory does not end, so it has no finite taps; read .impulse(count)")
+        response = self.impulse(len(self.A) + 1)
+        kept = np.flatnonzero(np.abs(response) > ROUNDING * np.abs(response).max())
+        return response[: kept[-1] + 1] if len(kept) else response[:1]
+
+    @property
+    def stiffness(self):
+        """Force per displacement at rest [N/m], H(1); nan where a handle at rest feels no one force."""
+        return static_stiffness(self.A, self.B, self.C, self.D)
+
+    @property
+    def radius(self):
+        """Largest |pole| with the handle held; 0 for a law of finite memory."""
+        return float(np.abs(np.linalg.eigvals(self.A)).max()) if len(self.A) and not self.finite else 0.0
+
+    def __str__(self):
+        if self.finite and len(taps := self.taps()) <= 6:
+            terms = [f"{abs(a):.6g} x[n{'' if k == 0 else f'-{k}'}]" for k, a in enumerate(taps)]
+            signs = [" - " if a < 0 else " + " for a in taps]
+            force = ("-" if taps[0] < 0 else "") + terms[0] + "".join(s + f for s, f in zip(signs[1:], terms[1:], strict=True))
+            return f"{self.name}: F[n] = {force}, T = {1e3 * self.T:g} ms"
+        stiffness = "none" if math.isnan(self.stiffness) else f"{self.stiffness:.6g} N/m"
+        return f"{self.name}: {len(self.A)} states, stiffness at rest {stiffness}, T = {1e3 * self.T:g} ms"
+
+    __repr__ = __str__
+
+
+def filtered_damper(B, T, tau=0.0):
+    """Return the virtual damper B [N s/m] on the backward difference, filtered over tau [s] by backward mapping."""
+    if not B:
+        return LinearLaw.of_taps([0.0], T=T)
+    if not tau:
+        return LinearLaw.of_taps([B / T, -B / T], T=T, name="damper")
+    decay, gain = tau / (tau + T), B / (tau + T)  # F[n] = decay F[n-1] + gain (x[n] - x[n-1])
+    return LinearLaw(np.array([[decay]]), np.array([gain * (decay - 1)]), np.array([1.0]), gain, T, "filtered damper")
