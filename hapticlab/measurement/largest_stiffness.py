@@ -1,0 +1,209 @@
+"""The largest stiffness that does not chatter, searched on the paddle itself: the same call in simulation and on a board."""
+
+import math
+from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
+
+from ..device.simulated import SimulatedPaddle
+from ..errors import AnalysisError, PaddleError
+from ..limits.limit import Limit, whole_and_fraction
+from ..limits.passivity import passivity_limit
+from ..limits.stability import stability_limit
+from ..scene.scene import Scene
+from ..scene.symbols import parameters
+from ..scene.taps import TAPS
+from .guard import guarded
+from .search_plot import plot_search
+from .trials import Trial, run_from, speed_limit, try_wall, wall_of
+
+__all__ = ["LargestStiffness", "largest_stiffness", "run_from"]
+
+#: how deep the push presses the handle into the first, softest wall [m]
+DEEPEST = 0.01
+#: parts of the first stiffness tried before none is said to stand
+SOFTER = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class LargestStiffness:
+    """What a search found, and every trial it made; ``float(found)`` is the stiffness [N/m].
+
+    Attributes
+    ----------
+    K : float
+        The largest stiffness that stood [N/m]; 0 where none did.
+    chatters_at : float
+        The smallest that did not [N/m]; inf where all stood.
+    trials : tuple of Trial
+        In the order they were made.
+    law : str
+    B : float
+        Virtual damper of the trials [N s/m].
+    theory : dict of str to Limit
+        "passivity" and "stability", where the paddle's constants and the law are known.
+    about : str
+        What was done at every trial.
+    """
+
+    K: float
+    chatters_at: float
+    trials: tuple[Trial, ...]
+    law: str
+    B: float = 0.0
+    theory: dict[str, Limit] = field(default_factory=dict)
+    about: str = ""
+
+    def __float__(self):
+        return self.K
+
+    def plot(self):
+        """Draw every trial in the order it was made, with the limits of theory."""
+        return plot_search(self)
+
+    def __str__(self):
+        if self.K == 0:
+            head = f"{self.law}: no stiffness stood, down to {self.chatters_at:.3g} N/m"
+        elif math.isinf(self.chatters_at):
+            head = f"{self.law}: {self.K:.5g} N/m stood, and no more was asked for"
+        else:
+            head = f"{self.law}: {self.K:.5g} N/m stands, {self.chatters_at:.5g} N/m chatters"
+        rows = [f"  {name:<10} {limit.K:.5g} N/m: {limit.kind}" for name, limit in self.theory.items()]
+        return "\n".join([head, f"  simulated outcome of one start, {self.about}", *rows, *(f"  {t}" for t in self.trials)])
+
+    def __repr__(self):
+        return f"LargestStiffness(K={self.K:.6g} N/m, chatters_at={self.chatters_at:.6g} N/m, {len(self.trials)} trials)"
+
+
+def largest_stiffness(
+    paddle, *, law="zoh", B=0.0, parameter="k", push=None, first=None, most=1e5, growth=1.5, tolerance=0.02,
+    duration=1.0, longest=4.0, energy_max=0.05, speed_max=1.0, place=0.0,
+):  # fmt: skip
+    """Search the largest stiffness of a wall that comes to rest under a push: trials on the paddle, from soft to stiff.
+
+    Every trial lets the handle fall from rest at the wall's boundary under a constant push, and looks whether the
+    oscillation dies out (:func:`hapticlab.chatter`). The stiffness grows by a ratio until a wall chatters; then the ratio
+    is halved, from the last that stood, until it is within ``tolerance``. No trial goes further than one ratio beyond what
+    stood. A guard in the scene cuts the motor at the sample at which the wall has given too much energy or the handle is
+    too fast, and between trials it is off.
+
+    What is found is an outcome: this handle, this hand, this start. A passive hand that grips otherwise may chatter
+    sooner (:func:`hapticlab.passivity_limit`).
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle or SerialPaddle
+        On a board the handle is led back to the boundary before each trial, softly, by the motor.
+    law : str or Scene
+        A law of :func:`hapticlab.wall` ("gate", no clamp), or a scene with the parameter.
+    B : float
+        Virtual damper [N s/m] of either sign; of a scene that has a parameter B.
+    parameter : str
+        What is searched in a scene of one's own.
+    push : float, optional
+        Constant force of the motor into the wall [N]. By default 0.2 N, and none where a simulated hand pushes or leans.
+    first : float, optional
+        The softest wall [N/m]; by default one that 10 mm withstand the push, 20 N/m for a push of 0.2 N.
+    most : float
+        The stiffest [N/m].
+    growth : float
+        Ratio from one trial to the next, > 1.
+    tolerance : float
+        Of the stiffness, relative.
+    duration, longest : float
+        Of a trial [s]; doubled up to the longest while the record does not tell.
+    energy_max, speed_max : float
+        What trips the guard [J], [m/s]; the speed leaves room for three encoder counts a period.
+    place : float
+        Of the wall's boundary [m].
+
+    Returns
+    -------
+    LargestStiffness
+
+    Raises
+    ------
+    PaddleError, AnalysisError
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
+    >>> found = largest_stiffness(paddle)
+    >>> abs(float(found) / hl.stability_limit(paddle).K - 1) < 0.03
+    True
+    """
+    scene = wall_of(law, parameter)
+    if not (growth > 1 and tolerance > 0 and most > 0):
+        raise AnalysisError(f"growth = {growth}, tolerance = {tolerance}, most = {most}; needs growth > 1 and the others > 0")
+    hand = getattr(paddle, "hand", None)
+    leaning = 0.0 if hand is None or hand.moves else hand.push + hand.k * ((hand.intent or 0.0) - place)
+    push = (0.0 if leaning else 0.2) if push is None else float(push)
+    pressing = push + leaning
+    first = (abs(pressing) or 0.2) / DEEPEST if first is None else float(first)
+    if not 0 < first < most:
+        raise AnalysisError(f"first = {first:g} N/m, most = {most:g} N/m; needs 0 < first < most")
+    known = {name: value for name, value in {"B": B, "x_o": place}.items() if name in scene.parameters and (B or name != "B")}
+    if B and "B" not in scene.parameters:
+        raise PaddleError(f"{scene.name} has no parameter B; leave B out, or give the scene one")
+    scene = _tried(scene(**known), paddle, push, energy_max, speed_limit(paddle, speed_max))
+
+    def trial(K, begin):
+        return try_wall(paddle, scene(**{parameter: K}), K=K, place=place, duration=begin, longest=longest)
+
+    trials, good, bad = search(trial, first, most, growth, tolerance, (duration, longest))
+    about = f"pressed with {pressing:.3g} N from rest at its boundary"
+    name = law if isinstance(law, str) else scene.name
+    return LargestStiffness(good, bad, trials, name, B, theory_of(paddle, law, B), about)
+
+
+def search(trial, first, most, growth, tolerance, durations):
+    """Return (trials, largest that stood, smallest that did not), from below, never further than one ratio beyond.
+
+    A trial is as short as tells; the one that is the answer is repeated at full length, and where a small chatter was
+    hidden by bounces that died out, the search goes on below it.
+    """
+    K, stood, bad, ratio, made = first, [], math.inf, growth, []
+    while True:
+        made.append(trial(K, durations[0]))
+        if made[-1].stands:
+            stood.append(K)
+        else:
+            bad = K
+        while stood and (stood[-1] >= most or bad / stood[-1] <= 1 + tolerance):
+            if made[-1].K != stood[-1] or made[-1].duration < durations[1]:
+                made.append(trial(stood[-1], durations[1]))
+            if made[-1].stands:
+                return tuple(made), stood[-1], bad
+            bad = stood.pop()
+        if not stood and bad < first * SOFTER:
+            return tuple(made), 0.0, bad
+        if math.isfinite(bad) and stood:
+            ratio = math.sqrt(bad / stood[-1])
+        K = min(stood[-1] * ratio, most) if stood else bad / 10
+
+
+def _tried(scene, paddle, push, energy_max, speed_max):
+    """Return the scene with the motor's push beside it, and the guard around both."""
+    if push:
+        pressed = parameters("pressed", units="N", values=push, ranges=(-math.inf, math.inf))
+        scene = replace(scene, force=scene.force - pressed)
+    periods = whole_and_fraction(getattr(paddle, "delay", 0.0), paddle.T)[0]
+    return guarded(scene, energy_max=energy_max, speed_max=speed_max, periods=periods)
+
+
+def theory_of(paddle, law, B):
+    """Return the limits of theory, where they are known: a law with a name, a handle with constants."""
+    known = paddle if isinstance(paddle, SimulatedPaddle) else _from_settings(paddle)
+    if isinstance(law, Scene) or law not in TAPS or known is None:
+        return {}
+    exact = known.velocity == "measured"
+    named = law if law != "half_sample" or exact else "backward_difference"  # the estimate makes it Eq. (23.5)
+    passive = passivity_limit(b=known.b, T=known.T, B=B, delay=known.delay, law=named)
+    return {"passivity": passive, "stability": stability_limit(known, law=law, B=B)}
+
+
+def _from_settings(paddle):
+    settings = getattr(paddle, "settings", None)
+    if settings is None or not settings.m:
+        return None
+    return SimpleNamespace(m=settings.m, b=settings.b, T=paddle.T, delay=0.0, hand=None, velocity=paddle.velocity)

@@ -1,0 +1,24 @@
+"""Pictures of what was searched: the trials of a stiffness, the border of the Z-width."""
+
+import numpy as np
+
+from ..drawing import FRAME, house_style, new_figure, style_of
+
+
+def plot_search(found):
+    """Draw a search's trials over their number, stood or chattered, and the limits of theory as lines."""
+    with house_style():
+        figure = new_figure(height=3.6)
+        axes = figure.add_subplot()
+        number, K = np.arange(1, len(found.trials) + 1), np.array([t.K for t in found.trials])
+        stands = np.array([t.stands for t in found.trials])
+        axes.plot(number, K, color="0.75", linewidth=1)
+        axes.plot(number[stands], K[stands], "o", color="black", label="comes to rest")
+        axes.plot(number[~stands], K[~stands], "X", color="#c1440e", markersize=8, label="chatters")
+        for i, (name, limit) in enumerate(found.theory.items()):
+            if 0 < limit.K < 1e9:
+                axes.axhline(limit.K, **style_of(i + 2), label=f"{name}: {limit.K:.4g} N/m")
+        axes.set(yscale="log", xlabel="trial", ylabel="stiffness K [N/m]", title=f"{found.law}: {found.K:.4g} N/m stands")
+        axes.xaxis.get_major_locator().set_params(integer=True)
+        axes.legend(loc="lower right", **FRAME)
+    return figure
