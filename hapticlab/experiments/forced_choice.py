@@ -1,0 +1,212 @@
+"""Two-alternative forced choice on a paddle: which of two presentations was stronger?"""
+
+import csv
+import json
+import math
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..device.person import Person
+from ..drawing import FRAME, house_style, new_figure
+from ..errors import AnalysisError
+from .observers import PersonObserver, SimulatedObserver
+from .psychometric import psychometric
+from .up_down import UpDown
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One comparison: the level ln(comparison/standard), what was shown first and second, and the answer."""
+
+    level: float
+    first: float
+    second: float
+    answer: str
+    right: bool
+
+
+@dataclass(frozen=True)
+class ForcedChoice:
+    """What was asked and answered.
+
+    Attributes
+    ----------
+    task, parameter, unit : str
+    standard : float
+    trials : tuple of Trial
+    estimate : float or None
+        Threshold by the procedure's own rule, as ln(comparison/standard).
+    procedure, observer, paddle : str
+    seed : int
+    stopped : str or None
+        Why it ended early.
+    """
+
+    task: str
+    parameter: str
+    unit: str
+    standard: float
+    trials: tuple
+    estimate: float | None
+    procedure: str
+    observer: str
+    paddle: str
+    seed: int
+    stopped: str | None = None
+
+    def fit(self, **options):
+        """Fit the psychometric function of all answers; options of :func:`hapticlab.psychometric`."""
+        return psychometric([t.level for t in self.trials], [t.right for t in self.trials], **options)
+
+    def weber(self, **options):
+        """Return the Weber fraction at d' = 1 and its interval, from the fit with slope and lapses."""
+        found = self.fit(**options)
+        return tuple(math.expm1(a) for a in (found.curve.threshold, *found.interval["threshold"]))
+
+    def __str__(self):
+        right = sum(t.right for t in self.trials)
+        head = f"{self.task}, standard {self.standard:g} {self.unit}: {len(self.trials)} trials, {right} right, {self.procedure}"
+        lines = [head, f"  {self.observer}"]
+        if self.estimate is not None:
+            part = 100 * math.expm1(self.estimate)
+            lines.append(f"  difference threshold {part:.3g} % of the standard, by the procedure's own rule")
+        return "\n".join(lines + ([f"  ended early: {self.stopped}"] if self.stopped else []))
+
+    def to_csv(self, path):
+        """Write one row a trial and return the path."""
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            table = csv.writer(file, lineterminator="\n")
+            table.writerow(_header(self.unit))
+            table.writerows(_row(trial) for trial in self.trials)
+        return Path(path)
+
+    def save(self, path):
+        """Write everything as JSON and return the path."""
+        Path(path).write_text(json.dumps(asdict(self), indent=1), encoding="utf-8")
+        return Path(path)
+
+    @classmethod
+    def load(cls, path):
+        """Read what :meth:`save` wrote."""
+        try:
+            held = json.loads(Path(path).read_text(encoding="utf-8"))
+            return cls(**{**held, "trials": tuple(Trial(**t) for t in held["trials"])})
+        except (KeyError, TypeError, ValueError) as problem:
+            raise AnalysisError(f"{path} is no experiment ({problem}); needs a file of result.save()") from None
+
+    def plot(self):
+        """Draw the level of each trial, filled where the answer was right, and the threshold."""
+        with house_style():
+            figure = new_figure(height=3.6)
+            axes = figure.subplots()
+            number = np.arange(1, len(self.trials) + 1)
+            level = np.array([100 * math.expm1(t.level) for t in self.trials])
+            right = np.array([t.right for t in self.trials], bool)
+            axes.plot(number, level, color="#8a8a8a", linewidth=0.8, zorder=1)
+            axes.scatter(number[right], level[right], 28, color="#000000", label="right", zorder=2)
+            axes.scatter(number[~right], level[~right], 36, marker="x", color="#c1440e", label="wrong", zorder=3)
+            if self.estimate is not None:
+                at = 100 * math.expm1(self.estimate)
+                axes.axhline(at, color="#1f6fb4", linestyle="--", label=f"threshold {at:.3g} %")
+            axes.set(xlabel="trial", ylabel=f"difference in {self.task} [%]", yscale="log")
+            axes.yaxis.set_major_formatter("{x:g}")
+            axes.legend(**FRAME)
+        return figure
+
+
+def forced_choice(paddle, task, observer=None, procedure=None, *, seed=0, keep=None, **options):
+    """Measure a difference threshold by two-alternative forced choice, on a simulated paddle or a board.
+
+    Each trial shows the standard and a comparison exp(level) times as strong, in an order drawn from the seed, with the
+    motor off between them and while the observer is asked. A fault of the paddle ends it; what was answered is returned.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle or SerialPaddle
+        A simulated paddle without a hand gets the task's exploring hand.
+    task : Task
+        :func:`stiffness_task`, :func:`damping_task`, :func:`texture_task`, or your own.
+    observer : SimulatedObserver, PersonObserver or Person
+        By default a simulated one with the task's Weber fraction.
+    procedure : UpDown, Psi or ConstantLevels, fresh
+        Levels are ln(comparison/standard); by default two down, one up from ln 2.
+    seed : int
+    keep : path, optional
+        A CSV file to which each trial is written at once, so that an interrupt loses nothing.
+    **options
+        Of paddle.run, such as ``force_max=2`` on a board.
+
+    Returns
+    -------
+    ForcedChoice
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
+    >>> asked = hl.ConstantLevels([0.1, 0.5], repeats=2)
+    >>> found = hl.forced_choice(paddle, hl.stiffness_task(), hl.SimulatedObserver(weber=0.05), asked)
+    >>> len(found.trials), found.trials[-1].right
+    (4, True)
+    """
+    observer = observer or SimulatedObserver(weber=task.weber, seed=seed)
+    observer = PersonObserver(observer) if isinstance(observer, Person) else observer
+    procedure = procedure or UpDown(start=math.log(2))
+    if procedure.done:
+        raise AnalysisError("the procedure has had all its answers already; make a fresh one")
+    paddle, rng, trials, stopped = task.on(paddle), np.random.default_rng(seed), [], None
+    with _table(keep, task) as row:
+        while not procedure.done and stopped is None:
+            level, reverse = procedure.level, bool(rng.integers(2))
+            shown = [task.standard, task.standard * math.exp(level)]
+            shown = shown[::-1] if reverse else shown
+            logs, stopped = _present(paddle, task, observer, shown, options)
+            if stopped is None:
+                answer = observer.compare(task, logs, len(trials))
+                trial = Trial(level, *shown, answer, answer == ("first" if reverse else "second"))
+                observer.told(trial.right)
+                procedure.answer(trial.right)
+                trials.append(trial)
+                row(trial)
+    estimate = None if stopped or not hasattr(procedure, "estimate") else procedure.estimate()
+    return ForcedChoice(task.name, task.parameter, task.unit, task.standard, tuple(trials), estimate, str(procedure),
+                        str(observer), str(paddle), seed, stopped)  # fmt: skip
+
+
+def _present(paddle, task, observer, shown, options):
+    """Show the two, one after the other; return the records, and what went wrong or None."""
+    logs = []
+    for which, value in zip(("first", "second"), shown, strict=True):
+        observer.ready(task, which)
+        logs.append(task.present(paddle, value, **options))
+        if logs[-1].fault is not None:
+            return logs, f"the {which} presentation of a trial, {task.parameter} = {value:.4g} {task.unit}: {logs[-1].fault}"
+    return logs, None
+
+
+@contextmanager
+def _table(keep, task):
+    """Give what takes a trial: a row of the file, if there is one, on the disk at once."""
+    if keep is None:
+        yield lambda trial: None
+        return
+    with open(keep, "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(_header(task.unit))
+
+        def row(trial):
+            table.writerow(_row(trial))
+            file.flush()
+
+        yield row
+
+
+def _header(unit):
+    return ["level [1]", f"first [{unit}]", f"second [{unit}]", "answer", "right"]
+
+
+def _row(trial):
+    return [trial.level, trial.first, trial.second, trial.answer, int(trial.right)]

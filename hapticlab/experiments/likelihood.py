@@ -1,0 +1,116 @@
+"""Maximum likelihood of right answers at several levels, for many sets of answers at once."""
+
+import math
+
+import numpy as np
+
+from .curves import Psychometric, rise
+
+#: lapses looked for, at most: the bound of Wichmann and Hill, who show that a fit without lapses is biased
+MOST_LAPSES = 0.06
+#: slopes looked for
+SLOPES = (0.2, 20.0)
+#: probabilities nearer to 0 and 1 than this are rounding, not certainty
+CERTAIN = 1e-9
+STEPS = 200
+
+
+class Likelihood:
+    """Likelihood of counts at these levels, over place, log slope and, where it is fitted, lapse.
+
+    Parameters
+    ----------
+    levels, trials : array, shape (N,)
+    shape : {"d_prime", "weibull", "normal"}
+    guess, lapse, slope : float or None
+        None: a guess as large as the lapse; a lapse and a slope that are fitted.
+    """
+
+    def __init__(self, levels, trials, shape, guess, lapse, slope=None):
+        self.levels, self.trials, self.shape, self.guess, self.lapse = levels, trials, shape, guess, lapse
+        if shape == "normal":
+            width = np.ptp(levels)
+            places, slopes = (levels.min() - width, levels.max() + width), (0.2 / width, 50 / width)
+        else:
+            felt = levels[levels > 0]
+            places, slopes = (math.log(felt.min() / 5), math.log(felt.max() * 5)), SLOPES
+        slopes = slopes if slope is None else (slope, slope)
+        bounds = [places, tuple(math.log(s) for s in slopes)] + ([(0.0, MOST_LAPSES)] if lapse is None else [])
+        self.low, self.high = np.array(bounds).T
+
+    def chance(self, q):
+        """Return P and its derivatives at parameters q, shapes (..., N) and (..., N, parameters)."""
+        F, *slopes = rise(self.shape, self.levels, q[..., :1], q[..., 1:2])
+        lapse = q[..., 2:3] if self.lapse is None else self.lapse
+        guess = lapse if self.guess is None else self.guess
+        steps = [(1 - guess - lapse) * s for s in slopes]
+        if self.lapse is None:
+            steps.append(1 - 2 * F if self.guess is None else -F)
+        return np.clip(guess + (1 - guess - lapse) * F, CERTAIN, 1 - CERTAIN), np.stack(steps, -1)
+
+    def loss(self, q, right):
+        """Return minus the log likelihood, its gradient and Fisher's information, each with one row a set of answers."""
+        P, dP = self.chance(q)
+        wrong = self.trials - right
+        pull = right / P - wrong / (1 - P)
+        information = np.einsum("...n,...ni,...nj->...ij", self.trials / (P * (1 - P)), dP, dP)
+        loss = -(right * np.log(P) + wrong * np.log1p(-P)).sum(-1)
+        return loss, -np.einsum("...n,...ni->...i", pull, dP), information
+
+    def saturated(self, right):
+        """Return minus the log likelihood of a free proportion at each level."""
+        part = right / self.trials
+        with np.errstate(divide="ignore", invalid="ignore"):
+            terms = right * np.log(part), (self.trials - right) * np.log1p(-part)
+        return -sum(np.nan_to_num(a, nan=0.0).sum(-1) for a in terms)
+
+    def most_likely(self, right, start):
+        """Climb by Fisher's scoring, damped as Levenberg and Marquardt do, inside the bounds.
+
+        Parameters
+        ----------
+        right : array, shape (sets, N)
+        start : array, shape (sets, parameters)
+
+        Returns
+        -------
+        array, shape (sets, parameters), and the losses
+        """
+        q = np.clip(start, self.low, self.high)
+        damping = np.full(len(q), 1e-3)
+        loss, gradient, information = self.loss(q, right)
+        for _ in range(STEPS):
+            held = ((q <= self.low) & (gradient > 0)) | ((q >= self.high) & (gradient < 0))
+            moved = np.clip(q + _step(gradient, information, damping, held), self.low, self.high)
+            its_loss, its_gradient, its_information = self.loss(moved, right)
+            better = its_loss < loss
+            small = np.abs(moved - q).max(-1) < 1e-9
+            q[better], loss[better], gradient[better] = moved[better], its_loss[better], its_gradient[better]
+            information[better] = its_information[better]
+            damping = np.where(better, damping / 5, damping * 5)
+            if (small | (damping > 1e9)).all():
+                break
+        return q, loss
+
+    def starts(self):
+        """Return parameters all over the bounds, one row each."""
+        inside = [np.linspace(low, high, 7)[1:-1:2] for low, high in zip(self.low[:2], self.high[:2], strict=True)]
+        inside += [[0.01]] if self.lapse is None else []
+        return np.array(np.meshgrid(*inside)).reshape(len(inside), -1).T
+
+    def curve(self, q):
+        """Return the psychometric function of parameters q."""
+        lapse = float(q[2]) if self.lapse is None else self.lapse
+        threshold = float(q[0]) if self.shape == "normal" else math.exp(q[0])
+        return Psychometric(threshold, math.exp(q[1]), lapse if self.guess is None else self.guess, lapse, self.shape)
+
+
+def _step(gradient, information, damping, held):
+    """Return the damped step of each set; a parameter held by its bound stays."""
+    diagonal = np.einsum("...ii->...i", information)
+    matrix = information + (damping[:, None] * diagonal + 1e-12 * diagonal.max(-1, keepdims=True) + 1e-300)[
+        :, :, None
+    ] * np.eye(gradient.shape[-1])
+    free = ~held
+    matrix = np.where(free[:, :, None] & free[:, None, :], matrix, np.eye(gradient.shape[-1]))
+    return np.linalg.solve(matrix, np.where(free, -gradient, 0.0)[..., None])[..., 0]

@@ -1,0 +1,129 @@
+"""The psi method: each trial asks where the answer is expected to tell most of threshold and slope."""
+
+import numpy as np
+
+from ..errors import AnalysisError
+from .curves import rise
+
+
+class Psi:
+    """Bayesian adaptive estimation of threshold and slope; L. L. Kontsevich and C. W. Tyler, *Vision Res.* 39 (1999) 2729.
+
+    A probability of every threshold and slope on a grid is kept; the next level is the one whose answer is expected to
+    leave the least entropy.
+
+    Parameters
+    ----------
+    low, high : float
+        Levels that may be asked, and thresholds that are thought possible, equally likely in their logarithm.
+    levels, thresholds : int
+        Points between them.
+    slopes : sequence of float
+        Slopes that are thought possible, equally likely; one of them fixes it.
+    lapse : float
+        Taken as known; a small one keeps a single slip from ruling out the truth.
+    guess : float
+    shape : {"d_prime", "weibull"}
+    trials : int
+        After which it ends.
+
+    Attributes
+    ----------
+    level : float
+        What to ask next.
+    belief : array, shape (thresholds, slopes)
+        Probabilities.
+
+    Examples
+    --------
+    >>> psi = Psi(low=0.02, high=1.0, trials=3)
+    >>> for right in (True, True, False):
+    ...     psi.answer(right)
+    >>> psi.done, 0.02 < psi.estimate() < 1
+    (True, True)
+    """
+
+    def __init__(self, *, low, high, levels=40, thresholds=60, slopes=(0.5, 0.71, 1.0, 1.41, 2.0, 2.83), lapse=0.02,
+                 guess=0.5, shape="d_prime", trials=60):  # fmt: skip
+        if not (0 < low < high and trials >= 1 and levels >= 2 and thresholds >= 2 and all(s > 0 for s in slopes)):
+            raise AnalysisError(
+                f"low = {low:g}, high = {high:g}, trials = {trials}, {levels} levels, {thresholds} thresholds; psi needs "
+                "0 < low < high, positive slopes, a trial and two points of each"
+            )
+        if shape not in ("d_prime", "weibull"):
+            raise AnalysisError(f"shape = {shape!r}; psi needs 'd_prime' or 'weibull', whose levels are positive")
+        self.levels, self.thresholds = np.geomspace(low, high, levels), np.geomspace(low, high, thresholds)
+        self.slopes, self.trials, self.told = np.array(slopes, float), int(trials), 0
+        place, log_slope = np.log(self.thresholds)[:, None, None], np.log(self.slopes)[None, :, None]
+        self._right = guess + (1 - guess - lapse) * rise(shape, self.levels, place, log_slope)[0]
+        self.belief = np.full((thresholds, len(self.slopes)), 1.0 / (thresholds * len(self.slopes)))
+
+    @property
+    def done(self):
+        return self.told >= self.trials
+
+    @property
+    def level(self):
+        return float(self.levels[np.argmin(self.expected_entropy())])
+
+    def expected_entropy(self):
+        """Return the entropy [nat] that an answer at each level is expected to leave."""
+        total = np.zeros(len(self.levels))
+        for chance in (self._right, 1 - self._right):
+            joint = self.belief[:, :, None] * chance
+            some = joint.sum((0, 1))
+            total += some * np.log(some) - np.where(joint > 0, joint * np.log(np.maximum(joint, 1e-300)), 0.0).sum((0, 1))
+        return total
+
+    def answer(self, right):
+        """Take an answer at :attr:`level`."""
+        chance = self._right[:, :, np.argmin(self.expected_entropy())]
+        belief = self.belief * (chance if right else 1 - chance)
+        self.belief, self.told = belief / belief.sum(), self.told + 1
+
+    def estimate(self):
+        """Return the threshold: the mean of its logarithm over what is believed."""
+        return float(np.exp(self.belief.sum(1) @ np.log(self.thresholds)))
+
+    def interval(self, confidence=0.95):
+        """Return thresholds between which this part of the belief lies, as much of the rest on either side."""
+        mass = np.cumsum(self.belief.sum(1)) - self.belief.sum(1) / 2
+        tail = (1 - confidence) / 2
+        low, high = np.interp([tail, 1 - tail], mass, np.log(self.thresholds))
+        return float(np.exp(low)), float(np.exp(high))
+
+    def __str__(self):
+        return f"psi, {self.trials} trials at levels from {self.levels[0]:.3g} to {self.levels[-1]:.3g}"
+
+
+class ConstantLevels:
+    """Method of constant stimuli: each level so many times, in an order drawn from the seed.
+
+    Examples
+    --------
+    >>> asked = ConstantLevels([0.1, 0.2], repeats=2, seed=1)
+    >>> sorted(asked.order)
+    [0.1, 0.1, 0.2, 0.2]
+    """
+
+    def __init__(self, levels, *, repeats, seed=0):
+        if not (len(levels) and repeats >= 1):
+            raise AnalysisError(f"{len(levels)} levels, {repeats} times; needs one of each at least")
+        levels = [float(a) for a in levels]
+        self.order = np.random.default_rng(seed).permutation(np.repeat(levels, repeats)).tolist()
+        self.told, self._words = 0, f"{len(levels)} levels, {repeats} times each"
+
+    @property
+    def done(self):
+        return self.told >= len(self.order)
+
+    @property
+    def level(self):
+        return self.order[self.told]
+
+    def answer(self, right):
+        """Take an answer; it changes nothing of what comes next."""
+        self.told += 1
+
+    def __str__(self):
+        return self._words

@@ -1,0 +1,175 @@
+"""Fit a psychometric function by maximum likelihood, with its lapses, its intervals and whether it fits at all."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..drawing import FRAME, house_style, new_figure, style_of
+from ..errors import AnalysisError
+from .curves import SHAPES, Psychometric
+from .likelihood import Likelihood
+
+
+@dataclass(frozen=True, eq=False)
+class PsychometricFit:
+    """A psychometric function and what is known of it.
+
+    Attributes
+    ----------
+    curve : Psychometric
+    levels, right, trials : array
+        What was fitted: at each level so many right answers of so many trials.
+    interval : dict of str to (float, float)
+        Of threshold and slope, by parametric bootstrap.
+    confidence : float
+    deviance : float
+        2 log of the likelihood ratio between a free proportion at each level and the curve.
+    p_deviance : float
+        Part of bootstrap samples with a larger deviance; below 0.05 the curve does not fit, above 0.95 it fits too well.
+        With single trials at most levels, as an adaptive procedure leaves them, it says little.
+    notes : tuple of str
+    """
+
+    curve: Psychometric
+    levels: np.ndarray
+    right: np.ndarray
+    trials: np.ndarray
+    interval: dict
+    confidence: float
+    deviance: float
+    p_deviance: float
+    notes: tuple = ()
+
+    def __str__(self):
+        shown = []
+        for name in ("threshold", "slope"):
+            low, high = self.interval[name]
+            shown.append(f"{name} {getattr(self.curve, name):.4g} ({low:.4g} to {high:.4g})")
+        head = f"{self.curve.shape} curve, {int(self.trials.sum())} trials at {len(self.levels)} levels: {', '.join(shown)}"
+        tail = f"  lapses {self.curve.lapse:.2g}; deviance {self.deviance:.3g}, p = {self.p_deviance:.2f}"
+        return "\n".join([f"{head}; {100 * self.confidence:g} % intervals", tail, *(f"  {note}" for note in self.notes)])
+
+    def plot(self, unit="1"):
+        """Draw the proportions, larger where more trials stand behind them, the curve and the threshold's interval."""
+        with house_style():
+            figure = new_figure(height=4.0)
+            axes = figure.subplots()
+            if self.curve.shape == "normal":
+                span = np.linspace(self.levels.min(), self.levels.max(), 300)
+            else:
+                span = np.geomspace(self.levels[self.levels > 0].min() / 2, self.levels.max() * 1.2, 300)
+                axes.set_xscale("log")
+            axes.plot(span, self.curve(span), **style_of(0), label=f"{self.curve.shape} curve")
+            size = 20 + 160 * self.trials / self.trials.max()
+            axes.scatter(self.levels, self.right / self.trials, size, facecolors="none", edgecolors="#1f6fb4",
+                         label=f"answers, {int(self.trials.max())} trials in the largest circle")  # fmt: skip
+            at, (low, high) = self.curve.threshold, self.interval["threshold"]
+            axes.errorbar([at], [float(self.curve(at))], xerr=[[max(at - low, 0)], [max(high - at, 0)]], fmt="s", capsize=4,
+                          color="#c1440e", label=f"threshold, {100 * self.confidence:g} % interval")  # fmt: skip
+            axes.set(xlabel=f"level [{unit}]", ylabel="part of right answers", ylim=(-0.03, 1.03))
+            axes.legend(loc="lower right", **FRAME)
+        return figure
+
+
+def psychometric(
+    levels, right, trials=None, *, shape="d_prime", guess=0.5, lapse=None, slope=None, bootstrap=400, confidence=0.95, seed=0
+):
+    """Fit a psychometric function by maximum likelihood to answers at several levels.
+
+    F. A. Wichmann and N. J. Hill, *Perception & Psychophysics* 63 (2001) 1293 and 1314: the lapses are fitted beside
+    threshold and slope, the intervals and the goodness of fit come from samples drawn of the fitted curve.
+
+    Parameters
+    ----------
+    levels : array
+        Of any order; equal levels are put together. > 0 or 0 unless ``shape="normal"``.
+    right : array
+        Right answers at each level; 0 or 1 for single trials.
+    trials : array, optional
+        Trials behind each entry; one each if left out.
+    shape : {"d_prime", "weibull", "normal"}
+    guess : float or None
+        Part right by guessing, 1/2 for two alternatives; None: as many as lapses, for "which one is stronger".
+    lapse : float, optional
+        Fixed; fitted in 0 ... 0.06 if left out.
+    slope : float, optional
+        Fixed; fitted if left out. 1 for ``d_prime`` is an observer whose noise does not depend on the level; few trials
+        tell a threshold much better with it than without.
+    bootstrap : int
+        Samples.
+    confidence : float
+    seed : int
+
+    Returns
+    -------
+    PsychometricFit
+
+    Raises
+    ------
+    AnalysisError
+        For counts that are none, and answers that say nothing of a threshold.
+
+    Examples
+    --------
+    >>> found = psychometric([0.05, 0.1, 0.2, 0.4], [22, 27, 32, 39], [40] * 4, lapse=0.0, bootstrap=100)
+    >>> round(found.curve.threshold, 2)
+    0.17
+    """
+    levels, right, trials = _counts(levels, right, trials)
+    if shape not in SHAPES:
+        raise AnalysisError(f"shape = {shape!r}; needs one of {', '.join(SHAPES)}")
+    if lapse is not None and not 0 <= lapse < 0.5:
+        raise AnalysisError(f"lapse = {lapse:g}; needs 0 <= lapse < 0.5, or None to fit it")
+    if slope is not None and not 0 < slope < math.inf:
+        raise AnalysisError(f"slope = {slope:g}; needs slope > 0, or None to fit it")
+    _check_telling(levels, right, trials, shape)
+    fitting = Likelihood(levels, trials, shape, guess, lapse, slope)
+    starts = fitting.starts()
+    climbed, losses = fitting.most_likely(np.tile(right, (len(starts), 1)), starts)
+    found, curve = climbed[losses.argmin()], fitting.curve(climbed[losses.argmin()])
+    drawn = np.random.default_rng(seed).binomial(trials.astype(int), curve(levels), (bootstrap, len(levels)))
+    again, its_losses = fitting.most_likely(drawn, np.tile(found, (bootstrap, 1)))
+    deviance = 2 * float(losses.min() - fitting.saturated(right))
+    p = float(np.mean(2 * (its_losses - fitting.saturated(drawn)) >= deviance))
+    curves, tail = [fitting.curve(q) for q in again], (1 - confidence) / 2
+    interval = {
+        name: tuple(float(a) for a in np.quantile([getattr(c, name) for c in curves], [tail, 1 - tail]))
+        for name in ("threshold", "slope")
+    }
+    notes = _left_open(found, fitting)
+    return PsychometricFit(curve, levels, right, trials, interval, confidence, deviance, p, notes)
+
+
+def _left_open(q, fitting):
+    """Return what the answers leave open."""
+    near = np.minimum(q - fitting.low, fitting.high - q) < 1e-6 * (fitting.high - fitting.low)  # never of what is fixed
+    return tuple(
+        f"the {name} is at the end of what was looked for: these levels do not tell it"
+        for name, at_end in zip(("threshold", "slope"), near, strict=False)
+        if at_end
+    )
+
+
+def _counts(levels, right, trials):
+    levels, right = np.atleast_1d(np.asarray(levels, float)), np.atleast_1d(np.asarray(right, float))
+    trials = np.ones_like(levels) if trials is None else np.atleast_1d(np.asarray(trials, float))
+    if not (levels.shape == right.shape == trials.shape and levels.ndim == 1 and len(levels)):
+        raise AnalysisError(
+            f"levels, right and trials have shapes {levels.shape}, {right.shape}, {trials.shape}; needs one entry a level in each"
+        )
+    whole = (right == np.round(right)).all() and (trials == np.round(trials)).all()
+    if not (np.isfinite(levels).all() and whole and (trials > 0).all() and (right >= 0).all() and (right <= trials).all()):
+        raise AnalysisError("right and trials count answers: needs whole numbers, 0 <= right <= trials, and finite levels")
+    at, place = np.unique(levels, return_inverse=True)
+    return at, np.bincount(place, right), np.bincount(place, trials)
+
+
+def _check_telling(levels, right, trials, shape):
+    if shape != "normal" and levels.min() < 0:
+        raise AnalysisError(f"a level of {levels.min():g}; {shape} needs levels >= 0, or shape='normal' for both signs")
+    if len(levels) < 2 or right.sum() in (0, trials.sum()):
+        raise AnalysisError(
+            f"{int(right.sum())} of {int(trials.sum())} answers right at {len(levels)} level(s); a threshold needs right and "
+            "wrong answers at two levels at least: ask at more levels"
+        )

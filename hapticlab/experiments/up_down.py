@@ -1,0 +1,147 @@
+"""Adaptive up-down staircases: harder after right answers, easier after a wrong one."""
+
+import math
+
+import numpy as np
+
+from ..errors import AnalysisError
+
+
+class UpDown:
+    """Transformed and weighted up-down staircase: after ``down`` right answers in a row a step down, after a wrong one up.
+
+    It goes towards the level where ``((weight/(1 + weight))^(1/down)`` of the answers are right: 71 % for two down, one
+    up (H. Levitt, *J. Acoust. Soc. Am.* 49 (1971) 467) and 75 % for one down with steps up three times as long (C.
+    Kaernbach, *Perception & Psychophysics* 49 (1991) 227). That is exact for small steps; :meth:`settles` says where a
+    staircase of these steps really ends up (M. A. Garcia-Perez, *Vision Research* 38 (1998) 1861).
+
+    Parameters
+    ----------
+    start : float
+        First level, > 0.
+    factor : float
+        A step down divides the level by this, > 1.
+    down : int
+        Right answers in a row that a step down takes.
+    weight : float
+        A step up multiplies the level by factor^weight.
+    reversals : int
+        Turning points after which it ends.
+    skip : int
+        First turning points that the estimate leaves out; until then steps are twice as long.
+    low, high : float
+        Levels stay between these.
+
+    Attributes
+    ----------
+    level : float
+        What to ask next.
+    done : bool
+
+    Examples
+    --------
+    >>> stairs = UpDown(start=0.4, factor=2, skip=0)
+    >>> for right in (True, True, True, True, False):
+    ...     stairs.answer(right)
+    >>> stairs.level, stairs.turned
+    (0.2, [0.1])
+    >>> round(UpDown(start=0.4).target, 4)
+    0.7071
+    """
+
+    def __init__(self, *, start, factor=1.25, down=2, weight=1.0, reversals=12, skip=4, low=1e-3, high=2.0):
+        if not (factor > 1 and weight > 0 and low < high and low <= start <= high and low > 0):
+            raise AnalysisError(
+                f"start = {start:g}, factor = {factor:g}, weight = {weight:g}, low = {low:g}, high = {high:g}; a staircase "
+                "needs 0 < low <= start <= high, factor > 1 and weight > 0"
+            )
+        if not (int(down) == down and down >= 1 and 0 <= skip < reversals):
+            raise AnalysisError(
+                f"down = {down}, reversals = {reversals}, skip = {skip}; needs down = 1, 2, ... and 0 <= skip < reversals"
+            )
+        self.start, self.factor, self.down, self.weight = float(start), float(factor), int(down), float(weight)
+        self.reversals, self.skip, self.low, self.high = int(reversals), int(skip), float(low), float(high)
+        self.level, self.turned, self._row, self._heading = float(start), [], 0, 0
+
+    @property
+    def target(self):
+        """The part of right answers it goes towards."""
+        return (self.weight / (1 + self.weight)) ** (1 / self.down)
+
+    @property
+    def done(self):
+        return len(self.turned) >= self.reversals
+
+    def answer(self, right):
+        """Take an answer at this level and set the next."""
+        self._row = self._row + 1 if right else 0
+        if right and self._row < self.down:
+            return
+        self._row, heading = 0, -1 if right else 1
+        if self._heading and heading != self._heading:
+            self.turned.append(self.level)
+        self._heading = heading
+        step = (self.weight if heading > 0 else 1.0) * (2 if len(self.turned) < self.skip else 1)
+        self.level = min(max(self.level * self.factor ** (heading * step), self.low), self.high)
+
+    def estimate(self):
+        """Return the geometric mean of the levels at the turning points, an even number of them, after the first ones."""
+        used = self.turned[self.skip :]
+        used = used[len(used) % 2 :]
+        if not used:
+            raise AnalysisError(f"{len(self.turned)} turning points; the estimate needs {self.skip + 2}: ask on")
+        return math.exp(float(np.mean(np.log(used))))
+
+    def settles(self, curve, per_step=1, most=400):
+        """Return the level a long staircase turns about for an observer of this psychometric function.
+
+        The staircase is a Markov chain over levels and right answers in a row; this is the geometric mean of the levels
+        at which its stationary run turns, exact where ``weight`` is a multiple of 1/per_step.
+
+        Parameters
+        ----------
+        curve : Psychometric
+        per_step : int
+            Lattice points of the chain in one step down.
+        most : int
+            Lattice points at most.
+        """
+        up = self.weight * per_step
+        if abs(up - round(up)) > 1e-9:
+            raise AnalysisError(f"weight = {self.weight:g} is no multiple of 1/{per_step}; give per_step")
+        grid = math.log(self.factor) / per_step
+        below = min(int(math.log(self.start / self.low) / grid), most // 2)
+        above = min(int(math.log(self.high / self.start) / grid), most // 2)
+        levels = self.start * np.exp(grid * np.arange(-below, above + 1))
+        return _turning_mean(levels, curve(levels), self.down, per_step, round(up))
+
+    def __str__(self):
+        return (
+            f"{self.down} down, 1 up from {self.start:g}: steps of {self.factor:g} down and {self.factor**self.weight:.4g} up, "
+            f"{self.reversals} turning points, towards {100 * self.target:.1f} % right"
+        )
+
+
+def _turning_mean(levels, P, down, step_down, step_up):
+    """Return the geometric mean level at turning points of the stationary chain over (heading, row, level)."""
+    N = len(levels)
+    at = np.arange(N)
+    lower, upper = np.maximum(at - step_down, 0), np.minimum(at + step_up, N - 1)
+
+    def state(heading, row, place):
+        return (heading * down + row) * N + place
+
+    move, turns = np.zeros((2 * down * N, 2 * down * N)), np.zeros(2 * down * N)
+    for heading in (0, 1):  # the last step went down, up
+        for row in range(down):
+            here = state(heading, row, at)
+            move[here, state(1, 0, upper)] += 1 - P
+            if row + 1 < down:
+                move[here, state(heading, row + 1, at)] += P
+            else:
+                move[here, state(0, 0, lower)] += P
+            turns[here] += (1 - P) if heading == 0 else P * (row + 1 == down)
+    balance = np.vstack([move.T - np.eye(len(move)), np.ones(len(move))])
+    stationary = np.linalg.lstsq(balance, np.r_[np.zeros(len(move)), 1.0], rcond=None)[0]
+    weight = (stationary * turns).reshape(-1, N).sum(0)
+    return float(np.exp(weight @ np.log(levels) / weight.sum()))
