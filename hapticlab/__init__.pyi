@@ -48,6 +48,15 @@ from .errors import (
     SignalError,
     UnitsError,
 )
+from .experiments.curves import Psychometric
+from .experiments.forced_choice import forced_choice
+from .experiments.observers import PersonObserver, SimulatedObserver
+from .experiments.psi import ConstantLevels, Psi
+from .experiments.psychometric import psychometric
+from .experiments.reaching import Load, follow, reach
+from .experiments.shared_control import assistance
+from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
+from .experiments.up_down import UpDown
 from .limits.passivity import passivity_limit
 from .limits.port import port_damping
 from .limits.stability import stability_limit
@@ -57,7 +66,9 @@ from .scene.contact import Contact, friction
 from .scene.contact_laws import impulse, micro_impulse, rigid
 from .scene.curves import Curve, track
 from .scene.device_image import device_image
+from .scene.estimators import VelocityEstimate, backward_velocity, filtered_velocity, kalman_velocity, window_velocity
 from .scene.felt import felt_impulse, pulse_time
+from .scene.fixtures import forbidden_region, guidance, tremor_filter
 from .scene.force_laws import hunt_crossley, penalty
 from .scene.from_mechanics import from_mechanics
 from .scene.gaps import closest, gap
@@ -76,6 +87,7 @@ __all__ = [
     "Box",
     "Capsule",
     "Circle",
+    "ConstantLevels",
     "Contact",
     "Curve",
     "EngineMissingError",
@@ -84,6 +96,7 @@ __all__ = [
     "HandleMotion",
     "HapticlabError",
     "LinkError",
+    "Load",
     "MassError",
     "Mechanics",
     "MinimumJerk",
@@ -91,22 +104,31 @@ __all__ = [
     "PaddleError",
     "PaddleProfile",
     "ParameterError",
+    "PersonObserver",
     "Polygon",
     "PortError",
     "ProgramError",
     "ProgramLimitError",
+    "Psi",
+    "Psychometric",
     "Reacting",
     "Scene",
     "SceneError",
     "Segment",
     "SerialPaddle",
     "SignalError",
+    "SimulatedObserver",
     "SimulatedPaddle",
     "T",
+    "Task",
     "Taylor",
     "Telemetry",
     "Tremor",
     "UnitsError",
+    "UpDown",
+    "VelocityEstimate",
+    "assistance",
+    "backward_velocity",
     "balance",
     "calibrate",
     "chatter",
@@ -115,24 +137,31 @@ __all__ = [
     "connect",
     "contacts_between",
     "coordinate",
+    "damping_task",
     "delay",
     "device_image",
     "doctor",
     "energy",
     "energy_books",
     "felt_impulse",
+    "filtered_velocity",
+    "follow",
+    "forbidden_region",
     "force_error",
     "force_filter",
+    "forced_choice",
     "friction",
     "from_mechanics",
     "gap",
     "ground",
+    "guidance",
     "hand",
     "hand_presets",
     "handle_motions",
     "hunt_crossley",
     "impedance",
     "impulse",
+    "kalman_velocity",
     "lagrange",
     "library",
     "methods",
@@ -150,7 +179,9 @@ __all__ = [
     "profile",
     "proxy_curve",
     "proxy_wall",
+    "psychometric",
     "pulse_time",
+    "reach",
     "reduction",
     "reference",
     "replacement",
@@ -161,14 +192,18 @@ __all__ = [
     "signal",
     "stability_limit",
     "step_limit",
+    "stiffness_task",
     "sweep",
     "t",
+    "texture_task",
     "track",
     "tradeoff",
+    "tremor_filter",
     "v",
     "virtual_coupler",
     "virtual_damper",
     "wall",
     "when",
+    "window_velocity",
     "x",
 ]
