@@ -3,6 +3,7 @@
 import inspect
 
 from ..errors import HapticlabError, ProgramLimitError
+from ..scene.checks import applied, is_model, written_in
 from ..scene.laws import wall
 from ..scene.scene import Scene
 from ..scene.taps import TAPS
@@ -157,6 +158,8 @@ def _cheaper(scene, options):
             yield "with hold='zoh'", scene, {**options, "hold": "zoh"}
     for law in _cheaper_laws(scene):
         yield f"with law={law!r}", wall(law)(**scene.values), options
+    for words, other in _cheaper_velocities(scene):
+        yield words, other, options
 
 
 def _cheaper_laws(scene):
@@ -164,6 +167,25 @@ def _cheaper_laws(scene):
     for law, taps in TAPS.items():
         if scene.name == f"{law} wall" and scene.force == wall(law).force:
             yield from sorted((o for o in TAPS if len(TAPS[o]) < len(taps)), key=lambda o: -len(TAPS[o]))
+
+
+def _cheaper_velocities(scene):
+    """Yield (words, scene) with estimates of less work, where the scene holds one of hapticlab/scene/estimators.py."""
+    defined = {type(e.lhs): e for e in scene.eom if not is_model(e) and getattr(type(e.lhs), "role", None) == "signal"}
+    for kind in [kind for kind in defined if hasattr(kind, "instead")]:
+        own, waiting = set(), {kind}
+        while waiting:  # an estimate's equations speak of the handle and of its own signals
+            own |= waiting
+            waiting = {type(y) for k in waiting for y in applied([defined[k].rhs], "signal")} - own
+        rest = [e for e in scene.eom if is_model(e) or type(e.lhs) not in own]
+        for other in kind.instead:
+            change = {defined[kind].lhs: other.velocity}
+            changed = scene.force.xreplace(change), [e if is_model(e) else e.xreplace(change) for e in rest]
+            watch = {name: expr.xreplace(change) for name, expr in scene.watch.items()}
+            if not own & {type(y) for y in applied([changed[0], *written_in(changed[1]), *watch.values()], "signal")}:
+                values = {k: v for k, v in scene.values.items() if k in scene.parameters}
+                new = Scene(changed[0], (*changed[1], *other.eom), watch, name=scene.name)
+                yield f"with velocity={other.name!r}", new(**{k: v for k, v in values.items() if k in new.parameters})
 
 
 def table(scenes, board="uno", periods=(1e-3, 2e-3)):

@@ -5,6 +5,7 @@ import math
 import sympy as sp
 
 from ..errors import SceneError
+from .estimators import VelocityEstimate
 from .scene import Scene
 from .symbols import T, delay, n, parameters, t, v, when, x
 from .taps import LEAD, TAPS
@@ -12,7 +13,7 @@ from .taps import LEAD, TAPS
 UNILATERAL = ("gate", "clip", None)
 
 
-def wall(law="zoh", unilateral="gate", clamp=False):
+def wall(law="zoh", unilateral="gate", clamp=False, velocity=None):
     """Virtual wall: a spring K that pushes back beyond x_o, and a virtual damper B beside it.
 
     ======================  =======  ====================================================
@@ -25,10 +26,11 @@ def wall(law="zoh", unilateral="gate", clamp=False):
     ``ellis``               (23.7)   k (2 p(n) - 1.5 p(n-1) + 0.5 p(n-2))
     ======================  =======  ====================================================
 
-    With an encoder, or on a board, v(n) is estimated from positions, and ``half_sample`` is ``backward_difference``.
+    With an encoder, or on a board, v(n) is estimated from positions, and ``half_sample`` is ``backward_difference``
+    unless ``velocity`` names another estimate. Eq. (23.2) with x(n+1) = x(n) + T v(n) is Eq. (23.3) with the same v.
 
-    The law predicts for the spring alone. The damper is always B (p(n) - p(n-1))/T, the backward difference of the
-    sensed position, whatever the law.
+    The law predicts for the spring alone. The damper is B (p(n) - p(n-1))/T, the backward difference of the sensed
+    position, whatever the law, unless ``velocity`` names another estimate.
 
     Parameters
     ----------
@@ -40,6 +42,9 @@ def wall(law="zoh", unilateral="gate", clamp=False):
         bounds.
     clamp : bool
         Never pull: F is replaced by max(F, 0).
+    velocity : VelocityEstimate, optional
+        What damper and ``half_sample`` take for v(n): :func:`~hapticlab.scene.estimators.filtered_velocity` and the
+        others beside it. With ``"clip"`` it counts inside only.
 
     Returns
     -------
@@ -51,6 +56,8 @@ def wall(law="zoh", unilateral="gate", clamp=False):
     >>> import hapticlab as hl
     >>> hl.wall("ellis")(k=150, x_o="10 mm").values
     {'B': 0.0, 'x_o': 0.01, 'k': 150.0}
+    >>> hl.wall("half_sample", velocity=hl.filtered_velocity(tau="4 ms")).name
+    'half_sample wall, filtered difference'
     """
     if law not in TAPS:
         raise SceneError(f"law = {law!r}; needs one of {', '.join(TAPS)}")
@@ -63,16 +70,32 @@ def wall(law="zoh", unilateral="gate", clamp=False):
         depth = x(n - lag) - x_o
         return sp.Max(depth, 0) if unilateral == "clip" else depth
 
+    def inside(rate):
+        return when(x(n) >= x_o, rate) if unilateral == "clip" else rate
+
+    estimate = _checked(velocity)
     spring = k * sp.Add(*(sp.Rational(c) * p(lag) for lag, c in enumerate(TAPS[law])))
     if LEAD[law]:
-        inside = when(x(n) >= x_o, v(n)) if unilateral == "clip" else v(n)
-        spring = k * (p(0) + sp.Rational(LEAD[law]) * T * inside)
-    force = spring + B * (p(0) - p(1)) / T
+        spring = k * (p(0) + sp.Rational(LEAD[law]) * T * inside(estimate.velocity if estimate else v(n)))
+    force = spring + B * (inside(estimate.velocity) if estimate else (p(0) - p(1)) / T)
     if unilateral == "gate":
         force = when(x(n) >= x_o, force)
     if clamp:
         force = sp.Max(force, 0)
-    return Scene(force=force, name=f"{law} wall")
+    return _scene(force, f"{law} wall", estimate)
+
+
+def _checked(velocity):
+    if not (velocity is None or isinstance(velocity, VelocityEstimate)):
+        raise SceneError(
+            f"velocity = {velocity!r}; needs an estimate, as in velocity=hl.filtered_velocity(tau='4 ms'), or None"
+        )
+    return velocity
+
+
+def _scene(force, name, estimate):
+    """Return a scene that takes the equations of its velocity along."""
+    return Scene(force, estimate.eom, name=f"{name}, {estimate.name}") if estimate else Scene(force, name=name)
 
 
 def force_filter(scene):
@@ -101,11 +124,16 @@ def force_filter(scene):
     return Scene(filtered, scene.eom, scene.watch, scene.values, f"filtered {scene.name}")
 
 
-def virtual_damper():
+def virtual_damper(velocity=None):
     """Virtual damper: F = B v(n), B [N s/m] of either sign; a negative one compensates the device's own damping.
 
     v(n) is the paddle's velocity: the backward difference of its position on a board, exact in a simulated paddle
     without an encoder.
+
+    Parameters
+    ----------
+    velocity : VelocityEstimate, optional
+        What to take for v(n) instead, such as :func:`~hapticlab.scene.estimators.filtered_velocity`.
 
     Returns
     -------
@@ -118,7 +146,8 @@ def virtual_damper():
     {'B': -0.02}
     """
     B = parameters("B", units="N*s/m", ranges=(-math.inf, math.inf))
-    return Scene(force=B * v(n), name="virtual damper")
+    estimate = _checked(velocity)
+    return _scene(B * (estimate.velocity if estimate else v(n)), "virtual damper", estimate)
 
 
 def virtual_coupler(z, *, K, b):

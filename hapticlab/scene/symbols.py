@@ -112,7 +112,7 @@ def _restored(name, facts):
 copyreg.pickle(_SignalFunction, lambda made: (_restored, (made.name, dict(made._kwargs))))
 
 
-def signal(name, *, unit, initial=0):
+def signal(name, *, unit, initial=0, instead=()):
     """Declare a discrete-time signal y(n), to be defined by an equation ``Eq(y(n), ...)`` in a scene's ``eom``.
 
     Its right side may use y(n-1), y(n-2): filters, observers and estimators are difference equations.
@@ -124,6 +124,8 @@ def signal(name, *, unit, initial=0):
     unit : str
     initial : number, text with a unit, or expression
         The value of every sample before the first, a number in ``unit``.
+    instead : tuple of VelocityEstimate
+        What may stand in its place where a board has no time for it, dearest first; a refusal names what fits.
 
     Returns
     -------
@@ -139,6 +141,7 @@ def signal(name, *, unit, initial=0):
     check_name(name, "signal")
     dimension(unit)
     facts = {"unit": unit, "role": "signal", "initial": _start(initial, unit, f"initial of {name}")}
+    facts |= {"instead": tuple(instead)} if instead else {}
     return _restored(name, {"real": True, **facts})
 
 
