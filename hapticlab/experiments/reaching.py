@@ -1,0 +1,200 @@
+"""Reaching by anticipation and by feedback: what a hand can follow when it knows its load, and when it only looks.
+
+Section 23.3.3: an open loop needs a model of hand, handle and load; a closed one waits for a reaction time.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..device.hand import require
+from ..device.intents import Intent, MinimumJerk
+from ..device.reacting import REACTION, Reacting
+from ..drawing import house_style, new_figure, style_of
+from ..errors import PaddleError
+from ..records import Telemetry
+
+HOW = ("anticipatory", "feedback", "both")
+#: of the distance: so near, a reach has arrived
+ARRIVED = 0.05
+
+
+@dataclass(frozen=True, kw_only=True)
+class Load:
+    """What a person believes to move, beside their own hand: a mass [kg], a damper [N s/m] and a spring [N/m] from x = 0."""
+
+    m: float = 0.0
+    b: float = 0.0
+    k: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """How a reach went.
+
+    Attributes
+    ----------
+    how : {"anticipatory", "feedback", "both"}
+    log : Telemetry
+    wanted : array, shape (N,)
+        Where the handle was meant to be at the samples [m].
+    settled : float or None
+        After the beginning of the reach, from when on the handle stayed within 5 % of the distance [s].
+    overshoot : float
+        The largest way beyond the target, as a part of the distance.
+    error : float
+        Root mean square of x - wanted, over the whole record [m].
+    """
+
+    how: str
+    log: Telemetry
+    wanted: np.ndarray
+    settled: float | None
+    overshoot: float
+    error: float
+
+    def __str__(self):
+        there = "never stayed near the target" if self.settled is None else f"there after {self.settled:.3g} s"
+        return f"{self.how}: {there}, overshoot {100 * self.overshoot:.3g} %, rms error {1e3 * self.error:.3g} mm"
+
+    def plot(self):
+        """Draw handle and wanted path against time; return the figure."""
+        with house_style():
+            figure = new_figure(height=3.2)
+            axes = figure.subplots()
+            axes.plot(self.log.t, 1e3 * self.wanted, **style_of(5), label="meant")
+            axes.plot(self.log.t, 1e3 * handle(self.log), **style_of(0), label=f"handle, {self.how}")
+            axes.set(xlabel="time [s]", ylabel="handle position x [mm]")
+            axes.legend()
+        return figure
+
+
+def handle(log):
+    """Return where the handle was [m], also where an encoder hid it."""
+    return np.asarray(log.channels.get("x_true", log.x), float)
+
+
+def reach(paddle, scene, *, end, duration=0.4, begin=0.1, record=2.0, **how):
+    """Let the hand of a simulated paddle reach for a target, smoothly, from x = 0.
+
+    "anticipatory" sends the intent that would move hand and expected load along a path of minimum jerk, and looks at
+    nothing: exact where the expectation is right, too far where the suitcase was empty. "feedback" sees path and handle a
+    reaction time late and moves the intent by ``gain`` times their distance, per second. "both" does the first, and
+    corrects by the second.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+        With a hand that has k > 0; its intent is replaced.
+    scene : Scene or Program
+    end, duration, begin : float
+        Target [m], length [s] and start [s] of the reach.
+    record : float
+        Length of the record [s].
+    how : {"anticipatory", "feedback", "both"}
+    expects : Load, optional
+        What the person believes to move; by default the paddle alone, with nothing rendered.
+    gain : float, optional
+        [1/s]; by default 1/(e (reaction + 10 ms)), the fastest without overshoot for a handle that follows its intent at
+        once. Such a loop is unstable from about pi/(2 reaction) on, 8.5 1/s with the chapter's 180 ms.
+    reaction : float
+        [s]
+    **how
+        These four, and options of hapticlab.compile.
+
+    Returns
+    -------
+    Reach
+
+    Raises
+    ------
+    PaddleError
+        Without a hand that can hold the handle.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> from hapticlab.experiments.reaching import reach
+    >>> paddle = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.hand("grip"))
+    >>> free = hl.wall()(k=0, x_o=1)
+    >>> known = reach(paddle, free, end=0.02)
+    >>> round(known.settled, 3), known.error < 1e-6
+    (0.325, True)
+    >>> print(reach(paddle, free, end=0.02, how="feedback"))
+    feedback: there after 1.26 s, overshoot 0 %, rms error 8.03 mm
+    """
+    if end == 0:
+        raise PaddleError("end = 0 m; a reach goes from x = 0 to another place")
+    path = MinimumJerk(end=end, duration=duration, begin=begin)
+    log, wanted = follow(paddle, scene, path, record=record, **how)
+    x, distance = handle(log), abs(end)
+    near = abs(x - end) <= ARRIVED * distance
+    away = np.flatnonzero(~near)
+    settled = None if not near[-1] else max(float(log.t[away[-1]] + log.T - begin) if len(away) else 0.0, 0.0)
+    beyond = float(np.max((x - end) * math.copysign(1, end))) / distance
+    return Reach(how.get("how", HOW[0]), log, wanted, settled, max(beyond, 0.0), float(np.sqrt(np.mean((x - wanted) ** 2))))
+
+
+def follow(
+    paddle, scene, path, *, how="anticipatory", expects=None, gain=None, reaction=REACTION, record=2.0, **options
+):
+    """Let the hand of a simulated paddle follow a path; return (Telemetry, where the handle was meant to be [m]).
+
+    Parameters
+    ----------
+    path : object with ``at(t)`` that returns position [m], velocity [m/s], acceleration [m/s^2]
+        ``hl.MinimumJerk`` or an :class:`~hapticlab.analysis.motions.HandleMotion`. The others are those of :func:`reach`.
+    """
+    hand = paddle.hand
+    if hand is None or hand.k <= 0:
+        raise PaddleError("a hand reaches by its spring; give hl.SimulatedPaddle(..., hand=hl.hand('grip')) or hl.Hand(k=...)")
+    if how not in HOW:
+        raise PaddleError(f"how = {how!r}; needs one of {', '.join(HOW)}")
+    every = max(round(0.01 / paddle.T), 1) * paddle.T
+    gain = 1 / (math.e * (reaction + every)) if gain is None else require("gain", gain, "1/s", "feedback", low=0)
+    known = Load(m=paddle.m, b=paddle.b) if expects is None else expects
+    times = np.arange(paddle.ticks(record) + 1) * paddle.T
+    ahead = Anticipated(times, inverse_dynamics(hand, known, path, times))
+
+    def plan(t, seen, intent):
+        """Correct the intent by what was seen; for "both" against where the handle should have been then."""
+        then, now = (seen.t[-1], seen.x[-1]) if len(seen) else (0.0, float(path.at([0.0])[0][0]))
+        error = float(path.at([then])[0][0]) - now
+        moved = float(ahead(t) - ahead(t - every)) if how == "both" else 0.0
+        return intent + moved + gain * every * error
+
+    intent = ahead if how == "anticipatory" else Reacting(plan=plan, reaction=reaction, every=every)
+    log = replace(paddle, hand=replace(hand, intent=intent)).run(scene, duration=record, progress=False, **options)
+    return log, path.at(log.t)[0]
+
+
+@dataclass(frozen=True, eq=False)
+class Anticipated(Intent):
+    """An intent computed beforehand, at so many times, linear in between."""
+
+    times: np.ndarray
+    places: np.ndarray
+
+    def __call__(self, t):
+        return np.interp(t, self.times, self.places)
+
+
+def inverse_dynamics(hand, load, path, times):
+    """Return the intent [m] at the times [s] that moves hand and load along a path: k i + b i' = M a + (b + b_l) v + (k + k_l) x.
+
+    Where the hand has a damper the intent solves that first-order equation, its right side linear between times.
+    """
+    x, v, a = (np.asarray(part, float) for part in path.at(times))
+    force = (hand.m + load.m) * a + (hand.b + load.b) * v + (hand.k + load.k) * x
+    if hand.b == 0:
+        return force / hand.k
+    h = times[1] - times[0]
+    rate = hand.k / hand.b
+    decay = math.exp(-rate * h)
+    first = (1 - decay) / (rate * h)  # of the exact step under a linear right side
+    i, found = x[0], [x[0]]
+    for now, following in zip(force[:-1] / hand.k, force[1:] / hand.k, strict=True):
+        i = decay * i + (first - decay) * now + (1 - first) * following
+        found.append(i)
+    return np.array(found)

@@ -1,0 +1,136 @@
+"""Shared control: a hand follows a path, alone and with an automatic controller on the same handle; what each way costs."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..analysis.energy import energy
+from ..device.hand import require
+from ..device.intents import Tremor
+from ..drawing import house_style, new_figure, style_of
+from ..errors import PaddleError
+from ..records import Telemetry
+from ..scene.scene import Scene
+from ..scene.symbols import n, parameters, x
+from .reaching import Anticipated, Load, handle, inverse_dynamics
+
+#: what is in this band of a handle's motion is tremor [Hz]
+BAND = (6.0, 14.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Assisted:
+    """One hand on one path, with one scene.
+
+    Attributes
+    ----------
+    scene : str
+    error : float
+        Root mean square of the handle's distance from the path, tremor's band left out [m].
+    tremor : float
+        Root mean square of the handle's motion within the band [m].
+    peak_force : float
+        Largest force of the controller [N].
+    work : float
+        Taken from the hand by the controller, on balance [J]; negative where the controller did the work.
+    log : Telemetry
+    """
+
+    scene: str
+    error: float
+    tremor: float
+    peak_force: float
+    work: float
+    log: Telemetry
+
+
+@dataclass(frozen=True, eq=False)
+class Assistance:
+    """The same hand, tremor and path with several scenes; the first row is the hand alone."""
+
+    rows: tuple[Assisted, ...]
+    wanted: np.ndarray
+
+    def __str__(self):
+        lines = [f"{'':<24}{'error [mm]':>12}{'tremor [mm]':>13}{'peak force [N]':>16}{'work taken [mJ]':>17}"]
+        for row in self.rows:
+            lines.append(
+                f"{row.scene:<24}{1e3 * row.error:>12.4g}{1e3 * row.tremor:>13.4g}{row.peak_force:>16.4g}{1e3 * row.work:>17.4g}"
+            )
+        return "\n".join(lines)
+
+    def plot(self):
+        """Draw where the handle was with each scene, against time; return the figure."""
+        with house_style():
+            figure = new_figure(height=3.4)
+            axes = figure.subplots()
+            axes.plot(self.rows[0].log.t, 1e3 * self.wanted, color="#8a8a8a", linewidth=4, alpha=0.5, label="meant")
+            for number, row in enumerate(self.rows):
+                axes.plot(row.log.t, 1e3 * handle(row.log), **style_of(number), label=row.scene)
+            axes.set(xlabel="time [s]", ylabel="handle position x [mm]")
+            axes.legend()
+        return figure
+
+
+def assistance(paddle, scenes, path, *, tremor=None, record=4.0, band=BAND, **options):
+    """Let a hand follow a path alone and with every scene, its intent the same throughout, and measure.
+
+    The intent is the one that would move hand and bare handle along the path (:func:`~hapticlab.experiments.reaching.follow`),
+    with the tremor added: what the hand does is not adapted to what it feels.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+        With a hand that has k > 0.
+    scenes : sequence of Scene
+        Such as ``hl.tremor_filter()(B=20)``, ``hl.guidance(path)(...)``, ``hl.forbidden_region()(...)``.
+    path : object with ``at(t)``
+        As ``hl.MinimumJerk``.
+    tremor : callable, optional
+        Of times [s], in metres; 0.3 mm root mean square within 8 to 12 Hz by default.
+    record : float
+        [s]; a whole number of periods of neither path nor tremor is needed.
+    band : (low, high)
+        [Hz], what counts as tremor.
+    **options
+        Of hapticlab.compile.
+
+    Returns
+    -------
+    Assistance
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> from hapticlab.experiments.shared_control import assistance
+    >>> paddle = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.hand("pinch"))
+    >>> found = assistance(paddle, [hl.tremor_filter()(B=10)], hl.MinimumJerk(end=0.02, duration=1.0, begin=1.0))
+    >>> alone, filtered = found.rows
+    >>> bool(filtered.tremor < 0.4 * alone.tremor), bool(filtered.error < 0.0003)
+    (True, True)
+    """
+    if paddle.hand is None or paddle.hand.k <= 0:
+        raise PaddleError("shared control needs a hand that holds the handle; give hand=hl.hand('pinch') or hl.Hand(k=...)")
+    low, high = (require("band", edge, "Hz", "a tremor", above=0) for edge in band)
+    tremor = Tremor(rms=3e-4) if tremor is None else tremor
+    times = np.arange(paddle.ticks(record) + 1) * paddle.T
+    intent = Anticipated(times, inverse_dynamics(paddle.hand, Load(m=paddle.m, b=paddle.b), path, times)) + tremor
+    here = replace(paddle, hand=replace(paddle.hand, intent=intent))
+    wanted, rows = path.at(times[:-1])[0], []
+    for scene in (_alone(), *scenes):
+        log = here.run(scene, duration=record, progress=False, **options)
+        away = np.fft.rfft(handle(log) - wanted)
+        f = np.fft.rfftfreq(len(wanted), log.T)
+        shaking = np.fft.irfft(np.where((f >= low) & (f <= high), away, 0.0), len(wanted))
+        slow = np.fft.irfft(np.where(f < low, away, 0.0), len(wanted))
+        name = "hand alone" if not rows else log.scene
+        rows.append(Assisted(name, _rms(slow), _rms(shaking), float(abs(log.F).max()), float(energy(log).W[-1]), log))
+    return Assistance(tuple(rows), wanted)
+
+
+def _alone():
+    return Scene(force=parameters("k", units="N/m", values=0) * x(n), name="hand alone")
+
+
+def _rms(values):
+    return float(np.sqrt(np.mean(values**2)))

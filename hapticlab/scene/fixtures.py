@@ -1,0 +1,114 @@
+"""Shared control: forces of an automatic controller on the handle that a hand holds too; fixtures, guidance, tremor filter."""
+
+import math
+
+import sympy as sp
+
+from ..errors import SceneError
+from .amount import Amount
+from .parameters import T
+from .scene import Scene
+from .symbols import n, parameters, signal, t, v, when, x
+from .units import in_si
+
+
+def forbidden_region(law="zoh"):
+    """Virtual fixture that keeps a tool between two walls: a plain wall beyond x_high and one below x_low, Eq. (23.1).
+
+    Parameters
+    ----------
+    law : {"zoh", "backward_difference"}
+        Eq. (23.1) or (23.5), in both walls.
+
+    Returns
+    -------
+    Scene
+        With parameters k [N/m] >= 0, x_low and x_high [m] (0 unless bound); x_low <= x_high is yours to keep.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> log = hl.SimulatedPaddle(m=0.05, b=0.5, T=1e-3, hand=hl.Hand(k=50, b=2, intent=0.05)).run(
+    ...     hl.forbidden_region()(k=400, x_low="-10 mm", x_high="10 mm"), duration=1.0)
+    >>> round(1e3 * float(log.x[-1]), 3)       # the hand would be at 50 mm: 50 (50 - x) = 400 (x - 10)
+    14.444
+    """
+    taps = {"zoh": (1,), "backward_difference": (sp.Rational(3, 2), -sp.Rational(1, 2))}
+    if law not in taps:
+        raise SceneError(f"law = {law!r}; needs one of {', '.join(taps)}")
+    k, low, high = parameters("k x_low x_high", units="N/m m m", values=(None, 0, 0))
+    seen = sum(c * x(n - lag) for lag, c in enumerate(taps[law]))
+    force = when(x(n) >= high, k * (seen - high), when(x(n) <= low, k * (seen - low)))
+    return Scene(force=force, name=f"forbidden region, {law}")
+
+
+def guidance(path):
+    """Guidance fixture: a controller's spring and damper lead the handle along a path, and give way beyond F_max.
+
+    Hand and controller pull on one handle (shared control, Section 23.1.3): the hand feels where the controller means to
+    go, follows, or overrides it. F = clip(k (x - path) + b (v - path'), -F_max, F_max).
+
+    Parameters
+    ----------
+    path : expression [m]
+        Where the controller means to be, of ``hl.t`` and parameters with units, or one coordinate of an equation of motion.
+
+    Returns
+    -------
+    Scene
+        With parameters k [N/m] >= 0, b [N s/m] >= 0 and F_max [N] >= 0, which is the controller's whole authority.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import sympy as sp
+    >>> import hapticlab as hl
+    >>> A, w = hl.parameters("A w", units="m 1/s", values=(0.01, 2))
+    >>> guided = hl.guidance(A * sp.sin(w * hl.t))(k=200, b=1, F_max=1.5)
+    >>> log = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(guided, duration=3.0)   # nobody holds the handle
+    >>> bool(abs(log.x[2000:] - 0.01 * np.sin(2 * log.t[2000:])).max() < 1e-4)
+    True
+    """
+    k, b, most = parameters("k b F_max", units="N/m N*s/m N")
+    force = k * (x(n) - path) + b * (v(n) - sp.diff(path, t))
+    return Scene(force=sp.Max(sp.Min(force, most), -most), name="guidance")
+
+
+def tremor_filter(centre="10 Hz", bandwidth="6 Hz"):
+    """Tremor filter: a damper B that acts within a band of frequencies and leaves slow motion alone.
+
+    The velocity passes a digital band-pass of second order: gain 1 and no phase at the centre, half the power at the two
+    edges, exactly, nothing at rest and at Nyquist (the bilinear transform, both frequencies prewarped). F is B times what
+    passes, so that the hand's own tremor shrinks, not only its record.
+
+    Parameters
+    ----------
+    centre, bandwidth : number [Hz] or text with a unit
+        Physiological tremor has its peak between 6 and 12 Hz. The bandwidth, below 1/(2T), is that between the edges.
+
+    Returns
+    -------
+    Scene
+        With the parameter B [N s/m] >= 0, and the velocity that passed watched as ``passed``.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> scene = hl.tremor_filter()(B=20)
+    >>> round(hl.port_damping(scene, T=1e-3), 3)       # what it asks of the device, in N s/m
+    0.631
+    """
+    centre, bandwidth = (_frequency(name, given) for name, given in (("centre", centre), ("bandwidth", bandwidth)))
+    B = parameters("B", units="N*s/m")
+    band = signal("v_band", unit="m/s")
+    widening = sp.tan(Amount(math.pi * bandwidth, "1/s") * T)
+    turning = 2 * sp.cos(Amount(2 * math.pi * centre, "1/s") * T)
+    passed = (widening * (v(n) - v(n - 2)) + turning * band(n - 1) - (1 - widening) * band(n - 2)) / (1 + widening)
+    return Scene(force=B * band(n), eom=[sp.Eq(band(n), passed)], watch={"passed": band(n)}, name="tremor filter")
+
+
+def _frequency(name, given):
+    number = in_si(given, "Hz", name) if isinstance(given, str) else float(given)
+    if not (math.isfinite(number) and number > 0):
+        raise SceneError(f"{name} = {given}; a band needs a frequency > 0 Hz")
+    return number

@@ -1,0 +1,78 @@
+"""Anticipation is exact where the load is known; feedback is bounded by its reaction time, Section 23.3.3."""
+
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import hapticlab as hl
+from hapticlab.errors import PaddleError
+from hapticlab.experiments.reaching import Load, follow, handle, inverse_dynamics, reach
+
+FREE = hl.wall()(k=0, x_o=1)
+PADDLE = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.hand("grip"))
+PINCH = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.hand("pinch"))
+
+
+def test_inverse_dynamics_solves_its_own_equation():
+    # the equation of motion of hand and load under the intent, by scipy, follows the path
+    from scipy.integrate import solve_ivp
+
+    hand, load, path = hl.Hand(m=0.05, b=2.0, k=150.0), Load(m=0.2, b=0.5, k=40.0), hl.MinimumJerk(end=0.03, duration=0.5)
+    times = np.arange(0, 1.0, 2e-4)
+    intent = inverse_dynamics(hand, load, path, times)
+    rates = np.gradient(intent, times, edge_order=2)
+
+    def motion(t, state):
+        push = hand.k * np.interp(t, times, intent) + hand.b * np.interp(t, times, rates)
+        return state[1], (push - (hand.b + load.b) * state[1] - (hand.k + load.k) * state[0]) / (hand.m + load.m)
+
+    found = solve_ivp(motion, (0, 0.99), (0.0, 0.0), t_eval=times[:4900], rtol=1e-8, atol=1e-10, max_step=1e-3).y[0]
+    assert abs(found - path(times[:4900])).max() < 2e-7  # the intent's rate by differences over 0.2 ms
+
+
+def test_a_known_load_is_led_to_the_target_and_another_is_not():
+    known = reach(PINCH, FREE, end=0.02)
+    assert known.error < 1e-7 and known.overshoot < 1e-5 and known.settled == pytest.approx(0.324, abs=0.002)
+    suitcase = reach(PINCH, FREE, end=0.02, expects=Load(m=0.5, b=0.1))
+    assert suitcase.overshoot > 0.02 and suitcase.error > 1000 * known.error
+    corrected = reach(PINCH, FREE, end=0.02, expects=Load(m=0.03, b=0.1, k=200.0), how="both", record=6.0)
+    alone = reach(PINCH, FREE, end=0.02, expects=Load(m=0.03, b=0.1, k=200.0), record=6.0)
+    assert abs(handle(alone.log)[-1] - 0.04) < 1e-4  # twice the spring was expected, and the hand goes twice as far
+    assert abs(handle(corrected.log)[-1] - 0.02) < 1e-4 and alone.settled is None
+
+
+@pytest.mark.parametrize("part", [0.95, 1.05])
+def test_feedback_alone_is_stable_up_to_the_limit_of_a_delayed_integrator(part):
+    # every 10 ms i[k+1] = i[k] + a (target - i[k-18]), stable for a < 2 sin(pi/(2 (2 18 + 1))) (Levin and May 1976)
+    gain = part * 2 * math.sin(math.pi / 74) / 0.01
+    log = reach(PADDLE, FREE, end=0.01, how="feedback", gain=gain, record=12.0).log
+    error = abs(handle(log) - 0.01)
+    ratio = error[10000:].max() / error[2000:4000].max()
+    assert ratio < 0.7 if part < 1 else ratio > 1.5
+
+
+def test_a_trill_is_anticipated_and_cannot_be_followed():
+    trill = hl.HandleMotion("trill", 0.005 * sp.sin(2 * sp.pi * 8 * hl.t), 2.0)
+    errors = {}
+    for how in ("anticipatory", "feedback"):
+        log, wanted = follow(PADDLE, FREE, trill, how=how)
+        errors[how] = np.std((handle(log) - wanted)[500:]) / np.std(wanted)
+    # the reach starts with the velocity of the sine, which dies out; nothing of 8 Hz passes 180 ms of reaction
+    assert errors["anticipatory"] < 1e-2 and errors["feedback"] > 0.95
+
+
+def test_a_hand_without_a_spring_and_other_words_are_refused():
+    with pytest.raises(PaddleError, match="a hand reaches by its spring"):
+        reach(hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3), FREE, end=0.02)
+    with pytest.raises(PaddleError, match="how = 'blind'; needs one of anticipatory, feedback, both"):
+        reach(PADDLE, FREE, end=0.02, how="blind")
+    with pytest.raises(PaddleError, match="end = 0 m"):
+        reach(PADDLE, FREE, end=0)
+
+
+def test_a_reach_prints_and_draws():
+    found = reach(PADDLE, FREE, end=0.02)
+    assert str(found).startswith("anticipatory: there after 0.32")
+    assert [a.get_xlabel() for a in found.plot().axes] == ["time [s]"]
