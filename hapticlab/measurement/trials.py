@@ -62,15 +62,15 @@ def try_wall(paddle, scene, *, K, place, duration, longest):
     """
     while True:
         log = run_from(paddle, scene, place, duration)
-        trial = _judged(log, K, duration)
+        trial = _judged(log, K, place, duration)
         if trial is not None:
             return trial
         if 2 * duration > longest * 1.001:
-            return _judged(log, K, duration, last=True)
+            return _judged(log, K, place, duration, last=True)
         duration *= 2
 
 
-def _judged(log, K, duration, last=False):
+def _judged(log, K, place, duration, last=False):
     """Return the trial, or None where the record does not tell yet."""
     drawn = max(0.0, float(log.drawn.max(initial=0.0)))
     if log.fault:
@@ -82,7 +82,8 @@ def _judged(log, K, duration, last=False):
     if found.dither or found.state == "none":
         verdict = "dither of one encoder count" if found.dither else "it comes to rest"
         return Trial(K, True, verdict, found.amplitude, found.frequency, drawn, duration)
-    if found.state == "decaying" and not found.contacts_per_second:  # while it bounces, a small chatter may hide below
+    bounces = bool((log.channels.get("x_true", log.x)[len(log) // 2 :] < place).any())
+    if found.state == "decaying" and not bounces:  # while it bounces, a small chatter may hide below
         return Trial(K, True, "it dies out", found.amplitude, found.frequency, drawn, duration)
     if found.state in ("growing", "runaway"):
         return Trial(K, False, "it grows", found.amplitude, found.frequency, drawn, duration)
