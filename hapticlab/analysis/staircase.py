@@ -130,7 +130,7 @@ def staircase(log, *, K=None, x_o=None):
     >>> x = 1e-3 * np.array([-1, 1, 3, 5, 4, 2, -1])
     >>> log = Telemetry(t=np.arange(7) * 1e-3, x=x, v=0 * x, F=np.maximum(100 * x, 0), T=1e-3)
     >>> print(staircase(log, K=100))
-    1: 5 mm deep: generated 0.95 mJ
+    1: 5 mm deep: generated 1.1 mJ
     """
     check_record(log, "staircase")
     K, x_o = _spring(log, K, x_o)

@@ -30,7 +30,7 @@ def damper_limit(*, m, b, T, delay=0.0):
 
     Examples
     --------
-    >>> damper_limit(m=0.05, b=0.0, T=1e-3)
+    >>> round(damper_limit(m=0.05, b=0.0, T=1e-3), 9)
     100.0
     """
     m = check_number("m", m, "kg", "a handle needs m > 0", lambda a: a > 0)
