@@ -7,13 +7,16 @@ from .analysis.energy import energy
 from .analysis.impedance import impedance
 from .analysis.methods import methods
 from .analysis.motions import HandleMotion, handle_motions
+from .analysis.passivity_trace import passivity_trace
 from .analysis.pictures import picture
 from .analysis.plots import plot
 from .analysis.port_error import force_error, sensor_floor
 from .analysis.port_passivity import port_passivity
 from .analysis.reduction import reduction
 from .analysis.reference import reference
+from .analysis.staircase import staircase
 from .analysis.step_limit import step_limit
+from .analysis.storage import storage
 from .analysis.sweep import sweep
 from .analysis.tradeoff import tradeoff
 from .compiler.advance import Taylor
@@ -57,6 +60,9 @@ from .experiments.reaching import Load, follow, reach
 from .experiments.shared_control import assistance
 from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
 from .experiments.up_down import UpDown
+from .limits.damper import damper_limit
+from .limits.excess import passivity_ledger
+from .limits.local_stiffness import local_stiffness
 from .limits.passivity import passivity_limit
 from .limits.port import port_damping
 from .limits.stability import stability_limit
@@ -74,6 +80,7 @@ from .scene.from_mechanics import from_mechanics
 from .scene.gaps import closest, gap
 from .scene.laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
 from .scene.mechanics import Mechanics, lagrange
+from .scene.passivity_control import passivity_controller, passivity_observer, wall_energy
 from .scene.proxy import proxy_curve, proxy_wall
 from .scene.scene import Scene
 from .scene.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, ground, replacement
@@ -137,6 +144,7 @@ __all__ = [
     "connect",
     "contacts_between",
     "coordinate",
+    "damper_limit",
     "damping_task",
     "delay",
     "device_image",
@@ -164,12 +172,17 @@ __all__ = [
     "kalman_velocity",
     "lagrange",
     "library",
+    "local_stiffness",
     "methods",
     "micro_impulse",
     "n",
     "order_of",
     "parameters",
+    "passivity_controller",
+    "passivity_ledger",
     "passivity_limit",
+    "passivity_observer",
+    "passivity_trace",
     "penalty",
     "picture",
     "plot",
@@ -191,8 +204,10 @@ __all__ = [
     "sensor_floor",
     "signal",
     "stability_limit",
+    "staircase",
     "step_limit",
     "stiffness_task",
+    "storage",
     "sweep",
     "t",
     "texture_task",
@@ -203,6 +218,7 @@ __all__ = [
     "virtual_coupler",
     "virtual_damper",
     "wall",
+    "wall_energy",
     "when",
     "window_velocity",
     "x",
