@@ -1,0 +1,182 @@
+"""A linear law whose force is affine in its stiffness, F = F0 + K F1: what a limit over K and a root locus are taken of."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..compiler.engine import load
+from ..compiler.lower import compile
+from ..errors import AnalysisError
+from ..scene.scene import Scene
+from ..scene.taps import LEAD, TAPS
+from .limit import check_law
+from .linear_law import LinearLaw
+from .port import tick_map
+
+#: part of the largest entry below which a difference between laws is rounding; a scene's tick is measured to 1e-9
+ROUNDING = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class AffineLaw:
+    """One tick of a law, ``s' = A s + (B0 + K B1) (x, v)``, ``F = (C0 + K C1) s + (D0 + K D1) (x, v)``, affine in K.
+
+    Attributes
+    ----------
+    A : array of shape (n, n)
+    B0, B1 : array of shape (n, 2)
+        For the position [m] and the exact velocity [m/s]; the velocity is zero for all but Eq. (23.3).
+    C0, C1 : array of shape (n,)
+    D0, D1 : array of shape (2,)
+    name : str
+    """
+
+    A: np.ndarray
+    B0: np.ndarray
+    B1: np.ndarray
+    C0: np.ndarray
+    C1: np.ndarray
+    D0: np.ndarray
+    D1: np.ndarray
+    name: str
+
+    def at(self, K):
+        """Return B, C, D at a stiffness [N/m]."""
+        return self.B0 + K * self.B1, self.C0 + K * self.C1, self.D0 + K * self.D1
+
+
+def affine_law(law, *, T, B=0.0, parameter="k", velocity="backward_difference"):
+    """Return what was given as a law, affine in K.
+
+    Parameters
+    ----------
+    law : str, LinearLaw, Scene or callable
+        A name of the chapter's laws; a law that does not depend on K; a linear scene, its stiffness unbound under the
+        name ``parameter``; or a function of K [N/m] that returns a LinearLaw.
+    T : float
+        [s]
+    B : float
+        Virtual damper [N s/m] beside a named law; the others hold their own.
+    velocity : {"backward_difference", "measured"}
+        Where a scene's v(n) comes from, as in :func:`hapticlab.compile`.
+
+    Raises
+    ------
+    AnalysisError
+        The law is not linear, or its force is no affine function of K.
+    """
+    if isinstance(law, str):
+        return _named(law, T, B, velocity)
+    if B:
+        raise AnalysisError(f"B = {B:g} N s/m beside {_what(law)}; only a named law takes one: put the damper into the law")
+    if isinstance(law, LinearLaw):
+        _check_period(law, T)
+        parts = _parts(law)
+        return AffineLaw(parts[0], *(a for part in parts[1:] for a in (part, 0 * part)), law.name)
+    if isinstance(law, Scene):
+        return _fitted(_of_scene(law, T, parameter, velocity), law.name)
+    if not callable(law):
+        raise AnalysisError(
+            f"law = {law!r}; needs one of {', '.join(TAPS)}, a linear Scene, a LinearLaw or a function of K that returns one"
+        )
+
+    def of(K):
+        found = law(K)
+        if not isinstance(found, LinearLaw):
+            raise AnalysisError(f"the law's function gave a {type(found).__name__} at K = {K:g} N/m; needs a LinearLaw")
+        _check_period(found, T)
+        return _parts(found)
+
+    return _fitted(of, getattr(law, "__name__", "law").replace("<lambda>", "law"))
+
+
+def _named(law, T, B, velocity):
+    check_law(law)
+    taps, lead = np.array(TAPS[law]), LEAD[law]
+    if lead and velocity == "backward_difference":
+        taps, lead = np.array([taps[0] + lead, -lead]), 0.0
+    damper = np.array([B, -B]) / T if B else np.zeros(1)
+    n = max(len(taps), len(damper))
+    by_K, fixed = np.zeros(n), np.zeros(n)
+    by_K[: len(taps)], fixed[: len(damper)] = taps, damper
+    enters = np.zeros((n - 1, 2))
+    enters[:1, 0] = 1.0
+    ends = (np.array([fixed[0], 0.0]), np.array([by_K[0], lead * T]))
+    return AffineLaw(np.eye(n - 1, k=-1), enters, 0 * enters, fixed[1:], by_K[1:], *ends, law)
+
+
+def _of_scene(scene, T, parameter, velocity):
+    """Return a function of K that gives the tick of a scene."""
+    free = [name for name in scene.parameters if name not in scene.values]
+    if parameter not in scene.parameters and free:
+        raise AnalysisError(f'{scene.name} has no parameter {parameter}; name its stiffness: parameter="{free[0]}"')
+    unbound = [name for name in free if name != parameter]
+    if unbound:
+        raise AnalysisError(f"{scene.name}: no value for {', '.join(unbound)}; bind it: scene({unbound[0]}=...)")
+
+    def of(K):
+        bound = scene(**{parameter: K}) if parameter in scene.parameters else scene
+        try:
+            program = compile(bound, T=T, live=(), dtype="float64", velocity=velocity)
+            return _map_with_velocity(program) if len(program.inputs) > 1 else _map(program)
+        except AnalysisError as error:
+            raise AnalysisError(f"{error}. Inside its boundary a wall is linear: hl.wall(..., unilateral=None)") from error
+
+    return of
+
+
+def _map(program):
+    A, B, C, D = tick_map(program)
+    return A, np.c_[B, 0 * B], C, np.array([D, 0.0])
+
+
+def _map_with_velocity(program):
+    """Return A, B, C, D of a tick that takes x and v, from its answers to unit states, x and v; refuse one not linear."""
+    S, generator = len(program.states), np.random.default_rng(1)
+    units = np.vstack([np.zeros(S + 2), np.eye(S + 2), generator.normal(size=(3, S + 2))])  # a row: states, x, v
+    loaded, names = load(program, "interpreter"), [c.name for c in program.inputs]
+    answers = []
+    for row in units:
+        given = dict(zip(("x", "v"), row[S:], strict=True))
+        run = loaded.run(1, [[given[name] for name in names]], program.values, row[:S, None])
+        answers.append(np.r_[run.states[:, 0], run.outputs[0, 0, 0]])
+    answers = np.array(answers) - answers[0]
+    whole = answers[1 : S + 3]
+    if not np.allclose(units[S + 3 :] @ whole, answers[S + 3 :], rtol=0, atol=1e-9 * abs(answers).max(initial=0)):
+        raise AnalysisError(f"{program.name} is not linear: its answer to two states is not the sum of its answers to each")
+    return whole[:S, :S].T, whole[S:, :S].T, whole[:S, S], whole[S:, S]
+
+
+def _parts(law):
+    return law.A, np.c_[law.B, 0 * law.B], law.C, np.array([law.D, 0.0])
+
+
+def _fitted(of, name):
+    """Fit parts that are affine in K to three laws; refuse what is not affine."""
+    (A, *one), (_, *two), (other, *three) = (of(K) for K in (1.0, 2.0, 3.0))
+    slopes = [b - a for a, b in zip(one, two, strict=True)]
+    law = AffineLaw(A, *(v for a, s in zip(one, slopes, strict=True) for v in (a - s, s)), name)
+    law = replace(law, **{part: _cleaned(getattr(law, part), one, two) for part in ("B0", "B1", "C0", "C1", "D0", "D1")})
+    pairs = [(A, other), *zip(law.at(3.0), three, strict=True)]
+    same = all(a.shape == b.shape and np.allclose(a, b, rtol=ROUNDING, atol=ROUNDING * abs(b).max(initial=0)) for a, b in pairs)
+    product, squared = law.B1[:, 0], 0.0
+    for _ in range(len(A) + 1):  # the part of the impulse response with K squared
+        squared, product = max(squared, abs(law.C1 @ product)), A @ product
+    if not same or squared > ROUNDING * abs(law.C1).max(initial=0) * abs(law.B1).max(initial=0):
+        raise AnalysisError(f"{name}: its force is no affine function F0 + K F1 of the stiffness; look at its poles, K by K")
+    return law
+
+
+def _cleaned(array, *near):
+    """Make zero what rounding has left of a difference."""
+    size = max(abs(a).max(initial=0) for part in near for a in part)
+    return np.where(abs(array) > ROUNDING * 1e-3 * size, array, 0.0)
+
+
+def _check_period(law, T):
+    if not abs(law.T - T) <= 1e-9 * T:
+        raise AnalysisError(f"{law.name} is a law of T = {law.T:g} s; the paddle samples every {T:g} s: make the law for that")
+
+
+def _what(law):
+    return law.name if isinstance(law, (LinearLaw, Scene)) else "a law of its own"

@@ -1,0 +1,183 @@
+"""Limits of laws of any memory, against roots of characteristic polynomials written out by hand, in 40 digits."""
+
+import math
+from types import SimpleNamespace
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import hapticlab as hl
+from hapticlab.errors import AnalysisError
+from hapticlab.limits.affine_law import affine_law
+from hapticlab.limits.linear_law import LinearLaw
+from hapticlab.limits.loop import Loop
+from hapticlab.limits.stability import closed_loop_matrix, closed_loop_poles, stability_limit
+
+T = 0.8e-3
+
+
+def paddle(m=0.045, b=0.12, delay=0.0, hand=None, **more):
+    return SimpleNamespace(m=m, b=b, T=T, delay=delay, hand=hand, **more)
+
+
+def product(*polynomials):
+    """Multiply polynomials, highest power first."""
+    total = [mp.mpf(1)]
+    for p in polynomials:
+        new = [mp.mpf(0)] * (len(total) + len(p) - 1)
+        for i, a in enumerate(total):
+            for j, b in enumerate(p):
+                new[i + j] += a * b
+        total = new
+    return total
+
+
+def added(one, other):
+    n = max(len(one), len(other))
+    one, other = ([mp.mpf(0)] * (n - len(p)) + list(p) for p in (one, other))
+    return [a + b for a, b in zip(one, other, strict=True)]
+
+
+def edge(law, m=0.045, b=0.12, start=1.0):
+    """Bisect the stiffness at which a root of the free handle's loop leaves the unit circle; law(K) -> (numerator, own)."""
+    with mp.workdps(40):
+        h, tau = mp.mpf(T), mp.mpf(m) / mp.mpf(b)
+        a = mp.e ** (-h / tau)
+        g1, g0 = (h - tau * (1 - a)) / b, (tau * (1 - a) - a * h) / b
+
+        def outside(K):
+            numerator, own = law(K)
+            p = added(product([1, -(1 + a), a], own), product([g1, g0], numerator))
+            return max(abs(z) for z in mp.polyroots(p, maxsteps=200, extraprec=100)) > 1
+
+        low, high = mp.mpf(start), mp.mpf(start)
+        while not outside(high):
+            low, high = high, high * mp.mpf("1.3")
+        for _ in range(45):
+            middle = (low + high) / 2
+            low, high = (low, middle) if outside(middle) else (middle, high)
+        return float(low)
+
+
+def difference(K, B, tau):
+    """K + B (1 - 1/z)/T with a first-order filter of the velocity, v[n] = (tau v[n-1] + x[n] - x[n-1])/(tau + T)."""
+    own = [mp.mpf(T) + tau, -mp.mpf(tau)]
+    return added([K * c for c in own], [mp.mpf(B), -mp.mpf(B)]), own
+
+
+@pytest.mark.parametrize(("B", "tau"), [(0.4, 0.0), (0.4, 3e-3), (1.5, 2e-3), (-0.05, 1e-3)])
+def test_a_filtered_velocity(B, tau):
+    expected = edge(lambda K: difference(K, B, tau) if tau else ([K + B / mp.mpf(T), -B / mp.mpf(T)], [1, 0]))
+    found = stability_limit(paddle(), law=lambda K: LinearLaw.of("zoh", K=K, B=B, T=T, velocity_filter=tau))
+    assert found.K == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("B", [0.0, 0.1])
+def test_the_filter_around_spring_and_damper(B):
+    """Eq. (23.8) around K and B together; a scene, compiled, is read off its tick."""
+
+    def law(K):
+        filtered = [mp.mpf(2), mp.mpf("-1.5"), mp.mpf("0.5")]
+        return product(filtered, [K + B / mp.mpf(T), -B / mp.mpf(T)]), [1, 0, 0, 0]
+
+    scene = hl.force_filter(hl.wall(unilateral=None))(B=B)
+    found = stability_limit(paddle(), law=scene)
+    assert found.K == pytest.approx(edge(law), rel=1e-8)  # a scene's tick is measured to 1e-9 or better
+    assert stability_limit(paddle(), law=lambda K: LinearLaw.of(K=K, B=B, T=T, filtered=True)).K == pytest.approx(
+        found.K, rel=1e-8
+    )
+
+
+@pytest.mark.parametrize("law", ["zoh", "half_sample", "backward_difference", "ellis"])
+@pytest.mark.parametrize("velocity", ["measured", "backward_difference"])
+def test_a_wall_without_a_boundary_is_its_law(law, velocity):
+    p = paddle(delay=0.3 * T, hand=SimpleNamespace(m=0.02, b=1.1, k=210.0), velocity=velocity)
+    named = stability_limit(p, law=law, B=0.05)
+    scene = stability_limit(p, law=hl.wall(law, unilateral=None)(B=0.05))
+    assert scene.K == pytest.approx(named.K, rel=1e-8)
+    assert scene.frequency == pytest.approx(named.frequency, rel=1e-6)
+    ours = closed_loop_poles(p, K=300.0, law=hl.wall(law, unilateral=None)(B=0.05))
+    theirs = closed_loop_poles(p, K=300.0, law=law, B=0.05)
+    np.testing.assert_allclose(np.abs(ours)[:3], np.abs(theirs)[:3], rtol=1e-9)
+
+
+@pytest.mark.parametrize("m", [1e2, 1e6, 1e10])
+@pytest.mark.parametrize("law", ["zoh", "backward_difference"])
+def test_a_handle_heavier_than_rounding(m, law):
+    """b T/m down to 1e-14: its poles differ from 1 by less than cos(theta) shows, and still decide."""
+    with mp.workdps(60):
+        h, b = mp.mpf(T), mp.mpf("0.12")
+        tau = m / b
+        a = mp.e ** (-h / tau)
+        g1, g0 = (h - tau * (1 - a)) / b, (tau * (1 - a) - a * h) / b
+        q2, q1, q0 = g0**2 / 4 + 3 * g0 * g1 / 4, 3 * g0 / 2 - g1 / 2 - g0 * (1 + a) / 2, -(1 - a)
+        expected = (1 - a) / g0 if law == "zoh" else (-q1 + mp.sqrt(q1**2 - 4 * q2 * q0)) / (2 * q2)
+    limit = stability_limit(paddle(m=m), law=law)
+    assert limit.K == pytest.approx(float(expected), rel=1e-6)  # at 1e10 kg damping is 1e-9 of what turns a predicted pole
+    assert limit.frequency == pytest.approx(math.sqrt(limit.K / m) / (2 * math.pi), rel=1e-2)
+
+
+def test_a_heavy_handle_with_a_damper_in_a_hand():
+    """Far below the bandwidth (b + b_h + B)/(T/2 + delay) - ... is left: Gil's limit, with the hand's damping beside."""
+    p = paddle(m=1e8, delay=1.3 * T, hand=SimpleNamespace(m=0.1, b=1.0, k=0.0))
+    expected = (0.12 + 1.0 - 0.5) / (1.8 * T)
+    assert stability_limit(p, B=-0.5).K == pytest.approx(expected, rel=1e-6)
+
+
+def test_an_integrator_in_the_law():
+    """F = K (x + (T/tau) sum x) has a pole at z = 1 of its own."""
+    tau = 0.5
+    scene_law = lambda K: LinearLaw(np.eye(1), np.array([K * T / tau]), np.ones(1), K * (1 + T / tau), T, "PI")  # noqa: E731
+    expected = edge(lambda K: ([K * (1 + mp.mpf(T) / tau), -K], [1, -1]), start=20.0)
+    assert expected > 30
+    p = paddle()
+    poles = [np.abs(closed_loop_poles(p, K=expected * s, law=scene_law)).max() for s in (1 - 1e-6, 1 + 1e-6)]
+    assert poles[0] < 1 < poles[1]
+
+
+def test_a_law_that_holds_its_stiffness_has_poles_and_no_limit():
+    law = LinearLaw.of("ellis", K=300.0, T=T)
+    np.testing.assert_allclose(
+        np.abs(closed_loop_poles(paddle(), law=law)), np.abs(closed_loop_poles(paddle(), K=300.0, law="ellis")), rtol=1e-12
+    )
+    assert closed_loop_matrix(paddle(), law=hl.wall(unilateral=None)(k=100, B=0.1)).shape == (3, 3)
+    with pytest.raises(AnalysisError, match="does not depend on a stiffness"):
+        stability_limit(paddle(), law=law)
+
+
+def test_a_slow_pole_keeps_its_digits():
+    loop = Loop.of(paddle(m=1e10), "zoh")
+    w = loop.poles(100.0)
+    assert w.imag.max() == pytest.approx(math.sqrt(100.0 / 1e10) * T, rel=1e-7)
+    with mp.workdps(60):
+        h, b = mp.mpf(T), mp.mpf(0.12)
+        a = mp.e ** (-b * h / mp.mpf(1e10))
+        beyond = a + 100 * ((mp.mpf(1e10) / b) * (1 - a) - a * h) / b - 1  # the product of the poles, less one
+    assert float(2 * w[0].real + abs(w[0]) ** 2) == pytest.approx(float(beyond), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("law", "B", "words"),
+    [
+        (lambda K: LinearLaw.of("zoh", K=K * K, T=T), 0.0, "no affine function"),
+        (lambda K: LinearLaw.of("zoh", K=K, T=2 * T), 0.0, "samples every"),
+        (lambda K: 3 * K, 0.0, "gave a float"),
+        (hl.wall(), 0.0, "unilateral=None"),
+        (hl.wall(unilateral=None), 0.3, "put the damper into the law"),
+        (7, 0.0, "needs one of zoh"),
+        (hl.virtual_damper(), 0.0, 'parameter="B"'),
+    ],
+)
+def test_what_is_no_affine_law_is_refused(law, B, words):
+    with pytest.raises(AnalysisError, match=words):
+        stability_limit(paddle(), law=law, B=B)
+
+
+def test_another_name_for_the_stiffness():
+    K = hl.parameters("stiff", units="N/m")
+    scene = hl.Scene(force=K * (2 * hl.x(hl.n) - hl.x(hl.n - 1)))
+    law = affine_law(scene, T=T, parameter="stiff")
+    assert law.D1[0] == pytest.approx(2.0, rel=1e-12) and law.D0[0] == 0
+    expected = edge(lambda k: ([2 * k, -k], [1, 0]))
+    assert stability_limit(paddle(), law=scene, parameter="stiff").K == pytest.approx(expected, rel=1e-8)
