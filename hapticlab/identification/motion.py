@@ -1,0 +1,85 @@
+"""The handle under a force that is held, in closed form, many parameter sets side by side.
+
+m x'' = push - scale F - b x' - coulomb sign(x'), stuck at rest while |push - scale F| <= coulomb; F[n] is felt over
+[n T + delay, (n+1) T + delay). Between two changes of the force the speed is an exponential and a constant, so where it is
+zero is a logarithm, and nothing is approximated.
+"""
+
+import numpy as np
+
+#: b h/m below which its functions are series; the first term left out is below 1e-15
+SERIES = 2e-3
+
+
+def positions(F, T, *, m, b, coulomb, delay, scale, push, x0, v0):
+    """Return the handle's positions at the samples [m], shape (N, ...) with ... that of the parameters.
+
+    Parameters
+    ----------
+    F : array of shape (N,) or (N, L)
+        Force on the environment as commanded [N]; none was felt before the first.
+    T : float
+        [s]
+    m, b, coulomb, delay, scale, push, x0, v0 : float or array of shape (..., L)
+        Mass [kg], damping [N s/m], Coulomb friction [N], delay [s] of either sign, newtons at the handle for each
+        commanded, a constant force beside the motor's [N], position [m] and velocity [m/s] at the first sample.
+
+    Examples
+    --------
+    >>> coasting = positions(np.zeros(4), 0.1, m=1, b=0, coulomb=2, delay=0, scale=1, push=0, x0=0, v0=0.5)
+    >>> coasting.round(6).tolist()                  # stops after 0.25 s, having gone v0^2/4 = 62.5 mm
+    [0.0, 0.04, 0.06, 0.0625]
+    """
+    F = np.asarray(F, float)
+    shape = np.broadcast_shapes(*map(np.shape, (m, b, coulomb, delay, scale, push, x0, v0)), F.shape[1:])
+    x, v, late = (np.broadcast_to(np.asarray(a, float), shape) for a in (x0, v0, delay))
+    whole = np.floor(late / T).astype(int)
+    first = late - whole * T  # of the period, under the force that was felt before
+    column = (np.broadcast_to(np.arange(F.shape[1]), shape),) if F.ndim == 2 else ()
+    beta, grip = b / m, coulomb / m
+    found = np.empty((len(F), *shape))
+    found[0] = x
+    for n in range(len(F) - 1):
+        for duration, lag in ((first, whole + 1), (T - first, whole)):
+            if np.any(duration > 0):
+                at = n - lag
+                felt = np.where(at < 0, 0.0, F[(np.clip(at, 0, len(F) - 1), *column)])
+                x, v = _glide(x, v, (push - scale * felt) / m, beta, grip, duration)
+        found[n + 1] = x
+    return found
+
+
+def _glide(x, v, pull, beta, grip, duration):
+    """Advance under a constant acceleration and friction; once stopped, stay or go the way of the pull."""
+    heading = np.where(v == 0, np.where(np.abs(pull) > grip, np.sign(pull), 0.0), np.sign(v))
+    net = np.where(heading == 0, 0.0, pull - grip * heading)
+    lasts = np.minimum(duration, _stops(v, net, beta))
+    phi1, phi2 = _phi(beta, lasts)
+    x, end = x + v * phi1 + net * phi2, v - (beta * v - net) * phi1
+    rest = duration - lasts
+    if not np.any(rest > 0):
+        return x, end
+    again = np.where((rest > 0) & (np.abs(pull) > grip), pull - grip * np.sign(pull), 0.0)
+    phi1, phi2 = _phi(beta, rest)
+    return x + again * phi2, np.where(rest > 0, again * phi1, end)
+
+
+def _stops(v, net, beta):
+    """Return when v' = net - beta v from v comes to zero [s], infinity where it does not."""
+    brakes = v * net < 0
+    ratio = np.where(brakes, -v / np.where(brakes, net, 1.0), 0.0)
+    z = beta * ratio
+    brakes = brakes & (z > -1)
+    z = np.where(brakes, z, 0.0)
+    tiny = np.abs(z) < 1e-300
+    return np.where(brakes, ratio * np.where(tiny, 1.0, np.log1p(z) / np.where(tiny, 1.0, z)), np.inf)
+
+
+def _phi(beta, t):
+    """Return the integral of e^(-beta s) and of it again, from 0 to t."""
+    z = beta * t
+    small = np.abs(z) < SERIES
+    safe = np.where(small, 1.0, z)
+    one = np.where(small, 1 - z / 2 * (1 - z / 3 * (1 - z / 4 * (1 - z / 5))), -np.expm1(-safe) / safe)
+    two = np.where(small, 0.5 - z / 6 * (1 - z / 4 * (1 - z / 5 * (1 - z / 6))), (1 - one) / safe)
+    return t * one, t * t * two

@@ -1,0 +1,91 @@
+"""Records of one paddle and what of it is sought, made into a fit; many records of a kind run side by side."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .motion import positions
+from .scoring import fit
+from .start import begin
+
+#: what a paddle has, with units; scale is newtons at the handle for each commanded
+UNITS = {"m": "kg", "b": "N s/m", "coulomb": "N", "delay": "s", "scale": "1"}
+#: what is taken for known where it is not sought
+USUAL = {"delay": 0.0, "scale": 1.0}
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """Positions y [m] of a handle under forces F [N], every T [s], shape (N, L) and (N,) or (N, L): L of a kind.
+
+    ``added`` is a known mass that was fixed to the handle [kg], ``push`` a known constant force beside the motor's [N].
+    """
+
+    y: np.ndarray
+    F: np.ndarray
+    T: float
+    added: float = 0.0
+    push: float = 0.0
+
+    def start(self, lane, known, noise, delays):
+        """Return first values of the paddle's constants, and of position and velocity, from one of the records."""
+        F = self.F if self.F.ndim == 1 else self.F[:, lane]
+        mass = known["m"] + self.added if "m" in known else None
+        found, begun = begin(self.y[:, lane], F, self.T, push=self.push, m=mass, noise=noise, delays=delays)
+        return found | {"m": max(found["m"] - self.added, 0.1 * found["m"])}, begun
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Traces of one paddle, the names that are sought, and the values of the others.
+
+    Examples
+    --------
+    >>> t = np.arange(0, 0.3, 1e-3)
+    >>> trace = Trace((0.4 * t - t**2 / 2)[:, None], 0 * t, 1e-3)
+    >>> Problem((trace,), ("b", "coulomb"), {"m": 0.05}).solve().values[:2, 0].round(6).tolist()
+    [0.0, 0.05]
+    """
+
+    traces: tuple
+    free: tuple
+    known: dict
+    quantum: float = 0.0
+
+    @property
+    def lanes(self):
+        return self.traces[0].y.shape[1]
+
+    def motion(self, p):
+        """Return the positions of all traces one after the other, for parameters of shape (P, K, L)."""
+        values = {**USUAL, **self.known, **dict(zip(self.free, p, strict=False))}
+        starts = p[len(self.free) :]
+        return np.concatenate([
+            positions(
+                trace.F, trace.T, m=values["m"] + trace.added, push=trace.push, x0=starts[2 * k], v0=starts[2 * k + 1],
+                **{name: values[name] for name in ("b", "coulomb", "delay", "scale")},
+            )
+            for k, trace in enumerate(self.traces)
+        ])  # fmt: skip
+
+    def solve(self):
+        """Return the Fitted of all lanes."""
+        start = np.array([self._start(lane) for lane in range(self.lanes)]).T
+        y = np.concatenate([trace.y for trace in self.traces])
+        return fit(self.motion, y, start, self._scales(start), quantum=self.quantum)
+
+    def _start(self, lane):
+        delays = range(6) if "delay" in self.free else (round(self.known.get("delay", 0.0) / self.traces[0].T),)
+        found = [trace.start(lane, self.known, self.quantum, delays) for trace in self.traces]
+        told = max(found, key=lambda one: one[0]["m"] < 1e3)[0] | {"scale": 1.0}
+        return [*(told[name] for name in self.free), *(a for _, begun in found for a in begun)]
+
+    def _scales(self, start):
+        """Return considerable changes: a tenth of the mass, and of the forces that go with it."""
+        values = {**USUAL, **self.known, **dict(zip(self.free, start, strict=False))}
+        T, span = self.traces[0].T, max(len(trace.y) * trace.T for trace in self.traces)
+        travel = max(float(np.ptp(trace.y, axis=0).max()) for trace in self.traces)
+        m = np.broadcast_to(values["m"], start.shape[1:]) * 0.1
+        of = {"m": m, "b": m / span, "coulomb": m * travel / span**2, "delay": np.full_like(m, T), "scale": np.full_like(m, 0.1)}
+        places = [np.full_like(m, travel), np.full_like(m, travel / span)] * len(self.traces)
+        return np.array([*(of[name] for name in self.free), *places])

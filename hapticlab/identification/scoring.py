@@ -1,0 +1,172 @@
+"""Maximum likelihood of a simulated motion in a noisy, counted position, many records side by side.
+
+A sample is y = x + e, e Gaussian and independent, or the count in which that lies. The step is Fisher's scoring: for a
+Gaussian sensor it is Gauss and Newton's. Intervals come from the information at the estimate.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .fit import student
+from .sensor import DITHERED, information, log_likelihood, run_weights, spread
+
+#: of a parameter's scale: the step of central differences
+STEP = 1e-5
+#: scoring steps; and the part of a standard error that is no step any more
+STEPS, ENOUGH = 30, 1e-2
+#: of a fit that is said to have converged: what another step would gain, in squared standard errors
+SETTLED = 0.02
+#: damping of a step at first, its factor after one that was good and one that was not
+DAMPING, EASED, BRACED = 1e-3, 0.2, 6.0
+#: rounds in which sigma and the parameters of a counted record are found in turn
+ROUNDS = 4
+#: m of noise, so that no noise divides by nothing
+LEAST = 1e-15
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """What a fit found, for L records of N samples.
+
+    Attributes
+    ----------
+    values : array, shape (P, L)
+    covariance : array, shape (L, P, P)
+    sigma : array, shape (L,)
+        Standard deviation of the sensor's noise; without dither that of its counting as well.
+    residuals : array, shape (N, L)
+        Measured, the middle of a count, less fitted.
+    freedom : array, shape (L,)
+        Samples that tell something of their own, less parameters.
+    counted : array of bool, shape (L,)
+        Fitted as counts in dither; else as numbers.
+    converged : array of bool, shape (L,)
+    """
+
+    values: np.ndarray
+    covariance: np.ndarray
+    sigma: np.ndarray
+    residuals: np.ndarray
+    freedom: np.ndarray
+    counted: np.ndarray
+    converged: np.ndarray
+
+    @property
+    def error(self):
+        """Standard errors, shape (P, L)."""
+        return np.sqrt(np.maximum(np.diagonal(self.covariance, axis1=1, axis2=2), 0.0)).T
+
+    def half_width(self, confidence=0.95):
+        """Half the width of the confidence intervals, shape (P, L)."""
+        return self.error * student(confidence, self.freedom)
+
+
+def fit(motion, y, start, scales, *, quantum=0.0):
+    """Return the most likely parameters of y = motion(parameters) + noise, with their covariance.
+
+    Parameters
+    ----------
+    motion : callable
+        Takes parameters of shape (P, K, L), returns positions of shape (N, K, L).
+    y : array, shape (N, L)
+        Of a counted position, the middles of the counts.
+    start, scales : array, shape (P, L)
+        Where to begin, and how much is a considerable change; differences take STEP of it.
+    quantum : float
+        What one count is; 0 where the sensor does not count.
+
+    Returns
+    -------
+    Fitted
+
+    Examples
+    --------
+    >>> times = np.arange(50.0)[:, None, None]
+    >>> y = 1 + 0.5 * times[:, 0] + np.random.default_rng(1).standard_normal((50, 1))
+    >>> line = fit(lambda p: p[0] + p[1] * times, y, np.zeros((2, 1)), np.ones((2, 1)))
+    >>> bool(abs(line.values[1, 0] - 0.5) < line.half_width()[1, 0])
+    True
+    """
+    weights = run_weights(y, quantum)
+    freedom = np.sum(weights, axis=0) - len(start)
+    even, no = np.ones_like(y), np.zeros(y.shape[1], bool)
+    found, rest = start, y - motion(start[:, None])[:, 0]
+    for _ in range(ROUNDS):  # what is a small step is said by sigma, and sigma by what is left after the steps
+        sigma = np.sqrt(np.mean(rest**2, axis=0)) + LEAST
+        found, rest = _scored(motion, y, found, scales, sigma, 0.0, even, no)
+    if quantum:
+        return _counted(motion, y, found, rest, scales, quantum, weights, freedom)
+    sigma = np.sqrt(np.sum(rest**2, axis=0) / freedom) + LEAST
+    return _finished(motion, y, found, scales, sigma, 0.0, even, freedom, no)
+
+
+def _counted(motion, y, found, rest, scales, quantum, weights, freedom):
+    """Return the fit of counts: by their own likelihood in dither, else as numbers, a run of one count being one."""
+    dithered = spread(rest, quantum) >= DITHERED * quantum
+    weights = np.where(dithered, 1.0, weights)
+    for _ in range(ROUNDS):
+        plain = np.sqrt(np.sum(weights * rest**2, axis=0) / np.maximum(freedom, 1))
+        sigma = np.where(dithered, spread(rest, quantum), np.maximum(plain, quantum / 12**0.5))
+        found, rest = _scored(motion, y, found, scales, sigma, quantum, weights, dithered)
+    whole = np.where(dithered, len(y) - len(found), freedom)
+    sigma = np.where(dithered, sigma * np.sqrt(len(y) / np.maximum(whole, 1)), sigma)
+    return _finished(motion, y, found, scales, sigma, quantum, weights, whole, dithered)
+
+
+def _scored(motion, y, start, scales, sigma, quantum, weights, counted):
+    """Climb to the likelihood's top with sigma given; return parameters and residuals."""
+    at, damping = start.copy(), np.full(y.shape[1], DAMPING)
+    rest, slopes = _linearised(motion, y, at, scales)
+    best = _likelihood(rest, sigma, quantum, weights, counted)
+    for _ in range(STEPS):
+        score, info = information(rest, sigma, quantum, counted)
+        gradient = np.einsum("npl,nl->lp", slopes, weights * score)
+        fisher = np.einsum("npl,nl,nql->lpq", slopes, weights * info, slopes)
+        diagonal = np.einsum("lpp->lp", fisher)
+        braced = fisher + damping[:, None, None] * np.eye(len(at)) * diagonal[:, None]
+        step = _solved(braced, gradient[..., None])[..., 0]
+        nxt = at + (step * scales.T).T
+        rest_next, slopes_next = _linearised(motion, y, nxt, scales)
+        now = _likelihood(rest_next, sigma, quantum, weights, counted)
+        better = now >= best
+        done = np.einsum("lp,lp->l", step, gradient) < ENOUGH**2
+        take = better | np.isnan(best)
+        at = np.where(take, nxt, at)
+        rest, slopes = np.where(take, rest_next, rest), np.where(take, slopes_next, slopes)
+        best = np.where(take, now, best)
+        damping = np.clip(damping * np.where(better, EASED, BRACED), 1e-12, 1e12)
+        if np.all(done | (damping > 1e5)):
+            break
+    return at, rest
+
+
+def _linearised(motion, y, at, scales):
+    """Return residuals, shape (N, L), and slopes of the motion by its parameters over their scales, (N, P, L)."""
+    count = len(at)
+    offsets = np.concatenate([np.zeros((1, count)), np.eye(count), -np.eye(count)]) * STEP
+    runs = motion(at[:, None] + offsets.T[:, :, None] * scales[:, None])
+    return y - runs[:, 0], (runs[:, 1 : count + 1] - runs[:, count + 1 :]) / (2 * STEP)
+
+
+def _likelihood(rest, sigma, quantum, weights, counted):
+    return np.sum(weights * log_likelihood(rest, sigma, quantum, counted), axis=0)
+
+
+def _solved(matrix, right):
+    """Solve each record's equations; a parameter that moves nothing stays where it is."""
+    diagonal = np.einsum("lpp->lp", matrix)
+    scale = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    even = matrix / (scale[:, :, None] * scale[:, None, :])
+    return np.linalg.pinv(even, rcond=1e-15, hermitian=True) @ (right / scale[..., None]) / scale[..., None]
+
+
+def _finished(motion, y, found, scales, sigma, quantum, weights, freedom, counted):
+    rest, slopes = _linearised(motion, y, found, scales)
+    score, info = information(rest, sigma, quantum, counted)
+    fisher = np.einsum("npl,nl,nql->lpq", slopes, weights * info, slopes)
+    covariance = _solved(fisher, np.broadcast_to(np.eye(len(found)), fisher.shape))
+    gradient = np.einsum("npl,nl->lp", slopes, weights * score)
+    left = np.einsum("lp,lpq,lq->l", gradient, covariance, gradient)
+    stretched = covariance * scales.T[:, :, None] * scales.T[:, None, :]
+    return Fitted(found, stretched, sigma, rest, freedom, counted, left < SETTLED)
