@@ -1,0 +1,155 @@
+"""Two held forces that bring the handle, after a crossing of the boundary, where handle, hand and wall would be by themselves."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from ..errors import SceneError
+from ..scene.symbols import delay, n, signal, when
+from .digital import digital_force, motor_limit
+from .flight import Flight
+from .lines import Lines, number
+from .model import WallModel
+from .predictive import half_sample_force
+
+#: when the pair of forces begins
+BEGINS = ("predictive", "reactive", "always")
+BETWEEN = {"half_sample": half_sample_force, "digital": digital_force}
+
+
+def deadbeat_wall(
+    paddle, *, K, B=0.0, hand=None, begins="predictive", between="half_sample", velocity="handle", force_max=None,
+    accuracy=1e-10,
+):  # fmt: skip
+    """Virtual wall that emulates handle, hand and wall across its boundary (Section 23.4.1): dead-beat in two steps.
+
+    Where the boundary is crossed the law computes the state that handle, hand and wall would have two periods on, crossing
+    located, and then the only two held forces that take the sampled handle there. Between crossings it predicts half a
+    sample (:func:`predictive_wall`) or has the poles of the wall (:func:`digital_wall`).
+
+    Parameters
+    ----------
+    paddle, K, B, hand
+        As in :func:`digital_gains`.
+    begins : {"predictive", "reactive", "always"}
+        ``"predictive"``: in the period in which the model foresees a crossing. ``"reactive"``: at the sample that finds the
+        boundary crossed; the goal then goes three periods on from the sample before. ``"always"``: every two periods, so
+        that every second sample lies on the wall's own motion.
+    between : {"half_sample", "digital"}
+    velocity, force_max
+        As in :func:`digital_wall`. Without a limit the forces are what the goal asks: an error e of the sensed position
+        changes them by some M e/T^2 (:func:`deadbeat_gains`).
+    accuracy : float
+        Of the motion and the crossing times, relative to what moves; a rougher one is cheaper.
+
+    Returns
+    -------
+    Scene
+        It watches ``pair`` (0, or the number of the force of a pair) and ``limited`` (1 where the motor's limit cut a
+        force, from where on the goal is missed).
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.35, b=0, T=0.01, hand=hl.Hand(m=0.006, k=500, intent=0.01))
+    >>> log = paddle.run(hl.deadbeat_wall(paddle, K=5000), duration=0.2, x=-0.02, progress=False)
+    >>> log.pair[:10].astype(int).tolist()
+    [0, 0, 0, 0, 0, 1, 2, 0, 0, 0]
+    """
+    if begins not in BEGINS or between not in BETWEEN:
+        raise SceneError(
+            f"begins = {begins!r}, between = {between!r}; needs begins one of {', '.join(BEGINS)} and between one of "
+            f"{', '.join(BETWEEN)}"
+        )
+    lines = Lines(WallModel.of(paddle, K=K, B=B, hand=hand))
+    p, w = lines.at_switch(velocity)
+    due, second = signal("due", unit="1"), signal("second", unit="m")
+    flight = Flight(lines, accuracy)
+    if begins == "reactive":
+        before = delay(p)
+        *goal, _ = flight.goal(lines.let("p_before", before), lines.let("w_before", delay(w)), 3)
+        crossed = sp.Or(sp.And(before < 0, p >= 0), sp.And(before >= 0, p < 0))
+        begin = sp.And(due(n - 1) < 0.5, due(n - 2) < 0.5, crossed)  # a pair has dealt with what was crossed under it
+    else:
+        *goal, crossing = flight.goal(p, w, 2)
+        begin = due(n - 1) < 0.5 if begins == "always" else sp.And(due(n - 1) < 0.5, crossing > 0)
+    lines.let(due, when(begin, 1, 0))
+    one, two = pair_forces(lines, p, w, goal)
+    lines.let(second, two)
+    alone = when(p >= 0, BETWEEN[between](lines, p, w), 0)
+    force = when(due(n - 1) > 0.5, second(n - 1), when(due(n) > 0.5, one, alone))
+    watch = {"pair": when(due(n - 1) > 0.5, 2, due(n))}
+    return lines.scene(force, f"{begins} dead-beat wall", watch, motor_limit(paddle, force_max))
+
+
+def pair_forces(lines, p, w, goal):
+    """Return the two forces, in metres of the spring, that take (p, w) to the goal in two periods."""
+    (Phi, gamma), (two, _) = lines.model.flow(1.0), lines.model.flow(2.0)
+    pushed = Phi @ gamma + gamma
+    missed = [
+        number(two[i, 0]) * p + number(two[i, 1]) * w + number(pushed[i]) * lines.outer - goal[i] for i in (0, 1)
+    ]
+    missed = [lines.let(name, each) for name, each in zip(("missed_p", "missed_w"), missed, strict=True)]
+    return [number(row[0]) * missed[0] + number(row[1]) * missed[1] for row in _inverse(lines.model)]
+
+
+def _inverse(model):
+    """Return the inverse of what the two forces of a pair do to the state."""
+    Phi, gamma = model.flow(1.0)
+    return np.linalg.inv(np.column_stack([Phi @ gamma, gamma]))
+
+
+@dataclass(frozen=True)
+class DeadbeatGains:
+    """What an error of the sensed state changes the two forces of a pair by.
+
+    Attributes
+    ----------
+    position : tuple of float
+        [N/m], of the first force and of the second.
+    velocity : tuple of float
+        [N s/m].
+    count : float or None
+        The larger change of a force that one encoder count of position makes, velocity by backward difference [N]; None
+        without an encoder.
+    force_max : float or None
+        [N]
+    """
+
+    position: tuple
+    velocity: tuple
+    count: float | None
+    force_max: float | None
+
+    def __str__(self):
+        text = (
+            f"the pair's forces change by {self.position[0]:.4g} and {self.position[1]:.4g} N per metre, "
+            f"{self.velocity[0]:.4g} and {self.velocity[1]:.4g} N per m/s"
+        )
+        if self.count is None:
+            return text
+        most = "" if self.force_max is None else f" of the {self.force_max:g} N the motor has"
+        return f"{text}; one encoder count by {self.count:.3g} N{most}"
+
+
+def deadbeat_gains(paddle, *, hand=None):
+    """Gains from the sensed state to the two forces of a dead-beat pair: some M/T^2, so they blow up as T goes to 0.
+
+    The error of a crossing that is located shrinks as T^3, faster than the gains grow; the errors of an encoder and of
+    the model do not.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> print(hl.deadbeat_gains(hl.SimulatedPaddle(m=0.05, b=0, T=1e-3, counts_per_metre=1e5, force_max=5)))
+    the pair's forces change by 5e+04 and -5e+04 N per metre, 75 and -25 N per m/s; one encoder count by 1.25 N of the 5 N the motor has
+    """
+    model = WallModel.of(paddle, K=1.0, hand=hand)
+    two = model.flow(2.0)[0]
+    rows = _inverse(model) @ two
+    count, T = getattr(paddle, "counts_per_metre", None), model.T
+    change = None if count is None else float(abs(rows.sum(axis=1)).max() / count)
+    return DeadbeatGains(
+        tuple(map(float, rows[:, 0])), tuple(map(float, rows[:, 1] * T)), change, getattr(paddle, "force_max", None)
+    )

@@ -1,0 +1,114 @@
+"""The model that a law of Section 23.4.1 predicts with: handle, hand and wall as one switched second-order system.
+
+    M x'' = push - b x' - k x - F        F = K p + B x' where p = x - x_o >= 0, else 0
+
+with M, b, k of handle and hand together, and push the constant force of the hand. The laws count time in periods and
+force in metres of the wall's spring: ``w = T v`` and ``f = F/K`` are lengths like p, and every coefficient is a number.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..device.transition import transition
+from ..errors import AnalysisError
+from ..limits.limit import MOST_PERIODS, check_number, whole_and_fraction
+
+
+@dataclass(frozen=True, kw_only=True)
+class WallModel:
+    """Handle, hand and target wall in numbers.
+
+    Attributes
+    ----------
+    M, b, k : float
+        Mass [kg], damping [N s/m] and stiffness [N/m] of handle and hand.
+    push : float
+        The hand's constant force at x = 0 [N], its spring's included.
+    K, B : float
+        The wall that is meant: stiffness [N/m] > 0 and damping [N s/m].
+    T, delay : float
+        Sampling period and computational delay [s].
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.35, b=0, T=0.01, hand=hl.Hand(m=0.006, k=500, intent=0.01))
+    >>> print(WallModel.of(paddle, K=5000))
+    M = 0.356 kg, b = 0 N s/m, k = 500 N/m, push = 5 N; wall K = 5000 N/m, B = 0 N s/m, T = 0.01 s, delay = 0 s
+    """
+
+    M: float
+    b: float
+    k: float
+    push: float
+    K: float
+    B: float
+    T: float
+    delay: float
+
+    @classmethod
+    def of(cls, paddle, *, K, B=0.0, hand=None):
+        """Return the model of a paddle in a hand; without one, of the hand the paddle has."""
+        lacking = [name for name in ("m", "b", "T", "delay", "hand") if not hasattr(paddle, name)]
+        if lacking:
+            raise AnalysisError(
+                f"a {type(paddle).__name__} has no {lacking[0]}; needs the paddle's constants, hl.SimulatedPaddle(m=..., b=..., T=...)"
+            )
+        hand = paddle.hand if hand is None else hand
+        of_hand = dict.fromkeys(("m", "b", "k", "push"), 0.0)
+        if hand is not None:
+            of_hand = {name: getattr(hand, name) for name in of_hand}
+            if hand.moves:
+                raise AnalysisError(
+                    "the hand's intent moves; a law predicts with a hand at one place: give hand=hl.Hand(..., intent=place), "
+                    "and bind push to its force"
+                )
+        intent = 0.0 if hand is None or hand.intent is None else hand.intent
+        return cls(
+            M=check_number("m", paddle.m + of_hand["m"], "kg", "the handle needs a mass m > 0", lambda a: a > 0),
+            b=check_number("b", paddle.b + of_hand["b"], "N s/m", "handle and hand need b >= 0", lambda a: a >= 0),
+            k=check_number("hand k", of_hand["k"], "N/m", "needs k >= 0", lambda a: a >= 0),
+            push=of_hand["push"] + of_hand["k"] * intent,
+            K=check_number("K", K, "N/m", "a wall needs K > 0", lambda a: a > 0),
+            B=check_number("B", B, "N s/m", "the wall that is meant needs B >= 0", lambda a: a >= 0),
+            T=check_number("T", paddle.T, "s", "a sampling period needs T > 0", lambda a: a > 0),
+            delay=check_number("delay", paddle.delay, "s", "needs delay >= 0", lambda a: a >= 0),
+        )
+
+    @property
+    def lag(self):
+        """Whole periods of the delay and the fraction that is left."""
+        return whole_and_fraction(self.delay, self.T, most=MOST_PERIODS)
+
+    def flow(self, periods, wall=False):
+        """Return the exact motion over a time in periods, inside the wall or outside.
+
+        Returns
+        -------
+        Phi : array, shape (2, 2)
+            On (p, w), both in metres.
+        gamma : array, shape (2,)
+            What a constant force of one metre of the spring adds.
+        """
+        T, K = self.T, self.K
+        phi = transition(self.M, self.b + wall * self.B, self.k + wall * K, periods * T)
+        phi = {name: float(value) for name, value in phi.items()}
+        Phi = np.array([[phi["xx"], phi["xv"] / T], [phi["vx"] * T, phi["vv"]]])
+        return Phi, np.array([phi["xu"] * K, phi["vu"] * K * T])
+
+    def rates(self, wall):
+        """Return beta, kappa and mu of p'' = -beta p' - kappa p + mu f, time in periods."""
+        T, M = self.T, self.M
+        return (self.b + wall * self.B) * T / M, (self.k + wall * self.K) * T**2 / M, self.K * T**2 / M
+
+    @property
+    def rest(self):
+        """What a push of one metre of the spring makes the handle rest at, inside the wall [m]."""
+        return self.K / (self.K + self.k)
+
+    def __str__(self):
+        return (
+            f"M = {self.M:g} kg, b = {self.b:g} N s/m, k = {self.k:g} N/m, push = {self.push:g} N; wall K = {self.K:g} N/m, "
+            f"B = {self.B:g} N s/m, T = {self.T:g} s, delay = {self.delay:g} s"
+        )
