@@ -27,6 +27,8 @@ from .tracing import Tracing
 from .value_limits import kept_stable
 
 REAL_OF = {"float32": "f32", "float64": "f64"}
+#: signals from which on they are resolved in the order written, and not each where it is first named
+LONG_CHAIN = 50
 
 
 class Lowering:
@@ -68,6 +70,8 @@ class Lowering:
         """Trace the tick in the order it runs; outside of ``ranges``, of coordinates, the force is no number."""
         real = self.tracing.real
         before = self.force_at == "before"
+        for sample in self.form.updates if len(self.form.updates) > LONG_CHAIN else ():
+            self.at_sample(sample)  # one by one: resolved from the last, a chain of them is one deep expression
         force = self.at_sample(self.form.force) if before else None
         units, outputs = self.scene.watch_units, []
         for name, expr in self.form.watch.items():
