@@ -20,13 +20,15 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..scene.taps import LEAD, TAPS
+from .colgate import largest_passive_stiffness
 from .limit import MOST_PERIODS, Limit, check_law, check_number, whole_and_fraction
+from .linear_law import LinearLaw
 
 KIND = "passivity: any passive hand, sufficient"
 NO_VELOCITY = "its exact velocity jumps at the samples: a hand that moves only there draws energy at any stiffness"
 
 
-def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh"):
+def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0):
     """Largest stiffness that a passive hand of any kind cannot set chattering, Eq. (23.10) and its general form.
 
     Necessary and sufficient where the spring always acts. For the unilateral wall sufficient with law "zoh" and no delay;
@@ -44,6 +46,9 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh"):
         Computational delay [s], whole and fractional periods alike, >= 0.
     law : {"zoh", "half_sample", "backward_difference", "ellis"}
         Eqs. (23.1), (23.3), (23.5), (23.7).
+    velocity_filter : float
+        Time constant tau [s] >= 0 of a first-order filter of the damper's velocity:
+        ``v[n] = (tau v[n-1] + x[n] - x[n-1])/(tau + T)``. It relieves the device of a damper B > 0, not of B < 0.
 
     Returns
     -------
@@ -71,6 +76,8 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh"):
         return Limit(0.0, None, KIND, f"law {law}: {NO_VELOCITY}", notes)
     if b == 0:
         return Limit(0.0, None, KIND, "b = 0: without device damping nothing pays for the hold", notes)
+    if velocity_filter and B:
+        return _with_filter(b, T, B, delay, law, velocity_filter, notes)
     beta = B / b
     _, margin = _worst(_law_taps(0.0, beta, law), whole, fraction, 1.0)
     if margin < 0:
@@ -119,6 +126,16 @@ def required_damping(*, K, T, B=0.0, delay=0.0, law="zoh"):
             break
         b = asked
     return b
+
+
+def _with_filter(b, T, B, delay, law, tau, notes):
+    """The limit by a search over frequencies: a filtered velocity has no finite taps."""
+    spring, damper = LinearLaw.of(law, K=1.0, T=T), LinearLaw.of("zoh", K=0.0, B=B, T=T, velocity_filter=tau)
+    K, hertz = largest_passive_stiffness(spring, damper, b=b, delay=delay)
+    name = f"B = {B:g} N s/m on a velocity filtered over {1e3 * tau:g} ms"
+    if not K:
+        return Limit(0.0, None, KIND, f"{name} alone is active: it needs more than b = {b:g} N s/m", notes)
+    return Limit(K, hertz, KIND, f"b = {b:g} N s/m is spent, with {name}", (*notes, _unilateral("filtered", delay)))
 
 
 def _checked(T, B, delay, law):

@@ -1,0 +1,203 @@
+"""Colgate and Schenkel's condition for any linear law, frequency by frequency: who makes energy, and where.
+
+A force ``F = H(z) x`` held over each period is passive on a device of damping b where, at every theta = w T up to pi,
+
+    b > (T/2) Re{(1 - e^(-j theta)) H(e^(j theta))} / (1 - cos theta).
+
+The right side is what the cheapest motion through the samples asks for: straight lines from sample to sample. A pure
+sinusoid feels the held force as a damper of its own,
+
+    b_eq(theta) = -(T/theta^2) Re{(1 - e^(-j theta)) H(e^(j theta))},
+
+negative where the law makes energy. The two are one below a tenth of the sampling rate; near Nyquist the straight lines
+ask for up to pi^2/4 of what the sinusoid asks for.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import AnalysisError
+from .limit import check_number
+from .linear_law import LinearLaw, filtered_damper
+from .plots import plot_passivity_margin
+from .port import asked, negative, required, unstable_pole
+
+#: a stiffness beside which the next cut has nothing to add
+SETTLED = 1e-13
+
+
+@dataclass(frozen=True)
+class PassivityMargin:
+    """What a law asks of a device's damping at every frequency, and what is left.
+
+    Attributes
+    ----------
+    law : LinearLaw
+    b : float
+        Damping of the device [N s/m].
+    delay : float
+        [s]
+    required : float
+        Least damping [N s/m] with which the law is passive in every passive hand; inf where none is enough.
+    frequency : float
+        That asks for it [Hz].
+    """
+
+    law: LinearLaw = field(repr=False)
+    b: float
+    delay: float
+    required: float
+    frequency: float
+
+    @property
+    def margin(self):
+        """Damping of the device that is left over [N s/m]."""
+        return self.b - self.required
+
+    @property
+    def passive(self):
+        return self.b >= self.required
+
+    def asked(self, theta):
+        """Return the damping [N s/m] that motion at theta = w T asks of the device, 0 < theta <= pi; shape (P,)."""
+        law = self.law
+        return asked(law.A, law.B, law.C, law.D, law.T, np.atleast_1d(np.asarray(theta, dtype=float)), self.delay)
+
+    def equivalent_damper(self, theta):
+        """Return the damper [N s/m] as which a sinusoid of theta = w T feels the law; negative: it draws energy."""
+        return equivalent_damper(self.law, theta, delay=self.delay)
+
+    def plot(self):
+        """Draw what each frequency asks for, what a pure sinusoid asks for, and what the device has."""
+        return plot_passivity_margin(self)
+
+    def __str__(self):
+        verdict = "passive in every passive hand" if self.passive else "not passive"
+        return (
+            f"{self.law.name}: {verdict}. It asks for b = {self.required:.6g} N s/m, at {self.frequency:.4g} Hz; the device "
+            f"has {self.b:.6g} N s/m, {abs(self.margin):.3g} {'to spare' if self.passive else 'too little'}"
+        )
+
+
+def passivity_margin(law, *, b, delay=0.0):
+    """Passivity of a linear law on a device of damping b, frequency by frequency (Colgate and Schenkel 1997).
+
+    Necessary and sufficient for a law that always acts; for a unilateral wall it says nothing about the switching, except
+    for the plain law of Eq. (23.1) without delay.
+
+    Parameters
+    ----------
+    law : LinearLaw
+        Of a name, of taps or of a scene.
+    b : float
+        Viscous damping of the device [N s/m], >= 0.
+    delay : float
+        Computational delay [s], whole and fractional periods alike, >= 0.
+
+    Returns
+    -------
+    PassivityMargin
+
+    Raises
+    ------
+    AnalysisError
+        The law is unstable with the handle held, or of negative stiffness, with which no damping is enough.
+
+    Examples
+    --------
+    >>> margin = passivity_margin(LinearLaw.of("backward_difference", K=100.0, T=1e-3), b=0.15)
+    >>> round(margin.required, 9), round(margin.frequency, 3), round(margin.margin, 9)
+    (0.1, 500.0, 0.05)
+    """
+    b = check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda v: v >= 0)
+    delay = check_number("delay", delay, "s", "a force cannot come before its sample: delay >= 0", lambda v: v >= 0)
+    if not isinstance(law, LinearLaw):
+        raise AnalysisError(f"law = {law!r}; needs a LinearLaw, as hl.LinearLaw.of('zoh', K=200, T=1e-3)")
+    pole = unstable_pole(law.A, law.B, law.C)
+    if pole is not None:
+        raise AnalysisError(f"{law.name}: unstable with the handle held (a pole at {pole:.6g}); needs a stable law")
+    if law.stiffness < 0:
+        raise AnalysisError(f"{law.name}: {negative(law.stiffness)}, and no damping of a device keeps it; needs H(1) >= 0")
+    most, theta = required(law.A, law.B, law.C, law.D, law.T, delay)
+    return PassivityMargin(law, b, delay, most, theta / (2 * math.pi * law.T))
+
+
+def equivalent_damper(law, theta, *, delay=0.0):
+    """Return the damper [N s/m] as which a sinusoid x of theta = w T > 0 feels a held law, past Nyquist too.
+
+    The part of the held force in phase with the velocity, over the velocity: at whole multiples of theta = pi averaged
+    over the phase between motion and samples.
+
+    Examples
+    --------
+    >>> law = LinearLaw.of("zoh", K=100.0, T=1e-3)
+    >>> round(float(equivalent_damper(law, 1e-3)), 6)  # slow motion feels -K T/2
+    -0.05
+    """
+    theta = np.asarray(theta, dtype=float)
+    late = np.exp(-1j * theta * delay / law.T)
+    return -law.T / theta**2 * ((1 - np.exp(-1j * theta)) * law.at(theta) * late).real
+
+
+def wall_damping(*, K, T, B=0.0, velocity_filter=0.0):
+    """Least device damping [N s/m] of a wall with a damper on a filtered velocity: Eq. (23.10) and its extension.
+
+    ``K T/2 + |B|`` for a damper on the plain backward difference. A first-order filter of time constant tau leaves
+    ``K T/2 + B/(1 + 2 tau/T)`` for B >= 0, which asks at Nyquist where the filter is small; for B < 0 it changes
+    nothing, as slow motion asks (after Brown 1995, derived anew). No delay.
+
+    Examples
+    --------
+    >>> round(wall_damping(K=100, T=1e-3, B=0.3, velocity_filter=1e-3), 9)
+    0.15
+    """
+    K = check_number("K", K, "N/m", "a wall needs K >= 0. A negative spring feeds energy to the user.", lambda v: v >= 0)
+    T = check_number("T", T, "s", "a sampling period needs T > 0", lambda v: v > 0)
+    tau = check_number("velocity_filter", velocity_filter, "s", "needs a time constant >= 0", lambda v: v >= 0)
+    B = check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
+    return K * T / 2 + (B / (1 + 2 * tau / T) if B >= 0 else -B)
+
+
+def largest_passive_stiffness(spring, beside, *, b, delay=0.0):
+    """Return (K, frequency [Hz]): the largest K for which ``K*spring + beside`` is passive on a device of damping b.
+
+    The damping asked for at one frequency is convex in K, so the K at which the worst frequency of one K is satisfied
+    is an upper bound, and the sequence of such cuts falls to the answer. K = 0 where ``beside`` alone is active.
+
+    Parameters
+    ----------
+    spring, beside : LinearLaw
+        Of a unit stiffness, and of what acts with it whatever K.
+    """
+    most, theta = required(beside.A, beside.B, beside.C, beside.D, beside.T, delay)
+    if most > b:
+        return 0.0, theta / (2 * math.pi * beside.T)
+    K = 8 * (b + most) / beside.T + 1e-300  # above every limit: K T/b is 2 at most, and 4 with a damper of either sign
+    at = None
+    for _ in range(60):
+        law = K * spring + beside
+        most, theta = required(law.A, law.B, law.C, law.D, law.T, delay)
+        if most <= b * (1 + SETTLED):
+            break
+        lower, at = _cut(spring, beside, b, theta, delay, K), theta
+        if lower >= K * (1 - SETTLED):
+            break
+        K = lower
+    return K, None if at is None else at / (2 * math.pi * beside.T)
+
+
+def _cut(spring, beside, b, theta, delay, K):
+    """Return the stiffness below K at which theta asks for exactly b: by bisection, a convex function of one K crosses once."""
+    low, high = 0.0, K
+    while (middle := (low + high) / 2) not in (low, high):
+        law = middle * spring + beside
+        too_much = asked(law.A, law.B, law.C, law.D, law.T, np.array([theta]), delay)[0] > b
+        low, high = (low, middle) if too_much else (middle, high)
+    return high
+
+
+def filtered_wall(T, B, velocity_filter):
+    """Return (spring, beside) of the plain wall with a damper on a filtered velocity, for the search in K."""
+    return LinearLaw.of("zoh", K=1.0, T=T), filtered_damper(B, T, velocity_filter)

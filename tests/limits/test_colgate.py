@@ -1,0 +1,135 @@
+"""What a law asks of the device: against polynomials, against the energy of whole motions, against closed forms."""
+
+import numpy as np
+import pytest
+
+import hapticlab as hl
+from hapticlab.errors import AnalysisError
+from hapticlab.limits.colgate import (
+    equivalent_damper,
+    filtered_wall,
+    largest_passive_stiffness,
+    passivity_margin,
+    wall_damping,
+)
+from hapticlab.limits.linear_law import LinearLaw
+from hapticlab.limits.passivity import required_damping
+
+T = 1e-3
+
+
+@pytest.mark.parametrize("law", ["zoh", "backward_difference", "ellis"])
+@pytest.mark.parametrize(("B", "delay"), [(0.0, 0.0), (0.04, 1.0), (-0.03, 0.4), (0.02, 2.7)])
+def test_laws_of_finite_memory_against_the_roots_of_a_polynomial(law, B, delay):
+    """Two algorithms that share no line: a search over frequencies, and stationary points by Chebyshev roots."""
+    margin = passivity_margin(LinearLaw.of(law, K=90, T=T, B=B), b=0.2, delay=delay * T)
+    assert margin.required == pytest.approx(required_damping(K=90, T=T, B=B, delay=delay * T, law=law), rel=1e-9)
+    assert margin.passive == (margin.required <= 0.2) and margin.margin == 0.2 - margin.required
+
+
+def asked_by_energy(law, periods):
+    """Least b with which no motion of so many periods, repeated, draws energy: eigenvalues, no frequency.
+
+    Force on displacement and damping on displacement are two quadratic forms of the positions at the samples.
+    """
+    shift = np.roll(np.eye(periods), 1, axis=1).T  # row n: x[n-1]
+    n = len(law.A)
+    # the periodic answer of the state s+ = A s + B x, all samples in one system
+    state = np.linalg.solve(np.eye(n * periods) - np.kron(shift, law.A), np.kron(shift, law.B[:, None])) if n else None
+    force = law.D * np.eye(periods) + (np.kron(np.eye(periods), law.C[None, :]) @ state if n else 0.0)
+    step = shift.T - np.eye(periods)  # x[n+1] - x[n]
+    work, cost = step.T @ force, step.T @ step
+    moving = np.linalg.svd(step)[2][:-1].T  # without the rigid shift
+    values = np.linalg.eigvals(np.linalg.solve(moving.T @ cost @ moving, moving.T @ (work + work.T) @ moving / 2))
+    return -values.real.min() * law.T
+
+
+@pytest.mark.parametrize(("B", "tau"), [(0.5, 2e-3), (0.3, 0.0), (1.2, 0.4e-3)])
+def test_a_filtered_velocity_against_the_energy_of_every_motion(B, tau):
+    """At Nyquist, which an even number of samples can move at, the closed form is met and not only neared."""
+    spring, damper = filtered_wall(T, B, tau)
+    law = 150 * spring + damper
+    expected = wall_damping(K=150, T=T, B=B, velocity_filter=tau)
+    assert expected == pytest.approx(150 * T / 2 + B / (1 + 2 * tau / T), rel=1e-15)
+    assert asked_by_energy(law, 40) == pytest.approx(expected, rel=1e-10)
+    assert passivity_margin(law, b=1.0).required == pytest.approx(expected, rel=1e-10)
+
+
+def test_motions_ask_for_no_more_than_the_worst_frequency():
+    law = LinearLaw.of("ellis", K=150, T=T, B=-0.4, velocity_filter=1.7e-3, filtered=True)
+    theta = 2 * np.pi * np.arange(1, 33) / 64
+    margin = passivity_margin(law, b=1.0)
+    assert asked_by_energy(law, 64) == pytest.approx(margin.asked(theta).max(), rel=1e-9)
+    assert asked_by_energy(law, 64) <= margin.required * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("tau", [0.0, 1e-3, 8e-3])
+@pytest.mark.parametrize("B", [0.06, -0.06])
+def test_largest_stiffness_with_a_filtered_velocity(B, tau):
+    """A filter buys back part of what a positive damper asks for, and nothing of what a negative one does."""
+    K, hertz = largest_passive_stiffness(*filtered_wall(T, B, tau), b=0.1)
+    expected = 2 / T * (0.1 - (B / (1 + 2 * tau / T) if B > 0 else -B))
+    assert K == pytest.approx(expected, rel=1e-7)  # slow motion is looked at down to w T = 1e-5
+    assert hertz == pytest.approx(500 if B > 0 else 0, abs=0.1)
+    limit = hl.passivity_limit(b=0.1, T=T, B=B, velocity_filter=tau)
+    assert limit.K == pytest.approx(expected, rel=1e-7) and ("filtered" in limit.reason) == (tau > 0)
+
+
+def test_largest_stiffness_with_a_fraction_of_delay_is_its_own_inverse():
+    spring, damper = LinearLaw.of("ellis", K=1, T=T), LinearLaw.of("zoh", K=0, B=0.03, T=T, velocity_filter=2e-3)
+    K, _ = largest_passive_stiffness(spring, damper, b=0.1, delay=0.6e-3)
+    assert passivity_margin(K * spring + damper, b=0.1, delay=0.6e-3).required == pytest.approx(0.1, rel=1e-9)
+    assert largest_passive_stiffness(spring, LinearLaw.of("zoh", K=0, B=0.3, T=T), b=0.1)[0] == 0.0
+
+
+@pytest.mark.parametrize("law", [LinearLaw.of("ellis", K=150, T=T), LinearLaw.of("zoh", K=20, T=T, B=1, velocity_filter=3e-3)])
+@pytest.mark.parametrize("cycles", [3, 17, 45])
+def test_a_sinusoid_feels_the_equivalent_damper(law, cycles):
+    """The work of the held force over 64 samples and whole cycles, past Nyquist too, against b (x')^2 summed."""
+    theta, samples = 2 * np.pi * cycles / 64, np.arange(64)
+    force = np.zeros(64)
+    response, past = law.impulse(4000), np.arange(4000)  # the filter has forgotten by then
+    for k in samples:
+        force[k] = response @ np.cos(theta * (k - past) + 0.3)
+    x = np.cos(theta * np.arange(65) + 0.3)
+    damper = force @ np.diff(x) / (64 * T * (theta / T) ** 2 / 2)
+    assert equivalent_damper(law, theta) == pytest.approx(damper, rel=1e-9)
+
+
+def test_equivalent_dampers_of_the_chapter():
+    """Ellis and Sarkar's law dissipates below a quarter of the sampling rate and makes energy above, Eq. (23.7)."""
+    theta = np.linspace(0.05, np.pi, 30)
+    rise = (1 - np.cos(theta)) / theta**2
+    closed = {
+        "zoh": -rise, "backward_difference": -rise * (1 - np.cos(theta)),
+        "ellis": 2 * rise * np.cos(theta) * (1 - np.cos(theta)),
+    }  # fmt: skip
+    for law, expected in closed.items():
+        found = equivalent_damper(LinearLaw.of(law, K=100, T=T), theta)
+        assert found == pytest.approx(100 * T * expected, abs=1e-12), law
+
+
+def test_refusals_and_words():
+    with pytest.raises(AnalysisError, match="negative stiffness, -50 N/m"):
+        passivity_margin(LinearLaw.of("zoh", K=-50, T=T), b=1.0)
+    unstable = LinearLaw(np.diag([1.1]), np.ones(1), np.ones(1), 500.0, T, "runs off")
+    with pytest.raises(AnalysisError, match=r"runs off: unstable with the handle held \(a pole at 1.1\)"):
+        passivity_margin(unstable, b=1.0)
+    with pytest.raises(AnalysisError, match="needs a LinearLaw"):
+        passivity_margin("zoh", b=1.0)
+    with pytest.raises(AnalysisError, match="b = -1"):
+        passivity_margin(LinearLaw.of("zoh", K=50, T=T), b=-1.0)
+    short = passivity_margin(LinearLaw.of("zoh", K=100, T=T, B=0.02), b=0.06)
+    assert str(short) == (
+        "zoh, K = 100 N/m, B = 0.02 N s/m: not passive. It asks for b = 0.07 N s/m, at 500 Hz; "
+        "the device has 0.06 N s/m, 0.01 too little"
+    )
+    assert "passive in every passive hand" in str(passivity_margin(LinearLaw.of("zoh", K=100, T=T), b=0.06))
+
+
+def test_plot_shows_the_worst_frequency_and_the_device():
+    axes = passivity_margin(LinearLaw.of("backward_difference", K=100, T=T), b=0.06).plot().axes[0]
+    asked, sinusoid, device, worst = axes.lines
+    assert asked.get_ydata().max() == pytest.approx(0.1, rel=1e-6) == worst.get_ydata()[0]
+    assert device.get_ydata()[0] == 0.06 and sinusoid.get_ydata().max() < 0.1
+    assert "Hz" in axes.get_xlabel() and "N s/m" in axes.get_ylabel()
