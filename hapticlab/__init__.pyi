@@ -60,9 +60,12 @@ from .experiments.reaching import Load, follow, reach
 from .experiments.shared_control import assistance
 from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
 from .experiments.up_down import UpDown
+from .limits.colgate import equivalent_damper, passivity_margin, wall_damping
 from .limits.damper import damper_limit
 from .limits.excess import passivity_ledger
+from .limits.linear_law import LinearLaw
 from .limits.local_stiffness import local_stiffness
+from .limits.nyquist_disk import nyquist_disk
 from .limits.passivity import passivity_limit
 from .limits.port import port_damping
 from .limits.stability import stability_limit
@@ -102,6 +105,7 @@ __all__ = [
     "Hand",
     "HandleMotion",
     "HapticlabError",
+    "LinearLaw",
     "LinkError",
     "Load",
     "MassError",
@@ -151,6 +155,7 @@ __all__ = [
     "doctor",
     "energy",
     "energy_books",
+    "equivalent_damper",
     "felt_impulse",
     "filtered_velocity",
     "follow",
@@ -176,11 +181,13 @@ __all__ = [
     "methods",
     "micro_impulse",
     "n",
+    "nyquist_disk",
     "order_of",
     "parameters",
     "passivity_controller",
     "passivity_ledger",
     "passivity_limit",
+    "passivity_margin",
     "passivity_observer",
     "passivity_trace",
     "penalty",
@@ -218,6 +225,7 @@ __all__ = [
     "virtual_coupler",
     "virtual_damper",
     "wall",
+    "wall_damping",
     "wall_energy",
     "when",
     "window_velocity",
