@@ -34,7 +34,9 @@ class Swing:
         ("x", "m"), ("v", "m/s"), ("heading", "m/s"), ("anchor", "m"), ("turns", "1"),
         ("largest_before", "m"), ("least_before", "m"), ("largest", "m"),
     )  # fmt: skip
-    outputs = _f64(("largest_before", "m"), ("least_before", "m"), ("largest", "m"), ("turns", "1"), ("heading", "m/s"))
+    outputs = _f64(
+        ("largest_before", "m"), ("least_before", "m"), ("largest", "m"), ("turns", "1"), ("heading", "m/s"), ("v", "m/s")
+    )  # fmt: skip
 
     def __init__(self, ticks, T):
         self.third, self.last, self.T = float(ticks - 2 * (ticks // 4)), float(ticks - ticks // 4), T
@@ -58,7 +60,7 @@ class Swing:
         anchor, turns = select(turned, extreme, anchor), select(turned, turns + 1.0, turns)
         heading = select(equal(v, 0.0), heading, v)
         new = [x, v, heading, anchor, turns, largest_before, least_before, largest]
-        return [largest_before, least_before, largest, turns, heading], new
+        return [largest_before, least_before, largest, turns, heading, v], new
 
 
 class Chatter(Swing):
@@ -70,11 +72,11 @@ class Chatter(Swing):
     unit = "m"
 
     def value(self, outputs, *, count, quarter):
-        largest_before, least_before, largest, turns, heading = outputs
+        largest_before, least_before, largest, turns, heading, v = outputs
         seen = largest > np.maximum(1.001 * count, LEAST)
         lasting = seen & ~decaying(largest, least_before, largest_before)
         still = (turns == 0) & (heading == 0)
-        away = (turns > 0) & (largest == 0) & (abs(heading) * quarter > LEAST)  # thrown off, and not back in time
+        away = (turns > 0) & (largest == 0) & (abs(v) * quarter > LEAST)  # thrown off, and not back in time
         unknown = still | away | (seen & (largest_before == 0))
         return np.where(unknown, np.nan, np.where(lasting, largest / 2, 0.0))
 
@@ -85,7 +87,7 @@ class Growth(Swing):
     unit = "1/s"
 
     def value(self, outputs, *, count, quarter):
-        largest_before, _, largest, _, _ = outputs
+        largest_before, _, largest, *_ = outputs
         with np.errstate(divide="ignore", invalid="ignore"):
             rate = np.log(largest / largest_before) / quarter
         return np.where((largest_before > 0) & (largest > 0), rate, np.nan)

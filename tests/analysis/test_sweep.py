@@ -293,3 +293,11 @@ def test_a_light_handle_is_refused_by_its_value_on_the_axes():
     sprung = replace(PUSHED, hand=Hand(k=1e13))
     with pytest.raises(PaddleError, match="m = 1e-12 kg; with b = 0 N s/m.* T = 0.001 s .*needs m >= 1.01e-11 kg"):
         sweep(wall(), sprung, k=100.0, m=[1e-12, 1.0], b=[0.0, 1e9], T=[1e-5, 1e-3])
+
+
+def test_a_handle_that_friction_stops_rests():
+    """It turned round once and stands still, exactly: no handle thrown off that has yet to come back."""
+    paddle = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, coulomb=0.3, hand=Hand(push=1.0))
+    log = paddle.run(wall()(k=100.0, x_o=0.0), duration=1.0, v=0.1)
+    assert log.v[-1] == 0 and (np.diff(np.sign(log.v[log.v != 0])) != 0).any()
+    assert sweep(wall(), paddle, progress=False, v=0.1, k=[100.0]).values == 0
