@@ -77,9 +77,11 @@ def passivity_controller(
     * by a damper, ``form="series"``: F = f + alpha (x(n) - x(n-1))/T, with alpha = -credit T/(x(n) - x(n-1))^2. Both
       share the motion and their forces add. It takes back whatever is owed, from any scene, as long as the handle moves;
       it cannot act on a handle at rest, and is felt as drag, after a contact too.
-    * by letting the spring slip, ``form="parallel"``: the scene sees x - slip, and slip grows by -credit/F a sample. Both
-      share the force and their motions add. It lets go what is stored before it is given back, at rest too; it takes
-      nothing back outside, and the wall lies deeper by slip until the handle has left it. Needs ``stored``.
+    * by a dashpot in line, ``form="parallel"``: the scene sees x - slip, and slip grows by T beta F a sample, with
+      beta = -credit/(T F^2). Both share the force and their motions add. It lets go of what is stored before that is
+      given back, at rest too; it takes nothing back outside, and a wall lies deeper by slip until the handle has left it:
+      under a steady push one that generates energy sinks. Needs ``stored``. The credit of a spring K stays
+      within one period's leak, K/2 times the square of how far the spring moved, and the slip with the handle.
 
     A human who is active for long fills the credit of an environment that dissipates, which may then be active for as
     long without being stopped. ``forget`` and ``credit_max`` are the cures: they strike off credit, never debt, and so
@@ -93,7 +95,8 @@ def passivity_controller(
         For "series": the largest damper, to be bound here or later. A sampled damper must not be stiffer than
         :func:`hapticlab.damper_limit` allows, and is passive itself up to the device's own b; what is owed beyond waits.
     beta_max : float [m/(N s)]
-        For "parallel": the fastest slip, in m/s for each newton; to be bound here or later.
+        For "parallel": the fastest slip, in m/s for each newton; to be bound here or later. A spring K that slips by
+        1/(K T) has let go of everything within a sample.
     force_max : float [N], optional
         Limit of the whole force, which the observer then knows of; the motor's.
     forget : float [s], optional
@@ -155,21 +158,18 @@ def _series(scene, p, stored, predict, lag):
 
 
 def _parallel(scene, p, stored, predict, lag):
-    credit, sent, slip = signal("credit", unit="J"), signal("F_sent", unit="N"), signal("slip", unit="m")
-    due, held, whole = signal("due", unit="J"), signal("stored_now", unit="J"), signal("F_whole", unit="N")
-    last = sent(n - 1)
-    before = stored.xreplace({x(n): x(n) - slip(n - 1)})
-    step = when((due(n) < 0) & (last**2 > 0), sp.Min(p["beta_max"] * T * abs(last), -due(n) / abs(last)))
-    step = when(last > 0, step, -step)
+    credit, sent, beta = signal("credit", unit="J"), signal("F_sent", unit="N"), signal("beta", unit="m/(N*s)")
+    slip, whole = signal("slip", unit="m"), signal("F_whole", unit="N")
+    F = sent(n)
+    left = stored.xreplace({x(n): x(n) - slip(n)})
     equations = (
         _is(whole(n), scene.force),  # without slip: zero once the handle is out of the wall
-        _is(due(n), _kept(credit(n - 1), p) + sent(n - 1 - lag) * _moved() - (before - held(n - 1))),
-        _is(slip(n), when(sp.Eq(whole(n), 0), 0, slip(n - 1) + step)),
-        _is(held(n), stored.xreplace({x(n): x(n) - slip(n)})),
-        _is(credit(n), due(n) + before - held(n)),
-        _is(sent(n), _limited(_slipped(scene, slip), p)),
+        _is(slip(n), when(sp.Eq(whole(n), 0), 0, slip(n - 1) + T * beta(n - 1) * sent(n - 1))),
+        _is(credit(n), _kept(credit(n - 1), p) + sent(n - 1 - lag) * _moved() - (left - delay(left))),
+        _is(F, _limited(_slipped(scene, slip), p)),
+        _is(beta(n), when((F**2 > 0) & (credit(n) < 0), sp.Min(p["beta_max"], -credit(n) / (T * F**2)))),
     )
-    return sent(n), equations, {"credit": credit(n), "slip": slip(n)}
+    return F, equations, {"credit": credit(n), "slip": slip(n)}
 
 
 def _slipped(scene, slip):
