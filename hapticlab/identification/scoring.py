@@ -17,6 +17,8 @@ STEP = 1e-5
 STEPS, ENOUGH = 30, 1e-2
 #: of a fit that is said to have converged: what another step would gain, in squared standard errors
 SETTLED = 0.02
+#: smallest eigenvalue of the information, its diagonal scaled to one, of a direction that the record tells nothing about
+BLIND = 1e-11
 #: damping of a step at first, its factor after one that was good and one that was not
 DAMPING, EASED, BRACED = 1e-3, 0.2, 6.0
 #: rounds in which sigma and the parameters of a counted record are found in turn
@@ -42,6 +44,8 @@ class Fitted:
     counted : array of bool, shape (L,)
         Fitted as counts in dither; else as numbers.
     converged : array of bool, shape (L,)
+    blind : array, shape (L, P)
+        The direction, over the parameters' scales, in which nothing changes; zeros where there is none.
     """
 
     values: np.ndarray
@@ -51,6 +55,7 @@ class Fitted:
     freedom: np.ndarray
     counted: np.ndarray
     converged: np.ndarray
+    blind: np.ndarray
 
     @property
     def error(self):
@@ -169,4 +174,13 @@ def _finished(motion, y, found, scales, sigma, quantum, weights, freedom, counte
     gradient = np.einsum("npl,nl->lp", slopes, weights * score)
     left = np.einsum("lp,lpq,lq->l", gradient, covariance, gradient)
     stretched = covariance * scales.T[:, :, None] * scales.T[:, None, :]
-    return Fitted(found, stretched, sigma, rest, freedom, counted, left < SETTLED)
+    return Fitted(found, stretched, sigma, rest, freedom, counted, left < SETTLED, _blind(fisher))
+
+
+def _blind(fisher):
+    """Return the direction that the information leaves out, shape (L, P); zeros where it leaves out none."""
+    size = np.sqrt(np.maximum(np.einsum("lpp->lp", fisher), 1e-300))
+    told, directions = np.linalg.eigh(fisher / (size[:, :, None] * size[:, None, :]))
+    away = directions[:, :, 0] / size
+    away = away / np.abs(away).max(axis=1, keepdims=True)
+    return np.where((told[:, 0] < BLIND)[:, None], away, 0.0)

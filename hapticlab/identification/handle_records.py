@@ -1,0 +1,223 @@
+"""Constants of a paddle from what it recorded: coasting, steps, chirps, and several of them together."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import AnalysisError
+from ..records import Telemetry, check_record
+from .paddle_fit import Estimate, PaddleFit
+from .problem import UNITS, Problem, Trace
+
+#: standard gravity [m/s^2]
+GRAVITY = 9.80665
+#: samples after the force has ended that a late force may still reach, and the fewest that tell something
+SETTLES, FEWEST = 5, 20
+#: counts that a handle has to move by to tell anything
+MOVED = 20
+#: share of the largest one from which on a constant is part of what a record leaves open
+PART = 0.05
+FORCE_CONSTANT = (
+    "the force constant cannot be told from motion alone: twice the force on twice the mass with twice the friction moves "
+    "alike. Give a known reference: a record with Record(log, added=...) of a known mass fixed to the handle beside one "
+    "without, or Record.hanging(log, mass) of a weight that pulls on it"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """A record of a free handle, and what is known to have been beside it.
+
+    Attributes
+    ----------
+    log : Telemetry
+    added : float
+        A known mass fixed to the handle [kg].
+    push : float
+        A known constant force on the handle beside the motor's [N], positive into the wall.
+    at_rest : bool
+        The handle was at rest at the first sample.
+
+    Examples
+    --------
+    >>> from hapticlab.records import Telemetry
+    >>> log = Telemetry(t=[0, 1e-3], x=[0, 0], v=[0, 0], F=[0, 0], T=1e-3)
+    >>> Record.hanging(log, 0.05).push           # a weight of 50 g on a thread along the handle's path
+    0.4903325
+    """
+
+    log: Telemetry
+    added: float = 0.0
+    push: float = 0.0
+    at_rest: bool = True
+
+    @classmethod
+    def hanging(cls, log, mass, *, at_rest=True):
+        """Return the record of a handle that a weight pulls into the wall: it adds its force and its mass."""
+        return cls(log, mass, mass * GRAVITY, at_rest)
+
+    def trace(self, first=0):
+        """Return its positions and forces from sample ``first`` on."""
+        check_record(self.log, "identify")
+        if self.log.fault:
+            raise AnalysisError(f"identify: the record ends in a fault, {self.log.fault}; needs one that ran to its end")
+        if self.log.every > 1:
+            raise AnalysisError(
+                f"identify: one sample in {self.log.every} was sent, and the forces between are not known; needs every one: "
+                "connect with a longer T, or watch fewer channels"
+            )
+        return Trace(self.log.x[first:, None], self.log.F[first:], self.log.T, self.added, self.push, self.at_rest)
+
+
+def spin_down(log, *, m=None, counts_per_metre=None, confidence=0.95):
+    """Return damping and Coulomb friction of a handle that coasts to rest with the motor off.
+
+    m x'' = -b x' - coulomb sign(x'), from the last stretch without force. It tells ratios to the mass only.
+
+    Parameters
+    ----------
+    log : Telemetry
+    m : float, optional
+        The mass [kg]; without it b/m [1/s] and coulomb/m [m/s^2] are found.
+    counts_per_metre : float, optional
+        Of the encoder [1/m].
+    confidence : float
+
+    Returns
+    -------
+    PaddleFit
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, coulomb=0.05, noise=1e-5)
+    >>> found = spin_down(paddle.run(hl.virtual_damper()(B=0), duration=0.3, v=0.4), m=0.03)
+    >>> 0.1 in found["b"], 0.05 in found["coulomb"]
+    (True, True)
+    """
+    check_record(log, "spin_down")
+    driven = np.flatnonzero(log.F)
+    first = driven[-1] + 1 + SETTLES if len(driven) else 0
+    if len(log) - first < FEWEST:
+        raise AnalysisError(
+            f"spin_down: the last {max(len(log) - first, 0)} of {len(log)} samples are without force; needs {FEWEST}: "
+            "a kick, then F = 0 until the handle rests"
+        )
+    known = {"m": 1.0 if m is None else m}
+    names = ("b", "coulomb") if m is not None else ("b/m", "coulomb/m")
+    trace = Record(log, at_rest=False).trace(first)
+    return _found(Problem((trace,), ("b", "coulomb"), known, _quantum(counts_per_metre)), names, confidence)
+
+
+def step(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.95):
+    """Return mass, damping, Coulomb friction and delay from steps of force on a free handle.
+
+    Parameters
+    ----------
+    log : Telemetry
+        The forces are taken as the paddle reckons them: the force constant is for :func:`identify`, with a reference.
+    counts_per_metre : float, optional
+    known : dict of str to float, optional
+        Constants that are not sought, of m, b, coulomb, delay.
+    at_rest : bool
+        The handle rests at the first sample.
+    confidence : float
+
+    Returns
+    -------
+    PaddleFit
+    """
+    check_record(log, "step")
+    changes = np.count_nonzero(np.diff(log.F))
+    if not 1 <= changes <= len(log) / 4:
+        raise AnalysisError(
+            f"step: the force changes {changes} times in {len(log)} samples; needs a few steps, each held for a while. For a "
+            "force that always changes use chirp(log), for none spin_down(log)"
+        )
+    return identify(Record(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
+
+
+def chirp(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.95):
+    """Return mass, damping, Coulomb friction and delay from a force that swings faster and faster; as :func:`step`."""
+    check_record(log, "chirp")
+    turns = np.count_nonzero(np.diff(np.sign(np.diff(log.F))))
+    if turns < 3:
+        raise AnalysisError(f"chirp: the force turns {turns} times in {len(log)} samples; needs 3 swings or more")
+    return identify(Record(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
+
+
+def identify(*records, force_constant=False, counts_per_metre=None, known=None, confidence=0.95):
+    """Return a paddle's constants from records of its free handle, all of them together, by maximum likelihood.
+
+    (m + added) x'' = push - scale F - b x' - coulomb sign(x'), F[n] held over [n T + delay, (n+1) T + delay).
+
+    Parameters
+    ----------
+    *records : Record or Telemetry
+    force_constant : bool
+        Seek ``scale`` as well, newtons at the handle for each that the paddle reckons. It needs a known reference.
+    counts_per_metre : float, optional
+        Of the encoder [1/m].
+    known : dict of str to float, optional
+        Constants that are not sought.
+    confidence : float
+
+    Returns
+    -------
+    PaddleFit
+
+    Raises
+    ------
+    AnalysisError
+        If the records do not tell a constant: which, and what would.
+    """
+    known = dict(known or {})
+    if unknown := set(known) - set(UNITS):
+        raise AnalysisError(f"known = {sorted(unknown)}; needs constants of {', '.join(UNITS)}")
+    records = [one if isinstance(one, Record) else Record(one) for one in records]
+    if not records:
+        raise AnalysisError("identify() of no record; needs one or more, log = paddle.run(...)")
+    if force_constant and "m" not in known and not any(one.added or one.push for one in records):
+        raise AnalysisError(FORCE_CONSTANT)
+    sought = tuple(name for name in UNITS if name not in known and (force_constant or name != "scale"))
+    problem = Problem(tuple(one.trace() for one in records), sought, known, _quantum(counts_per_metre))
+    return _found(problem, sought, confidence)
+
+
+def _quantum(counts_per_metre):
+    if counts_per_metre is None:
+        return 0.0
+    if not 0 < abs(counts_per_metre) < np.inf:
+        raise AnalysisError(f"counts_per_metre = {counts_per_metre!r}; needs a number [1/m] other than 0, or None")
+    return 1 / abs(counts_per_metre)
+
+
+def _found(problem, names, confidence):
+    """Solve a problem of one lane and name what was found."""
+    measured = np.concatenate([trace.y[:, 0] for trace in problem.traces])
+    if np.ptp(measured) <= MOVED * problem.quantum:
+        raise AnalysisError(
+            f"identify: the handle moved by {1e3 * np.ptp(measured):.3g} mm; needs more than {MOVED} counts, "
+            f"{1e3 * MOVED * problem.quantum:.3g} mm. Is the motor on, and the force above friction?"
+        )
+    fitted = problem.solve()
+    open_ = np.abs(fitted.blind[0][: len(names)])
+    if open_.any():
+        left = ", ".join(name for name, part in zip(names, open_, strict=True) if part > PART * open_.max())
+        raise AnalysisError(
+            f"identify: these records do not tell {left} from each other, or at all. Seek less (known={{...}}), or move the "
+            "handle otherwise: both ways, faster and slower, with a force that changes"
+            + (f". Also, {FORCE_CONSTANT}" if "scale" in names else "")
+        )
+    half = fitted.half_width(confidence)[:, 0]
+    units = {**UNITS, "b/m": "1/s", "coulomb/m": "m/s^2"}
+    estimates = {
+        name: Estimate(name, float(value), float(value - width), float(value + width), units[name])
+        for name, value, width in zip(names, fitted.values[: len(names), 0], half, strict=False)
+    }
+    rest = fitted.residuals[:, 0]
+    lag = float(np.sum(rest[1:] * rest[:-1]) / max(np.sum(rest**2), 1e-300))
+    return PaddleFit(
+        estimates, confidence, float(fitted.sigma[0]), bool(fitted.counted[0]), problem.quantum,
+        bool(fitted.converged[0]), lag, measured, measured - rest, problem.traces[0].T,
+    )  # fmt: skip
