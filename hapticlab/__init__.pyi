@@ -70,11 +70,18 @@ from .limits.passivity import passivity_limit
 from .limits.port import port_damping
 from .limits.stability import stability_limit
 from .records import PaddleProfile, Telemetry
+from .rendering.compensation_limit import CompensationLimit, compensation_limit
+from .rendering.deadbeat import deadbeat_gains, deadbeat_wall
+from .rendering.digital import digital_gains, digital_wall
+from .rendering.hybrid import hybrid_wall
+from .rendering.predictive import predictive_wall
 from .scene.amount import Amount
+from .scene.compensation import damping_compensation
 from .scene.contact import Contact, friction
 from .scene.contact_laws import impulse, micro_impulse, rigid
 from .scene.curves import Curve, track
 from .scene.device_image import device_image
+from .scene.entry_pulse import braking_pulse, friction_pulse
 from .scene.estimators import VelocityEstimate, backward_velocity, filtered_velocity, kalman_velocity, window_velocity
 from .scene.felt import felt_impulse, pulse_time
 from .scene.fixtures import forbidden_region, guidance, tremor_filter
@@ -97,6 +104,7 @@ __all__ = [
     "Box",
     "Capsule",
     "Circle",
+    "CompensationLimit",
     "ConstantLevels",
     "Contact",
     "Curve",
@@ -141,17 +149,24 @@ __all__ = [
     "assistance",
     "backward_velocity",
     "balance",
+    "braking_pulse",
     "calibrate",
     "chatter",
     "closest",
+    "compensation_limit",
     "compile",
     "connect",
     "contacts_between",
     "coordinate",
     "damper_limit",
+    "damping_compensation",
     "damping_task",
+    "deadbeat_gains",
+    "deadbeat_wall",
     "delay",
     "device_image",
+    "digital_gains",
+    "digital_wall",
     "doctor",
     "energy",
     "energy_books",
@@ -164,6 +179,7 @@ __all__ = [
     "force_filter",
     "forced_choice",
     "friction",
+    "friction_pulse",
     "from_mechanics",
     "gap",
     "ground",
@@ -172,6 +188,7 @@ __all__ = [
     "hand_presets",
     "handle_motions",
     "hunt_crossley",
+    "hybrid_wall",
     "impedance",
     "impulse",
     "kalman_velocity",
@@ -196,6 +213,7 @@ __all__ = [
     "port_damping",
     "port_passivity",
     "predicted_sample",
+    "predictive_wall",
     "profile",
     "proxy_curve",
     "proxy_wall",

@@ -14,29 +14,32 @@ from .model import WallModel
 from .predictive import half_sample_force
 
 #: when the pair of forces begins
-BEGINS = ("predictive", "reactive", "always")
-BETWEEN = {"half_sample": half_sample_force, "digital": digital_force}
+BEGINS = ("predictive", "reactive")
+#: the force inside the wall while no pair acts
+BETWEEN = {"pairs": None, "half_sample": half_sample_force, "digital": digital_force}
 
 
 def deadbeat_wall(
-    paddle, *, K, B=0.0, hand=None, begins="predictive", between="half_sample", velocity="handle", force_max=None,
+    paddle, *, K, B=0.0, hand=None, begins="predictive", between="pairs", velocity="handle", force_max=None,
     accuracy=1e-10,
 ):  # fmt: skip
     """Virtual wall that emulates handle, hand and wall across its boundary (Section 23.4.1): dead-beat in two steps.
 
     Where the boundary is crossed the law computes the state that handle, hand and wall would have two periods on, crossing
-    located, and then the only two held forces that take the sampled handle there. Between crossings it predicts half a
-    sample (:func:`predictive_wall`) or has the poles of the wall (:func:`digital_wall`).
+    located, and then the only two held forces that take the sampled handle there. Inside the wall it goes on so, pair
+    after pair, or takes one of the laws that look at one period.
 
     Parameters
     ----------
     paddle, K, B, hand
         As in :func:`digital_gains`.
-    begins : {"predictive", "reactive", "always"}
+    begins : {"predictive", "reactive"}
         ``"predictive"``: in the period in which the model foresees a crossing. ``"reactive"``: at the sample that finds the
-        boundary crossed; the goal then goes three periods on from the sample before. ``"always"``: every two periods, so
-        that every second sample lies on the wall's own motion.
-    between : {"half_sample", "digital"}
+        boundary crossed, with the goal that the handle of the sample before should have reached.
+    between : {"pairs", "half_sample", "digital"}
+        ``"pairs"``: every second sample lies on the motion of handle, hand and wall. ``"half_sample"`` as
+        :func:`predictive_wall`, ``"digital"`` as :func:`digital_wall`: they ask less of the sensor and keep energy on
+        the whole of a long contact only; of one that lasts a few periods they leave more or less, as its phase has it.
     velocity, force_max
         As in :func:`digital_wall`. Without a limit the forces are what the goal asks: an error e of the sensed position
         changes them by some M e/T^2 (:func:`deadbeat_gains`).
@@ -66,21 +69,35 @@ def deadbeat_wall(
     p, w = lines.at_switch(velocity)
     due, second = signal("due", unit="1"), signal("second", unit="m")
     flight = Flight(lines, accuracy)
+    now = (p, w, lines.let("side", when(p >= 0, 1, -1), "1"))
     if begins == "reactive":
-        before = delay(p)
-        *goal, _ = flight.goal(lines.let("p_before", before), lines.let("w_before", delay(w)), 3)
-        crossed = sp.Or(sp.And(before < 0, p >= 0), sp.And(before >= 0, p < 0))
-        begin = sp.And(due(n - 1) < 0.5, due(n - 2) < 0.5, crossed)  # a pair has dealt with what was crossed under it
+        begin, *start = _crossed_before(lines, flight, now)
+        begin = sp.And(begin, due(n - 1) < 0.5, due(n - 2) < 0.5)  # a pair has dealt with what was crossed under it
     else:
-        *goal, crossing = flight.goal(p, w, 2)
-        begin = due(n - 1) < 0.5 if begins == "always" else sp.And(due(n - 1) < 0.5, crossing > 0)
-    lines.let(due, when(begin, 1, 0))
+        start = now
+    *after, crossing = flight.period(1, *start)
+    goal = flight.period(2, *after)[:2]
+    if begins == "predictive":
+        begin = crossing > 0
+    if between == "pairs":
+        begin = sp.Or(begin, p >= 0)
+    lines.let(due, when(sp.And(begin, due(n - 1) < 0.5), 1, 0))
     one, two = pair_forces(lines, p, w, goal)
     lines.let(second, two)
-    alone = when(p >= 0, BETWEEN[between](lines, p, w), 0)
+    alone = when(p >= 0, BETWEEN[between](lines, p, w), 0) if BETWEEN[between] else 0
     force = when(due(n - 1) > 0.5, second(n - 1), when(due(n) > 0.5, one, alone))
     watch = {"pair": when(due(n - 1) > 0.5, 2, due(n))}
     return lines.scene(force, f"{begins} dead-beat wall", watch, motor_limit(paddle, force_max))
+
+
+def _crossed_before(lines, flight, now):
+    """Return whether the boundary was crossed since the sample before, and where the handle should be by now."""
+    before = lines.let("p_before", delay(now[0])), lines.let("w_before", delay(now[1]))
+    side = lines.let("side_before", when(before[0] >= 0, 1, -1), "1")
+    crossed = lines.let("crossed", when(side * now[2] < 0, 1, 0), "1")
+    meant = flight.period(0, *before, side)[:3]
+    names = zip(("p_start", "w_start", "side_start"), ("m", "m", "1"), meant, now, strict=True)
+    return crossed > 0, *(lines.let(name, when(crossed > 0, a, b), unit) for name, unit, a, b in names)
 
 
 def pair_forces(lines, p, w, goal):

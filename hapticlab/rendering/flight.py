@@ -50,15 +50,6 @@ class Flight:
         miss = min(0.5, speed / 4)
         self.steps = min(MOST_STEPS, max(1, math.ceil(math.log2(math.log(accuracy) / math.log(miss)))))
 
-    def goal(self, p, w, periods):
-        """Name and return (p, w) after some periods, and whether the boundary is crossed in the first (1 or 0)."""
-        side = self.lines.let("side0", when(p >= 0, 1, -1), "1")
-        crossed = []
-        for tag in range(1, periods + 1):
-            p, w, side, across = self.period(tag, p, w, side)
-            crossed.append(across)
-        return p, w, crossed[0]
-
     def period(self, tag, p, w, side):
         """Name and return (p, w, side, crossed) one period on; side is 1 inside the wall, -1 outside."""
         let, inside = self.lines.let, side > 0
