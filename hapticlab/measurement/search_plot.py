@@ -22,3 +22,23 @@ def plot_search(found):
         axes.xaxis.get_major_locator().set_params(integer=True)
         axes.legend(loc="lower right", **FRAME)
     return figure
+
+
+def plot_border(width):
+    """Draw the border of a Z-width: what stood, what chattered, and the lines of theory."""
+    with house_style():
+        figure = new_figure(height=4.2)
+        axes = figure.add_subplot()
+        top = np.where(np.isfinite(width.chatters_at), width.chatters_at, width.K)
+        axes.fill_between(width.B, 0, width.K, color="0.92")
+        for i, (name, label) in enumerate((("stability", "exact stability"), ("passivity", "passivity, any passive hand"))):
+            known = np.isfinite(getattr(width, name)) & (getattr(width, name) > 0)
+            if known.any():
+                axes.plot(width.B[known], getattr(width, name)[known], **style_of(i + 1), label=label)
+        axes.plot(width.B, top, "x", color="#c1440e", label="chatters")
+        axes.plot(width.B, width.K, "o-", color="black", markersize=4, linewidth=1, label="comes to rest")
+        # a lossless corner of theory may lie far above; the picture is of the border
+        axes.set_ylim(0, 1.25 * top.max())
+        axes.set(xlabel="virtual damping B [N s/m]", ylabel="stiffness K [N/m]", title=f"Z-width, law {width.law}")
+        axes.legend(loc="best", **FRAME)
+    return figure

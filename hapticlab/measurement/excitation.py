@@ -1,0 +1,85 @@
+"""What moves the handle while its impedance is measured: the simulated hand, or the motor itself."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import sympy as sp
+
+from ..device.hand import Hand
+from ..scene.cases import when
+from ..scene.symbols import n, parameters, signal, t
+from .signals import chirp, multisine
+
+
+@dataclass(frozen=True, eq=False)
+class Excitation:
+    """One periodic signal of peak ``amplitude``.
+
+    Attributes
+    ----------
+    how : {"multisine", "swept_sine"}
+    lines : array of int
+        Cycles in a period.
+    samples : int
+        Of a period.
+    T : float
+        [s]
+    amplitude : float
+        Of a hand's intent [m], or of the motor's force [N].
+    seed : int
+        Of a multisine's phases.
+    """
+
+    how: str
+    lines: np.ndarray
+    samples: int
+    T: float
+    amplitude: float
+    seed: int
+
+    @property
+    def period(self):
+        """One period, peak ``amplitude``."""
+        if self.how == "swept_sine":
+            return self.amplitude * chirp(self.samples, self.lines)
+        return self.amplitude * multisine(self.samples, self.lines, phases="low_crest", seed=self.seed)
+
+    def hand(self, hand, middle):
+        """Return the hand with an intent that goes around ``middle`` [m] as the signal does."""
+        period = self.period
+        intent = lambda times: middle + period[np.round(np.asarray(times) / self.T).astype(int) % self.samples]  # noqa: E731
+        return Hand(m=hand.m, b=hand.b, k=hand.k, push=hand.push, noise=hand.noise, intent=intent)
+
+    def beside(self, scene, pull=0.0):
+        """Return the scene with the signal as a force of the motor beside its own, and watch the scene's own as ``own`` [N].
+
+        ``pull`` [N] is a constant force into the wall, which holds the handle where the scene gives as much.
+        """
+        shaken, rule = self._swept() if self.how == "swept_sine" else self._sines()
+        force = scene.force + shaken
+        if pull:
+            force = force - parameters("pull", units="N", values=pull, ranges=(-math.inf, math.inf))
+        watch = {**scene.watch, "own": scene.force}
+        return replace(scene, force=force, eom=(*scene.eom, *rule), watch=watch, name=f"shaken {scene.name}")
+
+    def _sines(self):
+        spectrum = np.fft.rfft(self.period)[self.lines] * 2 / self.samples
+        base, size = parameters("shake_base shake_size", units="1/s N", values=(1 / (self.samples * self.T), self.amplitude))
+        terms = [
+            sp.Float(abs(c) / self.amplitude) * sp.cos(2 * sp.pi * int(line) * base * t + float(np.angle(c)))
+            for line, c in zip(self.lines, spectrum, strict=True)
+        ]
+        return size * sp.Add(*terms), ()
+
+    def _swept(self):
+        count = signal("shake_tick", unit="1", initial=-1)
+        size = parameters("shake_size", units="N", values=self.amplitude)
+        part = count(n) / self.samples
+        first, last = int(self.lines.min()), int(self.lines.max())
+        turns = first * part + sp.Rational(last - first, 2) * part**2
+        angle = 2 * sp.pi * (turns - sp.floor(turns))
+        following = when(count(n - 1) >= self.samples - sp.Rational(3, 2), 0, count(n - 1) + 1)
+        return size * sp.sin(angle), (sp.Eq(count(n), following),)
+
+

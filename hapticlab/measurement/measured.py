@@ -1,0 +1,119 @@
+"""A measured impedance: force over velocity at the handle, beside the law's own and the ideal."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import AnalysisError
+from .impedance_plot import plot_impedance
+from .spectrum import Response
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredImpedance:
+    """Impedances Z = F/v at the handle [N s/m], complex, one a frequency.
+
+    Attributes
+    ----------
+    frequency : array, shape (L,)
+        [Hz]
+    measured : Response
+        Of the environment: the scene's force as held and delayed, over the handle's velocity, at its samples.
+    law : array
+        The same from the scene's own H(e^jwT), linearised at the place, held and delayed.
+    ideal : array or None
+        What the scene stands for, without sampling.
+    other : Response
+        What drove feels: the simulated hand F_h/v, device included; the motor its mechanics, device and hand.
+    drive : {"hand", "motor"}
+    device : array or None
+        m s + b of a simulated paddle.
+    left_wall : int
+        Samples without force: the motion left the wall, and no linear impedance describes it.
+    distortion : float
+        Force at lines that nothing excites, over the force at those that are; rms. nan for a chirp.
+    about : str
+        What drove, and what was not observable.
+    """
+
+    frequency: np.ndarray
+    measured: Response
+    law: np.ndarray
+    ideal: np.ndarray | None
+    other: Response
+    drive: str
+    device: np.ndarray | None
+    left_wall: int
+    distortion: float
+    about: str
+
+    @property
+    def rendered(self):
+        """Z = F/v of the environment as rendered [N s/m]."""
+        return self.measured.value
+
+    @property
+    def radius(self):
+        """Of the circle around ``rendered`` that holds the truth with 95 % confidence [N s/m]."""
+        return self.measured.radius
+
+    @property
+    def coherence(self):
+        """Of motion and force over the blocks."""
+        return self.measured.coherence
+
+    @property
+    def handle(self):
+        """What the hand feels [N s/m], device included, as by a force sensor between them; where a simulated hand drives."""
+        if self.drive != "hand":
+            raise AnalysisError("the motor drove, and a paddle has no force sensor: what the hand feels was not observed")
+        return self.other.value
+
+    @property
+    def felt(self):
+        """What the hand feels beyond the device's own m s + b [N s/m]: the rendered impedance by another way."""
+        return self.handle - self.device
+
+    @property
+    def mechanics(self):
+        """What the motor moves [N s/m], device and hand together, if its force is what was computed; where it drives."""
+        if self.drive != "motor":
+            raise AnalysisError("the hand drove; measure the mechanics that the motor moves with drive='motor'")
+        return self.other.value
+
+    @property
+    def transparency(self):
+        """Rendered over ideal impedance, 1 where the environment is felt as it is meant."""
+        if self.ideal is None:
+            raise AnalysisError("the ideal impedance is not known; give it: measured_impedance(..., ideal=lambda s: k/s + b)")
+        return self.rendered / self.ideal
+
+    @property
+    def stiffness(self):
+        """Real part of s Z, rendered [N/m]."""
+        return (2j * np.pi * self.frequency * self.rendered).real
+
+    @property
+    def damping(self):
+        """Real part of Z, rendered [N s/m]: below zero the environment gives energy at that frequency."""
+        return self.rendered.real
+
+    def plot(self):
+        """Draw magnitude, and real part: measured, the law's own, the ideal."""
+        return plot_impedance(self)
+
+    def __str__(self):
+        head = f"{'f [Hz]':>8} {'|Z| [N s/m]':>12} {'+-':>9} {'Re Z':>10} {'|Z/law|':>9} {'|Z/ideal|':>10} {'angle':>8}"
+        rows = []
+        for k, f in enumerate(self.frequency):
+            Z, other = self.rendered[k], self.transparency[k] if self.ideal is not None else np.nan
+            rows.append(
+                f"{f:8.4g} {abs(Z):12.5g} {self.radius[k]:9.2g} {Z.real:10.4g} {abs(Z / self.law[k]):9.5f} {abs(other):10.5f} "
+                f"{np.angle(other, deg=True):7.2f}\N{DEGREE SIGN}  {self.coherence[k]:.5f}"
+            )
+        left = [f"the handle left the wall in {self.left_wall} samples: press deeper or drive less"] if self.left_wall else []
+        return "\n".join([self.about, *left, f"{head}  coherence", *rows])
+
+    def __repr__(self):
+        span = f"{self.frequency[0]:.4g} to {self.frequency[-1]:.4g} Hz"
+        return f"MeasuredImpedance({len(self.frequency)} frequencies, {span})"

@@ -1,0 +1,98 @@
+"""Z-width: the border of stiffness and virtual damping that a paddle renders, measured, beside what theory promises."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import AnalysisError
+from ..scene.scene import Scene
+from .largest_stiffness import LargestStiffness, largest_stiffness
+from .search_plot import plot_border
+
+
+@dataclass(frozen=True, eq=False)
+class ZWidth:
+    """The K-B border of a law on a paddle.
+
+    Attributes
+    ----------
+    B : array, shape (N,)
+        Virtual damping [N s/m].
+    K : array, shape (N,)
+        The largest stiffness that stood a trial [N/m].
+    chatters_at : array, shape (N,)
+        The smallest that did not [N/m].
+    passivity, stability : array, shape (N,)
+        What theory promises at each B [N/m]; nan where it does not know the paddle or the law.
+    searches : tuple of LargestStiffness
+        With every trial.
+    law : str
+
+    Notes
+    -----
+    Colgate and Brown (1994) call the range of impedances that a device renders passively its Z-width. Measured here is the
+    border of what comes to rest after one entry, in one hand.
+    """
+
+    B: np.ndarray
+    K: np.ndarray
+    chatters_at: np.ndarray
+    passivity: np.ndarray
+    stability: np.ndarray
+    searches: tuple[LargestStiffness, ...]
+    law: str
+
+    def plot(self):
+        """Draw the border with passivity and exact stability."""
+        return plot_border(self)
+
+    def __str__(self):
+        rows = [f"{b:10.4g} {k:12.5g} {top:12.5g} {p:12.5g} {s:12.5g}" for b, k, top, p, s in zip(
+            self.B, self.K, self.chatters_at, self.passivity, self.stability, strict=True)]  # fmt: skip
+        head = f"{'B [N s/m]':>10} {'K stands':>12} {'K chatters':>12} {'passivity':>12} {'stability':>12}  K in N/m"
+        return "\n".join([f"Z-width, law {self.law}: {self.searches[0].about}", head, *rows])
+
+    def __repr__(self):
+        return f"ZWidth({self.law}, {len(self.B)} dampings, K = {self.K.min():.4g} to {self.K.max():.4g} N/m)"
+
+
+def z_width(paddle, *, B, law="zoh", **options):
+    """Measure the K-B border of a wall on a paddle: a search of the largest stiffness at every virtual damping.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle or SerialPaddle
+    B : sequence of float
+        Virtual damping [N s/m], of either sign.
+    law : str or Scene
+        As :func:`hapticlab.largest_stiffness` takes it.
+    **options
+        Of :func:`hapticlab.largest_stiffness`: push, first, most, growth, tolerance, duration, longest, energy_max,
+        speed_max, place.
+
+    Returns
+    -------
+    ZWidth
+
+    Raises
+    ------
+    AnalysisError, PaddleError
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> found = z_width(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), B=[0.0, 1.0])
+    >>> bool(found.K[1] > 5 * found.K[0]), found.passivity.tolist()
+    (True, [200.0, 0.0])
+    """
+    B = np.atleast_1d(np.asarray(B, float))
+    if B.ndim != 1 or not B.size or not np.isfinite(B).all():
+        raise AnalysisError(f"B = {B}; needs one or more finite numbers [N s/m], as in B=[0, 0.5, 1]")
+    searches = tuple(largest_stiffness(paddle, law=law, B=float(b), **options) for b in B)
+
+    def column(name):
+        return np.array([s.theory[name].K if name in s.theory else np.nan for s in searches])
+
+    K, top = np.array([s.K for s in searches]), np.array([s.chatters_at for s in searches])
+    name = law.name if isinstance(law, Scene) else law
+    return ZWidth(B, K, top, column("passivity"), column("stability"), searches, name)
