@@ -69,6 +69,10 @@ from .limits.nyquist_disk import nyquist_disk
 from .limits.passivity import passivity_limit
 from .limits.port import port_damping
 from .limits.stability import stability_limit
+from .measurement.impedance import measured_impedance
+from .measurement.largest_stiffness import largest_stiffness
+from .measurement.signals import multisine
+from .measurement.z_width import z_width
 from .records import PaddleProfile, Telemetry
 from .rendering.compensation_limit import CompensationLimit, compensation_limit
 from .rendering.deadbeat import deadbeat_gains, deadbeat_wall
@@ -193,10 +197,13 @@ __all__ = [
     "impulse",
     "kalman_velocity",
     "lagrange",
+    "largest_stiffness",
     "library",
     "local_stiffness",
+    "measured_impedance",
     "methods",
     "micro_impulse",
+    "multisine",
     "n",
     "nyquist_disk",
     "order_of",
@@ -248,4 +255,5 @@ __all__ = [
     "when",
     "window_velocity",
     "x",
+    "z_width",
 ]
