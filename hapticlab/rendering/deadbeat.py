@@ -58,7 +58,7 @@ def deadbeat_wall(
     >>> paddle = hl.SimulatedPaddle(m=0.35, b=0, T=0.01, hand=hl.Hand(m=0.006, k=500, intent=0.01))
     >>> log = paddle.run(hl.deadbeat_wall(paddle, K=5000), duration=0.2, x=-0.02, progress=False)
     >>> log.pair[:10].astype(int).tolist()
-    [0, 0, 0, 0, 0, 1, 2, 0, 0, 0]
+    [0, 0, 0, 1, 2, 1, 2, 0, 0, 0]
     """
     if begins not in BEGINS or between not in BETWEEN:
         raise SceneError(

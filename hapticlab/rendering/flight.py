@@ -59,7 +59,7 @@ class Flight:
         before = self.series(f"a{tag}", p, w, inside)
         at = let(f"at0_{tag}", p / (p - end_p), "1")
         for step in range(1, self.steps + 1):
-            newton = at - let(f"p{step}_{tag}", _value(before, at)) / _slope(before, at)
+            newton = let(f"newton{step}_{tag}", at - _value(before, at) / _slope(before, at), "1")
             at = let(f"at{step}_{tag}", sp.Max(0, sp.Min(1, newton)), "1")
         rest = let(f"rest{tag}", 1 - at, "1")
         after = self.series(f"b{tag}", sp.S.Zero, let(f"w_cross{tag}", _slope(before, at)), side < 0)

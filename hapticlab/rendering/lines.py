@@ -32,7 +32,7 @@ class Lines:
     def let(self, name, value, unit="m"):
         """Name a line, or define a signal, and return it at sample n."""
         named = signal(name, unit=unit) if isinstance(name, str) else name
-        self.eom.append(sp.Eq(named(n), value))
+        self.eom.append(sp.Eq(named(n), value, evaluate=False))  # SymPy would look for seconds whether they are equal
         return named(n)
 
     def moved(self, p, w, steps):
@@ -91,7 +91,7 @@ class Lines:
             asked = self.let("asked", force)
             force = sp.Max(sp.Min(asked, most), -most)
             watch = {**(watch or {}), "limited": when(sp.Or(asked > most, asked < -most), 1, 0)}
-        self.eom.append(sp.Eq(self.held(n), force))
+        self.let(self.held, force)
         return Scene(force=self.k * self.held(n), eom=self.eom, watch=watch or {}, name=name)
 
 
