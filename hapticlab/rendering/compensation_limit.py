@@ -1,0 +1,206 @@
+"""How much of a paddle's friction may be compensated before the paddle runs away, and what it then does."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..drawing import house_style, new_figure
+from ..errors import AnalysisError
+from ..limits.limit import check_number
+from ..limits.loop import Loop
+from ..limits.stability import crossings, stability_limit
+from ..scene.compensation import damping_compensation
+
+#: relative distance from a crossing at which the poles say whether it counts
+NEAR = 1e-6
+
+
+@dataclass(frozen=True)
+class CompensationLimit:
+    """The parts of the device's friction that may be compensated; printing it says so in words.
+
+    Attributes
+    ----------
+    viscous : float
+        Largest part of b [1]: from there on a pole lies outside the unit circle. Exact for the sampled loop.
+    frequency : float
+        Where that pole turns [Hz]; 0 where the handle drifts off without turning.
+    dry : float
+        Largest part of the Coulomb friction at viscous = 0: 1, or where the paddle begins to hunt about its hand's spring.
+    m, b, k : float
+        Of handle and hand: mass [kg], damping [N s/m], stiffness [N/m].
+    b_device, coulomb : float
+        What is compensated: the device's own damping [N s/m] and Coulomb friction [N].
+    T : float
+        Sampling period [s].
+    """
+
+    viscous: float
+    frequency: float
+    m: float
+    b: float
+    k: float
+    b_device: float
+    coulomb: float
+    T: float
+
+    @property
+    def dry(self):
+        return self.hunts_from(0.0)
+
+    def left(self, viscous):
+        """Return the damping that is left [N s/m], negative where the handle is driven."""
+        return self.b - viscous * self.b_device
+
+    def hunts_from(self, viscous):
+        """Return the part of the Coulomb friction from which on the paddle, once kicked, keeps moving for ever.
+
+        Without a hand's spring that is 1. About a spring the handle must break away at every turn, so that more is
+        needed: 2/(1 + r), where r is the part of its swing that half a period with the damping left keeps. Of sampling
+        period and width ``speed`` to zero.
+        """
+        kept = self._kept(viscous)
+        return 2 / (1 + kept) if self.k and kept < 1 else 1.0
+
+    def speed(self, viscous, dry):
+        """Return the steady speed [m/s] of a free handle that is over-compensated: (dry - 1) coulomb/(damping left).
+
+        0 where it comes to rest, infinite where nothing holds it. Exact for the sampled loop and any estimate of v,
+        with ``shape="dead_zone"``; for ``"smooth"`` where it is far beyond ``speed``.
+        """
+        self._free("a steady speed")
+        if viscous >= self.viscous:
+            return math.inf
+        return max((dry - 1) * self.coulomb / self.left(viscous), 0.0)
+
+    def kick(self, viscous, dry):
+        """Return the speed [m/s] beyond which a free handle runs away though its Coulomb friction holds it at rest.
+
+        coulomb (1 - dry)/(-damping left) where more than all viscous damping is compensated; infinite where it is not.
+        """
+        self._free("a kick")
+        if viscous <= self.viscous:
+            return math.inf
+        return max(self.coulomb * (1 - dry) / -self.left(viscous), 0.0)
+
+    def hunting(self, viscous, dry):
+        """Return the amplitude [m] of the limit cycle about the hand's spring; 0 where the paddle comes to rest.
+
+        g/k (1 + r)/(1 - r) with g = (dry - 1) coulomb the force left over: over half a period the handle swings about
+        g/k and keeps the part r of its swing. Infinite where the damping left is not positive.
+        """
+        if not self.k:
+            raise AnalysisError("no spring to hunt about: the hand has k = 0 N/m; look at speed(viscous, dry)")
+        if dry <= self.hunts_from(viscous):
+            return 0.0
+        kept = self._kept(viscous)
+        return (dry - 1) * self.coulomb / self.k * (1 + kept) / (1 - kept) if kept < 1 else math.inf
+
+    def _kept(self, viscous):
+        """Return which part of a swing half a period keeps."""
+        if not self.k:
+            return 1.0
+        ratio = self.left(viscous) / (2 * math.sqrt(self.k * self.m))
+        return 0.0 if ratio >= 1 else math.exp(-math.pi * ratio / math.sqrt(1 - ratio**2)) if ratio > -1 else math.inf
+
+    def _free(self, what):
+        if self.k:
+            raise AnalysisError(
+                f"{what} needs a free handle; the hand's k = {self.k:g} N/m holds it: look at hunting()"
+            )
+
+    def __str__(self):
+        at = f", turning at {self.frequency:.4g} Hz" if self.frequency else ", drifting off"
+        lines = [
+            f"damping compensation: m = {self.m:g} kg, b = {self.b:g} N s/m, k = {self.k:g} N/m, T = {self.T:g} s",
+            f"  viscous    up to {self.viscous:.6g} of {self.b_device:g} N s/m{at}: exact linear stability of this plant",
+        ]
+        if self.coulomb:
+            then = "hunts about the hand's spring" if self.k else "keeps moving, once kicked"
+            lines.append(f"  dry        up to {self.dry:.6g} of {self.coulomb:g} N at viscous = 0; beyond, it {then}")
+        return "\n".join(lines)
+
+    def plot(self):
+        """Draw what the paddle does over the two parts; return the figure."""
+        if not self.coulomb:
+            raise AnalysisError("coulomb = 0 N: a map of both parts needs a paddle with both; print the limit instead")
+        parts = np.linspace(0, self.viscous, 200)
+        dry = np.array([self.hunts_from(part) for part in parts])
+        wide, tall, middle = 1.35 * dry.max(), 1.25 * self.viscous, 0.5 * self.viscous
+        with house_style():
+            figure = new_figure(height=4.2)
+            axes = figure.subplots()
+            axes.fill_between([0, wide], self.viscous, tall, color="0.7", linewidth=0)
+            axes.fill_betweenx(parts, dry, wide, color="0.88", linewidth=0)
+            axes.axhline(self.viscous, color="black", label="a pole leaves the unit circle")
+            axes.plot(dry, parts, color="black", linestyle="--", label="the force that is left over keeps it going")
+            for place, words in (
+                ((0.5 * wide, 1.125 * self.viscous), "runs away"),
+                ((0.5 * self.hunts_from(middle), middle), "comes to rest"),
+                (((self.hunts_from(middle) + wide) / 2, middle), "hunts" if self.k else "keeps moving,\nonce kicked"),
+            ):
+                axes.text(*place, words, ha="center", va="center")
+            axes.set(xlim=(0, wide), ylim=(0, tall))
+            axes.set_xlabel(f"part of the Coulomb friction compensated, of {self.coulomb:g} N")
+            axes.set_ylabel(f"part of the damping compensated,\nof {self.b_device:g} N s/m")
+            figure.legend(loc="outside upper center", ncols=2)
+        return figure
+
+
+def compensation_limit(paddle, *, velocity=None):
+    """Largest part of a paddle's friction that :func:`~hapticlab.scene.compensation.damping_compensation` may cancel.
+
+    The viscous part is a pole on the unit circle of the sampled loop, with hand, delay and the lag of the velocity. A free
+    handle drifts off at viscous = 1 + b_hand/b whatever the lag, for at constant speed every estimate is right; about a
+    hand's spring it is thrown into an oscillation, where the lag counts. The dry part is of the exact motion between
+    reversals, in the limit of a short period and a narrow ``speed``.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle or any object with m [kg], b [N s/m], T [s], delay [s], coulomb [N] and hand
+        b > 0.
+    velocity : VelocityEstimate, optional
+        A linear one; the paddle's own v(n) unless given.
+
+    Returns
+    -------
+    CompensationLimit
+
+    Raises
+    ------
+    AnalysisError, SceneError
+        Without damping there is nothing to compensate; a window that adapts has no poles.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, coulomb=0.02, delay=0.5e-3)
+    >>> limit = hl.compensation_limit(paddle)
+    >>> print(limit)
+    damping compensation: m = 0.05 kg, b = 0.1 N s/m, k = 0 N/m, T = 0.001 s
+      viscous    up to 1 of 0.1 N s/m, drifting off: exact linear stability of this plant
+      dry        up to 1 of 0.02 N at viscous = 0; beyond, it keeps moving, once kicked
+    >>> round(limit.speed(viscous=0.5, dry=1.5), 6)
+    0.2
+    """
+    b = check_number("b", paddle.b, "N s/m", "without damping there is nothing to compensate", lambda b: b > 0)
+    if velocity is not None:
+        velocity.transfer(paddle.T)  # refuses, in words, what has no poles
+    scene, hand = damping_compensation(b=b, velocity=velocity), paddle.hand
+    m, damping, k = (getattr(paddle, q, 0.0) + (getattr(hand, q) if hand else 0.0) for q in ("m", "b", "k"))
+    if k:
+        limit = stability_limit(paddle, law=scene, parameter="viscous")
+        viscous, frequency = limit.K, limit.frequency or 0.0
+    else:
+        viscous, frequency = _of_a_free_handle(paddle, scene, damping / b)
+    return CompensationLimit(viscous, frequency, m, damping, k, b, getattr(paddle, "coulomb", 0.0), paddle.T)
+
+
+def _of_a_free_handle(paddle, scene, drifting):
+    """Return the limit and its frequency: ``drifting``, where a pole passes z = 1, or sooner where another one leaves."""
+    loop = Loop.of(paddle, scene, parameter="viscous")
+    for part, angle in crossings(loop):
+        if part < drifting * (1 - NEAR) and loop.unstable(part * (1 + NEAR)):
+            return part, angle / (2 * math.pi * paddle.T)
+    return drifting, 0.0
