@@ -4,7 +4,7 @@ import numpy as np
 import sympy as sp
 
 from ..errors import AnalysisError
-from ..scene.symbols import n, t, x
+from ..scene.symbols import n, x
 
 #: places looked at; secants between them are the slopes to some 1e-8 of their curvature
 PLACES = 40_000
@@ -44,7 +44,7 @@ def local_stiffness(scene, low, high):
         raise AnalysisError(f"{scene.name}: {', '.join(unbound)} has no value; bind it, as in scene({unbound[0]}=...)")
     place = sp.Symbol("place", real=True)
     F = F.xreplace({x(n): place})
-    others = {a for a in F.atoms(sp.Function) if hasattr(type(a), "role")} | (F.free_symbols - {n, t, place})
+    others = {a for a in F.atoms(sp.Function) if hasattr(type(a), "role")} | (F.free_symbols - {place})
     if others:
         named = ", ".join(sorted(map(str, others)))
         raise AnalysisError(f"{scene.name}: its force holds {named}; a local stiffness needs a function of x(n) alone")

@@ -1,0 +1,118 @@
+"""The ledger against Colgate's condition, against matrices of all motions, and against springs that bend."""
+
+import numpy as np
+import pytest
+
+import hapticlab as hl
+from hapticlab.errors import AnalysisError
+
+T = 1e-3
+GENERATOR = np.random.default_rng(5)
+
+
+@pytest.mark.parametrize("delay", [0.0, 1e-3, 3e-3, 2e-4, 5e-4, 1.7e-3, 2.95e-3])
+def test_a_linear_spring_is_exact(delay):
+    """Colgate's condition in the frequency domain says the same, to rounding."""
+    ledger = hl.passivity_ledger(b=0, T=T, K=640, delay=delay)
+    b = hl.passivity_margin(hl.LinearLaw.of(K=640, T=T), b=0, delay=delay).required
+    assert -ledger.index == pytest.approx(b, rel=1e-9)
+
+
+def least_damping(f, periods=250, K=1.0):
+    """Smallest b of which no motion draws energy: T = K = 1, delay f < 1, by the eigenvalues of the work of all motions."""
+    both = 2 * periods
+    moved = np.eye(both)
+    place = np.vstack([np.zeros(both), np.cumsum(moved[0::2] + moved[1::2], axis=0)])
+    F = K * place[:-1]
+    before = np.vstack([np.zeros(both), F[:-1]])
+    work = before.T @ moved[0::2] + F.T @ moved[1::2]
+    stored = K * np.outer(place[-1], place[-1]) / 2
+    form = (work + work.T) / 2 - stored
+    weight = np.tile([f, 1 - f], periods) ** 0.5  # D1^2/f + D2^2/(1-f) becomes a sum of squares
+    return -np.linalg.eigvalsh(weight[:, None] * form * weight)[0]
+
+
+@pytest.mark.parametrize("f", [0.25, 0.6])
+def test_a_fraction_of_delay_costs_more_than_half_plus_f(f):
+    """(1/2 + f) K T is not enough between whole periods; motions of 250 periods come within 0.1 % of the ledger."""
+    found = -hl.passivity_ledger(b=0, T=1.0, K=1.0, delay=f).index
+    least = least_damping(f)
+    assert 0.5 + f < least <= found
+    assert least == pytest.approx(found, rel=1e-3)
+
+
+def bending(places, slopes):
+    """Return F and its energy for a spring of piecewise linear slope, F(0) = U(0) = 0, exact by integration."""
+    fine = np.linspace(places[0], places[-1], 400_001)
+    step = fine[1] - fine[0]
+    k = np.interp(fine, places, slopes)
+    F = np.r_[0, np.cumsum((k[1:] + k[:-1]) / 2 * step)]
+    F -= np.interp(0, fine, F)
+    U = np.r_[0, np.cumsum((F[1:] + F[:-1]) / 2 * step)]
+    return (lambda x: np.interp(x, fine, F)), (lambda x: np.interp(x, fine, U - U.min()))
+
+
+@pytest.mark.parametrize("late", [0, 1, 2])
+def test_springs_that_bend_keep_the_inequality(late):
+    """Random steps through random springs with soft, stiff and negative slopes: work + paid >= what is stored, always."""
+    for _ in range(20):
+        slopes = GENERATOR.uniform(-300, 500, 9)
+        force, energy = bending(np.linspace(-0.02, 0.02, 9), slopes)
+        k_min, k_max = slopes.min(), slopes.max()
+        b = -hl.passivity_ledger(b=0, T=T, K=(k_min, k_max), delay=late * T).index
+        x = np.clip(np.cumsum(GENERATOR.choice([1e-4, 1e-3, 4e-3]) * GENERATOR.normal(size=300)), -0.0199, 0.0199)
+        x[: late + 2] = 0
+        D, held = np.diff(x), np.r_[np.zeros(late), force(x)][: len(x) - 1]
+        left = np.cumsum(held * D + b / T * D**2) - (energy(x[1:]) - energy(x[0]))
+        assert left.min() > -1e-9  # J, of the interpolated energy
+
+
+def test_negative_slopes_cost_the_hold_nothing_and_the_stiffest_place_decides():
+    """To and fro around the stiffest place draws k_max a^2/2 a period; a latch of -900 N/m elsewhere adds nothing."""
+    force, _ = bending(np.array([-0.02, -0.011, -0.01, 0.01, 0.011, 0.02]), np.array([-900, -900, 400, 400, -900, -900]))
+    a = 1e-3
+    x = a * np.tile([1, -1], 50) / 2
+    drawn = -(force(x[:-1]) * np.diff(x)).sum() / 99
+    assert drawn == pytest.approx(400 * a**2 / 2, rel=1e-6)
+    ledger = hl.passivity_ledger(b=0.25, T=T, K=(-900, 400))
+    assert ledger.passive and ledger.index == pytest.approx(0.25 - 400 * T / 2)
+    assert "bounded below" in str(ledger)
+
+
+def test_a_range_of_dampers_counts_by_its_largest_magnitude():
+    assert hl.passivity_ledger(b=1, T=T, B=(-0.3, 0.2)).index == pytest.approx(0.7)
+    assert hl.passivity_ledger(b=1, T=T, B=-0.3, K=100, parts=[("brake", 0.5, "eddy currents")]).index == pytest.approx(1.15)
+
+
+def test_an_environment_that_answers_late_is_a_sample_of_delay():
+    late, delayed = (hl.passivity_ledger(b=1, T=T, K=100, **o) for o in ({"delayed": True}, {"delay": T}))
+    assert late.index == delayed.index == pytest.approx(1 - 1.5 * 0.1)
+
+
+def test_it_says_what_is_left_and_what_it_bounds():
+    ledger = hl.passivity_ledger(b=0.5, T=T, K=200, delay=5e-4, B=0.05)
+    assert ledger.gain == pytest.approx(1 / ledger.index)
+    assert "passive in every passive hand" in str(ledger)
+    short = hl.passivity_ledger(b=0.05, T=T, K=200)
+    assert not short.passive and short.gain == np.inf and "nothing proved" in str(short)
+    axes = ledger.plot().axes[0]
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["device", "hold", "delay", "damper", "left"]
+    assert axes.get_xlabel().endswith("[N s/m]")
+
+
+def test_the_gain_bounds_what_the_hand_gets():
+    """Mean squares over a run: a noisy hand on a wall that always acts; the bound is not far off at low stiffness."""
+    b, K = 0.4, 60.0
+    ledger = hl.passivity_ledger(b=b, T=T, K=K)
+    paddle = hl.SimulatedPaddle(m=0.004, b=b, T=T, hand=hl.Hand(noise=1.0))
+    log = paddle.run(hl.wall(unilateral=None)(k=K), duration=4.0, progress=False)
+    force = paddle.inputs(len(log))[:, -1]
+    mean_v = np.sqrt(np.mean((np.diff(log.x) / T) ** 2))
+    assert mean_v < ledger.gain * np.sqrt(np.mean(force**2))
+    assert mean_v > 0.2 * ledger.gain * np.sqrt(np.mean(force**2))
+
+
+@pytest.mark.parametrize("given", [(1, 2, 3), (2.0, 1.0), float("nan"), "stiff"])
+def test_ranges_are_checked(given):
+    with pytest.raises((AnalysisError, TypeError)):
+        hl.passivity_ledger(b=1, T=T, K=given)
