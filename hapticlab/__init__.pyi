@@ -64,6 +64,7 @@ from .limits.colgate import equivalent_damper, passivity_margin, wall_damping
 from .limits.damper import damper_limit
 from .limits.excess import passivity_ledger
 from .limits.linear_law import LinearLaw
+from .limits.indices import passivity_indices
 from .limits.local_stiffness import local_stiffness
 from .limits.nyquist_disk import nyquist_disk
 from .limits.passivity import passivity_limit
@@ -209,6 +210,7 @@ __all__ = [
     "order_of",
     "parameters",
     "passivity_controller",
+    "passivity_indices",
     "passivity_ledger",
     "passivity_limit",
     "passivity_margin",
