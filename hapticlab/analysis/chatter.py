@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import AnalysisError
 from ..records import check_record
+from .driven import drive_of, following
 
 #: amplitudes of the last two quarters within this ratio count as one sustained oscillation
 LOCK = 0.01
@@ -18,6 +19,12 @@ SAME = 5e-4
 SHORTEST = 32
 #: a motion that turns round less often than this in the last half is no oscillation
 REVERSALS = 2
+#: what is left of a driven motion is its own below this part of it
+FOLLOWS = 0.02
+#: a handle that has become faster by this from one quarter to the next, and moves by more [m], runs away
+FASTER, FAR = 1.02, 1e-3
+#: a cycle repeats itself where it comes back within this part of its amplitude; it is looked for up to so many samples
+REPEATS, LONGEST_CYCLE = 1e-4, 2000
 
 
 @dataclass(frozen=True)
@@ -26,12 +33,14 @@ class Chatter:
 
     Attributes
     ----------
-    state : {"none", "chatter", "growing", "decaying", "undecided"}
+    state : {"none", "chatter", "growing", "decaying", "undecided", "driven", "runaway"}
         "chatter" is a sustained limit cycle: the last two quarters agree within 1 %, or differ by less than its own
         irregularity explains. Just inside a stability limit a decay can take 1e5 samples, so look at ``growth`` too.
         "undecided": it oscillates, but with fewer than three cycles a quarter that neither all grow nor all decay.
+        "driven": it oscillates because, and as, what drives it does. "runaway": it does not turn round and becomes faster.
     amplitude : float
-        Half the peak-to-peak of the handle's oscillation over the last half [m]; 0 where there is none.
+        Half the peak-to-peak of the handle's oscillation over the last half [m]; 0 where there is none. Without the part
+        that is driven, where ``driven`` was given.
     frequency : float or None
         [Hz], from interpolated zero crossings; its error is below one sampling period in half the record.
     contacts_per_second : float
@@ -46,6 +55,11 @@ class Chatter:
         Mean position over the last quarter [m].
     travel : float
         Peak-to-peak of the handle over the last quarter [m].
+    period : int or None
+        Samples after which a locked cycle repeats itself, to 1e-4 of its amplitude; None where it is not locked to the
+        sampling within 2000 samples.
+    driven : float
+        Half the peak-to-peak of the part that follows the drive [m]; 0 where none was given.
     """
 
     state: str
@@ -57,8 +71,14 @@ class Chatter:
     dither: bool
     rest: float
     travel: float
+    period: int | None = None
+    driven: float = 0.0
 
     def __str__(self):
+        if self.state == "runaway":
+            return f"runaway: the handle moves on by {1e3 * self.travel:.4g} mm in the last quarter, faster and faster"
+        if self.state == "driven":
+            return f"driven: {1e3 * self.driven:.4g} mm follow what drives the handle; no oscillation of its own beside it"
         if self.state == "none":
             moves = self.travel > 1e-3 * abs(self.rest) + 1e-6
             where = f"moves on by {1e3 * self.travel:.4g} mm" if moves else f"rests at {1e3 * self.rest:.4g} mm"
@@ -67,24 +87,31 @@ class Chatter:
         place = f"{1e3 * self.amplitude:.4g} mm at {tone}, {self.contacts_per_second:.4g} contacts/s"
         if self.dither:
             place += "; the sensed position moves by one encoder count only: dither of the encoder"
+        place += f", beside {1e3 * self.driven:.4g} mm that are driven" if self.driven else ""
         if self.locked:
-            return f"chatter: {place}; sustained (growth {self.growth:+.2g} 1/s)"
+            cycle = f", repeats itself every {self.period} samples" if self.period else ""
+            return f"chatter: {place}; sustained (growth {self.growth:+.2g} 1/s){cycle}"
         cure = "it dies out" if self.state == "decaying" else "run longer for its final amplitude"
         return f"{self.state}: {place}; not locked (growth {self.growth:+.3g} 1/s): {cure}"
 
 
-def chatter(log):
+def chatter(log, driven=None):
     """Find chatter, Section 23.4: sustained oscillation, often with repeated contact with the wall.
 
     Looks at the last half of a record, at the handle itself where an encoder or noise hid it (``x_true``). An oscillation
     turns round at least twice there and is larger than a nanometre, a millionth of the travel, and single precision; to
     call it sustained takes three cycles in a quarter of the record. Motion that is driven, by a hand's noise or moving
-    intent or by a scene's own vibration, is not told apart from chatter.
+    intent or by a scene's own vibration, looks like chatter, unless ``driven`` says what drives: the part that follows it
+    is then taken off (:func:`~hapticlab.analysis.driven.following`). A chatter that has locked onto its drive's own
+    frequency cannot be told from it.
 
     Parameters
     ----------
     log : Telemetry
         Uses t [s], x [m], F [N] and, where recorded, x_true [m]; at least 32 samples.
+    driven : Hand, callable, str or array, optional
+        What drives: a hand with a moving intent, a function of an array of times [s], the name of a watched channel, or
+        one number a sample. Its size and unit do not matter.
 
     Returns
     -------
@@ -113,23 +140,45 @@ def chatter(log):
         raise AnalysisError(f"the record holds values that are not finite; fault: {log.fault or 'none recorded'}")
     half, quarter = len(t) // 2, len(t) // 4
     contacts = float(np.count_nonzero((F[-half:][1:] != 0) & (F[-half:][:-1] == 0)) / (half * log.T))
-    last, before = x[-quarter:], x[len(x) - 2 * quarter : len(x) - quarter]
-    rest, travel = float(last.mean()), float(np.ptp(last))
-    y, _ = _around_trend(x[-half:])
+    rest, travel = float(x[-quarter:].mean()), float(np.ptp(x[-quarter:]))
     least = max(1e-9, 1e-6 * np.ptp(x), 4 * np.finfo(np.float32).eps * abs(x).max())
-    if _strength(last) < least or _reversals(x[-half:]) < REVERSALS:
-        return Chatter("none", 0.0, None, contacts, 0.0, False, False, rest, travel)
+    size, quarter_before = 0.0, slice(-2 * quarter, -quarter)
+    if driven is not None:
+        follows = following(x, drive_of(log, driven))
+        size, x = float(np.ptp(follows)) / 2, x[-half:] - follows
+        if _strength(x) < max(least, FOLLOWS * _strength(follows)):
+            return Chatter("driven", 0.0, None, contacts, 0.0, False, False, rest, travel, None, size)
+    if _strength(x[-quarter:]) < least or _reversals(x[-half:]) < REVERSALS:
+        state = "runaway" if size == 0 and _runs_away(x, quarter) else "none"
+        return Chatter(state, 0.0, None, contacts, 0.0, False, False, rest, travel, None, size)
+    y, _ = _around_trend(x[-half:])
     crossings = _upward_crossings(y) * log.T
     frequency = float((len(crossings) - 1) / (crossings[-1] - crossings[0])) if len(crossings) > 1 else None
     if len(crossings) > 2 * CYCLES:
-        ratio = math.log(_strength(last) / max(_strength(before), least * 1e-3))
+        ratio = math.log(_strength(x[-quarter:]) / max(_strength(x[quarter_before]), least * 1e-3))
         locked = abs(ratio) < max(LOCK, 2 * _irregularity(y))
         state = "chatter" if locked else "growing" if ratio > 0 else "decaying"
     else:
         state, ratio, locked = *_compare_swings(x, quarter), False
-    dither = len(np.unique(log.x[-half:])) == 2
-    growth = ratio / (quarter * log.T)
-    return Chatter(state, float(np.ptp(y) / 2), frequency, contacts, growth, locked, dither, rest, travel)
+    dither, amplitude = len(np.unique(log.x[-half:])) == 2, float(np.ptp(y) / 2)
+    period = cycle_length(x[-half:], amplitude) if locked else None
+    return Chatter(
+        state, amplitude, frequency, contacts, ratio / (quarter * log.T), locked, dither, rest, travel, period, size
+    )
+
+
+def cycle_length(x, amplitude):
+    """Return the samples after which x repeats itself, three times over at least, or None."""
+    for p in range(2, min(len(x) // 4, LONGEST_CYCLE) + 1):
+        if abs(x[-1] - x[-1 - p]) < REPEATS * amplitude and abs(x[p:] - x[:-p])[-3 * p :].max() < REPEATS * amplitude:
+            return p
+    return None
+
+
+def _runs_away(x, quarter):
+    """Return whether the handle goes one way, and farther in the last quarter than in the one before."""
+    last, before = x[-quarter:], x[len(x) - 2 * quarter : len(x) - quarter]
+    return np.ptp(last) > max(FAR, FASTER * np.ptp(before))
 
 
 def decaying(largest, least_before, largest_before):
