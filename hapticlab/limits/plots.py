@@ -76,3 +76,124 @@ def plot_nyquist_disk(disk):
         for axes in (left, right):
             axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
     return figure
+
+
+def plot_coupler(design):
+    """Draw the pairs of a coupler that are absolutely stable, and the criterion of the chosen one.
+
+    Parameters
+    ----------
+    design : CouplerDesign
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    theta = np.linspace(1e-2, np.pi, 600)
+    dampers, springs = design.border()
+    with house_style():
+        figure = new_figure(height=4.0, width=9.6)
+        left, right = figure.subplots(1, 2)
+        left.plot(dampers, springs, **STYLES[0])
+        left.fill_between(dampers, springs, color="#1f6fb4", alpha=0.15, linewidth=0)
+        left.plot(design.b_c, design.k_c, "ko", label="this design")
+        left.set(xlabel="coupler damping $b_c$ [N s/m]", ylabel="coupler stiffness $k_c$ [N/m]", ylim=(0, 1.15 * springs.max()))
+        left.set_title("absolutely stable below the line", fontsize="small")
+        left.legend(fontsize="small", **FRAME)
+        right.plot(theta / (2 * np.pi * design.T), design.two_port.criterion(theta), **STYLES[0])
+        right.axhline(0.0, **STYLES[5])
+        right.set(xlabel="frequency [Hz]", ylabel="Llewellyn's criterion, to be >= 0", xlim=(0, 0.5 / design.T))
+        right.set_title(f"b = {design.b:g} N s/m, T = {1e3 * design.T:g} ms, delay {1e3 * design.delay:g} ms", fontsize="small")
+    return figure
+
+
+def plot_admittance(design):
+    """Draw the criterion of an admittance display, and the least mobility that a hand can be made to feel.
+
+    Parameters
+    ----------
+    design : AdmittanceDesign
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    theta, T = np.linspace(1e-2, np.pi, 600), design.two_port.T
+    frequency = theta / (2 * np.pi * T)
+    with house_style():
+        figure = new_figure(height=4.0, width=9.6)
+        left, right = figure.subplots(1, 2)
+        left.plot(frequency, design.two_port.criterion(theta), **STYLES[0])
+        left.axhline(0.0, **STYLES[5])
+        left.set(ylabel="Llewellyn's criterion, to be >= 0")
+        right.plot(frequency, design.two_port.h(theta)[:, 0, 0].real, label="environment at rest", **STYLES[0])
+        right.plot(frequency, design.two_port.least_resistance(theta), label="worst environment", **STYLES[1])
+        right.set(ylabel="Re of what the hand feels [m/s/N]")
+        right.legend(fontsize="small", **FRAME)
+        for axes in (left, right):
+            axes.set(xlabel="frequency [Hz]", xlim=(0, 0.5 / T))
+        figure.suptitle(design.two_port.name, fontsize="small")
+    return figure
+
+
+def plot_bounds(bounds):
+    """Draw the named bounds as bars, those of passivity and those of stability told apart.
+
+    Parameters
+    ----------
+    bounds : Bounds
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with house_style():
+        figure = new_figure(height=0.55 * len(bounds.found) + 1.4)
+        axes = figure.subplots()
+        finite = [limit.K for limit in bounds.found.values() if not isinstance(limit, str) and np.isfinite(limit.K)]
+        most = 1.25 * max(finite, default=1.0) or 1.0
+        for row, limit in enumerate(bounds.found.values()):
+            if isinstance(limit, str):
+                axes.text(0.01 * most, row, "does not apply", va="center", fontsize="small", color="#555555")
+                continue
+            passive = limit.kind.startswith("passivity")
+            bar = {"color": "#1f6fb4"} if passive else {"color": "white", "hatch": "///", "edgecolor": "#c1440e"}
+            axes.barh(row, min(limit.K, most), height=0.6, **bar)
+            axes.text(min(limit.K, most) + 0.01 * most, row, f"{limit.K:.4g}", va="center", fontsize="small")
+        axes.set(yticks=range(len(bounds.found)), yticklabels=list(bounds.found), xlim=(0, 1.1 * most))
+        axes.set_xlabel("largest stiffness K [N/m]   (filled: passivity, hatched: stability of this plant)")
+        axes.set_title(f"law {bounds.law}, B = {bounds.B:g} N s/m", fontsize="small")
+        axes.invert_yaxis()
+    return figure
+
+
+def plot_diolaiti(point):
+    """Draw the four regions of Diolaiti's plane and one wall in it; along a ray from the origin K falls.
+
+    Parameters
+    ----------
+    point : DiolaitiPoint
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    calm = 0.5 + point.tau
+    sigma = min(point.sigma, 1.5)
+    right, top = 1.6 * max(calm, point.beta), 1.6 * max(0.5, sigma)
+    with house_style():
+        figure = new_figure(height=4.4)
+        axes = figure.subplots()
+        corners = (
+            ("passive", calm, right, 0.5, top, "#d9e7f2"), ("limit cycles", calm, right, 0, 0.5, "#eeeeee"),
+            ("locally stable", 0, calm, 0.5, top, "#f3e0d5"), ("unstable", 0, calm, 0, 0.5, "#c9c9c9"),
+        )  # fmt: skip
+        for name, x0, x1, y0, y1, colour in corners:
+            axes.fill_between([x0, x1], y0, y1, color=colour, linewidth=0)
+            axes.text((x0 + x1) / 2, (y0 + 2 * y1) / 3, name, ha="center", va="center")
+        axes.plot([0, 4 * point.beta], [0, 4 * sigma], label="softer walls lie farther out", **STYLES[1])
+        axes.plot(point.beta, sigma, "ko", label="this wall")
+        axes.set(xlim=(0, right), ylim=(0, top), xlabel=r"$\beta$ = b/(K T)", ylabel=r"$\sigma$ = $f_c$/(K $\Delta$)")
+        axes.set_title(f"delay {point.tau:g} periods", fontsize="small")
+        axes.legend(fontsize="small", loc="lower right", **FRAME)
+    return figure

@@ -1,0 +1,207 @@
+"""The bounds of the field by their authors' names: what each promises, what it assumes, and an error where that fails."""
+
+import math
+from dataclasses import dataclass
+
+from ..errors import AnalysisError
+from .limit import Limit, check_law, check_number
+from .passivity import passivity_limit
+from .plots import plot_bounds
+from .stability import stability_limit
+
+#: what (K + k_h) tau^2/M + |B| tau/M may be at most for Gil's formula
+SLOW_ENOUGH = 0.1
+PASSIVITY = "passivity: any hand, sufficient"
+STABILITY = "stability of this plant, to first order in the delay"
+
+
+def abbott_okamura_limit(*, b, T, coulomb=0.0, resolution=0.0, B=0.0, delay=0.0, law="zoh"):
+    """Largest stiffness that is passive with a quantised position: K <= min(2 b/T, 2 f_c/Delta) (Abbott and Okamura 2005).
+
+    Two modes of their own: the hold, paid for by viscous damping, and the encoder, paid for by Coulomb friction alone.
+
+    Parameters
+    ----------
+    b : float
+        Viscous damping of the device [N s/m], >= 0.
+    T : float
+        Sampling period [s], > 0.
+    coulomb : float
+        Coulomb friction f_c of the device [N], >= 0.
+    resolution : float
+        Displacement Delta of one encoder count at the handle [m], >= 0; 0 for a sensor without counts.
+
+    Returns
+    -------
+    Limit
+
+    Raises
+    ------
+    AnalysisError
+        With virtual damping, delay or a law other than Eq. (23.1), of which the bound knows nothing.
+
+    Examples
+    --------
+    >>> print(abbott_okamura_limit(b=0.1, T=1e-3, coulomb=0.02, resolution=0.25e-3).K)
+    160.0
+    """
+    b, T, coulomb, resolution = _device(b, T, coulomb, resolution)
+    for name, value, unit in (("B", B, "N s/m"), ("delay", delay, "s")):
+        if value:
+            raise AnalysisError(f"{name} = {value:g} {unit}; Abbott and Okamura's bound is for a plain spring without {name}")
+    _plain(law, "Abbott and Okamura")
+    return _two_modes(b, T, coulomb, resolution, 0.5, "Abbott and Okamura 2005")
+
+
+def diolaiti_limit(*, b, T, coulomb=0.0, resolution=0.0, delay=0.0, B=0.0, law="zoh"):
+    """Largest stiffness of the passive region of Diolaiti et al. (2006): b/(K T) >= 1/2 + delay/T and f_c/(K Delta) >= 1/2.
+
+    With a whole number of periods of delay the first is exact. With a fraction f it is what slow sinusoids ask for, and up
+    to 6 % above what every motion allows (:func:`~hapticlab.limits.passivity.passivity_limit`).
+
+    Parameters
+    ----------
+    delay : float
+        Computational delay [s], >= 0. The other arguments are those of :func:`abbott_okamura_limit`.
+
+    Examples
+    --------
+    >>> print(diolaiti_limit(b=0.1, T=1e-3, delay=0.5e-3).K)
+    100.0
+    """
+    b, T, coulomb, resolution = _device(b, T, coulomb, resolution)
+    delay = check_number("delay", delay, "s", "a force cannot come before its sample: delay >= 0", lambda v: v >= 0)
+    if B:
+        raise AnalysisError(f"B = {B:g} N s/m; Diolaiti's regions are for a plain spring without virtual damping")
+    _plain(law, "Diolaiti")
+    return _two_modes(b, T, coulomb, resolution, 0.5 + delay / T, "Diolaiti et al. 2006")
+
+
+def gil_limit(paddle, *, B=0.0, law="zoh"):
+    """Largest stable stiffness to first order in the delay, K < (b + B)/(T/2 + delay) (Gil et al. 2004, 2009).
+
+    A stability claim for one plant, not a passivity claim; damping of the hand counts with the device's. It holds where
+    ``e = (K + k_h) tau^2/M + |B| tau/M`` is small, with ``tau = T/2 + delay``: it differs from the exact limit by about
+    1.7 e, to either side, so it is no bound in the strict sense.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle or any object with m, b, T, delay and hand
+    B : float
+        Virtual damper of either sign [N s/m].
+
+    Raises
+    ------
+    AnalysisError
+        e > 0.1: damping is not low, or sampling not fast, for this mass.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> print(round(gil_limit(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), B=0.05).K, 6))
+    300.0
+    """
+    hand = paddle.hand
+    _plain(law, "Gil")
+    tau = paddle.T / 2 + paddle.delay
+    b = paddle.b + (hand.b if hand else 0.0)
+    M = check_number("m", paddle.m + (hand.m if hand else 0.0), "kg", "the handle needs a mass m > 0", lambda v: v > 0)
+    K = max((b + B) / tau, 0.0)
+    small = (K + (hand.k if hand else 0.0)) * tau**2 / M + abs(B) * tau / M
+    if small > SLOW_ENOUGH:
+        raise AnalysisError(
+            f"(K + k_h) tau^2/M + |B| tau/M = {small:.3g} with K = {K:.4g} N/m and tau = T/2 + delay = {1e3 * tau:g} ms; "
+            f"Gil's formula needs at most {SLOW_ENOUGH:g}: read hl.stability_limit, which is exact"
+        )
+    notes = (f"linear, slow against the sampling: about {100 * 1.7 * small:.2g} % off the exact limit, to either side",)
+    return Limit(K, math.sqrt((K + (hand.k if hand else 0.0)) / M) / (2 * math.pi), STABILITY, "Gil et al. 2004, 2009", notes)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """The bounds of one paddle and law, each a Limit or the sentence that says why it does not apply."""
+
+    law: str
+    B: float
+    found: dict
+
+    def __getitem__(self, name):
+        return self.found[name]
+
+    def __str__(self):
+        lines = [f"largest stiffness K, law {self.law}, B = {self.B:g} N s/m"]
+        for name, limit in self.found.items():
+            K = f"{limit.K:12.6g} N/m  {limit.kind}; {limit.reason}" if isinstance(limit, Limit) else f"           -      {limit}"
+            lines.append(f"  {name:<20}{K}")
+        return "\n".join(lines)
+
+    def plot(self):
+        """Draw the bounds side by side, passivity and stability told apart."""
+        return plot_bounds(self)
+
+
+def bounds(paddle, *, law="zoh", B=0.0):
+    """Return every named bound on the stiffness of a wall beside the exact limit of this paddle's stability.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+        Its m, b, T, delay, coulomb, counts_per_metre and hand are read.
+    law : {"zoh", "half_sample", "backward_difference", "ellis"}
+    B : float
+        Virtual damper of either sign [N s/m].
+
+    Returns
+    -------
+    Bounds
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> found = bounds(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3))
+    >>> {name: round(limit.K, 2) for name, limit in found.found.items()}["exact stability"]
+    200.07
+    """
+    check_law(law)
+    device = {"b": paddle.b, "T": paddle.T, "B": B, "delay": paddle.delay, "law": law}
+    counts = getattr(paddle, "counts_per_metre", None)
+    quantised = {"coulomb": getattr(paddle, "coulomb", 0.0), "resolution": 1 / counts if counts else 0.0}
+    asked = {
+        "Colgate, Schenkel": lambda: passivity_limit(**device),
+        "Abbott, Okamura": lambda: abbott_okamura_limit(**device, **quantised),
+        "Diolaiti": lambda: diolaiti_limit(**device, **quantised),
+        "Gil": lambda: gil_limit(paddle, B=B, law=law),
+        "exact stability": lambda: stability_limit(paddle, law=law, B=B),
+    }
+    found = {}
+    for name, limit in asked.items():
+        try:
+            found[name] = limit()
+        except AnalysisError as refusal:
+            found[name] = f"does not apply: {refusal}"
+    return Bounds(law, B, found)
+
+
+def _device(b, T, coulomb, resolution):
+    return (
+        check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda v: v >= 0),
+        check_number("T", T, "s", "a sampling period needs T > 0", lambda v: v > 0),
+        check_number("coulomb", coulomb, "N", "friction opposes motion: needs coulomb >= 0", lambda v: v >= 0),
+        check_number("resolution", resolution, "m", "an encoder count needs a size >= 0", lambda v: v >= 0),
+    )
+
+
+def _plain(law, author):
+    check_law(law)
+    if law != "zoh":
+        eq = "looks at a velocity, so it is no position law" if law == "half_sample" else "looks ahead by its memory"
+        raise AnalysisError(f"law {law} {eq}; {author}'s formula is for the plain spring, Eq. (23.1): law zoh")
+
+
+def _two_modes(b, T, coulomb, resolution, periods, source):
+    """Return the lesser of what viscous damping pays for the hold and Coulomb friction for the encoder."""
+    hold = b / (T * periods)
+    encoder = 2 * coulomb / resolution if resolution else math.inf
+    binds = f"b = {b:g} N s/m pays for the hold" if hold <= encoder else f"f_c = {coulomb:g} N pays for the encoder"
+    notes = ("handle of mass, viscous and Coulomb friction, one encoder on the handle", "plain spring, no virtual damper")
+    return Limit(min(hold, encoder), None, PASSIVITY, f"{source}: {binds}", notes)

@@ -1,0 +1,180 @@
+"""The virtual coupler that keeps an impedance display stable with every passive hand and every passive environment.
+
+The coupler is a spring and a damper from handle to proxy at the sample rate, ``F[n] = k_c e[n] + b_c (e[n] - e[n-1])/T`` with
+``e = x - z``; the environment at its far end is anything that is passive at the sample rate in F[n] and (z[n] - z[n-1])/T. The
+hold makes the force work on the *next* step of the handle, so sampling is one period of delay between the two velocities.
+With a delay of d + f periods the display is the two-port
+
+    h = [[b, A z^-d], [-z^-1, 1/Z_c - f (1-f) (1 - cos theta)/(2b)]],    A = (1-f) + f/z,
+
+exact in the sense of Colgate and Schenkel: device and hand stay in continuous time. Llewellyn's criterion at one frequency is
+a convex set of pairs (b_c, k_c). Without delay all of it is ``k_c T/2 + b_c <= b``, which is Eq. (23.10) again.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import AnalysisError
+from .limit import MOST_PERIODS, check_number, whole_and_fraction
+from .plots import plot_coupler
+from .two_port import TwoPort, frequencies
+
+#: part of the damping to which the best pair is searched
+NARROW = 1e-10
+GOLDEN = (math.sqrt(5) - 1) / 2
+
+
+@dataclass(frozen=True)
+class CouplerDesign:
+    """The stiffest spring of a virtual coupler beside a damper, absolutely stable on one device.
+
+    Attributes
+    ----------
+    k_c : float
+        Stiffness [N/m].
+    b_c : float
+        Damping [N s/m].
+    frequency : float
+        That stops a stiffer one [Hz].
+    b, T, delay : float
+        Of the device [N s/m, s, s].
+    """
+
+    k_c: float
+    b_c: float
+    frequency: float
+    b: float
+    T: float
+    delay: float
+
+    @property
+    def two_port(self):
+        """The display with this coupler, as a TwoPort between hand and environment."""
+        return impedance_display(k_c=self.k_c, b_c=self.b_c, b=self.b, T=self.T, delay=self.delay)
+
+    def border(self, points=60):
+        """Return (b_c, k_c) of shape (2, points): the stiffest spring beside every damper the device can carry."""
+        dampers = np.linspace(0.0, _most_damping(self.b, self.T, self.delay), points)
+        return np.array([dampers, [_stiffest(b_c, self.b, self.T, self.delay)[0] for b_c in dampers]])
+
+    def plot(self):
+        """Draw the pairs that are absolutely stable, and the criterion of this pair against frequency."""
+        return plot_coupler(self)
+
+    def __str__(self):
+        late = f", delay {1e3 * self.delay:g} ms" if self.delay else ""
+        return (
+            f"coupler k_c = {self.k_c:.6g} N/m, b_c = {self.b_c:.6g} N s/m: stable with every passive hand and every passive "
+            f"environment on a device of b = {self.b:g} N s/m, T = {1e3 * self.T:g} ms{late}; stopped at {self.frequency:.4g} Hz"
+        )
+
+
+def coupler_design(paddle, *, b_c=None):
+    """Design a virtual coupler for an impedance display by Llewellyn's criterion (after Adams and Hannaford 1999).
+
+    Exact for the sampled device in any passive hand; the environment must be passive at the sample rate, which explicit
+    integration is not (:func:`hapticlab.port_passivity` asks that of a scene as it is compiled).
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle or any object with b [N s/m], T [s], delay [s]
+        Its mass does not matter: a passive hand may take it away.
+    b_c : float, optional
+        Damping of the coupler [N s/m], >= 0. Without it the damper beside which the spring can be stiffest.
+
+    Returns
+    -------
+    CouplerDesign
+
+    Raises
+    ------
+    AnalysisError
+        The device has no damping, or less than b_c needs.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.2, T=1e-3)
+    >>> design = coupler_design(paddle, b_c=0.05)
+    >>> round(design.k_c, 6)  # 2 (b - b_c)/T
+    300.0
+    """
+    lacking = [name for name in ("b", "T", "delay") if not hasattr(paddle, name)]
+    if lacking:
+        raise AnalysisError(f"a {type(paddle).__name__} has no {lacking[0]}; needs a paddle, as hl.SimulatedPaddle(...)")
+    b = check_number("b", paddle.b, "N s/m", "a coupler needs a device of b > 0, which pays for the hold", lambda v: v > 0)
+    T, delay = float(paddle.T), float(paddle.delay)
+    most = _most_damping(b, T, delay)
+    if b_c is None:
+        b_c = _best_damping(b, T, delay, most)
+    b_c = check_number("b_c", b_c, "N s/m", "a coupler's damper needs b_c >= 0", lambda v: v >= 0)
+    if b_c > most:
+        raise AnalysisError(f"b_c = {b_c:g} N s/m; a device of b = {b:g} N s/m carries at most {most:.6g}: its own pays for it")
+    k_c, theta = _stiffest(b_c, b, T, delay)
+    return CouplerDesign(k_c, b_c, theta / (2 * math.pi * T), b, T, delay)
+
+
+def impedance_display(*, k_c, b_c, b, T, delay=0.0):
+    """Return the two-port of a device of damping b that shows an environment through a coupler.
+
+    Examples
+    --------
+    >>> impedance_display(k_c=300, b_c=0.05, b=0.2, T=1e-3).absolutely_stable
+    True
+    >>> impedance_display(k_c=310, b_c=0.05, b=0.2, T=1e-3).absolutely_stable
+    False
+    """
+    whole, f = whole_and_fraction(delay, T, most=MOST_PERIODS)
+
+    def h(theta):
+        z = np.exp(1j * theta)
+        forward = ((1 - f) + f / z) * z ** -float(whole)
+        compliance = 1 / (b_c + k_c * T / (1 - 1 / z)) - f * (1 - f) * (1 - np.cos(theta)) / (2 * b)
+        rows = [np.full(theta.shape, b + 0j), forward], [-1 / z, compliance]
+        return np.moveaxis(np.array(rows), 2, 0)
+
+    return TwoPort(h, T, f"impedance display, k_c = {k_c:g} N/m, b_c = {b_c:g} N s/m")
+
+
+def _needed(theta, b, T, delay):
+    """Return the part Re(1/Z_c) that the criterion needs of the coupler, times b, over sin^2(theta/2)."""
+    whole, f = whole_and_fraction(delay, T, most=MOST_PERIODS)
+    z, square = np.exp(1j * theta), np.sin(theta / 2) ** 2
+    A = (1 - f) + f / z
+    lag = np.angle(A) - (whole + 1) * theta
+    return np.abs(A) * np.sin(lag / 2) ** 2 / square + f * (1 - f)
+
+
+def _stiffest(b_c, b, T, delay):
+    """Return (k_c, theta): the stiffest spring beside b_c, and what stops it.
+
+    With q = k_c T/2 and G the need above, over b: ``G q^2 + (2 G s b_c - 1) q + (G s b_c - 1) b_c <= 0``, s = sin^2(theta/2).
+    """
+    theta = frequencies()
+    for _ in range(5):  # look closer around the least
+        G, s = _needed(theta, b, T, delay) / b, np.sin(theta / 2) ** 2
+        half, rest = 0.5 - G * s * b_c, np.maximum((1 - G * s * b_c) * b_c, 0.0)
+        root = np.sqrt(half**2 + G * rest)
+        q = np.where(half >= 0, (half + root) / G, rest / np.maximum(root - half, 1e-300))
+        least = int(q.argmin())
+        found, at = float(q[least]), float(theta[least])
+        theta = np.linspace(theta[max(least - 1, 0)], theta[min(least + 1, len(theta) - 1)], 80)
+    return 2 * found / T, at
+
+
+def _most_damping(b, T, delay):
+    """Return the largest b_c [N s/m] that stands without any spring."""
+    theta = frequencies()
+    return float(b / (_needed(theta, b, T, delay) * np.sin(theta / 2) ** 2).max())
+
+
+def _best_damping(b, T, delay, most):
+    """Return the damper beside which the spring can be stiffest: k_c is a concave function of b_c."""
+    low, high = 0.0, most
+    while high - low > NARROW * most:
+        one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+        less = _stiffest(one, b, T, delay)[0] < _stiffest(two, b, T, delay)[0] * (1 - 1e-12)
+        low, high = (one, high) if less else (low, two)
+    return 0.0 if low == 0.0 else (low + high) / 2

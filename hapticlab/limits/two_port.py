@@ -1,0 +1,90 @@
+"""Absolute stability of a two-port, by Llewellyn's criterion: stable whatever passive hand and environment hang on it.
+
+A haptic display lies between the hand and the virtual environment (Adams and Hannaford 1999). In hybrid form
+
+    [F_1, -v_2] = h [v_1, F_2],    h a 2 x 2 matrix at every theta = w T,
+
+with the hand at port 1 and the environment at port 2; an admittance display exchanges v_1 and F_1, v_2 and F_2, and reads the
+same. It is stable with every pair of passive terminations where, at every frequency up to Nyquist,
+
+    Re h11 >= 0,  Re h22 >= 0,  2 Re h11 Re h22 >= |h12 h21| + Re(h12 h21).
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+#: relative rounding of the criterion
+ROUNDING = 1e-9
+#: slow motion is looked at down to this w T
+SLOW = 1e-3
+
+
+def frequencies(points=2000):
+    """Return theta = w T, close together at both ends, shape (P,)."""
+    return np.unique(np.r_[np.geomspace(SLOW, np.pi, points), np.linspace(SLOW, np.pi, points)])
+
+
+@dataclass(frozen=True)
+class TwoPort:
+    """A display between a hand and a virtual environment.
+
+    Attributes
+    ----------
+    h : callable
+        theta of shape (P,) -> complex array of shape (P, 2, 2).
+    T : float
+        Sampling period [s].
+    name : str
+
+    Examples
+    --------
+    >>> damper = TwoPort(lambda theta: np.tile([[0.1, 1.0], [-1.0, 0.0]], (len(theta), 1, 1)) + 0j, T=1e-3, name="a damper")
+    >>> damper.absolutely_stable
+    True
+    """
+
+    h: Callable = field(repr=False)
+    T: float
+    name: str
+
+    def criterion(self, theta):
+        """Return 2 Re h11 Re h22 - |h12 h21| - Re(h12 h21), a number without unit that has to be >= 0; theta of shape (P,)."""
+        h = self.h(np.atleast_1d(np.asarray(theta, dtype=float)))
+        product = h[:, 0, 1] * h[:, 1, 0]
+        # |p| + Re p, without loss where p is near a negative number
+        return 2 * h[:, 0, 0].real * h[:, 1, 1].real - 2 * np.abs(product) * np.sin(np.angle(-product) / 2) ** 2
+
+    @property
+    def absolutely_stable(self):
+        """Whether every pair of passive terminations is stable."""
+        h = self.h(theta := frequencies())
+        own = np.minimum(_part(h[:, 0, 0]), _part(h[:, 1, 1]))
+        return bool(own.min() >= -ROUNDING and self.criterion(theta).min() >= -ROUNDING)
+
+    @property
+    def worst(self):
+        """Frequency [Hz] at which the criterion is least."""
+        theta = frequencies()
+        return float(theta[self.criterion(theta).argmin()] / (2 * math.pi * self.T))
+
+    def felt(self, theta, environment):
+        """Return F_1/v_1 at theta of shape (P,) with ``F_2 = environment v_2`` at the other port, complex (P,)."""
+        h, Z = self.h(np.atleast_1d(np.asarray(theta, dtype=float))), np.asarray(environment)
+        return h[:, 0, 0] - h[:, 0, 1] * h[:, 1, 0] * Z / (1 + h[:, 1, 1] * Z)
+
+    def least_resistance(self, theta):
+        """Return the least Re F_1/v_1 that a passive environment can make the hand feel, theta of shape (P,).
+
+        A passive environment fills a half plane, which the fractional map of the two-port turns into a disk.
+        """
+        h = self.h(np.atleast_1d(np.asarray(theta, dtype=float)))
+        product = h[:, 0, 1] * h[:, 1, 0]
+        return h[:, 0, 0].real - (np.abs(product) + product.real) / (2 * h[:, 1, 1].real)
+
+
+def _part(z):
+    """Return the cosine of the angle of an immittance; 0 where there is none."""
+    return z.real / np.maximum(np.abs(z), 1e-300)
