@@ -3,6 +3,7 @@
 from . import library
 from .analysis.books import balance, energy_books
 from .analysis.chatter import chatter
+from .analysis.compare_laws import compare_laws
 from .analysis.energy import energy
 from .analysis.impedance import impedance
 from .analysis.methods import methods
@@ -60,8 +61,12 @@ from .experiments.reaching import Load, follow, reach
 from .experiments.shared_control import assistance
 from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
 from .experiments.up_down import UpDown
+from .limits.admittance import admittance_design
+from .limits.bounds import abbott_okamura_limit, bounds, diolaiti_limit, gil_limit
 from .limits.colgate import equivalent_damper, passivity_margin, wall_damping
+from .limits.coupler import coupler_design
 from .limits.damper import damper_limit
+from .limits.diolaiti import diolaiti
 from .limits.excess import passivity_ledger
 from .limits.linear_law import LinearLaw
 from .limits.indices import passivity_indices
@@ -70,6 +75,7 @@ from .limits.nyquist_disk import nyquist_disk
 from .limits.passivity import passivity_limit
 from .limits.port import port_damping
 from .limits.stability import stability_limit
+from .limits.two_port import TwoPort
 from .measurement.impedance import measured_impedance
 from .measurement.largest_stiffness import largest_stiffness
 from .measurement.signals import multisine
@@ -148,21 +154,27 @@ __all__ = [
     "Taylor",
     "Telemetry",
     "Tremor",
+    "TwoPort",
     "UnitsError",
     "UpDown",
     "VelocityEstimate",
+    "abbott_okamura_limit",
+    "admittance_design",
     "assistance",
     "backward_velocity",
     "balance",
+    "bounds",
     "braking_pulse",
     "calibrate",
     "chatter",
     "closest",
+    "compare_laws",
     "compensation_limit",
     "compile",
     "connect",
     "contacts_between",
     "coordinate",
+    "coupler_design",
     "damper_limit",
     "damping_compensation",
     "damping_task",
@@ -172,6 +184,8 @@ __all__ = [
     "device_image",
     "digital_gains",
     "digital_wall",
+    "diolaiti",
+    "diolaiti_limit",
     "doctor",
     "energy",
     "energy_books",
@@ -187,6 +201,7 @@ __all__ = [
     "friction_pulse",
     "from_mechanics",
     "gap",
+    "gil_limit",
     "ground",
     "guidance",
     "hand",
