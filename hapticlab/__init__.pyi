@@ -68,8 +68,8 @@ from .limits.coupler import coupler_design
 from .limits.damper import damper_limit
 from .limits.diolaiti import diolaiti
 from .limits.excess import passivity_ledger
-from .limits.linear_law import LinearLaw
 from .limits.indices import passivity_indices
+from .limits.linear_law import LinearLaw
 from .limits.local_stiffness import local_stiffness
 from .limits.nyquist_disk import nyquist_disk
 from .limits.passivity import passivity_limit
