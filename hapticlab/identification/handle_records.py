@@ -19,13 +19,13 @@ MOVED = 20
 PART = 0.05
 FORCE_CONSTANT = (
     "the force constant cannot be told from motion alone: twice the force on twice the mass with twice the friction moves "
-    "alike. Give a known reference: a record with Record(log, added=...) of a known mass fixed to the handle beside one "
-    "without, or Record.hanging(log, mass) of a weight that pulls on it"
+    "alike. Give a known reference: a record with HandleRecord(log, added=...) of a known mass fixed to the handle beside one "
+    "without, or HandleRecord.hanging(log, mass) of a weight that pulls on it"
 )
 
 
 @dataclass(frozen=True, eq=False)
-class Record:
+class HandleRecord:
     """A record of a free handle, and what is known to have been beside it.
 
     Attributes
@@ -42,7 +42,7 @@ class Record:
     --------
     >>> from hapticlab.records import Telemetry
     >>> log = Telemetry(t=[0, 1e-3], x=[0, 0], v=[0, 0], F=[0, 0], T=1e-3)
-    >>> Record.hanging(log, 0.05).push           # a weight of 50 g on a thread along the handle's path
+    >>> HandleRecord.hanging(log, 0.05).push           # a weight of 50 g on a thread along the handle's path
     0.4903325
     """
 
@@ -105,11 +105,11 @@ def spin_down(log, *, m=None, counts_per_metre=None, confidence=0.95):
         )
     known = {"m": 1.0 if m is None else m}
     names = ("b", "coulomb") if m is not None else ("b/m", "coulomb/m")
-    trace = Record(log, at_rest=False).trace(first)
+    trace = HandleRecord(log, at_rest=False).trace(first)
     return _found(Problem((trace,), ("b", "coulomb"), known, _quantum(counts_per_metre)), names, confidence)
 
 
-def step(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.95):
+def step_response(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.95):
     """Return mass, damping, Coulomb friction and delay from steps of force on a free handle.
 
     Parameters
@@ -127,23 +127,23 @@ def step(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.9
     -------
     PaddleFit
     """
-    check_record(log, "step")
+    check_record(log, "step_response")
     changes = np.count_nonzero(np.diff(log.F))
     if not 1 <= changes <= len(log) / 4:
         raise AnalysisError(
-            f"step: the force changes {changes} times in {len(log)} samples; needs a few steps, each held for a while. For a "
-            "force that always changes use chirp(log), for none spin_down(log)"
+            f"step_response: the force changes {changes} times in {len(log)} samples; needs a few steps, each held for a while. For a "
+            "force that always changes use chirp_response(log), for none spin_down(log)"
         )
-    return identify(Record(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
+    return identify(HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
 
 
-def chirp(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.95):
-    """Return mass, damping, Coulomb friction and delay from a force that swings faster and faster; as :func:`step`."""
-    check_record(log, "chirp")
+def chirp_response(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.95):
+    """Return mass, damping, Coulomb friction and delay from a force that swings faster and faster; as :func:`step_response`."""
+    check_record(log, "chirp_response")
     turns = np.count_nonzero(np.diff(np.sign(np.diff(log.F))))
     if turns < 3:
-        raise AnalysisError(f"chirp: the force turns {turns} times in {len(log)} samples; needs 3 swings or more")
-    return identify(Record(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
+        raise AnalysisError(f"chirp_response: the force turns {turns} times in {len(log)} samples; needs 3 swings or more")
+    return identify(HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
 
 
 def identify(*records, force_constant=False, counts_per_metre=None, known=None, confidence=0.95):
@@ -153,7 +153,7 @@ def identify(*records, force_constant=False, counts_per_metre=None, known=None, 
 
     Parameters
     ----------
-    *records : Record or Telemetry
+    *records : HandleRecord or Telemetry
     force_constant : bool
         Seek ``scale`` as well, newtons at the handle for each that the paddle reckons. It needs a known reference.
     counts_per_metre : float, optional
@@ -174,7 +174,7 @@ def identify(*records, force_constant=False, counts_per_metre=None, known=None, 
     known = dict(known or {})
     if unknown := set(known) - set(UNITS):
         raise AnalysisError(f"known = {sorted(unknown)}; needs constants of {', '.join(UNITS)}")
-    records = [one if isinstance(one, Record) else Record(one) for one in records]
+    records = [one if isinstance(one, HandleRecord) else HandleRecord(one) for one in records]
     if not records:
         raise AnalysisError("identify() of no record; needs one or more, log = paddle.run(...)")
     if force_constant and "m" not in known and not any(one.added or one.push for one in records):

@@ -37,21 +37,26 @@ def positions(F, T, *, m, b, coulomb, delay, scale, push, x0, v0):
     first = late - whole * T  # of the period, under the force that was felt before
     column = (np.broadcast_to(np.arange(F.shape[1]), shape),) if F.ndim == 2 else ()
     beta, grip = b / m, coulomb / m
+    parts = [(h, lag, _phi(beta, h)) for h, lag in ((first, whole + 1), (T - first, whole)) if np.any(h > 0)]
     found = np.empty((len(F), *shape))
     found[0] = x
     for n in range(len(F) - 1):
-        for duration, lag in ((first, whole + 1), (T - first, whole)):
-            if np.any(duration > 0):
-                at = n - lag
-                felt = np.where(at < 0, 0.0, F[(np.clip(at, 0, len(F) - 1), *column)])
-                x, v = _glide(x, v, (push - scale * felt) / m, beta, grip, duration)
+        for duration, lag, phi in parts:
+            at = n - lag
+            felt = F[(np.minimum(np.maximum(at, 0), len(F) - 1), *column)] * (at >= 0)
+            x, v = _glide(x, v, (push - scale * felt) / m, beta, grip, duration, phi)
         found[n + 1] = x
     return found
 
 
-def _glide(x, v, pull, beta, grip, duration):
+def _glide(x, v, pull, beta, grip, duration, phi):
     """Advance under a constant acceleration and friction; once stopped, stay or go the way of the pull."""
-    heading = np.where(v == 0, np.where(np.abs(pull) > grip, np.sign(pull), 0.0), np.sign(v))
+    heading = np.sign(v)
+    net = pull - grip * heading
+    end = v - (beta * v - net) * phi[0]
+    if np.all(end * v > 0):  # the speed goes one way all the time, so nobody has stopped
+        return x + v * phi[0] + net * phi[1], end
+    heading = np.where(v == 0, np.where(np.abs(pull) > grip, np.sign(pull), 0.0), heading)
     net = np.where(heading == 0, 0.0, pull - grip * heading)
     lasts = np.minimum(duration, _stops(v, net, beta))
     phi1, phi2 = _phi(beta, lasts)

@@ -21,8 +21,8 @@ SETTLED = 0.02
 BLIND = 1e-11
 #: damping of a step at first, its factor after one that was good and one that was not
 DAMPING, EASED, BRACED = 1e-3, 0.2, 6.0
-#: rounds in which sigma and the parameters of a counted record are found in turn
-ROUNDS = 4
+#: rounds in which sigma and the parameters are found in turn, first as numbers, then as counts
+ROUNDS = 2, 3
 #: m of noise, so that no noise divides by nothing
 LEAST = 1e-15
 
@@ -97,7 +97,7 @@ def fit(motion, y, start, scales, *, quantum=0.0):
     freedom = np.sum(weights, axis=0) - len(start)
     even, no = np.ones_like(y), np.zeros(y.shape[1], bool)
     found, rest = start, y - motion(start[:, None])[:, 0]
-    for _ in range(ROUNDS):  # what is a small step is said by sigma, and sigma by what is left after the steps
+    for _ in range(ROUNDS[0]):  # what is a small step is said by sigma, and sigma by what is left after the steps
         sigma = np.sqrt(np.mean(rest**2, axis=0)) + LEAST
         found, rest = _scored(motion, y, found, scales, sigma, 0.0, even, no)
     if quantum:
@@ -110,7 +110,7 @@ def _counted(motion, y, found, rest, scales, quantum, weights, freedom):
     """Return the fit of counts: by their own likelihood in dither, else as numbers, a run of one count being one."""
     dithered = spread(rest, quantum) >= DITHERED * quantum
     weights = np.where(dithered, 1.0, weights)
-    for _ in range(ROUNDS):
+    for _ in range(ROUNDS[1]):
         plain = np.sqrt(np.sum(weights * rest**2, axis=0) / np.maximum(freedom, 1))
         sigma = np.where(dithered, spread(rest, quantum), np.maximum(plain, quantum / 12**0.5))
         found, rest = _scored(motion, y, found, scales, sigma, quantum, weights, dithered)

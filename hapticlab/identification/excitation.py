@@ -1,0 +1,116 @@
+"""Forces that make a free handle tell its constants: a kick and coasting, steps, a chirp, each within a stated travel."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from ..errors import AnalysisError
+from ..scene.laws import virtual_damper
+from ..scene.parameters import parameters
+from ..scene.scene import Scene
+from ..scene.symbols import n, when, x
+from .motion import positions
+
+#: samples of rest before a force begins
+LEAD = 20
+#: of steps: where the force changes, in steps' lengths, and by how much, in its size; it ends at rest where it began
+CHANGES = ((0, 1), (1, -2), (3, 2), (5, -2), (7, 2), (8, -1))
+#: of a chirp: last frequency over first, and swings of the first
+SWEEP, SWINGS = 8.0, 6.0
+#: of the travel that the motion may fill, as the constants known so far tell it
+FILLS = 0.6
+#: samples that a kick, a step, or a chirp's first swing lasts
+SHORTEST, LONGEST_PART = 4, 400
+#: a coasting handle rests after so many of b and friction's times, at most this many samples
+LONGEST = 4000
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """A force over samples: ``kind`` is "kick", "steps" or "chirp", ``size`` [N], ``length`` [samples] of its first part.
+
+    Examples
+    --------
+    >>> Excitation("steps", 0.2, 10, 120).forces(1e-3)[[19, 20, 30, 49, 50, 99, 100]].tolist()
+    [0.0, 0.2, -0.2, -0.2, 0.2, 0.2, 0.0]
+    """
+
+    kind: str
+    size: float
+    length: int
+    samples: int
+
+    def forces(self, T):
+        """Return the force at each sample, without the guard of :meth:`scene` [N]."""
+        at = np.arange(self.samples) - LEAD
+        if self.kind == "chirp":
+            return np.where(at >= 0, self.size * np.cos(self._phase(np.maximum(at, 0))), 0.0)
+        return self.size * sum(by * (at >= start * self.length) for start, by in self._changes())
+
+    def scene(self, travel):
+        """Return it as a scene that gives no force further than ``travel`` [m] from where it began."""
+        A, limit = parameters("A limit", units="N m", values=(self.size, travel))
+        at = n - LEAD
+        if self.kind == "chirp":
+            force = when(at >= 0, A * sp.cos(self._phase(at, sp.Float)), 0)
+        else:
+            force = A * sp.Add(*(when(at >= start * self.length, by, 0) for start, by in self._changes()))
+        return Scene(when(sp.Abs(x(n)) <= limit, force, 0), name=self.kind)
+
+    def _changes(self):
+        return ((0, 1), (1, -1)) if self.kind == "kick" else CHANGES
+
+    def _phase(self, at, number=float):
+        """Return the angle of a chirp: ``length`` samples are its first period, SWEEP times as fast at the end."""
+        rate = 2 * np.pi / self.length
+        bend = rate * (SWEEP - 1) / (2 * (self.samples - LEAD))
+        return at * (number(rate) + number(bend) * at)
+
+
+def designed(kind, size, T, travel, constants):
+    """Return the longest excitation of a size [N] whose motion fills FILLS of +-travel [m], by the constants known so far.
+
+    A handle that coasts too far even after the shortest kick gets half the size, and so on.
+
+    Raises
+    ------
+    AnalysisError
+        If no force above friction keeps within the travel.
+    """
+    best = None
+    for length in np.unique(np.geomspace(SHORTEST, LONGEST_PART, 60).astype(int)):
+        tried = Excitation(kind, size, int(length), _samples(kind, int(length), size, T, constants))
+        moved = positions(tried.forces(T), T, push=0.0, x0=0.0, v0=0.0, scale=1.0, **constants)
+        if np.abs(moved).max() > FILLS * travel:
+            break
+        best = tried
+    if best is not None:
+        return best
+    if size / 2 <= constants["coulomb"]:
+        raise AnalysisError(
+            f"{kind} of {size:g} N: {SHORTEST} samples of {T:g} s already move the handle past {1e3 * FILLS * travel:.3g} mm, and "
+            "half the force is below friction; give a smaller T or more travel="
+        )
+    return designed(kind, size / 2, T, travel, constants)
+
+
+def _samples(kind, length, size, T, constants):
+    """Return how many samples an excitation lasts: steps end, a chirp has its swings, a kicked handle comes to rest."""
+    if kind == "steps":
+        return LEAD + 8 * length + LEAD
+    if kind == "chirp":
+        return LEAD + int(SWINGS * length)
+    m, b, coulomb = (max(constants[name], 0.0) for name in ("m", "b", "coulomb"))
+    speed = max(size - coulomb, 0.0) * length * T / m
+    slows = b / m + coulomb / (m * speed) if speed else 1.0
+    return LEAD + length + int(min(5 / max(slows * T, 1e-9), LONGEST))
+
+
+def centring(stiffness, damping):
+    """Return a scene that leads the handle back to the middle."""
+    K = parameters("K", units="N/m", values=stiffness)
+    damper = virtual_damper()(B=damping)
+    return Scene(K * x(n) + damper.force, name="centring", values=damper.values)
+
+

@@ -1,0 +1,158 @@
+"""Identify a paddle by moving it: from small forces up, within a stated travel, on a simulated paddle or a board."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..device.board import SerialPaddle
+from ..device.force_fit import duty_of
+from ..device.hand import require
+from ..device.messages import MOTOR_LAWS
+from ..errors import AnalysisError, PaddleError
+from .excitation import LEAD, Excitation, centring, designed
+from .handle_records import HandleRecord, identify
+from .paddle_fit import PaddleFit
+
+#: of the largest force: where the search begins, and by what it grows until the handle moves
+FIRST, GROWS = 1 / 64, 2**0.5
+#: parts of the travel that a handle moves, at least, for its constants to be known roughly; steps' lengths [s] of the search
+FOUND, PILOT = 0.05, 0.02
+#: N and m, where neither paddle nor caller says
+FORCE, TRAVEL = 1.0, 0.02
+#: s that a handle is led back for, and damping over stiffness of what leads it [s]
+BACK_TIME, BACK_DAMPING = 0.8, 0.03
+
+
+@dataclass(frozen=True, eq=False)
+class Identified(PaddleFit):
+    """A :class:`PaddleFit` with the records it was made from.
+
+    Attributes
+    ----------
+    records : tuple of HandleRecord
+    """
+
+    records: tuple = ()
+
+    def loaded(self, mass):
+        """Return the records as those of a handle with a known mass [kg] fixed to it; see :func:`identify`."""
+        return tuple(replace(record, added=mass) for record in self.records)
+
+
+def identify_paddle(paddle, *, force=None, travel=None, kinds=("kick", "steps", "chirp"), added=0.0, beside=(), confidence=0.95):
+    """Move a free handle and return its mass, damping, Coulomb friction and delay, with confidence intervals.
+
+    Nobody holds the handle. Forces grow from 1/64 of ``force`` until it moves; what that tells sizes a kick, steps and a
+    chirp that fill 60 % of the travel. Past the travel the motor gives nothing; a fault of a board ends everything with
+    the motor off.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle or SerialPaddle
+    force : float, optional
+        The largest force [N]; by default what the paddle stands for long, or 1 N.
+    travel : float, optional
+        How far the handle may move from its place, either way [m]; by default 80 % of a board's way to its nearer stop,
+        or 20 mm.
+    kinds : sequence of {"kick", "steps", "chirp"}
+    added : float
+        A known mass fixed to the handle [kg]; the constants found are those without it.
+    beside : sequence of HandleRecord, optional
+        Records of the same paddle, without the mass: the ``records`` of an earlier call. With ``added`` they tell the
+        force constant, too.
+    confidence : float
+
+    Returns
+    -------
+    Identified
+
+    Raises
+    ------
+    AnalysisError, PaddleError
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, coulomb=0.05, noise=5e-6, force_max=2.0)
+    >>> found = identify_paddle(paddle, kinds=("steps",))
+    >>> 0.03 in found["m"], 0.1 in found["b"], 0.05 in found["coulomb"], 0.0 in found["delay"]
+    (True, True, True, True)
+    """
+    if beside and not added:
+        raise AnalysisError("beside= without added=: records with and without a known mass tell the force constant; give added=")
+    force, travel = _limits(paddle, force, travel)
+    added = require("added", added, "kg", "an identification", low=0)
+    pilot, size = _pilot(paddle, force, travel)
+    per_metre = _counts_per_metre(paddle)
+    rough = identify(pilot, counts_per_metre=per_metre)
+    constants = {name: max(rough[name].value, 1e-4 if name == "m" else 0.0) for name in ("m", "b", "coulomb", "delay")}
+    size = min(force, max(size, 4 * constants["coulomb"]))
+    records = []
+    for kind in kinds:
+        excited = designed(kind, size, paddle.T, travel, constants)
+        records.append(HandleRecord(_run(paddle, excited, force, travel), added=added, at_rest=_rests(paddle)))
+    together = (*records, *beside)
+    found = identify(*together, counts_per_metre=per_metre, force_constant=bool(beside), confidence=confidence)
+    return Identified(**vars(found), records=tuple(records))
+
+
+def _limits(paddle, force, travel):
+    """Return the largest force [N] and travel [m]."""
+    settings = getattr(paddle, "settings", None)
+    if isinstance(paddle, SerialPaddle) and settings is None:
+        raise PaddleError("the board has no calibration, so its travel and force are not known: run `hapticlab calibrate` first.")
+    if settings is not None:
+        usual = min(settings.force_continuous, settings.force_max), 0.8 * min(-settings.travel_min, settings.travel_max)
+    else:
+        usual = paddle.force_max or FORCE, TRAVEL
+    force = require("force", usual[0] if force is None else force, "N", "an identification", above=0)
+    return force, require("travel", usual[1] if travel is None else travel, "m", "an identification", above=0)
+
+
+def _counts_per_metre(paddle):
+    return 1 / paddle.settings.metres_per_count if isinstance(paddle, SerialPaddle) else paddle.counts_per_metre
+
+
+def _rests(paddle):
+    """Whether a run begins at rest for sure: a simulated handle does; one that was led back almost does."""
+    return not isinstance(paddle, SerialPaddle)
+
+
+def _pilot(paddle, force, travel):
+    """Return a record of the first force that moves the handle by FOUND of the travel, and that force [N]."""
+    length, size = max(4, round(PILOT / paddle.T)), force * FIRST
+    while True:
+        steps = Excitation("steps", size, length, 2 * LEAD + 8 * length)
+        log = _run(paddle, steps, force, travel)
+        if np.ptp(log.x) >= FOUND * travel:
+            return HandleRecord(log, at_rest=_rests(paddle)), size
+        if size >= force:
+            raise AnalysisError(
+                f"identify_paddle: {force:.3g} N moves the handle by {1e3 * np.ptp(log.x):.2g} mm only; needs "
+                f"{1e3 * FOUND * travel:.2g} mm. Check the motor's supply and that nobody holds the handle, or allow a larger force="
+            )
+        size = min(size * GROWS, force)
+
+
+def _run(paddle, excited, force, travel):
+    """Run an excitation and return its record, with the forces that the motor gave."""
+    scene, duration = excited.scene(travel), excited.samples * paddle.T
+    if not isinstance(paddle, SerialPaddle):
+        return paddle.run(scene, duration=duration, progress=False)
+    back = centring(force / travel, BACK_DAMPING * force / travel)
+    _after(paddle.run(back, duration=BACK_TIME, force_max=force, progress=False))
+    log = _after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False))
+    return replace(log, F=given(paddle, log.F))
+
+
+def _after(log):
+    if log.fault:
+        raise PaddleError(f"identify_paddle stopped: {log.fault}")
+    return log
+
+
+def given(paddle, F):
+    """Return the forces [N] that a board's motor gave for those it was asked for: its duty has steps."""
+    law = next(name for name, k in MOTOR_LAWS.items() if k == paddle.settings.motor_law)
+    duties = np.array([duty_of(force, paddle.settings, paddle.board["duty_full"]) for force in F])
+    return np.sign(F) * paddle.settings.force_full * (duties if law == "LINEAR" else duties**2)
