@@ -61,6 +61,8 @@ from .experiments.reaching import Load, follow, reach
 from .experiments.shared_control import assistance
 from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
 from .experiments.up_down import UpDown
+from .identification.handle_records import HandleRecord, chirp_response, identify, spin_down, step_response
+from .identification.paddle import identify_paddle
 from .limits.admittance import admittance_design
 from .limits.bounds import abbott_okamura_limit, bounds, diolaiti_limit, gil_limit
 from .limits.colgate import equivalent_damper, passivity_margin, wall_damping
@@ -123,6 +125,7 @@ __all__ = [
     "HalfPlane",
     "Hand",
     "HandleMotion",
+    "HandleRecord",
     "HapticlabError",
     "LinearLaw",
     "LinkError",
@@ -167,6 +170,7 @@ __all__ = [
     "braking_pulse",
     "calibrate",
     "chatter",
+    "chirp_response",
     "closest",
     "compare_laws",
     "compensation_limit",
@@ -209,6 +213,8 @@ __all__ = [
     "handle_motions",
     "hunt_crossley",
     "hybrid_wall",
+    "identify",
+    "identify_paddle",
     "impedance",
     "impulse",
     "kalman_velocity",
@@ -252,9 +258,11 @@ __all__ = [
     "rigid",
     "sensor_floor",
     "signal",
+    "spin_down",
     "stability_limit",
     "staircase",
     "step_limit",
+    "step_response",
     "stiffness_task",
     "storage",
     "sweep",
