@@ -104,9 +104,7 @@ def pair_forces(lines, p, w, goal):
     """Return the two forces, in metres of the spring, that take (p, w) to the goal in two periods."""
     (Phi, gamma), (two, _) = lines.model.flow(1.0), lines.model.flow(2.0)
     pushed = Phi @ gamma + gamma
-    missed = [
-        number(two[i, 0]) * p + number(two[i, 1]) * w + number(pushed[i]) * lines.outer - goal[i] for i in (0, 1)
-    ]
+    missed = [number(two[i, 0]) * p + number(two[i, 1]) * w + number(pushed[i]) * lines.outer - goal[i] for i in (0, 1)]
     missed = [lines.let(name, each) for name, each in zip(("missed_p", "missed_w"), missed, strict=True)]
     return [number(row[0]) * missed[0] + number(row[1]) * missed[1] for row in _inverse(lines.model)]
 
@@ -147,7 +145,7 @@ class DeadbeatGains:
         if self.count is None:
             return text
         most = "" if self.force_max is None else f" of the {self.force_max:g} N the motor has"
-        return f"{text}; one encoder count by {self.count:.3g} N{most}"
+        return f"{text};\none encoder count changes them by {self.count:.3g} N{most}"
 
 
 def deadbeat_gains(paddle, *, hand=None):
@@ -160,7 +158,8 @@ def deadbeat_gains(paddle, *, hand=None):
     --------
     >>> import hapticlab as hl
     >>> print(hl.deadbeat_gains(hl.SimulatedPaddle(m=0.05, b=0, T=1e-3, counts_per_metre=1e5, force_max=5)))
-    the pair's forces change by 5e+04 and -5e+04 N per metre, 75 and -25 N per m/s; one encoder count by 1.25 N of the 5 N the motor has
+    the pair's forces change by 5e+04 and -5e+04 N per metre, 75 and -25 N per m/s;
+    one encoder count changes them by 1.25 N of the 5 N the motor has
     """
     model = WallModel.of(paddle, K=1.0, hand=hand)
     two = model.flow(2.0)[0]

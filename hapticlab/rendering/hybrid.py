@@ -49,7 +49,11 @@ class HybridMotion:
         entered = self.speeds > 0
         return (
             f"{len(self.t)} samples over {self.t[-1]:g} s; {np.count_nonzero(entered)} times into the wall"
-            + (f", first at {self.crossings[entered][0]:.6g} s with {self.speeds[entered][0]:.4g} m/s" if any(entered) else "")
+            + (
+                f", first at {self.crossings[entered][0]:.6g} s with {self.speeds[entered][0]:.4g} m/s"
+                if any(entered)
+                else ""
+            )
             + f"\n  {self.model}"
         )
 

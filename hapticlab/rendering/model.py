@@ -53,7 +53,7 @@ class WallModel:
         lacking = [name for name in ("m", "b", "T", "delay", "hand") if not hasattr(paddle, name)]
         if lacking:
             raise AnalysisError(
-                f"a {type(paddle).__name__} has no {lacking[0]}; needs the paddle's constants, hl.SimulatedPaddle(m=..., b=..., T=...)"
+                f"a {type(paddle).__name__} has no {lacking[0]}; needs its constants, as hl.SimulatedPaddle has them"
             )
         hand = paddle.hand if hand is None else hand
         of_hand = dict.fromkeys(("m", "b", "k", "push"), 0.0)

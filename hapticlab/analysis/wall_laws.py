@@ -1,0 +1,104 @@
+"""Every law that renders one and the same wall, by name: of the chapter, of its model-based section, and of a real damper."""
+
+import math
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from ..errors import AnalysisError
+from ..rendering.deadbeat import deadbeat_wall
+from ..rendering.digital import digital_wall
+from ..rendering.predictive import predictive_wall
+from ..scene.laws import wall
+from ..scene.scene import Scene
+from ..scene.symbols import T, n, parameters, x
+from ..scene.taps import TAPS
+
+
+@dataclass(frozen=True)
+class WallLaw:
+    """A wall as a law renders it, and the paddle it needs.
+
+    Attributes
+    ----------
+    name : str
+    scene : Scene
+    paddle : SimulatedPaddle
+        The paddle given, but for "damped", which puts a damper of K T/2 on it.
+    """
+
+    name: str
+    scene: Scene
+    paddle: object
+
+
+def _deadbeat(begins, between):
+    return lambda model, clamp, **options: deadbeat_wall(model, begins=begins, between=between, **options)
+
+
+MODEL_LAWS = {
+    "digital": digital_wall,
+    "predictive": predictive_wall,
+    "deadbeat": _deadbeat("predictive", "pairs"),
+    "deadbeat_reactive": _deadbeat("reactive", "pairs"),
+    "deadbeat_crossings": _deadbeat("predictive", "half_sample"),
+}
+#: name -> what it is, in the words of a table
+LAWS = {
+    "zoh": "K p(n), Eq. (23.1)",
+    "half_sample": "velocity half a sample on, Eq. (23.3)",
+    "backward_difference": "Eq. (23.5)",
+    "ellis": "predictor-corrector, Eq. (23.7)",
+    "damped": "Eq. (23.1), with a damper K T/2 on the paddle and B = -K T/2 everywhere",
+    "digital": "poles of the wall, in the digital domain",
+    "predictive": "half a sample by the model",
+    "deadbeat": "dead-beat pairs inside and at foreseen crossings",
+    "deadbeat_reactive": "dead-beat pairs inside and after crossings",
+    "deadbeat_crossings": "half a sample by the model, dead-beat pairs at foreseen crossings",
+}
+
+
+def _damper():
+    """Return a virtual damper of either sign that acts everywhere, by backward difference."""
+    return parameters("B", units="N*s/m", ranges=(-math.inf, math.inf)) * (x(n) - x(n - 1)) / T
+
+
+def wall_law(name, paddle, *, K, model=None, unilateral="gate", clamp=False, velocity="handle"):
+    """Return a wall of stiffness K as one of :data:`LAWS` renders it.
+
+    Parameters
+    ----------
+    name : str
+    paddle : SimulatedPaddle
+    K : float
+        [N/m]
+    model : SimulatedPaddle, optional
+        What a model-based law believes; the paddle unless given.
+    unilateral : {"gate", "clip"}
+        Of the chapter's laws; the others act where the handle is, or is predicted, inside.
+    clamp : bool
+        Never pull; a dead-beat pair is not clamped.
+    velocity : {"handle", "model"}
+        Of the model-based laws.
+
+    Returns
+    -------
+    WallLaw
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> print(wall_law("damped", hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), K=400).paddle.b)
+    0.30000000000000004
+    """
+    if name not in LAWS:
+        raise AnalysisError(f"law = {name!r}; needs one of {', '.join(LAWS)}")
+    if name in TAPS:
+        return WallLaw(name, wall(name, unilateral, clamp)(k=K), paddle)
+    if name == "damped":
+        added = K * paddle.T / 2
+        plain = wall("zoh", unilateral, clamp)
+        scene = Scene(plain.force.xreplace({plain.parameters["B"]: sp.S.Zero}) + _damper(), name="damped wall")
+        return WallLaw(name, scene(k=K, B=-added), replace(paddle, b=paddle.b + added))
+    scene = MODEL_LAWS[name](model or paddle, K=K, clamp=clamp, velocity=velocity, force_max=paddle.force_max)
+    return WallLaw(name, scene, paddle)
