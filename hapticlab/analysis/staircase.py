@@ -10,6 +10,9 @@ from ..limits.limit import whole_and_fraction
 from ..records import check_record
 from .energy import energy
 
+#: periods of a penetration up to which each step's leak is written beside it
+NUMBERED = 16
+
 
 @dataclass(frozen=True)
 class Bounce:
@@ -71,7 +74,10 @@ class Staircase:
         return "\n".join(lines or ["no completed penetration"])
 
     def plot(self, bounce=1):
-        """Draw one penetration, counted from 1, as Fig. 23.6: the area between spring line and staircase is the leak."""
+        """Draw one penetration, counted from 1, as Fig. 23.6: the area between spring line and staircase is the leak.
+
+        Where there are few steps, each has its leak beside it in mJ.
+        """
         if not 1 <= bounce <= len(self.bounces):
             raise AnalysisError(f"bounce = {bounce}; the record has {len(self.bounces)} completed penetration(s)")
         one = self.bounces[bounce - 1]
@@ -88,20 +94,35 @@ class Staircase:
             axes.plot(line, law, label=f"spring law, {self.K:g} N/m", **STYLES[1])
             verb = "generated" if one.generated >= 0 else "dissipated"
             shaded = f"between the staircases: {1e3 * abs(one.generated):.4g} mJ {verb}"
+            _arrows(axes, x, F)
+            if per == 2 and one.last - one.first <= NUMBERED:
+                shaded += "; of each step in mJ"
+                _numbers(axes, x, F, self.leak[one.first : one.last])
             axes.set(xlabel="handle position x [mm]", ylabel="force F [N]", title=shaded)
-            _arrows(axes, x, F, per)
             axes.legend(loc="upper left", **FRAME)
         return figure
 
 
-def _arrows(axes, x, F, per):
-    """Show the way round on the longest step in and the longest step out."""
-    steps = np.diff(x)
-    for at, held in ((np.argmax(steps), F), (np.argmin(steps), F)):
-        if steps[at]:
-            middle, end = x[at] + 0.45 * steps[at], x[at] + 0.6 * steps[at]
-            arrow = {"arrowstyle": "-|>", "color": STYLES[0]["color"], "mutation_scale": 16}
-            axes.annotate("", (end, held[at]), (middle, held[at]), arrowprops=arrow)
+def _arrows(axes, x, F):
+    """Show the way round on the step in and the step out nearest to half the depth."""
+    steps, middle = np.diff(x), (x[1:] + x[:-1]) / 2
+    for way in (1, -1):
+        along = np.flatnonzero(way * steps > 0)
+        if len(along):
+            at = along[np.argmin(abs(middle[along] - x.max() / 2))]
+            ends = (middle[at] + 0.1 * steps[at], F[at]), (middle[at] - 0.1 * steps[at], F[at])
+            axes.annotate("", *ends, arrowprops={"arrowstyle": "-|>", "color": "#000000", "mutation_scale": 16})
+
+
+def _numbers(axes, x, F, leak):
+    """Write what each period leaked beside its step, in millijoules; less than a hundredth has no room."""
+    for k, energy_leaked in enumerate(leak):
+        if abs(energy_leaked) > 0.01 * abs(leak).sum():
+            inwards = x[2 * k + 1] > x[2 * k]
+            axes.annotate(
+                f"{1e3 * energy_leaked:.2g}", ((x[2 * k] + x[2 * k + 1]) / 2, F[2 * k]), (0, -4 if inwards else 4),
+                textcoords="offset points", ha="center", va="top" if inwards else "bottom", fontsize="x-small",
+            )  # fmt: skip
 
 
 def staircase(log, *, K=None, x_o=None):

@@ -161,9 +161,11 @@ def _values(log, stored):
             known = ", ".join(log.parameters) or "none"
             raise AnalysisError(f"stored = {stored}: the record knows no {p.name}; it has {known}")
         put[p] = log.parameters[p.name]
-    other = stored.atoms(sp.Function) - set(put) - stored.atoms(sp.Max, sp.Min, sp.Abs, sp.exp, sp.sin, sp.cos, sp.log)
-    if other - stored.atoms(sp.Piecewise):
-        raise AnalysisError(f"stored = {stored}; needs x(n) and parameters alone, or an array of its values")
     names = sp.symbols(f"a0:{len(put)}", real=True)
-    numeric = sp.lambdify(names, stored.xreplace(dict(zip(put, names, strict=True))), "numpy")
+    written = stored.xreplace(dict(zip(put, names, strict=True)))
+    other = {a for a in written.atoms(sp.Function) if hasattr(type(a), "role")} | (written.free_symbols - set(names))
+    if other:
+        named = ", ".join(sorted(map(str, other)))
+        raise AnalysisError(f"stored = {stored} holds {named}; needs x(n) and parameters alone, or an array of its values")
+    numeric = sp.lambdify(names, written, "numpy")
     return np.broadcast_to(np.asarray(numeric(*put.values()), float), position.shape)
