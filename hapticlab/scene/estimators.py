@@ -55,6 +55,11 @@ class VelocityEstimate:
     cheaper: tuple = ()
     _transfer: tuple = field(default=(), repr=False)
 
+    @property
+    def is_linear(self):
+        """Whether it has a transfer function."""
+        return bool(self._transfer)
+
     def transfer(self, period):
         """Return (numerator, denominator) in powers of 1/z, from positions [m] to the estimate [m/s], at T = period [s].
 
