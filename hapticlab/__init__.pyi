@@ -87,6 +87,7 @@ from .rendering.compensation_limit import CompensationLimit, compensation_limit
 from .rendering.deadbeat import deadbeat_gains, deadbeat_wall
 from .rendering.digital import digital_gains, digital_wall
 from .rendering.hybrid import hybrid_wall
+from .rendering.over_compensation import over_compensation
 from .rendering.predictive import predictive_wall
 from .scene.amount import Amount
 from .scene.compensation import damping_compensation
@@ -229,6 +230,7 @@ __all__ = [
     "n",
     "nyquist_disk",
     "order_of",
+    "over_compensation",
     "parameters",
     "passivity_controller",
     "passivity_indices",
