@@ -6,9 +6,9 @@ from ..device.hand import Hand
 from ..errors import AnalysisError
 
 #: samples of memory of the linear part, at most, and one in so many of the record that it may take
-MEMORY, SHARE = 400, 8
+MEMORY, SHARE = 120, 8
 #: harmonics of the drive that a contact may make, and the lags at which each is looked for
-HARMONICS, LAGS = 8, 6
+HARMONICS, LAGS = 8, 4
 #: order of the linear loop that is looked for where no finite memory is long enough: handle, law and delay
 ORDER = 6
 
@@ -47,7 +47,7 @@ def following(x, drive):
 def by_memory(x, drive):
     """Return the part of the last half of x that is a sum over past samples of the drive, -1 to 1, and its harmonics.
 
-    The memory is an eighth of that half, 400 samples at most; harmonics are up to the eighth, as Chebyshev polynomials
+    The memory is an eighth of that half, 120 samples at most; harmonics are up to the eighth, as Chebyshev polynomials
     of the drive: a tremor that leaves the wall and comes back makes those.
     """
     half = len(x) // 2
