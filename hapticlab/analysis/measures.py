@@ -15,7 +15,7 @@ from .chatter import decaying
 LEAST = 2e-8
 
 
-def _f64(*names):
+def f64(*names):
     return tuple(Channel(name, unit, "f64") for name, unit in names)
 
 
@@ -30,11 +30,11 @@ class Swing:
     handle moves there on a parabola, x_prev + v_prev^2 T / 2(v_prev - v).
     """
 
-    states = _f64(
+    states = f64(
         ("x", "m"), ("v", "m/s"), ("heading", "m/s"), ("anchor", "m"), ("turns", "1"),
         ("largest_before", "m"), ("least_before", "m"), ("largest", "m"),
     )  # fmt: skip
-    outputs = _f64(
+    outputs = f64(
         ("largest_before", "m"), ("least_before", "m"), ("largest", "m"), ("turns", "1"), ("heading", "m/s"), ("v", "m/s")
     )  # fmt: skip
 
@@ -97,8 +97,8 @@ class Contacts:
     """How often the force goes from zero to nonzero over the last half of the run [1/s]."""
 
     unit = "1/s"
-    states = _f64(("force", "N"), ("contacts", "1"))
-    outputs = _f64(("contacts", "1"))
+    states = f64(("force", "N"), ("contacts", "1"))
+    outputs = f64(("contacts", "1"))
 
     def __init__(self, ticks, T):
         self.half = float(ticks - 2 * (ticks // 4))
@@ -122,8 +122,8 @@ class Energy:
     """The most energy ever drawn from the environment through the port [J]: max(0, -min W) up to the last sample."""
 
     unit = "J"
-    states = _f64(("W", "J"), ("least", "J"), ("force", "N"))
-    outputs = _f64(("least", "J"))
+    states = f64(("W", "J"), ("least", "J"), ("force", "N"))
+    outputs = f64(("least", "J"))
 
     def __init__(self, ticks, T):
         pass
@@ -147,8 +147,8 @@ class PeakForce:
     """The largest magnitude of the force [N]."""
 
     unit = "N"
-    states = _f64(("peak", "N"))
-    outputs = _f64(("peak", "N"))
+    states = f64(("peak", "N"))
+    outputs = f64(("peak", "N"))
 
     def __init__(self, ticks, T):
         pass

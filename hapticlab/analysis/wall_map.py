@@ -1,0 +1,311 @@
+"""Maps of a wall: where it is passive, stable, chatters or is unusable, theory and simulation on one picture."""
+
+import math
+import time
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+
+import numpy as np
+
+from ..device.simulated import SimulatedPaddle
+from ..errors import AnalysisError
+from ..limits.passivity import passivity_limit
+from ..limits.stability import stability_limit
+from ..scene.laws import wall
+from .lane_runs import LaneRuns
+from .wall_map_plot import plot_wall_map
+from .workers import number_of
+
+REGIONS = ("passive", "stable", "chatters", "unusable")
+#: what a map may be over beside K, and its unit
+OTHERS = {
+    "B": "N*s/m", "T": "s", "delay": "s", "m": "kg", "b": "N*s/m", "coulomb": "N", "counts_per_metre": "1/m",
+    "hand_m": "kg", "hand_b": "N*s/m",
+}  # fmt: skip
+#: rows at which theory is computed, exactly; between them its lines are straight
+ROWS = 41
+
+
+@dataclass(frozen=True, eq=False)
+class WallMap:
+    """A wall over stiffness and one more quantity.
+
+    ``passive``: within the passivity limit of this device, so that no passive hand of any kind sets it chattering, and
+    resting in the simulation too. ``stable``: beyond that limit, but at rest at the end of the simulated contact, in this
+    hand, from this start. ``chatters``: a sustained or growing oscillation, larger than one encoder count. ``unusable``: one
+    of more than ``unusable`` [m] half the swing, or a handle thrown off that is not back in time where the linear loop is
+    unstable, or forces that are not finite.
+
+    Attributes
+    ----------
+    axes : dict of str to array
+        K [N/m], then the other quantity; SI.
+    regions : int array of shape (len(K), len(other))
+        0 passive, 1 stable, 2 chatters, 3 unusable.
+    amplitude : array of that shape
+        Half the largest swing of the last quarter [m], 0 at rest; nan where the run cannot tell.
+    undecided : bool array of that shape
+        The run cannot tell; the linear theory decided.
+    rows : array
+        Values of the other quantity at which theory was computed.
+    limits : dict of str to tuple of Limit
+        "passivity" and "stability": the largest K at each of ``rows``.
+    unusable : float
+        [m]
+    duration : float
+        Simulated time of a point [s], or a little more where T is an axis.
+    units : dict of str to str
+    about : str
+        Law, paddle and start, in lines.
+    seconds : float
+        How long the map took.
+    """
+
+    axes: dict
+    regions: np.ndarray
+    amplitude: np.ndarray
+    undecided: np.ndarray
+    rows: np.ndarray
+    limits: dict
+    unusable: float
+    duration: float
+    units: dict = field(default_factory=dict)
+    about: str = ""
+    seconds: float = math.nan
+
+    def limit(self, name):
+        """Return the stiffnesses [N/m] of a limit at ``rows``."""
+        return np.array([one.K for one in self.limits[name]])
+
+    def share(self, region):
+        """Return the part of the map that is a region, 0 to 1."""
+        if region not in REGIONS:
+            raise AnalysisError(f"region = {region!r}; needs one of {', '.join(REGIONS)}")
+        return float((self.regions == REGIONS.index(region)).mean())
+
+    @property
+    def surprises(self):
+        """Points within the passivity limit that chatter all the same, as an encoder or friction makes them: bool array."""
+        return _under(self, "passivity") & (self.regions >= 2)
+
+    def plot(self):
+        """Draw the regions with the lines of the theory; see :func:`hapticlab.analysis.wall_map_plot.plot_wall_map`."""
+        return plot_wall_map(self)
+
+    def __str__(self):
+        (K, k), (other, a) = self.axes.items()
+        shares = ", ".join(f"{name} {100 * self.share(name):.1f} %" for name in REGIONS)
+        lines = [
+            f"wall map over {K} = {k[0]:g} to {k[-1]:g} N/m and {other} = {a[0]:g} to {a[-1]:g} {self.units[other]}: {shares}",
+            f"  {self.about}".replace("\n", "\n  "),
+            f"  {self.regions.size} points of {self.duration:g} s; unusable is a swing of more than {1e3 * self.unusable:g} mm "
+            "to either side, or a handle thrown off by an unstable loop",
+        ]
+        if self.surprises.any():
+            lines.append(
+                f"  {self.surprises.sum()} points within the passivity limit chatter: it is about device damping alone, not "
+                "about an encoder"
+            )
+        if self.undecided.any():
+            lines.append(f"  {self.undecided.sum()} points are decided by the linear theory: nothing comes back in time")
+        return "\n".join(lines)
+
+    __repr__ = __str__
+
+
+def _under(found, name):
+    """Return where K is at most a limit, straight lines between the rows."""
+    K, other = found.axes.values()
+    top = np.minimum(found.limit(name), 1e300)
+    return K[:, None] <= np.interp(other, found.rows, top)[None, :]
+
+
+def wall_map(paddle, *, law="zoh", over=("K", "B"), **given):
+    """Map of a virtual wall: passive, stable, chatters or unusable over two quantities.
+
+    The lines are theory, exact: the passivity limit of Eq. (23.10) and its general form, and the linear stability of this
+    handle in this hand. The regions are simulated contacts with all that the paddle has: hand, encoder, Coulomb friction,
+    delay, force limit, the unilateral boundary.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+        Its hand pushes, or has a spring: else the handle bounces off and is gone.
+    law : {"zoh", "half_sample", "backward_difference", "ellis"}
+    over : ("K", other)
+        other is one of B, T, delay, m, b, coulomb, counts_per_metre, hand_m, hand_b.
+    **given
+        The axes by their names, arrays of SI values; without one a range of ``points`` = 100 values that shows the limits.
+        And what :class:`WallMaps` takes: B, duration, x, v, unusable, unilateral, clamp, workers, engine.
+
+    Returns
+    -------
+    WallMap
+
+    Raises
+    ------
+    AnalysisError
+        For an axis that is none, and a hand that moves or noise where T is an axis.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand(m=0.02, push=1.0))
+    >>> found = wall_map(paddle, K=np.linspace(40, 590, 12), B=np.linspace(0, 0.2, 5))
+    >>> found.regions[:, 0].tolist()
+    [0, 0, 0, 0, 3, 3, 3, 3, 3, 3, 3, 3]
+    """
+    return WallMaps(paddle, law=law, over=over, **given).of(paddle)
+
+
+class WallMaps:
+    """Maps with the same axes for one paddle after the other: what was compiled for one serves the next.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+        Its T is what the programs are compiled for; maps of another T come by similarity.
+    law, over
+        As for :func:`wall_map`.
+    B : float
+        Virtual damper [N s/m], where it is no axis.
+    duration : float
+        Of a contact [s].
+    x, v : float
+        Where a contact begins [m], [m/s]; the wall is at 0.
+    unusable : float
+        Half the swing [m] from which a wall is called unusable.
+    points : int
+        Values of an axis that is not given.
+    unilateral, clamp
+        As for :func:`hapticlab.wall`.
+    workers : int
+        Threads, -1 for one a processor.
+    engine : {"auto", "llvm", "interpreter"}
+    **axes
+        Arrays by name.
+    """
+
+    def __init__(
+        self, paddle, *, law="zoh", over=("K", "B"), B=0.0, duration=1.0, x=0.0, v=0.1, unusable=1e-3, points=100,
+        unilateral="gate", clamp=False, workers=-1, engine="auto", **axes,
+    ):  # fmt: skip
+        self._check(paddle, over, unusable)
+        self.law, self.over, self.T, self.start, self.unusable = law, tuple(over), paddle.T, (x, v), unusable
+        axes |= {"B": B} if over[1] == "B" and np.ndim(B) else {}
+        self.B = 0.0 if np.ndim(B) or over[1] == "B" else float(B)
+        unknown = [name for name in axes if name not in self.over]
+        if unknown:
+            raise AnalysisError(f"{unknown[0]}: the map is over {' and '.join(self.over)}; set it on the paddle, or map over it")
+        other = self._axis(self.over[1], axes.get(over[1]), lambda: _range(paddle, self.over[1], points))
+        K = self._axis("K", axes.get("K"), lambda: self._stiffnesses(paddle, other, points))
+        self.axes = {"K": K, self.over[1]: other}
+        rows = other[np.unique(np.linspace(0, len(other) - 1, min(len(other), ROWS)).round().astype(int))]
+        self.rows = np.union1d(rows, [0.0]) if other[0] < 0 < other[-1] else rows  # |B| has a corner at 0
+        scene = wall(law, unilateral=unilateral, clamp=clamp)(x_o=0.0, k=1.0)  # the lanes give k and B
+        self.runs = LaneRuns(scene, duration, workers=number_of(workers), engine=engine)
+
+    def of(self, paddle):
+        """Return the WallMap of a paddle."""
+        self._check(paddle, self.over, self.unusable)
+        begun = time.perf_counter()
+        K, other = self.axes.values()
+        points = {"k": np.repeat(K, len(other)), "B": np.full(K.size * other.size, self.B)}
+        points[self.over[1].replace("hand_", "hand.")] = np.tile(other, len(K))
+        if "T" not in points and paddle.T != self.T:
+            points["T"] = np.full(K.size * other.size, paddle.T)
+        limits = self._limits(paddle, self.rows)
+        runs = self.runs.chatter(replace(paddle, T=self.T), points, self.start)
+        amplitude, last, fault = (a.reshape(len(K), len(other)) for a in runs)
+        found = WallMap(
+            axes=self.axes, regions=np.zeros(amplitude.shape, int), amplitude=amplitude, undecided=np.isnan(amplitude) & ~fault,
+            rows=self.rows, limits=limits, unusable=self.unusable, duration=self.runs.duration,
+            units={"K": "N/m", self.over[1]: OTHERS[self.over[1]]}, about=self._about(paddle),
+        )  # fmt: skip
+        # an unstable loop does not come to rest by growing: irregular swings that happen to get smaller are no decay
+        found = replace(found, amplitude=np.where(_under(found, "stability"), amplitude, np.maximum(amplitude, last)))
+        return replace(found, regions=_regions(found, fault), seconds=time.perf_counter() - begun)
+
+    def _limits(self, paddle, rows):
+        """Return both limits at values of the other quantity."""
+        found = {"passivity": [], "stability": []}
+        for value in rows.tolist():
+            here, B = changed(paddle, self.over[1], value), value if self.over[1] == "B" else self.B
+            law = self.law
+            if law == "half_sample" and here.velocity == "backward_difference":
+                law = "backward_difference"  # Eq. (23.3) with the estimate is Eq. (23.5)
+            found["passivity"].append(_passivity(here.b, here.T, B, here.delay, law))
+            found["stability"].append(stability_limit(here, law=self.law, B=B))
+        return {name: tuple(limits) for name, limits in found.items()}
+
+    def _stiffnesses(self, paddle, other, points):
+        """Return a range of K that shows where most of the rows lose their stability."""
+        rows = other[np.unique(np.linspace(0, len(other) - 1, 9).astype(int))]
+        limits = np.array([one.K for one in self._limits(paddle, rows)["stability"]])
+        ends = limits[(limits > 0) & np.isfinite(limits)]
+        top = 1.5 * min(ends.max(), 4 * np.median(ends)) if len(ends) else paddle.m / paddle.T**2
+        return np.linspace(top / points, top, points)
+
+    def _axis(self, name, given, default):
+        array = np.asarray(default() if given is None else given, float)
+        if array.ndim != 1 or len(array) < 2 or not np.isfinite(array).all() or (np.diff(array) <= 0).any():
+            raise AnalysisError(f"{name} = {given}; an axis of a map needs two or more finite numbers that rise")
+        if name == "K" and array[0] < 0:
+            raise AnalysisError(f"K = {array[0]:g} N/m; a wall needs K >= 0")
+        return array
+
+    def _check(self, paddle, over, unusable):
+        if not isinstance(paddle, SimulatedPaddle):
+            raise AnalysisError(f"a map simulates thousands of contacts; needs a SimulatedPaddle, not a {type(paddle).__name__}")
+        if len(over) != 2 or over[0] != "K" or over[1] not in OTHERS:
+            raise AnalysisError(f'over = {over}; needs ("K", other) with other one of {", ".join(OTHERS)}')
+        if over[1].startswith("hand_") and paddle.hand is None:
+            raise AnalysisError(f"over = {over}; the paddle has no hand: hand=hl.Hand(push=1.0)")
+        if over[1] == "counts_per_metre" and paddle.counts_per_metre is None:
+            raise AnalysisError(f"over = {over}; the paddle has no encoder: counts_per_metre=2e4")
+        if not unusable > 0:
+            raise AnalysisError(f"unusable = {unusable} m; needs an amplitude > 0")
+
+    def _about(self, paddle):
+        B = f", B = {self.B:g} N s/m" if self.B else ""
+        x, v = self.start
+        return f"law {self.law}{B}; a contact begins at {1e3 * x:g} mm with {v:g} m/s\n{paddle}"
+
+
+def changed(paddle, name, value):
+    """Return a paddle with one quantity of its own, or of its hand, changed; B is none of them."""
+    if name == "B":
+        return paddle
+    if name.startswith("hand_"):
+        return replace(paddle, hand=replace(paddle.hand, **{name.removeprefix("hand_"): value}))
+    return replace(paddle, **{name: value})
+
+
+@lru_cache(maxsize=4096)
+def _passivity(b, T, B, delay, law):
+    return passivity_limit(b=b, T=T, B=B, delay=delay, law=law)
+
+
+def _range(paddle, name, points):
+    """Return values of a quantity around what the paddle has."""
+    hand, b = paddle.hand, paddle.b or 0.1
+    spans = {
+        "B": lambda: np.linspace(-1.5 * b, 3 * b, points),
+        "T": lambda: np.geomspace(paddle.T / 4, paddle.T * 4, points),
+        "delay": lambda: np.linspace(0, 3 * paddle.T, points),
+        "m": lambda: np.geomspace(paddle.m / 4, paddle.m * 4, points),
+        "b": lambda: np.linspace(0, 4 * b, points),
+        "coulomb": lambda: np.linspace(0, 2 * paddle.coulomb or 0.2, points),
+        "counts_per_metre": lambda: np.geomspace(paddle.counts_per_metre / 10, paddle.counts_per_metre * 10, points),
+        "hand_m": lambda: np.linspace(0, 3 * hand.m or 0.2, points),
+        "hand_b": lambda: np.linspace(0, 3 * hand.b or 5.0, points),
+    }
+    return spans[name]()
+
+
+def _regions(found, fault):
+    """Return the number of the region of every point."""
+    amplitude = np.nan_to_num(found.amplitude)
+    lost = found.undecided & ~_under(found, "stability")
+    kinds = [fault | lost | (amplitude > found.unusable), amplitude > 0, ~_under(found, "passivity")]
+    return np.select(kinds, [3, 2, 1], 0)
