@@ -20,6 +20,7 @@ from .analysis.step_limit import step_limit
 from .analysis.storage import storage
 from .analysis.sweep import sweep
 from .analysis.tradeoff import tradeoff
+from .analysis.wall_map import wall_map
 from .compiler.advance import Taylor
 from .compiler.lower import compile
 from .compiler.order import order_of
@@ -76,7 +77,8 @@ from .limits.local_stiffness import local_stiffness
 from .limits.nyquist_disk import nyquist_disk
 from .limits.passivity import passivity_limit
 from .limits.port import port_damping
-from .limits.stability import stability_limit
+from .limits.root_locus import root_locus
+from .limits.stability import closed_loop_matrix, closed_loop_poles, stability_limit
 from .limits.two_port import TwoPort
 from .measurement.impedance import measured_impedance
 from .measurement.largest_stiffness import largest_stiffness
@@ -109,6 +111,7 @@ from .scene.proxy import proxy_curve, proxy_wall
 from .scene.scene import Scene
 from .scene.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, ground, replacement
 from .scene.symbols import T, coordinate, delay, n, parameters, signal, t, v, when, x
+from .widgets.view import explore
 
 __version__: str
 
@@ -175,6 +178,8 @@ __all__ = [
     "closest",
     "compare_laws",
     "compensation_limit",
+    "closed_loop_matrix",
+    "closed_loop_poles",
     "compile",
     "connect",
     "contacts_between",
@@ -194,6 +199,7 @@ __all__ = [
     "doctor",
     "energy",
     "energy_books",
+    "explore",
     "equivalent_damper",
     "felt_impulse",
     "filtered_velocity",
@@ -258,6 +264,7 @@ __all__ = [
     "replay",
     "requires",
     "rigid",
+    "root_locus",
     "sensor_floor",
     "signal",
     "spin_down",
@@ -279,6 +286,7 @@ __all__ = [
     "wall",
     "wall_damping",
     "wall_energy",
+    "wall_map",
     "when",
     "window_velocity",
     "x",
