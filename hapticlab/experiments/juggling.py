@@ -1,0 +1,177 @@
+"""Juggling a ball on the paddle, with and without felt feedback, Section 23.3.1."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..device.hand import require
+from ..device.reacting import REACTION, Reacting
+from ..drawing import FRAME, house_style, new_figure, style_of
+from ..errors import AnalysisError, PaddleError
+from ..library.contacts import ball_on_the_paddle
+from ..records import Telemetry
+from .arm import Arm
+from .juggler import SENSES, Juggler
+
+
+@dataclass(frozen=True, eq=False)
+class Juggle:
+    """How a ball was kept up.
+
+    Attributes
+    ----------
+    senses : {"vision", "touch", "both", "none"}
+    height : float
+        Aimed at, above where the ball was struck [m].
+    impacts : array, shape (N,)
+        Times [s].
+    heights : array, shape (N - 1,)
+        How high the ball rose above the place it was struck at, flight by flight [m].
+    log : Telemetry
+    """
+
+    senses: str
+    height: float
+    impacts: np.ndarray
+    heights: np.ndarray
+    log: Telemetry
+
+    @property
+    def error(self):
+        """Root mean square of the heights' error, as a part of the height aimed at; the first three flights left out."""
+        return float(np.sqrt(np.mean((self.heights[3:] / self.height - 1) ** 2)))
+
+    @property
+    def irregularity(self):
+        """Standard deviation of the time between impacts over its mean."""
+        between = np.diff(self.impacts)[3:]
+        return float(between.std(ddof=1) / between.mean())
+
+    @property
+    def growth(self):
+        """What is left of a height's error one flight later: its correlation with the next; below 1 errors die out."""
+        e = self.heights[3:] - self.heights[3:].mean()
+        return float(e[1:] @ e[:-1] / (e[:-1] @ e[:-1]))
+
+    def __str__(self):
+        head = f"{self.senses}: {len(self.impacts)} impacts in {self.log.t[-1]:.3g} s"
+        if len(self.heights) < 6:
+            return f"{head}; the ball was lost"
+        return (
+            f"{head}, heights off by {100 * self.error:.3g} % rms, time between impacts irregular by "
+            f"{100 * self.irregularity:.3g} %, {self.growth:+.2f} of an error left a flight later"
+        )
+
+    def plot(self):
+        """Draw ball and handle against time."""
+        with house_style():
+            figure = new_figure(height=3.4)
+            axes = figure.subplots()
+            axes.plot(self.log.t, 1e3 * self.log.y, **style_of(0), label="ball")
+            axes.plot(self.log.t, 1e3 * self.log.x, **style_of(1), label="handle")
+            axes.axhline(1e3 * self.height, color="#8a8a8a", linestyle=":", label="height aimed at")
+            axes.set(xlabel="time [s]", ylabel="height [mm]", title=self.senses)
+            axes.legend(loc="upper right", ncols=3, **FRAME)
+        return figure
+
+
+def juggle(paddle, *, senses="both", height=0.2, duration=12.0, vision=0.02, touch=0.07, reaction=REACTION, seed=0, **values):
+    """Let a simulated juggler keep a ball up on a simulated paddle, by sight, by touch, by both, or by neither.
+
+    The juggler strikes once a flight, slowing down at impact, and plans each stroke from where and when the ball will
+    come down; nothing is known before a reaction time has gone by. Sight gives the ball's place 60 times a second, blurred.
+    Touch gives the instant of the felt impact, where the handle was, and the impulse, within a Weber fraction: by touch
+    alone the eyes are closed. By sight alone the motor is off: the ball bounces on the screen and is not felt.
+
+    S. Schaal, D. Sternad and C. G. Atkeson, *J. Motor Behavior* 28 (1996) 165, on people: touch alone is much better
+    than sight alone. What holds for this juggler depends on ``vision`` and ``touch``, which are illustrative.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+        With a hand that has k > 0; its intent is replaced.
+    senses : {"vision", "touch", "both", "none"}
+        "none" plays the stroke of a ball that never errs, in time with nothing.
+    height : float
+        Aimed at [m].
+    duration : float
+        [s]
+    vision : float
+        Standard deviation of each sight of the ball [m].
+    touch : float
+        Weber fraction of a felt impulse.
+    reaction : float
+        [s]
+    seed : int
+        Of what is seen and felt.
+    **values
+        Of the scene :func:`hapticlab.library.ball_on_the_paddle`.
+
+    Returns
+    -------
+    Juggle
+
+    Raises
+    ------
+    PaddleError
+        Without a hand that holds the handle.
+    """
+    hand = paddle.hand
+    if hand is None or hand.k <= 0:
+        raise PaddleError("a juggler holds the handle; give hl.SimulatedPaddle(..., hand=hl.hand('grip')) or hl.Hand(k=...)")
+    if senses not in SENSES:
+        raise AnalysisError(f"senses = {senses!r}; needs one of {', '.join(SENSES)}")
+    height = require("height", height, "m", "a juggler", above=0)
+    scene = ball_on_the_paddle()(**{"m": 0.005, "M": 0.1, "K": 1000.0, "b_c": 10.0, "h": height, **values})
+    if senses == "vision":
+        scene = replace(scene, force=0 * scene.force, values=scene.values, name="ball that is not felt")
+    values = dict(scene.values)
+    carried = paddle.m + hand.m + (values["M"] if senses != "vision" else 0.0)
+    arm = Arm(m=carried, b=paddle.b, b_hand=hand.b, k=hand.k)
+    juggler = Juggler(senses, height, values, arm, vision, touch, seed)
+    held = replace(paddle, hand=replace(hand, intent=Reacting(plan=juggler.plan, reaction=reaction)))
+    log = held.run(scene, duration=duration, progress=False, method="taylor")
+    impacts, heights = bounces(log)
+    return Juggle(senses, height, impacts, heights, log)
+
+
+def bounces(log):
+    """Return when the ball was struck [s], and how high it rose above those places in between [m]."""
+    y, t = log.y, log.t
+    low = np.flatnonzero((y[1:-1] < y[:-2]) & (y[1:-1] <= y[2:])) + 1
+    heights = [float(y[a : b + 1].max() - y[a]) for a, b in zip(low[:-1], low[1:], strict=True)]
+    return t[low], np.array(heights)
+
+
+def multipliers(acceleration, *, e, g=9.81, m=0.0, M=math.inf):
+    """Return what becomes of a small error from one flight to the next if a stroke takes no notice of it.
+
+    The eigenvalues of the map from one impact to the next, for a plate that passes the place of impact each period with
+    this acceleration. Below one in magnitude, the juggle is stable without looking: for
+    -2 g (1 + e^2)/(1 + e)^2 < acceleration < 0; S. Schaal, D. Sternad and C. G. Atkeson, *J. Motor Behavior* 28 (1996) 165.
+
+    Parameters
+    ----------
+    acceleration : float
+        Of the plate at impact, upwards [m/s^2].
+    e : float
+        Restitution.
+    g : float
+        [m/s^2]
+    m, M : float
+        Masses of ball and plate [kg]; a plate of finite mass, free on its coupler, gives like one of restitution
+        (1 + e) M/(m + M) - 1.
+
+    Returns
+    -------
+    array of complex, shape (2,)
+
+    Examples
+    --------
+    >>> [round(abs(z), 3) for z in multipliers(-4.0, e=0.8)]
+    [0.8, 0.8]
+    """
+    e = (1 + e) / (1 + m / M) - 1
+    lead = (1 + e) ** 2 * acceleration / g
+    return np.linalg.eigvals([[1, (1 + e) / g], [(1 + e) * acceleration, lead + e * e]])
