@@ -1,123 +1,34 @@
 """Maps of a wall: where it is passive, stable, chatters or is unusable, theory and simulation on one picture."""
 
-import math
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from ..device.simulated import SimulatedPaddle
 from ..errors import AnalysisError
+from ..limits.bounds import abbott_okamura_limit, diolaiti_limit, gil_limit
 from ..limits.passivity import passivity_limit
 from ..limits.stability import stability_limit
 from ..scene.laws import wall
 from .lane_runs import LaneRuns
-from .wall_map_plot import plot_wall_map
+from .wall_regions import WallMap, regions_of, under
 from .workers import number_of
 
-REGIONS = ("passive", "stable", "chatters", "unusable")
 #: what a map may be over beside K, and its unit
 OTHERS = {
     "B": "N*s/m", "T": "s", "delay": "s", "m": "kg", "b": "N*s/m", "coulomb": "N", "counts_per_metre": "1/m",
     "hand_m": "kg", "hand_b": "N*s/m",
 }  # fmt: skip
+#: of a paddle, a damper and a law: the limits by their authors' names
+BOUNDS = {
+    "abbott_okamura": lambda paddle, B, law: abbott_okamura_limit(B=B, law=law, delay=paddle.delay, **_device(paddle)),
+    "diolaiti": lambda paddle, B, law: diolaiti_limit(B=B, law=law, delay=paddle.delay, **_device(paddle)),
+    "gil": lambda paddle, B, law: gil_limit(paddle, B=B, law=law),
+}
 #: rows at which theory is computed, exactly; between them its lines are straight
 ROWS = 41
-
-
-@dataclass(frozen=True, eq=False)
-class WallMap:
-    """A wall over stiffness and one more quantity.
-
-    ``passive``: within the passivity limit of this device, so that no passive hand of any kind sets it chattering, and
-    resting in the simulation too. ``stable``: beyond that limit, but at rest at the end of the simulated contact, in this
-    hand, from this start. ``chatters``: a sustained or growing oscillation, larger than one encoder count. ``unusable``: one
-    of more than ``unusable`` [m] half the swing, or a handle thrown off that is not back in time where the linear loop is
-    unstable, or forces that are not finite.
-
-    Attributes
-    ----------
-    axes : dict of str to array
-        K [N/m], then the other quantity; SI.
-    regions : int array of shape (len(K), len(other))
-        0 passive, 1 stable, 2 chatters, 3 unusable.
-    amplitude : array of that shape
-        Half the largest swing of the last quarter [m], 0 at rest; nan where the run cannot tell.
-    undecided : bool array of that shape
-        The run cannot tell; the linear theory decided.
-    rows : array
-        Values of the other quantity at which theory was computed.
-    limits : dict of str to tuple of Limit
-        "passivity" and "stability": the largest K at each of ``rows``.
-    unusable : float
-        [m]
-    duration : float
-        Simulated time of a point [s], or a little more where T is an axis.
-    units : dict of str to str
-    about : str
-        Law, paddle and start, in lines.
-    seconds : float
-        How long the map took.
-    """
-
-    axes: dict
-    regions: np.ndarray
-    amplitude: np.ndarray
-    undecided: np.ndarray
-    rows: np.ndarray
-    limits: dict
-    unusable: float
-    duration: float
-    units: dict = field(default_factory=dict)
-    about: str = ""
-    seconds: float = math.nan
-
-    def limit(self, name):
-        """Return the stiffnesses [N/m] of a limit at ``rows``."""
-        return np.array([one.K for one in self.limits[name]])
-
-    def share(self, region):
-        """Return the part of the map that is a region, 0 to 1."""
-        if region not in REGIONS:
-            raise AnalysisError(f"region = {region!r}; needs one of {', '.join(REGIONS)}")
-        return float((self.regions == REGIONS.index(region)).mean())
-
-    @property
-    def surprises(self):
-        """Points within the passivity limit that chatter all the same, as an encoder or friction makes them: bool array."""
-        return _under(self, "passivity") & (self.regions >= 2)
-
-    def plot(self):
-        """Draw the regions with the lines of the theory; see :func:`hapticlab.analysis.wall_map_plot.plot_wall_map`."""
-        return plot_wall_map(self)
-
-    def __str__(self):
-        (K, k), (other, a) = self.axes.items()
-        shares = ", ".join(f"{name} {100 * self.share(name):.1f} %" for name in REGIONS)
-        lines = [
-            f"wall map over {K} = {k[0]:g} to {k[-1]:g} N/m and {other} = {a[0]:g} to {a[-1]:g} {self.units[other]}: {shares}",
-            f"  {self.about}".replace("\n", "\n  "),
-            f"  {self.regions.size} points of {self.duration:g} s; unusable is a swing of more than {1e3 * self.unusable:g} mm "
-            "to either side, or a handle thrown off by an unstable loop",
-        ]
-        if self.surprises.any():
-            lines.append(
-                f"  {self.surprises.sum()} points within the passivity limit chatter: it is about device damping alone, not "
-                "about an encoder"
-            )
-        if self.undecided.any():
-            lines.append(f"  {self.undecided.sum()} points are decided by the linear theory: nothing comes back in time")
-        return "\n".join(lines)
-
-    __repr__ = __str__
-
-
-def _under(found, name):
-    """Return where K is at most a limit, straight lines between the rows."""
-    K, other = found.axes.values()
-    top = np.minimum(found.limit(name), 1e300)
-    return K[:, None] <= np.interp(other, found.rows, top)[None, :]
 
 
 def wall_map(paddle, *, law="zoh", over=("K", "B"), **given):
@@ -167,6 +78,9 @@ class WallMaps:
         Its T is what the programs are compiled for; maps of another T come by similarity.
     law, over
         As for :func:`wall_map`.
+    bounds : tuple of str
+        Limits by name to draw beside, of "abbott_okamura", "diolaiti", "gil"; where a bound's assumptions fail it has no
+        line.
     B : float
         Virtual damper [N s/m], where it is no axis.
     duration : float
@@ -187,11 +101,15 @@ class WallMaps:
     """
 
     def __init__(
-        self, paddle, *, law="zoh", over=("K", "B"), B=0.0, duration=1.0, x=0.0, v=0.1, unusable=1e-3, points=100,
-        unilateral="gate", clamp=False, workers=-1, engine="auto", **axes,
+        self, paddle, *, law="zoh", over=("K", "B"), bounds=("gil",), B=0.0, duration=1.0, x=0.0, v=0.1, unusable=1e-3,
+        points=100, unilateral="gate", clamp=False, workers=-1, engine="auto", **axes,
     ):  # fmt: skip
         self._check(paddle, over, unusable)
         self.law, self.over, self.T, self.start, self.unusable = law, tuple(over), paddle.T, (x, v), unusable
+        wrong = [name for name in bounds if name not in BOUNDS]
+        if wrong:
+            raise AnalysisError(f"bounds = {bounds}; {wrong[0]} is none of {', '.join(BOUNDS)}")
+        self.bounds = tuple(bounds)
         axes |= {"B": B} if over[1] == "B" and np.ndim(B) else {}
         self.B = 0.0 if np.ndim(B) or over[1] == "B" else float(B)
         unknown = [name for name in axes if name not in self.over]
@@ -223,12 +141,12 @@ class WallMaps:
             units={"K": "N/m", self.over[1]: OTHERS[self.over[1]]}, about=self._about(paddle),
         )  # fmt: skip
         # an unstable loop does not come to rest by growing: irregular swings that happen to get smaller are no decay
-        found = replace(found, amplitude=np.where(_under(found, "stability"), amplitude, np.maximum(amplitude, last)))
-        return replace(found, regions=_regions(found, fault), seconds=time.perf_counter() - begun)
+        found = replace(found, amplitude=np.where(under(found, "stability"), amplitude, np.maximum(amplitude, last)))
+        return replace(found, regions=regions_of(found, fault), seconds=time.perf_counter() - begun)
 
     def _limits(self, paddle, rows):
-        """Return both limits at values of the other quantity."""
-        found = {"passivity": [], "stability": []}
+        """Return the limits at values of the other quantity; None where a bound assumes what is not so."""
+        found = {name: [] for name in ("passivity", "stability", *self.bounds)}
         for value in rows.tolist():
             here, B = changed(paddle, self.over[1], value), value if self.over[1] == "B" else self.B
             law = self.law
@@ -236,6 +154,11 @@ class WallMaps:
                 law = "backward_difference"  # Eq. (23.3) with the estimate is Eq. (23.5)
             found["passivity"].append(_passivity(here.b, here.T, B, here.delay, law))
             found["stability"].append(stability_limit(here, law=self.law, B=B))
+            for name in self.bounds:
+                try:
+                    found[name].append(BOUNDS[name](here, B, self.law))
+                except AnalysisError:
+                    found[name].append(None)
         return {name: tuple(limits) for name, limits in found.items()}
 
     def _stiffnesses(self, paddle, other, points):
@@ -281,6 +204,11 @@ def changed(paddle, name, value):
     return replace(paddle, **{name: value})
 
 
+def _device(paddle):
+    resolution = 1 / paddle.counts_per_metre if paddle.counts_per_metre else 0.0
+    return {"b": paddle.b, "T": paddle.T, "coulomb": paddle.coulomb, "resolution": resolution}
+
+
 @lru_cache(maxsize=4096)
 def _passivity(b, T, B, delay, law):
     return passivity_limit(b=b, T=T, B=B, delay=delay, law=law)
@@ -301,11 +229,3 @@ def _range(paddle, name, points):
         "hand_b": lambda: np.linspace(0, 3 * hand.b or 5.0, points),
     }
     return spans[name]()
-
-
-def _regions(found, fault):
-    """Return the number of the region of every point."""
-    amplitude = np.nan_to_num(found.amplitude)
-    lost = found.undecided & ~_under(found, "stability")
-    kinds = [fault | lost | (amplitude > found.unusable), amplitude > 0, ~_under(found, "passivity")]
-    return np.select(kinds, [3, 2, 1], 0)

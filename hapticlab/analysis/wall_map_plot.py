@@ -9,6 +9,9 @@ COLOURS = ("#eef4d4", "#a9cfa0", "#4f93a8", "#2b2f5c")
 LINES = {
     "passivity": ("passivity, any passive hand", (0, (6, 2))),
     "stability": ("exact linear stability, this hand", "-"),
+    "abbott_okamura": ("Abbott and Okamura, any hand", (0, (4, 1, 1, 1))),
+    "diolaiti": ("Diolaiti, any hand", (0, (3, 1, 1, 1, 1, 1))),
+    "gil": ("Gil, this hand", (0, (1, 1))),
 }
 
 
@@ -36,10 +39,10 @@ def plot_wall_map(found):
         for number, (colour, name) in enumerate(zip(COLOURS, names, strict=True)):
             if (found.regions == number).any():
                 axes.plot([], [], color=colour, label=name, **patch)
-        for name, (label, dash) in LINES.items():
-            limit = found.limit(name)
+        for name in found.limits:
+            (label, dash), limit = LINES[name], found.limit(name)
             shown = np.where(limit > K[-1], np.nan, limit)
-            if np.isfinite(shown).any():
+            if np.isfinite(shown).sum() > 1:
                 edge = [outline(3.6)]
                 axes.plot(x_scale * shown, y_scale * found.rows, color="black", linestyle=dash, path_effects=edge, label=label)
         axes.set(xlabel=x_label, ylabel=y_label)
