@@ -24,6 +24,9 @@ from .limit import check_number
 from .plots import plot_admittance
 from .two_port import TwoPort, frequencies
 
+#: w T of motion so slow that a ton of coupler is no resistance
+SLOW = 1e-6
+
 
 @dataclass(frozen=True)
 class AdmittanceDesign:
@@ -99,15 +102,20 @@ def admittance_design(paddle, *, servo, servo_stiffness=0.0, b_a=0.0):
             f"servo = {b_s:g} N s/m, {k_s:g} N/m: active in the hand at {hertz:.4g} Hz, before any environment; "
             f"needs a device of more damping than b = {paddle.b:g} N s/m, a softer servo or a shorter delay"
         )
-    needed = -bare.criterion(theta) / (2 * h[:, 0, 0].real)  # Re Z_a, m_a and b_a being zero here
-    body = (1 - np.cos(theta)) / paddle.T
-    if needed[0] > b_a and needed[0] > 1e3 * body[0]:  # slow motion moves no body enough: its need is a damper's
-        raise AnalysisError(f"b_a = {b_a:g} N s/m: slow motion against the servo's spring needs b_a >= {needed[0]:.4g}")
+    needed, body = _needed(bare, theta), (1 - np.cos(theta)) / paddle.T
+    slow = float(_needed(bare, np.array([SLOW]))[0])  # no body resists motion as slow as this: a damper has to
+    if slow > b_a + SLOW:
+        raise AnalysisError(f"b_a = {b_a:g} N s/m: slow motion against the servo's spring needs b_a >= {slow:.4g}")
     masses = (needed - b_a) / body
     worst = int(masses.argmax())
     m_a = max(float(masses[worst]), 0.0)
     display = admittance_display(**values, b_s=b_s, k_s=k_s, m_a=m_a * (1 + 1e-9), b_a=b_a)
     return AdmittanceDesign(m_a, b_a, float(theta[worst] / (2 * math.pi * paddle.T)), display)
+
+
+def _needed(display, theta):
+    """Return the Re Z_a [N s/m] that the criterion asks of the coupler of a display which has none yet."""
+    return -display.criterion(theta) / (2 * display.h(theta)[:, 0, 0].real)
 
 
 def admittance_display(*, m, b, T, b_s, k_s=0.0, m_a=0.0, b_a=0.0, delay=0.0):

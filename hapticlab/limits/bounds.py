@@ -56,8 +56,8 @@ def abbott_okamura_limit(*, b, T, coulomb=0.0, resolution=0.0, B=0.0, delay=0.0,
 def diolaiti_limit(*, b, T, coulomb=0.0, resolution=0.0, delay=0.0, B=0.0, law="zoh"):
     """Largest stiffness of the passive region of Diolaiti et al. (2006): b/(K T) >= 1/2 + delay/T and f_c/(K Delta) >= 1/2.
 
-    With a whole number of periods of delay the first is exact. With a fraction f it is what slow sinusoids ask for, and up
-    to 6 % above what every motion allows (:func:`~hapticlab.limits.passivity.passivity_limit`).
+    With a whole number of periods of delay the first is exact. With a fraction it is what slow sinusoids ask for, and up
+    to 8 % above what every motion allows (:func:`~hapticlab.limits.passivity.passivity_limit`).
 
     Parameters
     ----------

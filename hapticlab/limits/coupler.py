@@ -3,12 +3,18 @@
 The coupler is a spring and a damper from handle to proxy at the sample rate, ``F[n] = k_c e[n] + b_c (e[n] - e[n-1])/T`` with
 ``e = x - z``; the environment at its far end is anything that is passive at the sample rate in F[n] and (z[n] - z[n-1])/T. The
 hold makes the force work on the *next* step of the handle, so sampling is one period of delay between the two velocities.
-With a delay of d + f periods the display is the two-port
+Without delay the display is the two-port
 
-    h = [[b, A z^-d], [-z^-1, 1/Z_c - f (1-f) (1 - cos theta)/(2b)]],    A = (1-f) + f/z,
+    h = [[b, 1], [-1/z, 1/Z_c]],
 
-exact in the sense of Colgate and Schenkel: device and hand stay in continuous time. Llewellyn's criterion at one frequency is
-a convex set of pairs (b_c, k_c). Without delay all of it is ``k_c T/2 + b_c <= b``, which is Eq. (23.10) again.
+exact in the sense of Colgate and Schenkel: device and hand stay in continuous time. A delay of d + f periods makes h12 the
+mean force A z^-d of a period, A = (1-f) + f/z, and lets a hand win ``f (1-f) (1 - cos theta) |F|^2/(2b)`` by moving faster
+before or after the force changes. Over all environments both together are an h12 of size one, with Re(h12 h21) unchanged:
+
+    2 b Re(1/Z_c) >= 1 - Re(A z^-(d+1)) = (1-f) (1 - cos((d+1) theta)) + f (1 - cos((d+2) theta)),
+
+because ``|A|^2 + 2 f (1-f) (1 - cos theta) = 1``. At each frequency this is a convex set of pairs (b_c, k_c). Without delay all
+of it is ``k_c T/2 + b_c <= b``, which is Eq. (23.10) again.
 """
 
 import math
@@ -130,21 +136,19 @@ def impedance_display(*, k_c, b_c, b, T, delay=0.0):
 
     def h(theta):
         z = np.exp(1j * theta)
-        forward = ((1 - f) + f / z) * z ** -float(whole)
-        compliance = 1 / (b_c + k_c * T / (1 - 1 / z)) - f * (1 - f) * (1 - np.cos(theta)) / (2 * b)
-        rows = [np.full(theta.shape, b + 0j), forward], [-1 / z, compliance]
+        product = -(((1 - f) + f / z) * z ** -float(whole + 1)).real  # Re(h12 h21)
+        turned = -z * (product + 1j * np.sqrt(np.maximum(1 - product**2, 0.0)))
+        rows = [np.full(theta.shape, b + 0j), turned], [-1 / z, 1 / (b_c + k_c * T / (1 - 1 / z))]
         return np.moveaxis(np.array(rows), 2, 0)
 
     return TwoPort(h, T, f"impedance display, k_c = {k_c:g} N/m, b_c = {b_c:g} N s/m")
 
 
-def _needed(theta, b, T, delay):
+def _needed(theta, T, delay):
     """Return the part Re(1/Z_c) that the criterion needs of the coupler, times b, over sin^2(theta/2)."""
     whole, f = whole_and_fraction(delay, T, most=MOST_PERIODS)
-    z, square = np.exp(1j * theta), np.sin(theta / 2) ** 2
-    A = (1 - f) + f / z
-    lag = np.angle(A) - (whole + 1) * theta
-    return np.abs(A) * np.sin(lag / 2) ** 2 / square + f * (1 - f)
+    now, later = (np.sin(periods * theta / 2) ** 2 for periods in (whole + 1, whole + 2))
+    return ((1 - f) * now + f * later) / np.sin(theta / 2) ** 2
 
 
 def _stiffest(b_c, b, T, delay):
@@ -152,22 +156,31 @@ def _stiffest(b_c, b, T, delay):
 
     With q = k_c T/2 and G the need above, over b: ``G q^2 + (2 G s b_c - 1) q + (G s b_c - 1) b_c <= 0``, s = sin^2(theta/2).
     """
-    theta = frequencies()
-    for _ in range(5):  # look closer around the least
-        G, s = _needed(theta, b, T, delay) / b, np.sin(theta / 2) ** 2
+
+    def largest(theta):
+        G, s = _needed(theta, T, delay) / b, np.sin(theta / 2) ** 2
         half, rest = 0.5 - G * s * b_c, np.maximum((1 - G * s * b_c) * b_c, 0.0)
         root = np.sqrt(half**2 + G * rest)
-        q = np.where(half >= 0, (half + root) / G, rest / np.maximum(root - half, 1e-300))
-        least = int(q.argmin())
-        found, at = float(q[least]), float(theta[least])
-        theta = np.linspace(theta[max(least - 1, 0)], theta[min(least + 1, len(theta) - 1)], 80)
-    return 2 * found / T, at
+        return np.where(half >= 0, (half + root) / G, rest / np.maximum(root - half, 1e-300))
+
+    q, theta = _least(largest)
+    return 2 * q / T, theta
 
 
 def _most_damping(b, T, delay):
     """Return the largest b_c [N s/m] that stands without any spring."""
+    return _least(lambda theta: b / np.maximum(_needed(theta, T, delay) * np.sin(theta / 2) ** 2, 1e-300))[0]
+
+
+def _least(curve):
+    """Return the least value of a function of theta and where it is."""
     theta = frequencies()
-    return float(b / (_needed(theta, b, T, delay) * np.sin(theta / 2) ** 2).max())
+    for _ in range(5):  # look closer around the least
+        values = curve(theta)
+        least = int(values.argmin())
+        found, at = float(values[least]), float(theta[least])
+        theta = np.linspace(theta[max(least - 1, 0)], theta[min(least + 1, len(theta) - 1)], 80)
+    return found, at
 
 
 def _best_damping(b, T, delay, most):

@@ -19,7 +19,7 @@ import numpy as np
 #: relative rounding of the criterion
 ROUNDING = 1e-9
 #: slow motion is looked at down to this w T
-SLOW = 1e-3
+SLOW = 1e-5
 
 
 def frequencies(points=2000):

@@ -1,0 +1,118 @@
+"""The bounds by name: against their formulas' numbers, the exact limits, and energies of whole cycles."""
+
+import numpy as np
+import pytest
+
+import hapticlab as hl
+from hapticlab.errors import AnalysisError
+from hapticlab.limits.bounds import abbott_okamura_limit, bounds, diolaiti_limit, gil_limit
+from hapticlab.limits.limit import Limit
+
+b, T = 0.1, 1e-3
+
+
+def paddle(**values):
+    return hl.SimulatedPaddle(**{"m": 0.05, "b": b, "T": T, **values})
+
+
+@pytest.mark.parametrize(("coulomb", "resolution"), [(0.02, 0.3e-3), (0.05, 0.1e-3), (0.004, 0.5e-3)])
+def test_abbott_and_okamura_is_where_no_alternation_across_counts_draws_energy(coulomb, resolution):
+    """Back and forth by D across j thresholds of the encoder: -K j Delta D + 2 b D^2/T + 2 f_c D, D >= (j-1) Delta.
+
+    Two samples a cycle, the quickest motion there is; the least over j and D of what it costs is zero at the bound.
+    """
+    K = abbott_okamura_limit(b=b, T=T, coulomb=coulomb, resolution=resolution).K
+
+    def cheapest(K):
+        j = np.arange(1, 2000)[:, None]
+        D = (j - 1 + np.geomspace(1e-6, 5, 400)) * resolution
+        return (-K * j * resolution + 2 * b * D / T + 2 * coulomb).min()  # over D
+
+    assert cheapest(K * (1 - 1e-9)) > -1e-9
+    assert cheapest(K * 1.005) < 0
+
+
+def test_a_bound_without_an_encoder_is_the_holds():
+    assert abbott_okamura_limit(b=b, T=T).K == 200 == hl.passivity_limit(b=b, T=T).K
+    assert abbott_okamura_limit(b=b, T=T, resolution=1e-4).K == 0  # no friction: an encoder alone buzzes
+    assert "pays for the encoder" in abbott_okamura_limit(b=b, T=T, coulomb=0.001, resolution=1e-4).reason
+
+
+@pytest.mark.parametrize("periods", [0, 1, 3])
+def test_diolaiti_is_exact_for_whole_delays(periods):
+    exact = hl.passivity_limit(b=b, T=T, delay=periods * T).K
+    assert diolaiti_limit(b=b, T=T, delay=periods * T).K == pytest.approx(exact, rel=1e-12)
+
+
+def test_diolaiti_is_up_to_eight_percent_too_high_between():
+    """1 against (1 + sqrt(1 + f (1-f)/(1/2+f)^2))/2: moving faster before the force changes pays; most at a quarter."""
+    delays = T * np.arange(0.05, 1, 0.05)
+    ratio = [diolaiti_limit(b=b, T=T, delay=late).K / hl.passivity_limit(b=b, T=T, delay=late).K for late in delays]
+    assert min(ratio) > 1.005 and ratio[9] == pytest.approx((1 + 1.25**0.5) / 2, rel=1e-9)
+    assert max(ratio) == ratio[4] == pytest.approx((1 + (4 / 3) ** 0.5) / 2, rel=1e-9)
+
+
+def test_gil_is_near_the_exact_limit_where_it_does_not_refuse():
+    generator, kept, errors = np.random.default_rng(0), 0, []
+    for _ in range(100):
+        damper = 10 ** generator.uniform(-2, 0.5)
+        hand = hl.Hand(m=0.05, b=10 ** generator.uniform(-2, 0.5), k=10 ** generator.uniform(0, 3))
+        plant = paddle(
+            m=10 ** generator.uniform(-2, -0.5), b=damper, T=10 ** generator.uniform(-4, -2.5),
+            delay=10 ** generator.uniform(-5, -3), hand=hand if generator.random() < 0.5 else None,
+        )  # fmt: skip
+        B = damper * generator.uniform(-0.5, 3)
+        try:
+            limit = gil_limit(plant, B=B)
+        except AnalysisError:  # damping is not low here
+            continue
+        kept += 1
+        errors.append(abs(limit.K / hl.stability_limit(plant, B=B).K - 1))
+    assert kept > 40 and max(errors) < 0.18
+    assert gil_limit(paddle(m=5.0)).K == pytest.approx(hl.stability_limit(paddle(m=5.0)).K, rel=1e-5)  # slow: exact
+    exact = hl.stability_limit(paddle(m=5.0), B=0.05)
+    assert gil_limit(paddle(m=5.0), B=0.05).frequency == pytest.approx(exact.frequency, rel=1e-3)
+
+
+def test_gil_refuses_where_it_would_promise_too_much():
+    """Heavily damped or virtually damped: the formula is above the exact limit, and not by little."""
+    light = paddle(m=0.005, b=2.0)
+    assert (2.0 + 5.0) / (T / 2) > 1.2 * hl.stability_limit(light, B=5.0).K
+    with pytest.raises(AnalysisError, match="needs at most 0.1"):
+        gil_limit(light, B=5.0)
+
+
+@pytest.mark.parametrize("law", ["half_sample", "backward_difference", "ellis"])
+def test_a_law_that_is_none_of_theirs(law):
+    words = "no position law" if law == "half_sample" else "looks ahead by its memory"
+    for ask in (
+        lambda: abbott_okamura_limit(b=b, T=T, law=law), lambda: diolaiti_limit(b=b, T=T, law=law),
+        lambda: gil_limit(paddle(), law=law),
+    ):  # fmt: skip
+        with pytest.raises(AnalysisError, match=words):
+            ask()
+
+
+def test_assumptions_that_fail():
+    with pytest.raises(AnalysisError, match="without B"):
+        abbott_okamura_limit(b=b, T=T, B=0.1)
+    with pytest.raises(AnalysisError, match="without delay"):
+        abbott_okamura_limit(b=b, T=T, delay=1e-3)
+    with pytest.raises(AnalysisError, match="without virtual damping"):
+        diolaiti_limit(b=b, T=T, B=-0.1)
+    with pytest.raises(AnalysisError, match="coulomb = -1"):
+        abbott_okamura_limit(b=b, T=T, coulomb=-1)
+
+
+def test_all_of_them_on_one_paddle():
+    found = bounds(paddle(coulomb=0.01, counts_per_metre=1e4, delay=0.5e-3))
+    assert [name for name, limit in found.found.items() if isinstance(limit, str)] == ["Abbott, Okamura"]
+    assert found["Diolaiti"].K == 100 == found["Gil"].K
+    assert found["exact stability"].kind.startswith("exact linear stability") and found["Colgate, Schenkel"].K < 100
+    kinds = [limit.kind.split()[0].strip(":") for limit in found.found.values() if isinstance(limit, Limit)]
+    assert kinds == ["passivity", "passivity", "stability", "exact"]
+    assert "does not apply: delay = 0.0005 s" in str(found)
+    half = bounds(paddle(), law="half_sample")
+    assert half["Colgate, Schenkel"].K == 0 and half["exact stability"].K > 0
+    axes = found.plot().axes[0]
+    assert len(axes.patches) == 4 and "N/m" in axes.get_xlabel()
