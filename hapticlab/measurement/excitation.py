@@ -65,7 +65,9 @@ class Excitation:
 
     def _sines(self):
         spectrum = np.fft.rfft(self.period)[self.lines] * 2 / self.samples
-        base, size = parameters("shake_base shake_size", units="1/s N", values=(1 / (self.samples * self.T), self.amplitude))
+        base, size = parameters(
+            "shake_base shake_size", units="1/s N", values=(1 / (self.samples * self.T), self.amplitude)
+        )
         terms = [
             sp.Float(abs(c) / self.amplitude) * sp.cos(2 * sp.pi * int(line) * base * t + float(np.angle(c)))
             for line, c in zip(self.lines, spectrum, strict=True)
@@ -81,5 +83,3 @@ class Excitation:
         angle = 2 * sp.pi * (turns - sp.floor(turns))
         following = when(count(n - 1) >= self.samples - sp.Rational(3, 2), 0, count(n - 1) + 1)
         return size * sp.sin(angle), (sp.Eq(count(n), following),)
-
-

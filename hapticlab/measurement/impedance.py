@@ -107,7 +107,9 @@ def _drive(paddle, drive, simulated):
     if drive not in AMPLITUDE:
         raise AnalysisError(f"drive = {drive!r}; needs 'hand' or 'motor'")
     if drive == "hand" and not able:
-        raise PaddleError("drive='hand' needs a simulated hand with k or b to act through, Hand(k=200, b=1); or drive='motor'")
+        raise PaddleError(
+            "drive='hand' needs a simulated hand with k or b to act through, Hand(k=200, b=1); or drive='motor'"
+        )
     return drive
 
 

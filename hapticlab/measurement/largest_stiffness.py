@@ -68,10 +68,14 @@ class LargestStiffness:
         else:
             head = f"{self.law}: {self.K:.5g} N/m stands, {self.chatters_at:.5g} N/m chatters"
         rows = [f"  {name:<10} {limit.K:.5g} N/m: {limit.kind}" for name, limit in self.theory.items()]
-        return "\n".join([head, f"  simulated outcome of one start, {self.about}", *rows, *(f"  {t}" for t in self.trials)])
+        return "\n".join(
+            [head, f"  simulated outcome of one start, {self.about}", *rows, *(f"  {t}" for t in self.trials)]
+        )
 
     def __repr__(self):
-        return f"LargestStiffness(K={self.K:.6g} N/m, chatters_at={self.chatters_at:.6g} N/m, {len(self.trials)} trials)"
+        return (
+            f"LargestStiffness(K={self.K:.6g} N/m, chatters_at={self.chatters_at:.6g} N/m, {len(self.trials)} trials)"
+        )
 
 
 def largest_stiffness(
@@ -134,7 +138,9 @@ def largest_stiffness(
     """
     scene = wall_of(law, parameter)
     if not (growth > 1 and tolerance > 0 and most > 0):
-        raise AnalysisError(f"growth = {growth}, tolerance = {tolerance}, most = {most}; needs growth > 1 and the others > 0")
+        raise AnalysisError(
+            f"growth = {growth}, tolerance = {tolerance}, most = {most}; needs growth > 1 and the others > 0"
+        )
     hand = getattr(paddle, "hand", None)
     leaning = 0.0 if hand is None or hand.moves else hand.push + hand.k * ((hand.intent or 0.0) - place)
     push = (0.0 if leaning else 0.2) if push is None else float(push)
@@ -142,7 +148,9 @@ def largest_stiffness(
     first = (abs(pressing) or 0.2) / DEEPEST if first is None else float(first)
     if not 0 < first < most:
         raise AnalysisError(f"first = {first:g} N/m, most = {most:g} N/m; needs 0 < first < most")
-    known = {name: value for name, value in {"B": B, "x_o": place}.items() if name in scene.parameters and (B or name != "B")}
+    known = {
+        name: value for name, value in {"B": B, "x_o": place}.items() if name in scene.parameters and (B or name != "B")
+    }
     if B and "B" not in scene.parameters:
         raise PaddleError(f"{scene.name} has no parameter B; leave B out, or give the scene one")
     scene = _tried(scene(**known), paddle, push, energy_max, speed_limit(paddle, speed_max))

@@ -66,7 +66,9 @@ class MeasuredImpedance:
     def handle(self):
         """What the hand feels [N s/m], device included, as by a force sensor between them; where a simulated hand drives."""
         if self.drive != "hand":
-            raise AnalysisError("the motor drove, and a paddle has no force sensor: what the hand feels was not observed")
+            raise AnalysisError(
+                "the motor drove, and a paddle has no force sensor: what the hand feels was not observed"
+            )
         return self.other.value
 
     @property
@@ -85,7 +87,9 @@ class MeasuredImpedance:
     def transparency(self):
         """Rendered over ideal impedance, 1 where the environment is felt as it is meant."""
         if self.ideal is None:
-            raise AnalysisError("the ideal impedance is not known; give it: measured_impedance(..., ideal=lambda s: k/s + b)")
+            raise AnalysisError(
+                "the ideal impedance is not known; give it: measured_impedance(..., ideal=lambda s: k/s + b)"
+            )
         return self.rendered / self.ideal
 
     @property
@@ -111,7 +115,11 @@ class MeasuredImpedance:
                 f"{f:8.4g} {abs(Z):12.5g} {self.radius[k]:9.2g} {Z.real:10.4g} {abs(Z / self.law[k]):9.5f} {abs(other):10.5f} "
                 f"{np.angle(other, deg=True):7.2f}\N{DEGREE SIGN}  {self.coherence[k]:.5f}"
             )
-        left = [f"the handle left the wall in {self.left_wall} samples: press deeper or drive less"] if self.left_wall else []
+        left = (
+            [f"the handle left the wall in {self.left_wall} samples: press deeper or drive less"]
+            if self.left_wall
+            else []
+        )
         return "\n".join([self.about, *left, f"{head}  coherence", *rows])
 
     def __repr__(self):

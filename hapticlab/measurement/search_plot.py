@@ -18,7 +18,9 @@ def plot_search(found):
         for i, (name, limit) in enumerate(found.theory.items()):
             if 0 < limit.K < 1e9:
                 axes.axhline(limit.K, **style_of(i + 2), label=f"{name}: {limit.K:.4g} N/m")
-        axes.set(yscale="log", xlabel="trial", ylabel="stiffness K [N/m]", title=f"{found.law}: {found.K:.4g} N/m stands")
+        axes.set(
+            yscale="log", xlabel="trial", ylabel="stiffness K [N/m]", title=f"{found.law}: {found.K:.4g} N/m stands"
+        )
         axes.xaxis.get_major_locator().set_params(integer=True)
         axes.legend(loc="lower right", **FRAME)
     return figure
@@ -31,7 +33,9 @@ def plot_border(width):
         axes = figure.add_subplot()
         top = np.where(np.isfinite(width.chatters_at), width.chatters_at, width.K)
         axes.fill_between(width.B, 0, width.K, color="0.92")
-        for i, (name, label) in enumerate((("stability", "exact stability"), ("passivity", "passivity, any passive hand"))):
+        for i, (name, label) in enumerate(
+            (("stability", "exact stability"), ("passivity", "passivity, any passive hand"))
+        ):
             known = np.isfinite(getattr(width, name)) & (getattr(width, name) > 0)
             if known.any():
                 axes.plot(width.B[known], getattr(width, name)[known], **style_of(i + 1), label=label)

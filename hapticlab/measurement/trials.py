@@ -106,7 +106,9 @@ def lead_back(paddle, place):
     m = getattr(paddle.settings, "m", 0.0) or 0.05
     damper = 2 * WELL_DAMPED * math.sqrt(LEADS_BACK * m)
     spring = wall(unilateral=None)(k=LEADS_BACK, B=damper, x_o=place)
-    log = paddle.run(guarded(spring, energy_max=0.1, speed_max=speed_limit(paddle, 2.0)), duration=TAKES, progress=False)
+    log = paddle.run(
+        guarded(spring, energy_max=0.1, speed_max=speed_limit(paddle, 2.0)), duration=TAKES, progress=False
+    )
     if log.fault or log.tripped.any():
         raise PaddleError(
             f"the handle could not be led back to {1e3 * place:.3g} mm with {LEADS_BACK:g} N/m: "
@@ -128,5 +130,7 @@ def wall_of(law, parameter="k"):
     scene = law if isinstance(law, Scene) else wall(law)
     if parameter not in scene.parameters:
         known = ", ".join(scene.parameters) or "none"
-        raise PaddleError(f"{scene.name} has no parameter {parameter} to search; it has {known}. Name one: parameter=...")
+        raise PaddleError(
+            f"{scene.name} has no parameter {parameter} to search; it has {known}. Name one: parameter=..."
+        )
     return scene

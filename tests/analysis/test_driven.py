@@ -89,7 +89,7 @@ def test_a_linear_loop_is_found_exactly():
 
 
 def test_what_does_not_drive_is_refused():
-    paddle, log = run(500, seconds=0.5, intent=tremor)
+    _, log = run(500, seconds=0.5, intent=tremor)
     with pytest.raises(hl.AnalysisError, match="it does not move"):
         hl.chatter(log, driven=hl.Hand(push=1.0))
     with pytest.raises(hl.AnalysisError, match="one finite number a sample"):

@@ -1,0 +1,150 @@
+"""Measured impedances against closed forms, against the law read as H(z), and against a fine integration."""
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import hapticlab as hl
+from hapticlab.measurement.excitation import Excitation
+from hapticlab.measurement.impedance import measured_impedance
+from hapticlab.measurement.signals import lines_of
+
+T, K, DELAY = 1e-3, 150.0, 3e-4
+HAND = hl.Hand(m=0.02, b=1.0, k=200.0)
+FREQUENCY = [3.0, 11.0, 51.0, 151.0]
+
+
+def paddle(delay=DELAY, **changes):
+    return hl.SimulatedPaddle(m=0.05, b=0.1, T=T, delay=delay, hand=HAND, **changes)
+
+
+def held(s, delay=DELAY):
+    return (1 - np.exp(-s * T)) / (s * T) * np.exp(-s * delay)
+
+
+@pytest.mark.parametrize("how", ["multisine", "swept_sine"])
+def test_a_plain_wall_is_a_held_spring(how):
+    """Z = K (1 - e^-sT)/(sT) e^-s d / s: at low frequencies a damper of -K (T/2 + d) beside the spring."""
+    found = measured_impedance(paddle(), hl.wall()(k=K), how=how, frequency=FREQUENCY, dtype="float64")
+    s = 2j * np.pi * found.frequency
+    assert found.frequency == pytest.approx(FREQUENCY)
+    assert found.rendered == pytest.approx(K / s * held(s), rel=1e-10)
+    assert found.law == pytest.approx(K / s * held(s), rel=1e-9)  # from a micrometre in float64
+    assert found.damping[0] == pytest.approx(-K * (T / 2 + DELAY), rel=1e-3)
+    assert found.ideal == pytest.approx(K / s) and abs(found.transparency[0]) == pytest.approx(1.0, abs=1e-4)
+    assert found.coherence == pytest.approx(1.0, abs=1e-9) and found.left_wall == 0
+    assert str(found.about) in str(found) and "4 frequencies" in repr(found)
+
+
+@pytest.mark.parametrize(
+    ("law", "taps"), [("backward_difference", (1.5, -0.5)), ("ellis", (2.0, -1.5, 0.5)), ("half_sample", None)]
+)
+def test_every_law_is_rendered_as_its_own_response(law, taps):
+    found = measured_impedance(paddle(0.0), hl.wall(law)(k=K), frequency=FREQUENCY, dtype="float64")
+    s = 2j * np.pi * found.frequency
+    z = np.exp(-s * T)
+    H = K * (1 + s * T / 2) if taps is None else K * sum(c * z**k for k, c in enumerate(taps))
+    assert found.law == pytest.approx(H / s * held(s, 0.0), rel=1e-8)
+    # the velocity at a sample has more of the images between samples than the position: 3 % at 151 Hz
+    assert found.rendered == pytest.approx(found.law, rel=1e-8 if taps else 5e-2)
+    if taps:
+        named = hl.LinearLaw.of(law, K=K, T=T).at(s.imag * T)
+        assert H == pytest.approx(named, rel=1e-12)
+
+
+def test_what_the_hand_feels_against_a_fine_integration():
+    """The loop in plain NumPy, the handle known at 40 places in every period, the hand's force from its own equation."""
+    from scipy.linalg import expm
+
+    scene, fine, P, N = hl.wall()(k=K), 40, 6, 1000
+    found = measured_impedance(
+        paddle(0.0), scene, frequency=FREQUENCY, dtype="float64", realizations=1, blocks=2, settle=4.0, seed=5
+    )
+    samples, lines = lines_of(FREQUENCY, T, 1.0)
+    intent = Excitation("multisine", lines, samples, T, 1e-3, 5).period
+    M, b, k = 0.07, 1.1, 200.0
+    # y = [x, v, F, intent, rate of intent]: expm of the whole, at every fortieth of a period
+    A = np.zeros((5, 5))
+    A[0, 1], A[1], A[3, 4] = 1.0, [-k / M, -b / M, -1 / M, k / M, 1.0 / M], 1.0
+    maps = [expm(A * T * j / fine) for j in range(fine + 1)]
+    rows = np.array([m[:1] for m in maps[:-1]])[:, 0]
+    x, v, path = 0.0, 0.0, np.zeros((N, fine))
+    for n in range(P * N):
+        now, after = intent[n % N], intent[(n + 1) % N]
+        y = np.array([x, v, K * x, now, (after - now) / T])
+        path[n % N] = rows @ y
+        x, v = (maps[-1] @ y)[:2]
+    s = 2j * np.pi * lines / (N * T)
+    X = 2 / (N * fine) * np.fft.rfft(path.ravel())[lines]
+    goal = np.concatenate([intent, intent[:1]])
+    line = np.interp(np.arange(N * 400) / 400, np.arange(N + 1), goal)  # its corners have a spectrum that falls slowly
+    goes = 2 / line.size * np.fft.rfft(line)[lines]
+    felt = (200 + s) * (goes - X) - 0.02 * s**2 * X
+    assert found.handle == pytest.approx(felt / (s * X), rel=2e-6)  # images at forty times the rate
+    assert found.felt == pytest.approx(found.handle - (0.05 * s + 0.1))
+    # the rendered impedance by another way: without asking what the motor was told
+    assert found.felt[:2] == pytest.approx(found.rendered[:2], rel=1e-5)
+
+
+def test_the_motor_drives_the_mechanics_and_the_scene_alike():
+    found = measured_impedance(paddle(), hl.wall()(k=K, x_o=0.002), drive="motor", frequency=FREQUENCY, dtype="float64")
+    s = 2j * np.pi * found.frequency
+    assert found.rendered == pytest.approx(K / s * held(s), rel=1e-9)
+    mechanics = 0.07 * s + 1.1 + 200 / s
+    # sampled motion: what lies between the samples folds, as (f T)^2
+    assert abs(found.mechanics / mechanics - 1) == pytest.approx(0.0, abs=2e-2)
+    assert abs(found.mechanics / mechanics - 1)[:2] == pytest.approx(0.0, abs=2e-4)
+    with pytest.raises(hl.AnalysisError, match="no force sensor"):
+        _ = found.handle
+
+
+def test_an_encoder_is_seen_as_distortion_and_noise_as_uncertainty():
+    plain = measured_impedance(paddle(0.0), hl.wall()(k=K), frequency=FREQUENCY)
+    coarse = measured_impedance(paddle(0.0, counts_per_metre=2e4), hl.wall()(k=K), frequency=FREQUENCY)
+    noisy = measured_impedance(paddle(0.0, noise=2e-5), hl.wall()(k=K), frequency=FREQUENCY, blocks=6)
+    assert plain.distortion < 1e-6 < 1e-3 < coarse.distortion
+    assert noisy.radius[0] > 1e3 * plain.radius[0] and noisy.coherence[-1] < 0.9999
+    assert (abs(noisy.rendered - noisy.law) < 2 * noisy.radius).all()
+
+
+def test_a_handle_that_leaves_the_wall_is_reported():
+    found = measured_impedance(paddle(), hl.wall()(k=K), place=0.0, frequency=FREQUENCY)
+    assert found.left_wall > 100 and "left the wall" in str(found)
+    assert measured_impedance(paddle(), hl.wall()(k=K), frequency=FREQUENCY).left_wall == 0
+
+
+def test_scenes_with_motion_of_their_own_have_an_ideal_in_continuous_time():
+    z = hl.coordinate("z", unit="m")
+    m, k, c = hl.parameters("m k c", units="kg N/m N*s/m", values=(0.1, 300.0, 2.0))
+    F = hl.virtual_coupler(z, K=k, b=c)
+    scene = hl.Scene(F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)], name="mass")
+    found = measured_impedance(paddle(0.0), scene, frequency=[3.0, 11.0], dtype="float64", settle=4.0)
+    s = 2j * np.pi * found.frequency
+    coupler = k.value / s + c.value
+    assert found.ideal == pytest.approx(1 / (1 / coupler + 1 / (0.1 * s)), rel=1e-9)  # in series
+    assert abs(found.transparency - 1).max() < 0.05
+    assert found.rendered == pytest.approx(found.law, rel=1e-2)
+
+
+def test_the_same_call_on_a_board():
+    with hl.connect("sim://hapkit", paddle=paddle(0.0)) as board:
+        found = measured_impedance(board, hl.wall()(k=K), frequency=FREQUENCY, realizations=1)
+    s = 2j * np.pi * found.frequency
+    assert found.rendered == pytest.approx(K / s * held(s, 0.0), rel=1e-3)  # float32 and a sensor of 0.1 um
+    assert abs(found.mechanics / (0.07 * s + 1.1 + 200 / s) - 1)[:2].max() < 1e-2
+    assert "no force sensor" in found.about
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"how": "step"}, "needs one of multisine, swept_sine"),
+        ({"drive": "foot"}, "needs 'hand' or 'motor'"),
+        ({"frequency": [700.0]}, "half the sampling rate"),
+    ],
+)
+def test_refusals(arguments, words):
+    with pytest.raises(hl.AnalysisError, match=words):
+        measured_impedance(paddle(), hl.wall()(k=K), **arguments)
+    with pytest.raises(hl.PaddleError, match="needs a simulated hand"):
+        measured_impedance(hl.SimulatedPaddle(m=0.05, b=0.1, T=T), hl.wall()(k=K), drive="hand")
