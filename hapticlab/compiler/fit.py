@@ -1,10 +1,11 @@
 """Whether a scene fits a board's period and memory, and what would: a cheaper method, hold, law, or a slower rate."""
 
 import inspect
+import itertools
 
 from ..errors import HapticlabError, ProgramLimitError
 from ..scene.checks import applied, is_model, written_in
-from ..scene.laws import wall
+from ..scene.laws import UNILATERAL, wall
 from ..scene.scene import Scene
 from ..scene.taps import TAPS
 from .cost import board_named, cost
@@ -156,17 +157,21 @@ def _cheaper(scene, options):
                 )  # fmt: skip
         if used["hold"] != "zoh":
             yield "with hold='zoh'", scene, {**options, "hold": "zoh"}
-    for law in _cheaper_laws(scene):
-        yield f"with law={law!r}", wall(law)(**scene.values), options
+    for law, other in _cheaper_laws(scene):
+        yield f"with law={law!r}", other(**scene.values), options
     for words, other in _cheaper_velocities(scene):
         yield words, other, options
 
 
 def _cheaper_laws(scene):
-    """Yield the laws of walls that need fewer past samples, where the scene is one of :func:`hapticlab.wall`."""
+    """Yield (law, wall) that need fewer past samples, where the scene is one of :func:`hapticlab.wall`."""
     for law, taps in TAPS.items():
-        if scene.name == f"{law} wall" and scene.force == wall(law).force:
-            yield from sorted((o for o in TAPS if len(TAPS[o]) < len(taps)), key=lambda o: -len(TAPS[o]))
+        if scene.name != f"{law} wall":
+            continue
+        for kind in itertools.product(UNILATERAL, (False, True)):
+            if scene.force == wall(law, *kind).force:
+                cheaper = sorted((o for o in TAPS if len(TAPS[o]) < len(taps)), key=lambda o: -len(TAPS[o]))
+                yield from ((o, wall(o, *kind)) for o in cheaper)
 
 
 def _cheaper_velocities(scene):

@@ -98,15 +98,19 @@ def _scene(force, name, estimate):
     return Scene(force, estimate.eom, name=f"{name}, {estimate.name}") if estimate else Scene(force, name=name)
 
 
-def force_filter(scene):
+def force_filter(scene, clamp=False):
     """Predictor-corrector filter around the whole force of any scene, Eq. (23.8): 2 F(n) - 1.5 F(n-1) + 0.5 F(n-2).
 
     On a plain wall without a switch it equals :func:`wall` with ``law="ellis"``, Eq. (23.7). Around a spring and damper
-    it filters both, which asks for more device damping than filtering the spring alone.
+    it filters both, which asks for more device damping than filtering the spring alone. It filters what is felt, and knows
+    nothing of boundaries: a force that jumps to F is felt as 2 F, F/2, F, and after leaving a wall as -1.5 F(n-1) +
+    0.5 F(n-2), a pull, and then as half the last force. ``clamp`` keeps a wall from pulling.
 
     Parameters
     ----------
     scene : Scene
+    clamp : bool
+        Never pull: the filtered force is replaced by max(F, 0).
 
     Returns
     -------
@@ -121,6 +125,7 @@ def force_filter(scene):
     F = scene.force
     # 2*F is kept whole: SymPy would multiply it out, and F would be computed twice
     filtered = sp.Mul(2, F, evaluate=False) - sp.Rational(3, 2) * delay(F) + delay(delay(F)) / 2
+    filtered = sp.Max(filtered, 0) if clamp else filtered
     return Scene(filtered, scene.eom, scene.watch, scene.values, f"filtered {scene.name}")
 
 

@@ -7,6 +7,7 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab import n, t, v, x
 from hapticlab.compiler.engine import load
+from hapticlab.compiler.fit import _cheaper_laws
 from hapticlab.errors import SceneError
 from hapticlab.scene.laws import UNILATERAL
 from hapticlab.scene.taps import LEAD, TAPS
@@ -14,7 +15,9 @@ from hapticlab.scene.taps import LEAD, TAPS
 T, K, B, BOUNDARY = 1e-3, 180.0, 0.4, 0.01
 GENERATOR = np.random.default_rng(11)
 #: a walk across the boundary: enters, leaves, touches, and rests outside for longer than any law remembers
-MOTION = BOUNDARY + np.concatenate([0.002 * GENERATOR.normal(size=60).cumsum(), np.full(4, -0.003), [0.0, 0.002, 0.002]])
+MOTION = BOUNDARY + np.concatenate(
+    [0.002 * GENERATOR.normal(size=60).cumsum(), np.full(4, -0.003), [0.0, 0.002, 0.002]]
+)
 VELOCITY = GENERATOR.normal(size=len(MOTION))
 
 
@@ -90,6 +93,77 @@ def test_the_filter_keeps_what_it_filters():
     filtered = hl.force_filter(body)
     assert (filtered.eom, filtered.watch, filtered.values) == (body.eom, body.watch, body.values)
     assert hl.predicted_sample(v) == 2 * v(n) - v(n - 1)
+
+
+def by_filter(force):
+    """Eq. (23.8) on a whole record, its past before the first sample the first sample."""
+    return 2 * force - 1.5 * past(force, 1) + 0.5 * past(force, 2)
+
+
+def scenes_to_filter():
+    y = hl.signal("y", unit="N", initial=0)
+    k3 = hl.parameters("k3", units="N/m^3", values=1e6)
+    boundary = hl.Amount(BOUNDARY, "m")
+    hardening = hl.when(x(n) >= boundary, k3 * (x(n) - boundary) ** 3)
+    return {
+        "gated": hl.wall("half_sample")(k=K, B=B, x_o=BOUNDARY),
+        "clipped": hl.wall("ellis", "clip", clamp=True)(k=K, x_o=BOUNDARY),
+        "hardening": hl.Scene(hardening, name="hardening spring"),
+        "with a memory": hl.Scene(y(n), [sp.Eq(y(n), sp.Rational(4, 5) * y(n - 1) + hl.wall().force)])(
+            k=K, x_o=BOUNDARY
+        ),
+        "braked": hl.braking_pulse(hl.wall()(k=K, x_o=BOUNDARY), impulse=1e-3, periods=3),
+        "estimated": hl.wall("half_sample", velocity=hl.window_velocity(band=1e-4, most=3))(k=K, B=B, x_o=BOUNDARY),
+    }
+
+
+@pytest.mark.parametrize("clamp", [False, True])
+@pytest.mark.parametrize("name", scenes_to_filter())
+def test_the_filter_filters_whatever_is_felt(name, clamp):
+    """Around switches, powers, memories and estimates it is the formula on the record of the force alone."""
+    scene = scenes_to_filter()[name]
+    plain = forces(scene, velocity="measured")
+    assert plain.max() > 0 and (abs(plain) < 1e-3).any()  # it switches here
+    expected = by_filter(plain)
+    assert expected.min() < 0  # it pulls after leaving
+    expected = np.maximum(expected, 0) if clamp else expected
+    np.testing.assert_allclose(
+        forces(hl.force_filter(scene, clamp), velocity="measured"), expected, rtol=1e-12, atol=1e-12
+    )
+
+
+def test_a_gated_wall_is_filtered_and_not_an_ellis_wall():
+    """(23.8) around (23.1) forgets what lies outside; (23.7) takes the raw past: equal deep inside, not at the entry."""
+    path = BOUNDARY + 0.002 * np.sin(0.3 * np.arange(100))
+    scenes = hl.force_filter(hl.wall()), hl.wall("ellis")
+    programs = [hl.compile(scene(k=K, x_o=BOUNDARY), T=T, dtype="float64") for scene in scenes]
+    filtered, ellis = (load(program).run(100, path[:, None]).outputs[:, 0, 0] for program in programs)
+    deep = np.all([past(path, lag) > BOUNDARY for lag in range(3)], axis=0)
+    entered = (path > BOUNDARY) & (past(path, 1) < BOUNDARY)
+    np.testing.assert_allclose(filtered[deep], ellis[deep], rtol=1e-11, atol=1e-12)
+    assert entered.sum() > 2 and (abs(filtered - ellis)[entered] > 1e-3).all()
+
+
+def test_a_filter_of_a_filter_is_the_product():
+    twice = hl.force_filter(hl.force_filter(hl.wall(unilateral=None)))(k=K, x_o=BOUNDARY)
+    expected = by_filter(by_filter(K * (MOTION - BOUNDARY)))
+    np.testing.assert_allclose(forces(twice), expected, rtol=1e-11, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", scenes_to_filter())
+def test_a_filtered_scene_runs_in_the_firmware_core(name):
+    program = hl.compile(hl.force_filter(scenes_to_filter()[name]), T=T)
+    path = MOTION.astype(np.float32)[:, None]
+    there, here = (load(program, engine).run(len(path), path).outputs for engine in ("vm", "interpreter"))
+    np.testing.assert_array_equal(there, here)
+
+
+@pytest.mark.parametrize("kind", [("clip", False), ("gate", True), (None, False)])
+def test_a_refused_wall_is_offered_one_of_its_own_kind(kind):
+    """Its own unilateral variant, and clamped where it was, with fewer samples."""
+    found = dict(_cheaper_laws(hl.wall("ellis", *kind)))
+    assert list(found) == ["backward_difference", "zoh", "half_sample"]
+    assert all(scene.force == hl.wall(law, *kind).force for law, scene in found.items())
 
 
 @pytest.mark.parametrize(("arguments", "words"), [(("foh",), "needs one of zoh"), (("zoh", "gated"), "'clip' or None")])
