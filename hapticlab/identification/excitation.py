@@ -89,8 +89,8 @@ def designed(kind, size, T, travel, constants):
         return best
     if size / 2 <= constants["coulomb"]:
         raise AnalysisError(
-            f"{kind} of {size:g} N: {SHORTEST} samples of {T:g} s already move the handle past {1e3 * FILLS * travel:.3g} mm, and "
-            "half the force is below friction; give a smaller T or more travel="
+            f"{kind} of {size:g} N: {SHORTEST} samples of {T:g} s already move the handle past {1e3 * FILLS * travel:.3g} mm, "
+            "and half the force is below friction; give a smaller T or more travel="
         )
     return designed(kind, size / 2, T, travel, constants)
 
@@ -112,5 +112,3 @@ def centring(stiffness, damping):
     K = parameters("K", units="N/m", values=stiffness)
     damper = virtual_damper()(B=damping)
     return Scene(K * x(n) + damper.force, name="centring", values=damper.values)
-
-

@@ -6,7 +6,8 @@ import numpy as np
 
 from ..errors import AnalysisError
 from ..records import Telemetry, check_record
-from .paddle_fit import Estimate, PaddleFit
+from .found import told
+from .paddle_fit import PaddleFit
 from .problem import UNITS, Problem, Trace
 
 #: standard gravity [m/s^2]
@@ -15,8 +16,6 @@ GRAVITY = 9.80665
 SETTLES, FEWEST = 5, 20
 #: counts that a handle has to move by to tell anything
 MOVED = 20
-#: share of the largest one from which on a constant is part of what a record leaves open
-PART = 0.05
 FORCE_CONSTANT = (
     "the force constant cannot be told from motion alone: twice the force on twice the mass with twice the friction moves "
     "alike. Give a known reference: a record with HandleRecord(log, added=...) of a known mass fixed to the handle beside one "
@@ -60,7 +59,9 @@ class HandleRecord:
         """Return its positions and forces from sample ``first`` on."""
         check_record(self.log, "identify")
         if self.log.fault:
-            raise AnalysisError(f"identify: the record ends in a fault, {self.log.fault}; needs one that ran to its end")
+            raise AnalysisError(
+                f"identify: the record ends in a fault, {self.log.fault}; needs one that ran to its end"
+            )
         if self.log.every > 1:
             raise AnalysisError(
                 f"identify: one sample in {self.log.every} was sent, and the forces between are not known; needs every one: "
@@ -131,10 +132,12 @@ def step_response(log, *, counts_per_metre=None, known=None, at_rest=True, confi
     changes = np.count_nonzero(np.diff(log.F))
     if not 1 <= changes <= len(log) / 4:
         raise AnalysisError(
-            f"step_response: the force changes {changes} times in {len(log)} samples; needs a few steps, each held for a while. For a "
-            "force that always changes use chirp_response(log), for none spin_down(log)"
+            f"step_response: the force changes {changes} times in {len(log)} samples; needs a few steps, each held for a while. "
+            "For a force that always changes use chirp_response(log), for none spin_down(log)"
         )
-    return identify(HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
+    return identify(
+        HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence
+    )
 
 
 def chirp_response(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.95):
@@ -142,8 +145,12 @@ def chirp_response(log, *, counts_per_metre=None, known=None, at_rest=True, conf
     check_record(log, "chirp_response")
     turns = np.count_nonzero(np.diff(np.sign(np.diff(log.F))))
     if turns < 3:
-        raise AnalysisError(f"chirp_response: the force turns {turns} times in {len(log)} samples; needs 3 swings or more")
-    return identify(HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
+        raise AnalysisError(
+            f"chirp_response: the force turns {turns} times in {len(log)} samples; needs 3 swings or more"
+        )
+    return identify(
+        HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence
+    )
 
 
 def identify(*records, force_constant=False, counts_per_metre=None, known=None, confidence=0.95):
@@ -200,24 +207,8 @@ def _found(problem, names, confidence):
             f"identify: the handle moved by {1e3 * np.ptp(measured):.3g} mm; needs more than {MOVED} counts, "
             f"{1e3 * MOVED * problem.quantum:.3g} mm. Is the motor on, and the force above friction?"
         )
-    fitted = problem.solve()
-    open_ = np.abs(fitted.blind[0][: len(names)])
-    if open_.any():
-        left = ", ".join(name for name, part in zip(names, open_, strict=True) if part > PART * open_.max())
-        raise AnalysisError(
-            f"identify: these records do not tell {left} from each other, or at all. Seek less (known={{...}}), or move the "
-            "handle otherwise: both ways, faster and slower, with a force that changes"
-            + (f". Also, {FORCE_CONSTANT}" if "scale" in names else "")
-        )
-    half = fitted.half_width(confidence)[:, 0]
-    units = {**UNITS, "b/m": "1/s", "coulomb/m": "m/s^2"}
-    estimates = {
-        name: Estimate(name, float(value), float(value - width), float(value + width), units[name])
-        for name, value, width in zip(names, fitted.values[: len(names), 0], half, strict=False)
-    }
-    rest = fitted.residuals[:, 0]
-    lag = float(np.sum(rest[1:] * rest[:-1]) / max(np.sum(rest**2), 1e-300))
-    return PaddleFit(
-        estimates, confidence, float(fitted.sigma[0]), bool(fitted.counted[0]), problem.quantum,
-        bool(fitted.converged[0]), lag, measured, measured - rest, problem.traces[0].T,
+    beside = f". Also, {FORCE_CONSTANT}" if "scale" in names else ""
+    return told(
+        PaddleFit, measured, problem.solve(), names,
+        quantum=problem.quantum, T=problem.traces[0].T, confidence=confidence, beside=beside,
     )  # fmt: skip

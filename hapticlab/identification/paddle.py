@@ -39,7 +39,9 @@ class Identified(PaddleFit):
         return tuple(replace(record, added=mass) for record in self.records)
 
 
-def identify_paddle(paddle, *, force=None, travel=None, kinds=("kick", "steps", "chirp"), added=0.0, beside=(), confidence=0.95):
+def identify_paddle(
+    paddle, *, force=None, travel=None, kinds=("kick", "steps", "chirp"), added=0.0, beside=(), confidence=0.95
+):
     """Move a free handle and return its mass, damping, Coulomb friction and delay, with confidence intervals.
 
     Nobody holds the handle. Forces grow from 1/64 of ``force`` until it moves; what that tells sizes a kick, steps and a
@@ -79,11 +81,13 @@ def identify_paddle(paddle, *, force=None, travel=None, kinds=("kick", "steps", 
     (True, True, True, True)
     """
     if beside and not added:
-        raise AnalysisError("beside= without added=: records with and without a known mass tell the force constant; give added=")
+        raise AnalysisError(
+            "beside= without added=: records with and without a known mass tell the force constant; give added="
+        )
     force, travel = _limits(paddle, force, travel)
     added = require("added", added, "kg", "an identification", low=0)
     pilot, size = _pilot(paddle, force, travel)
-    per_metre = _counts_per_metre(paddle)
+    per_metre = counts_per_metre_of(paddle)
     rough = identify(pilot, counts_per_metre=per_metre)
     constants = {name: max(rough[name].value, 1e-4 if name == "m" else 0.0) for name in ("m", "b", "coulomb", "delay")}
     size = min(force, max(size, 4 * constants["coulomb"]))
@@ -100,7 +104,9 @@ def _limits(paddle, force, travel):
     """Return the largest force [N] and travel [m]."""
     settings = getattr(paddle, "settings", None)
     if isinstance(paddle, SerialPaddle) and settings is None:
-        raise PaddleError("the board has no calibration, so its travel and force are not known: run `hapticlab calibrate` first.")
+        raise PaddleError(
+            "the board has no calibration, so its travel and force are not known: run `hapticlab calibrate` first."
+        )
     if settings is not None:
         usual = min(settings.force_continuous, settings.force_max), 0.8 * min(-settings.travel_min, settings.travel_max)
     else:
@@ -109,7 +115,7 @@ def _limits(paddle, force, travel):
     return force, require("travel", usual[1] if travel is None else travel, "m", "an identification", above=0)
 
 
-def _counts_per_metre(paddle):
+def counts_per_metre_of(paddle):
     return 1 / paddle.settings.metres_per_count if isinstance(paddle, SerialPaddle) else paddle.counts_per_metre
 
 
@@ -129,7 +135,8 @@ def _pilot(paddle, force, travel):
         if size >= force:
             raise AnalysisError(
                 f"identify_paddle: {force:.3g} N moves the handle by {1e3 * np.ptp(log.x):.2g} mm only; needs "
-                f"{1e3 * FOUND * travel:.2g} mm. Check the motor's supply and that nobody holds the handle, or allow a larger force="
+                f"{1e3 * FOUND * travel:.2g} mm. Check the motor's supply and that nobody holds the handle, or allow "
+                "a larger force="
             )
         size = min(size * GROWS, force)
 
@@ -140,12 +147,12 @@ def _run(paddle, excited, force, travel):
     if not isinstance(paddle, SerialPaddle):
         return paddle.run(scene, duration=duration, progress=False)
     back = centring(force / travel, BACK_DAMPING * force / travel)
-    _after(paddle.run(back, duration=BACK_TIME, force_max=force, progress=False))
-    log = _after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False))
+    after(paddle.run(back, duration=BACK_TIME, force_max=force, progress=False))
+    log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False))
     return replace(log, F=given(paddle, log.F))
 
 
-def _after(log):
+def after(log):
     if log.fault:
         raise PaddleError(f"identify_paddle stopped: {log.fault}")
     return log

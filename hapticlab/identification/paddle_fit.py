@@ -1,97 +1,19 @@
-"""What was found out about a paddle: its constants, each with a confidence interval, and how well they explain the record."""
+"""What was found out about a paddle, as a profile and as a paddle to simulate."""
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..device.simulated import SimulatedPaddle
-from ..drawing import STYLES, house_style, new_figure
 from ..errors import AnalysisError
 from ..records import PaddleProfile
-
-#: constant -> what it is called
-CALLED = {
-    "m": "mass", "b": "viscous damping", "coulomb": "Coulomb friction", "delay": "delay", "scale": "force constant",
-    "b/m": "damping over mass", "coulomb/m": "friction over mass", "k": "stiffness",
-}  # fmt: skip
-#: correlation of neighbouring residuals, in its standard errors, from which something is left unexplained
-UNEXPLAINED = 5.0
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A constant and its confidence interval, in ``unit``.
-
-    Examples
-    --------
-    >>> print(Estimate("m", 0.0301, 0.0297, 0.0305, "kg"))
-    m = 0.0301 kg, between 0.0297 and 0.0305
-    """
-
-    name: str
-    value: float
-    low: float
-    high: float
-    unit: str
-
-    @property
-    def half_width(self):
-        """Half the width of the interval."""
-        return (self.high - self.low) / 2
-
-    def __contains__(self, value):
-        return self.low <= value <= self.high
-
-    def __float__(self):
-        return self.value
-
-    def __str__(self):
-        digits = 3 if self.half_width == 0 else int(np.clip(np.ceil(np.log10(abs(self.value / self.half_width) + 1)) + 2, 3, 9))
-        return f"{self.name} = {self.value:.{digits}g} {self.unit}, between {self.low:.{digits}g} and {self.high:.{digits}g}"
+from .found import Found
 
 
 @dataclass(frozen=True, eq=False)
-class PaddleFit:
-    """Constants of a paddle found from records; ``found["m"]`` is an :class:`Estimate`. Print it, or plot what it left.
+class PaddleFit(Found):
+    """Constants of a paddle found from records; ``found["m"]`` is an Estimate. Print it, or plot what it left."""
 
-    Attributes
-    ----------
-    estimates : dict of str to Estimate
-    confidence : float
-    sigma : float
-        Of the sensor's noise [m]; without dither counting is part of it.
-    counted : bool
-        Counts in dither, each by its own likelihood; else positions as numbers.
-    quantum : float
-        A count [m], 0 for a sensor that does not count.
-    converged : bool
-    correlation : float
-        Between neighbouring residuals; near zero where the model explains the record.
-    measured, fitted : array, shape (N,)
-        Positions [m] of all records, one after the other.
-    T : float
-    """
-
-    estimates: dict
-    confidence: float
-    sigma: float
-    counted: bool
-    quantum: float
-    converged: bool
-    correlation: float
-    measured: np.ndarray
-    fitted: np.ndarray
-    T: float
-
-    def __getitem__(self, name):
-        if name not in self.estimates:
-            raise AnalysisError(f"{name!r} was not sought; found are {', '.join(self.estimates)}")
-        return self.estimates[name]
-
-    @property
-    def explained(self):
-        """Whether what is left looks like noise."""
-        return bool(abs(self.correlation) * np.sqrt(len(self.measured)) < UNEXPLAINED)
+    about = "paddle"
+    lacking = "a stop, a hand, backlash, friction that is not constant"
 
     def profile(self, name="identified", *, T=None, force_max=None, rounding="floor"):
         """Return a PaddleProfile of what was found, marked as measured.
@@ -102,7 +24,9 @@ class PaddleFit:
             If the mass was not found: a spin-down alone tells ratios.
         """
         if "m" not in self.estimates:
-            raise AnalysisError("the mass was not found: a spin-down tells b/m and coulomb/m; add a step or a chirp, or give m=")
+            raise AnalysisError(
+                "the mass was not found: a spin-down tells b/m and coulomb/m; add a step or a chirp, or give m="
+            )
         told = {key: self[key].value for key in ("m", "b", "coulomb") if key in self.estimates}
         told |= {key: max(told[key], 0.0) for key in ("b", "coulomb") if key in told}
         return PaddleProfile(
@@ -115,34 +39,3 @@ class PaddleFit:
         """Return a SimulatedPaddle with what was found."""
         delay = {"delay": max(self["delay"].value, 0.0)} if "delay" in self.estimates else {}
         return SimulatedPaddle.from_profile(self.profile(), **{**delay, **changes})
-
-    def __str__(self):
-        lines = [f"paddle identified from {len(self.measured)} samples, {self.confidence:.0%} confidence:"]
-        lines += [f"  {CALLED[name]:<18}{found}" for name, found in self.estimates.items()]
-        how = "noise" if self.counted or not self.quantum else "noise and counting"
-        counts = f", counts of {1e6 * self.quantum:.3g} um" if self.quantum else ""
-        lines.append(f"  {'sensor':<18}{how} {1e6 * self.sigma:.3g} um{counts}")
-        if not self.explained:
-            lines.append(
-                f"  NOT EXPLAINED: neighbouring residuals correlate by {self.correlation:.2f}; something moves the handle that "
-                "the model lacks (a stop, a hand, backlash, friction that is not constant), and the intervals are too narrow"
-            )
-        if not self.converged:
-            lines.append("  NOT CONVERGED: a small change would fit better; the intervals are rough")
-        return "\n".join(lines)
-
-    def plot(self):
-        """Return a figure: positions measured and fitted, and what is left."""
-        t = np.arange(len(self.measured)) * self.T
-        with house_style():
-            figure = new_figure(height=5.2)
-            above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-            above.plot(t, 1e3 * self.measured, ".", color="#8a8a8a", markersize=3, label="measured")
-            above.plot(t, 1e3 * self.fitted, **STYLES[1], label="fitted")
-            above.set(ylabel="handle position x [mm]", title="Positions, and what the fit leaves")
-            above.legend()
-            below.plot(t, 1e6 * (self.measured - self.fitted), ".", color="#000000", markersize=2)
-            below.axhspan(-2e6 * self.sigma, 2e6 * self.sigma, color="#1f6fb4", alpha=0.15, label="2 standard deviations")
-            below.set(xlabel="time, records one after the other [s]", ylabel="residual [um]")
-            below.legend(loc="upper right")
-        return figure

@@ -1,0 +1,165 @@
+"""What a fit found: constants, each with a confidence interval, and how well they explain the record."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..drawing import STYLES, house_style, new_figure
+from ..errors import AnalysisError
+
+#: constant -> what it is called
+CALLED = {
+    "m": "mass", "b": "viscous damping", "coulomb": "Coulomb friction", "delay": "delay", "scale": "force constant",
+    "b/m": "damping over mass", "coulomb/m": "friction over mass", "k": "stiffness",
+}  # fmt: skip
+CONSTANT_UNITS = {
+    "m": "kg", "b": "N s/m", "coulomb": "N", "delay": "s", "scale": "1", "b/m": "1/s", "coulomb/m": "m/s^2", "k": "N/m",
+}  # fmt: skip
+#: share of the largest from which on a constant is part of what a record leaves open
+PART = 0.05
+#: correlation of neighbouring residuals, in its standard errors, from which something is left unexplained
+UNEXPLAINED = 5.0
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A constant and its confidence interval, in ``unit``.
+
+    Examples
+    --------
+    >>> print(Estimate("m", 0.0301, 0.0297, 0.0305, "kg"))
+    m = 0.0301 kg, between 0.0297 and 0.0305
+    """
+
+    name: str
+    value: float
+    low: float
+    high: float
+    unit: str
+
+    @property
+    def half_width(self):
+        """Half the width of the interval."""
+        return (self.high - self.low) / 2
+
+    def __contains__(self, value):
+        return self.low <= value <= self.high
+
+    def __float__(self):
+        return self.value
+
+    def __str__(self):
+        digits = (
+            3
+            if self.half_width == 0
+            else int(np.clip(np.ceil(np.log10(abs(self.value / self.half_width) + 1)) + 2, 3, 9))
+        )
+        return f"{self.name} = {self.value:.{digits}g} {self.unit}, between {self.low:.{digits}g} and {self.high:.{digits}g}"
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Constants found from records; ``found["m"]`` is an :class:`Estimate`. Print it, or plot what it left.
+
+    Attributes
+    ----------
+    about, lacking : str
+        Whose constants they are, and what the model leaves out.
+    estimates : dict of str to Estimate
+    confidence : float
+    sigma : float
+        Of the sensor's noise [m]; without dither counting is part of it.
+    counted : bool
+        Counts in dither, each by its own likelihood; else positions as numbers.
+    quantum : float
+        A count [m], 0 for a sensor that does not count.
+    converged : bool
+    correlation : float
+        Between neighbouring residuals; near zero where the model explains the record.
+    measured, fitted : array, shape (N,)
+        Positions [m] of all records, one after the other.
+    T : float
+    """
+
+    estimates: dict
+    confidence: float
+    sigma: float
+    counted: bool
+    quantum: float
+    converged: bool
+    correlation: float
+    measured: np.ndarray
+    fitted: np.ndarray
+    T: float
+
+    def __getitem__(self, name):
+        if name not in self.estimates:
+            raise AnalysisError(f"{name!r} was not sought; found are {', '.join(self.estimates)}")
+        return self.estimates[name]
+
+    @property
+    def explained(self):
+        """Whether what is left looks like noise."""
+        return bool(abs(self.correlation) * np.sqrt(len(self.measured)) < UNEXPLAINED)
+
+    def __str__(self):
+        lines = [f"{self.about} identified from {len(self.measured)} samples, {self.confidence:.0%} confidence:"]
+        lines += [f"  {CALLED[name]:<18}{found}" for name, found in self.estimates.items()]
+        how = "noise" if self.counted or not self.quantum else "noise and counting"
+        counts = f", counts of {1e6 * self.quantum:.3g} um" if self.quantum else ""
+        lines.append(f"  {'sensor':<18}{how} {1e6 * self.sigma:.3g} um{counts}")
+        if not self.explained:
+            lines.append(
+                f"  NOT EXPLAINED: neighbouring residuals correlate by {self.correlation:.2f}; something moves the handle that "
+                f"the model lacks ({self.lacking}), and the intervals are too narrow"
+            )
+        if not self.converged:
+            lines.append("  NOT CONVERGED: a small change would fit better; the intervals are rough")
+        return "\n".join(lines)
+
+    def plot(self):
+        """Return a figure: positions measured and fitted, and what is left."""
+        t = np.arange(len(self.measured)) * self.T
+        with house_style():
+            figure = new_figure(height=5.2)
+            above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+            above.plot(t, 1e3 * self.measured, ".", color="#8a8a8a", markersize=3, label="measured")
+            above.plot(t, 1e3 * self.fitted, **STYLES[1], label="fitted")
+            above.set(ylabel="handle position x [mm]", title="Positions, and what the fit leaves")
+            above.legend()
+            below.plot(t, 1e6 * (self.measured - self.fitted), ".", color="#000000", markersize=2)
+            below.axhspan(
+                -2e6 * self.sigma, 2e6 * self.sigma, color="#1f6fb4", alpha=0.15, label="2 standard deviations"
+            )
+            below.set(xlabel="time, records one after the other [s]", ylabel="residual [um]")
+            below.legend(loc="upper right")
+        return figure
+
+
+def told(made, y, fitted, names, *, quantum, T, confidence, beside=""):
+    """Return what a fit of one lane found, as ``made``, a class of Found.
+
+    Raises
+    ------
+    AnalysisError
+        If the records leave a combination of the constants open.
+    """
+    left = np.abs(fitted.blind[0][: len(names)])
+    if left.any():
+        open_ = ", ".join(name for name, part in zip(names, left, strict=True) if part > PART * left.max())
+        raise AnalysisError(
+            f"identify: these records do not tell {open_} from each other, or at all. Seek less (known={{...}}), or move the "
+            f"handle otherwise: both ways, faster and slower, with a force that changes{beside}"
+        )
+    half = fitted.half_width(confidence)[:, 0]
+    estimates = {
+        name: Estimate(name, float(value), float(value - width), float(value + width), CONSTANT_UNITS[name])
+        for name, value, width in zip(names, fitted.values[: len(names), 0], half, strict=False)
+    }
+    rest, counted = fitted.residuals[:, 0], bool(fitted.counted[0])
+    # neighbours that share a count without dither share its rounding: they say nothing about the model
+    pairs = np.diff(y) != 0 if quantum and not counted else np.ones(len(y) - 1, bool)
+    lag = float(np.sum((rest[1:] * rest[:-1])[pairs]) / max(np.sum(rest[1:][pairs] ** 2), 1e-300))
+    return made(
+        estimates, confidence, float(fitted.sigma[0]), counted, quantum, bool(fitted.converged[0]), lag, y, y - rest, T
+    )

@@ -1,0 +1,185 @@
+"""Identify the hand that holds the handle, as a mass, a damper and a spring, from how it yields to pushes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from ..device.board import SerialPaddle
+from ..device.hand import Hand, require
+from ..device.simulated import SimulatedPaddle
+from ..errors import AnalysisError
+from ..records import Telemetry, check_record
+from ..scene.parameters import parameters
+from ..scene.scene import Scene
+from ..scene.symbols import n, when, x
+from .found import Found, told
+from .hand_motion import hand_positions
+from .paddle import after, counts_per_metre_of, given
+from .scoring import fit
+
+#: s that a hand is taken not to react; a stretch reflex begins after 25 to 50 ms, the will after 100 and more
+WINDOW = 0.06
+#: s of rest before a push that a window takes in, s that a push lasts, s from one push to the next: least and most
+BEFORE, LASTS, APART = 0.02, 0.015, (0.45, 0.75)
+#: N, and how far the handle may go before the motor gives nothing [m]
+FORCE, TRAVEL = 1.0, 0.03
+
+
+@dataclass(frozen=True, eq=False)
+class HandFit(Found):
+    """Mass, damping and stiffness of a hand; ``found["k"]`` is an Estimate. Print it, or plot what it left."""
+
+    about = "hand"
+    lacking = "a reflex within the window, tremor, a grip that changes or does not follow"
+
+    def hand(self, **changes):
+        """Return a Hand with what was found; a value below zero within its interval becomes zero."""
+        return Hand(**{**{name: max(self[name].value, 0.0) for name in ("m", "b", "k")}, **changes})
+
+    def __str__(self):
+        m, b, k = (self[name].value for name in ("m", "b", "k"))
+        lines = [super().__str__()]
+        if m > 0 and k > 0:
+            lines.append(
+                f"  alone it swings at {np.sqrt(k / m) / 2 / np.pi:.3g} Hz, damping ratio {b / 2 / np.sqrt(k * m):.2g}"
+            )
+        return "\n".join(lines)
+
+
+def identify_hand(
+    source, device=None, *, window=WINDOW, force=FORCE, pushes=8, seed=0, counts_per_metre=None, confidence=0.95
+):
+    """Return the second-order hand on a handle from its answers to pushes, each before the hand can react.
+
+    (m_device + m) x'' = -F - b_device x' - coulomb sign(x') - b x' - k (x - rest). Valid for some 30 to 60 ms after each
+    push: then reflexes, later intent, and the hand is another one. ``explained`` says whether the model does.
+
+    Parameters
+    ----------
+    source : Telemetry or Paddle
+        A record with ``F`` zero but for pushes; or a paddle, which then pushes the hand that holds it, at random times.
+    device : PaddleProfile, SimulatedPaddle or None
+        m, b, coulomb, delay of the handle alone; None takes the paddle's own. A free handle tells them to
+        :func:`identify_paddle`.
+    window : float
+        How long after the begin of a push the hand is taken not to react [s].
+    force : float
+        Of a push [N].
+    pushes, seed : int
+        How many, and what draws their times and directions.
+    counts_per_metre : float, optional
+        Of the encoder [1/m]; a paddle knows its own.
+    confidence : float
+
+    Returns
+    -------
+    HandFit
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> pinch = hl.Hand(m=0.02, b=1, k=200)
+    >>> found = identify_hand(hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, noise=2e-6, hand=pinch), pushes=2)
+    >>> 0.02 in found["m"], 1.0 in found["b"], 200.0 in found["k"]
+    (True, True, True)
+    """
+    if isinstance(source, (SimulatedPaddle, SerialPaddle)):
+        device = source if device is None else device
+        counts_per_metre = counts_per_metre_of(source) if counts_per_metre is None else counts_per_metre
+        source = push_hand(source, force=force, pushes=pushes, seed=seed)
+    check_record(source, "identify_hand")
+    device = getattr(device, "settings", device)
+    if device is None or isinstance(device, Telemetry):
+        raise AnalysisError(
+            "identify_hand: whose handle is it? Give device=, a PaddleProfile or found.profile() of identify_paddle"
+        )
+    own = {name: float(getattr(device, name, 0.0)) for name in ("m", "b", "coulomb")}
+    own["delay"] = float(getattr(device, "delay", source.delay))
+    windows = _windows(source, window)
+    quantum = 0.0 if counts_per_metre is None else 1 / abs(counts_per_metre)
+    y = np.concatenate([source.x[a:b] for a, b in windows])
+    start, scales = _start(source, windows, own)
+    fitted = fit(_motion(source, windows, own), y[:, None], start[:, None], scales[:, None], quantum=quantum)
+    return told(HandFit, y, fitted, ("m", "b", "k"), quantum=quantum, T=source.T, confidence=confidence)
+
+
+def push_hand(paddle, *, force=FORCE, pushes=8, seed=0):
+    """Push a hand that holds the handle, at times and in directions it cannot foresee, and return the record.
+
+    Further than 30 mm from where it began the motor gives nothing.
+    """
+    force, T = require("force", force, "N", "a push", above=0), paddle.T
+    draws = np.random.default_rng(seed)
+    starts = np.cumsum(draws.uniform(*APART, pushes)) / T
+    signs = draws.permutation(np.resize([1, -1], pushes))
+    A, limit = parameters("A limit", units="N m", values=(force, TRAVEL))
+    length = max(2, round(LASTS / T))
+    pushed = [
+        sign * when((n >= int(at)) & (n < int(at) + length), A, 0) for at, sign in zip(starts, signs, strict=True)
+    ]
+    scene = Scene(when(sp.Abs(x(n)) <= limit, sp.Add(*pushed), 0), name="pushes")
+    duration = float(starts[-1] * T + APART[0])
+    if isinstance(paddle, SerialPaddle):
+        log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False))
+        return Telemetry(**{**vars(log), "F": given(paddle, log.F)})
+    return paddle.run(scene, duration=duration, progress=False)
+
+
+def _windows(log, window):
+    """Return (first, stop) of each push with what comes before it and until a hand may react."""
+    on = np.flatnonzero((log.F[1:] != 0) & (log.F[:-1] == 0)) + 1
+    before, long = round(BEFORE / log.T), round(window / log.T)
+    found, free = [], 0
+    for at in on:
+        if at - before >= free and at + long <= len(log):
+            found.append((at - before, at + long))
+            free = at + long
+    if not found:
+        raise AnalysisError(
+            f"identify_hand: no push in {len(log)} samples with {BEFORE:g} s of F = 0 before it and {window:g} s from its "
+            "begin on; run push_hand(paddle), or a scene that is quiet but for short pushes"
+        )
+    return found
+
+
+def _motion(log, windows, own):
+    """Return the model: m, b, k of the hand, then the resting place, x and v at the begin of each window.
+
+    A handle with friction is held by it before a push: v = 0.
+    """
+
+    def motion(p):
+        body = {"m": own["m"] + p[0], "b": own["b"] + p[1], "k": p[2], "coulomb": own["coulomb"], "delay": own["delay"]}
+        begun = iter(p[3:])
+        return np.concatenate([
+            hand_positions(
+                log.F[a:z], log.T, **body, rest=next(begun), x0=next(begun), v0=0.0 if own["coulomb"] else next(begun)
+            )
+            for a, z in windows
+        ])  # fmt: skip
+
+    return motion
+
+
+def _start(log, windows, own):
+    """Return first values and scales: the equation of motion integrated twice, least squares in every window."""
+    T, told = log.T, []
+    lag = round(own["delay"] / T)
+    for a, z in windows:
+        y, t = log.x[a:z] - log.x[a], np.arange(z - a) * T
+        felt = np.concatenate([np.zeros(lag), log.F[a : z - lag]])
+        once = [np.cumsum(values) * T for values in (y, felt)]
+        columns = [np.ones_like(t), t, t**2, -once[0], -np.cumsum(once[0]) * T, -np.cumsum(once[1]) * T]
+        A = np.column_stack(columns)
+        size = np.linalg.norm(A, axis=0) + 1e-300
+        told.append((np.linalg.lstsq(A / size, y, rcond=1e-9)[0] / size)[3:])
+    damping, stiffness, mobility = np.median(told, axis=0)
+    m = 1 / max(mobility, 1e-3)
+    hand = np.array([m - own["m"], damping * m - own["b"], stiffness * m])
+    hand = np.maximum(hand, [0.01 * own["m"], 0.0, 1.0])
+    moved = np.ptp(log.x)
+    count = 2 if own["coulomb"] else 3
+    begun = [value for a, _ in windows for value in (log.x[a], log.x[a], 0.0)[:count]]
+    scales = (moved, moved, moved / WINDOW)[:count] * len(windows)
+    return np.array([*hand, *begun]), np.array([0.1 * m, 1.0, 100.0, *scales])
