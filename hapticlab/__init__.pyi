@@ -54,7 +54,10 @@ from .errors import (
     UnitsError,
 )
 from .experiments.curves import Psychometric
+from .experiments.displays import compare_displays
+from .experiments.fitts import fitts
 from .experiments.forced_choice import forced_choice
+from .experiments.juggling import juggle
 from .experiments.observers import PersonObserver, SimulatedObserver
 from .experiments.psi import ConstantLevels, Psi
 from .experiments.psychometric import psychometric
@@ -62,6 +65,7 @@ from .experiments.reaching import Load, follow, reach
 from .experiments.shared_control import assistance
 from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
 from .experiments.up_down import UpDown
+from .identification.hand import identify_hand, push_hand
 from .identification.handle_records import HandleRecord, chirp_response, identify, spin_down, step_response
 from .identification.paddle import identify_paddle
 from .limits.admittance import admittance_design
@@ -178,6 +182,7 @@ __all__ = [
     "closed_loop_matrix",
     "closed_loop_poles",
     "closest",
+    "compare_displays",
     "compare_laws",
     "compensation_limit",
     "compile",
@@ -203,6 +208,7 @@ __all__ = [
     "explore",
     "felt_impulse",
     "filtered_velocity",
+    "fitts",
     "follow",
     "forbidden_region",
     "force_error",
@@ -221,9 +227,11 @@ __all__ = [
     "hunt_crossley",
     "hybrid_wall",
     "identify",
+    "identify_hand",
     "identify_paddle",
     "impedance",
     "impulse",
+    "juggle",
     "kalman_velocity",
     "lagrange",
     "largest_stiffness",
@@ -257,6 +265,7 @@ __all__ = [
     "proxy_wall",
     "psychometric",
     "pulse_time",
+    "push_hand",
     "reach",
     "reduction",
     "reference",
