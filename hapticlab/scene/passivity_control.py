@@ -84,7 +84,7 @@ def passivity_controller(
       within one period's leak, K/2 times the square of how far the spring moved, and the slip with the handle.
 
     An Uno has time for the series form at 1 kHz, with ``stored`` or ``predict`` or ``force_max`` too; for more of them, and
-    for the parallel form, at 800 Hz. One count of an encoder is felt as alpha_max counts/T at most.
+    for the parallel form, at 800 Hz.
 
     A human who is active for long fills the credit of an environment that dissipates, which may then be active for as
     long without being stopped. ``forget`` and ``credit_max`` are the cures: they strike off credit, never debt, and so
@@ -95,8 +95,9 @@ def passivity_controller(
     scene : Scene
     form : {"series", "parallel"}
     alpha_max : float [N s/m]
-        For "series": the largest damper, to be bound here or later. A sampled damper must not be stiffer than
-        :func:`hapticlab.damper_limit` allows, and is passive itself up to the device's own b; what is owed beyond waits.
+        For "series": the largest damper, to be bound here or later; what it cannot take back at once waits. A few
+        hundredths of :func:`hapticlab.damper_limit` are enough; one count of an encoder is felt as alpha_max count/T, and
+        beyond that limit the controller chatters by itself.
     beta_max : float [m/(N s)]
         For "parallel": the fastest slip, in m/s for each newton; to be bound here or later. A spring K that slips by
         1/(K T) has let go of everything within a sample.
