@@ -11,6 +11,10 @@ sinusoid feels the held force as a damper of its own,
 
 negative where the law makes energy. The two are one below a tenth of the sampling rate; near Nyquist the straight lines
 ask for up to pi^2/4 of what the sinusoid asks for.
+
+Averaged over theta from 0 to pi the right side is ``K T/2``, with K = H(1) the stiffness at rest, for every stable law and
+every delay of whole periods: of ``z^-k`` it is Dirichlet's kernel, whose mean is one. A law that asks for less somewhere asks
+for more elsewhere, so none is passive with K > 2 b/T: for any passive hand nothing is better than the plain spring, Eq. (23.1).
 """
 
 import math
@@ -20,7 +24,7 @@ import numpy as np
 
 from ..errors import AnalysisError
 from .limit import check_number
-from .linear_law import LinearLaw, filtered_damper
+from .linear_law import LinearLaw
 from .plots import plot_passivity_margin
 from .port import asked, negative, required, unstable_pole
 
@@ -160,44 +164,51 @@ def wall_damping(*, K, T, B=0.0, velocity_filter=0.0):
     return K * T / 2 + (B / (1 + 2 * tau / T) if B >= 0 else -B)
 
 
-def largest_passive_stiffness(spring, beside, *, b, delay=0.0):
-    """Return (K, frequency [Hz]): the largest K for which ``K*spring + beside`` is passive on a device of damping b.
+def largest_passive_stiffness(law, *, b, delay=0.0):
+    """Return (K, frequency [Hz]): the largest K for which a law affine in K is passive on a device of damping b.
 
-    The damping asked for at one frequency is convex in K, so the K at which the worst frequency of one K is satisfied
-    is an upper bound, and the sequence of such cuts falls to the answer. K = 0 where ``beside`` alone is active.
+    What one frequency asks for is convex in K, so the K that satisfies the worst frequency of one K is an upper bound, and
+    the sequence of such cuts falls to the answer. K = 0 where the law is active without its spring.
 
     Parameters
     ----------
-    spring, beside : LinearLaw
-        Of a unit stiffness, and of what acts with it whatever K.
+    law : callable
+        K [N/m] -> LinearLaw, affine in K, whose stiffness at rest is K times a positive number and a constant.
+
+    Examples
+    --------
+    >>> K, hertz = largest_passive_stiffness(lambda K: LinearLaw.of("ellis", K=K, T=1e-3), b=0.1)
+    >>> round(K, 9), round(hertz, 3)
+    (50.0, 500.0)
     """
-    most, theta = required(beside.A, beside.B, beside.C, beside.D, beside.T, delay)
+    bare = law(0.0)
+    T, most, theta = bare.T, *_required(bare, delay)
     if most > b:
-        return 0.0, theta / (2 * math.pi * beside.T)
-    K = 8 * (b + most) / beside.T + 1e-300  # above every limit: K T/b is 2 at most, and 4 with a damper of either sign
-    at = None
+        return 0.0, theta / (2 * math.pi * bare.T)
+    rise = law(1.0).stiffness - bare.stiffness
+    if not rise > 0:
+        raise AnalysisError(f"{law(1.0).name}: its stiffness at rest does not grow with K, so K has no largest value")
+    K, at = 4 * (b + most) / (T * rise), None  # no law allows more than 2 b/T (module), nor its damper more than b
     for _ in range(60):
-        law = K * spring + beside
-        most, theta = required(law.A, law.B, law.C, law.D, law.T, delay)
+        most, theta = _required(law(K), delay)
         if most <= b * (1 + SETTLED):
             break
-        lower, at = _cut(spring, beside, b, theta, delay, K), theta
+        lower, at = _cut(law, b, theta, delay, K), theta
         if lower >= K * (1 - SETTLED):
             break
         K = lower
-    return K, None if at is None else at / (2 * math.pi * beside.T)
+    return K, None if at is None else at / (2 * math.pi * T)
 
 
-def _cut(spring, beside, b, theta, delay, K):
+def _required(law, delay):
+    return required(law.A, law.B, law.C, law.D, law.T, delay)
+
+
+def _cut(law, b, theta, delay, K):
     """Return the stiffness below K at which theta asks for exactly b: by bisection, a convex function of one K crosses once."""
     low, high = 0.0, K
     while (middle := (low + high) / 2) not in (low, high):
-        law = middle * spring + beside
-        too_much = asked(law.A, law.B, law.C, law.D, law.T, np.array([theta]), delay)[0] > b
+        here = law(middle)
+        too_much = asked(here.A, here.B, here.C, here.D, here.T, np.array([theta]), delay)[0] > b
         low, high = (low, middle) if too_much else (middle, high)
     return high
-
-
-def filtered_wall(T, B, velocity_filter):
-    """Return (spring, beside) of the plain wall with a damper on a filtered velocity, for the search in K."""
-    return LinearLaw.of("zoh", K=1.0, T=T), filtered_damper(B, T, velocity_filter)

@@ -19,16 +19,19 @@ import math
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..errors import AnalysisError
 from ..scene.taps import LEAD, TAPS
+from .affine_law import affine_law
 from .colgate import largest_passive_stiffness
 from .limit import MOST_PERIODS, Limit, check_law, check_number, whole_and_fraction
 from .linear_law import LinearLaw
+from .port import unstable_pole
 
 KIND = "passivity: any passive hand, sufficient"
 NO_VELOCITY = "its exact velocity jumps at the samples: a hand that moves only there draws energy at any stiffness"
 
 
-def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0):
+def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0, parameter="k"):
     """Largest stiffness that a passive hand of any kind cannot set chattering, Eq. (23.10) and its general form.
 
     Necessary and sufficient where the spring always acts. For the unilateral wall sufficient with law "zoh" and no delay;
@@ -44,11 +47,14 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0):
         Virtual damper of either sign [N s/m]: its force is ``B*(x[n] - x[n-1])/T``, beside the law, not through it.
     delay : float
         Computational delay [s], whole and fractional periods alike, >= 0.
-    law : {"zoh", "half_sample", "backward_difference", "ellis"}
-        Eqs. (23.1), (23.3), (23.5), (23.7).
+    law : str, Scene or callable
+        Eqs. (23.1), (23.3), (23.5), (23.7) by name: "zoh", "half_sample", "backward_difference", "ellis". Or a linear scene
+        with its stiffness unbound, velocity by backward difference; or a function of K [N/m] that returns a LinearLaw.
     velocity_filter : float
         Time constant tau [s] >= 0 of a first-order filter of the damper's velocity:
         ``v[n] = (tau v[n-1] + x[n] - x[n-1])/(tau + T)``. It relieves the device of a damper B > 0, not of B < 0.
+    parameter : str
+        The scene's parameter that is K; its force must be affine in it.
 
     Returns
     -------
@@ -70,14 +76,19 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0):
     0.0
     """
     b = check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda v: v >= 0)
-    whole, fraction = _checked(T, B, delay, law)
     notes = ("device damping b alone: no encoder, no Coulomb friction",)
+    if not isinstance(law, str):
+        _checked(T, B, delay, "zoh")
+        return _of_own_law(law, b, T, B, delay, parameter, notes)
+    whole, fraction = _checked(T, B, delay, law)
     if LEAD[law]:
         return Limit(0.0, None, KIND, f"law {law}: {NO_VELOCITY}", notes)
     if b == 0:
         return Limit(0.0, None, KIND, "b = 0: without device damping nothing pays for the hold", notes)
     if velocity_filter and B:
-        return _with_filter(b, T, B, delay, law, velocity_filter, notes)
+        name = f"with B = {B:g} N s/m on a velocity filtered over {1e3 * velocity_filter:g} ms"
+        filtered = lambda K: LinearLaw.of(law, K=K, T=T, B=B, velocity_filter=velocity_filter)  # noqa: E731
+        return _of_any_law(filtered, b, T, delay, name, notes)
     beta = B / b
     _, margin = _worst(_law_taps(0.0, beta, law), whole, fraction, 1.0)
     if margin < 0:
@@ -128,14 +139,28 @@ def required_damping(*, K, T, B=0.0, delay=0.0, law="zoh"):
     return b
 
 
-def _with_filter(b, T, B, delay, law, tau, notes):
-    """The limit by a search over frequencies: a filtered velocity has no finite taps."""
-    spring, damper = LinearLaw.of(law, K=1.0, T=T), LinearLaw.of("zoh", K=0.0, B=B, T=T, velocity_filter=tau)
-    K, hertz = largest_passive_stiffness(spring, damper, b=b, delay=delay)
-    name = f"B = {B:g} N s/m on a velocity filtered over {1e3 * tau:g} ms"
+def _of_any_law(law, b, T, delay, name, notes):
+    """The limit by a search over frequencies, of a function of K that gives a LinearLaw."""
+    K, hertz = largest_passive_stiffness(law, b=b, delay=delay)
     if not K:
-        return Limit(0.0, None, KIND, f"{name} alone is active: it needs more than b = {b:g} N s/m", notes)
-    return Limit(K, hertz, KIND, f"b = {b:g} N s/m is spent, with {name}", (*notes, _unilateral("filtered", delay)))
+        return Limit(0.0, None, KIND, f"{name}: active without its spring already, on b = {b:g} N s/m", notes)
+    return Limit(K, hertz, KIND, f"b = {b:g} N s/m is spent, {name}", (*notes, _unilateral(name, delay)))
+
+
+def _of_own_law(law, b, T, B, delay, parameter, notes):
+    """The limit of a scene or a function of K."""
+    parts = affine_law(law, T=T, B=B, parameter=parameter)
+    if any(part.any() for part in (parts.B0[:, 1], parts.B1[:, 1], parts.D0[1:], parts.D1[1:])):
+        return Limit(0.0, None, KIND, f"{parts.name}: {NO_VELOCITY}", notes)
+
+    def at(K):
+        enters, C, D = parts.at(K)
+        return LinearLaw(parts.A, enters[:, 0], C, float(D[0]), T, parts.name)
+
+    pole = unstable_pole(parts.A, at(1.0).B, at(1.0).C)
+    if pole is not None:
+        raise AnalysisError(f"{parts.name}: unstable with the handle held (a pole at {pole:.6g}); needs a stable law")
+    return _of_any_law(at, b, T, delay, parts.name, notes)
 
 
 def _checked(T, B, delay, law):

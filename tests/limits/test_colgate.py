@@ -7,13 +7,13 @@ import hapticlab as hl
 from hapticlab.errors import AnalysisError
 from hapticlab.limits.colgate import (
     equivalent_damper,
-    filtered_wall,
     largest_passive_stiffness,
     passivity_margin,
     wall_damping,
 )
 from hapticlab.limits.linear_law import LinearLaw
 from hapticlab.limits.passivity import required_damping
+from hapticlab.limits.port import asked
 
 T = 1e-3
 
@@ -47,8 +47,7 @@ def asked_by_energy(law, periods):
 @pytest.mark.parametrize(("B", "tau"), [(0.5, 2e-3), (0.3, 0.0), (1.2, 0.4e-3)])
 def test_a_filtered_velocity_against_the_energy_of_every_motion(B, tau):
     """At Nyquist, which an even number of samples can move at, the closed form is met and not only neared."""
-    spring, damper = filtered_wall(T, B, tau)
-    law = 150 * spring + damper
+    law = LinearLaw.of("zoh", K=150, T=T, B=B, velocity_filter=tau)
     expected = wall_damping(K=150, T=T, B=B, velocity_filter=tau)
     assert expected == pytest.approx(150 * T / 2 + B / (1 + 2 * tau / T), rel=1e-15)
     assert asked_by_energy(law, 40) == pytest.approx(expected, rel=1e-10)
@@ -67,7 +66,7 @@ def test_motions_ask_for_no_more_than_the_worst_frequency():
 @pytest.mark.parametrize("B", [0.06, -0.06])
 def test_largest_stiffness_with_a_filtered_velocity(B, tau):
     """A filter buys back part of what a positive damper asks for, and nothing of what a negative one does."""
-    K, hertz = largest_passive_stiffness(*filtered_wall(T, B, tau), b=0.1)
+    K, hertz = largest_passive_stiffness(lambda K: LinearLaw.of("zoh", K=K, T=T, B=B, velocity_filter=tau), b=0.1)
     expected = 2 / T * (0.1 - (B / (1 + 2 * tau / T) if B > 0 else -B))
     assert K == pytest.approx(expected, rel=1e-7)  # slow motion is looked at down to w T = 1e-5
     assert hertz == pytest.approx(500 if B > 0 else 0, abs=0.1)
@@ -76,10 +75,40 @@ def test_largest_stiffness_with_a_filtered_velocity(B, tau):
 
 
 def test_largest_stiffness_with_a_fraction_of_delay_is_its_own_inverse():
-    spring, damper = LinearLaw.of("ellis", K=1, T=T), LinearLaw.of("zoh", K=0, B=0.03, T=T, velocity_filter=2e-3)
-    K, _ = largest_passive_stiffness(spring, damper, b=0.1, delay=0.6e-3)
-    assert passivity_margin(K * spring + damper, b=0.1, delay=0.6e-3).required == pytest.approx(0.1, rel=1e-9)
-    assert largest_passive_stiffness(spring, LinearLaw.of("zoh", K=0, B=0.3, T=T), b=0.1)[0] == 0.0
+    def law(K):
+        return LinearLaw.of("ellis", K=K, T=T, B=0.03, velocity_filter=2e-3)
+
+    K, _ = largest_passive_stiffness(law, b=0.1, delay=0.6e-3)
+    assert passivity_margin(law(K), b=0.1, delay=0.6e-3).required == pytest.approx(0.1, rel=1e-9)
+    assert largest_passive_stiffness(lambda K: LinearLaw.of("zoh", K=K, B=0.3, T=T), b=0.1)[0] == 0.0
+    with pytest.raises(AnalysisError, match="does not grow with K"):
+        largest_passive_stiffness(lambda K: LinearLaw.of("zoh", K=0, B=K / 1000, T=T), b=0.1)
+
+
+@pytest.mark.parametrize("delay", [0, 2])
+def test_every_law_asks_for_the_same_on_average(delay):
+    """K T/2, the plain spring's own: the mean of Dirichlet's kernels. Random laws with memories and poles of all kinds."""
+    generator, theta = np.random.default_rng(1), np.pi * (np.arange(4000) + 0.5) / 4000
+    for _ in range(10):
+        n = generator.integers(1, 6)
+        A = generator.normal(size=(n, n))
+        A *= generator.uniform(0.2, 0.97) / abs(np.linalg.eigvals(A)).max()
+        law = LinearLaw(A, *generator.normal(size=(2, n)), generator.normal(), T, "random")
+        mean = asked(law.A, law.B, law.C, law.D, T, theta, delay * T).mean()  # the midpoint rule converges geometrically
+        assert mean == pytest.approx(law.stiffness * T / 2, rel=1e-9, abs=1e-12)
+
+
+def test_a_scene_of_ones_own():
+    """Eq. (23.8) around spring and damper, 4 B and 2 K T of it at Nyquist; a named law as a scene; an exact velocity."""
+    wall = hl.Scene(force=hl.force_filter(hl.wall(unilateral=None)(B=0.01, x_o=0)).force, values={"B": 0.01, "x_o": 0})
+    assert hl.passivity_limit(b=0.1, T=T, law=wall).K == pytest.approx((0.1 - 4 * 0.01) / (2 * T), rel=1e-9)
+    for law in ("zoh", "backward_difference", "ellis"):
+        limit = hl.passivity_limit(b=0.1, T=T, delay=0.4 * T, law=hl.wall(law, unilateral=None)(x_o=0))
+        assert limit.K == pytest.approx(hl.passivity_limit(b=0.1, T=T, delay=0.4 * T, law=law).K, rel=1e-8)
+    assert hl.passivity_limit(b=0.1, T=T, law=lambda K: LinearLaw.of("zoh", K=K, T=T)).K == pytest.approx(200, rel=1e-9)
+    unstable = lambda K: LinearLaw(np.diag([1.1]), np.ones(1), np.array([K]), K, T, "runs off")  # noqa: E731
+    with pytest.raises(AnalysisError, match="unstable with the handle held"):
+        hl.passivity_limit(b=0.1, T=T, law=unstable)
 
 
 @pytest.mark.parametrize("law", [LinearLaw.of("ellis", K=150, T=T), LinearLaw.of("zoh", K=20, T=T, B=1, velocity_filter=3e-3)])
