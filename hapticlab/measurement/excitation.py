@@ -45,11 +45,18 @@ class Excitation:
             return self.amplitude * chirp(self.samples, self.lines)
         return self.amplitude * multisine(self.samples, self.lines, phases="low_crest", seed=self.seed)
 
-    def hand(self, hand, middle):
-        """Return the hand with an intent that goes around ``middle`` [m] as the signal does."""
-        period = self.period
-        intent = lambda times: middle + period[np.round(np.asarray(times) / self.T).astype(int) % self.samples]  # noqa: E731
-        return Hand(m=hand.m, b=hand.b, k=hand.k, push=hand.push, noise=hand.noise, intent=intent)
+    def hand(self, hand, place, pull):
+        """Return the hand with an intent that moves as the signal does, and holds the handle at a place [m] against a pull.
+
+        A hand without a spring holds it by a push.
+        """
+        period, held_by = self.period, pull / hand.k if hand.k else 0.0
+
+        def intent(times):
+            return place + held_by + period[np.round(np.asarray(times) / self.T).astype(int) % self.samples]
+
+        push = hand.push if hand.k else hand.push + pull
+        return Hand(m=hand.m, b=hand.b, k=hand.k, push=push, noise=hand.noise, intent=intent)
 
     def beside(self, scene, pull=0.0):
         """Return the scene with the signal as a force of the motor beside its own, and watch the scene's own as ``own`` [N].

@@ -127,10 +127,9 @@ def _runs(paddle, scene, drive, place, simulated, options):
             return paddle.run(excitation.beside(scene, pull), duration=duration, progress=False, **start, **options)
 
         return run, exact
-    middle = place + (pull / hand.k if hand.k else 0.0)
 
     def run(excitation, duration):
-        driven = replace(paddle, hand=excitation.hand(hand, middle))
+        driven = replace(paddle, hand=excitation.hand(hand, place, pull))
         return driven.run(scene, duration=duration, x=place, progress=False, **options)
 
     return run, exact

@@ -14,9 +14,7 @@ from ..scene.symbols import parameters
 from ..scene.taps import TAPS
 from .guard import guarded
 from .search_plot import plot_search
-from .trials import Trial, run_from, speed_limit, try_wall, wall_of
-
-__all__ = ["LargestStiffness", "largest_stiffness", "run_from"]
+from .trials import Trial, speed_limit, try_wall, wall_of
 
 #: how deep the push presses the handle into the first, softest wall [m]
 DEEPEST = 0.01
@@ -137,6 +135,7 @@ def largest_stiffness(
     True
     """
     scene = wall_of(law, parameter)
+    name = law if isinstance(law, str) else scene.name
     if not (growth > 1 and tolerance > 0 and most > 0):
         raise AnalysisError(
             f"growth = {growth}, tolerance = {tolerance}, most = {most}; needs growth > 1 and the others > 0"
@@ -160,7 +159,6 @@ def largest_stiffness(
 
     trials, good, bad = search(trial, first, most, growth, tolerance, (duration, longest))
     about = f"pressed with {pressing:.3g} N from rest at its boundary"
-    name = law if isinstance(law, str) else scene.name
     return LargestStiffness(good, bad, trials, name, B, theory_of(paddle, law, B), about)
 
 

@@ -14,6 +14,8 @@ from .guard import guarded
 LEADS_BACK, TAKES = 20.0, 0.5
 #: of the natural frequency's critical damping
 WELL_DAMPED = 0.7
+#: a handle that moves on by less than this part of its way, in the last quarter of a trial, rests
+RESTS = 0.01
 #: encoder counts in a period that a speed limit must leave room for
 COUNTS = 3
 
@@ -79,10 +81,12 @@ def _judged(log, K, place, duration, last=False):
         at = log.t[log.tripped.argmax()]
         return Trial(K, False, f"the guard cut the motor after {at:.3g} s", 0.0, None, drawn, duration)
     found = chatter(log)
-    if found.dither or found.state == "none":
+    x = log.channels.get("x_true", log.x)
+    rests = found.state == "none" and found.travel < RESTS * max(abs(x - place).max(), 1e-9)
+    if found.dither or rests:
         verdict = "dither of one encoder count" if found.dither else "it comes to rest"
         return Trial(K, True, verdict, found.amplitude, found.frequency, drawn, duration)
-    bounces = bool((log.channels.get("x_true", log.x)[len(log) // 2 :] < place).any())
+    bounces = bool((x[len(x) // 2 :] < place).any())
     if found.state == "decaying" and not bounces:  # while it bounces, a small chatter may hide below
         return Trial(K, True, "it dies out", found.amplitude, found.frequency, drawn, duration)
     if found.state in ("growing", "runaway"):

@@ -9,6 +9,9 @@ from ..scene.scene import Scene
 from .largest_stiffness import LargestStiffness, largest_stiffness
 from .search_plot import plot_border
 
+#: part of the last damping's border at which the search for the next one begins
+BELOW = 5.0
+
 
 @dataclass(frozen=True, eq=False)
 class ZWidth:
@@ -88,7 +91,13 @@ def z_width(paddle, *, B, law="zoh", **options):
     B = np.atleast_1d(np.asarray(B, float))
     if B.ndim != 1 or not B.size or not np.isfinite(B).all():
         raise AnalysisError(f"B = {B}; needs one or more finite numbers [N s/m], as in B=[0, 0.5, 1]")
-    searches = tuple(largest_stiffness(paddle, law=law, B=float(b), **options) for b in B)
+    searches = []
+    for b in B.tolist():
+        if searches and searches[-1].K and "first" not in options:  # the next damping's border is near: begin well below
+            searches.append(largest_stiffness(paddle, law=law, B=b, **options, first=searches[-1].K / BELOW))
+        else:
+            searches.append(largest_stiffness(paddle, law=law, B=b, **options))
+    searches = tuple(searches)
 
     def column(name):
         return np.array([s.theory[name].K if name in s.theory else np.nan for s in searches])

@@ -86,6 +86,13 @@ def test_what_the_hand_feels_against_a_fine_integration():
     assert found.felt[:2] == pytest.approx(found.rendered[:2], rel=1e-5)
 
 
+def test_a_hand_without_a_spring_holds_the_place_by_a_push():
+    damper = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.Hand(b=3.0))
+    found = measured_impedance(damper, hl.wall()(k=K), frequency=FREQUENCY, dtype="float64", amplitude=2e-4, place=0.02)
+    s = 2j * np.pi * found.frequency
+    assert found.left_wall == 0 and found.rendered == pytest.approx(K / s * held(s, 0.0), rel=1e-9)
+
+
 def test_the_motor_drives_the_mechanics_and_the_scene_alike():
     found = measured_impedance(paddle(), hl.wall()(k=K, x_o=0.002), drive="motor", frequency=FREQUENCY, dtype="float64")
     s = 2j * np.pi * found.frequency

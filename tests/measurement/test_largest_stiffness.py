@@ -1,0 +1,124 @@
+"""The search on the paddle, against the exact stability limit of the same handle, hand and delay."""
+
+import math
+
+import numpy as np
+import pytest
+
+import hapticlab as hl
+from hapticlab.measurement.largest_stiffness import largest_stiffness, search
+from hapticlab.measurement.trials import Trial
+
+pytest.importorskip("llvmlite")  # some hundred thousand ticks
+T = 1e-3
+
+
+def paddle(**changes):
+    return hl.SimulatedPaddle(**{"m": 0.05, "b": 0.1, "T": T, **changes})
+
+
+@pytest.mark.parametrize(
+    ("law", "changes"),
+    [
+        ("zoh", {}),
+        pytest.param("zoh", {"delay": 1e-3}, marks=pytest.mark.slow),
+        pytest.param("backward_difference", {"delay": 0.4e-3}, marks=pytest.mark.slow),
+        pytest.param("ellis", {}, marks=pytest.mark.slow),
+        ("zoh", {"hand": hl.Hand(m=0.02, b=1.0, k=200.0, intent=5e-3)}),
+    ],
+)
+def test_what_stands_and_what_chatters_enclose_the_exact_limit(law, changes):
+    """A handle pressed on a wall moves inside it, where the wall is the linear law. A limit cycle and a decay of less
+    than 1 % a second are not told apart: the pair may lie 2 % low."""
+    tried = paddle(**changes)
+    found = largest_stiffness(tried, law=law, first=100.0)
+    exact = hl.stability_limit(tried, law=law).K
+    assert 0.97 * exact < found.K < exact < 1.03 * found.chatters_at
+    assert found.chatters_at / found.K <= 1.02
+    assert found.theory["stability"].K == exact and float(found) == found.K
+
+
+def test_no_trial_goes_further_than_one_ratio_beyond_what_stood():
+    found = largest_stiffness(paddle(), longest=1.0)
+    stood = found.trials[0].K
+    for trial in found.trials:
+        assert trial.K <= 1.5 * stood * (1 + 1e-9)
+        stood = max(stood, trial.K) if trial.stands else stood
+
+
+def test_without_damping_no_stiffness_stands():
+    found = largest_stiffness(paddle(b=0.0), longest=1.0)
+    assert found.K == 0 and "no stiffness stood" in str(found)
+    assert found.chatters_at < 20.0 * 1e-3
+
+
+def test_a_virtual_damper_widens_and_a_negative_one_narrows():
+    wide, narrow = (largest_stiffness(paddle(), B=B, first=50.0).K for B in (0.5, -0.05))
+    assert wide == pytest.approx(hl.stability_limit(paddle(), B=0.5).K, rel=0.03)
+    assert narrow == pytest.approx(hl.stability_limit(paddle(), B=-0.05).K, rel=0.03)
+
+
+def test_coulomb_friction_stands_what_the_linear_limit_forbids():
+    """A push whose oscillation dies below 2 f_c: stuck, as the quantiser's condition K <= 2 f_c/count reads too."""
+    sticky = paddle(coulomb=0.05)
+    assert largest_stiffness(sticky, most=1000.0, longest=2.0).K > 1.5 * hl.stability_limit(sticky).K
+
+
+def test_the_same_call_on_a_board_finds_the_same():
+    behind = paddle(counts_per_metre=1e6)
+    with hl.connect("sim://hapkit", paddle=behind) as board:
+        found = largest_stiffness(board, first=100.0)
+        state = board.state()
+    assert found.K == pytest.approx(hl.stability_limit(behind).K, rel=0.03)
+    assert state["force"] == 0  # the motor is off
+    assert found.theory["passivity"].K == pytest.approx(200.0, rel=1e-6)  # from what the board keeps of itself
+
+
+def test_a_scene_of_ones_own_and_its_parameter():
+    stiffness = hl.parameters("s", units="N/m")
+    scene = hl.Scene(force=hl.when(hl.x(hl.n) >= 0, stiffness * hl.x(hl.n)), name="mine")
+    found = largest_stiffness(paddle(), law=scene, parameter="s", tolerance=0.1, longest=2.0)
+    assert found.K == pytest.approx(200.0, rel=0.1) and found.theory == {} and found.law == "mine"
+    with pytest.raises(hl.PaddleError, match="no parameter k to search; it has s"):
+        largest_stiffness(paddle(), law=scene)
+    with pytest.raises(hl.PaddleError, match="no parameter B"):
+        largest_stiffness(paddle(), law=scene, parameter="s", B=1.0)
+    with pytest.raises(hl.AnalysisError, match="growth > 1"):
+        largest_stiffness(paddle(), growth=1.0)
+    with pytest.raises(hl.AnalysisError, match="0 < first < most"):
+        largest_stiffness(paddle(), first=1e6)
+
+
+def scripted(limit, hidden=math.inf):
+    """A trial that stands below a limit; from ``hidden`` on only a long one sees the chatter."""
+
+    def trial(K, duration):
+        stands = limit > K and (duration < 4 or hidden > K)
+        return Trial(K, stands, "", 0.0, None, 0.0, duration)
+
+    return trial
+
+
+@pytest.mark.parametrize("limit", [0.5, 21.0, 333.0, 98765.0])
+def test_the_search_encloses_any_limit(limit):
+    trials, good, bad = search(scripted(limit), 20.0, 1e5, 1.5, 0.02, (1.0, 4.0))
+    assert good < limit <= bad <= good * 1.02 and trials[-1].K == good
+
+
+def test_a_chatter_that_only_a_long_trial_sees_lowers_the_answer():
+    trials, good, bad = search(scripted(1000.0, hidden=700.0), 20.0, 1e5, 1.5, 0.02, (1.0, 4.0))
+    assert good < 700.0 <= bad <= good * 1.02
+    assert trials[-1].duration == 4.0
+
+
+def test_the_ends_of_a_search():
+    assert search(scripted(0.0), 20.0, 1e5, 1.5, 0.02, (1.0, 4.0))[1:] == (0.0, pytest.approx(2e-3))
+    assert search(scripted(1e9), 20.0, 1e5, 1.5, 0.02, (1.0, 4.0))[1:] == (1e5, math.inf)
+
+
+def test_the_picture_has_trials_and_limits():
+    figure = largest_stiffness(paddle(), tolerance=0.2, longest=1.0).plot()
+    axes = figure.axes[0]
+    labels = axes.get_legend_handles_labels()[1]
+    assert labels[:2] == ["comes to rest", "chatters"] and any("stability" in text for text in labels)
+    assert "N/m" in axes.get_ylabel() and np.isfinite(axes.get_ylim()).all()
