@@ -21,7 +21,7 @@ BETWEEN = {"pairs": None, "half_sample": half_sample_force, "digital": digital_f
 
 def deadbeat_wall(
     paddle, *, K, B=0.0, hand=None, begins="predictive", between="pairs", velocity="handle", force_max=None,
-    accuracy=1e-10,
+    accuracy=1e-10, crossings=2,
 ):  # fmt: skip
     """Virtual wall that emulates handle, hand and wall across its boundary (Section 23.4.1): dead-beat in two steps.
 
@@ -45,6 +45,9 @@ def deadbeat_wall(
         changes them by some M e/T^2 (:func:`deadbeat_gains`).
     accuracy : float
         Of the motion and the crossing times, relative to what moves; a rougher one is cheaper.
+    crossings : {1, 2}
+        Crossings the two periods of a pair may hold. 1 is cheaper: a crossing in the second of them is left until the pair
+        is over, which a handle that touches and leaves within two periods shows, and so does ``between="pairs"``.
 
     Returns
     -------
@@ -60,10 +63,10 @@ def deadbeat_wall(
     >>> log.pair[:10].astype(int).tolist()
     [0, 0, 0, 1, 2, 1, 2, 0, 0, 0]
     """
-    if begins not in BEGINS or between not in BETWEEN:
+    if begins not in BEGINS or between not in BETWEEN or crossings not in (1, 2):
         raise SceneError(
-            f"begins = {begins!r}, between = {between!r}; needs begins one of {', '.join(BEGINS)} and between one of "
-            f"{', '.join(BETWEEN)}"
+            f"begins = {begins!r}, between = {between!r}, crossings = {crossings!r}; needs begins one of {', '.join(BEGINS)}, "
+            f"between one of {', '.join(BETWEEN)}, and 1 or 2 crossings"
         )
     lines = Lines(WallModel.of(paddle, K=K, B=B, hand=hand))
     p, w = lines.at_switch(velocity)
@@ -72,16 +75,16 @@ def deadbeat_wall(
     now = (p, w, lines.let("side", when(p >= 0, 1, -1), "1"))
     if begins == "reactive":
         begin, *start = _crossed_before(lines, flight, now)
-        begin = sp.And(begin, due(n - 1) < 0.5, due(n - 2) < 0.5)  # a pair has dealt with what was crossed under it
+        begin = sp.And(begin, due(n - 2) < 0.5)  # a pair has dealt with what was crossed under it
     else:
         start = now
     *after, crossing = flight.period(1, *start)
-    goal = flight.period(2, *after)[:2]
+    goal = flight.period(2, *after)[:2] if crossings == 2 else flight.same(2, *after)
     if begins == "predictive":
-        begin = crossing > 0
+        begin = crossing
     if between == "pairs":
         begin = sp.Or(begin, p >= 0)
-    lines.let(due, when(sp.And(begin, due(n - 1) < 0.5), 1, 0))
+    lines.let(due, when(due(n - 1) > 0.5, 0, when(begin, 1, 0)))
     one, two = pair_forces(lines, p, w, goal)
     lines.let(second, two)
     alone = when(p >= 0, BETWEEN[between](lines, p, w), 0) if BETWEEN[between] else 0
@@ -94,10 +97,10 @@ def _crossed_before(lines, flight, now):
     """Return whether the boundary was crossed since the sample before, and where the handle should be by now."""
     before = lines.let("p_before", delay(now[0])), lines.let("w_before", delay(now[1]))
     side = lines.let("side_before", when(before[0] >= 0, 1, -1), "1")
-    crossed = lines.let("crossed", when(side * now[2] < 0, 1, 0), "1")
+    crossed = lines.let("changed", side * now[2], "1") < 0
     meant = flight.period(0, *before, side)[:3]
     names = zip(("p_start", "w_start", "side_start"), ("m", "m", "1"), meant, now, strict=True)
-    return crossed > 0, *(lines.let(name, when(crossed > 0, a, b), unit) for name, unit, a, b in names)
+    return crossed, *(lines.let(name, when(crossed, a, b), unit) for name, unit, a, b in names)
 
 
 def pair_forces(lines, p, w, goal):

@@ -89,8 +89,9 @@ def digital_wall(paddle, *, K, B=0.0, hand=None, velocity="handle", clamp=False,
     ----------
     paddle, K, B, hand
         As in :func:`digital_gains`.
-    velocity : {"handle", "model"} or expression [m/s]
-        v(n) of the paddle; or what two positions and the forces between them say by the model, exact where the model is.
+    velocity : {"handle", "model"} or VelocityEstimate
+        v(n) of the paddle; or what two positions and the forces between them say by the model, exact where the model is;
+        or :func:`~hapticlab.scene.estimators.filtered_velocity` and its like.
     clamp : bool
         Never pull.
     force_max : float, optional
@@ -99,7 +100,8 @@ def digital_wall(paddle, *, K, B=0.0, hand=None, velocity="handle", clamp=False,
     Returns
     -------
     Scene
-        With parameters k (fixed: the coefficients belong to it), push [N], x_o [m], and force_max where there is one.
+        With parameters k (fixed: the coefficients belong to it) and x_o [m]; push [N], the hand's force at x = 0, where the
+        hand has one; and force_max [N] where there is a limit.
 
     Examples
     --------
@@ -107,7 +109,7 @@ def digital_wall(paddle, *, K, B=0.0, hand=None, velocity="handle", clamp=False,
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0, T=0.01)
     >>> log = paddle.run(hl.digital_wall(paddle, K=500), duration=0.5, v=0.2, x=1e-3, progress=False)
     >>> round(float(log.F.max()), 3)
-    0.989
+    0.994
     """
     gains = digital_gains(paddle, K=K, B=B, hand=hand)
     lines = Lines(gains.model)

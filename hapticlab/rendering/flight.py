@@ -51,11 +51,10 @@ class Flight:
         self.steps = min(MOST_STEPS, max(1, math.ceil(math.log2(math.log(accuracy) / math.log(miss)))))
 
     def period(self, tag, p, w, side):
-        """Name and return (p, w, side, crossed) one period on; side is 1 inside the wall, -1 outside."""
+        """Name and return (p, w, side) one period on, and the condition that it was crossed; side is 1 inside, -1 outside."""
         let, inside = self.lines.let, side > 0
-        ends = [[self.end(wall, i, p, w) for i in (0, 1)] for wall in (True, False)]
-        end_p, end_w = (let(f"{name}_same{tag}", when(inside, a, b)) for name, a, b in zip("pw", *ends, strict=True))
-        crossed = let(f"crossed{tag}", when(side * end_p < 0, 1, 0), "1")
+        end_p, end_w = self.same(tag, p, w, side)
+        crossed = let(f"beyond{tag}", side * end_p) < 0
         before = self.series(f"a{tag}", p, w, inside)
         at = let(f"at0_{tag}", p / (p - end_p), "1")
         for step in range(1, self.steps + 1):
@@ -64,11 +63,18 @@ class Flight:
         rest = let(f"rest{tag}", 1 - at, "1")
         after = self.series(f"b{tag}", sp.S.Zero, let(f"w_cross{tag}", _slope(before, at)), side < 0)
         return (
-            let(f"p_end{tag}", when(crossed > 0, _value(after, rest), end_p)),
-            let(f"w_end{tag}", when(crossed > 0, _slope(after, rest), end_w)),
-            let(f"side{tag}", when(crossed > 0, -side, side), "1"),
+            let(f"p_end{tag}", when(crossed, _value(after, rest), end_p)),
+            let(f"w_end{tag}", when(crossed, _slope(after, rest), end_w)),
+            let(f"side{tag}", when(crossed, -side, side), "1"),
             crossed,
         )
+
+    def same(self, tag, p, w, side):
+        """Name and return (p, w) one period on in the mode of now."""
+        ends = [[self.end(wall, i, p, w) for i in (0, 1)] for wall in (True, False)]
+        return [
+            self.lines.let(f"{name}_same{tag}", when(side > 0, a, b)) for name, a, b in zip("pw", *ends, strict=True)
+        ]
 
     def end(self, wall, i, p, w):
         """Return row i of the state a whole period on in one mode."""

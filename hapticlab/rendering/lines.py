@@ -10,6 +10,7 @@ import numpy as np
 import sympy as sp
 
 from ..errors import SceneError
+from ..scene.estimators import VelocityEstimate
 from ..scene.scene import Scene
 from ..scene.symbols import T, n, parameters, signal, v, when, x
 
@@ -24,10 +25,13 @@ class Lines:
         self.model, self.eom = model, []
         self.k = parameters("k", units="N/m", values=model.K, ranges=(model.K, model.K))
         self.x_o = parameters("x_o", units="m", values=0.0)
-        self.push = parameters("push", units="N", values=model.push)
+        self.push = parameters("push", units="N", values=model.push, ranges=(-math.inf, math.inf))
         self.held = signal("held", unit="m")
         #: the hand's constant force where p = 0, in metres of the wall's spring
-        self.outer = self.let("outer", self.push / self.k - number(model.k / model.K) * self.x_o)
+        self.outer = self.let("outer", self._outer()) if model.push or model.k else sp.S.Zero
+
+    def _outer(self):
+        return self.push / self.k - number(self.model.k / self.model.K) * self.x_o
 
     def let(self, name, value, unit="m"):
         """Name a line, or define a signal, and return it at sample n."""
@@ -62,12 +66,13 @@ class Lines:
         return self.let("p_switch", p), self.let("w_switch", w)
 
     def _velocity(self, given):
-        if isinstance(given, sp.Expr):
-            return given
+        if isinstance(given, VelocityEstimate):
+            self.eom += given.eom
+            return given.velocity
         if given not in VELOCITY:
             raise SceneError(
                 f"velocity = {given!r}; needs 'handle' (v(n) of the paddle), 'model' (from two positions and the forces "
-                "between them) or an expression in m/s"
+                "between them) or an estimate, as in velocity=hl.filtered_velocity(tau='4 ms')"
             )
         return v(n) if given == "handle" else self._from_positions()
 
