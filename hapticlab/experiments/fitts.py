@@ -123,7 +123,7 @@ class Fitts:
         return figure
 
 
-def fitts(paddle, scene=None, *, distances=(0.02, 0.04, 0.08), widths=(0.004, 0.008), movements=16, scatter=0.02,
+def fitts(paddle, scene=None, *, distances=(0.02, 0.04, 0.08), widths=(0.004, 0.008), movements=16, scatter=0.04,
           reaction=REACTION, seed=0):  # fmt: skip
     """Let a simulated hand move to and fro between targets at x = 0 and x = distance, with a scene on the handle.
 

@@ -116,7 +116,9 @@ class Juggler:
         wide = max(2, round(0.01 / T))
         if before < wide:
             return
-        plate, after = (np.mean(seen.v[k - wide : k]) - (seen.F[k] - seen.F[k - wide]) / (wide * T * self.K) for k in (before, last))
+        plate, after = (
+            np.mean(seen.v[k - wide : k]) - (seen.F[k] - seen.F[k - wide]) / (wide * T * self.K) for k in (before, last)
+        )
         impulse = max(seen.F[before:last].sum() * T - self.M * (after - plate), 0.0)
         gain = 1 / self.m - (self.m + self.M) / ((1 + self.e) * self.m * self.M)  # impulse -> launch beyond the plate's
         slip = 1 + self.touch * self.touch_noise[impact % MOST]

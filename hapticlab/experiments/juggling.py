@@ -169,7 +169,7 @@ def multipliers(acceleration, *, e, g=9.81, m=0.0, M=math.inf):
 
     Examples
     --------
-    >>> [round(abs(z), 3) for z in multipliers(-4.0, e=0.8)]
+    >>> [round(float(abs(z)), 3) for z in multipliers(-4.0, e=0.8)]
     [0.8, 0.8]
     """
     e = (1 + e) / (1 + m / M) - 1

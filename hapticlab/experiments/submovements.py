@@ -41,7 +41,7 @@ class Submovements:
     True
     """
 
-    def __init__(self, width, *, scatter=0.02, pause=0.18, furthest):
+    def __init__(self, width, *, scatter=0.04, pause=0.18, furthest):
         if not (width > 0 and scatter > 0 and pause >= 0 and furthest > width / 2):
             raise AnalysisError(
                 f"width = {width:g} m, scatter = {scatter:g} s, pause = {pause:g} s, furthest = {furthest:g} m; needs all "

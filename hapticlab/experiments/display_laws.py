@@ -1,0 +1,166 @@
+"""An impedance and an admittance display around one handle and hand, stepped; simulated, for a paddle measures no force."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..device.handle import Handle
+from ..errors import PaddleError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Impedance:
+    """Impedance display: position is measured, force is given; F = k max(x, 0) + b_v v, held over the period.
+
+    What the hand feels beside the wall is the device itself: its mass, damping and friction.
+    """
+
+    k: float
+    b: float = 0.0
+    name = "impedance"
+
+    def begin(self):
+        """Return the display's memory."""
+        return ()
+
+    def force(self, memory, x, v, f_h, T):
+        """Return the force on the environment [N] and the memory."""
+        return (self.k * x if x > 0 else 0.0) + self.b * v, memory
+
+
+@dataclass(frozen=True, kw_only=True)
+class Admittance:
+    """Admittance display: the hand's force is measured, a body of mass m_v is moved by it against the wall, the handle follows.
+
+    m_v a = f_h - k max(x_v, 0) - b v_v, by semi-implicit Euler, and F = k_p (x - x_v) + k_d (v - v_v) + ahead f_h: the
+    motor holds the handle to the body, so that the device's own mass, damping and friction are felt only as far as that
+    position controller gives way. Unless it takes off the hand's force as well, a wall is felt in series with k_p.
+
+    Parameters
+    ----------
+    k, b : float
+        Of the wall, of the medium [N/m, N s/m].
+    m_v : float
+        Virtual mass [kg], > 0: a display of this kind needs one.
+    k_p, k_d : float
+        Of the position controller [N/m, N s/m].
+    ahead : float
+        Part of the measured force that the motor takes off beforehand: exact at rest with 1, less stable in motion.
+    """
+
+    k: float
+    b: float = 0.0
+    m_v: float
+    k_p: float
+    k_d: float
+    ahead: float = 1.0
+    name = "admittance"
+
+    def begin(self):
+        """Return place and velocity of the virtual body."""
+        return (0.0, 0.0)
+
+    def force(self, memory, x, v, f_h, T):
+        """Return the force on the environment [N] and the memory."""
+        place, velocity = memory
+        F = self.k_p * (x - place) + self.k_d * (v - velocity) + self.ahead * f_h
+        velocity += T / self.m_v * (f_h - (self.k * place if place > 0 else 0.0) - self.b * velocity)
+        return F, (place + T * velocity, velocity)
+
+
+def display_motion(paddle, display, *, duration, sensor_delay=0):
+    """Let the hand of a simulated paddle move a display, and return (t, x, v, f_h), each an array.
+
+    The plant is exact between samples. f_h is what a force sensor between hand and handle reads: the hand's spring and
+    damper at the sample, less what its mass took in the period before, m_h (v[n] - v[n-1])/T.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+        With a hand.
+    display : Impedance or Admittance
+    duration : float
+        [s]
+    sensor_delay : int
+        Samples by which the force sensor is late.
+    """
+    hand, T, ticks = paddle.hand, paddle.T, paddle.ticks(duration)
+    if hand is None or not hand.moves or hand.noise:
+        raise PaddleError("the hand of this comparison moves by an intent and has no noise; give hl.Hand(k=..., intent=...)")
+    handle, memory = Handle(paddle), display.begin()
+    intent = np.asarray(hand.samples(ticks, T))
+    rate = np.diff(intent) / T
+    rows, measured, before = np.zeros((ticks, 4)), [0.0] * (sensor_delay + 1), handle.v
+    for tick in range(ticks):
+        muscle = hand.push + hand.k * (intent[tick] - handle.x) + hand.b * (rate[tick] - handle.v)
+        f_h, before = muscle - hand.m * (handle.v - before) / T, handle.v
+        measured = [f_h, *measured[:-1]]
+        F, memory = display.force(memory, handle.x, handle.v, measured[-1], T)
+        rows[tick] = tick * T, handle.x, handle.v, f_h
+        if not abs(F) < 1e6:
+            return rows[: tick + 1].T
+        handle.step(F if paddle.force_max is None else min(max(F, -paddle.force_max), paddle.force_max))
+    return rows.T
+
+
+def growth(paddle, display):
+    """Return how much the slowest motion of display, handle and hand in contact grows in one period, at rest inside the wall.
+
+    The largest magnitude of the eigenvalues of one period; at least 1 is unstable. Friction, which only helps, and the
+    force limit are left out. One period is linear in place and velocity of handle and body and the velocity before, so the
+    steps along each of these are its columns.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+        With a hand.
+    display : Impedance or Admittance
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand(b=1e-12, k=1e-12))
+    >>> growth(paddle, Impedance(k=198)) < 1 < growth(paddle, Impedance(k=203))
+    True
+    """
+    if paddle.hand is None:
+        raise PaddleError("a display is felt by a hand; give hl.SimulatedPaddle(..., hand=hl.hand('grip'))")
+    hand, T = replace(paddle.hand, intent=0.0, push=0.0, noise=0.0), paddle.T
+    handle = Handle(replace(paddle, hand=hand, coulomb=0.0, noise=0.0, counts_per_metre=None, delay=0.0))
+    inside = 1.0  # [m], so deep that no step leaves the wall; the motion is linear, and this is taken off again
+
+    def step(state):
+        handle.x, handle.v, before, *memory = state
+        muscle = -hand.k * (handle.x - inside) - hand.b * handle.v
+        f_h = muscle - hand.m * (handle.v - before) / T
+        v = handle.v
+        F, memory = display.force(tuple(memory), handle.x, v, f_h, T)
+        handle.step(F)
+        return np.array([handle.x, handle.v, v, *memory])
+
+    rest = np.array([inside, 0.0, 0.0, *(inside, 0.0)[: len(display.begin())]])
+    start = step(rest)
+    matrix = np.array([step(rest + change) - start for change in np.eye(len(rest)) / 2]).T * 2
+    return float(np.abs(np.linalg.eigvals(matrix)).max())
+
+
+def largest_stiffness(paddle, make, *, low=1.0, high=1e7):
+    """Return the largest k [N/m] up to which ``make(k)`` is stable, looked for upwards by steps of 5 %, then by bisection.
+
+    0 where it is unstable at ``low``, infinity where it is stable up to ``high``.
+    """
+    stable = None
+    for k in np.geomspace(low, high, 331):
+        if growth(paddle, make(k)) >= 1:
+            break
+        stable = k
+    else:
+        return math.inf
+    if stable is None:
+        return 0.0
+    bad = float(k)
+    for _ in range(40):
+        middle = (stable + bad) / 2
+        stable, bad = (middle, bad) if growth(paddle, make(middle)) < 1 else (stable, middle)
+    return float(stable)

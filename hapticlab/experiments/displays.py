@@ -1,0 +1,183 @@
+"""Impedance against admittance display, one hand and one wall: which renders what. Simulated: a paddle measures no force."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..device.hand import require
+from ..device.hands import hand as named_hand
+from ..drawing import FRAME, house_style, new_figure, style_of
+from ..errors import AnalysisError
+from .display_laws import Admittance, Impedance, display_motion, largest_stiffness
+
+#: the hand moves freely, presses, and holds until [s]
+FREE, PRESSED, HELD = 1.0, 1.4, 2.0
+#: [m]; whatever still moves by more while the hand holds has not come to rest
+REST = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Rendered:
+    """One task on one display.
+
+    Attributes
+    ----------
+    display : str
+    k, mass, damping, friction : float
+        What the hand felt, by the force sensor's record: mass, damping and Coulomb friction moving freely, by least
+        squares; k holding still in the wall, or by least squares where it still moves. SI.
+    wanted : float
+        The wall's stiffness [N/m].
+    state : {"at rest", "moving", "unstable"}
+        How the press ended; "moving" swings ever less.
+    t, x, f_h : array
+        Time [s], handle [m], force of the hand on the handle [N].
+    """
+
+    display: str
+    k: float
+    mass: float
+    damping: float
+    friction: float
+    wanted: float
+    state: str
+    t: np.ndarray
+    x: np.ndarray
+    f_h: np.ndarray
+
+    def __str__(self):
+        if self.state == "unstable":
+            return f"{self.display:<11} {self.wanted:8.4g} N/m: unstable"
+        ringing = " while it rings" if self.state == "moving" else ""
+        return (
+            f"{self.display:<11} {self.wanted:8.4g} N/m: felt {self.k:.4g} N/m{ringing}; free: {1e3 * self.mass:.4g} g, "
+            f"{self.damping:.3g} N s/m, {self.friction:.3g} N friction"
+        )
+
+
+def render(paddle, display, *, sensor_delay=0):
+    """Move freely in front of a wall, press it and hold; return what the hand felt.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+        Its hand's m, b and k are kept; it gets the task's intent.
+    display : Impedance or Admittance
+    sensor_delay : int
+        Samples.
+
+    Returns
+    -------
+    Rendered
+    """
+    hand = replace(paddle.hand, intent=_task, noise=0.0, push=0.0)
+    held = replace(paddle, hand=hand)
+    t, x, v, f_h = display_motion(held, display, duration=HELD, sensor_delay=sensor_delay)
+    whole = len(t) == held.ticks(HELD)
+    swing = [float(np.ptp(x[(t >= a) & (t < b)])) for a, b in ((PRESSED, 1.7), (1.7, HELD))] if whole else [0.0, math.inf]
+    if swing[1] > max(REST, swing[0]):
+        nothing = [math.nan] * 4
+        return Rendered(display.name, *nothing, display.k, "unstable", t, x, f_h)
+    mean = (v + np.r_[v[0], v[:-1]]) / 2  # over the period before, as the sensor's reading and this acceleration are
+    motion = np.column_stack([np.diff(v, prepend=v[0]) / held.T, mean, np.sign(mean)])
+    free, contact = (t > 0.15 * FREE) & (t < 0.95 * FREE), (t > FREE) & (x > 0)
+    mass, damping, friction = (float(c) for c in np.linalg.lstsq(motion[free], f_h[free], rcond=None)[0])
+    state = "at rest" if swing[1] < REST else "moving"
+    if state == "at rest":
+        k = float(f_h[t >= 1.7].mean() / x[t >= 1.7].mean())
+    else:
+        k = float(np.linalg.lstsq(np.column_stack([x, motion])[contact], f_h[contact], rcond=None)[0][0])
+    return Rendered(display.name, k, mass, damping, friction, display.k, state, t, x, f_h)
+
+
+def _task(t):
+    """To and fro in front of the wall, then a smooth press to 20 mm inside, which is held."""
+    t = np.asarray(t, float)
+    start, s = np.clip(t / (0.1 * FREE), 0, 1), np.clip((t - FREE) / (PRESSED - FREE), 0, 1)
+    free = -0.02 + 0.01 * np.cos(2 * np.pi * 3 * t / FREE)
+    press = -0.01 + 0.03 * s**3 * (10 - 15 * s + 6 * s * s)
+    return np.where(t < FREE, free * start**3 * (10 - 15 * start + 6 * start * start), press)
+
+
+@dataclass(frozen=True, eq=False)
+class Displays:
+    """Both displays over several stiffnesses.
+
+    Attributes
+    ----------
+    rows : tuple of Rendered
+    limits : dict of str to float
+        The largest stable stiffness of each display, in contact, by its eigenvalues without friction [N/m].
+    """
+
+    rows: tuple
+    limits: dict
+
+    def __str__(self):
+        limits = ", ".join(f"{name} {limit:.4g} N/m" for name, limit in self.limits.items())
+        return "\n".join([*map(str, self.rows), f"largest stable stiffness in contact: {limits}"])
+
+    def plot(self):
+        """Draw felt over wanted stiffness for both displays, and where each becomes unstable; return the figure."""
+        with house_style():
+            figure = new_figure(height=3.8)
+            axes = figure.subplots()
+            for number, (name, limit) in enumerate(self.limits.items()):
+                rows = [row for row in self.rows if row.display == name and row.state != "unstable"]
+                style = style_of(number)
+                axes.plot([row.wanted for row in rows], [row.k / row.wanted for row in rows], marker="os"[number], **style,
+                          label=name)  # fmt: skip
+                if 0 < limit < math.inf:
+                    axes.axvline(limit, color=style["color"], linestyle=":", linewidth=1.2, label=f"{name}: stable below")
+            axes.set(xscale="log", xlabel="stiffness of the wall k [N/m]", ylabel="felt stiffness / k [1]", ylim=(0, 1.3))
+            axes.legend(loc="lower left", **FRAME)
+        return figure
+
+
+def compare_displays(paddle, stiffnesses, *, m_v=0.2, b=0.0, k_p=None, k_d=None, ahead=1.0, sensor_delay=0):
+    """Render the same walls to the same hand by impedance and by admittance display, Section 23.4.
+
+    An impedance display lets device mass and friction be felt, and has a largest stiffness that its damping sets. An
+    admittance display hides them, holds a stiff wall, and has a least virtual mass. R. J. Adams and B. Hannaford, *IEEE
+    Trans. Robotics and Automation* 15 (1999) 465. Simulated alone: a paddle has no force sensor.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+        Its hand's m, b and k are kept; ``hl.hand("grip")`` if it has none.
+    stiffnesses : sequence of float
+        [N/m]
+    m_v, b : float
+        Virtual mass [kg] of the admittance display; virtual damping of both [N s/m].
+    k_p, k_d : float, optional
+        Position controller; by default 0.03 m/T^2 and critical damping.
+    ahead : float
+        Part of the measured force that the motor takes off, 0 to 1.
+    sensor_delay : int
+        Samples by which the force sensor is late; the limits leave it out.
+
+    Returns
+    -------
+    Displays
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> found = hl.compare_displays(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), [300])
+    >>> [(row.display, round(row.k), round(row.mass, 2)) for row in found.rows]
+    [('impedance', 300, 0.05), ('admittance', 300, 0.2)]
+    """
+    m_v = require("m_v", m_v, "kg", "an admittance display", "It divides the force.", above=0)
+    stiffnesses = [float(k) for k in stiffnesses]
+    if not stiffnesses or min(stiffnesses) <= 0:
+        raise AnalysisError(f"stiffnesses = {stiffnesses}; needs some k > 0 N/m")
+    paddle = replace(paddle, hand=paddle.hand or named_hand("grip"))
+    k_p = 0.03 * paddle.m / paddle.T**2 if k_p is None else k_p
+    k_d = 2 * math.sqrt(k_p * paddle.m) if k_d is None else k_d
+    makes = {
+        "impedance": lambda k: Impedance(k=k, b=b),
+        "admittance": lambda k: Admittance(k=k, b=b, m_v=m_v, k_p=k_p, k_d=k_d, ahead=ahead),
+    }
+    rows = [render(paddle, make(k), sensor_delay=sensor_delay) for make in makes.values() for k in stiffnesses]
+    return Displays(tuple(rows), {name: largest_stiffness(paddle, make) for name, make in makes.items()})
