@@ -17,6 +17,8 @@ from .limit import whole_and_fraction
 LOSSLESS = 1e-9
 #: a second place of the handle, no whole number of any period
 TRIAL = -0.437219
+#: and states and position of a micrometre, beside those of a metre [m]
+SMALL = 1e-6
 #: part of the stiffnesses that make up a static one, which is rounding
 ROUNDING = 1e-7
 #: frequencies looked at, beside those around every pole
@@ -145,7 +147,10 @@ def tick_map(program):
     rest, by_input = still - still[:, :1], pushed - still
     whole, scale = rest[:, 1 : S + 1], 1e-9 * max(np.abs(still).max(), np.abs(pushed).max())
     pairs = ((whole @ mixed, rest[:, S + 1 :]), (by_input, by_input[:, :1]), (pulled - still, TRIAL * by_input))
-    if not all(np.allclose(one, other, rtol=0, atol=scale) for one, other in pairs):
+    run = loaded.run(1, [[SMALL]], values, SMALL * states)  # what is switched by distances has another answer here
+    small = (np.vstack([run.states, run.outputs[0, :1]]) - still[:, :1]) / SMALL
+    linear = np.allclose(small, rest + by_input[:, :1], rtol=0, atol=1e3 * scale)
+    if not (linear and all(np.allclose(one, other, rtol=0, atol=scale) for one, other in pairs)):
         raise AnalysisError(
             f"{program.name} is not linear: its answer to two states is not the sum of its answers to each"
         )
