@@ -13,7 +13,7 @@ from ..device.plant import decided
 from ..errors import AnalysisError
 from .chatter import SHORTEST
 from .measures import LEAST, METRICS, WithFault, f64
-from .workers import spread
+from .workers import number_of, spread
 
 #: lanes of one call of an engine: few enough for every worker to get some
 LANES = 1024
@@ -39,7 +39,7 @@ class LaneRuns:
     """
 
     def __init__(self, scene, duration, workers=-1, engine="auto"):
-        self.scene, self.duration, self.workers, self.engine = scene, duration, workers, engine
+        self.scene, self.duration, self.workers, self.engine = scene, duration, number_of(workers), engine
         self._programs, self._loaded, self._made = {}, {}, {}
 
     def chatter(self, paddle, columns, start=(0.0, 0.1)):
@@ -172,7 +172,7 @@ def _has_inputs(paddle):
 def _in_one_period(paddle, columns):
     """Return columns in which every lane has the paddle's period, by similarity.
 
-    With time in units of T/T0, masses are (T0/T)^2 of what they were, dampers T0/T, delays and velocities by the unit; forces,
+    With time in units of T/T0, masses are (T0/T)^2 of what they were, dampers and delays T0/T, velocities T/T0; forces,
     stiffnesses, lengths and so the samples are the same, one by one.
     """
     if "T" not in columns:
@@ -186,7 +186,7 @@ def _in_one_period(paddle, columns):
         )
     ratio = paddle.T / columns["T"]
     new = {name: a for name, a in columns.items() if name != "T"}
-    powers = {"m": 2, "b": 1, "delay": -1, "B": 1, "start.v": -1} | ({"hand.m": 2, "hand.b": 1} if paddle.hand else {})
+    powers = {"m": 2, "b": 1, "delay": 1, "B": 1, "start.v": -1} | ({"hand.m": 2, "hand.b": 1} if paddle.hand else {})
     for name, power in powers.items():
         owner = paddle.hand if name.startswith("hand.") else paddle
         own = getattr(owner, name.removeprefix("hand."), 0.0)

@@ -14,7 +14,6 @@ from ..limits.stability import stability_limit
 from ..scene.laws import wall
 from .lane_runs import LaneRuns
 from .wall_regions import WallMap, regions_of, under
-from .workers import number_of
 
 #: what a map may be over beside K, and its unit
 OTHERS = {
@@ -121,7 +120,7 @@ class WallMaps:
         rows = other[np.unique(np.linspace(0, len(other) - 1, min(len(other), ROWS)).round().astype(int))]
         self.rows = np.union1d(rows, [0.0]) if other[0] < 0 < other[-1] else rows  # |B| has a corner at 0
         scene = wall(law, unilateral=unilateral, clamp=clamp)(x_o=0.0, k=1.0)  # the lanes give k and B
-        self.runs = LaneRuns(scene, duration, workers=number_of(workers), engine=engine)
+        self.runs = LaneRuns(scene, duration, workers=workers, engine=engine)
 
     def of(self, paddle):
         """Return the WallMap of a paddle."""
@@ -140,8 +139,9 @@ class WallMaps:
             rows=self.rows, limits=limits, unusable=self.unusable, duration=self.runs.duration,
             units={"K": "N/m", self.over[1]: OTHERS[self.over[1]]}, about=self._about(paddle),
         )  # fmt: skip
-        # an unstable loop does not come to rest by growing: irregular swings that happen to get smaller are no decay
-        found = replace(found, amplitude=np.where(under(found, "stability"), amplitude, np.maximum(amplitude, last)))
+        # without friction an unstable loop does not come to rest: irregular swings that happen to get smaller are no decay
+        free = ~under(found, "stability") & (other == 0 if self.over[1] == "coulomb" else paddle.coulomb == 0)
+        found = replace(found, amplitude=np.where(free, np.maximum(amplitude, last), amplitude))
         return replace(found, regions=regions_of(found, fault), seconds=time.perf_counter() - begun)
 
     def _limits(self, paddle, rows):

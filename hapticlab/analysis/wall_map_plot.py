@@ -7,11 +7,11 @@ from ..drawing import axis_label, house_style, new_figure, outline, scale_axis
 #: light to dark, so that grey print keeps their order
 COLOURS = ("#eef4d4", "#a9cfa0", "#4f93a8", "#2b2f5c")
 LINES = {
-    "passivity": ("passivity, any passive hand", (0, (6, 2))),
-    "stability": ("exact linear stability, this hand", "-"),
-    "abbott_okamura": ("Abbott and Okamura, any hand", (0, (4, 1, 1, 1))),
-    "diolaiti": ("Diolaiti, any hand", (0, (3, 1, 1, 1, 1, 1))),
-    "gil": ("Gil, this hand", (0, (1, 1))),
+    "passivity": ("passivity, any passive hand", "black", (0, (6, 2))),
+    "stability": ("exact linear stability, this hand", "black", "-"),
+    "abbott_okamura": ("Abbott and Okamura, any hand", "#c1440e", (0, (4, 1, 1, 1))),
+    "diolaiti": ("Diolaiti, any hand", "#c1440e", (0, (3, 1, 1, 1, 1, 1))),
+    "gil": ("Gil, this hand", "#c1440e", (0, (1, 1))),
 }
 
 
@@ -40,11 +40,11 @@ def plot_wall_map(found):
             if (found.regions == number).any():
                 axes.plot([], [], color=colour, label=name, **patch)
         for name in found.limits:
-            (label, dash), limit = LINES[name], found.limit(name)
+            (label, colour, dash), limit = LINES[name], found.limit(name)
             shown = np.where(limit > K[-1], np.nan, limit)
             if np.isfinite(shown).sum() > 1:
                 edge = [outline(3.6)]
-                axes.plot(x_scale * shown, y_scale * found.rows, color="black", linestyle=dash, path_effects=edge, label=label)
+                axes.plot(x_scale * shown, y_scale * found.rows, color=colour, linestyle=dash, path_effects=edge, label=label)
         axes.set(xlabel=x_label, ylabel=y_label)
         scale_axis(axes, "x", x_scale * K)
         scale_axis(axes, "y", y_scale * other)

@@ -1,0 +1,99 @@
+"""Sliders without a browser: ipywidgets alone, moved as a mouse moves them."""
+
+import sys
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import hapticlab as hl
+from hapticlab.errors import AnalysisError, EngineMissingError
+from hapticlab.widgets.view import explore
+
+PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, coulomb=0.02, hand=hl.Hand(m=0.02, b=0.5, push=1.0))
+SMALL = {"K": [100.0, 500.0, 2000.0], "B": [0.0, 0.1], "duration": 0.2}
+
+
+@pytest.fixture
+def view():
+    pytest.importorskip("ipywidgets")
+    pytest.importorskip("matplotlib")
+    made = explore(PADDLE, **SMALL)
+    assert made.wait(60), made.text.value
+    return made
+
+
+def test_the_map_follows_its_sliders(view):
+    np.testing.assert_array_equal(view.map.regions, hl.wall_map(PADDLE, **SMALL).regions)
+    first = bytes(view.image.value)
+    view.set(b=0.3, hand_b=1.5, coulomb=0.06)
+    assert view.wait(60)
+    moved = replace(PADDLE, b=0.3, coulomb=0.06, hand=replace(PADDLE.hand, b=1.5))
+    assert view.paddle.b == pytest.approx(0.3) and view.paddle.hand.b == pytest.approx(1.5)
+    np.testing.assert_array_equal(view.map.regions, hl.wall_map(moved, **SMALL).regions)
+    assert view.image.value[:8] == b"\x89PNG\r\n\x1a\n" and view.image.value != first
+    assert "6 contacts in" in view.text.value
+
+
+def test_no_queue_piles_up(view):
+    """While the first map is held up, a hundred places of the slider pass; one map more is made, of the last of them."""
+    made, go, begun, draw = [], threading.Event(), threading.Event(), view.maps.of
+
+    def slow(paddle):
+        begun.set()
+        assert go.wait(10)
+        made.append(paddle.b)
+        return draw(paddle)
+
+    view.maps.of = slow
+    view.set(b=0.1 * 1.5)
+    assert begun.wait(10)
+    for b in np.linspace(0.05, 0.25, 100):
+        view.set(b=b)
+    go.set()
+    assert view.wait(60)
+    assert made == [pytest.approx(0.15), pytest.approx(0.25, abs=0.005)]
+
+
+def test_what_goes_wrong_is_shown(view):
+    def broken(paddle):
+        raise AnalysisError("this was given; that is needed")
+
+    view.maps.of = broken
+    view.set(b=0.2)
+    assert view.wait(60) and "AnalysisError</b>: this was given" in view.text.value
+
+
+def test_a_notebook_shows_it(view):
+    bundle = view._repr_mimebundle_()
+    assert "application/vnd.jupyter.widget-view+json" in (bundle[0] if isinstance(bundle, tuple) else bundle)
+    assert list(view.sliders) == ["m", "b", "delay", "coulomb", "hand_m", "hand_b"]
+    assert view.sliders["b"].description == "b [N*s/m]" and view.sliders["b"].continuous_update
+
+
+@pytest.mark.parametrize(
+    ("sliders", "words"),
+    [
+        ({"colour": (0, 1)}, "a slider moves one of B?"),
+        ({"B": (0, 1)}, "nothing has that name"),
+        ({"counts_per_metre": (1e3, 1e4)}, "has no counts_per_metre"),
+        ({"b": (1, 1)}, "low < high"),
+    ],
+)
+def test_sliders_that_move_nothing_are_refused(sliders, words):
+    pytest.importorskip("ipywidgets")
+    with pytest.raises(AnalysisError, match=words.replace("B?", "")):
+        explore(PADDLE, sliders=sliders, **SMALL)
+
+
+def test_an_axis_is_no_slider():
+    pytest.importorskip("ipywidgets")
+    with pytest.raises(AnalysisError, match="b is an axis"):
+        explore(PADDLE, sliders={"b": (0, 1)}, over=("K", "b"), K=[1.0, 2.0], b=[0.1, 0.2], duration=0.2)
+
+
+def test_without_ipywidgets_it_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "ipywidgets", None)
+    with pytest.raises(EngineMissingError, match="pip install ipywidgets"):
+        explore(PADDLE, **SMALL)
