@@ -15,7 +15,7 @@ from .written import expression
 
 FORMS = ("series", "parallel")
 #: unit of what a caller may bound; each becomes a parameter of that name
-_UNITS = {"alpha_max": "N*s/m", "beta_max": "m/(N*s)", "force_max": "N", "forget": "s", "credit_max": "J"}
+_UNITS = {"alpha_max": "N*s/m", "beta_max": "m/(N*s)", "force_max": "N", "forget": "s", "credit_max": "J", "reset": "s"}
 
 
 def wall_energy():
@@ -66,13 +66,13 @@ def passivity_observer(scene, *, lag=0):
 
 
 def passivity_controller(
-    scene, form="series", *, alpha_max=None, beta_max=None, force_max=None, forget=None, credit_max=None, stored=0,
-    predict=False, lag=0,
+    scene, form="series", *, alpha_max=None, beta_max=None, force_max=None, forget=None, credit_max=None, reset=None,
+    stored=0, predict=False, lag=0,
 ):  # fmt: skip
     """The scene with a passivity controller, which dissipates what the environment gave beyond what it had.
 
     The watched credit is what the port has taken since the start, less what the environment stores and less what was
-    struck off by ``forget`` and ``credit_max``. It is kept from staying below zero
+    struck off by ``forget``, ``credit_max`` and ``reset``. It is kept from staying below zero
 
     * by a damper, ``form="series"``: F = f + alpha (x(n) - x(n-1))/T, with alpha = -credit T/(x(n) - x(n-1))^2. Both
       share the motion and their forces add. It takes back whatever is owed, from any scene, as long as the handle moves;
@@ -87,8 +87,8 @@ def passivity_controller(
     for the parallel form, at 800 Hz.
 
     A human who is active for long fills the credit of an environment that dissipates, which may then be active for as
-    long without being stopped. ``forget`` and ``credit_max`` are the cures: they strike off credit, never debt, and so
-    leave the environment passive. With ``stored`` given, what the environment stores is not forgotten.
+    long without being stopped. ``forget``, ``credit_max`` and ``reset`` are the cures: they strike off credit, never debt,
+    and so leave the environment passive. With ``stored`` given, what the environment stores is not forgotten.
 
     Parameters
     ----------
@@ -107,6 +107,8 @@ def passivity_controller(
         Time constant with which credit is forgotten.
     credit_max : float [J], optional
         Credit beyond is struck off.
+    reset : float [s], optional
+        All credit is struck off once the scene's own force has been zero for so long: between two contacts.
     stored : expression [J]
         What the environment stores, such as :func:`wall_energy`; zero lets every credit count. With it the controller
         follows a reference energy (Ryu, Preusche, Hannaford and Hirzinger 2005): it acts as soon as energy is
@@ -153,6 +155,7 @@ def _series(scene, p, stored, predict, lag):
         owed += raw(n) * moved - (stored.xreplace({x(n): 2 * x(n) - x(n - 1)}) - stored)
     damper = when((moved**2 > 0) & (owed < 0), sp.Min(p["alpha_max"], -owed * T / moved**2))
     equations = (
+        *_idle(raw, p),
         _is(credit(n), _kept(credit(n - 1), p) + sent(n - 1 - lag) * moved - (stored - delay(stored))),
         _is(raw(n), scene.force),
         _is(alpha(n), damper),
@@ -167,6 +170,7 @@ def _parallel(scene, p, stored, predict, lag):
     F = sent(n)
     left = stored.xreplace({x(n): x(n) - slip(n)})
     equations = (
+        *_idle(whole, p),
         _is(whole(n), scene.force),  # without slip: zero once the handle is out of the wall
         _is(slip(n), when(sp.Eq(whole(n), 0), 0, slip(n - 1) + T * beta(n - 1) * sent(n - 1))),
         _is(credit(n), _kept(credit(n - 1), p) + sent(n - 1 - lag) * _moved() - (left - delay(left))),
@@ -184,8 +188,18 @@ def _slipped(scene, slip):
     return F.xreplace(put)
 
 
+_IDLE = signal("F_zero_for", unit="s")
+
+
+def _idle(raw, p):
+    """Return the equation of how long the scene's own force has been zero, where that is asked for."""
+    return [_is(_IDLE(n), when(sp.Eq(raw(n), 0), _IDLE(n - 1) + T, 0))] if "reset" in p else []
+
+
 def _kept(credit, p):
     """Return what is left of a credit a sample later; debt is never struck off."""
+    if "reset" in p:
+        credit = when(_IDLE(n - 1) >= p["reset"], sp.Min(credit, 0), credit)
     if "credit_max" in p:
         credit = sp.Min(credit, p["credit_max"])
     if "forget" in p:

@@ -199,6 +199,24 @@ def test_the_cures_strike_off_credit_and_never_debt(cure):
 
 
 @pytest.mark.parametrize("form, bound", [("series", "alpha_max"), ("parallel", "beta_max")])
+def test_a_reset_strikes_off_what_one_contact_left_for_the_next(form, bound):
+    """A wall with a damper earns credit; 20 ms outside it is gone, and what was owed would not be."""
+    there = np.r_[np.linspace(-1e-3, 4e-3, 26), np.linspace(4e-3, -1e-3, 26)[1:]]
+    motion = np.r_[there, np.full(40, -1e-3), there]
+    damped = hl.wall()(k=100, B=0.5)
+    plain, reset = (
+        played(hl.passivity_controller(damped, form, **{bound: 5}, **o, stored=hl.wall_energy()), motion)[1]["credit"]
+        for o in ({}, {"reset": 0.02})
+    )
+    last = len(there) - 1
+    assert plain[last] > 1e-4
+    out = np.flatnonzero(motion[: last + 1] >= 0)[-1] + 1  # the first sample without force
+    assert (reset[: out + 20] == plain[: out + 20]).all()
+    assert (reset[out + 21 : last + 41] == 0).all() and plain[last + 40] == plain[last]
+    np.testing.assert_allclose(np.diff(reset[last + 41 :]), np.diff(plain[last + 41 :]), atol=1e-16)
+
+
+@pytest.mark.parametrize("form, bound", [("series", "alpha_max"), ("parallel", "beta_max")])
 def test_the_firmware_gives_the_same_bits(form, bound):
     scene = hl.passivity_controller(
         WALL, form, **{bound: 5.0}, stored=hl.wall_energy(), forget=0.1, credit_max=1e-3, force_max=2
