@@ -86,7 +86,8 @@ class Ledger:
             axes.set_yticks(range(len(self.entries) + 1), [*(e.name for e in self.entries), "left"])
             axes.invert_yaxis()
             axes.axvline(0, color="#000000", linewidth=0.8)
-            axes.margins(x=0.18)
+            axes.use_sticky_edges = False
+            axes.margins(x=0.12)
             axes.set_xlabel("excess of passivity [N s/m]")
         return figure
 
