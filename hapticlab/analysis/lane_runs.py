@@ -196,7 +196,10 @@ def _in_one_period(paddle, columns):
 
 def _groups(paddle, columns, lanes):
     """Return the lanes of each structure of paddle."""
-    parts = np.array([np.broadcast_to(np.asarray(a, float), lanes) for a in decided(_together(paddle, columns))])
+    parts = [np.asarray(a, float) for a in decided(_together(paddle, columns))]
+    if all(np.ptp(a) == 0 for a in parts):
+        return [np.arange(lanes)]
+    parts = np.array([np.broadcast_to(a, lanes) for a in parts])
     _, group = np.unique(parts, axis=1, return_inverse=True)
     return [np.flatnonzero(group.ravel() == number) for number in range(group.max() + 1)]
 

@@ -6,6 +6,7 @@ from ..drawing import axis_label, house_style, new_figure, outline, scale_axis
 
 #: light to dark, so that grey print keeps their order
 COLOURS = ("#eef4d4", "#a9cfa0", "#4f93a8", "#2b2f5c")
+SHADES = np.array([[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in COLOURS])
 LINES = {
     "passivity": ("passivity, any passive hand", "black", (0, (6, 2))),
     "stability": ("exact linear stability, this hand", "black", "-"),
@@ -16,7 +17,7 @@ LINES = {
 
 
 def plot_wall_map(found):
-    """Draw a map's regions, and the lines of passivity and exact stability.
+    """Draw a map's regions, and the lines of passivity, of exact stability and of the bounds asked for.
 
     Parameters
     ----------
@@ -26,30 +27,61 @@ def plot_wall_map(found):
     -------
     matplotlib.figure.Figure
     """
-    (across, K), (up, other) = found.axes.items()
-    x_scale, x_label = axis_label(across, found.units[across])
-    y_scale, y_label = axis_label(up, found.units[up])
-    shades = np.array([[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in COLOURS])
-    with house_style():
-        figure = new_figure(height=5.6)
-        axes = figure.subplots()
-        axes.pcolormesh(x_scale * K, y_scale * other, shades[found.regions.T], shading="nearest", rasterized=True)
-        names = ("passive", "stable, not passive", "chatters", f"unusable: swings over {1e3 * found.unusable:g} mm")
-        patch = {"marker": "s", "linestyle": "none", "markersize": 11, "markeredgecolor": "#808080"}
-        for number, (colour, name) in enumerate(zip(COLOURS, names, strict=True)):
-            if (found.regions == number).any():
-                axes.plot([], [], color=colour, label=name, **patch)
-        for name in found.limits:
-            (label, colour, dash), limit = LINES[name], found.limit(name)
-            shown = np.where(limit > K[-1], np.nan, limit)
-            if np.isfinite(shown).sum() > 1:
-                edge = [outline(3.6)]
-                axes.plot(x_scale * shown, y_scale * found.rows, color=colour, linestyle=dash, path_effects=edge, label=label)
-        axes.set(xlabel=x_label, ylabel=y_label)
-        scale_axis(axes, "x", x_scale * K)
-        scale_axis(axes, "y", y_scale * other)
-        axes.set(xlim=(x_scale * K[0], x_scale * K[-1]), ylim=(y_scale * other[0], y_scale * other[-1]))
-        axes.grid(False)
-        axes.set_title(found.about.splitlines()[0], fontsize="small")
-        figure.legend(fontsize="small", loc="outside lower center", ncols=3)
-    return figure
+    return WallMapPicture(found).figure
+
+
+class WallMapPicture:
+    """The figure of a map, which another map over the same axes may be drawn into.
+
+    Parameters
+    ----------
+    found : WallMap
+    every : bool
+        Name every region and line in the legend, whether this map has it or not: another one may.
+    """
+
+    def __init__(self, found, every=False):
+        (across, K), (up, other) = found.axes.items()
+        self.x_scale, x_label = axis_label(across, found.units[across])
+        self.y_scale, y_label = axis_label(up, found.units[up])
+        self.edge = K[-1]
+        with house_style():
+            self.figure = new_figure(height=5.6)
+            axes = self.figure.subplots()
+            x, y = self.x_scale * K, self.y_scale * other
+            self.mesh = axes.pcolormesh(x, y, SHADES[found.regions.T], shading="nearest", rasterized=True)
+            _name_regions(axes, found, every)
+            self.lines = {name: self._line(axes, found, name, every) for name in found.limits}
+            axes.set(xlabel=x_label, ylabel=y_label)
+            scale_axis(axes, "x", x)
+            scale_axis(axes, "y", y)
+            axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+            axes.grid(False)
+            axes.set_title(found.about.splitlines()[0], fontsize="small")
+            self.figure.legend(fontsize="small", loc="outside lower center", ncols=3)
+
+    def show(self, found):
+        """Draw another map in place of the one shown; where its labels stay, they are not laid out again."""
+        self.figure.set_layout_engine("none")
+        self.mesh.set_array(SHADES[found.regions.T])
+        for name, line in self.lines.items():
+            line.set_data(*self._curve(found, name))
+
+    def _line(self, axes, found, name, every):
+        label, colour, dash = LINES[name]
+        x, y = self._curve(found, name)
+        label = label if every or np.isfinite(x).sum() > 1 else None
+        return axes.plot(x, y, color=colour, linestyle=dash, path_effects=[outline(3.6)], label=label)[0]
+
+    def _curve(self, found, name):
+        limit = found.limit(name)
+        return self.x_scale * np.where(limit > self.edge, np.nan, limit), self.y_scale * found.rows
+
+
+def _name_regions(axes, found, every):
+    """Put the colours of the regions into the legend."""
+    names = ("passive", "stable, not passive", "chatters", f"unusable: swings over {1e3 * found.unusable:g} mm")
+    patch = {"marker": "s", "linestyle": "none", "markersize": 11, "markeredgecolor": "#808080"}
+    for number, (colour, name) in enumerate(zip(COLOURS, names, strict=True)):
+        if every or (found.regions == number).any():
+            axes.plot([], [], color=colour, label=name, **patch)

@@ -1,6 +1,7 @@
 """A wall map that follows its sliders; the only module that opens ipywidgets."""
 
 from ..analysis.wall_map import OTHERS, WallMaps, changed
+from ..analysis.wall_map_plot import WallMapPicture
 from ..errors import AnalysisError, EngineMissingError
 from .latest import Latest
 
@@ -64,6 +65,7 @@ class MapView:
     def __init__(self, paddle, maps, sliders=None):
         widgets = _open_ipywidgets()
         self.maps, self.first, self.paddle, self.map = maps, paddle, paddle, None
+        self._picture = None
         spans = _default_sliders(paddle, maps.over) if sliders is None else sliders
         self.sliders = {name: _slider(widgets, paddle, maps.over, name, span) for name, span in spans.items()}
         self.image, self.text = widgets.Image(format="png"), widgets.HTML()
@@ -92,8 +94,12 @@ class MapView:
         for name, value in values.items():
             paddle = changed(paddle, name, value)
         found = self.maps.of(paddle)
+        if self._picture is None:
+            self._picture = WallMapPicture(found, every=True)
+            self._picture.figure.canvas.draw()  # lays it out, once
+        self._picture.show(found)
+        self.image.value = self._picture.figure._repr_png_()
         self.paddle, self.map = paddle, found
-        self.image.value = found.plot()._repr_png_()
         self.text.value = f"{found.regions.size} contacts in {found.seconds:.2f} s"
 
     def _show_error(self, error):
