@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
+from ..device.live import named_values
 from ..device.simulated import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
 from ..limits.limit import Limit, whole_and_fraction
@@ -152,10 +153,15 @@ def largest_stiffness(
     }
     if B and "B" not in scene.parameters:
         raise PaddleError(f"{scene.name} has no parameter B; leave B out, or give the scene one")
-    scene = _tried(scene(**known), paddle, push, energy_max, speed_limit(paddle, speed_max))
+    pressed = _pressed(scene(**known, **{parameter: first}), push)
+    periods = whole_and_fraction(getattr(paddle, "delay", 0.0), paddle.T)[0]
+    limits = {"energy_max": energy_max, "speed_max": speed_limit(paddle, speed_max), "periods": periods}
+    program = paddle.program(guarded(pressed, **limits))  # compiled once: only a parameter's value changes
 
     def trial(K, begin):
-        return try_wall(paddle, scene(**{parameter: K}), K=K, place=place, duration=begin, longest=longest)
+        values = named_values(program) | {parameter: K}
+        tried = replace(program, values=tuple(values.values()))
+        return try_wall(paddle, tried, K=K, place=place, duration=begin, longest=longest)
 
     trials, good, bad = search(trial, first, most, growth, tolerance, (duration, longest))
     about = f"pressed with {pressing:.3g} N from rest at its boundary"
@@ -188,13 +194,12 @@ def search(trial, first, most, growth, tolerance, durations):
         K = min(stood[-1] * ratio, most) if stood else bad / 10
 
 
-def _tried(scene, paddle, push, energy_max, speed_max):
-    """Return the scene with the motor's push beside it, and the guard around both."""
-    if push:
-        pressed = parameters("pressed", units="N", values=push, ranges=(-math.inf, math.inf))
-        scene = replace(scene, force=scene.force - pressed)
-    periods = whole_and_fraction(getattr(paddle, "delay", 0.0), paddle.T)[0]
-    return guarded(scene, energy_max=energy_max, speed_max=speed_max, periods=periods)
+def _pressed(scene, push):
+    """Return the scene with the motor's push beside it."""
+    if not push:
+        return scene
+    force = parameters("pressed", units="N", values=push, ranges=(-math.inf, math.inf))
+    return replace(scene, force=scene.force - force)
 
 
 def theory_of(paddle, law, B):
