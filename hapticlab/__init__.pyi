@@ -6,6 +6,7 @@ from .analysis.chatter import chatter
 from .analysis.compare_laws import compare_laws
 from .analysis.energy import energy
 from .analysis.impedance import impedance
+from .analysis.law_limits import law_limits
 from .analysis.methods import methods
 from .analysis.motions import HandleMotion, handle_motions
 from .analysis.passivity_trace import passivity_trace
@@ -95,6 +96,7 @@ from .rendering.digital import digital_gains, digital_wall
 from .rendering.hybrid import hybrid_wall
 from .rendering.over_compensation import over_compensation
 from .rendering.predictive import predictive_wall
+from .rendering.velocity_errors import velocity_errors
 from .scene.amount import Amount
 from .scene.compensation import damping_compensation
 from .scene.contact import Contact, friction
@@ -235,6 +237,7 @@ __all__ = [
     "kalman_velocity",
     "lagrange",
     "largest_stiffness",
+    "law_limits",
     "library",
     "local_stiffness",
     "measured_impedance",
@@ -290,6 +293,7 @@ __all__ = [
     "tradeoff",
     "tremor_filter",
     "v",
+    "velocity_errors",
     "virtual_coupler",
     "virtual_damper",
     "wall",
