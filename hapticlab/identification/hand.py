@@ -100,7 +100,7 @@ def identify_hand(
     quantum = 0.0 if counts_per_metre is None else 1 / abs(counts_per_metre)
     y = np.concatenate([source.x[a:b] for a, b in windows])
     start, scales = _start(source, windows, own)
-    fitted = fit(_motion(source, windows, own), y[:, None], start[:, None], scales[:, None], quantum=quantum)
+    fitted = fit(_motion(source, windows, own), y[:, None], start[:, None, None], scales[:, None], quantum=quantum)
     return told(HandFit, y, fitted, ("m", "b", "k"), quantum=quantum, T=source.T, confidence=confidence)
 
 

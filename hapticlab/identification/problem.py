@@ -13,6 +13,9 @@ UNITS = {"m": "kg", "b": "N s/m", "coulomb": "N", "delay": "s", "scale": "1"}
 #: what is taken for known where it is not sought
 USUAL = {"delay": 0.0, "scale": 1.0}
 
+#: parts of the first m, b and coulomb that a fit may begin with
+GUESSES = tuple((m, b, c) for m in (1.0, 0.8) for b in (1.0, 0.1) for c in (1.0, 0.1))
+
 
 @dataclass(frozen=True, eq=False)
 class Trace:
@@ -73,13 +76,23 @@ class Problem:
 
     def solve(self):
         """Return the Fitted of all lanes."""
-        start = np.array([self._start(lane) for lane in range(self.lanes)]).T
+        starts = [
+            np.array([self._start(lane, noise) for lane in range(self.lanes)]).T
+            for noise in sorted({0.0, self.quantum})
+        ]
         y = np.concatenate([trace.y for trace in self.traces])
-        return fit(self.motion, y, start, self._scales(start), quantum=self.quantum)
+        guesses = [self._with(start, parts) for start in starts for parts in GUESSES]
+        return fit(self.motion, y, np.stack(guesses, axis=1), self._scales(starts[0]), quantum=self.quantum)
 
-    def _start(self, lane):
+    def _with(self, start, parts):
+        """Return a start with these parts of its m, b and coulomb."""
+        part = dict(zip(("m", "b", "coulomb"), parts, strict=True))
+        names = [*self.free, *[""] * (len(start) - len(self.free))]
+        return start * np.array([part.get(name, 1.0) for name in names])[:, None]
+
+    def _start(self, lane, noise):
         delays = range(6) if "delay" in self.free else (round(self.known.get("delay", 0.0) / self.traces[0].T),)
-        found = [trace.start(lane, self.known, self.quantum, delays) for trace in self.traces]
+        found = [trace.start(lane, self.known, noise, delays) for trace in self.traces]
         told = max(found, key=lambda one: one[0]["m"] < 1e3)[0] | {"scale": 1.0}
         begun = (begun[: 2 - trace.rests] for trace, (_, begun) in zip(self.traces, found, strict=True))
         return [*(told[name] for name in self.free), *(a for start in begun for a in start)]

@@ -22,7 +22,9 @@ BLIND = 1e-11
 #: damping of a step at first, its factor after one that was good and one that was not
 DAMPING, EASED, BRACED = 1e-3, 0.2, 6.0
 #: rounds in which sigma and the parameters are found in turn, first as numbers, then as counts
-ROUNDS = 2, 3
+ROUNDS = 6, 3
+#: of sigma before a round of steps: what stays of it where the steps have ended
+AGREES = 0.9
 #: m of noise, so that no noise divides by nothing
 LEAST = 1e-15
 
@@ -76,8 +78,10 @@ def fit(motion, y, start, scales, *, quantum=0.0):
         Takes parameters of shape (P, K, L), returns positions of shape (N, K, L).
     y : array, shape (N, L)
         Of a counted position, the middles of the counts.
-    start, scales : array, shape (P, L)
-        Where to begin, and how much is a considerable change; differences take STEP of it.
+    start : array, shape (P, C, L)
+        Where to begin: of C guesses for each record the one is taken whose motion is nearest.
+    scales : array, shape (P, L)
+        How much is a considerable change; differences take STEP of it.
     quantum : float
         What one count is; 0 where the sensor does not count.
 
@@ -89,21 +93,39 @@ def fit(motion, y, start, scales, *, quantum=0.0):
     --------
     >>> times = np.arange(50.0)[:, None, None]
     >>> y = 1 + 0.5 * times[:, 0] + np.random.default_rng(1).standard_normal((50, 1))
-    >>> line = fit(lambda p: p[0] + p[1] * times, y, np.zeros((2, 1)), np.ones((2, 1)))
+    >>> line = fit(lambda p: p[0] + p[1] * times, y, np.zeros((2, 1, 1)), np.ones((2, 1)))
     >>> bool(abs(line.values[1, 0] - 0.5) < line.half_width()[1, 0])
     True
     """
     weights = run_weights(y, quantum)
     freedom = np.sum(weights, axis=0) - len(start)
     even, no = np.ones_like(y), np.zeros(y.shape[1], bool)
-    found, rest = start, y - motion(start[:, None])[:, 0]
-    for _ in range(ROUNDS[0]):  # what is a small step is said by sigma, and sigma by what is left after the steps
-        sigma = np.sqrt(np.mean(rest**2, axis=0)) + LEAST
+    found, rest = _nearest(motion, y, start)
+    sigma, before = _rms(rest), np.inf
+    # what is a small step is said by sigma, and sigma by what is left after the steps
+    for _ in range(ROUNDS[0]):
         found, rest = _scored(motion, y, found, scales, sigma, 0.0, even, no)
+        sigma, before = _rms(rest), sigma
+        if np.all(sigma > AGREES * before):
+            break
     if quantum:
         return _counted(motion, y, found, rest, scales, quantum, weights, freedom)
     sigma = np.sqrt(np.sum(rest**2, axis=0) / freedom) + LEAST
     return _finished(motion, y, found, scales, sigma, 0.0, even, freedom, no)
+
+
+def _rms(rest):
+    return np.sqrt(np.mean(rest**2, axis=0)) + LEAST
+
+
+def _nearest(motion, y, start):
+    """Return of the guesses for each record the one with the least residuals, and these."""
+    with np.errstate(all="ignore"):
+        rest = y[:, None] - motion(start)
+        size = np.sum(rest**2, axis=0)
+    best = np.argmin(np.where(np.isfinite(size), size, np.inf), axis=0)
+    lane = np.arange(y.shape[1])
+    return start[:, best, lane], rest[:, best, lane]
 
 
 def _counted(motion, y, found, rest, scales, quantum, weights, freedom):
@@ -134,12 +156,10 @@ def _scored(motion, y, start, scales, sigma, quantum, weights, counted):
         nxt = at + (step * scales.T).T
         rest_next, slopes_next = _linearised(motion, y, nxt, scales)
         now = _likelihood(rest_next, sigma, quantum, weights, counted)
-        better = now >= best
+        better = (now >= best) & np.all(np.isfinite(slopes_next), axis=(0, 1))
         done = np.einsum("lp,lp->l", step, gradient) < ENOUGH**2
-        take = better | np.isnan(best)
-        at = np.where(take, nxt, at)
-        rest, slopes = np.where(take, rest_next, rest), np.where(take, slopes_next, slopes)
-        best = np.where(take, now, best)
+        at, best = np.where(better, nxt, at), np.where(better, now, best)
+        rest, slopes = np.where(better, rest_next, rest), np.where(better, slopes_next, slopes)
         damping = np.clip(damping * np.where(better, EASED, BRACED), 1e-12, 1e12)
         if np.all(done | (damping > 1e5)):
             break
@@ -150,12 +170,14 @@ def _linearised(motion, y, at, scales):
     """Return residuals, shape (N, L), and slopes of the motion by its parameters over their scales, (N, P, L)."""
     count = len(at)
     offsets = np.concatenate([np.zeros((1, count)), np.eye(count), -np.eye(count)]) * STEP
-    runs = motion(at[:, None] + offsets.T[:, :, None] * scales[:, None])
-    return y - runs[:, 0], (runs[:, 1 : count + 1] - runs[:, count + 1 :]) / (2 * STEP)
+    with np.errstate(all="ignore"):  # a step may go where nothing is finite, and is not taken then
+        runs = motion(at[:, None] + offsets.T[:, :, None] * scales[:, None])
+        return y - runs[:, 0], (runs[:, 1 : count + 1] - runs[:, count + 1 :]) / (2 * STEP)
 
 
 def _likelihood(rest, sigma, quantum, weights, counted):
-    return np.sum(weights * log_likelihood(rest, sigma, quantum, counted), axis=0)
+    with np.errstate(all="ignore"):
+        return np.sum(weights * log_likelihood(rest, sigma, quantum, counted), axis=0)
 
 
 def _solved(matrix, right):

@@ -47,8 +47,8 @@ def information(rest, sigma, quantum, counted):
     bell = [np.exp(-0.5 * z * z) / np.sqrt(2 * np.pi) for z in (low, high)]
     slope = (bell[0] - bell[1]) / (p * sigma)
     bend = (high * bell[1] - low * bell[0]) / (p * sigma**2)
-    own = np.sign(rest) * slope
-    return np.where(counted, own, score), np.where(counted, slope**2 + bend, info)
+    told = counted & (p > LEAST)  # so far off that no count tells, a number does
+    return np.where(told, np.sign(rest) * slope, score), np.where(told, np.maximum(slope**2 + bend, 0.0), info)
 
 
 def expected_information(position, sigma, quantum):

@@ -1,0 +1,140 @@
+"""Do the 95 % intervals of an identification cover the truth in 93 to 97 % of 1000 seeded trials, and how wide are they?
+
+``python identification.py [TRIALS]`` prints, for each record and constant, the part of the intervals that hold the true
+value, and their mean half width over 1.96 times the Cramer-Rao bound. Each trial is what a ``SimulatedPaddle(seed=k)``
+records. The bound is derived apart from the package's fit: positions of the simulated plant (Taylor series, events
+located), differenced by its constants, and the information that a Gaussian sample or a count holds about a position.
+"""
+
+import math
+import sys
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+
+import hapticlab as hl
+from hapticlab.device.simulated import link, load_linked
+from hapticlab.identification.excitation import Excitation
+from hapticlab.identification.problem import Problem, Trace
+
+TRAVEL = 0.1  # m: no guard cuts a force here
+TRUE = {"m": 0.03, "b": 0.1, "coulomb": 0.05, "delay": 1.3e-3}
+COUNT = 12.8e-6
+#: of central differences, relative
+STEP = 1e-4
+SENSORS = {
+    "noise 10 um": {"noise": 1e-5},
+    "noise 5 um, counts of 12.8 um": {"noise": 5e-6, "counts_per_metre": 1 / COUNT},
+    "noise 10 um, counts of 12.8 um": {"noise": 1e-5, "counts_per_metre": 1 / COUNT},
+}
+
+
+def kinds():
+    """Return each kind of record: the excitation, what is sought, what is known, and the start's velocity."""
+    free = ("m", "b", "coulomb", "delay")
+    coast = Excitation("steps", 0.0, 30, 300)
+    return {
+        "spin-down": SimpleNamespace(excitation=coast, free=("b", "coulomb"), known={"m": TRUE["m"]}, v=0.4),
+        "steps": SimpleNamespace(excitation=Excitation("steps", 0.3, 30, 300), free=free, known={}, v=0.0),
+        "chirp": SimpleNamespace(excitation=Excitation("chirp", 0.4, 80, 400), free=free, known={}, v=0.0),
+    }
+
+
+def paddle_of(sensor, **constants):
+    return hl.SimulatedPaddle(T=1e-3, **{**TRUE, **constants}, **sensor)
+
+
+def recorded(kind, sensor, trials, first=0):
+    """Return sensed positions, shape (N, trials), and the force: paddles with the seeds first, first + 1, ..."""
+    paddle = paddle_of(sensor)
+    program = paddle.program(kind.excitation.scene(TRAVEL))
+    linked = link(program, paddle)
+    loaded, found = load_linked(linked, "auto"), []
+    for seed in range(first, first + trials):
+        inputs = replace(paddle, seed=seed).inputs(kind.excitation.samples)
+        parameters = (*program.values, *paddle.plant_values(v=kind.v))
+        found.append(loaded.run(len(inputs), inputs, parameters)[0][:, :, 0])
+    names = [c.name for c in linked.outputs]
+    return np.array(found)[:, :, names.index("x")].T, found[0][:, names.index("F")]
+
+
+def fitted(kind, sensor, y, F):
+    """Return the Fitted of all trials."""
+    trace = Trace(y, F, 1e-3, rests=kind.v == 0)
+    quantum = COUNT if "counts_per_metre" in sensor else 0.0
+    return Problem((trace,), kind.free, kind.known, quantum).solve()
+
+
+def cramer_rao(kind, sensor):
+    """Return the least standard error of each constant, where the position and velocity of a moving start are unknown."""
+    moving = kind.v != 0
+    names = [*kind.free, "x", *(["v"] if moving else [])]
+    at = {**TRUE, "x": 0.0, "v": kind.v}
+    scale = {name: STEP * (abs(at[name]) or 1e-2) for name in names}
+    scene = kind.excitation.scene(TRAVEL)
+
+    def positions(**changed):
+        values = {**at, **changed}
+        start = {name: values.pop(name) for name in ("x", "v")}
+        log = paddle_of({}, **values).run(scene, duration=kind.excitation.samples * 1e-3, dtype="float64", **start)
+        return log.x
+
+    slopes = np.array([
+        (positions(**{name: at[name] + scale[name]}) - positions(**{name: at[name] - scale[name]})) / (2 * scale[name])
+        for name in names
+    ])  # fmt: skip
+    told = sample_information(positions(), sensor)
+    fisher = (slopes * told) @ slopes.T
+    size = np.sqrt(np.diag(fisher))
+    bound = np.sqrt(np.diag(np.linalg.inv(fisher / np.outer(size, size)))) / size
+    return bound[: len(kind.free)]
+
+
+def sample_information(x, sensor):
+    """Return what each sample tells about its position [1/m^2]: 1/noise^2, or the sum over counts of p'^2/p."""
+    noise = sensor["noise"]
+    if "counts_per_metre" not in sensor:
+        return np.full(len(x), noise**-2)
+    told = np.zeros(len(x))
+    for n, position in enumerate(x):
+        middle = math.floor(position / COUNT)
+        for count in range(middle - 12, middle + 13):
+            low, high = ((count + edge) * COUNT - position for edge in (0, 1))
+            p = 0.5 * (math.erf(high / noise / 2**0.5) - math.erf(low / noise / 2**0.5))
+            slope = (
+                (math.exp(-((low / noise) ** 2) / 2) - math.exp(-((high / noise) ** 2) / 2))
+                / noise
+                / (2 * math.pi) ** 0.5
+            )
+            told[n] += slope**2 / p if p > 1e-12 else 0.0
+    return told
+
+
+def trial_rows(kind, sensor, trials, first=0):
+    """Return (constant, covered, half width over 1.96 times the bound, mean error over the bound) for each constant."""
+    y, F = recorded(kind, sensor, trials, first)
+    found = fitted(kind, sensor, y, F)
+    count, bound = len(kind.free), cramer_rao(kind, sensor)
+    true = np.array([TRUE[name] for name in kind.free])[:, None]
+    half = found.half_width(0.95)[:count]
+    off = found.values[:count] - true
+    covered = (np.abs(off) <= half).mean(axis=1)
+    return list(zip(kind.free, covered, half.mean(axis=1) / (1.959964 * bound), off.mean(axis=1) / bound, strict=True))
+
+
+def main(trials=1000):
+    print(f"{trials} trials; T = 1 ms, " + ", ".join(f"{name} = {value:g}" for name, value in TRUE.items()))
+    print(
+        "| sensor | record | constant | covered | width / Cramer-Rao | bias / Cramer-Rao |\n|---|---|---|---|---|---|"
+    )
+    for sensor, what in SENSORS.items():
+        for record, kind in kinds().items():
+            for name, covered, width, bias in trial_rows(kind, what, trials):
+                print(
+                    f"| {sensor} | {record} | {name} | {100 * covered:.1f} % | {width:.3f} | {bias:+.3f} |", flush=True
+                )
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))
