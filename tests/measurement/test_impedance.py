@@ -114,6 +114,21 @@ def test_an_encoder_is_seen_as_distortion_and_noise_as_uncertainty():
     assert (abs(noisy.rendered - noisy.law) < 2 * noisy.radius).all()
 
 
+def test_the_hand_feels_friction_that_the_motor_does_not_make():
+    """A sinusoid feels Coulomb friction as a damper 4 f_c/(pi V), its describing function; the rendered force is as before."""
+    sticky, tone = paddle(0.0, coulomb=0.02), {"frequency": [5.0], "amplitude": 0.01, "place": 0.03}
+    found = measured_impedance(sticky, hl.wall()(k=K), dtype="float64", **tone)
+    s = 2j * np.pi * found.frequency[0]
+    assert found.rendered[0] == pytest.approx(K / s * held(s, 0.0), rel=1e-6)
+    # the intent's sinusoid through hand and loop, friction as that damper: a fixed point in the speed
+    speed = 0.1
+    for _ in range(50):
+        whole = 0.07 * s**2 + (1.1 + 4 * 0.02 / (np.pi * speed)) * s + 200 + K * held(s, 0.0)
+        speed = abs(s * 0.01 * (200 + s) / whole)
+    felt = found.felt[0] - found.rendered[0]
+    assert felt.real == pytest.approx(4 * 0.02 / (np.pi * speed), rel=0.03)  # of the motion's own harmonics nothing
+
+
 def test_a_handle_that_leaves_the_wall_is_reported():
     found = measured_impedance(paddle(), hl.wall()(k=K), place=0.0, frequency=FREQUENCY)
     assert found.left_wall > 100 and "left the wall" in str(found)
