@@ -46,5 +46,9 @@ def quintic(start, end, duration):
 
 def along(path, t):
     """Return place, velocity and acceleration of a path at t."""
-    poly = np.polynomial.polynomial
-    return tuple(float(poly.polyval(t, poly.polyder(path, order))) for order in (0, 1, 2))
+    place = velocity = acceleration = 0.0
+    for c in reversed(path.tolist()):  # Horner's rule, derivatives along with it
+        acceleration = acceleration * t + 2 * velocity
+        velocity = velocity * t + place
+        place = place * t + c
+    return place, velocity, acceleration
