@@ -1,0 +1,160 @@
+"""How stiff a wall each law can hold against a push, by trials from soft to stiff on a simulated paddle."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..device.hand import Hand
+from ..drawing import house_style, new_figure
+from ..errors import AnalysisError, HapticlabError
+from .chatter import chatter
+from .wall_laws import LAWS, wall_law
+
+#: largest ratio between what stood and what did not, of the last trials
+GROWTH, FINEST = 1.5, 1.03
+
+
+@dataclass(frozen=True)
+class LawLimit:
+    """The stiffest wall that stood, and what happened beyond.
+
+    Attributes
+    ----------
+    law : str
+    K : float
+        [N/m]; 0 where not even the softest stood.
+    beyond : float
+        The softest that did not stand [N/m]; inf where all did.
+    why : str
+        What the wall beyond did.
+    rest : float
+        Stiffness felt at rest under the push over K, at the stiffest that stood; nan where it had not come to rest.
+    """
+
+    law: str
+    K: float
+    beyond: float
+    why: str
+    rest: float
+
+
+@dataclass(frozen=True)
+class LawLimits:
+    """The stiffest wall of every law.
+
+    Attributes
+    ----------
+    limits : tuple of LawLimit
+    push : float
+        [N]
+    duration : float
+        Of a trial [s].
+    paddle : str
+    """
+
+    limits: tuple
+    push: float
+    duration: float
+    paddle: str
+
+    def __getitem__(self, law):
+        """Return the limit of a law by name."""
+        found = {limit.law: limit for limit in self.limits}
+        if law not in found:
+            raise AnalysisError(f"no limit of {law!r}; there are {', '.join(found)}")
+        return found[law]
+
+    def __str__(self):
+        head = f"walls that stand under a push of {self.push:g} N, an outcome of one start: {self.duration:g} s from the boundary"
+        rows = [f"{m.law:<20} {m.K:>9.4g} N/m   beyond: {m.why}" for m in self.limits]
+        return "\n".join([head, *rows])
+
+    def plot(self):
+        """Draw the stiffest wall of each law on one scale."""
+        names, places = [m.law.replace("_", " ") for m in self.limits], np.arange(len(self.limits))
+        with house_style():
+            figure = new_figure(height=0.6 + 0.42 * len(names))
+            axes = figure.subplots()
+            axes.barh(places, [m.K for m in self.limits], color="#1f6fb4", height=0.6)
+            axes.set(xlabel="stiffest wall that stands [N/m]", yticks=places, yticklabels=names, xscale="log")
+            axes.invert_yaxis()
+        return figure
+
+
+def law_limits(
+    paddle, *, push=1.0, laws=tuple(LAWS), first=50.0, most=1e5, duration=1.0, model=None, unilateral="gate", clamp=False,
+    velocity="handle",
+):  # fmt: skip
+    """Search, law by law, the stiffest wall against which a pushed handle does not chatter.
+
+    From soft to stiff: the handle starts at rest on the boundary, pushed by a constant force that no law knows of. A wall
+    stands where :func:`chatter` finds no oscillation that lasts or grows, dither below one encoder count apart. The
+    stiffness grows by half until a wall does not
+    stand, then the ratio is halved down to 3 %.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+    push : float
+        [N]
+    laws : sequence of str
+        Of :data:`hapticlab.analysis.wall_laws.LAWS`.
+    first, most : float
+        The softest wall tried, and the stiffest [N/m].
+    duration : float
+        Of a trial [s].
+    model, unilateral, clamp, velocity
+        Of :func:`~hapticlab.analysis.wall_laws.wall_law`.
+
+    Returns
+    -------
+    LawLimits
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
+    >>> found = hl.law_limits(paddle, laws=["zoh"])["zoh"]
+    >>> found.K <= hl.stability_limit(paddle).K * 1.03 and found.beyond >= hl.stability_limit(paddle).K * 0.97
+    True
+    """
+    hand = paddle.hand or Hand()
+    pushed = replace(paddle, hand=replace(hand, push=hand.push + push))
+    options = dict(model=model or paddle, unilateral=unilateral, clamp=clamp, velocity=velocity)
+    limits = tuple(_limit(name, pushed, first, most, push, duration, options) for name in laws)
+    return LawLimits(limits, push, duration, str(paddle))
+
+
+def _limit(name, paddle, first, most, push, duration, options):
+    stood, beyond, why, rest = 0.0, np.inf, "nothing stiffer was tried", np.nan
+    K, growth = first, GROWTH
+    while K <= most and (beyond == np.inf or beyond / max(stood, 1e-9) > FINEST):
+        fault, felt = _trial(name, paddle, K, push, duration, options)
+        if fault is None:
+            stood, rest = K, felt
+        else:
+            beyond, why = K, fault
+            if stood == 0:
+                break
+        if beyond < np.inf:
+            growth = np.sqrt(beyond / stood)
+        K = stood * growth
+    return LawLimit(name, stood, beyond, why, rest)
+
+
+def _trial(name, paddle, K, push, duration, options):
+    """Return what is wrong with a wall, or None, and the stiffness felt at rest over K."""
+    try:
+        law = wall_law(name, paddle, K=K, **options)
+        log = law.paddle.run(law.scene, duration=duration, progress=False)
+    except HapticlabError as refusal:
+        return f"refused: {refusal}", np.nan
+    if log.fault:
+        return "its force was not finite", np.nan
+    found = chatter(log)
+    seen = found.amplitude > (0.0 if paddle.counts_per_metre is None else 1 / paddle.counts_per_metre)
+    if (seen and found.state in ("chatter", "growing", "undecided")) or abs(found.rest) > 20 * push / K:
+        tone = "" if found.frequency is None else f" at {found.frequency:.4g} Hz"
+        return f"{found.state}, {1e3 * found.amplitude:.3g} mm{tone}", np.nan
+    settled = found.travel < 0.05 * abs(found.rest)
+    return None, push / (K * found.rest) if settled else np.nan
