@@ -95,8 +95,8 @@ def passivity_controller(
     scene : Scene
     form : {"series", "parallel"}
     alpha_max : float [N s/m]
-        For "series": the largest damper, to be bound here or later; what it cannot take back at once waits. A few
-        hundredths of :func:`hapticlab.damper_limit` are enough; one count of an encoder is felt as alpha_max count/T, and
+        For "series": the largest damper, to be bound here or later; what it cannot take back at once waits. A
+        hundredth to a tenth of :func:`hapticlab.damper_limit` is enough; one count of an encoder is felt as alpha_max count/T, and
         beyond that limit the controller chatters by itself.
     beta_max : float [m/(N s)]
         For "parallel": the fastest slip, in m/s for each newton; to be bound here or later. A spring K that slips by

@@ -70,6 +70,21 @@ def leaning():
     return table(head, rows)
 
 
+def stiffest():
+    """From which stiffness on a wall chatters by 0.1 mm or more in a hand with some damping; looked for in steps of 5 %."""
+    rows, stiffness = [], 100 * 1.05 ** np.arange(120)
+    for name, scene in (variants() | {"series, alpha_max = 1.4": controlled(alpha_max=1.4)}).items():
+        cells = []
+        for counts in (None, 25_000.0):
+            hand = hl.Hand(m=0.02, b=0.5, k=100, push=1.0)
+            paddle = hl.SimulatedPaddle(m=M, b=B, T=T, counts_per_metre=counts, hand=hand)
+            amplitude = hl.sweep(scene(x_o=0.002), paddle, duration=3.0, k=stiffness).values
+            loud = ~(amplitude < 1e-4)
+            cells.append(f"{stiffness[np.argmax(loud)]:.0f}" if loud.any() else f"over {stiffness[-1]:.0f}")
+        rows.append([name, *cells])
+    return table(["law", "exact x [N/m]", "40 um [N/m]"], rows)
+
+
 def dampers():
     """The same hand, 1000 N/m: how strong a damper the series form may use."""
     limit = hl.damper_limit(m=M + 0.02, b=B, T=T)
@@ -163,14 +178,23 @@ left at 300 N/m dies out with the device's own damping. The parallel form makes 
 took, so it ends no oscillation, and under a steady push the wall sinks by what it generates, which is the push's work and
 feeds the oscillation. It is for impacts, and for environments that are not leant on.
 
+## The stiffest wall
+
+The first stiffness that chatters by 0.1 mm, in a hand of 20 g, 0.5 N s/m and 100 N/m that leans with 1 N:
+
+{stiffest}
+
+The parallel form stands by giving way: within 3 s its wall has sunk from 2 mm to the 10 mm where the hand leans no more, and
+is felt as nothing.
+
 ## How strong a damper
 
 {dampers}
 
 Up to the device's own b a sampled damper is passive in any hand, and too weak here; 1 % of `hl.damper_limit` of handle and
-hand is enough. More changes little where x is exact, for the controller asks for no more damping than takes back what is
-owed. Behind an encoder a count is felt as alpha_max count/T: half of the limit makes jumps of several newtons, all of it of
-tens, and beyond it the controller chatters by itself.
+hand is enough for this wall, a tenth for the stiffest. More changes little where x is exact, for the controller asks for no
+more damping than takes back what is owed. Behind an encoder a count is felt as alpha_max count/T: half of the limit makes
+jumps of several newtons, all of it of tens, and beyond it the controller chatters by itself.
 
 ## A human who is active for long
 
@@ -190,7 +214,7 @@ the chatter no longer depends on the past. With `stored` alone the credit of the
 
 
 def page():
-    parts = (bounces, leaning, dampers, stirred, costs)
+    parts = (bounces, leaning, stiffest, dampers, stirred, costs)
     return TEXT.format(**{part.__name__: part() for part in parts})
 
 
