@@ -14,6 +14,7 @@ from .symbols import T, delay, n, parameters, signal, v, when, x
 from .written import expression
 
 FORMS = ("series", "parallel")
+_IDLE = signal("F_zero_for", unit="s")
 #: unit of what a caller may bound; each becomes a parameter of that name
 _UNITS = {"alpha_max": "N*s/m", "beta_max": "m/(N*s)", "force_max": "N", "forget": "s", "credit_max": "J", "reset": "s"}
 
@@ -96,8 +97,8 @@ def passivity_controller(
     form : {"series", "parallel"}
     alpha_max : float [N s/m]
         For "series": the largest damper, to be bound here or later; what it cannot take back at once waits. A
-        hundredth to a tenth of :func:`hapticlab.damper_limit` is enough; one count of an encoder is felt as alpha_max count/T, and
-        beyond that limit the controller chatters by itself.
+        hundredth to a tenth of :func:`hapticlab.damper_limit` is enough; one count of an encoder is felt as
+        alpha_max count/T, and beyond that limit the controller chatters by itself.
     beta_max : float [m/(N s)]
         For "parallel": the fastest slip, in m/s for each newton; to be bound here or later. A spring K that slips by
         1/(K T) has let go of everything within a sample.
@@ -186,9 +187,6 @@ def _slipped(scene, slip):
     put = {a: a - slip(*a.args) for a in F.atoms(x)}
     put |= {a: a - (slip(*a.args) - slip(a.args[0] - 1)) / T for a in F.atoms(v)}
     return F.xreplace(put)
-
-
-_IDLE = signal("F_zero_for", unit="s")
 
 
 def _idle(raw, p):
