@@ -103,7 +103,7 @@ class LaneRuns:
         quarter = ticks // 4
         fresh = [k for k, c in enumerate(linked.states) if c.name in AFRESH]
         at, states, found = 0, None, []
-        for part in (ticks - 2 * quarter, quarter, quarter):
+        for part in (ticks - 2 * quarter + 1, quarter, quarter - 1):  # a turn is seen at the sample after it
             outputs, states = loaded.run(part, inputs[at : at + part], rows, states, every=part)
             states[fresh] = [[AFRESH[linked.states[k].name]] for k in fresh]
             found.append(outputs[-1])

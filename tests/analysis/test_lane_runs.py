@@ -22,9 +22,10 @@ K = np.array([60.0, 150.0, 420.0, 1300.0])
 
 @pytest.mark.parametrize("paddle", [FULL, replace(FULL, noise=0.0, coulomb=0.0, delay=0.0, counts_per_metre=None)])
 def test_lanes_measure_what_a_sweep_measures(paddle):
+    stiffness = np.linspace(60, 3000, 200)  # so many that turns fall on the ends of the quarters
     runs = LaneRuns(SCENE, 0.403, workers=1)
-    amplitude, last, fault = runs.chatter(paddle, {"k": K, "B": np.full(4, 0.05)}, start=(0.001, 0.2))
-    expected = sweep(SCENE, paddle, duration=0.403, progress=False, k=K, B=0.05, x=0.001, v=0.2)
+    amplitude, last, fault = runs.chatter(paddle, {"k": stiffness, "B": np.full(200, 0.05)}, start=(0.001, 0.2))
+    expected = sweep(SCENE, paddle, duration=0.403, progress=False, k=stiffness, B=0.05, x=0.001, v=0.2)
     np.testing.assert_array_equal(amplitude, expected.values)
     assert last.max() > 0 and not fault.any()
     assert (last >= np.nan_to_num(amplitude)).all()
