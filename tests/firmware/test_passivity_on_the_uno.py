@@ -40,11 +40,11 @@ def test_every_bit_and_every_joule():
     with emulated_uno(HAND) as paddle:
         limit = paddle.settings.force_max
         program = Paddle.program(paddle, controlled(force_max=limit))
-        log = paddle.run(program, duration=0.5)
+        log = paddle.run(program, duration=0.25)
     assert log.fault is None and not log.gap.any() and not log.overrun.any()
     outputs, _ = load(program, "interpreter").run(len(log), log.x[:, None], program.values)
     np.testing.assert_array_equal(log.F.astype(np.float32), outputs[:, 0, 0].astype(np.float32))
     np.testing.assert_array_equal(log.credit.astype(np.float32), outputs[:, 1, 0].astype(np.float32))
     assert log.alpha.max() > 0.1 and log.F.max() > 0.3
     W = np.r_[0, np.cumsum(log.F[:-1] * np.diff(log.x))]
-    np.testing.assert_allclose(log.credit, W, atol=2e-6 * abs(W).max())  # 500 sums in float32
+    np.testing.assert_allclose(log.credit, W, atol=2e-6 * abs(W).max())  # 250 sums in float32

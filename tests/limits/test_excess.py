@@ -18,7 +18,7 @@ def test_a_linear_spring_is_exact(delay):
     assert -ledger.index == pytest.approx(b, rel=1e-9)
 
 
-def least_damping(f, periods=250, K=1.0):
+def least_damping(f, periods=120, K=1.0):
     """Smallest b of which no motion draws energy: T = K = 1, delay f < 1, by the eigenvalues of the work of all motions."""
     both = 2 * periods
     moved = np.eye(both)
@@ -34,7 +34,7 @@ def least_damping(f, periods=250, K=1.0):
 
 @pytest.mark.parametrize("f", [0.25, 0.6])
 def test_a_fraction_of_delay_costs_more_than_half_plus_f(f):
-    """(1/2 + f) K T is not enough between whole periods; motions of 250 periods come within 0.1 % of the ledger."""
+    """(1/2 + f) K T is not enough between whole periods; motions of 120 periods come within 0.1 % of the ledger."""
     found = -hl.passivity_ledger(b=0, T=1.0, K=1.0, delay=f).index
     least = least_damping(f)
     assert 0.5 + f < least <= found
@@ -43,7 +43,7 @@ def test_a_fraction_of_delay_costs_more_than_half_plus_f(f):
 
 def bending(places, slopes):
     """Return F and its energy for a spring of piecewise linear slope, F(0) = U(0) = 0, exact by integration."""
-    fine = np.linspace(places[0], places[-1], 400_001)
+    fine = np.linspace(places[0], places[-1], 100_001)
     step = fine[1] - fine[0]
     k = np.interp(fine, places, slopes)
     F = np.r_[0, np.cumsum((k[1:] + k[:-1]) / 2 * step)]
@@ -55,7 +55,7 @@ def bending(places, slopes):
 @pytest.mark.parametrize("late", [0, 1, 2])
 def test_springs_that_bend_keep_the_inequality(late):
     """Random steps through random springs with soft, stiff and negative slopes: work + paid >= what is stored, always."""
-    for _ in range(20):
+    for _ in range(8):
         slopes = GENERATOR.uniform(-300, 500, 9)
         force, energy = bending(np.linspace(-0.02, 0.02, 9), slopes)
         k_min, k_max = slopes.min(), slopes.max()
