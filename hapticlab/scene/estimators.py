@@ -276,12 +276,12 @@ def kalman_velocity(*, acceleration, noise, steady=True, speed=1.0, name="kalman
     else:
         start = (_positive(speed, "m/s", "speed", "the handle") * T / sigma[1]) ** 2
         (alpha, beta), eom = _gains(index, start, name)
-    missed = signal(f"{name}_missed", unit="m")
+    missed, pull = signal(f"{name}_missed", unit="m"), signal(f"{name}_pull", unit="1/s")
     eom += (
         sp.Eq(missed(n), x(n) - (place(n - 1) + T * rate(n - 1))),
         sp.Eq(place(n), x(n) - (1 - alpha) * missed(n)),
-        # beta/T is kept whole: one constant, or one division
-        sp.Eq(rate(n), rate(n - 1) + sp.Mul(beta / T, missed(n), evaluate=False)),
+        sp.Eq(pull(n), beta / T),  # a name of its own keeps it whole: one constant, or one division
+        sp.Eq(rate(n), rate(n - 1) + pull(n) * missed(n)),
     )
     a, b = _steady_gains(_lead(index))
     transfer = ((b / T, -b / T), (1, a + b - 2, 1 - a)) if steady else ()

@@ -1,5 +1,7 @@
 """Velocity estimators against textbook algorithms in whole arrays: filters of scipy, loops over windows, matrices."""
 
+import pickle
+
 import numpy as np
 import pytest
 from scipy.linalg import solve_discrete_are
@@ -235,6 +237,29 @@ def test_the_plain_difference_is_the_wall_without_an_estimate():
         load(hl.compile(s(k=300, B=0.2), T=T, dtype="float64")).run(400, PATH[:, None]).outputs for s in (one, other)
     ]
     np.testing.assert_allclose(*forces, rtol=1e-9, atol=1e-9)
+
+
+def test_an_estimate_goes_through_a_pickle_and_its_constants_may_be_live():
+    """As scenes do that other workers compile; a Parameter instead of a number is settable while it runs."""
+    tau, acceleration = hl.parameters("tau acceleration", units="s m/s^2", values=("4 ms", 20))
+    for estimate, live in (
+        (filtered_velocity(tau=tau), "tau"),
+        (kalman_velocity(acceleration=acceleration, noise=NOISE, steady=False), "acceleration"),
+    ):
+        scene = virtual_damper(velocity=estimate)(B=1)
+        again = pickle.loads(pickle.dumps(scene))
+        assert again == scene
+        program = hl.compile(again, T=T)
+        assert [c.name for c in program.parameters] == ["B", live]
+        assert program == hl.compile(scene, T=T)
+
+
+def test_two_estimates_of_one_name_are_refused():
+    wall_of_one = wall(velocity=filtered_velocity(tau=1e-3))
+    with pytest.raises(SceneError, match=r"two equations define v_filtered\(n\)"):
+        hl.damping_compensation(wall_of_one, b=0.1, velocity=filtered_velocity(tau=2e-3))
+    other = filtered_velocity(tau=2e-3, name="v_slow")
+    assert len(hl.damping_compensation(wall_of_one, b=0.1, velocity=other).eom) == 2
 
 
 # ---------------------------------------------------------------- refusals and costs
