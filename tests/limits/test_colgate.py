@@ -162,3 +162,28 @@ def test_plot_shows_the_worst_frequency_and_the_device():
     assert asked.get_ydata().max() == pytest.approx(0.1, rel=1e-6) == worst.get_ydata()[0]
     assert device.get_ydata()[0] == 0.06 and sinusoid.get_ydata().max() < 0.1
     assert "Hz" in axes.get_xlabel() and "N s/m" in axes.get_ylabel()
+
+
+def drawn(positions, taps, late=0):
+    """Return b/(K T) at which a cycle of positions through a gated law breaks even; the force comes late samples later."""
+    x = np.asarray(positions, dtype=float)
+    force = np.where(x >= 0, sum(c * np.roll(x, k) for k, c in enumerate(taps)), 0.0)
+    steps = np.roll(x, -1) - x
+    return -np.roll(force, late) @ steps / (steps @ steps)
+
+
+def test_the_plain_wall_pays_at_its_boundary_too():
+    """Random walks across the boundary: work and b = K T/2 never fall short of the energy K max(x, 0)^2/2 stored."""
+    walks = np.cumsum(np.random.default_rng(7).standard_t(2, size=(200, 500)), axis=1)
+    inside, steps = np.maximum(walks, 0), np.diff(walks, axis=1)
+    paid = np.cumsum(inside[:, :-1] * steps + steps**2 / 2, axis=1)
+    stored = (inside[:, 1:] ** 2 - inside[:, :1] ** 2) / 2
+    assert np.all(paid - stored >= -1e-9 * np.abs(paid).max())
+    assert drawn([1.0, 3.0], [1]) == pytest.approx(0.5)  # and to and fro inside draws all of it
+
+
+def test_a_gated_ellis_law_with_a_delay_draws_more_than_the_condition_knows():
+    """Why a limit of a law with a memory says nothing about switching: a cycle of four samples, one of them just outside."""
+    cycle = [-1e-9, 0.7865, 1.0, 0.1739]
+    assert drawn(cycle, [2, -1.5, 0.5], late=1) == pytest.approx(1.533097, abs=2e-6)
+    assert required_damping(K=1 / T, T=T, delay=T, law="ellis") == pytest.approx(1.528153, abs=1e-6)

@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 from scipy.optimize import minimize_scalar
 
 import hapticlab as hl
+from hapticlab import t
 from hapticlab.analysis.passive_hands import network, radii
 from hapticlab.errors import AnalysisError
 from hapticlab.limits.coupler import coupler_design, impedance_display
@@ -140,3 +142,16 @@ def test_words_picture_and_refusals():
         coupler_design(paddle(b=0.0))
     with pytest.raises(AnalysisError, match="has no b"):
         coupler_design("paddle")
+
+
+@pytest.mark.parametrize("mass", [2e-3, 0.05])
+def test_a_compiled_scene_asks_for_a_little_more_as_explicit_steps_are_not_passive(mass):
+    """b/(1 - m_0/m), m_0 = b T/2, by semi-implicit Euler under a held sample; less by the exact map with extrapolation."""
+    design = coupler_design(paddle(), b_c=0.05)
+    z = hl.coordinate("z", unit="m")
+    K, B, m = hl.parameters("K B m", units="N/m N*s/m kg", values=(design.k_c, design.b_c, mass))
+    F = hl.virtual_coupler(z, K=K, b=B)
+    scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)])
+    held = hl.port_passivity(scene, paddle(), method="semi_implicit_euler", hold="zoh").b_req
+    assert held == pytest.approx(b / (1 - b * T / 2 / mass), rel=1e-9)
+    assert b < hl.port_passivity(scene, paddle(), method="exact", hold="soh").b_req < b + 0.3 * (held - b)
