@@ -158,12 +158,13 @@ def forced_choice(paddle, task, observer=None, procedure=None, *, seed=0, keep=N
     if procedure.done:
         raise AnalysisError("the procedure has had all its answers already; make a fresh one")
     paddle, rng, trials, stopped = task.on(paddle), np.random.default_rng(seed), [], None
+    show = task.presenter(paddle, **options)
     with _table(keep, task) as row:
         while not procedure.done and stopped is None:
             level, reverse = procedure.level, bool(rng.integers(2))
             shown = [task.standard, task.standard * math.exp(level)]
             shown = shown[::-1] if reverse else shown
-            logs, stopped = _present(paddle, task, observer, shown, options)
+            logs, stopped = _present(show, task, observer, shown)
             if stopped is None:
                 answer = observer.compare(task, logs, len(trials))
                 trial = Trial(level, *shown, answer, answer == ("first" if reverse else "second"))
@@ -176,12 +177,12 @@ def forced_choice(paddle, task, observer=None, procedure=None, *, seed=0, keep=N
                         str(observer), str(paddle), seed, stopped)  # fmt: skip
 
 
-def _present(paddle, task, observer, shown, options):
+def _present(show, task, observer, shown):
     """Show the two, one after the other; return the records, and what went wrong or None."""
     logs = []
     for which, value in zip(("first", "second"), shown, strict=True):
         observer.ready(task, which)
-        logs.append(task.present(paddle, value, **options))
+        logs.append(show(value))
         if logs[-1].fault is not None:
             return logs, f"the {which} presentation of a trial, {task.parameter} = {value:.4g} {task.unit}: {logs[-1].fault}"
     return logs, None

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..device.hand import Hand
+from ..device.link import link, load_linked
+from ..device.reacting import Reacting
 from ..device.simulated import SimulatedPaddle
 from ..errors import AnalysisError
 from ..library.surfaces import texture
@@ -60,6 +62,23 @@ class Task:
     def present(self, paddle, value, **options):
         """Render the scene with this value for one presentation and return the record; the motor is off after it."""
         return paddle.run(self.scene(**{self.parameter: value}), duration=self.duration, progress=False, **options)
+
+    def presenter(self, paddle, **options):
+        """Return what presents a value and returns the record; a simulated paddle's program is compiled once for all."""
+        if not isinstance(paddle, SimulatedPaddle) or isinstance(paddle.hand.intent, Reacting):
+            return lambda value: self.present(paddle, value, **options)
+        engine = options.pop("engine", "auto")
+        program = paddle.program(self.scene(**{self.parameter: self.standard}), **options)
+        linked, inputs, start = link(program, paddle), paddle.inputs(paddle.ticks(self.duration)), paddle.plant_values()
+        loaded, declared = load_linked(linked, engine), self.scene.parameters[self.parameter]
+
+        def show(value):
+            bound = dict(zip((c.name for c in program.parameters), program.values, strict=True))
+            bound[self.parameter] = declared.check(value)
+            outputs, _ = loaded.run(len(inputs), inputs, (*bound.values(), *start))
+            return paddle._telemetry(replace(program, values=tuple(bound.values())), linked, outputs[:, :, 0])
+
+        return show
 
 
 def stiffness_task(*, standard=200.0, press=0.015, force=None):
