@@ -93,6 +93,7 @@ from .records import PaddleProfile, Telemetry
 from .rendering.compensation_limit import CompensationLimit, compensation_limit
 from .rendering.deadbeat import deadbeat_gains, deadbeat_wall
 from .rendering.digital import digital_gains, digital_wall
+from .rendering.for_board import wall_for_board
 from .rendering.hybrid import hybrid_wall
 from .rendering.over_compensation import over_compensation
 from .rendering.predictive import predictive_wall
@@ -299,6 +300,7 @@ __all__ = [
     "wall",
     "wall_damping",
     "wall_energy",
+    "wall_for_board",
     "wall_map",
     "when",
     "window_velocity",

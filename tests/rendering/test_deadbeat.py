@@ -34,8 +34,7 @@ def test_the_pair_of_an_entry_has_its_closed_form(K, depth):
     assert [log.x[2], log.v[2]] == pytest.approx([2 * T * v0 - depth - dx, v0 - dv], rel=1e-11)
 
 
-@pytest.mark.parametrize("x_o", [0.0, 0.003])
-@pytest.mark.parametrize("delay", [0.0, 0.01, 0.004])
+@pytest.mark.parametrize(("delay", "x_o"), [(0.0, 0.0), (0.01, 0.003), (0.004, 0.003)])
 def test_the_test_bed_emulates_the_floor_for_two_seconds(delay, x_o):
     """After every pair the handle is where finger, handle and floor would be; so it does not chatter."""
     paddle = hl.SimulatedPaddle(m=0.35, b=0.0, T=0.01, delay=delay, hand=BED.hand)
