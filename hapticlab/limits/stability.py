@@ -76,17 +76,27 @@ def stability_limit(paddle, *, law="zoh", B=0.0, parameter="k"):
             f"{loop.law.name} does not depend on a stiffness; give a scene with {parameter} unbound, or look at "
             "hl.closed_loop_poles"
         )
-    candidates = crossings(loop)
-    tests = [k for k, _ in candidates]
+    edges, stable = _intervals(loop)
+    if stable[0] and all(stable):
+        return Limit(math.inf, None, KIND, "no stiffness moves a pole out of the unit circle", notes)
+    first = stable.index(False)
+    K, theta = edges[first - 1] if first else (0.0, None)
+    reason = "a pole leaves the unit circle" if first else _why_none(paddle, law, B, any(stable))
+    again = next((i for i in range(first, len(stable)) if stable[i]), None)
+    if again is not None:  # such a wall has to be made stiff before it is touched
+        top = f" to {edges[again][0]:.6g}" if again < len(edges) else " on"
+        reason += f"; stable again from {edges[again - 1][0]:.6g}{top} N/m"
+    return Limit(K, None if theta is None else theta / (2 * math.pi * loop.T), KIND, reason, notes)
+
+
+def _intervals(loop):
+    """Return every crossing as (K, theta), and whether the loop is stable below the first, between two, and above the last."""
+    edges = crossings(loop)
+    K = [k for k, _ in edges]
     # the least K to look at when nothing crosses: well inside any band that a sampled plant of this mass can hold
-    between = [K / 2 for K in tests[:1]] + [math.sqrt(a * b) for a, b in zip(tests, tests[1:], strict=False)]
-    between.append(max([0.1 * loop.scale, *(2 * K for K in tests[-1:])]))
-    if loop.unstable(between[0]):
-        return Limit(0.0, None, KIND, _why_never(paddle, law, B), notes)
-    for (K, theta), above in zip(candidates, between[1:], strict=True):
-        if loop.unstable(above):
-            return Limit(K, theta / (2 * math.pi * loop.T), KIND, "a pole leaves the unit circle", notes)
-    return Limit(math.inf, None, KIND, "no stiffness moves a pole out of the unit circle", notes)
+    between = [k / 2 for k in K[:1]] + [math.sqrt(a * b) for a, b in zip(K, K[1:], strict=False)]
+    between.append(max([0.1 * loop.scale, *(2 * k for k in K[-1:])]))
+    return edges, [not loop.unstable(k) for k in between]
 
 
 def closed_loop_matrix(paddle, *, K=None, law="zoh", B=0.0, parameter="k"):
@@ -125,14 +135,15 @@ def _stiffness(K, law):
     return check_number("K", K, "N/m", "needs a finite stiffness", lambda v: True)
 
 
-def _why_never(paddle, law, B):
+def _why_none(paddle, law, B, somewhere):
+    """Say why the smallest stiffness is unstable, and whether all are."""
     name = law if isinstance(law, str) else getattr(law, "name", "of its own")
     undamped = paddle.b == 0 and (paddle.hand is None or paddle.hand.b == 0)
+    which = "at the smallest stiffness" if somewhere else "at any stiffness"
     if undamped and not B:
-        return f"without damping (b = 0) law {name} feeds energy in at any stiffness"
-    if isinstance(law, str):
-        return f"B = {B:g} N s/m with b = {paddle.b:g} N s/m is unstable at any stiffness"
-    return f"with b = {paddle.b:g} N s/m law {name} is unstable at the smallest stiffness"
+        return f"without damping (b = 0) law {name} feeds energy in {which}"
+    damper = f"B = {B:g} N s/m with " if B else ""
+    return f"{damper}b = {paddle.b:g} N s/m under law {name} is unstable {which}"
 
 
 def crossings(loop):

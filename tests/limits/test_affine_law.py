@@ -181,3 +181,48 @@ def test_another_name_for_the_stiffness():
     assert law.D1[0] == pytest.approx(2.0, rel=1e-12) and law.D0[0] == 0
     expected = edge(lambda k: ([2 * k, -k], [1, 0]))
     assert stability_limit(paddle(), law=scene, parameter="stiff").K == pytest.approx(expected, rel=1e-8)
+
+
+def test_a_stiffness_below_which_there_is_no_stability():
+    """2 x[n] - x[n-1] looks a whole period ahead: K T of damping less the hold's K T/2, against B = -(b + 0.01)."""
+    B = -0.12 - 0.01
+    law = lambda K: LinearLaw.of_taps([2 * K + B / T, -K - B / T], T=T)  # noqa: E731
+    limit = stability_limit(paddle(), law=law)
+    assert limit.K == 0 and "unstable at the smallest stiffness; stable again from" in limit.reason
+    low, high = (float(word) for word in limit.reason.split("from ")[1].removesuffix(" N/m").split(" to "))
+    assert low == pytest.approx(0.01 * 2 / T, rel=0.01)  # K T/2 pays for what B lacks, but for terms of b T/m
+
+    def stable(K):
+        return abs(closed_loop_poles(paddle(), law=law(K))).max() < 1
+
+    assert [stable(K) for K in (low * 0.999, low * 1.001, high * 0.999, high * 1.001)] == [False, True, True, False]
+
+
+@pytest.mark.parametrize("B", [-0.1201, -1.0, 2 * 0.045 / T * 1.01])
+@pytest.mark.parametrize("law", ["zoh", "backward_difference", "ellis"])
+def test_dampers_that_no_stiffness_saves(law, B):
+    """Less than -b feeds a slow handle, more than 2 m/T flips it from sample to sample: at K = 0+, and at every other K."""
+    assert stability_limit(paddle(), law=law, B=B).K == 0
+    for K in np.geomspace(1e-3, 1e5, 30):
+        inside = abs(closed_loop_poles(paddle(), K=K, law=law, B=B)[0]) < 1
+        assert not inside or "stable again" in stability_limit(paddle(), law=law, B=B).reason
+
+
+@pytest.mark.parametrize("velocity", [hl.filtered_velocity(tau="3 ms"), hl.kalman_velocity(acceleration=50, noise=1e-5)])
+def test_estimated_velocities(velocity):
+    """The limit of a wall with an estimator, against poles of the compiled tick beside the plant by scipy's cont2discrete."""
+    from scipy.signal import cont2discrete
+
+    p = paddle(m=0.05, b=0.1, hand=SimpleNamespace(m=0.02, b=0.3, k=50.0), velocity="backward_difference")
+    scene = hl.wall("half_sample", unilateral=None, velocity=velocity)(B=0.05)
+    limit = stability_limit(p, law=scene)
+    plant = (np.array([[0, 1], [-50 / 0.07, -0.4 / 0.07]]), np.array([[0], [1 / 0.07]]), np.eye(2), np.zeros((2, 1)))
+    Phi, Gamma, *_ = cont2discrete(plant, T)
+    radius = []
+    for K in limit.K * np.array([1 - 1e-6, 1 + 1e-6]):
+        law = LinearLaw.of_scene(scene(k=K), T=T)
+        x = np.array([1.0, 0.0])
+        top = np.hstack([Phi - Gamma @ (law.D * x)[None, :], -Gamma @ law.C[None, :]])
+        whole = np.vstack([top, np.hstack([np.outer(law.B, x), law.A])])
+        radius.append(np.abs(np.linalg.eigvals(whole)).max())
+    assert radius[0] < 1 < radius[1]
