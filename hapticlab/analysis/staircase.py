@@ -160,7 +160,8 @@ def staircase(log, *, K=None, x_o=None):
     v = np.asarray(log.channels.get("v_true", log.v), float)
     corners, held = _corners(log, x)
     U = K * np.maximum(x - x_o, 0) ** 2 / 2
-    bounces = tuple(_bounce(first, last, x - x_o, v, W) for first, last in _contacts(held))
+    bounces = (_bounce(first, last, x - x_o, v, W) for first, last in _contacts(held))
+    bounces = tuple(one for one in bounces if one.depth > 0)  # a damper may act outside
     return Staircase(*corners, K, x_o, np.diff(U) - np.diff(W), np.diff(x), bounces)
 
 

@@ -106,7 +106,8 @@ def passivity_ledger(*, b, T, K=0.0, B=0.0, delay=0.0, delayed=False, parts=()):
         Sampling period [s], > 0.
     K : float, or (k_min, k_max)
         Stiffness of the environment [N/m], or the range of its local stiffness dF/dx; a part of it may be negative, as
-        of a latch or a detent, as long as its energy is bounded below. A unilateral wall has (0, K).
+        of a latch or a detent, as long as its energy is bounded below; :func:`hapticlab.local_stiffness` finds it. A
+        unilateral wall has (0, K).
     B : float, or (B_min, B_max)
         Virtual damping [N s/m] by backward difference, of either sign, or the range of its local damping.
     delay : float
@@ -163,10 +164,10 @@ def _spring_shortage(k_max, stiff, T, late):
 
 
 def _range(name, given, unit):
-    pair = given if isinstance(given, (tuple, list)) else (min(given, 0.0), max(given, 0.0))
+    pair = given if isinstance(given, (tuple, list)) else (given, given)
     if len(pair) != 2:
         raise AnalysisError(f"{name} = {given}; needs a number in {unit}, or (least, most)")
-    low, high = (check_number(name, a, unit, "needs finite bounds", lambda _: True) for a in pair)
+    low, high = (check_number(name, a, unit, "needs a finite number, or (least, most)", lambda _: True) for a in pair)
     if low > high:
         raise AnalysisError(f"{name} = {given}; needs (least, most), least <= most")
-    return low, high
+    return (low, high) if isinstance(given, (tuple, list)) else (min(low, 0.0), max(high, 0.0))

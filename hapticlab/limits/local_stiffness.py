@@ -5,6 +5,7 @@ import sympy as sp
 
 from ..errors import AnalysisError
 from ..scene.symbols import n, x
+from .limit import check_number
 
 #: places looked at; secants between them are the slopes to some 1e-8 of their curvature
 PLACES = 40_000
@@ -36,6 +37,7 @@ def local_stiffness(scene, low, high):
     >>> round(k_min, 6), round(k_max, 6)
     (0.0, 300.0)
     """
+    low, high = (check_number("a position", a, "m", "needs low < high, in metres", lambda _: True) for a in (low, high))
     if not low < high:
         raise AnalysisError(f"low = {low}, high = {high} m; needs low < high")
     F = scene.force.xreplace({p: sp.Float(scene.values[name]) for name, p in scene.parameters.items() if name in scene.values})
