@@ -10,6 +10,7 @@ from dataclasses import replace
 import sympy as sp
 
 from ..errors import SceneError
+from .scene import Scene
 from .symbols import T, delay, n, parameters, signal, v, when, x
 from .written import expression
 
@@ -37,7 +38,8 @@ def passivity_observer(scene, *, lag=0):
 
     W(n) = W(n-1) + F(n-1-lag) (x(n) - x(n-1)), exact where the force is held over whole periods: below zero the
     environment has given more than it took. The force is the scene's own. It sees what the scene sends at the place
-    the sensor reads: a motor that saturates, or an encoder's counts, are between that and the work at the handle.
+    the sensor reads: a motor that saturates, or an encoder's counts, are between that and the work at the handle. It starts
+    from zero: a spring that is loaded at the first sample gives back what nobody was seen to pay.
 
     Parameters
     ----------
@@ -58,6 +60,7 @@ def passivity_observer(scene, *, lag=0):
     >>> bool(abs(log.W[-1] + hl.energy(log).generated) < 1e-9)
     True
     """
+    _check_scene(scene)
     lag = _whole(lag)
     W, sent = signal("W", unit="J"), signal("F_sent", unit="N")
     work = sp.Eq(W(n), W(n - 1) + sent(n - 1 - lag) * _moved(), evaluate=False)
@@ -111,9 +114,9 @@ def passivity_controller(
     reset : float [s], optional
         All credit is struck off once the scene's own force has been zero for so long: between two contacts.
     stored : expression [J]
-        What the environment stores, such as :func:`wall_energy`; zero lets every credit count. With it the controller
-        follows a reference energy (Ryu, Preusche, Hannaford and Hirzinger 2005): it acts as soon as energy is
-        generated, not only once everything stored was given back.
+        What the environment stores, such as :func:`wall_energy`, also at the first sample; zero lets every credit count.
+        With it the controller follows a reference energy (Ryu, Preusche, Hannaford and Hirzinger 2005): it acts as soon
+        as energy is generated, not only once everything stored was given back.
     predict : bool
         For "series": count what the coming period will generate if the handle moves on as it did. With the energy of a
         spring K as ``stored`` this adds the half-sample lead of Eq. (23.5), K/2 (x(n) - x(n-1)), when nothing is owed.
@@ -138,6 +141,7 @@ def passivity_controller(
     >>> [bool(hl.energy(log).W[-1] < -1e-4) for log in (bare, kept)]
     [True, False]
     """
+    _check_scene(scene)
     lag, stored = _whole(lag), expression(stored, "stored")
     _check(form, stored, predict, lag)
     p = {name: parameters(name, units=unit, values=given) for name, unit, given in _asked(form, locals())}
@@ -227,6 +231,11 @@ def _asked(form, given):
     for name, unit in _UNITS.items():
         if name == own or given[name] is not None:
             yield name, unit, given[name]
+
+
+def _check_scene(scene):
+    if not isinstance(scene, Scene):
+        raise SceneError(f"scene = {scene!r}; needs a Scene, such as hl.wall()")
 
 
 def _whole(lag):

@@ -59,7 +59,6 @@ def chatter_after(stirring, duration=1.6, **cure):
 
 
 def test_a_human_who_stirs_for_long_makes_the_wall_chatter_for_long():
-    pytest.importorskip("llvmlite")
     (short, log), (long, _) = chatter_after(0.5), chatter_after(2.0)
     assert short > 0.5 and long > short + 0.25  # s, of chatter that Eq. (23.9) allows: W >= 0 but for one period's leak
     W = hl.energy(log).W
@@ -68,7 +67,6 @@ def test_a_human_who_stirs_for_long_makes_the_wall_chatter_for_long():
 
 @pytest.mark.parametrize("cure, most", [({"credit_max": 1e-3}, 0.2), ({"forget": 0.05}, 0.5)])
 def test_with_a_cure_the_past_does_not_matter(cure, most):
-    pytest.importorskip("llvmlite")
     (short, _), (long, _) = chatter_after(0.5, **cure), chatter_after(2.0, **cure)
     assert short == pytest.approx(long, abs=0.01) and long < most
 

@@ -155,6 +155,18 @@ def test_the_parallel_form_gives_back_no_more_than_was_stored():
     assert seen["slip"].max() > step and seen["slip"][-1] == 0  # the wall is where it was once the handle has left it
 
 
+def test_a_spring_that_is_loaded_at_the_start_is_known_by_what_it_stores():
+    """Let go from 3 mm inside: without ``stored`` what it gives back looks generated, with it nothing does but the hold."""
+    motion = np.linspace(3e-3, -1e-3, 41)
+    without, known = (
+        played(hl.passivity_controller(WALL, alpha_max=50, **o), motion) for o in ({}, {"stored": hl.wall_energy()})
+    )
+    loaded = K * 3e-3**2 / 2
+    assert known[1]["credit"].min() > -0.06 * loaded  # two periods' leak, K D^2/2 each, while it repays
+    assert without[1]["alpha"].max() > 20 * np.median(known[1]["alpha"]) > 0
+    assert (without[0] < known[0])[1:20].all()  # it brakes what may go
+
+
 def honey(B=2.0):
     """A damper that turns into its opposite at t1: a human stirs, and then the environment is active."""
     B, t1 = hl.parameters("B t1", units="N*s/m s", values=(B, 1.0))
@@ -252,6 +264,8 @@ def test_it_goes_around_scenes_with_bodies_and_estimated_velocities():
         (lambda: hl.passivity_controller(WALL, beta_max=2), SceneError, "give alpha_max"),
         (lambda: hl.passivity_controller(WALL, predict=True, lag=1), SceneError, "lag = 0"),
         (lambda: hl.passivity_controller(WALL, stored=hl.x(n)), UnitsError, "in m but"),
+        (lambda: hl.passivity_controller("wall"), SceneError, "needs a Scene"),
+        (lambda: hl.passivity_observer(3), SceneError, "needs a Scene"),
         (lambda: hl.passivity_observer(WALL, lag=0.5), SceneError, "whole samples"),
         (lambda: hl.passivity_observer(hl.passivity_observer(WALL)), SceneError, "F_sent|W"),
         (lambda: hl.passivity_controller(WALL, alpha_max=-1), ParameterError, "alpha_max = -1"),
