@@ -46,7 +46,7 @@ def run_on_the_uno(scene, duration):
     return log, said, cycles, worst
 
 
-ALWAYS = "kalman", "brake"
+ALWAYS = "kalman", "brake"  # a third of a second each; the others with -m slow
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in ALWAYS else pytest.mark.slow) for n in scenes()])
@@ -63,6 +63,7 @@ def test_it_runs_with_the_bits_of_the_core_and_the_load_that_was_said(name):
     assert worst <= said.longest(promise=True)
 
 
+@pytest.mark.slow
 def test_a_dearer_estimate_is_refused_with_the_cheaper_one():
     scene = hl.wall("half_sample", velocity=hl.window_velocity(band=COUNT, most=5, fit="best"))(**WALL)
     words = r"of a 1 ms period on uno .*fits with velocity='adaptive window of \d, end fit'"

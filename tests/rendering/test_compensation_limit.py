@@ -1,5 +1,7 @@
 """The limits of damping compensation against loops written out by hand, and against paddles that run away."""
 
+from importlib.util import find_spec
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -10,6 +12,8 @@ from hapticlab.errors import AnalysisError, SceneError
 from hapticlab.limits.stability import closed_loop_poles
 from hapticlab.rendering.compensation_limit import compensation_limit
 
+#: seconds of located friction take minutes in the interpreter
+quick = pytest.mark.skipif(find_spec("llvmlite") is None, reason="needs llvmlite: a long simulation with friction")
 T, M, DAMPING, COULOMB = 1e-3, 0.05, 0.1, 0.02
 
 
@@ -49,6 +53,7 @@ def test_about_a_spring_it_is_where_a_pole_leaves_the_circle(hand, delay, tau):
     assert limit.frequency == pytest.approx(natural, rel=0.05)
 
 
+@quick
 @pytest.mark.parametrize("delay", [0.0, 3.5e-3])
 @pytest.mark.parametrize(
     "velocity", [None, hl.filtered_velocity(tau=5e-3), hl.kalman_velocity(acceleration=2, noise=1e-5)]
@@ -78,6 +83,7 @@ def test_a_light_handle_under_a_slow_filter_turns_before_it_drifts():
         assert (abs(poles).max() > 1 + 1e-6) == grows
 
 
+@quick
 @pytest.mark.parametrize("delay", [0.0, 2.5e-3])
 def test_over_compensated_a_free_handle_settles_at_the_speed_said(delay):
     """(dry - 1) coulomb/(damping left), whatever the delay: from below and from above."""
@@ -90,6 +96,7 @@ def test_over_compensated_a_free_handle_settles_at_the_speed_said(delay):
         assert log.v[-1] == pytest.approx(expected, rel=1e-9)  # exp(-24) of the start is left
 
 
+@quick
 def test_it_runs_away_beyond_the_kick_said():
     limit = compensation_limit(paddle())
     kick = limit.kick(viscous=1.5, dry=0.5)
@@ -114,6 +121,7 @@ def hunting_by_pieces(viscous, dry, k, m):
     return at
 
 
+@quick
 @pytest.mark.parametrize(("viscous", "dry"), [(0.0, 1.4), (0.5, 1.2)])
 def test_about_a_spring_it_hunts_with_the_amplitude_said(viscous, dry):
     k = 20.0
@@ -129,6 +137,7 @@ def test_about_a_spring_it_hunts_with_the_amplitude_said(viscous, dry):
     assert (last.max() - last.min()) / 2 == pytest.approx(expected, rel=0.01)
 
 
+@quick
 @pytest.mark.parametrize(("part", "hunts"), [(0.97, False), (1.06, True)])
 def test_it_hunts_from_the_part_said(part, hunts):
     here = paddle(T=1e-4, b=0.4, hand=hl.Hand(k=20, intent=0.0))
