@@ -1,5 +1,6 @@
 """Forces that make a free handle tell its constants: a kick and coasting, steps, a chirp, each within a stated travel."""
 
+from bisect import bisect_left
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,15 +79,18 @@ def designed(kind, size, T, travel, constants):
     AnalysisError
         If no force above friction keeps within the travel.
     """
-    best = None
-    for length in np.unique(np.geomspace(SHORTEST, LONGEST_PART, 60).astype(int)):
-        tried = Excitation(kind, size, int(length), _samples(kind, int(length), size, T, constants))
-        moved = positions(tried.forces(T), T, push=0.0, x0=0.0, v0=0.0, scale=1.0, **constants)
-        if np.abs(moved).max() > FILLS * travel:
-            break
-        best = tried
-    if best is not None:
-        return best
+    lengths = np.unique(np.geomspace(SHORTEST, LONGEST_PART, 60).astype(int))
+
+    def made(length):
+        return Excitation(kind, size, int(length), _samples(kind, int(length), size, T, constants))
+
+    def leaves(length):
+        moved = positions(made(length).forces(T), T, push=0.0, x0=0.0, v0=0.0, scale=1.0, **constants)
+        return bool(np.abs(moved).max() > FILLS * travel)
+
+    fitting = bisect_left(lengths, True, key=leaves)  # longer ones move the handle further
+    if fitting:
+        return made(lengths[fitting - 1])
     if size / 2 <= constants["coulomb"]:
         raise AnalysisError(
             f"{kind} of {size:g} N: {SHORTEST} samples of {T:g} s already move the handle past {1e3 * FILLS * travel:.3g} mm, "

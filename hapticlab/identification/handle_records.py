@@ -143,10 +143,11 @@ def step_response(log, *, counts_per_metre=None, known=None, at_rest=True, confi
 def chirp_response(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.95):
     """Return mass, damping, Coulomb friction and delay from a force that swings faster and faster; as :func:`step_response`."""
     check_record(log, "chirp_response")
-    turns = np.count_nonzero(np.diff(np.sign(np.diff(log.F))))
-    if turns < 3:
+    changes = np.count_nonzero(np.diff(log.F))
+    if changes <= len(log) / 4:
         raise AnalysisError(
-            f"chirp_response: the force turns {turns} times in {len(log)} samples; needs 3 swings or more"
+            f"chirp_response: the force changes {changes} times in {len(log)} samples; needs one that always changes. For a "
+            "few steps use step_response(log)"
         )
     return identify(
         HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence

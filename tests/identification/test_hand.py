@@ -1,0 +1,78 @@
+"""A hand identified from short pushes: covered as often as said, the device's friction known, and told where it reacts."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import hapticlab as hl
+from hapticlab.errors import AnalysisError
+from hapticlab.identification.hand import _motion, _start, _windows
+from hapticlab.identification.scoring import fit
+
+GRIP = hl.Hand(m=0.1, b=5, k=500, push=0.5)
+PADDLE = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, delay=0.4e-3, noise=5e-6, hand=GRIP)
+TRUE = {"m": 0.1, "b": 5.0, "k": 500.0}
+
+
+def check(found, **true):
+    for name, value in true.items():
+        # a seeded draw: not outside of two intervals' widths
+        assert abs(found[name].value - value) < 2 * found[name].half_width, name
+
+
+def test_a_hand_is_told_from_a_paddle_that_pushes_it():
+    paddle = replace(PADDLE, counts_per_metre=1 / 12.8e-6)
+    found = hl.identify_hand(paddle, pushes=4)
+    check(found, **TRUE)
+    assert found["k"].half_width < 0.05 * 500 and found.explained and found.converged
+    hand = found.hand(push=1.0)
+    assert (hand.m, hand.push) == (found["m"].value, 1.0)
+    assert "hand identified" in str(found) and "swings at 11" in str(found)
+
+
+def test_friction_of_the_device_is_no_part_of_the_hand():
+    paddle = replace(PADDLE, coulomb=0.05)
+    log = hl.push_hand(paddle, pushes=4)
+    check(hl.identify_hand(log, paddle), **TRUE)
+    blind = hl.identify_hand(log, replace(paddle, coulomb=0.0))
+    assert not blind.explained or 5.0 not in blind["b"]
+
+
+def test_intervals_cover_the_hand():
+    """Noise drawn anew over one true motion: 120 records fitted together."""
+    log = hl.push_hand(replace(PADDLE, noise=0.0), pushes=2)
+    windows, own = _windows(log, 0.06), {"m": 0.03, "b": 0.1, "coulomb": 0.0, "delay": 0.4e-3}
+    clean = np.concatenate([log.x[a:z] for a, z in windows])[:, None]
+    y = clean + 5e-6 * np.random.default_rng(0).standard_normal((len(clean), 120))
+    start, scales = (np.repeat(a[:, None], 120, axis=1) for a in _start(log, windows, own))
+    found = fit(_motion(log, windows, own), y, start[:, None], scales)
+    true = np.array(list(TRUE.values()))[:, None]
+    covered = (np.abs(found.values[:3] - true) < found.half_width()[:3]).mean(axis=1)
+    # four standard errors of 120 draws with 95 %
+    assert np.all(np.abs(covered - 0.95) < 4 * (0.95 * 0.05 / 120) ** 0.5), covered
+
+
+def test_a_hand_that_reacts_within_the_window_is_told():
+    def reacts(t):
+        return np.where((t % 0.4) > 0.2, 0.004, -0.004)  # it goes elsewhere, now and then
+
+    log = hl.push_hand(replace(PADDLE, hand=replace(GRIP, intent=reacts)), pushes=4)
+    found = hl.identify_hand(log, PADDLE, window=0.2)
+    assert not found.explained and "reflex" in str(found)
+
+
+def test_a_hand_on_a_board_is_identified_by_the_same_call():
+    pytest.importorskip("serial")
+    paddle = replace(PADDLE, counts_per_metre=1 / 12.8e-6)
+    with hl.connect("sim://hapkit", paddle=paddle) as board:
+        found = hl.identify_hand(board, paddle, pushes=3)
+    check(found, **TRUE)
+
+
+def test_refusals_say_what_to_do():
+    log = PADDLE.run(hl.virtual_damper()(B=0), duration=0.2)
+    with pytest.raises(AnalysisError, match="no push in 200 samples.*push_hand"):
+        hl.identify_hand(log, PADDLE)
+    with pytest.raises(AnalysisError, match="whose handle.*identify_paddle"):
+        hl.identify_hand(log)

@@ -1,0 +1,50 @@
+"""A paddle identified by moving it: simulated, and on the firmware's core, with forces from below and within the travel."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import hapticlab as hl
+from hapticlab.device.settings import nominal
+from hapticlab.errors import AnalysisError, PaddleError
+from hapticlab.identification.paddle import given
+
+BODY = {"m": 0.03, "b": 0.1, "T": 1e-3, "coulomb": 0.05, "noise": 8e-6}
+COUNTS = 1 / 12.8e-6
+
+
+def check(found, **true):
+    for name, value in true.items():
+        assert abs(found[name].value - value) < 2 * found[name].half_width, name
+
+
+def test_a_simulated_paddle_tells_its_constants_within_its_travel():
+    paddle = hl.SimulatedPaddle(**BODY, delay=1.3e-3, counts_per_metre=COUNTS, force_max=1.0)
+    found = hl.identify_paddle(paddle, travel=0.012, kinds=("kick", "steps"))
+    check(found, m=0.03, b=0.1, coulomb=0.05, delay=1.3e-3)
+    assert found["m"].half_width < 1e-3 * 0.03
+    assert [len(record.log) > 0 for record in found.records] == [True, True]
+    assert max(np.abs(record.log.x).max() for record in found.records) < 0.012
+    assert [record.added for record in found.loaded(0.02)] == [0.02, 0.02]
+
+
+def test_a_paddle_that_does_not_move_is_told():
+    paddle = hl.SimulatedPaddle(**BODY | {"coulomb": 2.0}, force_max=1.0)
+    with pytest.raises(AnalysisError, match="1 N moves the handle by .* mm only; needs 1 mm.*nobody holds"):
+        hl.identify_paddle(paddle)
+
+
+def test_known_mass_and_records_belong_together():
+    with pytest.raises(AnalysisError, match="give added="):
+        hl.identify_paddle(hl.SimulatedPaddle(**BODY), beside=(1,))
+
+
+def test_a_board_is_identified_by_the_same_call():
+    pytest.importorskip("serial")
+    paddle = hl.SimulatedPaddle(**BODY, delay=0.4e-3, counts_per_metre=COUNTS)
+    with hl.connect("sim://hapkit", paddle=paddle) as board:
+        found = hl.identify_paddle(board, kinds=("steps",), travel=0.02)
+        assert board.state()["state"] == 0
+    check(found, m=0.03, b=0.1, coulomb=0.05, delay=0.4e-3)
+    assert found["m"].half_width < 1e-3 * 0.03
