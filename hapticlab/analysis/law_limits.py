@@ -1,11 +1,12 @@
 """How stiff a wall each law can hold against a push, by trials from soft to stiff on a simulated paddle."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..device.hand import Hand
-from ..drawing import house_style, new_figure
+from ..drawing import house_style, new_figure, scale_axis
 from ..errors import AnalysisError, HapticlabError
 from .chatter import chatter
 from .wall_laws import LAWS, wall_law
@@ -76,7 +77,9 @@ class LawLimits:
             figure = new_figure(height=0.6 + 0.42 * len(names))
             axes = figure.subplots()
             axes.barh(places, [m.K for m in self.limits], color="#1f6fb4", height=0.6)
-            axes.set(xlabel="stiffest wall that stands [N/m]", yticks=places, yticklabels=names, xscale="log")
+            scale_axis(axes, "x", np.geomspace(10, 1e5, 5))
+            axes.set(xlabel="stiffest wall that stands [N/m]", yticks=places, yticklabels=names)
+            axes.set_xlim(left=0.5 * min(m.K for m in self.limits if m.K) if any(m.K for m in self.limits) else None)
             axes.invert_yaxis()
         return figure
 
@@ -126,9 +129,9 @@ def law_limits(
 
 
 def _limit(name, paddle, first, most, push, duration, options):
-    stood, beyond, why, rest = 0.0, np.inf, "nothing stiffer was tried", np.nan
+    stood, beyond, why, rest = 0.0, math.inf, "nothing stiffer was tried", np.nan
     K, growth = first, GROWTH
-    while K <= most and (beyond == np.inf or beyond / max(stood, 1e-9) > FINEST):
+    while K <= most and (beyond == math.inf or beyond / max(stood, 1e-9) > FINEST):
         fault, felt = _trial(name, paddle, K, push, duration, options)
         if fault is None:
             stood, rest = K, felt
@@ -136,8 +139,8 @@ def _limit(name, paddle, first, most, push, duration, options):
             beyond, why = K, fault
             if stood == 0:
                 break
-        if beyond < np.inf:
-            growth = np.sqrt(beyond / stood)
+        if beyond < math.inf:
+            growth = math.sqrt(beyond / stood)
         K = stood * growth
     return LawLimit(name, stood, beyond, why, rest)
 
