@@ -18,6 +18,8 @@ from .submovements import Submovements
 
 #: in the target for so long, it is selected [s]
 DWELL = 0.1
+#: of the fastest: slower, a movement has not begun
+ONSET = 0.05
 #: sqrt(2 pi e): the width that holds 96 % of normal ends and as much information as their scatter
 EFFECTIVE = math.sqrt(2 * math.pi * math.e)
 
@@ -31,7 +33,7 @@ class Targets:
     distance, width : float
         As shown [m].
     times : tuple of float
-        From leaving one target to being in the next for good [s].
+        From setting out to being in the next target for good [s].
     ends : tuple of float
         Where each ended, along the movement, beside the centre of its target [m].
     """
@@ -187,12 +189,14 @@ def _between(paddle, scene, distance, width, movements, scatter, reaction, seed)
 
 
 def selections(t, x, distance, width):
-    """Return (time entered for good, time left, end beside the centre along the movement) of targets reached in turn.
+    """Return (time entered for good, time set out, end beside the centre along the movement) of targets reached in turn.
 
     The first is the target at x = 0, then that at x = distance, and so on. A target is selected once the handle has been
-    in it for :data:`DWELL`; the end is the mean place over that time.
+    in it for :data:`DWELL`; the end is the mean place over that time. The handle sets out from it where it last was slower
+    than :data:`ONSET` of its fastest on the way to leave.
     """
     found, at, side, dwell = [], 0, 0, round(DWELL / (t[1] - t[0]))
+    speed = np.abs(np.gradient(x, t[1] - t[0]))
     while True:
         inside = np.abs(x - side * distance) <= width / 2
         run = np.convolve(inside[at:], np.ones(dwell), "valid")
@@ -205,7 +209,9 @@ def selections(t, x, distance, width):
             return found
         left = entered + int(outside[0])
         end = (float(x[entered : entered + dwell].mean()) - side * distance) * (1 if side else -1)
-        found.append((float(t[entered]), float(t[left]), end))
+        fastest = speed[left : left + dwell].max()
+        slow = np.flatnonzero(speed[entered:left] < ONSET * fastest)
+        found.append((float(t[entered]), float(t[entered + (slow[-1] if len(slow) else 0)]), end))
         at, side = left, 1 - side
 
 
