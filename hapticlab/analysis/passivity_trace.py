@@ -24,8 +24,10 @@ class PassivityTrace:
         The sum of F(n) (x(n) - x(n-1)) [J]: the wrong pairing, which hides what the hold generates.
     observed : array, shape (N,), or None
         The observer's W, or the controller's credit [J].
+    error : array, shape (N,), or None
+        The observer's W less the work at the handle [J]: what an encoder, delay or saturation hid from it.
     dissipated : array, shape (N,), or None
-        What a series controller's damper took so far, of force and displacement as they acted [J].
+        What a series controller's damper took so far, of force and displacement as they acted [J], before force_max.
     active : (float, float)
         The longest drain: first and last time [s] between which W fell by most from a peak to a later sample.
     drained : float
@@ -37,6 +39,7 @@ class PassivityTrace:
     W: np.ndarray
     same_sample: np.ndarray
     observed: np.ndarray | None
+    error: np.ndarray | None
     dissipated: np.ndarray | None
     active: tuple
     drained: float
@@ -53,6 +56,8 @@ class PassivityTrace:
         lines.append(
             f"at most {1e3 * self.drained:.4g} mJ drained, from t = {self.active[0]:.4g} s to {self.active[1]:.4g} s"
         )
+        if self.error is not None:
+            lines.append(f"the observer was wrong by {1e3 * abs(self.error).max():.2g} mJ at most")
         if self.dissipated is not None:
             lines.append(f"the controller's damper took {1e3 * self.dissipated[-1]:.4g} mJ")
         return "\n".join(lines)
@@ -97,11 +102,13 @@ def passivity_trace(log):
     >>> print(passivity_trace(log))
     W >= 0 broken by 0.1595 mJ at t = 0.042 s; -0.1595 mJ taken in the end
     at most 1.089 mJ drained, from t = 0.026 s to 0.042 s
+    the observer was wrong by ... mJ at most
     """
     check_record(log, "passivity_trace")
     W = energy(log).W
     moved = np.r_[0.0, np.diff(np.asarray(log.channels.get("x_true", log.x), float))]
     observed = log.channels.get("W", log.channels.get("credit"))
+    error = log.W - W if "W" in log.channels else None
     dissipated = None
     if "alpha" in log.channels:
         if log.delay:
@@ -112,6 +119,6 @@ def passivity_trace(log):
     last = int(np.argmax(peaks - W))
     first = int(np.argmax(W[: last + 1]))
     return PassivityTrace(
-        np.asarray(log.t), W, np.cumsum(log.F * moved), observed, dissipated,
+        np.asarray(log.t), W, np.cumsum(log.F * moved), observed, error, dissipated,
         (float(log.t[first]), float(log.t[last])), float(W[first] - W[last]),
     )  # fmt: skip

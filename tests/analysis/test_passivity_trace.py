@@ -35,6 +35,18 @@ def test_what_a_damper_took_is_its_force_times_the_motion_it_was_held_over():
     assert "the controller's damper took" in str(found)
 
 
+@pytest.mark.parametrize("counts", [None, 25_000.0, 4000.0])
+def test_an_encoder_hides_no_more_than_its_counts_times_the_changes_of_force(counts):
+    """Summed by parts: the error of a sum of F times (count errors' changes) is a count times the force's total variation."""
+    paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=T, counts_per_metre=counts, hand=hl.Hand(push=1.0))
+    log = paddle.run(hl.passivity_observer(hl.wall()(k=500, x_o=0.001)), duration=0.5, progress=False)
+    found = hl.passivity_trace(log)
+    bound = (1 / counts if counts else 0) * (abs(np.diff(log.F)).sum() + abs(log.F).max())
+    assert abs(found.error).max() <= bound + 1e-8  # J, of float32
+    assert abs(found.error).max() > (0.01 * bound if counts else 0)
+    assert "the observer was wrong by" in str(found)
+
+
 def honey_before_a_wall():
     """Honey for the hand to stir in, and a wall five times as stiff as b can pay for; the wall's energy."""
     k, B, x_h = hl.parameters("k B_honey x_h", units="N/m N*s/m m", values=(1000, 1, -0.005))

@@ -102,6 +102,19 @@ def test_the_series_form_takes_back_what_was_generated():
     np.testing.assert_allclose(seen["credit"], W, atol=1e-17)
 
 
+@pytest.mark.parametrize("taps", [(-300.0,), (-900.0, 900.0), (-200.0, 400.0), (0.0, 0.0, 400.0)])
+def test_any_scene_owes_no_more_than_some_periods_of_its_work_while_the_handle_moves_smoothly(taps):
+    """Springs that push the wrong way, dampers that drive, late forces: without the controller they give without end."""
+    k = hl.parameters("k", units="N/m", values=1, ranges=(-1e4, 1e4))
+    scene = hl.Scene(force=k * sp.Add(*(c * hl.x(n - lag) for lag, c in enumerate(taps))))
+    motion = 5e-3 * np.sin(2 * np.pi * 4.3 * T * np.arange(3000)) + 2e-3 * np.sin(2 * np.pi * 11.7 * T * np.arange(3000))
+    bare, _ = played(scene, motion)
+    F, _ = played(hl.passivity_controller(scene, alpha_max=1e5), motion)
+    period = abs(bare[:-1] * np.diff(motion)).max()
+    assert taken(bare, motion).min() < -10 * period
+    assert taken(F, motion).min() > -3 * period
+
+
 def test_with_prediction_and_reference_a_steady_push_feels_the_half_sample_lead():
     """What the coming period would generate, K D^2/2, is a damper K T/2: Eq. (23.5), inside the wall."""
     step = 2e-4
