@@ -60,6 +60,8 @@ class Chatter:
         sampling within 2000 samples.
     driven : float
         Half the peak-to-peak of the part that follows the drive [m]; 0 where none was given.
+    growth_error : float
+        Standard error of ``growth`` [1/s], by what four windows differ from an exponential; nan with too few cycles.
     """
 
     state: str
@@ -73,6 +75,7 @@ class Chatter:
     travel: float
     period: int | None = None
     driven: float = 0.0
+    growth_error: float = math.nan
 
     def __str__(self):
         if self.state == "runaway":
@@ -156,14 +159,16 @@ def chatter(log, driven=None):
     frequency = float((len(crossings) - 1) / (crossings[-1] - crossings[0])) if len(crossings) > 1 else None
     if len(crossings) > 2 * CYCLES:
         ratio = math.log(_strength(x[-quarter:]) / max(_strength(x[quarter_before]), least * 1e-3))
-        locked = abs(ratio) < max(LOCK, 2 * _irregularity(y))
+        uneven = _irregularity(y)
+        locked = abs(ratio) < max(LOCK, 2 * uneven)
         state = "chatter" if locked else "growing" if ratio > 0 else "decaying"
     else:
-        state, ratio, locked = *_compare_swings(x, quarter), False
+        state, ratio, locked, uneven = *_compare_swings(x, quarter), False, math.nan
     dither, amplitude = len(np.unique(log.x[-half:])) == 2, float(np.ptp(y) / 2)
     period = cycle_length(x[-half:], amplitude) if locked else None
+    growth, error = ratio / (quarter * log.T), uneven / (quarter * log.T)
     return Chatter(
-        state, amplitude, frequency, contacts, ratio / (quarter * log.T), locked, dither, rest, travel, period, size
+        state, amplitude, frequency, contacts, growth, locked, dither, rest, travel, period, size, error
     )
 
 

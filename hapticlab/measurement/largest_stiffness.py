@@ -19,6 +19,8 @@ from .trials import Trial, speed_limit, try_wall, wall_of
 
 #: how deep the push presses the handle into the first, softest wall [m]
 DEEPEST = 0.01
+#: samples of a trial, at least
+SHORTEST = 500
 #: parts of the first stiffness tried before none is said to stand
 SOFTER = 1e-3
 
@@ -79,7 +81,7 @@ class LargestStiffness:
 
 def largest_stiffness(
     paddle, *, law="zoh", B=0.0, parameter="k", push=None, first=None, most=1e5, growth=1.5, tolerance=0.02,
-    duration=1.0, longest=4.0, energy_max=0.05, speed_max=1.0, place=0.0,
+    duration=None, longest=None, energy_max=0.05, speed_max=1.0, place=0.0,
 ):  # fmt: skip
     """Search the largest stiffness of a wall that comes to rest under a push: trials on the paddle, from soft to stiff.
 
@@ -112,8 +114,9 @@ def largest_stiffness(
         Ratio from one trial to the next, > 1.
     tolerance : float
         Of the stiffness, relative.
-    duration, longest : float
-        Of a trial [s]; doubled up to the longest while the record does not tell.
+    duration, longest : float, optional
+        Of a trial [s]; doubled up to the longest while the record does not tell. By default 1 s, 500 samples at least,
+        and four times that.
     energy_max, speed_max : float
         What trips the guard [J], [m/s]; the speed leaves room for three encoder counts a period.
     place : float
@@ -135,6 +138,8 @@ def largest_stiffness(
     >>> abs(float(found) / hl.stability_limit(paddle).K - 1) < 0.03
     True
     """
+    duration = max(1.0, SHORTEST * paddle.T) if duration is None else duration
+    longest = 4 * duration if longest is None else max(longest, duration)
     scene = wall_of(law, parameter)
     name = law if isinstance(law, str) else scene.name
     if not (growth > 1 and tolerance > 0 and most > 0):
@@ -145,7 +150,11 @@ def largest_stiffness(
     leaning = 0.0 if hand is None or hand.moves else hand.push + hand.k * ((hand.intent or 0.0) - place)
     push = (0.0 if leaning else 0.2) if push is None else float(push)
     pressing = push + leaning
-    first = (abs(pressing) or 0.2) / DEEPEST if first is None else float(first)
+    if hand is not None and pressing <= 0:
+        raise AnalysisError(
+            f"the hand pulls the handle off the wall with {-pressing:g} N; needs a push: push={0.2 - leaning:.3g}"
+        )
+    first = (pressing or 0.2) / DEEPEST if first is None else float(first)
     if not 0 < first < most:
         raise AnalysisError(f"first = {first:g} N/m, most = {most:g} N/m; needs 0 < first < most")
     known = {
@@ -165,33 +174,38 @@ def largest_stiffness(
 
     trials, good, bad = search(trial, first, most, growth, tolerance, (duration, longest))
     about = f"pressed with {pressing:.3g} N from rest at its boundary"
+    about += "" if isinstance(paddle, SimulatedPaddle) else "; theory below is without a hand"
     return LargestStiffness(good, bad, trials, name, B, theory_of(paddle, law, B), about)
 
 
 def search(trial, first, most, growth, tolerance, durations):
     """Return (trials, largest that stood, smallest that did not), from below, never further than one ratio beyond.
 
-    A trial is as short as tells; the one that is the answer is repeated at full length, and where a small chatter was
-    hidden by bounces that died out, the search goes on below it.
+    A trial is as short as tells; the one that is the answer is repeated at full length. Where that finds a chatter which
+    a short one did not see, the search goes on below it, at full length only.
     """
-    K, stood, bad, ratio, made = first, [], math.inf, growth, []
+    K, stood, sure, bad, made = first, [], set(), math.inf, []
+    begin, full = durations
     while True:
-        made.append(trial(K, durations[0]))
+        made.append(trial(K, begin))
         if made[-1].stands:
             stood.append(K)
+            sure |= {K} if made[-1].duration >= full else set()
         else:
             bad = K
         while stood and (stood[-1] >= most or bad / stood[-1] <= 1 + tolerance):
-            if made[-1].K != stood[-1] or made[-1].duration < durations[1]:
-                made.append(trial(stood[-1], durations[1]))
+            if stood[-1] in sure:
+                return tuple(made), stood[-1], bad
+            made.append(trial(stood[-1], full))
             if made[-1].stands:
                 return tuple(made), stood[-1], bad
-            bad = stood.pop()
+            bad, begin = stood.pop(), full
         if not stood and bad < first * SOFTER:
             return tuple(made), 0.0, bad
-        if math.isfinite(bad) and stood:
-            ratio = math.sqrt(bad / stood[-1])
-        K = min(stood[-1] * ratio, most) if stood else bad / 10
+        if not stood:
+            K = bad / 10
+        else:
+            K = min(stood[-1] * (math.sqrt(bad / stood[-1]) if math.isfinite(bad) else growth), most)
 
 
 def _pressed(scene, push):

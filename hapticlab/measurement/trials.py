@@ -14,6 +14,8 @@ from .guard import guarded
 LEADS_BACK, TAKES = 20.0, 0.5
 #: of the natural frequency's critical damping
 WELL_DAMPED = 0.7
+#: standard errors by which a slow decay has to differ from none
+SURE = 5.0
 #: a handle that moves on by less than this part of its way, in the last quarter of a trial, rests
 RESTS = 0.01
 #: encoder counts in a period that a speed limit must leave room for
@@ -59,8 +61,9 @@ class Trial:
 def try_wall(paddle, scene, *, K, place, duration, longest):
     """Try one stiffness, longer and longer until the record tells; a simulated handle starts at rest at ``place`` [m].
 
-    A limit cycle and a decay too slow to see look alike. At ``longest`` [s] what neither died out nor grew counts as
-    chatter: within a percent or two of its true limit a wall is called chattering sooner than sound.
+    A limit cycle and a decay too slow to see look alike. At ``longest`` [s] a decay has to be five times its own standard
+    error; what then neither died out nor grew counts as chatter, so that near its limit a wall is called chattering
+    sooner than sound.
     """
     while True:
         log = run_from(paddle, scene, place, duration)
@@ -83,17 +86,19 @@ def _judged(log, K, place, duration, last=False):
     found = chatter(log)
     x = log.channels.get("x_true", log.x)
     rests = found.state == "none" and found.travel < RESTS * max(abs(x - place).max(), 1e-9)
-    if found.dither or rests:
-        verdict = "dither of one encoder count" if found.dither else "it comes to rest"
-        return Trial(K, True, verdict, found.amplitude, found.frequency, drawn, duration)
+    if rests:
+        return Trial(K, True, "it comes to rest", found.amplitude, found.frequency, drawn, duration)
     bounces = bool((x[len(x) // 2 :] < place).any())
-    if found.state == "decaying" and not bounces:  # while it bounces, a small chatter may hide below
+    # while it bounces, a small chatter may hide below; what stays inside is nearly linear, and dies out however slowly
+    decays = found.state == "decaying" or (last and found.growth < -SURE * found.growth_error)
+    if decays and not bounces:
         return Trial(K, True, "it dies out", found.amplitude, found.frequency, drawn, duration)
     if found.state in ("growing", "runaway"):
         return Trial(K, False, "it grows", found.amplitude, found.frequency, drawn, duration)
     if not last:
         return None
     verdict = "it lasts" if found.locked else f"it has not died out after {duration:g} s"
+    verdict = "it buzzes by one encoder count" if found.dither else verdict
     return Trial(K, False, verdict, found.amplitude, found.frequency, drawn, duration)
 
 

@@ -84,7 +84,7 @@ def z_width(paddle, *, B, law="zoh", **options):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> found = z_width(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), B=[0.0, 1.0])
+    >>> found = z_width(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), B=[0.0, 1.0], tolerance=0.1, longest=1)
     >>> bool(found.K[1] > 5 * found.K[0]), found.passivity.tolist()
     (True, [200.0, 0.0])
     """

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.measurement.largest_stiffness import largest_stiffness, search
+from hapticlab.measurement.largest_stiffness import LargestStiffness, largest_stiffness, search
 from hapticlab.measurement.trials import Trial
 
 pytest.importorskip("llvmlite")  # some hundred thousand ticks
@@ -28,8 +28,8 @@ def paddle(**changes):
     ],
 )
 def test_what_stands_and_what_chatters_enclose_the_exact_limit(law, changes):
-    """A handle pressed on a wall moves inside it, where the wall is the linear law. A limit cycle and a decay of less
-    than 1 % a second are not told apart: the pair may lie 2 % low."""
+    """A handle pressed on a wall moves inside it, where the wall is the linear law. A limit cycle and the slowest
+    decays are not told apart: the pair may lie 2 % low."""
     tried = paddle(**changes)
     found = largest_stiffness(tried, law=law, first=100.0)
     exact = hl.stability_limit(tried, law=law).K
@@ -52,24 +52,18 @@ def test_without_damping_no_stiffness_stands():
     assert found.chatters_at < 20.0 * 1e-3
 
 
-def test_a_virtual_damper_widens_and_a_negative_one_narrows():
-    wide, narrow = (largest_stiffness(paddle(), B=B, first=50.0).K for B in (0.5, -0.05))
-    assert wide == pytest.approx(hl.stability_limit(paddle(), B=0.5).K, rel=0.03)
-    assert narrow == pytest.approx(hl.stability_limit(paddle(), B=-0.05).K, rel=0.03)
-
-
 def test_coulomb_friction_stands_what_the_linear_limit_forbids():
     """A push whose oscillation dies below 2 f_c: stuck, as the quantiser's condition K <= 2 f_c/count reads too."""
     sticky = paddle(coulomb=0.05)
-    assert largest_stiffness(sticky, most=1000.0, longest=2.0).K > 1.5 * hl.stability_limit(sticky).K
+    assert largest_stiffness(sticky, most=500.0, first=100.0, longest=1.0).K > 1.5 * hl.stability_limit(sticky).K
 
 
 def test_the_same_call_on_a_board_finds_the_same():
     behind = paddle(counts_per_metre=1e6)
     with hl.connect("sim://hapkit", paddle=behind) as board:
-        found = largest_stiffness(board, first=100.0)
+        found = largest_stiffness(board, first=100.0, tolerance=0.04)
         state = board.state()
-    assert found.K == pytest.approx(hl.stability_limit(behind).K, rel=0.03)
+    assert found.K == pytest.approx(hl.stability_limit(behind).K, rel=0.05)
     assert state["force"] == 0  # the motor is off
     assert found.theory["passivity"].K == pytest.approx(200.0, rel=1e-6)  # from what the board keeps of itself
 
@@ -99,10 +93,23 @@ def scripted(limit, hidden=math.inf):
     return trial
 
 
+def test_a_hand_that_pulls_away_is_refused_with_the_push_that_would_do():
+    with pytest.raises(hl.AnalysisError, match="off the wall with 2 N; needs a push: push=2.2"):
+        largest_stiffness(paddle(hand=hl.Hand(push=-2.0)))
+
+
+def test_a_buzz_of_one_encoder_count_does_not_stand():
+    """Abbott and Okamura: passive up to K = min(2 b/T, 2 f_c/count); beyond, a rest is met or not, as the push falls."""
+    coarse = paddle(b=0.5, counts_per_metre=1 / 0.5e-3, coulomb=0.02)
+    found = largest_stiffness(coarse, longest=1.0, tolerance=0.1)
+    assert 2 * 0.02 / 0.5e-3 < found.chatters_at < 1000.0  # 80 N/m; 2 b/T alone is 1000
+    assert any("one encoder count" in trial.verdict for trial in found.trials)
+
+
 @pytest.mark.parametrize("limit", [0.5, 21.0, 333.0, 98765.0])
 def test_the_search_encloses_any_limit(limit):
     trials, good, bad = search(scripted(limit), 20.0, 1e5, 1.5, 0.02, (1.0, 4.0))
-    assert good < limit <= bad <= good * 1.02 and trials[-1].K == good
+    assert good < limit <= bad <= good * 1.02 and any(t.K == good and t.duration == 4.0 for t in trials)
 
 
 def test_a_chatter_that_only_a_long_trial_sees_lowers_the_answer():
@@ -117,7 +124,8 @@ def test_the_ends_of_a_search():
 
 
 def test_the_picture_has_trials_and_limits():
-    figure = largest_stiffness(paddle(), tolerance=0.2, longest=1.0).plot()
+    trials, good, bad = search(scripted(333.0), 20.0, 1e5, 1.5, 0.02, (1.0, 4.0))
+    figure = LargestStiffness(good, bad, trials, "zoh", theory={"stability": hl.stability_limit(paddle())}).plot()
     axes = figure.axes[0]
     labels = axes.get_legend_handles_labels()[1]
     assert labels[:2] == ["comes to rest", "chatters"] and any("stability" in text for text in labels)
