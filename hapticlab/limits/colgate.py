@@ -14,7 +14,7 @@ ask for up to pi^2/4 of what the sinusoid asks for.
 
 Averaged over theta from 0 to pi the right side is ``K T/2``, with K = H(1) the stiffness at rest, for every stable law and
 every delay of whole periods: of ``z^-k`` it is Dirichlet's kernel, whose mean is one. A law that asks for less somewhere asks
-for more elsewhere, so none is passive with K > 2 b/T: for any passive hand nothing is better than the plain spring, Eq. (23.1).
+for more elsewhere, so none is passive with K > 2 b/T, and without delay nothing is better than the plain spring, Eq. (23.1).
 """
 
 import math

@@ -54,6 +54,12 @@ def test_one_period_of_delay_in_closed_form():
     assert design.frequency == pytest.approx(1000 / 6, rel=1e-4)
 
 
+@pytest.mark.parametrize(("whole", "f"), [(0, 0.0), (0, 0.25), (1, 0.0), (2, 0.5)])
+def test_a_spring_alone_is_stopped_by_slow_motion(whole, f):
+    design = coupler_design(paddle(whole + f), b_c=0.0)
+    assert design.k_c * T / b == pytest.approx(2 / ((1 - f) * (whole + 1) ** 2 + f * (whole + 2) ** 2), rel=1e-9)
+
+
 def environment(generator, theta):
     """A random network of bodies, springs and dampers stepped by backward Euler, which keeps it passive: F/w at theta."""
     rate = (1 - np.exp(-1j * theta)) / T

@@ -1,0 +1,236 @@
+"""How far the bounds on a wall's stiffness lie apart, and what each assumes: writes docs/passivity_bounds.md.
+
+    python tests/benchmarks/passivity_bounds.py [--write]
+
+Theory only, no simulation: the same numbers on every computer. Some 5 s.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import sympy as sp
+
+import hapticlab as hl
+from hapticlab import t
+from hapticlab.errors import AnalysisError
+
+PAGE = Path(__file__).parents[2] / "docs" / "passivity_bounds.md"
+T = 1e-3
+LAWS = {"zoh": "(23.1)", "backward_difference": "(23.5)", "ellis": "(23.7)"}
+DELAYS = (0.0, 0.25, 0.5, 1.0, 2.0, 3.0)
+DEVICES = {
+    "hobby paddle": {"m": 0.03, "b": 0.1, "coulomb": 0.02, "counts_per_metre": 4000},
+    "heavy paddle": {"m": 0.166, "b": 0.057, "coulomb": 0.05, "counts_per_metre": 20000},
+    "braked feather-weight": {"m": 0.005, "b": 2.0},
+}
+PINCH = hl.Hand(m=0.02, b=1.0, k=200)
+
+
+def table(head, rows):
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
+
+
+def place(margin):
+    """Return in words which frequencies ask for the most."""
+    ends = margin.asked([1e-4, np.pi / 2, np.pi]) > margin.required * (1 - 1e-6)
+    if ends.all():
+        return "everywhere"
+    return "at 0 and 1" if ends[0] and ends[2] else f"at {2 * margin.frequency * T:.2f}"
+
+
+def laws():
+    rows = []
+    for law, equation in LAWS.items():
+        asked = [hl.passivity_margin(hl.LinearLaw.of(law, K=1 / T, T=T), b=1, delay=d * T) for d in DELAYS]
+        rows.append([f"{law} {equation}", *(f"{m.required:.4f} {place(m)}" for m in asked)])
+    return table(["law, b/(K T) at part of Nyquist", *(f"delay {d:g} T" for d in DELAYS)], rows)
+
+
+def filtered():
+    rows = []
+    for tau in (0.0, 0.5, 1.0, 3.0, 10.0):
+        limits = [hl.passivity_limit(b=0.1, T=T, B=B, velocity_filter=tau * T).K for B in (0.05, -0.05)]
+        rows.append([f"{tau:g} T", *(f"{K:.1f}" for K in limits)])
+    return table(["time constant", "B = +b/2: K [N/m]", "B = -b/2: K [N/m]"], rows)
+
+
+def named():
+    rows = []
+    for name, device in DEVICES.items():
+        for words, hand, delay in (("", None, 0.0), (", pinched", PINCH, 0.0), (", T/2 late", None, T / 2)):
+            found = hl.bounds(hl.SimulatedPaddle(T=T, hand=hand, delay=delay, **device))
+            cells = ["-" if isinstance(limit, str) else f"{limit.K:.4g}" for limit in found.found.values()]
+            rows.append([name + words, *cells])
+    return table(["K [N/m]", *found.found], rows)
+
+
+def between():
+    fractions = (0.1, 0.25, 0.5, 0.75, 0.9)
+    ratio = [
+        hl.diolaiti_limit(b=1, T=T, delay=f * T).K / hl.passivity_limit(b=1, T=T, delay=f * T).K for f in fractions
+    ]
+    return table(["delay", *(f"{f:g} T" for f in fractions)], [["Diolaiti over exact", *(f"{r:.4f}" for r in ratio)]])
+
+
+def gil():
+    """Ratios to the exact limit over a grid of plants, by the size of what the formula leaves out."""
+    found = []
+    for m in (0.01, 0.05, 0.3):
+        for b in (0.01, 0.1, 1.0):
+            for B in (-0.5, 0.0, 1.0, 3.0):
+                for delay in (0.0, 0.7, 2.0):
+                    paddle = hl.SimulatedPaddle(m=m, b=b, T=T, delay=delay * T)
+                    tau = T / 2 + paddle.delay
+                    K = (b + B * b) / tau
+                    exact = hl.stability_limit(paddle, B=B * b).K
+                    found.append((K * tau**2 / m + abs(B * b) * tau / m, K / exact))
+    left_out, ratio = np.array(found).T
+    rows = []
+    for low, high in ((0, 0.01), (0.01, 0.1), (0.1, 0.5), (0.5, np.inf)):
+        here = ratio[(left_out >= low) & (left_out < high)]
+        rows.append([f"{low:g} to {high:g}", len(here), f"{here.min():.3f}", f"{here.max():.3f}"])
+    return table(["(K + k_h) tau^2/M + abs(B) tau/M", "plants", "least Gil/exact", "largest"], rows)
+
+
+def couplers():
+    rows = []
+    for delay in DELAYS:
+        paddle = hl.SimulatedPaddle(m=0.05, b=0.2, T=T, delay=delay * T)
+        best, bare = hl.coupler_design(paddle), hl.coupler_design(paddle, b_c=0.0)
+        wall = hl.passivity_limit(b=0.2, T=T, delay=delay * T).K
+        cells = [f"{K * T / 0.2:.4f}" for K in (best.k_c, best.b_c / T, bare.k_c, wall)]
+        cells.insert(2, f"{2 * best.frequency * T:.3f}" if delay else "everywhere")
+        rows.append([f"{delay:g} T", *cells])
+    head = ["delay", "k_c T/b", "b_c/b", "stopped at, of Nyquist", "k_c T/b without b_c", "fixed wall K T/b"]
+    return table(head, rows)
+
+
+def compiled():
+    z = hl.coordinate("z", unit="m")
+    K, B, m = hl.parameters("K B m", units="N/m N*s/m kg", values=(300, 0.05, 0.05))
+    F = hl.virtual_coupler(z, K=K, b=B)
+    scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)])
+    paddle, rows = hl.SimulatedPaddle(m=0.05, b=0.2, T=T), []
+    for method, hold in (("semi_implicit_euler", "zoh"), ("exact", "zoh"), ("exact", "soh"), ("rk4", "soh")):
+        asked = [hl.port_passivity(scene(m=mass), paddle, method=method, hold=hold).b_req for mass in (0.002, 0.05, 0.5)]
+        rows.append([f"{method}, {hold}", *(f"{b:.4f}" for b in asked)])
+    return table(["method, hold", "2 g", "50 g", "500 g"], rows)
+
+
+def admittance():
+    rows = []
+    for servo in (0.2, 0.5, 1.0, 2.0, 5.0, 10.0):
+        cells = []
+        for delay in (0.0, 0.2):
+            paddle = hl.SimulatedPaddle(m=0.05, b=0.5, T=T, delay=delay * T)
+            try:
+                design = hl.admittance_design(paddle, servo=servo)
+                cells.append(f"{1e3 * design.m_a:.0f}")
+            except AnalysisError:
+                cells.append("the servo is active")
+        rows.append([f"{servo:g}", *cells])
+    return table(["servo [N s/m]", "lightest body [g]", "sensor and servo 0.2 T late [g]"], rows)
+
+
+TEXT = """# Bounds on the stiffness of a wall: what each promises, and how far apart they lie
+
+Written by `tests/benchmarks/passivity_bounds.py`; theory only. T = 1 ms where a number has a unit.
+
+## What each law asks of the device's damping
+
+Passivity in any passive hand, the spring always acting (Colgate and Schenkel 1997; `hl.passivity_margin`):
+
+{laws}
+
+With x(n), v(n) exact at the samples, Eq. (23.3) is passive on no device: the velocity jumps there. `hl.bounds` refuses the
+formulas below for it, which are for laws in position.
+
+**No linear law is passive with K > 2 b/T.** Averaged over frequency every stable law of stiffness K at rest asks for
+K T/2, which the plain spring without delay asks for at every frequency; a predictor that asks for less of slow motion asks
+for more near Nyquist. So without delay prediction is of use against one hand and one handle (`hl.stability_limit`), not
+against all. From half a period of delay on it is of use against all: the plain spring then asks for most of slow motion.
+
+**The condition knows nothing of switching.** Through `gate` and one period of delay, the cycle x = 0 (just outside), 0.7865,
+1, 0.1739 makes the law of Eq. (23.7) draw energy up to b = 1.5331 K T, past the 1.5282 of the table. Without delay a
+search over cycles of up to 24 samples found none beyond the table, for any law, `gate` or `clip`; for the plain law that is
+proven.
+
+## A damper on a filtered velocity
+
+b = 0.1 N s/m, first-order filter by backward mapping. A positive damper asks at Nyquist, where a filter makes it small:
+b > K T/2 + B/(1 + 2 tau/T). A negative one asks for slow motion, which no filter touches: b > K T/2 + |B|.
+
+{filtered}
+
+## The bounds of the field by name
+
+`hl.bounds(paddle)`; a dash where an assumption fails, and the object then holds the sentence that says which.
+
+{named}
+
+* **Colgate, Schenkel**: passivity, any passive hand; viscous damping alone.
+* **Abbott, Okamura** (2005): passivity with an encoder, min(2 b/T, 2 f_c/Delta); no delay, no virtual damping, Eq. (23.1).
+* **Diolaiti** (2006): the same with delay; `hl.diolaiti` says which region of its plane a wall lies in.
+* **Gil** (2004, 2009): stability of this plant to first order in the delay; no passivity claim, and no bound in the strict
+  sense: it errs to both sides.
+* **exact stability**: eigenvalues of the sampled loop.
+
+Minsky et al. (1990) is not among them: their inequality was not at hand in print, and the forms quoted from it differ.
+
+### Diolaiti between whole periods of delay
+
+Exact for whole periods. Between them a hand may move faster before the force changes than after, and the formula is up to
+(1 + sqrt(4/3))/2 = 1.0774 of what is passive, at a quarter of a period:
+
+{between}
+
+### Gil against the exact limit
+
+108 plants without a hand. `hl.gil_limit` refuses past 0.1.
+
+{gil}
+
+## Virtual couplers for an impedance display
+
+The stiffest spring beside the best damper that is absolutely stable, every passive hand and every environment that is
+passive at the sample rate (Llewellyn's criterion; `hl.coupler_design`):
+
+{couplers}
+
+Without delay the pairs are k_c T/2 + b_c <= b. With a delay of d + f periods a spring alone is stopped by slow motion, at
+2/((1-f) (d+1)^2 + f (d+2)^2) b/T: an environment stores and returns, which a fixed wall does not. A damper beside it makes
+up for that: at one period the best is 4/sqrt(27) b/T beside b_c = 0.282 b, more than the fixed wall that has no damper.
+
+### What the compiled scene asks for
+
+Integrated environments are not passive at the sample rate, so a scene asks for a little more than the device's 0.2 N s/m.
+k_c = 300 N/m, b_c = 0.05 N s/m and one body (`hl.port_passivity`). The exact map under a held sample asks most at the body's
+own resonance (15 Hz for 50 g), where the hold lags and the coupler damps little:
+
+{compiled}
+
+## Virtual couplers for an admittance display
+
+The dual: not the stiffest spring but the lightest body that can be shown (`hl.admittance_design`; a device of 50 g and
+0.5 N s/m, simulated only, since a paddle has no force sensor). Frequencies below Nyquist, the device taken as continuous.
+
+{admittance}
+
+A device of 50 g shows nothing lighter than several times itself: the servo lags, and only inertia pays for a lag. Too firm a
+servo is active in the hand before any environment is shown.
+"""
+
+
+def page():
+    parts = (laws, filtered, named, between, gil, couplers, compiled, admittance)
+    return TEXT.format(**{part.__name__: part() for part in parts})
+
+
+if __name__ == "__main__":
+    text = page()
+    if "--write" in sys.argv:
+        PAGE.parent.mkdir(exist_ok=True)
+        PAGE.write_text(text, "utf-8")
+    print(text)
