@@ -98,6 +98,7 @@ from .rendering.hybrid import hybrid_wall
 from .rendering.over_compensation import over_compensation
 from .rendering.predictive import predictive_wall
 from .rendering.velocity_errors import velocity_errors
+from .scene.adaptive_window import window_velocity
 from .scene.amount import Amount
 from .scene.compensation import damping_compensation
 from .scene.contact import Contact, friction
@@ -105,12 +106,13 @@ from .scene.contact_laws import impulse, micro_impulse, rigid
 from .scene.curves import Curve, track
 from .scene.device_image import device_image
 from .scene.entry_pulse import braking_pulse, friction_pulse
-from .scene.estimators import VelocityEstimate, backward_velocity, filtered_velocity, kalman_velocity, window_velocity
+from .scene.estimators import VelocityEstimate, backward_velocity, filtered_velocity
 from .scene.felt import felt_impulse, pulse_time
 from .scene.fixtures import forbidden_region, guidance, tremor_filter
 from .scene.force_laws import hunt_crossley, penalty
 from .scene.from_mechanics import from_mechanics
 from .scene.gaps import closest, gap
+from .scene.kalman import kalman_velocity
 from .scene.laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
 from .scene.mechanics import Mechanics, lagrange
 from .scene.passivity_control import passivity_controller, passivity_observer, wall_energy

@@ -13,7 +13,9 @@ from hapticlab.compiler.cost import cost
 from hapticlab.compiler.engine import load
 from hapticlab.compiler.fit import fit
 from hapticlab.errors import ProgramLimitError, SceneError, UnitsError
-from hapticlab.scene.estimators import backward_velocity, filtered_velocity, kalman_velocity, window_velocity
+from hapticlab.scene.adaptive_window import window_velocity
+from hapticlab.scene.estimators import backward_velocity, filtered_velocity
+from hapticlab.scene.kalman import kalman_velocity
 from hapticlab.scene.laws import virtual_damper, wall
 
 T, BAND, NOISE, ACCELERATION = 1e-3, 20e-6, 6e-6, 30.0
