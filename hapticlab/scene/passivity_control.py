@@ -82,13 +82,14 @@ def passivity_controller(
       share the motion and their forces add. It takes back whatever is owed, from any scene, as long as the handle moves;
       it cannot act on a handle at rest, and is felt as drag, after a contact too.
     * by a dashpot in line, ``form="parallel"``: the scene sees x - slip, and slip grows by T beta F a sample, with
-      beta = -credit/(T F^2). Both share the force and their motions add. It lets go of what is stored before that is
-      given back, at rest too; it takes nothing back outside, and a wall lies deeper by slip until the handle has left it:
-      under a steady push one that generates energy sinks. Needs ``stored``. The credit of a spring K stays
-      within one period's leak, K/2 times the square of how far the spring moved, and the slip with the handle.
+      beta = -credit/(T F^2). Both share the force and their motions add; velocity estimates in ``eom`` see the handle
+      itself. It lets go of what is stored before that is given back, at rest too; it takes nothing back outside, and a
+      wall lies deeper by slip until the handle has left it: under a steady push one that generates energy sinks. Needs
+      ``stored``. The credit of a spring K stays within one period's leak, K/2 times the square of how far the spring
+      moved, and the slip with the handle.
 
-    An Uno has time for the series form at 1 kHz, with ``stored`` or ``predict`` or ``force_max`` too; for more of them, and
-    for the parallel form, at 800 Hz.
+    An Uno has time for the series form at 1 kHz, also with one of ``stored``, ``predict``, ``force_max``, ``credit_max``;
+    with ``forget`` at 900 Hz, with several of them, and for the parallel form, at 800 Hz.
 
     A human who is active for long fills the credit of an environment that dissipates, which may then be active for as
     long without being stopped. ``forget``, ``credit_max`` and ``reset`` are the cures: they strike off credit, never debt,
@@ -143,7 +144,7 @@ def passivity_controller(
     """
     _check_scene(scene)
     lag, stored = _whole(lag), expression(stored, "stored")
-    _check(form, stored, predict, lag)
+    _check(form, scene, stored, predict, lag)
     p = {name: parameters(name, units=unit, values=given) for name, unit, given in _asked(form, locals())}
     make = _series if form == "series" else _parallel
     force, equations, watch = make(scene, p, stored, predict, lag)
@@ -244,7 +245,7 @@ def _whole(lag):
     return lag
 
 
-def _check(form, stored, predict, lag):
+def _check(form, scene, stored, predict, lag):
     if form not in FORMS:
         raise SceneError(f"form = {form!r}; needs 'series' (a damper beside the scene) or 'parallel' (a slip before it)")
     alone = {a for a in stored.atoms(sp.Function) if hasattr(type(a), "role")} <= {x(n)} and not stored.has(delay)
@@ -252,6 +253,12 @@ def _check(form, stored, predict, lag):
         raise SceneError(
             f"stored = {stored}; the parallel form lets go of what the environment stores and needs it as a function of "
             "x(n) alone: stored=hl.wall_energy() for hl.wall()"
+        )
+    if form == "parallel" and scene.coordinates:
+        moving = ", ".join(type(q).__name__ for q in scene.coordinates)
+        raise SceneError(
+            f"{scene.name} moves {moving} between samples, where a slip from sample to sample is not seen; the parallel form "
+            "needs a force of samples, and form='series' takes any scene"
         )
     if predict and (form != "series" or lag or not alone):
         raise SceneError(

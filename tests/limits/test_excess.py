@@ -67,6 +67,25 @@ def test_springs_that_bend_keep_the_inequality(late):
         assert left.min() > -1e-9  # J, of the interpolated energy
 
 
+@pytest.mark.parametrize("f", [0.2, 0.5, 0.85])
+@pytest.mark.parametrize("late", [0, 1])
+def test_springs_that_bend_keep_it_when_the_force_changes_inside_the_period(late, f):
+    for _ in range(4):
+        slopes = GENERATOR.uniform(-300, 500, 9)
+        force, energy = bending(np.linspace(-0.02, 0.02, 9), slopes)
+        b = -hl.passivity_ledger(b=0, T=T, K=(slopes.min(), slopes.max()), delay=(late + f) * T).index
+        size = GENERATOR.choice([1e-4, 1e-3, 4e-3])
+        x = np.clip(np.cumsum(size * GENERATOR.normal(size=300)), -0.0199, 0.0199)
+        x[: late + 2] = 0
+        D = np.diff(x)
+        before = GENERATOR.uniform(-1, 2, len(D)) * D  # of D, what was moved before the force changed: any part at all
+        F = np.r_[np.zeros(late + 1), force(x)][: len(x)]  # the older force of each period, then the newer
+        work = F[:-1] * before + F[1:] * (D - before)
+        paid = b / T * (before**2 / f + (D - before) ** 2 / (1 - f))
+        left = np.cumsum(work + paid) - (energy(x[1:]) - energy(x[0]))
+        assert left.min() > -1e-9  # J, of the interpolated energy
+
+
 def test_negative_slopes_cost_the_hold_nothing_and_the_stiffest_place_decides():
     """To and fro around the stiffest place draws k_max a^2/2 a period; a latch of -900 N/m elsewhere adds nothing."""
     force, _ = bending(np.array([-0.02, -0.011, -0.01, 0.01, 0.011, 0.02]), np.array([-900, -900, 400, 400, -900, -900]))

@@ -258,11 +258,15 @@ def test_float32_keeps_the_books_to_a_millionth():
     np.testing.assert_allclose(single, exact, atol=1e-6 * abs(exact).max())
 
 
-def test_it_goes_around_scenes_with_bodies_and_estimated_velocities():
+def mass_on_a_coupler():
     m, c = hl.parameters("m c", units="kg N*s/m", values=(0.05, 1.0))
     z = hl.coordinate("z", unit="m")
     pull = hl.virtual_coupler(z, K=hl.parameters("K", units="N/m", values=300), b=c)
-    body = hl.Scene(force=pull, eom=[sp.Eq(m * z.diff(t, 2), pull)], watch=["z"])
+    return hl.Scene(force=pull, eom=[sp.Eq(m * z.diff(t, 2), pull)], watch=["z"])
+
+
+def test_it_goes_around_scenes_with_bodies():
+    body = mass_on_a_coupler()
     F, seen = played(hl.passivity_controller(body, alpha_max=5))
     bare, _ = played(body)
     np.testing.assert_allclose(seen["credit"], taken(F), atol=1e-15)
@@ -274,6 +278,7 @@ def test_it_goes_around_scenes_with_bodies_and_estimated_velocities():
     [
         (lambda: hl.passivity_controller(WALL, "bogus"), SceneError, "'series'"),
         (lambda: hl.passivity_controller(WALL, "parallel"), SceneError, "stored=hl.wall_energy"),
+        (lambda: hl.passivity_controller(mass_on_a_coupler(), "parallel", stored=hl.wall_energy()), SceneError, "moves z"),
         (lambda: hl.passivity_controller(WALL, beta_max=2), SceneError, "give alpha_max"),
         (lambda: hl.passivity_controller(WALL, predict=True, lag=1), SceneError, "lag = 0"),
         (lambda: hl.passivity_controller(WALL, stored=hl.x(n)), UnitsError, "in m but"),
