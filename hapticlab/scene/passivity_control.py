@@ -109,7 +109,7 @@ def passivity_controller(
     force_max : float [N], optional
         Limit of the whole force, which the observer then knows of; the motor's.
     forget : float [s], optional
-        Time constant with which credit is forgotten.
+        Time constant with which credit is forgotten: spent at the power at which it was earned, it lasts forget*ln 2 at most.
     credit_max : float [J], optional
         Credit beyond is struck off.
     reset : float [s], optional
