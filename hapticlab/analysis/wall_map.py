@@ -2,32 +2,26 @@
 
 import time
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 
 from ..device.simulated import SimulatedPaddle
 from ..errors import AnalysisError
-from ..limits.bounds import abbott_okamura_limit, diolaiti_limit, gil_limit
-from ..limits.passivity import passivity_limit
-from ..limits.stability import stability_limit
 from ..scene.laws import wall
+from ..scene.scene import Scene
 from .lane_runs import LaneRuns
-from .wall_regions import WallMap, regions_of, under
+from .wall_limits import ChapterLimits, SceneLimits
+from .wall_regions import WallMap, beyond, regions_of
 
 #: what a map may be over beside K, and its unit
 OTHERS = {
     "B": "N*s/m", "T": "s", "delay": "s", "m": "kg", "b": "N*s/m", "coulomb": "N", "counts_per_metre": "1/m",
     "hand_m": "kg", "hand_b": "N*s/m",
 }  # fmt: skip
-#: of a paddle, a damper and a law: the limits by their authors' names
-BOUNDS = {
-    "abbott_okamura": lambda paddle, B, law: abbott_okamura_limit(B=B, law=law, delay=paddle.delay, **_device(paddle)),
-    "diolaiti": lambda paddle, B, law: diolaiti_limit(B=B, law=law, delay=paddle.delay, **_device(paddle)),
-    "gil": lambda paddle, B, law: gil_limit(paddle, B=B, law=law),
-}
 #: rows at which theory is computed, exactly; between them its lines are straight
 ROWS = 41
+#: and where each asks for a scene to be compiled
+FEW_ROWS = 9
 
 
 def wall_map(paddle, *, law="zoh", over=("K", "B"), **given):
@@ -41,7 +35,8 @@ def wall_map(paddle, *, law="zoh", over=("K", "B"), **given):
     ----------
     paddle : SimulatedPaddle
         Its hand pushes, or has a spring: else the handle bounces off and is gone.
-    law : {"zoh", "half_sample", "backward_difference", "ellis"}
+    law : {"zoh", "half_sample", "backward_difference", "ellis"} or Scene
+        A scene of its own with its stiffness unbound and its boundary at 0 has regions, and no line of passivity.
     over : ("K", other)
         other is one of B, T, delay, m, b, coulomb, counts_per_metre, hand_m, hand_b.
     **given
@@ -91,7 +86,11 @@ class WallMaps:
     points : int
         Values of an axis that is not given.
     unilateral, clamp
-        As for :func:`hapticlab.wall`.
+        As for :func:`hapticlab.wall`, of a law by name.
+    linear : Scene, optional
+        Where ``law`` is a scene: the same without its boundary, from which the line of exact stability comes.
+    parameter : str
+        Where ``law`` is a scene: the parameter that is K.
     workers : int
         Threads, -1 for one a processor.
     engine : {"auto", "llvm", "interpreter"}
@@ -101,14 +100,16 @@ class WallMaps:
 
     def __init__(
         self, paddle, *, law="zoh", over=("K", "B"), bounds=("gil",), B=0.0, duration=1.0, x=0.0, v=0.1, unusable=1e-3,
-        points=100, unilateral="gate", clamp=False, workers=-1, engine="auto", **axes,
+        points=100, unilateral="gate", clamp=False, linear=None, parameter="k", workers=-1, engine="auto", **axes,
     ):  # fmt: skip
         self._check(paddle, over, unusable)
-        self.law, self.over, self.T, self.start, self.unusable = law, tuple(over), paddle.T, (x, v), unusable
-        wrong = [name for name in bounds if name not in BOUNDS]
-        if wrong:
-            raise AnalysisError(f"bounds = {bounds}; {wrong[0]} is none of {', '.join(BOUNDS)}")
-        self.bounds = tuple(bounds)
+        self.over, self.T, self.start, self.unusable = tuple(over), paddle.T, (x, v), unusable
+        self.parameter = parameter if isinstance(law, Scene) else "k"
+        if isinstance(law, Scene):
+            self._check_scene(law)
+            scene, self.limits = law, SceneLimits(law, linear, parameter)
+        else:
+            scene, self.limits = wall(law, unilateral=unilateral, clamp=clamp)(x_o=0.0), ChapterLimits(law, bounds)
         axes |= {"B": B} if over[1] == "B" and np.ndim(B) else {}
         self.B = 0.0 if np.ndim(B) or over[1] == "B" else float(B)
         unknown = [name for name in axes if name not in self.over]
@@ -117,17 +118,19 @@ class WallMaps:
         other = self._axis(self.over[1], axes.get(over[1]), lambda: _range(paddle, self.over[1], points))
         K = self._axis("K", axes.get("K"), lambda: self._stiffnesses(paddle, other, points))
         self.axes = {"K": K, self.over[1]: other}
-        rows = other[np.unique(np.linspace(0, len(other) - 1, min(len(other), ROWS)).round().astype(int))]
+        most = FEW_ROWS if isinstance(law, Scene) and over[1] == "B" else ROWS
+        rows = other[np.unique(np.linspace(0, len(other) - 1, min(len(other), most)).round().astype(int))]
         self.rows = np.union1d(rows, [0.0]) if other[0] < 0 < other[-1] else rows  # |B| has a corner at 0
-        scene = wall(law, unilateral=unilateral, clamp=clamp)(x_o=0.0, k=1.0)  # the lanes give k and B
-        self.runs = LaneRuns(scene, duration, workers=workers, engine=engine)
+        self.runs = LaneRuns(scene(**{self.parameter: 1.0}), duration, workers=workers, engine=engine)
 
     def of(self, paddle):
         """Return the WallMap of a paddle."""
         self._check(paddle, self.over, self.unusable)
+        if paddle.T != self.T and isinstance(self.limits, SceneLimits):
+            raise AnalysisError(f"T = {paddle.T:g} s; the maps of this scene are made for {self.T:g} s: make new ones")
         begun = time.perf_counter()
         K, other = self.axes.values()
-        points = {"k": np.repeat(K, len(other)), "B": np.full(K.size * other.size, self.B)}
+        points = {self.parameter: np.repeat(K, len(other)), "B": np.full(K.size * other.size, self.B)}
         points[self.over[1].replace("hand_", "hand.")] = np.tile(other, len(K))
         if "T" not in points and paddle.T != self.T:
             points["T"] = np.full(K.size * other.size, paddle.T)
@@ -140,31 +143,22 @@ class WallMaps:
             units={"K": "N/m", self.over[1]: OTHERS[self.over[1]]}, about=self._about(paddle),
         )  # fmt: skip
         # without friction an unstable loop does not come to rest: irregular swings that happen to get smaller are no decay
-        free = ~under(found, "stability") & (other == 0 if self.over[1] == "coulomb" else paddle.coulomb == 0)
+        free = beyond(found) & (other == 0 if self.over[1] == "coulomb" else paddle.coulomb == 0)
         found = replace(found, amplitude=np.where(free, np.maximum(amplitude, last), amplitude))
         return replace(found, regions=regions_of(found, fault), seconds=time.perf_counter() - begun)
 
     def _limits(self, paddle, rows):
-        """Return the limits at values of the other quantity; None where a bound assumes what is not so."""
-        found = {name: [] for name in ("passivity", "stability", *self.bounds)}
+        """Return the limits at values of the other quantity, by name."""
+        found = []
         for value in rows.tolist():
-            here, B = changed(paddle, self.over[1], value), value if self.over[1] == "B" else self.B
-            law = self.law
-            if law == "half_sample" and here.velocity == "backward_difference":
-                law = "backward_difference"  # Eq. (23.3) with the estimate is Eq. (23.5)
-            found["passivity"].append(_passivity(here.b, here.T, B, here.delay, law))
-            found["stability"].append(stability_limit(here, law=self.law, B=B))
-            for name in self.bounds:
-                try:
-                    found[name].append(BOUNDS[name](here, B, self.law))
-                except AnalysisError:
-                    found[name].append(None)
-        return {name: tuple(limits) for name, limits in found.items()}
+            B = value if self.over[1] == "B" else self.B
+            found.append(self.limits.at(changed(paddle, self.over[1], value), B))
+        return {name: tuple(one[name] for one in found) for name in found[0]}
 
     def _stiffnesses(self, paddle, other, points):
         """Return a range of K that shows where most of the rows lose their stability."""
         rows = other[np.unique(np.linspace(0, len(other) - 1, 9).astype(int))]
-        limits = np.array([one.K for one in self._limits(paddle, rows)["stability"]])
+        limits = np.array([one.K for one in self._limits(paddle, rows).get("stability", ())])
         ends = limits[(limits > 0) & np.isfinite(limits)]
         top = 1.5 * min(ends.max(), 4 * np.median(ends)) if len(ends) else paddle.m / paddle.T**2
         return np.linspace(top / points, top, points)
@@ -189,10 +183,19 @@ class WallMaps:
         if not unusable > 0:
             raise AnalysisError(f"unusable = {unusable} m; needs an amplitude > 0")
 
+    def _check_scene(self, scene):
+        """Refuse a scene that cannot be mapped: without the parameters of the axes, or over T, on which its times depend."""
+        if self.over[1] == "T":
+            raise AnalysisError(f'over = {self.over}; a map over T is for the laws by name, as law="ellis"; else use hl.sweep')
+        for name in (self.parameter, *(["B"] if self.over[1] == "B" else [])):
+            if name not in scene.parameters:
+                known = ", ".join(scene.parameters) or "none"
+                raise AnalysisError(f"{scene.name} has no parameter {name}; it has {known}: parameter= names its stiffness")
+
     def _about(self, paddle):
         B = f", B = {self.B:g} N s/m" if self.B else ""
         x, v = self.start
-        return f"law {self.law}{B}; a contact begins at {1e3 * x:g} mm with {v:g} m/s\n{paddle}"
+        return f"{self.limits.name}{B}; a contact begins at {1e3 * x:g} mm with {v:g} m/s\n{paddle}"
 
 
 def changed(paddle, name, value):
@@ -202,16 +205,6 @@ def changed(paddle, name, value):
     if name.startswith("hand_"):
         return replace(paddle, hand=replace(paddle.hand, **{name.removeprefix("hand_"): value}))
     return replace(paddle, **{name: value})
-
-
-def _device(paddle):
-    resolution = 1 / paddle.counts_per_metre if paddle.counts_per_metre else 0.0
-    return {"b": paddle.b, "T": paddle.T, "coulomb": paddle.coulomb, "resolution": resolution}
-
-
-@lru_cache(maxsize=4096)
-def _passivity(b, T, B, delay, law):
-    return passivity_limit(b=b, T=T, B=B, delay=delay, law=law)
 
 
 def _range(paddle, name, points):

@@ -19,7 +19,7 @@ class WallMap:
     resting in the simulation too. ``stable``: beyond that limit, but at rest at the end of the simulated contact, in this
     hand, from this start. ``chatters``: a sustained or growing oscillation, larger than one encoder count. ``unusable``: one
     of more than ``unusable`` [m] half the swing, or a handle thrown off that is not back in time where the linear loop is
-    unstable, or forces that are not finite.
+    unstable or not known, or forces that are not finite.
 
     Attributes
     ----------
@@ -75,6 +75,11 @@ class WallMap:
         """Points within the passivity limit that chatter all the same, as an encoder or friction makes them: bool array."""
         return under(self, "passivity") & (self.regions >= 2)
 
+    @property
+    def inside_only(self):
+        """Whether the passivity limit says nothing about the switching at the boundary: a law with a memory, or delay."""
+        return any("not covered" in note for one in self.limits.get("passivity", ()) for note in one.assumptions)
+
     def plot(self):
         """Draw the regions with the lines of the theory; see :func:`hapticlab.analysis.wall_map_plot.plot_wall_map`."""
         return plot_wall_map(self)
@@ -94,22 +99,32 @@ class WallMap:
                 "about an encoder"
             )
         if self.undecided.any():
-            lines.append(f"  {self.undecided.sum()} points are decided by the linear theory: nothing comes back in time")
+            judge = "by the linear theory" if "stability" in self.limits else "against the wall"
+            lines.append(f"  {self.undecided.sum()} points are decided {judge}: the handle does not come back in time")
+        if self.inside_only:
+            lines.append("  passivity is that of the spring always acting: switching at the boundary is not in it")
         return "\n".join(lines)
 
     __repr__ = __str__
 
 
 def under(found, name):
-    """Return where K is at most a limit, straight lines between the rows."""
+    """Return where K is at most a limit, straight lines between the rows; nowhere where the limit is not known."""
     K, other = found.axes.values()
+    if name not in found.limits:
+        return np.zeros((len(K), len(other)), bool)
     top = np.minimum(found.limit(name), 1e300)
     return K[:, None] <= np.interp(other, found.rows, top)[None, :]
+
+
+def beyond(found):
+    """Return where the linear loop is known to be unstable."""
+    return ~under(found, "stability") & ("stability" in found.limits)
 
 
 def regions_of(found, fault):
     """Return the number of the region of every point."""
     amplitude = np.nan_to_num(found.amplitude)
-    lost = found.undecided & ~under(found, "stability")
+    lost = found.undecided & (beyond(found) | ("stability" not in found.limits))
     kinds = [fault | lost | (amplitude > found.unusable), amplitude > 0, ~under(found, "passivity")]
     return np.select(kinds, [3, 2, 1], 0)

@@ -50,7 +50,7 @@ def affine_law(law, *, T, B=0.0, parameter="k", velocity="backward_difference"):
 
     Parameters
     ----------
-    law : str, LinearLaw, Scene or callable
+    law : str, AffineLaw, LinearLaw, Scene or callable
         A name of the chapter's laws; a law that does not depend on K; a linear scene, its stiffness unbound under the
         name ``parameter``; or a function of K [N/m] that returns a LinearLaw.
     T : float
@@ -69,6 +69,8 @@ def affine_law(law, *, T, B=0.0, parameter="k", velocity="backward_difference"):
         return _named(law, T, B, velocity)
     if B:
         raise AnalysisError(f"B = {B:g} N s/m beside {_what(law)}; only a named law takes one: put the damper into the law")
+    if isinstance(law, AffineLaw):
+        return law
     if isinstance(law, LinearLaw):
         _check_period(law, T)
         parts = _parts(law)

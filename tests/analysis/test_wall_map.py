@@ -134,6 +134,36 @@ def test_an_exact_velocity_is_never_passive_and_an_estimate_is():
     assert estimated.limit("passivity")[0] == pytest.approx(100.0, rel=1e-9)  # b/T, as of Eq. (23.5)
 
 
+def test_a_scene_of_its_own():
+    """Eq. (23.8) around a wall with its boundary is felt; around the wall without one it is law ellis, Eq. (23.7)."""
+    filtered, linear = hl.force_filter(hl.wall()), hl.force_filter(hl.wall(unilateral=None))
+    axes = {"K": [100.0, 2000.0, 60000.0], "B": [0.0, 0.1], "duration": 0.2}
+    found = wall_map(BARE, law=filtered, linear=linear, **axes)
+    assert found.limit("stability")[0] == pytest.approx(hl.stability_limit(BARE, law="ellis").K, rel=1e-7)
+    assert list(found.limits) == ["stability"] and found.share("passive") == 0
+    swept = hl.sweep(filtered, BARE, duration=0.2, progress=False, v=0.1, k=axes["K"], B=axes["B"])
+    assert ((found.amplitude == swept.values) | (np.isnan(swept.values) & np.isnan(found.amplitude)))[:2].all()
+    blind = wall_map(BARE, law=filtered, over=("K", "delay"), K=[100.0, 5e4], delay=[0.0, 1e-3])
+    assert blind.limits == {} and blind.regions[0, 0] == 1 and blind.regions[1, 1] == 3
+    assert blind.plot().axes[0].get_title().startswith("filtered zoh wall")
+
+
+def test_what_no_scene_can_be_mapped_over_is_refused():
+    with pytest.raises(AnalysisError, match="a map over T is for the laws by name"):
+        wall_map(BARE, law=hl.wall(), over=("K", "T"))
+    with pytest.raises(AnalysisError, match="no parameter stiff"):
+        wall_map(BARE, law=hl.wall(), parameter="stiff")
+    maps = WallMaps(BARE, law=hl.wall(), K=[1.0, 2.0], B=[0.0, 0.1], duration=0.1)
+    with pytest.raises(AnalysisError, match="made for 0.001 s"):
+        maps.of(replace(BARE, T=2e-3))
+
+
+def test_passivity_of_a_law_with_a_memory_says_where_it_ends():
+    found = wall_map(FULL, law="ellis", K=[20.0, 40.0], B=[0.0, 0.01], duration=0.1)
+    assert found.inside_only and "switching at the boundary is not in it" in str(found)
+    assert not wall_map(FULL, K=[20.0, 40.0], B=[0.0, 0.01], duration=0.1).inside_only
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [
