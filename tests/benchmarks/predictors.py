@@ -150,7 +150,7 @@ def figure(results):
             )
         bar = made.colorbar(image, ax=axes, ticks=[-3, -2, -1, 0, 1, 2])
         bar.ax.set_yticklabels(["0.001", "0.01", "0.1", "1", "10", "100"])
-        bar.set_label("energy generated in a bounce, magnitude [% of what came in]")
+        bar.set_label("energy generated, magnitude [%]")
     return made
 
 

@@ -1,7 +1,9 @@
 """Dead-beat pairs against closed forms, and against the exact wall, whose own reference is mpmath."""
 
 import math
+from dataclasses import replace
 
+import mpmath as mp
 import numpy as np
 import pytest
 
@@ -130,3 +132,22 @@ def test_what_is_no_pair_is_refused():
         hl.deadbeat_wall(BALL, K=1e6)
     with pytest.raises(AnalysisError, match="accuracy = 1; needs a number from 1e-15 to 0.1"):
         hl.deadbeat_wall(BALL, K=500, accuracy=1)
+
+
+@pytest.mark.parametrize(("start", "speed"), [(-0.004, 0.6), (0.003, -0.5), (-0.0001, 0.05), (0.0062, -0.75)])
+def test_a_crossing_is_located_to_1e_10_s(start, speed):
+    """On the damped test bed, from outside and from inside: the time the scene finds, against mpmath's."""
+    paddle = hl.SimulatedPaddle(m=0.35, b=1.2, T=0.01, hand=BED.hand)
+    scene = hl.deadbeat_wall(paddle, K=5000)
+    lines = {type(e.lhs).__name__: e.lhs for e in scene.eom}
+    last = max(int(name[2:-2]) for name in lines if name.startswith("at") and name.endswith("_1"))
+    scene = replace(scene, watch={"crosses": lines[f"at{last}_1"]})
+    found = paddle.run(scene, duration=0.01, x=start, v=speed, progress=False, dtype="float64").crosses[0] * paddle.T
+    with mp.workdps(30):
+        M, decay, stiff = mp.mpf("0.356"), mp.mpf("1.2") / (2 * mp.mpf("0.356")), mp.mpf(500 + 5000 * (start >= 0))
+        w, rest = mp.sqrt(stiff / M - decay**2), 5 / stiff
+        a = start - rest
+        c = (speed + decay * a) / w
+        place = lambda t: mp.exp(-decay * t) * (a * mp.cos(w * t) + c * mp.sin(w * t)) + rest  # noqa: E731
+        root = mp.findroot(place, (0, paddle.T), solver="anderson", tol=1e-50)
+    assert 0 < root < paddle.T and found == pytest.approx(float(root), abs=1e-11)
