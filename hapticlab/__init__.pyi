@@ -108,7 +108,7 @@ from .scene.device_image import device_image
 from .scene.entry_pulse import braking_pulse, friction_pulse
 from .scene.estimators import VelocityEstimate, backward_velocity, filtered_velocity
 from .scene.felt import felt_impulse, pulse_time
-from .scene.fixtures import forbidden_region, guidance, tremor_filter
+from .scene.fixtures import guidance, tremor_filter
 from .scene.force_laws import hunt_crossley, penalty
 from .scene.from_mechanics import from_mechanics
 from .scene.gaps import closest, gap
@@ -215,7 +215,6 @@ __all__ = [
     "filtered_velocity",
     "fitts",
     "follow",
-    "forbidden_region",
     "force_error",
     "force_filter",
     "forced_choice",

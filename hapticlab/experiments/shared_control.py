@@ -83,7 +83,7 @@ def assistance(paddle, scenes, path, *, tremor=None, record=4.0, band=BAND, **op
     paddle : SimulatedPaddle
         With a hand that has k > 0.
     scenes : sequence of Scene
-        Such as ``hl.tremor_filter()(B=20)``, ``hl.guidance(path)(...)``, ``hl.forbidden_region()(...)``.
+        Such as ``hl.tremor_filter()(B=20)``, ``hl.guidance(path)(...)``, ``hl.library.virtual_fixture()``.
     path : object with ``at(t)``
         As ``hl.MinimumJerk``.
     tremor : callable, optional

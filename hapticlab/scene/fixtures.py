@@ -1,4 +1,4 @@
-"""Shared control: forces of an automatic controller on the handle that a hand holds too; fixtures, guidance, tremor filter."""
+"""Shared control: forces of an automatic controller on the handle that a hand holds too; guidance and tremor filter."""
 
 import math
 
@@ -8,38 +8,8 @@ from ..errors import SceneError
 from .amount import Amount
 from .parameters import T
 from .scene import Scene
-from .symbols import n, parameters, signal, t, v, when, x
+from .symbols import n, parameters, signal, t, v, x
 from .units import in_si
-
-
-def forbidden_region(law="zoh"):
-    """Virtual fixture that keeps a tool between two walls: a plain wall beyond x_high and one below x_low, Eq. (23.1).
-
-    Parameters
-    ----------
-    law : {"zoh", "backward_difference"}
-        Eq. (23.1) or (23.5), in both walls.
-
-    Returns
-    -------
-    Scene
-        With parameters k [N/m] >= 0, x_low and x_high [m] (0 unless bound); x_low <= x_high is yours to keep.
-
-    Examples
-    --------
-    >>> import hapticlab as hl
-    >>> log = hl.SimulatedPaddle(m=0.05, b=0.5, T=1e-3, hand=hl.Hand(k=50, b=2, intent=0.05)).run(
-    ...     hl.forbidden_region()(k=400, x_low="-10 mm", x_high="10 mm"), duration=1.0)
-    >>> round(1e3 * float(log.x[-1]), 3)       # the hand would be at 50 mm: 50 (50 - x) = 400 (x - 10)
-    14.444
-    """
-    taps = {"zoh": (1,), "backward_difference": (sp.Rational(3, 2), -sp.Rational(1, 2))}
-    if law not in taps:
-        raise SceneError(f"law = {law!r}; needs one of {', '.join(taps)}")
-    k, low, high = parameters("k x_low x_high", units="N/m m m", values=(None, 0, 0))
-    seen = sum(c * x(n - lag) for lag, c in enumerate(taps[law]))
-    force = when(x(n) >= high, k * (seen - high), when(x(n) <= low, k * (seen - low)))
-    return Scene(force=force, name=f"forbidden region, {law}")
 
 
 def guidance(path):

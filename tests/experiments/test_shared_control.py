@@ -48,7 +48,7 @@ def test_the_filter_leaves_a_slow_reach_alone_and_prints():
 def test_a_fixture_keeps_the_handle_out_and_guidance_leads_it():
     import sympy as sp
 
-    region = hl.forbidden_region()(k=1000, x_low=-0.01, x_high=0.01)
+    region = hl.library.virtual_fixture()(k=0, k_w=1000, x_o=0.01)
     A, w = hl.parameters("A w", units="m 1/s", values=(0.01, 2.0))
     guided = hl.guidance(A * sp.sin(w * hl.t))(k=300, b=2, F_max=0.8)
     found = assistance(PADDLE, [region, guided], REACH, tremor=lambda t: 0.0 * t)
