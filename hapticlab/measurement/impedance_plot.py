@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..drawing import FRAME, house_style, new_figure, style_of
+from ..drawing import FRAME, house_style, log_scales, new_figure, style_of
 
 
 def plot_impedance(found):
@@ -20,16 +20,21 @@ def plot_impedance(found):
         axes[1].errorbar(
             f, found.rendered.real, np.nan_to_num(found.radius), fmt="o", color="black", markersize=4, capsize=2
         )
-        axes[0].set(xscale="log", yscale="log", ylabel="|Z| [N s/m]", title="rendered impedance Z = F/v")
+        axes[0].set(ylabel="|Z| [N s/m]", title="rendered impedance Z = F/v")
+        log_scales(axes[0])
         axes[1].axhline(0, color="0.5", linewidth=0.8)
-        axes[1].set(xscale="log", ylabel="Re Z [N s/m]")
+        axes[1].set(ylabel="Re Z [N s/m]")
         axes[0].legend(loc="best", **FRAME)
         if panels == 3:
             ratio = found.transparency
             small = {"markersize": 4, "linewidth": 1}
+            if found.drive == "hand":
+                at_handle = abs(found.transparency_at_handle)
+                axes[2].plot(f, at_handle, **style_of(2), label="|Z at the handle, device included / ideal|")
+                axes[2].set_ylim(top=min(1.05 * at_handle.max(), 4), bottom=-1.5)
             axes[2].plot(f, abs(ratio), "o-", color="black", label="|Z / ideal|", **small)
             axes[2].plot(f, np.angle(ratio, deg=True) / 90, "s--", color="#c1440e", label="angle / 90 degrees", **small)
-            axes[2].set(xscale="log", ylabel="transparency [1]")
+            axes[2].set(ylabel="transparency [1]")
             axes[2].legend(loc="best", **FRAME)
         axes[-1].set(xlabel="frequency [Hz]")
     return figure

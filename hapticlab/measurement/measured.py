@@ -85,12 +85,20 @@ class MeasuredImpedance:
 
     @property
     def transparency(self):
-        """Rendered over ideal impedance, 1 where the environment is felt as it is meant."""
+        """Rendered over ideal impedance, 1 where the environment is rendered as it is meant."""
+        return self.rendered / self._meant()
+
+    @property
+    def transparency_at_handle(self):
+        """What the hand feels over the ideal: the device's own mass and damping are in the way too."""
+        return self.handle / self._meant()
+
+    def _meant(self):
         if self.ideal is None:
             raise AnalysisError(
                 "the ideal impedance is not known; give it: measured_impedance(..., ideal=lambda s: k/s + b)"
             )
-        return self.rendered / self.ideal
+        return self.ideal
 
     @property
     def stiffness(self):

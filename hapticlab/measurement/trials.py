@@ -121,7 +121,7 @@ def lead_back(paddle, place):
     if log.fault or log.tripped.any():
         raise PaddleError(
             f"the handle could not be led back to {1e3 * place:.3g} mm with {LEADS_BACK:g} N/m: "
-            f"{log.fault or 'it moved too fast'}. Hold it there by hand, or check `hapticlab doctor`."
+            f"{(log.fault or 'it moved too fast').rstrip('.')}. Hold it there by hand, or check `hapticlab doctor`."
         )
 
 

@@ -93,6 +93,16 @@ def test_a_hand_without_a_spring_holds_the_place_by_a_push():
     assert found.left_wall == 0 and found.rendered == pytest.approx(K / s * held(s, 0.0), rel=1e-9)
 
 
+def test_the_device_is_in_the_way_at_the_handle():
+    """m s + b beside k/s: 0.05 kg and 150 N/m cancel at 8.7 Hz, and the mass outweighs the wall above."""
+    found = measured_impedance(paddle(0.0), hl.wall()(k=K), frequency=[2.0, 9.0, 51.0], dtype="float64")
+    s = 2j * np.pi * found.frequency
+    assert found.transparency_at_handle == pytest.approx((0.05 * s + 0.1 + K / s * held(s, 0.0)) / (K / s), rel=1e-3)
+    figure = found.plot()
+    assert [axes.get_ylabel() for axes in figure.axes] == ["|Z| [N s/m]", "Re Z [N s/m]", "transparency [1]"]
+    assert figure.axes[-1].get_xlabel() == "frequency [Hz]" and figure.axes[0].get_xscale() == "log"
+
+
 def test_the_motor_drives_the_mechanics_and_the_scene_alike():
     found = measured_impedance(paddle(), hl.wall()(k=K, x_o=0.002), drive="motor", frequency=FREQUENCY, dtype="float64")
     s = 2j * np.pi * found.frequency

@@ -1,0 +1,89 @@
+"""One trial: where it begins, what it calls rest, and what its limits leave room for."""
+
+import pytest
+
+import hapticlab as hl
+from hapticlab.measurement.guard import guarded
+from hapticlab.measurement.trials import lead_back, run_from, speed_limit, try_wall, wall_of
+
+T = 1e-3
+
+
+def paddle(**changes):
+    return hl.SimulatedPaddle(**{"m": 0.05, "b": 0.1, "T": T, **changes})
+
+
+def scene(k, **options):
+    wall = hl.wall()(k=k, x_o=0.0)
+    return guarded(
+        hl.Scene(wall.force - hl.parameters("p", units="N", values=0.2), values=dict(wall.values)), **options
+    )
+
+
+def trial(k, made=None, longest=4.0, **options):
+    options = {"energy_max": 0.05, "speed_max": 1.0, **options}
+    return try_wall(made or paddle(), scene(k, **options), K=k, place=0.0, duration=1.0, longest=longest)
+
+
+def test_verdicts_and_how_long_they_took():
+    """The exact limit is 200.07 N/m; 4 % below it a decay shows in 1 s, 0.5 % below only in 4 s."""
+    assert (trial(50.0).stands, trial(50.0).duration) == (True, 1.0)
+    near = trial(199.0)
+    assert near.stands and near.duration == 4.0 and near.verdict == "it dies out"
+    over = trial(260.0)
+    assert not over.stands and over.verdict == "it grows" and over.frequency == pytest.approx(11.0, abs=1.0)
+    assert "chatters  it grows" in str(over) and "stands    it dies out" in str(near)
+    damped = trial(50.0, paddle(b=5.0))
+    assert damped.stands and damped.verdict == "it comes to rest"
+
+
+def test_the_guard_ends_a_trial_at_once():
+    cut = trial(5000.0, energy_max=1e-3)
+    assert not cut.stands and "the guard cut the motor after" in cut.verdict and cut.duration == 1.0
+    assert 1e-3 < cut.drawn < 2e-3
+
+
+def test_a_fault_of_the_paddle_is_told():
+    """A wall too soft for the push: the handle leaves its travel, and the board stops the motor."""
+    with hl.connect("sim://hapkit", paddle=paddle()) as board:
+        soft = board.program(scene(0.01, energy_max=9.0, speed_max=99.0))
+        found = try_wall(board, soft, K=0.01, place=0.0, duration=1.0, longest=1.0)
+    assert not found.stands and "OVER_TRAVEL" in found.verdict and found.verdict.startswith("the paddle stopped:")
+
+
+def test_a_handle_that_cannot_be_led_back_is_told():
+    pushed = paddle(hand=hl.Hand(push=20.0))
+    with hl.connect("sim://hapkit", paddle=pushed) as board:
+        with pytest.raises(hl.PaddleError, match="could not be led back to 0 mm with 20 N/m"):
+            lead_back(board, 0.0)
+        assert board.state()["force"] == 0
+
+
+def test_a_handle_on_a_board_is_led_back_before_a_trial():
+    with hl.connect("sim://hapkit", paddle=paddle()) as board:
+        board.exchange.port.handle.x = 0.03
+        lead_back(board, 0.005)
+        assert abs(board.state()["x"] - 0.005) < 1e-3
+        assert board.state()["force"] == 0
+        log = run_from(board, hl.wall()(k=10.0, x_o=0.01), 0.005, 0.05)
+    assert abs(log.x[0] - 0.005) < 1e-3
+
+
+def test_a_simulated_handle_begins_at_rest_where_it_is_told():
+    log = run_from(paddle(), hl.wall()(k=10.0), 0.007, 0.01)
+    assert log.x[0] == pytest.approx(0.007, rel=1e-6) and log.v[0] == 0
+
+
+def test_a_speed_limit_leaves_room_for_three_counts():
+    assert speed_limit(paddle(), 1.0) == 1.0
+    assert speed_limit(paddle(counts_per_metre=1 / 0.742e-3), 1.0) == pytest.approx(3 * 0.742)
+    with hl.connect("sim://hapkit") as board:
+        assert speed_limit(board, 0.001) == pytest.approx(3 * 12.8e-3, rel=1e-6)
+
+
+def test_a_law_is_a_name_or_a_scene():
+    assert wall_of("ellis").name == "ellis wall"
+    own = hl.wall("zoh", "clip")
+    assert wall_of(own) is own
+    with pytest.raises(hl.PaddleError, match="no parameter c"):
+        wall_of(own, "c")
