@@ -10,19 +10,17 @@ SENSES = ("vision", "touch", "both", "none")
 #: sights a second
 FRAME_RATE = 60.0
 #: a felt impulse is taken from the force over so long [s]
-PULSE = 0.08
+PULSE = 0.06
 #: standard deviations of where the handle is felt to be, and of where an unseen ball is expected at impact [m]
 PLACE, ANYWHERE = 0.003, 0.05
-#: what the juggler's model of a felt impulse leaves out, as a part of it
-MODEL = 0.03
+#: what the sum of sampled forces leaves out of an impulse whose first instant lies between samples, as a part of it
+MODEL = 0.05
 #: least standard deviation of a felt launch [m/s]
 FAINT = 0.02
 #: what is expected of a launch before it is seen or felt, as a part of the speed aimed at
 SURPRISE = 0.1
 #: a stroke is not changed in its last part [s]
 BALLISTIC = 0.1
-#: acceleration of the plate at impact, among those that are stable without looking [m/s^2]
-SLOWING = -5.0
 #: impacts that one juggler can feel and frames that it can see, so that noise is drawn once
 MOST = 100_000
 
@@ -43,14 +41,16 @@ class Juggler:
     arm : Arm
     vision, touch : float
         Standard deviation of a sight [m], Weber fraction of a felt impulse.
+    acceleration : float
+        Of the plate that each stroke aims at, at impact [m/s^2].
     seed : int
     """
 
-    def __init__(self, senses, height, values, arm, vision, touch, seed):
+    def __init__(self, senses, height, values, arm, vision, touch, acceleration, seed):
         self.sees, self.feels = senses in ("vision", "both"), senses in ("touch", "both")
         self.m, self.M, self.K, self.e, self.g = (values[name] for name in ("m", "M", "K", "e", "g"))
         self.kappa = (1 + self.e) * self.M / (self.m + self.M)  # ball afterwards: (1 - kappa) ball + kappa plate
-        self.arm, self.vision, self.touch = arm, vision, touch
+        self.arm, self.vision, self.touch, self.acceleration = arm, vision, touch, acceleration
         self.sight_noise, self.touch_noise = (np.random.default_rng([seed, sense]).standard_normal(MOST) for sense in (0, 1))
         self.speed = math.sqrt(2 * self.g * height)
         self.now = 0.0
@@ -87,7 +87,7 @@ class Juggler:
         self.hit, incoming = self._falls(t, y, v)
         strike = (self.speed - (1 - self.kappa) * incoming) / self.kappa
         nominal = self.speed * (2 - self.kappa) / self.kappa
-        self.goal = 0.0, min(max(strike, 0.0), 3 * nominal), SLOWING
+        self.goal = 0.0, min(max(strike, 0.0), 3 * nominal), self.acceleration
 
     def _look(self, seen):
         """Return time, place and velocity of the last launch that was seen or felt, or None."""
@@ -119,7 +119,8 @@ class Juggler:
         plate, after = (
             np.mean(seen.v[k - wide : k]) - (seen.F[k] - seen.F[k - wide]) / (wide * T * self.K) for k in (before, last)
         )
-        impulse = max(seen.F[before:last].sum() * T - self.M * (after - plate), 0.0)
+        half = wide // 2  # both velocities are those of the middle of their spans
+        impulse = max(seen.F[before - half : last - half].sum() * T - self.M * (after - plate), 0.0)
         gain = 1 / self.m - (self.m + self.M) / ((1 + self.e) * self.m * self.M)  # impulse -> launch beyond the plate's
         slip = 1 + self.touch * self.touch_noise[impact % MOST]
         yield (1.0, 0.0), seen.x[begun], PLACE

@@ -76,7 +76,8 @@ class Juggle:
         return figure
 
 
-def juggle(paddle, *, senses="both", height=0.2, duration=12.0, vision=0.02, touch=0.07, reaction=REACTION, seed=0, **values):
+def juggle(paddle, *, senses="both", height=0.2, duration=12.0, vision=0.02, touch=0.07, acceleration=-5.0,
+           reaction=REACTION, seed=0, **values):  # fmt: skip
     """Let a simulated juggler keep a ball up on a simulated paddle, by sight, by touch, by both, or by neither.
 
     The juggler strikes once a flight, slowing down at impact, and plans each stroke from where and when the ball will
@@ -101,6 +102,9 @@ def juggle(paddle, *, senses="both", height=0.2, duration=12.0, vision=0.02, tou
         Standard deviation of each sight of the ball [m].
     touch : float
         Weber fraction of a felt impulse.
+    acceleration : float
+        Of the plate at impact that strokes aim at [m/s^2]; :func:`multipliers` says for which a juggle is stable without
+        looking.
     reaction : float
         [s]
     seed : int
@@ -129,7 +133,7 @@ def juggle(paddle, *, senses="both", height=0.2, duration=12.0, vision=0.02, tou
     values = dict(scene.values)
     carried = paddle.m + hand.m + (values["M"] if senses != "vision" else 0.0)
     arm = Arm(m=carried, b=paddle.b, b_hand=hand.b, k=hand.k)
-    juggler = Juggler(senses, height, values, arm, vision, touch, seed)
+    juggler = Juggler(senses, height, values, arm, vision, touch, acceleration, seed)
     held = replace(paddle, hand=replace(hand, intent=Reacting(plan=juggler.plan, reaction=reaction)))
     log = held.run(scene, duration=duration, progress=False, method="taylor")
     impacts, heights = bounces(log)
