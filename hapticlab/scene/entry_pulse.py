@@ -67,7 +67,7 @@ def braking_pulse(
     if impulse is not None:
         taken = _positive(impulse, "N*s", "impulse")
     else:
-        taken = _positive(part, "1", "part") * _positive(mass, "kg", "mass") * sp.Max(moving, 0)
+        taken = _part(part) * _positive(mass, "kg", "mass") * sp.Max(moving, 0)
     force = taken / (periods * T)
     force = force if force_max is None else sp.Min(force, _positive(force_max, "N", "force_max"))
     entered, inside = _crossing(scene, x_o)
@@ -147,6 +147,13 @@ def _positive(given, unit, name):
     if number.is_number and not number > 0:
         raise SceneError(f"{name} = {float(number):g} {unit}; a pulse needs {name} > 0")
     return value
+
+
+def _part(given):
+    part = _positive(given, "1", "part")
+    if part.is_number and part > 1:
+        raise SceneError(f"part = {float(part):g}; more than the whole momentum throws the handle back: needs part <= 1")
+    return part
 
 
 def _whole(periods):
