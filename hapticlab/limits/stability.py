@@ -22,6 +22,8 @@ NOTES = (
     "ignores encoder, noise, Coulomb friction, force limit and the hand's push; a unilateral wall can chatter earlier",
 )
 ESTIMATED = "the paddle estimates v by backward difference, so half_sample is the law backward_difference, Eq. (23.5)"
+#: how far from 1 the largest |pole| at a limit may be; a law of hundreds of samples has a polynomial of no digits
+ON_CIRCLE = 1e-6
 #: angles [rad] at which slow poles are looked for: from a handle of 1e14 kg to where cos(theta) has digits enough
 SLOW_ANGLES = np.geomspace(1e-11, 0.05, 400)
 
@@ -81,6 +83,10 @@ def stability_limit(paddle, *, law="zoh", B=0.0, parameter="k"):
         return Limit(math.inf, None, KIND, "no stiffness moves a pole out of the unit circle", notes)
     first = stable.index(False)
     K, theta = edges[first - 1] if first else (0.0, None)
+    if first and abs(abs(1 + loop.poles(K)).max() - 1) > ON_CIRCLE:
+        raise AnalysisError(
+            f"{loop.law.name}: {len(loop.law.A)} states, whose polynomial loses its digits; read closed_loop_poles(K=...), K by K"
+        )
     reason = "a pole leaves the unit circle" if first else _why_none(paddle, law, B, any(stable))
     again = next((i for i in range(first, len(stable)) if stable[i]), None)
     if again is not None:  # such a wall has to be made stiff before it is touched

@@ -33,6 +33,7 @@ def test_lanes_measure_what_a_sweep_measures(paddle):
 
 def test_lanes_of_many_structures():
     """Delays of none, a part, one and more periods, with friction and without: a program each, and all at their places."""
+    pytest.importorskip("llvmlite")  # friction, over many lanes
     delay, coulomb = np.array([0.0, 0.4e-3, 1e-3, 1.4e-3]), np.array([0.0, 0.02, 0.0, 0.02])
     paddle = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=HAND)
     amplitude, _, _ = LaneRuns(SCENE, 0.3).chatter(paddle, {"k": K[::-1], "delay": delay, "coulomb": coulomb})
@@ -45,6 +46,7 @@ def test_lanes_of_many_structures():
 @pytest.mark.parametrize("law", ["zoh", "half_sample"])
 def test_another_period_by_similarity(law):
     """Masses by T squared, dampers by T: sample for sample the motion of a paddle of that period, in its own program."""
+    pytest.importorskip("llvmlite")  # friction, over many lanes
     scene = wall(law)(x_o=0.0, k=1.0)
     paddle = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, delay=0.6e-3, coulomb=0.01, hand=HAND)
     runs = LaneRuns(scene, 0.5)

@@ -34,6 +34,7 @@ def test_regions_of_a_bare_handle_are_the_closed_forms():
 
 
 def test_every_point_is_what_a_single_run_shows():
+    pytest.importorskip("llvmlite")  # friction, over many lanes
     K, B = np.array([200.0, 900.0, 2500.0]), np.array([0.0, 0.1])
     found = wall_map(FULL, K=K, B=B, duration=0.5)
     for i, k in enumerate(K):
@@ -65,6 +66,7 @@ def test_the_corner_at_no_virtual_damper_is_on_the_line():
 
 
 def test_a_map_over_T_is_the_maps_of_every_T():
+    pytest.importorskip("llvmlite")  # friction, over many lanes
     K, T = np.array([150.0, 600.0, 1500.0]), np.array([0.5e-3, 1e-3, 2e-3])
     found = wall_map(replace(FULL, delay=0.3e-3), over=("K", "T"), K=K, T=T, B=0.02, duration=0.3, workers=1)
     for j, period in enumerate(T):

@@ -226,3 +226,17 @@ def test_estimated_velocities(velocity):
         whole = np.vstack([top, np.hstack([np.outer(law.B, x), law.A])])
         radius.append(np.abs(np.linalg.eigvals(whole)).max())
     assert radius[0] < 1 < radius[1]
+
+
+@pytest.mark.parametrize("m", [0.045, 1e5])
+@pytest.mark.parametrize("late", [1, 8, 40])
+def test_a_delay_in_the_law_is_a_delay_of_the_paddle(late, m):
+    law = lambda K: LinearLaw.of_taps([0.0] * late + [K], T=T)  # noqa: E731
+    one, other = stability_limit(paddle(m=m), law=law), stability_limit(paddle(m=m, delay=late * T))
+    assert one.K == pytest.approx(other.K, rel=1e-12) and one.frequency == pytest.approx(other.frequency, rel=1e-12)
+
+
+def test_a_law_of_too_many_samples_is_refused_not_guessed():
+    weights = np.random.default_rng(0).uniform(size=80)
+    with pytest.raises(AnalysisError, match="79 states, whose polynomial loses its digits"):
+        stability_limit(paddle(), law=lambda K: LinearLaw.of_taps(K * weights / weights.sum(), T=T))
