@@ -54,7 +54,7 @@ def test_diolaiti_is_up_to_eight_percent_too_high_between():
 
 def test_gil_is_near_the_exact_limit_where_it_does_not_refuse():
     generator, kept, errors = np.random.default_rng(0), 0, []
-    for _ in range(100):
+    for _ in range(40):
         damper = 10 ** generator.uniform(-2, 0.5)
         hand = hl.Hand(m=0.05, b=10 ** generator.uniform(-2, 0.5), k=10 ** generator.uniform(0, 3))
         plant = paddle(
@@ -68,7 +68,7 @@ def test_gil_is_near_the_exact_limit_where_it_does_not_refuse():
             continue
         kept += 1
         errors.append(abs(limit.K / hl.stability_limit(plant, B=B).K - 1))
-    assert kept > 40 and max(errors) < 0.18
+    assert kept > 15 and max(errors) < 0.18
     assert gil_limit(paddle(m=5.0)).K == pytest.approx(hl.stability_limit(paddle(m=5.0)).K, rel=1e-5)  # slow: exact
     exact = hl.stability_limit(paddle(m=5.0), B=0.05)
     assert gil_limit(paddle(m=5.0), B=0.05).frequency == pytest.approx(exact.frequency, rel=1e-3)

@@ -28,10 +28,10 @@ def test_without_delay_it_is_eq_23_10(b_c):
 
 def stiffest(b_c, periods):
     """The same border by brute force: whole delays, every frequency, bisection in k_c on Llewellyn's own expression."""
-    theta = np.linspace(1e-3, np.pi, 20001)
+    theta = np.linspace(1e-3, np.pi, 6001)
     need = (1 - np.cos((periods + 1) * theta)) / (2 * b)
     low, high = 0.0, 2 * b / T
-    for _ in range(50):
+    for _ in range(36):
         k = (low + high) / 2
         stands = np.all((1 / (b_c + k * T / (1 - np.exp(-1j * theta)))).real >= need)
         low, high = (k, high) if stands else (low, k)
@@ -42,9 +42,9 @@ def stiffest(b_c, periods):
 def test_whole_delays_against_brute_force(periods):
     for b_c in (0.02, 0.09):
         assert coupler_design(paddle(periods), b_c=b_c).k_c == pytest.approx(stiffest(b_c, periods), rel=1e-6)
-    best = minimize_scalar(lambda b_c: -stiffest(b_c, periods), bounds=(0.0, b), method="bounded", options={"xatol": 1e-7})
+    best = minimize_scalar(lambda b_c: -stiffest(b_c, periods), bounds=(0.0, b), method="bounded", options={"xatol": 1e-5})
     design = coupler_design(paddle(periods))
-    assert design.k_c == pytest.approx(-best.fun, rel=1e-6) and design.b_c == pytest.approx(best.x, rel=1e-2)
+    assert design.k_c == pytest.approx(-best.fun, rel=1e-6) and design.b_c == pytest.approx(best.x, rel=2e-2)
 
 
 def test_one_period_of_delay_in_closed_form():
@@ -112,7 +112,7 @@ def test_the_border_is_where_a_passive_pair_first_asks_for_more(delay):
 
 def test_a_fixed_proxy_is_the_wall_and_never_asks_for_more():
     for delay in (0.0, 0.4, 1.0, 3.2):
-        border = coupler_design(paddle(delay)).border(points=9)
+        border = coupler_design(paddle(delay)).border(points=4)
         for b_c, k_c in border.T:
             assert required_damping(K=max(k_c, 0), T=T, B=b_c, delay=delay * T) <= b * (1 + 1e-8)
 

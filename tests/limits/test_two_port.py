@@ -21,18 +21,18 @@ def passive(generator, count):
 
 def test_the_criterion_says_whether_some_passive_environment_makes_the_hand_feel_a_negative_resistance():
     generator, seen = np.random.default_rng(8), []
-    for _ in range(300):
+    for _ in range(150):
         h = generator.normal(size=(2, 2)) + 1j * generator.normal(size=(2, 2))
         h[[0, 1], [0, 1]] = abs(h[[0, 1], [0, 1]].real) + 1j * h[[0, 1], [0, 1]].imag
         port = flat(h)
-        felt = port.felt(np.ones(20000), passive(generator, 20000)).real.min()
+        felt = port.felt(np.ones(4000), passive(generator, 4000)).real.min()
         least, good = port.least_resistance([1.0])[0], port.criterion([1.0])[0] >= 0
         assert felt >= least - 1e-9 * abs(h[0, 0])
         assert good == (least >= 0)
         if abs(least) > 0.3 * h[0, 0].real:  # far from the border the random environments decide as well
             assert good == (felt >= 0)
         seen.append(good)
-    assert 30 < sum(seen) < 270
+    assert 15 < sum(seen) < 135
 
 
 def test_the_least_resistance_is_reached_by_a_reactance():
