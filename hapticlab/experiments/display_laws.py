@@ -72,8 +72,8 @@ class Admittance:
 def display_motion(paddle, display, *, duration, sensor_delay=0):
     """Let the hand of a simulated paddle move a display, and return (t, x, v, f_h), each an array.
 
-    The plant is exact between samples. f_h is what a force sensor between hand and handle reads: the hand's spring and
-    damper at the sample, less what its mass took in the period before, m_h (v[n] - v[n-1])/T.
+    The plant is exact between samples. f_h is what a force sensor between hand and handle reads, which averages over the
+    period that ends at the sample: the hand's spring and damper (by the trapezoidal rule), less m_h (v[n] - v[n-1])/T.
 
     Parameters
     ----------
@@ -90,11 +90,11 @@ def display_motion(paddle, display, *, duration, sensor_delay=0):
         raise PaddleError("the hand of this comparison moves by an intent and has no noise; give hl.Hand(k=..., intent=...)")
     handle, memory = Handle(paddle), display.begin()
     intent = np.asarray(hand.samples(ticks, T))
-    rate = np.diff(intent) / T
-    rows, measured, before = np.zeros((ticks, 4)), [0.0] * (sensor_delay + 1), handle.v
+    rows, measured, before = np.zeros((ticks, 4)), [0.0] * (sensor_delay + 1), (handle.x, handle.v)
     for tick in range(ticks):
-        muscle = hand.push + hand.k * (intent[tick] - handle.x) + hand.b * (rate[tick] - handle.v)
-        f_h, before = muscle - hand.m * (handle.v - before) / T, handle.v
+        now, last = (handle.x, handle.v), max(tick - 1, 0)
+        f_h = hand.push + sensed(hand, now, before, (intent[tick], intent[last]), T)
+        before = now
         measured = [f_h, *measured[:-1]]
         F, memory = display.force(memory, handle.x, handle.v, measured[-1], T)
         rows[tick] = tick * T, handle.x, handle.v, f_h
@@ -104,12 +104,19 @@ def display_motion(paddle, display, *, duration, sensor_delay=0):
     return rows.T
 
 
+def sensed(hand, now, before, intent, T):
+    """Return the mean force [N] of a hand on the handle over a period, from (x, v) and the intents at its end and begin."""
+    (x, v), (x_0, v_0) = now, before
+    pull = hand.k * (sum(intent) - x - x_0) / 2 + hand.b * ((intent[0] - intent[1]) / T - (v + v_0) / 2)
+    return pull - hand.m * (v - v_0) / T
+
+
 def growth(paddle, display):
     """Return how much the slowest motion of display, handle and hand in contact grows in one period, at rest inside the wall.
 
     The largest magnitude of the eigenvalues of one period; at least 1 is unstable. Friction, which only helps, and the
-    force limit are left out. One period is linear in place and velocity of handle and body and the velocity before, so the
-    steps along each of these are its columns.
+    force limit are left out. One period is linear in place and velocity of handle and body, and those of the handle before, so
+    the steps along each of these are its columns.
 
     Parameters
     ----------
@@ -131,15 +138,14 @@ def growth(paddle, display):
     inside = 1.0  # [m], so deep that no step leaves the wall; the motion is linear, and this is taken off again
 
     def step(state):
-        handle.x, handle.v, before, *memory = state
-        muscle = -hand.k * (handle.x - inside) - hand.b * handle.v
-        f_h = muscle - hand.m * (handle.v - before) / T
-        v = handle.v
-        F, memory = display.force(tuple(memory), handle.x, v, f_h, T)
+        x, v, x_0, v_0, *memory = state
+        f_h = sensed(hand, (x - inside, v), (x_0 - inside, v_0), (0.0, 0.0), T)
+        F, memory = display.force(tuple(memory), x, v, f_h, T)
+        handle.x, handle.v = x, v
         handle.step(F)
-        return np.array([handle.x, handle.v, v, *memory])
+        return np.array([handle.x, handle.v, x, v, *memory])
 
-    rest = np.array([inside, 0.0, 0.0, *(inside, 0.0)[: len(display.begin())]])
+    rest = np.array([inside, 0.0, inside, 0.0, *(inside, 0.0)[: len(display.begin())]])
     start = step(rest)
     matrix = np.array([step(rest + change) - start for change in np.eye(len(rest)) / 2]).T * 2
     return float(np.abs(np.linalg.eigvals(matrix)).max())

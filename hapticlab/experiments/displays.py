@@ -7,7 +7,7 @@ import numpy as np
 
 from ..device.hand import require
 from ..device.hands import hand as named_hand
-from ..drawing import FRAME, house_style, new_figure, style_of
+from ..drawing import house_style, new_figure, scale_axis, style_of
 from ..errors import AnalysisError
 from .display_laws import Admittance, Impedance, display_motion, largest_stiffness
 
@@ -130,8 +130,10 @@ class Displays:
                           label=name)  # fmt: skip
                 if 0 < limit < math.inf:
                     axes.axvline(limit, color=style["color"], linestyle=":", linewidth=1.2, label=f"{name}: stable below")
-            axes.set(xscale="log", xlabel="stiffness of the wall k [N/m]", ylabel="felt stiffness / k [1]", ylim=(0, 1.3))
-            axes.legend(loc="lower left", **FRAME)
+            span = [row.wanted for row in self.rows]
+            scale_axis(axes, "x", np.geomspace(min(span), max(*span, 10 * min(span)), 3))
+            axes.set(xlabel="stiffness of the wall k [N/m]", ylabel="felt stiffness / k [1]", ylim=(0, 1.3))
+            figure.legend(loc="outside upper center", ncols=2)
         return figure
 
 

@@ -121,7 +121,7 @@ class Fitts:
             line = f"{1e3 * intercept:.3g} ms + {1e3 * slope:.3g} ms/bit"
             axes.plot(span, 1e3 * (intercept + slope * span), **style_of(1), label=line)
             axes.set(xlabel="index of difficulty [bit]", ylabel="movement time [ms]", ylim=(0, None))
-            axes.legend(**FRAME)
+            axes.legend(loc="lower right", **FRAME)
         return figure
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..device.person import Person
-from ..drawing import FRAME, house_style, new_figure
+from ..drawing import house_style, new_figure, scale_axis
 from ..errors import AnalysisError
 from .observers import PersonObserver, SimulatedObserver
 from .psychometric import psychometric
@@ -111,9 +111,10 @@ class ForcedChoice:
             if self.estimate is not None:
                 at = 100 * math.expm1(self.estimate)
                 axes.axhline(at, color="#1f6fb4", linestyle="--", label=f"threshold {at:.3g} %")
-            axes.set(xlabel="trial", ylabel=f"difference in {self.task} [%]", yscale="log")
-            axes.yaxis.set_major_formatter("{x:g}")
-            axes.legend(**FRAME)
+            axes.set(xlabel="trial", ylabel=f"difference in {self.task} [%]")
+            if level.min() > 0:
+                scale_axis(axes, "y", np.geomspace(level.min(), max(level.max(), 10 * level.min()), 3))
+            figure.legend(loc="outside upper center", ncols=3)
         return figure
 
 

@@ -7,12 +7,14 @@ import numpy as np
 
 from ..device.hand import require
 from ..device.reacting import REACTION, Reacting
-from ..drawing import FRAME, house_style, new_figure, style_of
+from ..drawing import house_style, new_figure, style_of
 from ..errors import AnalysisError, PaddleError
 from ..library.contacts import ball_on_the_paddle
 from ..records import Telemetry
 from .arm import Arm
 from .juggler import SENSES, Juggler
+
+WORDS = {"vision": "sight", "touch": "touch", "both": "sight and touch", "none": "neither sight nor touch"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +57,7 @@ class Juggle:
         return float(e[1:] @ e[:-1] / (e[:-1] @ e[:-1]))
 
     def __str__(self):
-        head = f"{self.senses}: {len(self.impacts)} impacts in {self.log.t[-1]:.3g} s"
+        head = f"by {WORDS[self.senses]}: {len(self.impacts)} impacts in {self.log.t[-1]:.3g} s"
         if len(self.heights) < 6:
             return f"{head}; the ball was lost"
         return (
@@ -71,8 +73,8 @@ class Juggle:
             axes.plot(self.log.t, 1e3 * self.log.y, **style_of(0), label="ball")
             axes.plot(self.log.t, 1e3 * self.log.x, **style_of(1), label="handle")
             axes.axhline(1e3 * self.height, color="#8a8a8a", linestyle=":", label="height aimed at")
-            axes.set(xlabel="time [s]", ylabel="height [mm]", title=self.senses)
-            axes.legend(loc="upper right", ncols=3, **FRAME)
+            axes.set(xlabel="time [s]", ylabel="height [mm]")
+            figure.legend(loc="outside upper center", ncols=3, title=f"juggled by {WORDS[self.senses]}")
         return figure
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..drawing import FRAME, house_style, new_figure, style_of
+from ..drawing import house_style, new_figure, scale_axis, style_of
 from ..errors import AnalysisError
 from .curves import SHAPES, Psychometric
 from .likelihood import Likelihood
@@ -59,16 +59,16 @@ class PsychometricFit:
                 span = np.linspace(self.levels.min(), self.levels.max(), 300)
             else:
                 span = np.geomspace(self.levels[self.levels > 0].min() / 2, self.levels.max() * 1.2, 300)
-                axes.set_xscale("log")
+                scale_axis(axes, "x", np.geomspace(span[0], max(span[-1], 10 * span[0]), 3))
             axes.plot(span, self.curve(span), **style_of(0), label=f"{self.curve.shape} curve")
             size = 20 + 160 * self.trials / self.trials.max()
             axes.scatter(self.levels, self.right / self.trials, size, facecolors="none", edgecolors="#1f6fb4",
-                         label=f"answers, {int(self.trials.max())} trials in the largest circle")  # fmt: skip
+                         label=f"answers, {int(self.trials.max())} in the largest circle")  # fmt: skip
             at, (low, high) = self.curve.threshold, self.interval["threshold"]
             axes.errorbar([at], [float(self.curve(at))], xerr=[[max(at - low, 0)], [max(high - at, 0)]], fmt="s", capsize=4,
                           color="#c1440e", label=f"threshold, {100 * self.confidence:g} % interval")  # fmt: skip
-            axes.set(xlabel=f"level [{unit}]", ylabel="part of right answers", ylim=(-0.03, 1.03))
-            axes.legend(loc="lower right", **FRAME)
+            axes.set(xlabel=f"level [{unit}]", ylabel="part of right answers", ylim=(-0.05, 1.05))
+            figure.legend(loc="outside upper center", ncols=2)
         return figure
 
 
