@@ -6,6 +6,10 @@ from ..drawing import axis_label, house_style, new_figure, outline, scale_axis
 
 #: light to dark, so that grey print keeps their order
 COLOURS = ("#eef4d4", "#a9cfa0", "#4f93a8", "#2b2f5c")
+#: what an axis of a map alone may be
+LABELS = {
+    "hand_m": "mass of the hand", "hand_b": "damping of the hand", "coulomb": "Coulomb friction", "counts_per_metre": "encoder",
+}  # fmt: skip
 SHADES = np.array([[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in COLOURS])
 LINES = {
     "passivity": ("passivity, any passive hand", "black", (0, (6, 2))),
@@ -43,7 +47,7 @@ class WallMapPicture:
     def __init__(self, found, every=False):
         (across, K), (up, other) = found.axes.items()
         self.x_scale, x_label = axis_label(across, found.units[across])
-        self.y_scale, y_label = axis_label(up, found.units[up])
+        self.y_scale, y_label = axis_label(LABELS.get(up, up), found.units[up])
         self.edge = K[-1]
         with house_style():
             self.figure = new_figure(height=5.6)

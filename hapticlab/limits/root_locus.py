@@ -196,7 +196,8 @@ def plot_root_locus(locus):
             mark = {"marker": "D", "linestyle": "none", "color": STYLES[1]["color"], "markersize": 8}
             axes.plot([z.real, z.real], [z.imag, -z.imag], label=text, **mark)
         axes.set(xlim=(-1.4, 1.4), ylim=(-1.2, 1.2), aspect="equal", xlabel="Re z", ylabel="Im z")
-        axes.set_title(f"law {locus.name}, T = {1e3 * locus.T:g} ms", fontsize="small")
+        grid = "dotted: equal damping ratio, equal natural frequency"
+        axes.set_title(f"law {locus.name}, T = {1e3 * locus.T:g} ms; {grid}", fontsize="small")
         figure.legend(fontsize="small", loc="outside lower center", ncols=2)
     return figure
 

@@ -36,6 +36,19 @@ def test_the_map_follows_its_sliders(view):
     assert "6 contacts in" in view.text.value
 
 
+def test_a_slider_of_the_period_compiles_nothing():
+    pytest.importorskip("ipywidgets")
+    pytest.importorskip("matplotlib")
+    moved = explore(PADDLE, sliders={"T": (0.5e-3, 2e-3), "hand_push": (0.5, 2.0)}, **SMALL)
+    assert moved.wait(60)
+    kept = set(moved.maps.runs._loaded)
+    moved.set(T=0.75e-3, hand_push=1.5)
+    assert moved.wait(60) and moved.paddle.T == pytest.approx(0.75e-3) and set(moved.maps.runs._loaded) == kept
+    expected = hl.wall_map(moved.paddle, **SMALL)
+    np.testing.assert_array_equal(moved.map.regions, expected.regions)
+    np.testing.assert_array_equal(moved.map.limit("stability"), expected.limit("stability"))
+
+
 def test_no_queue_piles_up(view):
     """While the first map is held up, a hundred places of the slider pass; one map more is made, of the last of them."""
     made, go, begun, draw = [], threading.Event(), threading.Event(), view.maps.of
