@@ -98,9 +98,10 @@ def test_a_window_by_end_fit_is_the_published_loop(most):
 
 
 def test_a_window_by_best_fit_is_the_line_of_least_squares():
-    expected = windows_one_after_the_other(PATH, BAND, 5, best_line)
+    path = PATH[180:330]
+    expected = windows_one_after_the_other(path, BAND, 5, best_line)
     # polyfit solves by a factorization: 1e-12 of a displacement of 1e-4 m per period
-    found = estimated(window_velocity(band=BAND, most=5, fit="best"))
+    found = estimated(window_velocity(band=BAND, most=5, fit="best"), path)
     np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-9)
 
 
@@ -179,7 +180,7 @@ def test_every_estimator_runs_in_the_firmware_core():
         filtered_velocity(tau=4e-3), window_velocity(band=BAND, most=6), window_velocity(band=BAND, most=4, fit="best"),
         kalman_velocity(acceleration=30, noise=NOISE), kalman_velocity(acceleration=30, noise=NOISE, steady=False),
     ):  # fmt: skip
-        path = PATH.astype(np.float32).astype(float)
+        path = PATH[200:320].astype(np.float32).astype(float)
         there, here = (estimated(estimate, path, "float32", engine) for engine in ("vm", "interpreter"))
         np.testing.assert_array_equal(there, here)
         close = np.abs(there - estimated(estimate, path)) < 2e-5
@@ -300,12 +301,11 @@ DEAR = [
 
 @pytest.mark.parametrize(("estimate", "period", "named"), DEAR)
 def test_a_scene_that_does_not_fit_the_uno_names_the_cheaper_estimate(estimate, period, named):
-    """A wall of ours, or any scene that holds one, watched or not; and what is named does fit."""
+    """Any scene that holds one, and watches it; and what is named does fit a wall of ours."""
     k, B = OWN
     scene = hl.Scene(k * x(n) + B * estimate.velocity, eom=estimate.eom, watch={"speed": estimate.velocity})
-    for dear in (wall("half_sample", velocity=estimate)(k=300, B=0.1), scene):
-        with pytest.raises(ProgramLimitError, match=f"fits (with every=.*, or )?with velocity='{named}'"):
-            fit(dear, T=period)
+    with pytest.raises(ProgramLimitError, match=f"fits (with every=.*, or )?with velocity='{named}'"):
+        fit(scene, T=period)
     cheaper = next(e for e in estimate.cheaper if e.name == named)
     assert fit(wall("half_sample", velocity=cheaper)(k=300, B=0.1), T=period).fits
 
