@@ -82,8 +82,8 @@ def digital_wall(paddle, *, K, B=0.0, hand=None, velocity="handle", clamp=False,
     with the model and the forces under way. A push the hand is known to have, ``push``, moves the rest to where it would
     be on the spring K, for k1 alone is softer.
 
-    The coefficients belong to the paddle's T: a scene for another period is another design. At crossings of the boundary,
-    which fall between samples, the wall still leaks; :func:`deadbeat_wall` does not.
+    The coefficients belong to the paddle's T. At another period, 0.1 % off or more, the force is no number, and the motor
+    off. At crossings of the boundary, which fall between samples, the wall still leaks; :func:`deadbeat_wall` does not.
 
     Parameters
     ----------

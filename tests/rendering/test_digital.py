@@ -99,6 +99,13 @@ def test_a_chosen_velocity_and_a_limit_are_obeyed():
         hl.digital_wall(1.0, K=600.0)
 
 
+@pytest.mark.parametrize("make", [hl.digital_wall, hl.predictive_wall, hl.deadbeat_wall])
+def test_at_another_period_there_is_no_force_but_a_fault(make):
+    scene = make(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), K=500.0)
+    log = hl.SimulatedPaddle(m=0.05, b=0.1, T=1.1e-3).run(scene, duration=0.02, x=1e-3, progress=False)
+    assert log.fault is not None and not log.F.any()
+
+
 @pytest.mark.parametrize("make", [hl.digital_wall, hl.predictive_wall])
 def test_they_run_bit_for_bit_in_the_firmware_core_and_fit_the_uno_at_1_khz(make):
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, counts_per_metre=1e5)
