@@ -7,6 +7,7 @@ import hapticlab as hl
 from hapticlab.analysis.driven import by_loop, following
 from hapticlab.records import Telemetry
 
+pytest.importorskip("llvmlite")  # some ten thousand ticks
 T = 1e-3
 
 

@@ -7,6 +7,7 @@ import pytest
 
 import hapticlab as hl
 
+pytest.importorskip("llvmlite")  # some ten thousand ticks
 M, B, T, PUSH = 0.05, 0.3, 1e-3, 1.0
 
 

@@ -9,6 +9,7 @@ from hapticlab.measurement.excitation import Excitation
 from hapticlab.measurement.impedance import measured_impedance
 from hapticlab.measurement.signals import lines_of
 
+pytest.importorskip("llvmlite")  # some ten thousand ticks
 T, K, DELAY = 1e-3, 150.0, 3e-4
 HAND = hl.Hand(m=0.02, b=1.0, k=200.0)
 FREQUENCY = [3.0, 11.0, 51.0, 151.0]

@@ -6,6 +6,7 @@ import hapticlab as hl
 from hapticlab.measurement.guard import guarded
 from hapticlab.measurement.trials import lead_back, run_from, speed_limit, try_wall, wall_of
 
+pytest.importorskip("llvmlite")  # some ten thousand ticks
 T = 1e-3
 
 
@@ -41,6 +42,12 @@ def test_the_guard_ends_a_trial_at_once():
     cut = trial(5000.0, energy_max=1e-3)
     assert not cut.stands and "the guard cut the motor after" in cut.verdict and cut.duration == 1.0
     assert 1e-3 < cut.drawn < 2e-3
+
+
+def test_a_buzz_of_one_encoder_count_does_not_stand():
+    """Between two counts of 0.5 mm the wall's force jumps by 0.5 N, over a push of 0.2 N that friction of 0.02 N helps."""
+    coarse = trial(1000.0, paddle(b=1.0, counts_per_metre=1 / 0.5e-3, coulomb=0.02), longest=1.0, speed_max=2.0)
+    assert not coarse.stands and coarse.verdict == "it buzzes by one encoder count"
 
 
 def test_a_fault_of_the_paddle_is_told():
