@@ -146,18 +146,20 @@ def _windows(log, window):
 def _motion(log, windows, own):
     """Return the model: m, b, k of the hand, then the resting place, x and v at the begin of each window.
 
-    A handle with friction is held by it before a push: v = 0.
+    A handle with friction is held by it before a push, wherever within the friction's reach the hand would rest: it
+    stays at x until the push, and has no v.
     """
+    held = round(BEFORE / log.T) if own["coulomb"] else 0
 
     def motion(p):
         body = {"m": own["m"] + p[0], "b": own["b"] + p[1], "k": p[2], "coulomb": own["coulomb"], "delay": own["delay"]}
-        begun = iter(p[3:])
-        return np.concatenate([
-            hand_positions(
-                log.F[a:z], log.T, **body, rest=next(begun), x0=next(begun), v0=0.0 if own["coulomb"] else next(begun)
-            )
-            for a, z in windows
-        ])  # fmt: skip
+        begun, found = iter(p[3:]), []
+        for a, z in windows:
+            rest, x0 = next(begun), next(begun)
+            v0 = 0.0 if held else next(begun)
+            found += [x0[None]] * held
+            found.append(hand_positions(log.F[a + held : z], log.T, **body, rest=rest, x0=x0, v0=v0))
+        return np.concatenate(found)
 
     return motion
 

@@ -91,10 +91,12 @@ def identify_paddle(
     rough = identify(pilot, counts_per_metre=per_metre)
     constants = {name: max(rough[name].value, 1e-4 if name == "m" else 0.0) for name in ("m", "b", "coulomb", "delay")}
     size = min(force, max(size, 4 * constants["coulomb"]))
+    # friction holds a handle that was led back; without it, it may still drift
+    rests = _rests(paddle) or rough["coulomb"].low > 0
     records = []
     for kind in kinds:
         excited = designed(kind, size, paddle.T, travel, constants)
-        records.append(HandleRecord(_run(paddle, excited, force, travel), added=added, at_rest=_rests(paddle)))
+        records.append(HandleRecord(_run(paddle, excited, force, travel), added=added, at_rest=rests))
     together = (*records, *beside)
     found = identify(*together, counts_per_metre=per_metre, force_constant=bool(beside), confidence=confidence)
     return Identified(**vars(found), records=tuple(records))
@@ -120,7 +122,7 @@ def counts_per_metre_of(paddle):
 
 
 def _rests(paddle):
-    """Whether a run begins at rest for sure: a simulated handle does; one that was led back almost does."""
+    """Whether a run begins at rest whatever the handle is: a simulated one does."""
     return not isinstance(paddle, SerialPaddle)
 
 

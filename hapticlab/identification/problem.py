@@ -13,8 +13,9 @@ UNITS = {"m": "kg", "b": "N s/m", "coulomb": "N", "delay": "s", "scale": "1"}
 #: what is taken for known where it is not sought
 USUAL = {"delay": 0.0, "scale": 1.0}
 
-#: parts of the first m, b and coulomb that a fit may begin with
-GUESSES = tuple((m, b, c) for m in (1.0, 0.8) for b in (1.0, 0.1) for c in (1.0, 0.1))
+#: parts of the first m, b and coulomb that a fit may begin with, and delays in samples beside the one found
+PARTS = tuple((m, b, c) for m in (1.0, 0.8) for b in (1.0, 0.1) for c in (1.0, 0.3, 0.1))
+LATE = (0.0, 1.0, 2.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,14 +82,20 @@ class Problem:
             for noise in sorted({0.0, self.quantum})
         ]
         y = np.concatenate([trace.y for trace in self.traces])
-        guesses = [self._with(start, parts) for start in starts for parts in GUESSES]
-        return fit(self.motion, y, np.stack(guesses, axis=1), self._scales(starts[0]), quantum=self.quantum)
+        guesses = np.stack([guess for start in starts for guess in self._guesses(start)], axis=1)
+        return fit(self.motion, y, guesses, self._scales(starts[0]), quantum=self.quantum)
 
-    def _with(self, start, parts):
-        """Return a start with these parts of its m, b and coulomb."""
-        part = dict(zip(("m", "b", "coulomb"), parts, strict=True))
-        names = [*self.free, *[""] * (len(start) - len(self.free))]
-        return start * np.array([part.get(name, 1.0) for name in names])[:, None]
+    def _guesses(self, start):
+        """Yield starts with parts of its m, b and coulomb, and with other delays."""
+        row = {name: k for k, name in enumerate(self.free)}
+        for parts in PARTS:
+            part = dict(zip(("m", "b", "coulomb"), parts, strict=True))
+            guess = start * np.array([part.get(name, 1.0) for name in (*row, *range(len(start) - len(row)))])[:, None]
+            yield guess
+            for late in LATE if "delay" in row else ():
+                guess = guess.copy()
+                guess[row["delay"]] = late * self.traces[0].T
+                yield guess
 
     def _start(self, lane, noise):
         delays = range(6) if "delay" in self.free else (round(self.known.get("delay", 0.0) / self.traces[0].T),)

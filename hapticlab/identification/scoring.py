@@ -23,6 +23,8 @@ BLIND = 1e-11
 DAMPING, EASED, BRACED = 1e-3, 0.2, 6.0
 #: rounds in which sigma and the parameters are found in turn, first as numbers, then as counts
 ROUNDS = 6, 3
+#: guesses that are tried side by side
+LANES = 2048
 #: of sigma before a round of steps: what stays of it where the steps have ended
 AGREES = 0.9
 #: m of noise, so that no noise divides by nothing
@@ -120,12 +122,19 @@ def _rms(rest):
 
 def _nearest(motion, y, start):
     """Return of the guesses for each record the one with the least residuals, and these."""
-    with np.errstate(all="ignore"):
-        rest = y[:, None] - motion(start)
-        size = np.sum(rest**2, axis=0)
-    best = np.argmin(np.where(np.isfinite(size), size, np.inf), axis=0)
-    lane = np.arange(y.shape[1])
-    return start[:, best, lane], rest[:, best, lane]
+    lane, some = np.arange(y.shape[1]), max(1, LANES // y.shape[1])
+    best, least, rest = start[:, 0], np.inf, y
+    for first in range(0, start.shape[1], some):
+        guesses = start[:, first : first + some]
+        with np.errstate(all="ignore"):
+            off = y[:, None] - motion(guesses)
+            size = np.sum(off**2, axis=0)
+        size = np.where(np.isfinite(size), size, np.inf)
+        chosen = np.argmin(size, axis=0)
+        nearer = size[chosen, lane] < least
+        best, rest = np.where(nearer, guesses[:, chosen, lane], best), np.where(nearer, off[:, chosen, lane], rest)
+        least = np.minimum(least, size[chosen, lane])
+    return best, rest
 
 
 def _counted(motion, y, found, rest, scales, quantum, weights, freedom):
