@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import AnalysisError
-from .limit import check_number
+from .limit import check_number, check_paddle
 from .plots import plot_admittance
 from .two_port import TwoPort, frequencies
 
@@ -89,6 +89,7 @@ def admittance_design(paddle, *, servo, servo_stiffness=0.0, b_a=0.0):
     >>> design.two_port.absolutely_stable
     True
     """
+    check_paddle(paddle, "m", "b", "T", "delay")
     values = {"m": paddle.m, "b": paddle.b, "T": paddle.T, "delay": paddle.delay}
     b_s = check_number("servo", servo, "N s/m", "a device that follows needs a servo > 0", lambda v: v > 0)
     k_s = check_number("servo_stiffness", servo_stiffness, "N/m", "needs >= 0", lambda v: v >= 0)

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from ..errors import AnalysisError
-from .limit import Limit, check_law, check_number
+from .limit import Limit, check_law, check_number, check_paddle
 from .passivity import passivity_limit
 from .plots import plot_bounds
 from .stability import stability_limit
@@ -101,6 +101,7 @@ def gil_limit(paddle, *, B=0.0, law="zoh"):
     >>> print(round(gil_limit(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), B=0.05).K, 6))
     300.0
     """
+    check_paddle(paddle, "m", "b", "T", "delay", "hand")
     hand = paddle.hand
     _plain(law, "Gil")
     tau = paddle.T / 2 + paddle.delay
@@ -163,6 +164,7 @@ def bounds(paddle, *, law="zoh", B=0.0):
     200.07
     """
     check_law(law)
+    check_paddle(paddle, "m", "b", "T", "delay", "hand")
     device = {"b": paddle.b, "T": paddle.T, "B": B, "delay": paddle.delay, "law": law}
     counts = getattr(paddle, "counts_per_metre", None)
     quantised = {"coulomb": getattr(paddle, "coulomb", 0.0), "resolution": 1 / counts if counts else 0.0}

@@ -23,7 +23,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import AnalysisError
-from .limit import check_number
+from .limit import MOST_PERIODS, check_number, whole_and_fraction
 from .linear_law import LinearLaw
 from .plots import plot_passivity_margin
 from .port import asked, negative, required, unstable_pole
@@ -119,6 +119,7 @@ def passivity_margin(law, *, b, delay=0.0):
     delay = check_number("delay", delay, "s", "a force cannot come before its sample: delay >= 0", lambda v: v >= 0)
     if not isinstance(law, LinearLaw):
         raise AnalysisError(f"law = {law!r}; needs a LinearLaw, as hl.LinearLaw.of('zoh', K=200, T=1e-3)")
+    whole_and_fraction(delay, law.T, most=MOST_PERIODS)
     pole = unstable_pole(law.A, law.B, law.C)
     if pole is not None:
         raise AnalysisError(f"{law.name}: unstable with the handle held (a pole at {pole:.6g}); needs a stable law")

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import AnalysisError
-from .limit import MOST_PERIODS, check_number, whole_and_fraction
+from .limit import MOST_PERIODS, check_number, check_paddle, whole_and_fraction
 from .plots import plot_coupler
 from .two_port import TwoPort, frequencies
 
@@ -107,9 +107,7 @@ def coupler_design(paddle, *, b_c=None):
     >>> round(design.k_c, 6)  # 2 (b - b_c)/T
     300.0
     """
-    lacking = [name for name in ("b", "T", "delay") if not hasattr(paddle, name)]
-    if lacking:
-        raise AnalysisError(f"a {type(paddle).__name__} has no {lacking[0]}; needs a paddle, as hl.SimulatedPaddle(...)")
+    check_paddle(paddle, "b", "T", "delay")
     b = check_number("b", paddle.b, "N s/m", "a coupler needs a device of b > 0, which pays for the hold", lambda v: v > 0)
     T, delay = float(paddle.T), float(paddle.delay)
     most = _most_damping(b, T, delay)

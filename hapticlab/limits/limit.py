@@ -69,6 +69,13 @@ def check_number(name, value, unit, need, allowed):
     return number
 
 
+def check_paddle(paddle, *names):
+    """Refuse what lacks one of these values of a paddle."""
+    lacking = [name for name in names if not hasattr(paddle, name)]
+    if lacking:
+        raise AnalysisError(f"a {type(paddle).__name__} has no {lacking[0]}; needs a paddle, as hl.SimulatedPaddle(...)")
+
+
 def whole_and_fraction(delay, T, most=math.inf):
     """Split a delay [s] into whole periods and a fraction of one; 1e-9 of a period is rounding, not delay."""
     periods = delay / T

@@ -132,6 +132,8 @@ class LinearLaw:
 
     def __add__(self, other):
         """Return both forces side by side."""
+        if not isinstance(other, LinearLaw):
+            return NotImplemented
         if self.T != other.T:
             raise AnalysisError(f"laws of T = {self.T:g} s and {other.T:g} s; needs one sampling period for both")
         A = np.block([[self.A, np.zeros((len(self.A), len(other.A)))], [np.zeros((len(other.A), len(self.A))), other.A]])

@@ -28,6 +28,7 @@ from .linear_law import LinearLaw
 from .port import unstable_pole
 
 KIND = "passivity: any passive hand, sufficient"
+NO_DAMPING = "b = 0: without device damping nothing pays for the hold"
 NO_VELOCITY = "its exact velocity jumps at the samples: a hand that moves only there draws energy at any stiffness"
 
 
@@ -79,12 +80,14 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0, p
     notes = ("device damping b alone: no encoder, no Coulomb friction",)
     if not isinstance(law, str):
         _checked(T, B, delay, "zoh")
+        if b == 0:
+            return Limit(0.0, None, KIND, NO_DAMPING, notes)
         return _of_own_law(law, b, T, B, delay, parameter, notes)
     whole, fraction = _checked(T, B, delay, law)
     if LEAD[law]:
         return Limit(0.0, None, KIND, f"law {law}: {NO_VELOCITY}", notes)
     if b == 0:
-        return Limit(0.0, None, KIND, "b = 0: without device damping nothing pays for the hold", notes)
+        return Limit(0.0, None, KIND, NO_DAMPING, notes)
     if velocity_filter and B:
         name = f"with B = {B:g} N s/m on a velocity filtered over {1e3 * velocity_filter:g} ms"
         filtered = lambda K: LinearLaw.of(law, K=K, T=T, B=B, velocity_filter=velocity_filter)  # noqa: E731

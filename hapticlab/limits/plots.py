@@ -49,7 +49,7 @@ def plot_nyquist_disk(disk):
     """
     theta = np.linspace(0.02, np.pi, 1500)
     turn = np.exp(1j * np.linspace(0, 2 * np.pi, 200))
-    with house_style():
+    with house_style(), np.errstate(divide="ignore", invalid="ignore"):  # a law that gives no force here has no -1/H
         figure = new_figure(height=5.0, width=9.6)
         left, right = figure.subplots(1, 2)
         unit = disk.law.T / disk.b
@@ -59,8 +59,7 @@ def plot_nyquist_disk(disk):
             left.plot(around.real, around.imag, label=f"{at / np.pi:g} x Nyquist", **style)
             if np.isfinite(point := -1 / disk.law.at(at) / unit):
                 left.plot(point.real, point.imag, marker="o", color=style["color"], markersize=7)
-        with np.errstate(divide="ignore"):
-            locus = -1 / disk.law.at(theta) / unit
+        locus = -1 / disk.law.at(theta) / unit
         shown = np.abs(locus) < 1e3
         left.plot(locus.real[shown], locus.imag[shown], color="#8a8a8a", linewidth=1.0, label="-1/H; dots: there")
         left.set(xlabel="Re G [T/b]", ylabel="Im G [T/b]", xlim=(-1.7, 1.1), ylim=(-1.8, 1.0), aspect="equal")
@@ -70,7 +69,7 @@ def plot_nyquist_disk(disk):
         right.plot(mapped.real, mapped.imag, label="the law, mapped", **STYLES[1])
         worst = disk.mapped(disk.worst)
         right.plot(worst.real, worst.imag, "ko", markersize=5, label=f"worst: |M| = {abs(worst):.3g}")
-        reach = max(1.3, min(3.0, 1.1 * np.abs(mapped).max()))
+        reach = min(max(1.3, 1.15 * np.abs(mapped).max()), 8.0)
         right.set(xlabel="Re M", ylabel="Im M", xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
         right.set_title(f"{disk.law.name}, b = {disk.b:g} N s/m", fontsize="small")
         for axes in (left, right):

@@ -102,6 +102,9 @@ def test_assumptions_that_fail():
         diolaiti_limit(b=b, T=T, B=-0.1)
     with pytest.raises(AnalysisError, match="coulomb = -1"):
         abbott_okamura_limit(b=b, T=T, coulomb=-1)
+    for ask in (bounds, gil_limit):
+        with pytest.raises(AnalysisError, match="a str has no m; needs a paddle"):
+            ask("paddle")
 
 
 def test_all_of_them_on_one_paddle():

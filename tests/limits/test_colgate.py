@@ -106,6 +106,7 @@ def test_a_scene_of_ones_own():
         limit = hl.passivity_limit(b=0.1, T=T, delay=0.4 * T, law=hl.wall(law, unilateral=None)(x_o=0))
         assert limit.K == pytest.approx(hl.passivity_limit(b=0.1, T=T, delay=0.4 * T, law=law).K, rel=1e-8)
     assert hl.passivity_limit(b=0.1, T=T, law=lambda K: LinearLaw.of("zoh", K=K, T=T)).K == pytest.approx(200, rel=1e-9)
+    assert "nothing pays for the hold" in hl.passivity_limit(b=0.0, T=T, law=wall).reason
     unstable = lambda K: LinearLaw(np.diag([1.1]), np.ones(1), np.array([K]), K, T, "runs off")  # noqa: E731
     with pytest.raises(AnalysisError, match="unstable with the handle held"):
         hl.passivity_limit(b=0.1, T=T, law=unstable)
@@ -148,6 +149,8 @@ def test_refusals_and_words():
         passivity_margin("zoh", b=1.0)
     with pytest.raises(AnalysisError, match="b = -1"):
         passivity_margin(LinearLaw.of("zoh", K=50, T=T), b=-1.0)
+    with pytest.raises(AnalysisError, match="at most 200 periods"):
+        passivity_margin(LinearLaw.of("zoh", K=50, T=T), b=1.0, delay=1.0)
     short = passivity_margin(LinearLaw.of("zoh", K=100, T=T, B=0.02), b=0.06)
     assert str(short) == (
         "zoh, K = 100 N/m, B = 0.02 N s/m: not passive. It asks for b = 0.07 N s/m, at 500 Hz; "

@@ -13,6 +13,7 @@ SPRING = hl.wall(unilateral=None)
 
 def amplitudes(K, b, coulomb, start, counts=None, delay=0.0):
     """Peak |x| in the first and in the last tenth of two seconds in the spring."""
+    pytest.importorskip("llvmlite")  # two seconds each on the interpreter
     paddle = hl.SimulatedPaddle(m=m, b=b, T=T, coulomb=coulomb, counts_per_metre=counts, delay=delay)
     log = paddle.run(SPRING(k=K, x_o=0), duration=2.0, x=start, progress=False)
     x = np.abs(log.channels.get("x_true", log.x))

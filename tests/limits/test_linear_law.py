@@ -62,6 +62,8 @@ def test_refusals():
         LinearLaw.of_scene(hl.wall()(k=100, x_o=0), T=T)
     with pytest.raises(AnalysisError, match="velocity_filter = -1"):
         LinearLaw.of("zoh", K=100, T=T, velocity_filter=-1)
+    with pytest.raises(TypeError):
+        LinearLaw.of("zoh", K=1, T=T) + 3
     with pytest.raises(AnalysisError, match="law = 'verlet'"):
         LinearLaw.of("verlet", K=100, T=T)
 
