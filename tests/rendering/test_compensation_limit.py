@@ -11,6 +11,7 @@ import hapticlab as hl
 from hapticlab.errors import AnalysisError, SceneError
 from hapticlab.limits.stability import closed_loop_poles
 from hapticlab.rendering.compensation_limit import compensation_limit
+from hapticlab.rendering.over_compensation import over_compensation
 
 #: seconds of located friction take minutes in the interpreter
 quick = pytest.mark.skipif(find_spec("llvmlite") is None, reason="needs llvmlite: a long simulation with friction")
@@ -161,6 +162,12 @@ def test_it_says_what_it_is():
 @pytest.mark.parametrize(
     ("call", "error", "words"),
     [
+        (lambda: compensation_limit("hapkit"), AnalysisError, "a str has no m; needs one whose constants are known"),
+        (
+            lambda: over_compensation("hapkit", speed=0.01),
+            AnalysisError,
+            "paddle is a str; what runs away is simulated",
+        ),
         (lambda: compensation_limit(paddle(b=0)), AnalysisError, "b = 0.*nothing to compensate"),
         (
             lambda: compensation_limit(paddle(), velocity=hl.window_velocity(band=1e-5)),
