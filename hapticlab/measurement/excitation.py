@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import sympy as sp
@@ -38,7 +39,7 @@ class Excitation:
     amplitude: float
     seed: int
 
-    @property
+    @cached_property
     def period(self):
         """One period, peak ``amplitude``."""
         if self.how == "swept_sine":

@@ -15,6 +15,8 @@ from .small_signal import force_at_rest, law_at
 from .spectrum import held_transfer, lines_in, ramp_transfer, response
 
 HOW = ("multisine", "swept_sine")
+#: options of a run that are the compiler's
+COMPILED = ("method", "substeps", "hold", "force_at", "dtype")
 #: default amplitudes: of a hand's intent [m], and of the motor's force [N]
 AMPLITUDE = {"hand": 1e-3, "motor": 0.1}
 #: frequencies by default, and the highest as a part of the sampling rate
@@ -115,8 +117,9 @@ def _drive(paddle, drive, simulated):
 
 def _runs(paddle, scene, drive, place, simulated, options):
     """Return run(excitation, duration) -> Telemetry, and the scene's own program in float64 for its law."""
-    compiled = {name: a for name, a in options.items() if name in ("method", "substeps", "hold", "force_at")}
-    exact = compile(scene, T=paddle.T, velocity=paddle.velocity, dtype="float64", **compiled)
+    compiled = {name: a for name, a in options.items() if name in COMPILED}
+    others = {name: a for name, a in options.items() if name not in COMPILED}
+    exact = compile(scene, T=paddle.T, velocity=paddle.velocity, **{**compiled, "dtype": "float64"})
     hand = paddle.hand if simulated else None
     pull = force_at_rest(exact, place) - (hand.push if hand else 0.0)  # what holds the handle at the place
     if drive == "motor":
@@ -128,9 +131,11 @@ def _runs(paddle, scene, drive, place, simulated, options):
 
         return run, exact
 
+    program = paddle.program(scene, **compiled)
+
     def run(excitation, duration):
         driven = replace(paddle, hand=excitation.hand(hand, place, pull))
-        return driven.run(scene, duration=duration, x=place, progress=False, **options)
+        return driven.run(program, duration=duration, x=place, progress=False, **others)
 
     return run, exact
 

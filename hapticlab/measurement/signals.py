@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import AnalysisError
 
 #: rounds of clipping; most of the gain comes in the first hundred
-ROUNDS = 300
+ROUNDS = 150
 
 
 def multisine(samples, lines, *, phases="schroeder", seed=0):
