@@ -118,7 +118,7 @@ def passivity_margin(law, *, b, delay=0.0):
     b = check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda v: v >= 0)
     delay = check_number("delay", delay, "s", "a force cannot come before its sample: delay >= 0", lambda v: v >= 0)
     if not isinstance(law, LinearLaw):
-        raise AnalysisError(f"law = {law!r}; needs a LinearLaw, as hl.LinearLaw.of('zoh', K=200, T=1e-3)")
+        raise AnalysisError(f"law = {law!r}; needs a LinearLaw: hl.LinearLaw.of('zoh', K=200, T=1e-3) or .of_scene(scene)")
     whole_and_fraction(delay, law.T, most=MOST_PERIODS)
     pole = unstable_pole(law.A, law.B, law.C)
     if pole is not None:

@@ -150,12 +150,12 @@ formulas below for it, which are for laws in position.
 **No linear law is passive with K > 2 b/T.** Averaged over frequency every stable law of stiffness K at rest asks for
 K T/2, which the plain spring without delay asks for at every frequency; a predictor that asks for less of slow motion asks
 for more near Nyquist. So without delay prediction is of use against one hand and one handle (`hl.stability_limit`), not
-against all. With delay the plain spring asks for most of slow motion, and prediction is of use against all: Eq. (23.5) from half
-a period on, Eq. (23.7) from two.
+against all. With delay the plain spring asks for most of slow motion, and prediction is of use against all: of the delays
+above, Eq. (23.5) from half a period on, Eq. (23.7) from two.
 
 **The condition knows nothing of switching.** Through `gate` and one period of delay, the cycle x = 0 (just outside), 0.7865,
 1, 0.1739 makes the law of Eq. (23.7) draw energy up to b = 1.5331 K T, past the 1.5282 of the table. Without delay a
-search over cycles of up to 24 samples found none beyond the table, for any law, `gate` or `clip`; for the plain law that is
+search over cycles of up to 12 samples found none beyond the table, for any law, `gate` or `clip`; for the plain law that is
 proven.
 
 ## A damper on a filtered velocity
