@@ -131,15 +131,25 @@ def growth(paddle, display):
     >>> growth(paddle, Impedance(k=198)) < 1 < growth(paddle, Impedance(k=203))
     True
     """
+    return float(np.abs(np.linalg.eigvals(_one_period(*_resting(paddle), display))).max())
+
+
+def _resting(paddle):
+    """Return a handle without friction and noise, its hand at rest at x = 0, and that hand."""
     if paddle.hand is None:
         raise PaddleError("a display is felt by a hand; give hl.SimulatedPaddle(..., hand=hl.hand('grip'))")
-    hand, T = replace(paddle.hand, intent=0.0, push=0.0, noise=0.0), paddle.T
-    handle = Handle(replace(paddle, hand=hand, coulomb=0.0, noise=0.0, counts_per_metre=None, delay=0.0))
+    hand = replace(paddle.hand, intent=None, push=0.0, noise=0.0)
+    return Handle(replace(paddle, hand=hand, coulomb=0.0, noise=0.0, counts_per_metre=None, delay=0.0)), hand
+
+
+def _one_period(handle, hand, display):
+    """Return the matrix that takes handle, handle before and memory from sample to sample, inside the wall."""
+    T = handle.paddle.T
     inside = 1.0  # [m], so deep that no step leaves the wall; the motion is linear, and this is taken off again
 
     def step(state):
         x, v, x_0, v_0, *memory = state
-        f_h = sensed(hand, (x - inside, v), (x_0 - inside, v_0), (0.0, 0.0), T)
+        f_h = sensed(hand, (x, v), (x_0, v_0), (0.0, 0.0), T)
         F, memory = display.force(tuple(memory), x, v, f_h, T)
         handle.x, handle.v = x, v
         handle.step(F)
@@ -147,8 +157,7 @@ def growth(paddle, display):
 
     rest = np.array([inside, 0.0, inside, 0.0, *(inside, 0.0)[: len(display.begin())]])
     start = step(rest)
-    matrix = np.array([step(rest + change) - start for change in np.eye(len(rest)) / 2]).T * 2
-    return float(np.abs(np.linalg.eigvals(matrix)).max())
+    return np.array([step(rest + change) - start for change in np.eye(len(rest)) / 2]).T * 2
 
 
 def largest_stiffness(paddle, make, *, low=1.0, high=1e7):
@@ -156,9 +165,14 @@ def largest_stiffness(paddle, make, *, low=1.0, high=1e7):
 
     0 where it is unstable at ``low``, infinity where it is stable up to ``high``.
     """
+    handle, hand = _resting(paddle)
+
+    def unstable(k):
+        return np.abs(np.linalg.eigvals(_one_period(handle, hand, make(k)))).max() >= 1
+
     stable = None
     for k in np.geomspace(low, high, 111):
-        if growth(paddle, make(k)) >= 1:
+        if unstable(k):
             break
         stable = k
     else:
@@ -168,5 +182,5 @@ def largest_stiffness(paddle, make, *, low=1.0, high=1e7):
     bad = float(k)
     for _ in range(40):
         middle = (stable + bad) / 2
-        stable, bad = (middle, bad) if growth(paddle, make(middle)) < 1 else (stable, middle)
+        stable, bad = (stable, middle) if unstable(middle) else (middle, bad)
     return float(stable)

@@ -1,7 +1,7 @@
 """Impedance against admittance display, one hand and one wall: which renders what. Simulated: a paddle measures no force."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -42,9 +42,9 @@ class Rendered:
     friction: float
     wanted: float
     state: str
-    t: np.ndarray
-    x: np.ndarray
-    f_h: np.ndarray
+    t: np.ndarray = field(repr=False)
+    x: np.ndarray = field(repr=False)
+    f_h: np.ndarray = field(repr=False)
 
     def __str__(self):
         if self.state == "unstable":

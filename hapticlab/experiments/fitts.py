@@ -172,10 +172,10 @@ def fitts(paddle, scene=None, *, distances=(0.02, 0.04, 0.08), widths=(0.004, 0.
 
 
 def _between(paddle, scene, distance, width, movements, scatter, reaction, seed):
-    aim = Aiming(paddle, distance, Submovements(width, scatter=scatter, pause=reaction, furthest=4 * distance), seed)
+    aim = Aiming(paddle, distance, Submovements(width, scatter=scatter, pause=reaction + DWELL, furthest=4 * distance), seed)
     hand = replace(paddle.hand, intent=Reacting(plan=aim.plan, reaction=reaction))
-    mean = aim.submovements.time(distance) + 2 * reaction + 2 * DWELL
-    log = replace(paddle, hand=hand).run(scene, duration=(movements + 4) * 1.6 * mean, progress=False)
+    mean = aim.submovements.time(distance) + reaction + 2 * DWELL
+    log = replace(paddle, hand=hand).run(scene, duration=(movements + 4) * 1.4 * mean, progress=False)
     x = np.asarray(log.channels.get("x_true", log.x))
     found = selections(log.t, x, distance, width)
     if len(found) < movements + 1:
