@@ -132,3 +132,21 @@ def test_less_than_three_cycles_a_quarter_are_judged_by_their_swings(growth, sta
         assert found.state in (state, "undecided")
         assert not found.locked
     assert chatter(record(oscillation(f=6.1, seconds=1.0, amplitude=0.04, growth=growth))).state == state
+
+
+def test_growth_comes_with_its_error():
+    """Four windows of a pure exponential agree; those of one that beats do not, and its growth is within their error."""
+    pure = chatter(record(oscillation(growth=-0.02, seconds=8.0)))
+    assert pure.growth_error < 2e-4 and pure.growth == pytest.approx(-0.02, abs=5 * pure.growth_error + 1e-4)
+    t = np.arange(8000) * T
+    uneven = chatter(record((1 + 0.1 * np.sin(2 * np.pi * 0.7 * t + 1.0)) * 1e-3 * np.sin(2 * np.pi * 40 * t)))
+    assert abs(uneven.growth) < 3 * uneven.growth_error < 1.0
+    assert math.isnan(chatter(record(oscillation(f=3.3, seconds=1.0))).growth_error)  # too few cycles for windows
+
+
+@pytest.mark.parametrize(("f", "samples"), [(50.0, 20), (40.0, 25), (1000 / 7, 7), (37.3, None), (37.37, None)])
+def test_a_cycle_locked_to_the_sampling_is_counted(f, samples):
+    """37.3 Hz repeats itself only after 10 s, 373 cycles; sampled at 1 kHz that is no cycle a record of 4 s can show."""
+    found = chatter(record(oscillation(f=f)))
+    assert found.period == samples
+    assert ("repeats itself" in str(found)) == (samples is not None)
