@@ -2,24 +2,31 @@
 
 import sys
 import threading
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import hapticlab as hl
+from hapticlab.analysis.wall_map import WallMaps
 from hapticlab.errors import AnalysisError, EngineMissingError
-from hapticlab.widgets.view import explore
+from hapticlab.widgets.view import MapView, explore
 
 PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, coulomb=0.02, hand=hl.Hand(m=0.02, b=0.5, push=1.0))
 SMALL = {"K": [100.0, 500.0, 2000.0], "B": [0.0, 0.1], "duration": 0.2}
 
 
+@pytest.fixture(scope="module")
+def maps():
+    return WallMaps(PADDLE, **SMALL)
+
+
 @pytest.fixture
-def view():
+def view(maps):
     pytest.importorskip("ipywidgets")
     pytest.importorskip("matplotlib")
-    made = explore(PADDLE, **SMALL)
+    made = MapView(PADDLE, copy(maps))
     assert made.wait(60), made.text.value
     return made
 
