@@ -56,9 +56,10 @@ class Flight:
         end_p, end_w = self.same(tag, p, w, side)
         crossed = let(f"beyond{tag}", side * end_p) < 0
         before = self.series(f"a{tag}", p, w, inside)
-        at = let(f"at0_{tag}", p / (p - end_p), "1")
+        at = let(f"at0_{tag}", p / let(f"moved{tag}", p - end_p), "1")
         for step in range(1, self.steps + 1):
-            newton = let(f"newton{step}_{tag}", at - _value(before, at) / _slope(before, at), "1")
+            slope = let(f"slope{step}_{tag}", _slope(before, at))  # named: SymPy would look at length at a sum's inverse
+            newton = let(f"newton{step}_{tag}", at - _value(before, at) / slope, "1")
             at = let(f"at{step}_{tag}", sp.Max(0, sp.Min(1, newton)), "1")
         rest = let(f"rest{tag}", 1 - at, "1")
         after = self.series(f"b{tag}", sp.S.Zero, let(f"w_cross{tag}", _slope(before, at)), side < 0)

@@ -12,15 +12,21 @@ PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
 
 @pytest.fixture(scope="module")
 def found():
-    return hl.law_limits(PADDLE, laws=["zoh", "backward_difference", "predictive"], most=8000.0)
+    return hl.law_limits(PADDLE, laws=["zoh", "predictive"], first=120.0, most=500.0)
 
 
 def test_a_pushed_handle_finds_the_linear_limits(found):
-    """2b/T (1 + bT/6m) and, for little damping, 2 sqrt(bm/T^3): within the 3 % of the search and of decays too slow to tell."""
+    """2b/T for little damping, within the 3 % of the search and of decays too slow to tell."""
     assert found["zoh"].K == pytest.approx(2 * 0.1 / 1e-3, rel=0.04)
-    assert found["backward_difference"].K == pytest.approx(2 * math.sqrt(0.1 * 0.05 / 1e-9), rel=0.05)
     assert found["zoh"].K < found["zoh"].beyond <= 1.03 * found["zoh"].K
-    assert found["predictive"].K > 5000 and found["predictive"].beyond == math.inf
+    assert found["predictive"].K > 400 and found["predictive"].beyond == math.inf
+
+
+@pytest.mark.slow
+def test_a_predictor_s_limit_too():
+    """2 sqrt(bm/T^3) for little damping."""
+    found = hl.law_limits(PADDLE, laws=["backward_difference"], first=2000.0)
+    assert found["backward_difference"].K == pytest.approx(2 * math.sqrt(0.1 * 0.05 / 1e-9), rel=0.05)
 
 
 def test_it_prints_and_draws(found):

@@ -21,8 +21,7 @@ def run(paddle, scene, duration, x, v=0.0):
     return paddle.run(scene, duration=duration, x=x, v=v, progress=False, dtype="float64")
 
 
-@pytest.mark.parametrize(("K", "depth"), [(500.0, 0.3e-3), (20000.0, 0.05e-3)])
-def test_the_pair_of_an_entry_has_its_closed_form(K, depth):
+def test_the_pair_of_an_entry_has_its_closed_form(K=20000.0, depth=0.05e-3):
     """A free mass enters after d/v0; two held forces add (3 F1 + F2) T^2/2M and (F1 + F2) T/M, which is what the wall does."""
     M, T, v0 = BALL.m, BALL.T, 0.4
     log = run(BALL, hl.deadbeat_wall(BALL, K=K), 4e-3, -depth, v0)
@@ -36,7 +35,9 @@ def test_the_pair_of_an_entry_has_its_closed_form(K, depth):
     assert [log.x[2], log.v[2]] == pytest.approx([2 * T * v0 - depth - dx, v0 - dv], rel=1e-11)
 
 
-@pytest.mark.parametrize(("delay", "x_o"), [(0.0, 0.0), (0.01, 0.003), (0.004, 0.003)])
+@pytest.mark.parametrize(
+    ("delay", "x_o"), [(0.0, 0.0), pytest.param(0.01, 0.003, marks=pytest.mark.slow), (0.004, 0.003)]
+)
 def test_the_test_bed_emulates_the_floor_for_two_seconds(delay, x_o):
     """After every pair the handle is where finger, handle and floor would be; so it does not chatter."""
     paddle = hl.SimulatedPaddle(m=0.35, b=0.0, T=0.01, delay=delay, hand=BED.hand)
@@ -74,6 +75,7 @@ def test_a_damped_paddle_in_a_damped_wall():
     assert log.x.max() > 1e-3 and abs(log.x - exact.x[:-1])[even].max() < 1e-10
 
 
+@pytest.mark.slow
 def test_between_crossings_half_a_sample_is_cheaper_and_second_best():
     """The chapter's combination: exact at crossings, and inside as good as a prediction of one period can be."""
     exact = hl.hybrid_wall(BALL, K=500, duration=0.05, x=-0.3e-3, v=0.2)
@@ -87,6 +89,7 @@ def test_between_crossings_half_a_sample_is_cheaper_and_second_best():
     assert abs(zoh.x - exact.x[:-1]).max() / exact.x.max() > 0.1
 
 
+@pytest.mark.slow
 def test_a_touch_of_less_than_two_periods_keeps_its_energy():
     """Half a swing in the wall lasts 1.8 periods: in and out within one pair."""
     K = BALL.m * (math.pi / (1.8 * BALL.T)) ** 2
@@ -134,7 +137,15 @@ def test_what_is_no_pair_is_refused():
         hl.deadbeat_wall(BALL, K=500, accuracy=1)
 
 
-@pytest.mark.parametrize(("start", "speed"), [(-0.004, 0.6), (0.003, -0.5), (-0.0001, 0.05), (0.0062, -0.75)])
+@pytest.mark.parametrize(
+    ("start", "speed"),
+    [
+        (-0.004, 0.6),
+        pytest.param(0.0062, -0.75, marks=pytest.mark.slow),
+        pytest.param(0.003, -0.5, marks=pytest.mark.slow),
+        pytest.param(-0.0001, 0.05, marks=pytest.mark.slow),
+    ],
+)
 def test_a_crossing_is_located_to_1e_10_s(start, speed):
     """On the damped test bed, from outside and from inside: the time the scene finds, against mpmath's."""
     paddle = hl.SimulatedPaddle(m=0.35, b=1.2, T=0.01, hand=BED.hand)
