@@ -21,9 +21,9 @@ def run(paddle, scene, duration, x, v=0.0):
     return paddle.run(scene, duration=duration, x=x, v=v, progress=False, dtype="float64")
 
 
-def test_the_pair_of_an_entry_has_its_closed_form(K=20000.0, depth=0.05e-3):
+def test_the_pair_of_an_entry_has_its_closed_form():
     """A free mass enters after d/v0; two held forces add (3 F1 + F2) T^2/2M and (F1 + F2) T/M, which is what the wall does."""
-    M, T, v0 = BALL.m, BALL.T, 0.4
+    M, T, v0, K, depth = BALL.m, BALL.T, 0.4, 20000.0, 0.05e-3
     log = run(BALL, hl.deadbeat_wall(BALL, K=K), 4e-3, -depth, v0)
     w, inside = math.sqrt(K / M), 2 * T - depth / v0
     dx = 2 * T * v0 - depth - v0 / w * math.sin(w * inside)
