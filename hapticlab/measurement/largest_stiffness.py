@@ -81,7 +81,7 @@ class LargestStiffness:
 
 def largest_stiffness(
     paddle, *, law="zoh", B=0.0, parameter="k", push=None, first=None, most=1e5, growth=1.5, tolerance=0.02,
-    duration=None, longest=None, energy_max=0.05, speed_max=1.0, place=0.0,
+    duration=None, longest=None, energy_max=0.05, speed_max=1.0, buzz_max=0.05, place=0.0,
 ):  # fmt: skip
     """Search the largest stiffness of a wall that comes to rest under a push: trials on the paddle, from soft to stiff.
 
@@ -119,6 +119,9 @@ def largest_stiffness(
         and four times that.
     energy_max, speed_max : float
         What trips the guard [J], [m/s]; the speed leaves room for three encoder counts a period.
+    buzz_max : float
+        The force [N] by which a handle at the edge of one encoder count may buzz and still stand: without friction some
+        count is always dithered over.
     place : float
         Of the wall's boundary [m].
 
@@ -170,7 +173,7 @@ def largest_stiffness(
     def trial(K, begin):
         values = named_values(program) | {parameter: K}
         tried = replace(program, values=tuple(values.values()))
-        return try_wall(paddle, tried, K=K, place=place, duration=begin, longest=longest)
+        return try_wall(paddle, tried, K=K, place=place, duration=begin, longest=longest, buzz_max=buzz_max)
 
     trials, good, bad = search(trial, first, most, growth, tolerance, (duration, longest))
     about = f"pressed with {pressing:.3g} N from rest at its boundary"

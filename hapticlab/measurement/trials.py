@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..analysis.chatter import chatter
 from ..device.simulated import SimulatedPaddle
 from ..errors import PaddleError
@@ -58,24 +60,25 @@ class Trial:
         return f"{self.K:10.5g} N/m  {'stands  ' if self.stands else 'chatters'}  {self.verdict}{swing}"
 
 
-def try_wall(paddle, scene, *, K, place, duration, longest):
+def try_wall(paddle, scene, *, K, place, duration, longest, buzz_max=0.05):
     """Try one stiffness, longer and longer until the record tells; a simulated handle starts at rest at ``place`` [m].
 
     A limit cycle and a decay too slow to see look alike. At ``longest`` [s] a decay has to be five times its own standard
     error; what then neither died out nor grew counts as chatter, so that near its limit a wall is called chattering
-    sooner than sound.
+    sooner than sound. A handle that dithers over the edge of one encoder count stands where the force jumps by no more than
+    ``buzz_max`` [N].
     """
     while True:
         log = run_from(paddle, scene, place, duration)
-        trial = _judged(log, K, place, duration)
+        trial = _judged(log, K, place, duration, buzz_max)
         if trial is not None:
             return trial
         if 2 * duration > longest * 1.001:
-            return _judged(log, K, place, duration, last=True)
+            return _judged(log, K, place, duration, buzz_max, last=True)
         duration *= 2
 
 
-def _judged(log, K, place, duration, last=False):
+def _judged(log, K, place, duration, buzz_max, last=False):
     """Return the trial, or None where the record does not tell yet."""
     drawn = max(0.0, float(log.drawn.max(initial=0.0)))
     if log.fault:
@@ -89,6 +92,11 @@ def _judged(log, K, place, duration, last=False):
     if rests:
         return Trial(K, True, "it comes to rest", found.amplitude, found.frequency, drawn, duration)
     bounces = bool((x[len(x) // 2 :] < place).any())
+    if found.dither:
+        jump = float(np.ptp(log.F[len(x) // 2 :]))
+        felt = "too little to feel" if jump <= buzz_max else "felt"
+        verdict = f"it buzzes by one encoder count, {jump:.2g} N, {felt}"
+        return Trial(K, jump <= buzz_max, verdict, found.amplitude, found.frequency, drawn, duration)
     # while it bounces, a small chatter may hide below; what stays inside is nearly linear, and dies out however slowly
     decays = found.state == "decaying" or (last and found.growth < -SURE * found.growth_error)
     if decays and not bounces:
@@ -98,7 +106,6 @@ def _judged(log, K, place, duration, last=False):
     if not last:
         return None
     verdict = "it lasts" if found.locked else f"it has not died out after {duration:g} s"
-    verdict = "it buzzes by one encoder count" if found.dither else verdict
     return Trial(K, False, verdict, found.amplitude, found.frequency, drawn, duration)
 
 

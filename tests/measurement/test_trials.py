@@ -44,10 +44,12 @@ def test_the_guard_ends_a_trial_at_once():
     assert 1e-3 < cut.drawn < 2e-3
 
 
-def test_a_buzz_of_one_encoder_count_does_not_stand():
+def test_a_buzz_of_one_encoder_count_stands_where_it_is_not_felt():
     """Between two counts of 0.5 mm the wall's force jumps by 0.5 N, over a push of 0.2 N that friction of 0.02 N helps."""
     coarse = trial(1000.0, paddle(b=1.0, counts_per_metre=1 / 0.5e-3, coulomb=0.02), longest=1.0, speed_max=2.0)
-    assert not coarse.stands and coarse.verdict == "it buzzes by one encoder count"
+    assert not coarse.stands and coarse.verdict == "it buzzes by one encoder count, 0.5 N, felt"
+    fine = trial(300.0, paddle(b=1.0, counts_per_metre=1 / 10e-6), longest=1.0)
+    assert fine.stands and "too little to feel" in fine.verdict
 
 
 def test_a_fault_of_the_paddle_is_told():
