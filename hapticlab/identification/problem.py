@@ -14,8 +14,10 @@ UNITS = {"m": "kg", "b": "N s/m", "coulomb": "N", "delay": "s", "scale": "1"}
 USUAL = {"delay": 0.0, "scale": 1.0}
 
 #: parts of the first m, b and coulomb that a fit may begin with, and delays in samples beside the one found
-PARTS = tuple((m, b, c) for m in (1.0, 0.8) for b in (1.0, 0.1) for c in (1.0, 0.3, 0.1))
+PARTS = tuple((m, b, c) for m in (1.0, 0.8) for b, c in ((1.0, 1.0), (1.0, 0.2), (0.1, 1.0)))
 LATE = (0.0, 1.0, 2.0)
+#: what first values are found without
+WITHOUT = ((), ("b",), ("coulomb",), ("b", "coulomb"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,11 +35,11 @@ class Trace:
     push: float = 0.0
     rests: bool = False
 
-    def start(self, lane, known, noise, delays):
+    def start(self, lane, known, **how):
         """Return first values of the paddle's constants, and of position and velocity, from one of the records."""
         F = self.F if self.F.ndim == 1 else self.F[:, lane]
         mass = known["m"] + self.added if "m" in known else None
-        found, begun = begin(self.y[:, lane], F, self.T, push=self.push, m=mass, noise=noise, delays=delays)
+        found, begun = begin(self.y[:, lane], F, self.T, push=self.push, m=mass, **how)
         return found | {"m": max(found["m"] - self.added, 0.1 * found["m"])}, begun
 
 
@@ -77,10 +79,8 @@ class Problem:
 
     def solve(self):
         """Return the Fitted of all lanes."""
-        starts = [
-            np.array([self._start(lane, noise) for lane in range(self.lanes)]).T
-            for noise in sorted({0.0, self.quantum})
-        ]
+        ways = [(noise, without) for noise in sorted({0.0, self.quantum}) for without in WITHOUT]
+        starts = [np.array([self._start(lane, *way) for lane in range(self.lanes)]).T for way in ways]
         y = np.concatenate([trace.y for trace in self.traces])
         guesses = np.stack([guess for start in starts for guess in self._guesses(start)], axis=1)
         return fit(self.motion, y, guesses, self._scales(starts[0]), quantum=self.quantum)
@@ -97,9 +97,9 @@ class Problem:
                 guess[row["delay"]] = late * self.traces[0].T
                 yield guess
 
-    def _start(self, lane, noise):
+    def _start(self, lane, noise, without):
         delays = range(6) if "delay" in self.free else (round(self.known.get("delay", 0.0) / self.traces[0].T),)
-        found = [trace.start(lane, self.known, noise, delays) for trace in self.traces]
+        found = [trace.start(lane, self.known, noise=noise, delays=delays, without=without) for trace in self.traces]
         told = max(found, key=lambda one: one[0]["m"] < 1e3)[0] | {"scale": 1.0}
         begun = (begun[: 2 - trace.rests] for trace, (_, begun) in zip(self.traces, found, strict=True))
         return [*(told[name] for name in self.free), *(a for start in begun for a in start)]

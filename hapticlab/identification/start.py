@@ -8,7 +8,7 @@ MOVED, WINDOW = 4.0, 3
 DELAYS = range(6)
 
 
-def begin(y, F, T, *, push=0.0, m=None, noise=0.0, delays=DELAYS):
+def begin(y, F, T, *, push=0.0, m=None, noise=0.0, delays=DELAYS, without=()):
     """Return first values of (m, b, coulomb, delay) and of the start (x0, v0), from one record.
 
     x = x0 + (v0 + b/m x0) t - b/m int x - coulomb/m iint sign(x') + 1/m iint (push - F): least squares, for each whole
@@ -22,6 +22,8 @@ def begin(y, F, T, *, push=0.0, m=None, noise=0.0, delays=DELAYS):
         [s], [N], and the mass [kg] where it is known.
     noise : float
         What a resting handle seems to move by [m].
+    without : sequence of {"b", "coulomb"}
+        Taken for zero: over a short record damping and friction may stand for each other, and for some of the mass.
 
     Examples
     --------
@@ -30,16 +32,18 @@ def begin(y, F, T, *, push=0.0, m=None, noise=0.0, delays=DELAYS):
     >>> round(found["coulomb"], 3), round(float(start[1]), 3)
     (0.05, 0.4)
     """
-    tries = [_with_delay(y, F, T, push, m, noise, whole) for whole in delays]
+    tries = [_with_delay(y, F, T, push, m, noise, whole, without) for whole in delays]
     return min(tries, key=lambda found: found[0])[1:]
 
 
-def _with_delay(y, F, T, push, m, noise, whole):
+def _with_delay(y, F, T, push, m, noise, whole, without):
     samples = np.arange(len(y))
     felt = np.interp(samples - whole, samples, F, left=0.0)
     sign = _heading(y, noise)
     driven = _sum(_sum((push - felt) * (sign != 0), T), T)
     columns = [np.ones(len(y)), samples * T, -_sum(y - y[0], T), -_sum(_sum(sign, T), T)]
+    for column, name in ((2, "b"), (3, "coulomb")):
+        columns[column] = columns[column] * (name not in without)
     rest = y - y[0]
     if m is None:
         columns.append(driven)

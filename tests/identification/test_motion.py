@@ -33,9 +33,14 @@ def stretch(x, v, lasts, u, m, b, k, coulomb, rest):
         heading = np.sign(v) if v else (np.sign(net) if abs(net) > coulomb else 0.0)
         if heading == 0:
             return x, 0.0
-        stops = lambda t, s: s[1] * heading + (1e-9 if t < 1e-7 else 0.0)  # noqa: E731
+
+        def stops(t, s, heading=heading):
+            return s[1] * heading + (1e-9 if t < 1e-7 else 0.0)
+
+        def rate(t, s, heading=heading):
+            return [s[1], (u - b * s[1] - k * (s[0] - rest) - coulomb * heading) / m]
+
         stops.terminal, stops.direction = True, -1
-        rate = lambda t, s: [s[1], (u - b * s[1] - k * (s[0] - rest) - coulomb * heading) / m]  # noqa: E731, B023
         way = solve_ivp(rate, (0, lasts), [x, v], method="DOP853", rtol=1e-12, atol=1e-15, events=stops)
         x, v = way.y[:, -1]
         v = 0.0 if way.status == 1 else v

@@ -1,14 +1,10 @@
 """A paddle identified by moving it: simulated, and on the firmware's core, with forces from below and within the travel."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.device.settings import nominal
-from hapticlab.errors import AnalysisError, PaddleError
-from hapticlab.identification.paddle import given
+from hapticlab.errors import AnalysisError
 
 BODY = {"m": 0.03, "b": 0.1, "T": 1e-3, "coulomb": 0.05, "noise": 8e-6}
 COUNTS = 1 / 12.8e-6
