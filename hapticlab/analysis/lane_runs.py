@@ -19,8 +19,6 @@ from .workers import number_of, spread
 LANES = 1024
 #: of a paddle, what lanes may differ in
 COLUMNS = ("m", "b", "T", "delay", "counts_per_metre", "coulomb", "force_max", "hand.m", "hand.b")
-
-
 #: what the measure forgets between the parts of a run
 AFRESH = {"measure.largest": 0.0, "measure.least": 1e300}
 

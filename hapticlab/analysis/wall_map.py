@@ -187,6 +187,8 @@ class WallMaps:
         """Refuse a scene that cannot be mapped: without the parameters of the axes, or over T, on which its times depend."""
         if self.over[1] == "T":
             raise AnalysisError(f'over = {self.over}; a map over T is for the laws by name, as law="ellis"; else use hl.sweep')
+        if self.over[1] != "B" and self.over[1] in scene.parameters:
+            raise AnalysisError(f"{self.over[1]} is a parameter of {scene.name} and of the paddle; rename the scene's")
         for name in (self.parameter, *(["B"] if self.over[1] == "B" else [])):
             if name not in scene.parameters:
                 known = ", ".join(scene.parameters) or "none"

@@ -155,6 +155,9 @@ def test_what_no_scene_can_be_mapped_over_is_refused():
         wall_map(BARE, law=hl.wall(), over=("K", "T"))
     with pytest.raises(AnalysisError, match="no parameter stiff"):
         wall_map(BARE, law=hl.wall(), parameter="stiff")
+    k, m = hl.parameters("k m", units="N/m 1")
+    with pytest.raises(AnalysisError, match="m is a parameter of .* and of the paddle"):
+        wall_map(BARE, law=hl.Scene(force=k * m * hl.x(hl.n)), over=("K", "m"))
     maps = WallMaps(BARE, law=hl.wall(), K=[1.0, 2.0], B=[0.0, 0.1], duration=0.1)
     with pytest.raises(AnalysisError, match="made for 0.001 s"):
         maps.of(replace(BARE, T=2e-3))
