@@ -21,6 +21,7 @@ from .analysis.step_limit import step_limit
 from .analysis.storage import storage
 from .analysis.sweep import sweep
 from .analysis.tradeoff import tradeoff
+from .analysis.wall_laws import wall_law
 from .analysis.wall_map import wall_map
 from .compiler.advance import Taylor
 from .compiler.lower import compile
@@ -302,6 +303,7 @@ __all__ = [
     "wall_damping",
     "wall_energy",
     "wall_for_board",
+    "wall_law",
     "wall_map",
     "when",
     "window_velocity",

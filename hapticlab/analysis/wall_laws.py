@@ -88,7 +88,7 @@ def wall_law(name, paddle, *, K, model=None, unilateral="gate", clamp=False, vel
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(wall_law("damped", hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), K=400).paddle.b)
+    >>> print(hl.wall_law("damped", hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), K=400).paddle.b)
     0.30000000000000004
     """
     if name not in LAWS:

@@ -58,7 +58,8 @@ class Flight:
         before = self.series(f"a{tag}", p, w, inside)
         at = let(f"at0_{tag}", p / let(f"moved{tag}", p - end_p), "1")
         for step in range(1, self.steps + 1):
-            slope = let(f"slope{step}_{tag}", _slope(before, at))  # named: SymPy would look at length at a sum's inverse
+            # named, for at the inverse of a sum SymPy looks at length
+            slope = let(f"slope{step}_{tag}", _slope(before, at))
             newton = let(f"newton{step}_{tag}", at - _value(before, at) / slope, "1")
             at = let(f"at{step}_{tag}", sp.Max(0, sp.Min(1, newton)), "1")
         rest = let(f"rest{tag}", 1 - at, "1")

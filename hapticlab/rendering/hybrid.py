@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..drawing import axis_label, house_style, new_figure, style_of
 from ..errors import AnalysisError
 from .model import WallModel
 
@@ -27,6 +28,8 @@ class HybridMotion:
         When the boundary is crossed [s].
     speeds : array, shape (M,)
         At the crossings [m/s]; positive where the handle enters.
+    x_o : float
+        The boundary [m].
     model : WallModel
     """
 
@@ -36,6 +39,7 @@ class HybridMotion:
     F: np.ndarray
     crossings: np.ndarray
     speeds: np.ndarray
+    x_o: float
     model: WallModel
 
     @property
@@ -44,6 +48,22 @@ class HybridMotion:
         m, inside = self.model, self.F != 0
         depth = np.where(inside, (self.F - m.B * self.v) / m.K, 0.0)
         return m.M * self.v**2 / 2 + m.k * self.x**2 / 2 - m.push * self.x + m.K * depth**2 / 2
+
+    def plot(self, *logs):
+        """Draw the motion, where it crosses the boundary, and runs of rendered walls beside it, from one start."""
+        with house_style():
+            figure = new_figure(height=3.6)
+            axes = figure.subplots()
+            scale, label = axis_label("x", "m")
+            axes.plot(1e3 * self.t, scale * self.x, label="the wall itself", **style_of(0))
+            axes.plot(1e3 * self.crossings, np.full(len(self.crossings), scale * self.x_o), "k|", markersize=12)
+            for number, log in enumerate(logs, 1):
+                x = log.channels.get("x_true", log.x)
+                axes.plot(1e3 * log.t, scale * x, label=log.scene, marker=".", **style_of(number))
+            axes.axhline(scale * self.x_o, color="black", linewidth=0.8)
+            axes.set(xlabel="time t [ms]", ylabel=label)
+            axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, fontsize="small")
+        return figure
 
     def __str__(self):
         entered = self.speeds > 0
@@ -97,7 +117,7 @@ def hybrid_wall(paddle, *, K, B=0.0, duration, x=0.0, v=0.0, x_o=0.0, hand=None)
     rate = w / model.T
     F = np.where(inside, model.K * p + model.B * rate, 0.0)
     when, speed = np.array(path.crossings).reshape(-1, 2).T
-    return HybridMotion(np.arange(count + 1) * model.T, p + x_o, rate, F, when * model.T, speed / model.T, model)
+    return HybridMotion(np.arange(count + 1) * model.T, p + x_o, rate, F, when * model.T, speed / model.T, x_o, model)
 
 
 class _Path:

@@ -83,3 +83,13 @@ def test_a_touch_between_two_samples_is_seen():
 def test_less_than_a_period_is_refused():
     with pytest.raises(AnalysisError, match="needs at least one period"):
         hl.hybrid_wall(hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3), K=500, duration=1e-4)
+
+
+def test_it_draws_the_rendered_wall_beside_itself():
+    paddle = hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3)
+    motion = hl.hybrid_wall(paddle, K=500, duration=0.05, x=-1e-3, v=0.1)
+    log = paddle.run(hl.wall()(k=500), duration=0.05, x=-1e-3, v=0.1, progress=False)
+    (axes,) = motion.plot(log).axes
+    assert axes.get_xlabel() == "time t [ms]" and axes.get_ylabel() == "handle position x [mm]"
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["the wall itself", "zoh wall"]
+    np.testing.assert_allclose(axes.lines[0].get_ydata(), 1e3 * motion.x)
