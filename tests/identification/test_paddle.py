@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
+from hapticlab.device.serial import open_port
+from hapticlab.device.settings import changed, simulated
 from hapticlab.errors import AnalysisError
 
 BODY = {"m": 0.03, "b": 0.1, "T": 1e-3, "coulomb": 0.05, "noise": 8e-6}
@@ -16,10 +18,10 @@ def check(found, **true):
 
 
 def test_a_simulated_paddle_tells_its_constants_within_its_travel():
-    paddle = hl.SimulatedPaddle(**BODY, delay=1.3e-3, counts_per_metre=COUNTS, force_max=1.0)
+    paddle = hl.SimulatedPaddle(**BODY | {"b": 0.5}, delay=1.3e-3, counts_per_metre=COUNTS, force_max=1.0)
     found = hl.identify_paddle(paddle, travel=0.012, kinds=("kick", "steps"))
-    check(found, m=0.03, b=0.1, coulomb=0.05, delay=1.3e-3)
-    assert found["m"].half_width < 1e-3 * 0.03
+    check(found, m=0.03, b=0.5, coulomb=0.05, delay=1.3e-3)
+    assert found["m"].half_width < 5e-3 * 0.03
     assert [len(record.log) > 0 for record in found.records] == [True, True]
     assert max(np.abs(record.log.x).max() for record in found.records) < 0.012
     assert [record.added for record in found.loaded(0.02)] == [0.02, 0.02]
@@ -44,3 +46,20 @@ def test_a_board_is_identified_by_the_same_call():
         assert board.state()["state"] == 0
     check(found, m=0.03, b=0.1, coulomb=0.05, delay=0.4e-3)
     assert found["m"].half_width < 1e-3 * 0.03
+
+
+def test_a_board_whose_force_is_not_what_it_reckons_is_found_out_by_a_known_mass():
+    pytest.importorskip("serial")
+
+    def moved(m, **more):
+        body = hl.SimulatedPaddle(**BODY | {"m": m}, counts_per_metre=COUNTS)
+        port, kept = open_port("sim://hapkit"), simulated(body)
+        port.put_on(body, settings=changed(kept, force_full=0.8 * kept.force_full), store=kept.to_bytes())
+        with hl.SerialPaddle("sim://hapkit", port=port) as board:
+            return hl.identify_paddle(board, kinds=("steps",), travel=0.02, **more)
+
+    alone = moved(0.03)
+    assert alone["m"].value == pytest.approx(0.03 / 0.8, rel=1e-3)  # as the board reckons its newtons
+    found = moved(0.05, added=0.02, beside=alone.records)
+    check(found, m=0.03, b=0.1, coulomb=0.05, scale=0.8)
+    assert found["scale"].half_width < 0.01
