@@ -8,6 +8,9 @@ from ..errors import AnalysisError
 from .impedance_plot import plot_impedance
 from .spectrum import Response
 
+#: part of an impedance by which blocks may differ without a word
+UNSURE = 0.1
+
 
 @dataclass(frozen=True, eq=False)
 class MeasuredImpedance:
@@ -115,20 +118,28 @@ class MeasuredImpedance:
         return plot_impedance(self)
 
     def __str__(self):
-        head = f"{'f [Hz]':>8} {'|Z| [N s/m]':>12} {'+-':>9} {'Re Z':>10} {'|Z/law|':>9} {'|Z/ideal|':>10} {'angle':>8}"
+        """Print a table: rendered, and what the driver feels, each with its 95 % circle."""
+        driver = "hand" if self.drive == "hand" else "motor"
+        head = f"{'f [Hz]':>8} {'|Z| [N s/m]':>12} {'+-':>8} {'Re Z':>9} {'|Z/law|':>8} {'|Z/ideal|':>10} {'angle':>8} "
+        head += f"{'coherence':>9} {f'|Z {driver}|':>9} {'+-':>8}"
         rows = []
         for k, f in enumerate(self.frequency):
-            Z, other = self.rendered[k], self.transparency[k] if self.ideal is not None else np.nan
+            Z, part = self.rendered[k], self.transparency[k] if self.ideal is not None else np.nan
             rows.append(
-                f"{f:8.4g} {abs(Z):12.5g} {self.radius[k]:9.2g} {Z.real:10.4g} {abs(Z / self.law[k]):9.5f} {abs(other):10.5f} "
-                f"{np.angle(other, deg=True):7.2f}\N{DEGREE SIGN}  {self.coherence[k]:.5f}"
+                f"{f:8.4g} {abs(Z):12.5g} {self.radius[k]:8.2g} {Z.real:9.4g} {abs(Z / self.law[k]):8.5f} {abs(part):10.5f} "
+                f"{np.angle(part, deg=True):7.2f}\N{DEGREE SIGN} {self.coherence[k]:9.5f} "
+                f"{abs(self.other.value[k]):9.4g} {self.other.radius[k]:8.2g}"
             )
-        left = (
-            [f"the handle left the wall in {self.left_wall} samples: press deeper or drive less"]
-            if self.left_wall
-            else []
-        )
-        return "\n".join([self.about, *left, f"{head}  coherence", *rows])
+        return "\n".join([self.about, *self._warnings(), head, *rows])
+
+    def _warnings(self):
+        left, unsure = self.left_wall, np.nanmax(self.other.radius / abs(self.other.value), initial=0.0)
+        lines = [f"the handle left the wall in {left} samples: press deeper or drive less"] if left else []
+        if unsure > UNSURE:
+            lines.append(
+                f"blocks differ, |Z {self.drive}| by up to {100 * unsure:.0f} %: noise, or not settled; settle=... [s]"
+            )
+        return lines
 
     def __repr__(self):
         span = f"{self.frequency[0]:.4g} to {self.frequency[-1]:.4g} Hz"
