@@ -156,6 +156,14 @@ def fitts(paddle, scene=None, *, distances=(0.02, 0.04, 0.08), widths=(0.004, 0.
     ------
     PaddleError, AnalysisError
         Without a hand; where a target was not reached.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.hand("grip"))
+    >>> found = hl.fitts(paddle, distances=[0.03], widths=[0.005, 0.01], movements=3)
+    >>> [round(a.difficulty, 2) for a in found.targets]
+    [2.81, 2.0]
     """
     if paddle.hand is None or paddle.hand.k <= 0:
         raise PaddleError("a hand moves by its spring; give hl.SimulatedPaddle(..., hand=hl.hand('grip')) or hl.Hand(k=...)")

@@ -14,6 +14,7 @@ from ..drawing import house_style, new_figure, scale_axis
 from ..errors import AnalysisError
 from .observers import PersonObserver, SimulatedObserver
 from .psychometric import psychometric
+from .tasks import Task
 from .up_down import UpDown
 
 
@@ -153,8 +154,12 @@ def forced_choice(paddle, task, observer=None, procedure=None, *, seed=0, keep=N
     >>> len(found.trials), found.trials[-1].right
     (4, True)
     """
+    if not isinstance(task, Task):
+        raise AnalysisError(f"task = {task!r}; needs a Task, such as hl.stiffness_task()")
     observer = observer or SimulatedObserver(weber=task.weber, seed=seed)
     observer = PersonObserver(observer) if isinstance(observer, Person) else observer
+    if not hasattr(observer, "compare"):
+        raise AnalysisError(f"observer = {observer!r}; needs hl.SimulatedObserver(weber=...) or a Person")
     procedure = procedure or UpDown(start=math.log(2))
     if procedure.done:
         raise AnalysisError("the procedure has had all its answers already; make a fresh one")

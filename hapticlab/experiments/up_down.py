@@ -10,7 +10,7 @@ from ..errors import AnalysisError
 class UpDown:
     """Transformed and weighted up-down staircase: after ``down`` right answers in a row a step down, after a wrong one up.
 
-    It goes towards the level where ``((weight/(1 + weight))^(1/down)`` of the answers are right: 71 % for two down, one
+    It goes towards the level where ``(weight/(1 + weight))^(1/down)`` of the answers are right: 71 % for two down, one
     up (H. Levitt, *J. Acoust. Soc. Am.* 49 (1971) 467) and 75 % for one down with steps up three times as long (C.
     Kaernbach, *Perception & Psychophysics* 49 (1991) 227). That is exact for small steps; :meth:`settles` says where a
     staircase of these steps really ends up (M. A. Garcia-Perez, *Vision Research* 38 (1998) 1861).

@@ -53,8 +53,16 @@ def test_a_hand_obeys_the_law():
     found = fitts(PADDLE, distances=(0.02, 0.08), widths=(0.004, 0.008), movements=5)
     _, slope, fit = found.law
     assert fit > 0.8 and 0.1 < slope < 0.35
-    assert 3 < found.throughput < 9
+    assert 3 < found.throughput < 12  # of five ends each
     assert found.targets[0].distance == 0.02 and len(found.targets[0].times) == 5
+
+
+@pytest.mark.slow
+def test_many_movements_obey_the_law():
+    found = fitts(PADDLE, distances=(0.02, 0.04, 0.08), widths=(0.004, 0.008), movements=40)
+    intercept, slope, fit = found.law
+    assert fit > 0.9 and slope == pytest.approx(0.17, abs=0.03) and abs(intercept) < 0.1
+    assert 4.5 < found.throughput < 7.5
 
 
 def test_a_scatter_that_is_smaller_is_faster():

@@ -139,3 +139,10 @@ def test_a_person_answers_in_their_own_words():
     assert sum("hold the handle" in text for text in said) == 8 and found.observer == "a person"
     with pytest.raises(AnalysisError, match="fresh one"):
         forced_choice(PADDLE, QUICK, Scripted(), asked)
+
+
+def test_what_is_no_task_or_observer_is_refused():
+    with pytest.raises(AnalysisError, match="stiffness_task"):
+        forced_choice(PADDLE, "stiffness")
+    with pytest.raises(AnalysisError, match="SimulatedObserver"):
+        forced_choice(PADDLE, QUICK, "me")
