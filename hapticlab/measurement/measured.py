@@ -9,7 +9,7 @@ from .impedance_plot import plot_impedance
 from .spectrum import Response
 
 #: part of an impedance by which blocks may differ without a word
-UNSURE = 0.1
+UNSURE = 0.02
 
 
 @dataclass(frozen=True, eq=False)
