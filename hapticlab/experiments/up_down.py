@@ -141,7 +141,8 @@ def _turning_mean(levels, P, down, step_down, step_up):
             else:
                 move[here, state(0, 0, lower)] += P
             turns[here] += (1 - P) if heading == 0 else P * (row + 1 == down)
-    balance = np.vstack([move.T - np.eye(len(move)), np.ones(len(move))])
-    stationary = np.linalg.lstsq(balance, np.r_[np.zeros(len(move)), 1.0], rcond=None)[0]
+    balance = move.T - np.eye(len(move))
+    balance[-1] = 1.0  # one of the balances follows from the others; the probabilities add up to one
+    stationary = np.linalg.solve(balance, np.r_[np.zeros(len(move) - 1), 1.0])
     weight = (stationary * turns).reshape(-1, N).sum(0)
     return float(np.exp(weight @ np.log(levels) / weight.sum()))

@@ -97,7 +97,7 @@ def test_gradient_and_information_of_the_likelihood():
     np.testing.assert_allclose(fitting.loss(q, expected)[2], hessian, rtol=1e-5)
 
 
-@pytest.mark.parametrize("trials", [60, pytest.param(300, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("trials", [40, pytest.param(300, marks=pytest.mark.slow)])
 def test_intervals_cover_the_threshold(trials):
     truth = Psychometric(0.2, 1.0)
     hits = 0
