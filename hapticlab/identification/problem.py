@@ -14,7 +14,7 @@ UNITS = {"m": "kg", "b": "N s/m", "coulomb": "N", "delay": "s", "scale": "1"}
 USUAL = {"delay": 0.0, "scale": 1.0}
 
 #: parts of the first m, b and coulomb that a fit may begin with, and delays in samples beside the one found
-PARTS = tuple((m, b, c) for m in (1.0, 0.8) for b, c in ((1.0, 1.0), (1.0, 0.2), (0.1, 1.0)))
+PARTS = ((1.0, 1.0, 1.0), (1.0, 1.0, 0.2), (1.0, 0.1, 1.0), (0.8, 1.0, 0.2))
 LATE = (0.0, 1.0, 2.0)
 #: what first values are found without
 WITHOUT = ((), ("b",), ("coulomb",), ("b", "coulomb"))

@@ -23,6 +23,8 @@ BLIND = 1e-11
 DAMPING, EASED, BRACED = 1e-3, 0.2, 6.0
 #: rounds in which sigma and the parameters are found in turn, first as numbers, then as counts
 ROUNDS = 6, 3
+#: part of sigma by which it may change between rounds that end
+SAME = 1e-3
 #: guesses that are tried side by side
 LANES = 2048
 #: of sigma before a round of steps: what stays of it where the steps have ended
@@ -140,10 +142,13 @@ def _nearest(motion, y, start):
 def _counted(motion, y, found, rest, scales, quantum, weights, freedom):
     """Return the fit of counts: by their own likelihood in dither, else as numbers, a run of one count being one."""
     dithered = spread(rest, quantum) >= DITHERED * quantum
-    weights = np.where(dithered, 1.0, weights)
+    weights, sigma = np.where(dithered, 1.0, weights), np.inf
     for _ in range(ROUNDS[1]):
+        before = sigma
         plain = np.sqrt(np.sum(weights * rest**2, axis=0) / np.maximum(freedom, 1))
         sigma = np.where(dithered, spread(rest, quantum), np.maximum(plain, quantum / 12**0.5))
+        if np.all(np.abs(sigma - before) < SAME * sigma):
+            break
         found, rest = _scored(motion, y, found, scales, sigma, quantum, weights, dithered)
     whole = np.where(dithered, len(y) - len(found), freedom)
     sigma = np.where(dithered, sigma * np.sqrt(len(y) / np.maximum(whole, 1)), sigma)

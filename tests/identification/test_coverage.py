@@ -25,11 +25,11 @@ def check(rows, count):
 
 
 def test_spin_down_covers_with_noise():
-    check(trials.trial_rows(KINDS["spin-down"], SENSORS["noise 10 um"], 300), 300)
+    check(trials.trial_rows(KINDS["spin-down"], SENSORS["noise 10 um"], 150), 150)
 
 
 def test_steps_cover_with_counts():
-    check(trials.trial_rows(KINDS["steps"], SENSORS["noise 5 um, counts of 12.8 um"], 40), 40)
+    check(trials.trial_rows(KINDS["steps"], SENSORS["noise 5 um, counts of 12.8 um"], 24), 24)
 
 
 @pytest.mark.slow

@@ -48,6 +48,7 @@ def test_a_board_is_identified_by_the_same_call():
     assert found["m"].half_width < 1e-3 * 0.03
 
 
+@pytest.mark.slow
 def test_a_board_whose_force_is_not_what_it_reckons_is_found_out_by_a_known_mass():
     pytest.importorskip("serial")
 
