@@ -14,10 +14,12 @@ UNITS = {"m": "kg", "b": "N s/m", "coulomb": "N", "delay": "s", "scale": "1"}
 USUAL = {"delay": 0.0, "scale": 1.0}
 
 #: parts of the first m, b and coulomb that a fit may begin with, and delays in samples beside the one found
-PARTS = ((1.0, 1.0, 1.0), (1.0, 1.0, 0.2), (1.0, 0.1, 1.0), (0.8, 1.0, 0.2))
+PARTS = tuple((m, b, c) for m in (1.0, 0.8) for b in (1.0, 0.1) for c in (1.0, 0.3, 0.1))
 LATE = (0.0, 1.0, 2.0)
+#: samples of delay at most
+LATEST = 20
 #: what first values are found without
-WITHOUT = ((), ("b",), ("coulomb",), ("b", "coulomb"))
+WITHOUT = ((), ("b",), ("b", "coulomb"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +69,9 @@ class Problem:
     def motion(self, p):
         """Return the positions of all traces one after the other, for parameters of shape (P, K, L)."""
         values = {**USUAL, **self.known, **dict(zip(self.free, p, strict=False))}
+        # no step is taken to where nothing moves any more, whatever the other constants are
+        sane = (values["m"] > 0) & (np.abs(values["delay"]) < LATEST * self.traces[0].T)
+        values["m"] = np.where(sane, values["m"], np.nan)
         starts = iter(p[len(self.free) :])
         return np.concatenate([
             positions(
@@ -83,7 +88,7 @@ class Problem:
         starts = [np.array([self._start(lane, *way) for lane in range(self.lanes)]).T for way in ways]
         y = np.concatenate([trace.y for trace in self.traces])
         guesses = np.stack([guess for start in starts for guess in self._guesses(start)], axis=1)
-        return fit(self.motion, y, guesses, self._scales(starts[0]), quantum=self.quantum)
+        return fit(self.motion, y, guesses, self._scales, quantum=self.quantum)
 
     def _guesses(self, start):
         """Yield starts with parts of its m, b and coulomb, and with other delays."""

@@ -25,6 +25,8 @@ DAMPING, EASED, BRACED = 1e-3, 0.2, 6.0
 ROUNDS = 6, 3
 #: part of sigma by which it may change between rounds that end
 SAME = 1e-3
+#: part of a record's travel that a guess moves, at least, or its squared residuals count so many times
+MOVES, STILL = 0.3, 1e6
 #: guesses that are tried side by side
 LANES = 2048
 #: of sigma before a round of steps: what stays of it where the steps have ended
@@ -84,8 +86,8 @@ def fit(motion, y, start, scales, *, quantum=0.0):
         Of a counted position, the middles of the counts.
     start : array, shape (P, C, L)
         Where to begin: of C guesses for each record the one is taken whose motion is nearest.
-    scales : array, shape (P, L)
-        How much is a considerable change; differences take STEP of it.
+    scales : array, shape (P, L), or callable
+        How much is a considerable change, or what returns it for a start of that shape; differences take STEP of it.
     quantum : float
         What one count is; 0 where the sensor does not count.
 
@@ -105,6 +107,7 @@ def fit(motion, y, start, scales, *, quantum=0.0):
     freedom = np.sum(weights, axis=0) - len(start)
     even, no = np.ones_like(y), np.zeros(y.shape[1], bool)
     found, rest = _nearest(motion, y, start)
+    scales = scales(found) if callable(scales) else scales
     sigma, before = _rms(rest), np.inf
     # what is a small step is said by sigma, and sigma by what is left after the steps
     for _ in range(ROUNDS[0]):
@@ -129,8 +132,11 @@ def _nearest(motion, y, start):
     for first in range(0, start.shape[1], some):
         guesses = start[:, first : first + some]
         with np.errstate(all="ignore"):
-            off = y[:, None] - motion(guesses)
+            moved = motion(guesses)
+            off = y[:, None] - moved
             size = np.sum(off**2, axis=0)
+            # one that hardly moves is not far from anything, and tells no way to go
+            size = size * np.where(np.ptp(moved, axis=0) < MOVES * np.ptp(y, axis=0), STILL, 1.0)
         size = np.where(np.isfinite(size), size, np.inf)
         chosen = np.argmin(size, axis=0)
         nearer = size[chosen, lane] < least

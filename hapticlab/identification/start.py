@@ -50,10 +50,11 @@ def _with_delay(y, F, T, push, m, noise, whole, without):
     else:
         rest = rest - driven / m
     A = np.column_stack(columns)
-    size = np.linalg.norm(A, axis=0) + 1e-300
+    size = np.linalg.norm(A, axis=0)
+    size = np.where(size > 0, size, 1.0)
     found = np.linalg.lstsq(A / size, rest, rcond=1e-9)[0] / size
     left = np.sum((rest - A @ found) ** 2)
-    m = float(1 / max(found[4], 1e-4)) if m is None else m
+    m = float(1 / max(found[4], 0.2)) if m is None else m
     b, coulomb = (max(float(a), 0.0) * m for a in found[2:4])
     return left, {"m": m, "b": b, "coulomb": coulomb, "delay": whole * T}, (y[0] + found[0], found[1])
 
