@@ -60,7 +60,7 @@ def hand(name, *, grip=1.0, **changes):
     """
     if name not in PRESETS:
         raise PaddleError(f"no hand {name!r}; there are {', '.join(PRESETS)}. Others: hl.Hand(m=..., b=..., k=...)")
-    grip = require("grip", grip, "", "a hand", "It is the firmness beside the preset's.", above=0)
+    grip = require("grip", grip, "times the preset's", "a hand", "It is the firmness beside the preset's.", above=0)
     known = PRESETS[name].hand
     unknown = sorted(set(changes) - set(Hand.__dataclass_fields__))
     if unknown:

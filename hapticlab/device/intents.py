@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..errors import PaddleError
 from .hand import require
 
 
@@ -12,7 +13,12 @@ class Intent:
     """A path of the hand: a function of an array of times [s] that gives positions [m]. Two of them add up."""
 
     def __add__(self, other):
-        return Together((self, other))
+        if not callable(other):
+            return NotImplemented
+        return other.with_path(self) if hasattr(other, "with_path") else Together((self, other))
+
+    def __radd__(self, other):
+        return Together((other, self)) if callable(other) else NotImplemented
 
 
 @dataclass(frozen=True)
@@ -110,7 +116,8 @@ class Tremor(Intent):
         for name, unit, low in (("rms", "m", 0), ("low", "Hz", 0), ("high", "Hz", 0)):
             object.__setattr__(self, name, require(name, getattr(self, name), unit, "a tremor", low=low))
         require("high", self.high, "Hz", "a band of tremor", "It is the upper edge.", above=max(self.low, 0.0))
-        require("lines", self.lines, "", "a tremor", low=1)
+        if not isinstance(self.lines, int) or self.lines < 1:
+            raise PaddleError(f"lines = {self.lines!r}; a tremor needs a whole number of sinusoids >= 1.")
         draw = np.random.default_rng([self.seed, 0x7E])
         step = (self.high - self.low) / self.lines
         object.__setattr__(self, "frequencies", self.low + step * (np.arange(self.lines) + draw.random(self.lines)))

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import PaddleError
 from .hand import require
-from .intents import Intent
+from .intents import Intent, Together
 
 #: between a signal and the press of a button it tells of, Section 23.3.3 [s]
 REACTION = 0.18
@@ -55,6 +55,8 @@ class Reacting(Intent):
         [s] between two decisions, > 0; whole samples are used.
     start : float
         The intent at t = 0 [m].
+    beside : callable, optional
+        A path that is added, of an array of times: ``hl.Reacting(plan=...) + hl.Tremor(rms=1e-4)``. The plan does not know it.
 
     Examples
     --------
@@ -71,6 +73,7 @@ class Reacting(Intent):
     reaction: float = REACTION
     every: float = 0.01
     start: float = 0.0
+    beside: Callable | None = None
 
     def __post_init__(self):
         if not callable(self.plan):
@@ -84,6 +87,14 @@ class Reacting(Intent):
             "this hand reacts to what happens, so its intent is no function of time; it runs on SimulatedPaddle.run alone. "
             "Give a path instead, such as hl.MinimumJerk(...)."
         )
+
+    def with_path(self, path):
+        """Return this plan with a path of time beside it, :class:`Tremor` for one."""
+        if isinstance(path, Reacting):
+            raise PaddleError("two plans for one hand; give one Reacting(plan=...) that does what both do.")
+        return replace(self, beside=path if self.beside is None else Together((self.beside, path)))
+
+    __add__ = __radd__ = with_path
 
     def asked(self, t, seen, intent):
         """Return what the plan says, checked."""
@@ -107,7 +118,8 @@ def run_reacting(loaded, paddle, parameters, ticks, outputs):
     """
     mind, T = paddle.hand.intent, paddle.T
     chunk = max(1, round(mind.every / T))
-    still = replace(paddle.hand, intent=lambda t: np.full(np.shape(t), mind.start))  # the noises are those of any hand
+    # a hand that does not react: its noises are those of any hand, its path is what stands beside the plan
+    still = replace(paddle.hand, intent=mind.beside or (lambda t: 0.0 * t))
     rows = replace(paddle, hand=still).inputs(ticks)
     intent = {c.name: j for j, c in enumerate(loaded.program.inputs) if c.name in ("intent", "intent.rate")}
     found, states, place = np.zeros((ticks, len(outputs))), None, mind.start
@@ -118,7 +130,7 @@ def run_reacting(loaded, paddle, parameters, ticks, outputs):
         rate = (following - place) / (chunk * T)
         values = {"intent": place + rate * T * np.arange(last - first), "intent.rate": rate}
         for name, column in intent.items():
-            rows[first:last, column] = values[name]
+            rows[first:last, column] += values[name]
         given, states = loaded.run(last - first, rows[first:last], parameters, states)
         found[first:last], place = given[:, :, 0], following
     return found

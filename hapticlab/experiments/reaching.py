@@ -97,11 +97,13 @@ def reach(paddle, scene, *, end, duration=0.4, begin=0.1, record=2.0, **how):
         What the person believes to move; by default the paddle alone, with nothing rendered.
     gain : float, optional
         [1/s]; by default 1/(e (reaction + 10 ms)), the fastest without overshoot for a handle that follows its intent at
-        once. Such a loop is unstable from about pi/(2 reaction) on, 8.5 1/s with the chapter's 180 ms.
+        once. Such a loop is unstable from about pi/(2 reaction) on, 8.3 1/s with the chapter's 180 ms.
     reaction : float
         [s]
+    tremor : callable, optional
+        Beside whatever is intended, of times [s], in metres: ``hl.Tremor(rms=1e-4)``.
     **how
-        These four, and options of hapticlab.compile.
+        These five, and options of hapticlab.compile.
 
     Returns
     -------
@@ -137,7 +139,7 @@ def reach(paddle, scene, *, end, duration=0.4, begin=0.1, record=2.0, **how):
 
 
 def follow(
-    paddle, scene, path, *, how="anticipatory", expects=None, gain=None, reaction=REACTION, record=2.0, **options
+    paddle, scene, path, *, how="anticipatory", expects=None, gain=None, reaction=REACTION, tremor=None, record=2.0, **options
 ):
     """Let the hand of a simulated paddle follow a path; return (Telemetry, where the handle was meant to be [m]).
 
@@ -165,6 +167,7 @@ def follow(
         return intent + moved + gain * every * error
 
     intent = ahead if how == "anticipatory" else Reacting(plan=plan, reaction=reaction, every=every)
+    intent = intent if tremor is None else intent + tremor
     log = replace(paddle, hand=replace(hand, intent=intent)).run(scene, duration=record, progress=False, **options)
     return log, path.at(log.t)[0]
 

@@ -8,7 +8,7 @@ from ..errors import SceneError
 from .amount import Amount
 from .parameters import T
 from .scene import Scene
-from .symbols import n, parameters, signal, t, v, x
+from .symbols import n, parameters, signal, t, v, when, x
 from .units import in_si
 
 
@@ -54,7 +54,8 @@ def tremor_filter(centre="10 Hz", bandwidth="6 Hz"):
     Parameters
     ----------
     centre, bandwidth : number [Hz] or text with a unit
-        Physiological tremor has its peak between 6 and 12 Hz. The bandwidth, below 1/(2T), is that between the edges.
+        Physiological tremor has its peak between 6 and 12 Hz. The bandwidth is that between the edges. Both need a
+        sampling rate of more than twice as much; at a lower one the force is no number, and the motor stays off.
 
     Returns
     -------
@@ -74,7 +75,13 @@ def tremor_filter(centre="10 Hz", bandwidth="6 Hz"):
     widening = sp.tan(Amount(math.pi * bandwidth, "1/s") * T)
     turning = 2 * sp.cos(Amount(2 * math.pi * centre, "1/s") * T)
     passed = (widening * (v(n) - v(n - 2)) + turning * band(n - 1) - (1 - widening) * band(n - 2)) / (1 + widening)
-    return Scene(force=B * band(n), eom=[sp.Eq(band(n), passed)], watch={"passed": band(n)}, name="tremor filter")
+    # known when a scene is compiled: above Nyquist a division by zero, and so a motor that is off, instead of an alias
+    below = signal("below_nyquist", unit="1")
+    eom = [
+        sp.Eq(below(n), when(Amount(2 * max(centre, bandwidth), "1/s") * T < 1, 1, 0)),
+        sp.Eq(band(n), passed / below(n)),
+    ]
+    return Scene(force=B * band(n), eom=eom, watch={"passed": band(n)}, name="tremor filter")
 
 
 def _frequency(name, given):

@@ -87,3 +87,18 @@ def test_a_hand_that_reacts_runs_nowhere_else():
         hl.Reacting(plan=3)
     with pytest.raises(PaddleError, match="runs on SimulatedPaddle.run alone"):
         hl.sweep(hl.wall(), paddle(lambda t, seen, intent: 0.0), k=[10.0, 20.0], progress=False)
+
+
+def test_tremor_beside_a_plan_is_added_to_what_it_intends():
+    tremor, plan = hl.Tremor(rms=1e-3), (lambda t, seen, intent: 0.01 * t)
+    mind = hl.Reacting(plan=plan)
+    both = (mind + tremor, tremor + mind, (lambda t: 0 * t) + (mind + tremor))
+    runs = [
+        hl.SimulatedPaddle(m=0.05, b=2.0, T=T, hand=hl.Hand(b=4.0, k=300.0, intent=intent)).run(FREE, duration=0.3)
+        for intent in (*both, lambda t: 0.01 * t + tremor(t))
+    ]
+    assert all(np.allclose(log.x, runs[-1].x, atol=1e-15, rtol=0) for log in runs[:-1]) and np.ptp(runs[-1].x) > 1e-3
+    with pytest.raises(PaddleError, match="two plans for one hand"):
+        hl.Reacting(plan=plan) + hl.Reacting(plan=plan)
+    with pytest.raises(TypeError):
+        tremor + 3

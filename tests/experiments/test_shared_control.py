@@ -84,3 +84,9 @@ def test_a_band_pass_has_its_gain_and_its_edges():
 def test_a_hand_is_needed():
     with pytest.raises(PaddleError, match="shared control needs a hand"):
         assistance(hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3), [], REACH)
+
+
+@pytest.mark.parametrize(("given", "T"), [({}, 0.1), ({"bandwidth": 600}, 1e-3), ({"centre": 990}, 1e-3)])
+def test_a_filter_above_half_the_sampling_rate_leaves_the_motor_off(given, T):
+    log = hl.SimulatedPaddle(m=0.05, b=0.1, T=T).run(hl.tremor_filter(**given)(B=1), duration=20 * T, v=0.01)
+    assert "was not finite; the motor is off" in log.fault and not log.F.any()
