@@ -46,10 +46,13 @@ class Ledger:
     ----------
     entries : tuple of Entry
     assumptions : tuple of str
+    bounded : bool
+        Whether the environment's energy is bounded below, without which nothing is proved.
     """
 
     entries: tuple
     assumptions: tuple = ()
+    bounded: bool = True
 
     @property
     def index(self):
@@ -59,15 +62,17 @@ class Ledger:
     @property
     def passive(self):
         """Whether the ledger proves the handle passive in every passive hand; it is sufficient, not necessary."""
-        return self.index >= 0
+        return self.bounded and self.index >= 0
 
     @property
     def gain(self):
         """Most that the hand's force is amplified into velocity, in the mean of squares [m/(N s)]: 1/index."""
-        return 1 / self.index if self.index > 0 else float("inf")
+        return 1 / self.index if self.bounded and self.index > 0 else float("inf")
 
     def __str__(self):
         told = "passive in every passive hand" if self.passive else "nothing proved: more is spent than there is"
+        if not self.bounded and self.index >= 0:
+            told = "nothing proved: is the energy bounded below? If it is, say bounded=True"
         rows = [str(entry) for entry in self.entries]
         return "\n".join([*rows, f"{'left':<12}{self.index:+12.6g} N s/m   {told}", *(f"  {a}" for a in self.assumptions)])
 
@@ -92,7 +97,7 @@ class Ledger:
         return figure
 
 
-def passivity_ledger(*, b, T, K=0.0, B=0.0, delay=0.0, delayed=False, parts=()):
+def passivity_ledger(*, b, T, K=0.0, B=0.0, delay=0.0, delayed=False, bounded=False, parts=()):
     """Excess of passivity of the device, and what hold, delay and environment take of it: Eq. (23.10) as a ledger.
 
     For linear and nonlinear environments, with springs whose local stiffness and dampers whose local damping stay within
@@ -106,14 +111,17 @@ def passivity_ledger(*, b, T, K=0.0, B=0.0, delay=0.0, delayed=False, parts=()):
         Sampling period [s], > 0.
     K : float, or (k_min, k_max)
         Stiffness of the environment [N/m], or the range of its local stiffness dF/dx; a part of it may be negative, as
-        of a latch or a detent, as long as its energy is bounded below; :func:`hapticlab.local_stiffness` finds it. A
-        unilateral wall has (0, K).
+        of a latch or a detent, where its energy is ``bounded``; :func:`hapticlab.local_stiffness` finds it. A unilateral
+        wall has (0, K).
     B : float, or (B_min, B_max)
         Virtual damping [N s/m] by backward difference, of either sign, or the range of its local damping.
     delay : float
         Computational delay [s], >= 0.
     delayed : bool
         The environment answers a sample late: the force of sample n comes from x(n-1), as an explicit integrator's does.
+    bounded : bool
+        The potential energy of the environment, the work of F(x) from anywhere, has a lower bound. No range of slopes
+        tells; where a slope may be negative nothing is proved without it.
     parts : sequence of (name, index [N s/m], reason)
         What else is in the loop, such as a physical damper added to the device, or a part whose need was found elsewhere.
 
@@ -124,6 +132,8 @@ def passivity_ledger(*, b, T, K=0.0, B=0.0, delay=0.0, delayed=False, parts=()):
     Raises
     ------
     AnalysisError
+        Also where no slope is positive and some are negative: such an energy has no lower bound, and no damping keeps the
+        handle.
 
     Examples
     --------
@@ -139,6 +149,11 @@ def passivity_ledger(*, b, T, K=0.0, B=0.0, delay=0.0, delayed=False, parts=()):
     delay = check_number("delay", delay, "s", "a force cannot come before its sample", lambda a: a >= 0)
     (k_min, k_max), (B_min, B_max) = _range("K", K, "N/m"), _range("B", B, "N s/m")
     stiff, damped = max(abs(k_min), abs(k_max)), max(abs(B_min), abs(B_max))
+    if k_max <= 0 > k_min:
+        raise AnalysisError(
+            f"K = {K} N/m; no slope is positive, so the energy has no lower bound, the handle falls off, and no damping keeps "
+            "it. Needs a largest stiffness > 0, as of a detent that ends, or K = 0"
+        )
     late = delay + T * bool(delayed)
     entries = [Entry("device", b, "output-strictly passive by its own damping b")]
     if k_max > 0:
@@ -153,8 +168,8 @@ def passivity_ledger(*, b, T, K=0.0, B=0.0, delay=0.0, delayed=False, parts=()):
                 for name, index, reason in parts]  # fmt: skip
     notes = ["device damping b alone: no encoder, no Coulomb friction"]
     if k_min < 0:
-        notes.append(f"down to {k_min:g} N/m of local stiffness costs the hold nothing: its energy must be bounded below")
-    return Ledger(tuple(entries), tuple(notes))
+        notes.append(f"down to {k_min:g} N/m of local stiffness costs the hold nothing where the energy is bounded below")
+    return Ledger(tuple(entries), tuple(notes), bool(bounded) or k_min >= 0)
 
 
 def _spring_shortage(k_max, stiff, T, late):

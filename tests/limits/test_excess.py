@@ -93,9 +93,34 @@ def test_negative_slopes_cost_the_hold_nothing_and_the_stiffest_place_decides():
     x = a * np.tile([1, -1], 50) / 2
     drawn = -(force(x[:-1]) * np.diff(x)).sum() / 99
     assert drawn == pytest.approx(400 * a**2 / 2, rel=1e-6)
-    ledger = hl.passivity_ledger(b=0.25, T=T, K=(-900, 400))
+    ledger = hl.passivity_ledger(b=0.25, T=T, K=(-900, 400), bounded=True)
     assert ledger.passive and ledger.index == pytest.approx(0.25 - 400 * T / 2)
     assert "bounded below" in str(ledger)
+
+
+@pytest.mark.parametrize("given", [-100, (-100, -50), (-100, 0)])
+def test_a_spring_that_only_pushes_off_is_kept_by_no_damping(given):
+    """m z^2 + b z - k has a root beyond 1, whatever b is, so there is nothing to prove."""
+    rate = max(np.roots([0.05, 5.0, -100]))  # 17 1/s
+    falling = hl.Scene(force=-hl.parameters("k", units="N/m", values=100) * hl.x(hl.n))
+    log = hl.SimulatedPaddle(m=0.05, b=5.0, T=T).run(falling, duration=0.5, x=1e-4, progress=False)
+    assert log.x[-1] > 0.5 * 1e-4 * np.exp(0.49 * rate) > 0.1
+    with pytest.raises(AnalysisError, match="no slope is positive"):
+        hl.passivity_ledger(b=5.0, T=T, K=given)
+
+
+def test_where_a_slope_is_negative_nothing_is_proved_unless_the_energy_is_bounded():
+    """A slope of 400 N/m to one side and of -900 N/m to the other: within the range, and it falls off to that side."""
+    given = {"b": 0.25, "T": T, "K": (-900, 400)}
+    ledger = hl.passivity_ledger(**given)
+    assert ledger.index > 0 and not ledger.passive and ledger.gain == np.inf
+    assert "say bounded=True" in str(ledger)
+    k, c = hl.parameters("k c", units="N/m N/m", values=(400, 900))
+    scene = hl.Scene(force=hl.when(hl.x(hl.n) > 0, k, -c) * hl.x(hl.n))
+    paddle = hl.SimulatedPaddle(m=0.05, b=0.25, T=T)
+    assert hl.local_stiffness(scene, -0.01, 0.01) == pytest.approx((-900, 400))
+    assert paddle.run(scene, duration=0.2, x=-1e-4, progress=False).x[-1] < -1.0
+    assert hl.passivity_ledger(**given, bounded=True).passive
 
 
 def test_a_range_of_dampers_counts_by_its_largest_magnitude():
