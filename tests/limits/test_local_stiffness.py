@@ -30,6 +30,38 @@ def test_walls(unilateral, least):
     assert low == pytest.approx(least, abs=1e-6) and high == pytest.approx(250, rel=1e-9)
 
 
+@pytest.mark.parametrize("jump", [2e-2, -2e-2, 1e-2, -1e-2, 1e-3, -1e-3, 2e-5])
+@pytest.mark.parametrize("where", [0.0, 0.0123456789, -0.0999999])
+def test_a_small_jump_beside_a_steep_place_is_found(where, jump):
+    """The secant over it, 5 um long, is less than the slope of the rest: 20 mN count for 4000 N/m, 1 mN for 200 N/m."""
+    k, place = hl.parameters("k place", units="N/m m", values=(3000, where))
+    size = hl.parameters("size", units="N", values=jump, ranges=(-1, 1))
+    with pytest.raises(AnalysisError, match="jumps near x = ") as told:
+        hl.local_stiffness(hl.Scene(force=k * x(n) + hl.when(x(n) > place, size, 0)), -0.1, 0.1)
+    assert float(str(told.value).split("x = ")[1].split(" m")[0]) == pytest.approx(where, abs=1e-5)
+
+
+@pytest.mark.parametrize("low, high", [(-0.1, 0.1), (0.0, 0.1), (-0.1, 0.0), (-1e-7, 0.1), (0.05, 0.0501)])
+def test_kinks_and_bends_are_no_jumps(low, high):
+    k, w, kink = hl.parameters("k w kink", units="N/m 1/m m", values=(3000, 5000, 0.0123))
+    place = x(n) - kink
+    force = k * sp.Max(x(n), 0) + k * sp.Abs(place) + k * sp.sin(w * place) / w + k * sp.tanh(w * place) / w
+    k_min, k_max = hl.local_stiffness(hl.Scene(force=force), low, high)
+    assert -6000 - 1e-3 <= k_min < k_max <= 12000 + 1e-3
+
+
+@pytest.mark.parametrize("power", [0.5, 0.8])
+def test_an_infinite_slope_is_no_stiffness(power):
+    force = A * sp.Piecewise(((w * x(n)) ** power, x(n) > 0), (0, True))
+    with pytest.raises(AnalysisError, match="too steep there"):
+        hl.local_stiffness(hl.Scene(force=force), -0.1, 0.1)
+
+
+def test_a_force_without_a_value_is_named():
+    with pytest.raises(AnalysisError, match="no finite value at x = 0 m"):
+        hl.local_stiffness(hl.Scene(force=A * w * x(n) / sp.sqrt(sp.Abs(w * x(n)))), -0.1, 0.1)
+
+
 @pytest.mark.parametrize(
     "scene, words",
     [
