@@ -21,7 +21,7 @@ class Bounce:
     Attributes
     ----------
     first, last : int
-        The samples before its first force and after its last.
+        The samples before and after it, both outside and without a force: with a delay the force comes after the entry.
     depth : float
         Deepest sample beyond x_o [m].
     generated : float
@@ -55,7 +55,7 @@ class Staircase:
         The spring law of Fig. 23.6 [N/m], [m].
     leak : array, shape (N - 1,)
         Energy generated in each period against that spring [J]; K D^2/2 for the plain law inside the wall, D the
-        displacement of the period. Their sum is what a penetration generated.
+        displacement of the period. Their sum over a penetration is what it generated.
     moved : array, shape (N - 1,)
         D [m].
     bounces : tuple of Bounce
@@ -160,7 +160,7 @@ def staircase(log, *, K=None, x_o=None):
     v = np.asarray(log.channels.get("v_true", log.v), float)
     corners, held = _corners(log, x)
     U = K * np.maximum(x - x_o, 0) ** 2 / 2
-    bounces = (_bounce(first, last, x - x_o, v, W) for first, last in _contacts(held))
+    bounces = (_bounce(first, last, x - x_o, v, W) for first, last in _contacts((held != 0) | (x > x_o)))
     bounces = tuple(one for one in bounces if one.depth > 0)  # a damper may act outside
     return Staircase(*corners, K, x_o, np.diff(U) - np.diff(W), np.diff(x), bounces)
 
@@ -193,9 +193,8 @@ def _corners(log, x):
     return (np.r_[places, x[-1]], np.r_[forces, F[-2]]), np.maximum(abs(F), abs(np.r_[0.0, F[:-1]]))
 
 
-def _contacts(held):
-    """Yield the samples around every stretch of force that begins and ends inside the record."""
-    on = np.r_[held != 0]
+def _contacts(on):
+    """Yield the samples around every stretch of contact that begins and ends inside the record."""
     begins = np.flatnonzero(on[1:] & ~on[:-1])
     ends = np.flatnonzero(on[:-1] & ~on[1:]) + 1
     for first in begins:

@@ -68,6 +68,24 @@ def test_the_corners_enclose_what_was_generated(whole, fraction):
     assert bounce.v_out / bounce.v_in == pytest.approx(abs(v[bounce.last] / v[bounce.first]))
 
 
+@pytest.mark.parametrize("delay", [0.0, 1.0, 2.0, 0.4, 2.7])
+@pytest.mark.parametrize("unilateral", ["gate", "clip"])
+def test_a_bounce_begins_outside_whatever_the_delay(unilateral, delay):
+    """Free flight until the wall is felt: the entry speed is that of the start less b x/m, and no spring is loaded yet."""
+    paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, delay=delay * T)
+    scene = hl.wall(unilateral=unilateral)(k=300, x_o=X_O)
+    log = paddle.run(scene, duration=0.3, x=X_O - 2e-3, v=0.2, progress=False, dtype="float64")
+    found = hl.staircase(log)
+    first = found.bounces[0]
+    assert log.x[first.first] <= X_O < log.x[first.first + 1] and log.x[first.last] <= X_O
+    assert first.v_in == pytest.approx(0.2 - 0.1 * (log.x[first.first] - log.x[0]) / 0.05, rel=1e-12)
+    for bounce in found.bounces:
+        leaked = found.leak[bounce.first : bounce.last].sum()
+        assert bounce.generated == pytest.approx(leaked, abs=1e-15)
+    ends = [(one.first, one.last) for one in found.bounces]
+    assert all(one[1] <= later[0] for one, later in zip(ends, ends[1:], strict=False))
+
+
 def test_an_unfinished_penetration_is_no_bounce():
     x = X_O + 1e-3 * np.array([-1, 1, 2, 1, -1, 1, 2])
     found = hl.staircase(record(x, np.maximum(K * (x - X_O), 0)), K=K, x_o=X_O)
