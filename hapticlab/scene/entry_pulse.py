@@ -81,13 +81,19 @@ def braking_pulse(
 
 
 def friction_pulse(scene, *, friction, mass, periods, velocity=None, x_o=None, name="friction"):
-    """Add dry friction for a while after entry: it opposes the motion, either way, and at its end the handle is at rest.
+    """Add dry friction for a while after entry: it opposes the motion, either way, and it holds the handle once that has stopped.
 
     For ``periods`` T from the first sample inside the force is ``friction`` against the motion, and never more than
     stops this mass within the next period, mass v(n)/T: the part of Karnopp's friction that a sampled force can render.
     A free handle decelerates by friction/mass and then stops within one period, exactly where v(n) is exact and there is
-    neither damper nor delay; unlike :func:`braking_pulse` it cannot push the handle back out, however wrong the mass is
-    up to a factor of 2.
+    neither damper nor delay; ``periods`` must last for both, or some speed is left.
+
+    A wrong mass: where ``friction`` does not limit it, the part 1 - mass/m of the speed is left from one period to the next,
+    m the true one. So too small a mass only takes longer. One too large turns the handle at every period, and may throw
+    it back out, though below 2 m never faster than it was; from 2 m on it shakes ever more, up to ``friction``.
+
+    A delay of d whole periods: with the right mass it swings, from d = 1 on without end. Give the part
+    d^d/(d + 1)^(d + 1) of the mass, 1/4 for one period and 4/27 for two, and it stops without turning.
 
     Parameters
     ----------

@@ -94,6 +94,28 @@ def test_friction_of_a_wrong_mass_does_not_throw(factor):
     assert log.v.min() > -1.1 * T / M
 
 
+@pytest.mark.parametrize(("factor", "periods"), [(1.9, 1), (1.9, 3), (1.5, 3), (0.7, 4)])
+def test_what_a_wrong_mass_leaves_of_the_speed(factor, periods):
+    """(1 - factor)^periods where the friction does not limit; too much mass throws it out."""
+    log = run(hl.friction_pulse(OPEN, friction=50.0, mass=factor * M, periods=periods), x=BOUNDARY - 1e-4, duration=0.02)
+    left = SPEED * (1 - factor) ** np.arange(periods + 1)
+    np.testing.assert_allclose(log.v[entry(log) :][: periods + 1], left, rtol=1e-12)
+    assert (log.v.min() < -0.1 * SPEED) == (factor > 1)
+
+
+@pytest.mark.parametrize(("late", "part"), [(1, 1 / 4), (2, 4 / 27), (3, 27 / 256)])
+def test_delayed_friction_stops_with_a_part_of_the_mass_and_swings_with_all(late, part):
+    """v(n+1) = v(n) - part v(n-d): its roots meet at d/(d+1) for that part, and lie on the unit circle or beyond for 1."""
+    roots = np.roots([1, -1, *[0] * (late - 1), part])
+    assert abs(roots).max() == pytest.approx(late / (late + 1), abs=1e-6)
+    assert abs(np.roots([1, -1, *[0] * (late - 1), 1])).max() > 1 - 1e-9
+    paddle = hl.SimulatedPaddle(m=M, b=0.0, T=T, delay=late * T)
+    pulses = [hl.friction_pulse(OPEN, friction=1.1, mass=share * M, periods=90) for share in (part, 1)]
+    good, bad = (run(pulse, paddle, duration=0.12, x=BOUNDARY - 1e-3) for pulse in pulses)
+    assert good.v.min() > -1e-12 and abs(good.v[-1]) < 1e-6
+    assert bad.v.min() < -0.1 * 1.1 * T / M
+
+
 def test_friction_opposes_either_way():
     """A handle that comes back out of a spring is braked as well, while the pulse lasts."""
     scene = hl.friction_pulse(hl.wall()(k=400, x_o=BOUNDARY), friction=0.4, mass=M, periods=80)
