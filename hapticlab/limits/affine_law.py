@@ -57,6 +57,8 @@ def affine_law(law, *, T, B=0.0, parameter="k", velocity="backward_difference"):
         [s]
     B : float
         Virtual damper [N s/m] beside a named law; the others hold their own.
+    parameter : str or None
+        None for a scene that is taken with all the values it holds, and then does not depend on K.
     velocity : {"backward_difference", "measured"}
         Where a scene's v(n) comes from, as in :func:`hapticlab.compile`.
 
@@ -110,7 +112,7 @@ def _named(law, T, B, velocity):
 def _of_scene(scene, T, parameter, velocity):
     """Return a function of K that gives the tick of a scene."""
     free = [name for name in scene.parameters if name not in scene.values]
-    if parameter not in scene.parameters and free:
+    if parameter not in (None, *scene.parameters) and free:
         raise AnalysisError(f'{scene.name} has no parameter {parameter}; name its stiffness: parameter="{free[0]}"')
     unbound = [name for name in free if name != parameter]
     if unbound:

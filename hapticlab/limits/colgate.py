@@ -26,7 +26,7 @@ from ..errors import AnalysisError
 from .limit import MOST_PERIODS, check_number, whole_and_fraction
 from .linear_law import LinearLaw
 from .plots import plot_passivity_margin
-from .port import asked, negative, required, unstable_pole
+from .port import ALIKE, SLOWEST, asked, negative, required, unstable_pole
 
 #: a stiffness beside which the next cut has nothing to add
 SETTLED = 1e-13
@@ -46,7 +46,7 @@ class PassivityMargin:
     required : float
         Least damping [N s/m] with which the law is passive in every passive hand; inf where none is enough.
     frequency : float
-        That asks for it [Hz].
+        That asks for it [Hz]; 0 for slow motion, the slower the more, and where all frequencies ask alike (``flat``).
     """
 
     law: LinearLaw = field(repr=False)
@@ -73,14 +73,20 @@ class PassivityMargin:
         """Return the damper [N s/m] as which a sinusoid of theta = w T feels the law; negative: it draws energy."""
         return equivalent_damper(self.law, theta, delay=self.delay)
 
+    @property
+    def flat(self):
+        """Whether every frequency asks for the same."""
+        return _flat(self.law, self.required, self.delay)
+
     def plot(self):
         """Draw what each frequency asks for, what a pure sinusoid asks for, and what the device has."""
         return plot_passivity_margin(self)
 
     def __str__(self):
         verdict = "passive in every passive hand" if self.passive else "not passive"
+        at = f"at {self.frequency:.4g} Hz" if self.frequency else "at every frequency alike" if self.flat else "for slow motion"
         return (
-            f"{self.law.name}: {verdict}. It asks for b = {self.required:.6g} N s/m, at {self.frequency:.4g} Hz; the device "
+            f"{self.law.name}: {verdict}. It asks for b = {self.required:.6g} N s/m, {at}; the device "
             f"has {self.b:.6g} N s/m, {abs(self.margin):.3g} {'to spare' if self.passive else 'too little'}"
         )
 
@@ -168,8 +174,11 @@ def wall_damping(*, K, T, B=0.0, velocity_filter=0.0):
 def largest_passive_stiffness(law, *, b, delay=0.0):
     """Return (K, frequency [Hz]): the largest K for which a law affine in K is passive on a device of damping b.
 
+    ``frequency`` is 0.0 for slow motion and None where every frequency asks alike.
+
     What one frequency asks for is convex in K, so the K that satisfies the worst frequency of one K is an upper bound, and
-    the sequence of such cuts falls to the answer. K = 0 where the law is active without its spring.
+    the sequence of such cuts falls to the answer. K = 0 where the law is active without its spring: at
+    :func:`least_passive_stiffness`, below which a constant negative stiffness beside K is left.
 
     Parameters
     ----------
@@ -182,32 +191,50 @@ def largest_passive_stiffness(law, *, b, delay=0.0):
     >>> round(K, 9), round(hertz, 3)
     (50.0, 500.0)
     """
-    bare = law(0.0)
-    T, most, theta = bare.T, *_required(bare, delay)
+    least, rise = least_passive_stiffness(law), law(1.0).stiffness - law(0.0).stiffness
+    T, (most, theta) = law(least).T, _required(law(least), delay)
     if most > b:
-        return 0.0, theta / (2 * math.pi * bare.T)
-    rise = law(1.0).stiffness - bare.stiffness
-    if not rise > 0:
-        raise AnalysisError(f"{law(1.0).name}: its stiffness at rest does not grow with K, so K has no largest value")
-    K, at = 4 * (b + most) / (T * rise), None  # no law allows more than 2 b/T (module), nor its damper more than b
+        return 0.0, theta / (2 * math.pi * T)
+    K = least + 4 * (b + most) / (T * rise)  # no law allows more than 2 b/T (module), nor its damper more than b
     for _ in range(60):
         most, theta = _required(law(K), delay)
         if most <= b * (1 + SETTLED):
             break
-        lower, at = _cut(law, b, theta, delay, K), theta
+        lower = _cut(law, b, max(theta, SLOWEST), delay, least, K)
         if lower >= K * (1 - SETTLED):
             break
         K = lower
-    return K, None if at is None else at / (2 * math.pi * T)
+    return K, None if _flat(law(K), most, delay) else theta / (2 * math.pi * T)
+
+
+def least_passive_stiffness(law):
+    """Return the K from which on the stiffness at rest is not negative, for a law as above; mostly 0.
+
+    Examples
+    --------
+    >>> least_passive_stiffness(lambda K: LinearLaw.of("zoh", K=K - 500, T=1e-3))
+    500.0
+    """
+    own = law(0.0).stiffness
+    rise = law(1.0).stiffness - own
+    if not rise > 0:
+        raise AnalysisError(f"{law(1.0).name}: its stiffness at rest does not grow with K; a largest K needs one that does")
+    return max(-own / rise, 0.0)
+
+
+def _flat(law, most, delay):
+    """Return whether all frequencies ask for ``most``."""
+    values = asked(law.A, law.B, law.C, law.D, law.T, np.linspace(0.01, np.pi, 101), delay)
+    return bool(math.isfinite(most) and (abs(values - most) <= ALIKE * abs(most)).all())
 
 
 def _required(law, delay):
     return required(law.A, law.B, law.C, law.D, law.T, delay)
 
 
-def _cut(law, b, theta, delay, K):
-    """Return the stiffness below K at which theta asks for exactly b: by bisection, a convex function of one K crosses once."""
-    low, high = 0.0, K
+def _cut(law, b, theta, delay, least, K):
+    """Return the stiffness from least to K at which theta asks for exactly b: by bisection, a convex function crosses once."""
+    low, high = least, K
     while (middle := (low + high) / 2) not in (low, high):
         here = law(middle)
         too_much = asked(here.A, here.B, here.C, here.D, here.T, np.array([theta]), delay)[0] > b

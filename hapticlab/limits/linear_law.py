@@ -49,6 +49,14 @@ class LinearLaw:
     T: float
     name: str
 
+    def __post_init__(self):
+        T = check_number("T", self.T, "s", "a law is sampled: needs T > 0", lambda v: v > 0)
+        n = len(np.atleast_1d(self.B))
+        for part, shape in (("A", (n, n)), ("B", (n,)), ("C", (n,)), ("D", ())):
+            object.__setattr__(self, part, _numbers(self.name, part, getattr(self, part), shape))
+        object.__setattr__(self, "T", T)
+        object.__setattr__(self, "D", float(self.D))
+
     @classmethod
     def of(cls, law="zoh", *, K, T, B=0.0, velocity_filter=None, filtered=False):
         """Return a law of the chapter with a virtual damper beside it.
@@ -94,8 +102,8 @@ class LinearLaw:
 
     @classmethod
     def of_taps(cls, taps, *, T, name="taps"):
-        """Return the law F[n] = taps[0] x[n] + taps[1] x[n-1] + ..., weights in N/m."""
-        taps = np.atleast_1d(np.asarray(taps, dtype=float))
+        """Return the law F[n] = taps[0] x[n] + taps[1] x[n-1] + ..., one or more finite weights in N/m."""
+        taps = _numbers(name, "taps", taps, (max(np.size(taps), 1),))
         n = len(taps) - 1
         return cls(np.eye(n, k=-1), np.eye(n, 1)[:, 0], taps[1:].copy(), float(taps[0]), float(T), name)
 
@@ -133,7 +141,7 @@ class LinearLaw:
     def __add__(self, other):
         """Return both forces side by side."""
         if not isinstance(other, LinearLaw):
-            return NotImplemented
+            raise AnalysisError(f"{self.name} + {other!r}; needs a second LinearLaw, as LinearLaw.of_taps([1.0], T=1e-3)")
         if self.T != other.T:
             raise AnalysisError(f"laws of T = {self.T:g} s and {other.T:g} s; needs one sampling period for both")
         A = np.block([[self.A, np.zeros((len(self.A), len(other.A)))], [np.zeros((len(other.A), len(self.A))), other.A]])
@@ -215,6 +223,20 @@ class LinearLaw:
         return f"{self.name}: {len(self.A)} states, stiffness at rest {stiffness}, T = {1e3 * self.T:g} ms"
 
     __repr__ = __str__
+
+
+def _numbers(name, part, given, shape):
+    """Return an array of this shape, or say what was given."""
+    try:
+        array = np.array(given, dtype=float)
+    except (TypeError, ValueError):
+        array = np.array(math.nan)
+    if array.ndim == 0 and shape == (1,):
+        array = array.reshape(1)
+    if array.shape != shape or not np.isfinite(array).all():
+        need = "a finite number" if not shape else f"finite numbers, {' x '.join(map(str, shape))} of them"
+        raise AnalysisError(f"{name}: {part} = {given}; needs {need}")
+    return array
 
 
 def filtered_damper(B, T, tau=0.0):

@@ -22,7 +22,7 @@ from numpy.polynomial import chebyshev
 from ..errors import AnalysisError
 from ..scene.taps import LEAD, TAPS
 from .affine_law import affine_law
-from .colgate import largest_passive_stiffness
+from .colgate import largest_passive_stiffness, least_passive_stiffness
 from .limit import MOST_PERIODS, Limit, check_law, check_number, whole_and_fraction
 from .linear_law import LinearLaw
 from .port import unstable_pole
@@ -52,7 +52,7 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0, p
         Eqs. (23.1), (23.3), (23.5), (23.7) by name: "zoh", "half_sample", "backward_difference", "ellis". Or a linear scene
         with its stiffness unbound, velocity by backward difference; or a function of K [N/m] that returns a LinearLaw.
     velocity_filter : float
-        Time constant tau [s] >= 0 of a first-order filter of the damper's velocity:
+        Beside a named law, as B: time constant tau [s] >= 0 of a first-order filter of the damper's velocity:
         ``v[n] = (tau v[n-1] + x[n] - x[n-1])/(tau + T)``. It relieves the device of a damper B > 0, not of B < 0.
     parameter : str
         The scene's parameter that is K; its force must be affine in it.
@@ -60,12 +60,13 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0, p
     Returns
     -------
     Limit
-        K = 0 with the reason where no stiffness is passive.
+        K = 0 with the reason where no stiffness is passive; ``frequency`` 0.0 where slow motion decides. Where the law has
+        a negative stiffness beside K, the reason says from which K on it is passive.
 
     Raises
     ------
     AnalysisError
-        For a value that is not finite or out of range, and for an unknown law.
+        For a value that is not finite or out of range, an unknown law, and B or velocity_filter beside a law of one's own.
 
     Examples
     --------
@@ -77,8 +78,14 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0, p
     0.0
     """
     b = check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda v: v >= 0)
+    tau = check_number("velocity_filter", velocity_filter, "s", "needs a time constant >= 0", lambda v: v >= 0)
     notes = ("device damping b alone: no encoder, no Coulomb friction",)
     if not isinstance(law, str):
+        if tau:
+            raise AnalysisError(
+                f"velocity_filter = {tau:g} s beside a law of its own; only a named law takes one: put the filter into the law, "
+                'as hl.wall(velocity=hl.filtered_velocity(tau="4 ms"), unilateral=None)'
+            )
         _checked(T, B, delay, "zoh")
         if b == 0:
             return Limit(0.0, None, KIND, NO_DAMPING, notes)
@@ -88,9 +95,9 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0, p
         return Limit(0.0, None, KIND, f"law {law}: {NO_VELOCITY}", notes)
     if b == 0:
         return Limit(0.0, None, KIND, NO_DAMPING, notes)
-    if velocity_filter and B:
-        name = f"with B = {B:g} N s/m on a velocity filtered over {1e3 * velocity_filter:g} ms"
-        filtered = lambda K: LinearLaw.of(law, K=K, T=T, B=B, velocity_filter=velocity_filter)  # noqa: E731
+    if tau and B:
+        name = f"with B = {B:g} N s/m on a velocity filtered over {1e3 * tau:g} ms"
+        filtered = lambda K: LinearLaw.of(law, K=K, T=T, B=B, velocity_filter=tau)  # noqa: E731
         return _of_any_law(filtered, b, T, delay, name, notes)
     beta = B / b
     _, margin = _worst(_law_taps(0.0, beta, law), whole, fraction, 1.0)
@@ -98,9 +105,7 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0, p
         return Limit(0.0, None, KIND, f"B = {B:g} N s/m alone is active: it needs more than b = {b:g} N s/m", notes)
     kappa, u = _falling_cuts(lambda k: _law_taps(k, beta, law), whole, fraction)
     frequency = None if u is None else math.acos(u) / (2 * math.pi * T)
-    place = f"worst at {math.acos(u) / math.pi:.4g} of the Nyquist frequency" if frequency else "worst for slow motion"
-    place = "all frequencies alike" if u is None else place
-    reason = f"b = {b:g} N s/m is spent, {place}"
+    reason = f"b = {b:g} N s/m is spent, {_place(frequency, T)}"
     return Limit(float(kappa * b / T), frequency, KIND, reason, (*notes, _unilateral(law, delay)))
 
 
@@ -147,7 +152,17 @@ def _of_any_law(law, b, T, delay, name, notes):
     K, hertz = largest_passive_stiffness(law, b=b, delay=delay)
     if not K:
         return Limit(0.0, None, KIND, f"{name}: active without its spring already, on b = {b:g} N s/m", notes)
-    return Limit(K, hertz, KIND, f"b = {b:g} N s/m is spent, {name}", (*notes, _unilateral(name, delay)))
+    least = least_passive_stiffness(law)
+    from_on = f", passive only from K = {least:.6g} N/m on: below it its stiffness at rest is negative" if least else ""
+    reason = f"b = {b:g} N s/m is spent, {_place(hertz, law(K).T)}; {name}{from_on}"
+    return Limit(K, hertz, KIND, reason, (*notes, _unilateral(name, delay)))
+
+
+def _place(frequency, T):
+    """Return in words which frequency [Hz] decides."""
+    if frequency is None:
+        return "all frequencies alike"
+    return f"worst at {2 * T * frequency:.4g} of the Nyquist frequency" if frequency else "worst for slow motion"
 
 
 def _of_own_law(law, b, T, B, delay, parameter, notes):

@@ -23,6 +23,8 @@ SMALL = 1e-6
 ROUNDING = 1e-7
 #: frequencies looked at, beside those around every pole
 POINTS = 1000
+#: the lowest of them as w T, and part of the largest value below which two are alike: rounding at the lowest is 1e-10
+SLOWEST, ALIKE = 1e-5, 1e-9
 
 
 def port_damping(scene, *, T=1e-3, **options):
@@ -95,7 +97,7 @@ def unstable_pole(A, B, C, allowed=0):
 
 
 def required(A, B, C, D, T, delay=0.0, points=POINTS):
-    """Return (b, theta): the least damping of a device [N s/m] and w T at the frequency that asks for it.
+    """Return (b, theta): the least damping of a device [N s/m] and w T at the frequency that asks for it, 0.0 for slow motion.
 
     A delay of d + f periods: ``H`` averaged over the two forces of a period, and one term more, see
     :mod:`hapticlab.limits.passivity`. A resonance without damping asks for inf. ``points`` is how many frequencies are
@@ -107,14 +109,16 @@ def required(A, B, C, D, T, delay=0.0, points=POINTS):
         return np.inf, float(np.abs(np.angle(lossless)).max())
     poles = np.linalg.eigvals(A) if len(A) else np.zeros(0)
     around = [np.abs(np.angle(p)) + (1 - abs(p)) * s * np.geomspace(1e-2, 30, 40) for p in poles for s in (-1, 1)]
-    theta = np.concatenate([np.geomspace(1e-5, np.pi, points), np.linspace(1e-3, np.pi, points), *around])
+    theta = np.concatenate([np.geomspace(SLOWEST, np.pi, points), np.linspace(1e-3, np.pi, points), *around])
     theta = np.unique(theta[(theta > 0) & (theta <= np.pi)])
+    slow = float(asked(A, B, C, D, T, np.array([SLOWEST]), delay)[0])
     for _ in range(4):  # look closer around the worst
         values = asked(A, B, C, D, T, theta, delay)
         worst = int(values.argmax())
         at = theta[worst]
         theta = np.linspace(theta[max(worst - 1, 0)], theta[min(worst + 1, len(theta) - 1)], 60)
-    return float(max(values.max(), 0.0)), float(at)
+    most = float(values.max())
+    return max(most, 0.0), 0.0 if slow >= most - ALIKE * abs(most) else float(at)
 
 
 def asked(A, B, C, D, T, theta, delay=0.0):

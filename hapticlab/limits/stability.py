@@ -12,9 +12,12 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..errors import AnalysisError
+from ..scene.scene import Scene
 from ..scene.taps import LEAD
 from .limit import Limit, check_number
+from .linear_law import LinearLaw
 from .loop import Loop
+from .port import static_stiffness
 
 KIND = "exact linear stability of this plant"
 NOTES = (
@@ -43,7 +46,8 @@ def stability_limit(paddle, *, law="zoh", B=0.0, parameter="k"):
         Eqs. (23.1), (23.3), (23.5), (23.7) by name: "zoh", "half_sample", "backward_difference", "ellis"; half_sample uses
         the exact velocity at the sample where the paddle measures it. Where it is estimated (``paddle.velocity``: an
         encoder, a board) Eq. (23.3) is Eq. (23.5), and so is its limit. Or a linear scene with its stiffness unbound:
-        filters, estimated velocities, ``hl.force_filter`` (23.8). Or a function of K [N/m] that returns a LinearLaw.
+        filters, estimated velocities, ``hl.force_filter`` (23.8); a stiffness that it holds is not used. Or a function of
+        K [N/m] that returns a LinearLaw.
     B : float
         Virtual damper of either sign [N s/m]: its force is ``B*(x[n] - x[n-1])/T``, beside a named law, not through it.
     parameter : str
@@ -111,7 +115,8 @@ def closed_loop_matrix(paddle, *, K=None, law="zoh", B=0.0, parameter="k"):
     Parameters
     ----------
     K : float
-        Stiffness [N/m]; None for a LinearLaw or a scene that holds its own. The others are those of :func:`stability_limit`.
+        Stiffness [N/m]; None for a LinearLaw or a scene that holds its own, and for these alone. The others are those of
+        :func:`stability_limit`.
 
     Returns
     -------
@@ -126,19 +131,33 @@ def closed_loop_matrix(paddle, *, K=None, law="zoh", B=0.0, parameter="k"):
     >>> closed_loop_matrix(paddle, K=100.0).round(9).tolist()
     [[0.5, 0.1], [-10.0, 1.0]]
     """
-    return Loop.of(paddle, law, B, parameter).matrix(_stiffness(K, law))
+    loop, K = _loop_at(paddle, K, law, B, parameter)
+    return loop.matrix(K)
 
 
 def closed_loop_poles(paddle, *, K=None, law="zoh", B=0.0, parameter="k"):
     """Eigenvalues of :func:`closed_loop_matrix`, largest magnitude first: complex array of shape (n,)."""
-    poles = 1 + Loop.of(paddle, law, B, parameter).poles(_stiffness(K, law))
+    loop, K = _loop_at(paddle, K, law, B, parameter)
+    poles = 1 + loop.poles(K)
     return poles[np.argsort(-abs(poles), kind="stable")]
 
 
-def _stiffness(K, law):
-    if K is None and not isinstance(law, str):
-        return 1.0  # a law that holds its own stiffness has the same poles at every K
-    return check_number("K", K, "N/m", "needs a finite stiffness", lambda v: True)
+def _loop_at(paddle, K, law, B, parameter):
+    """Return the loop and the stiffness to take it at; refuse a stiffness given twice, or not at all."""
+    if K is None and isinstance(law, (LinearLaw, Scene)):
+        return Loop.of(paddle, law, B, None), 0.0  # what holds its own is the same at every K
+    need = "needs a finite stiffness" if K is not None else "needs one, as the law holds none: closed_loop_poles(..., K=100)"
+    K = check_number("K", K, "N/m", need, lambda v: True)
+    if isinstance(law, LinearLaw):
+        raise AnalysisError(f"K = {K:g} N/m beside {law.name}, which holds its own stiffness; leave K out")
+    if isinstance(law, Scene) and parameter in law.values:
+        raise AnalysisError(
+            f"K = {K:g} N/m beside {law.name} with {parameter} = {law.values[parameter]:g}; "
+            f"leave K out, or bind it there: scene({parameter}={K:g})"
+        )
+    if isinstance(law, Scene) and parameter not in law.parameters and set(law.parameters) <= set(law.values):
+        raise AnalysisError(f"K = {K:g} N/m, but {law.name} has no parameter {parameter}; leave K out, or name its stiffness")
+    return Loop.of(paddle, law, B, parameter), K
 
 
 def _why_none(paddle, law, B, somewhere):
@@ -154,7 +173,7 @@ def _why_none(paddle, law, B, somewhere):
 
 def crossings(loop):
     """Return every (K, theta) with K > 0 and a pole on the unit circle at e^(j theta), by rising K."""
-    angles = [*_fast_angles(loop), *_slow_angles(loop), math.pi]
+    angles = [*_at_rest(loop), *_fast_angles(loop), *_slow_angles(loop), math.pi]
     p0, p1 = _on_circle(loop, np.array(angles))
     found = []
     for theta, a, b in zip(angles, p0, p1, strict=True):
@@ -163,6 +182,15 @@ def crossings(loop):
             found.append((float(K), float(theta)))
     found.sort()
     return [one for i, one in enumerate(found) if i == 0 or not _same(one, found[i - 1])]
+
+
+def _at_rest(loop):
+    """Return the angle zero where a constant stiffness and K can cancel, as in (K - 500) x: a pole at z = 1 passes there."""
+    law = loop.law
+    own = static_stiffness(law.A, law.B0[:, 0], law.C0, law.D0[0])
+    by_K = static_stiffness(law.A, law.B0[:, 0], law.C1, law.D1[0]) + static_stiffness(law.A, law.B1[:, 0], law.C0, 0.0)
+    known = not math.isnan(own + by_K)  # an integrator has no stiffness at rest
+    return [0.0] if known and by_K and (own or loop.determinant) else []
 
 
 def _same(one, other):

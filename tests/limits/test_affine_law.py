@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import mpmath as mp
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 import hapticlab as hl
 from hapticlab.errors import AnalysisError
@@ -141,9 +142,64 @@ def test_a_law_that_holds_its_stiffness_has_poles_and_no_limit():
     np.testing.assert_allclose(
         np.abs(closed_loop_poles(paddle(), law=law)), np.abs(closed_loop_poles(paddle(), K=300.0, law="ellis")), rtol=1e-12
     )
-    assert closed_loop_matrix(paddle(), law=hl.wall(unilateral=None)(k=100, B=0.1)).shape == (3, 3)
+    scene = hl.wall(unilateral=None)(k=100, B=0.1)
+    with mp.workdps(25):  # the characteristic polynomial by hand, a third pole for the damper's past sample
+        h, b, tau = mp.mpf(T), mp.mpf(0.12), mp.mpf(0.045) / mp.mpf(0.12)
+        a = mp.e ** (-h / tau)
+        g1, g0 = (h - tau * (1 - a)) / b, (tau * (1 - a) - a * h) / b
+        expected = mp.polyroots(added([1, -(1 + a), a, 0], product([g1, g0], [100 + 0.1 / h, -0.1 / h])), maxsteps=200)
+    for z in closed_loop_poles(paddle(), law=scene):
+        assert min(abs(z - complex(one)) for one in expected) < 1e-9
+    assert closed_loop_matrix(paddle(), law=scene).shape == (3, 3)
     with pytest.raises(AnalysisError, match="does not depend on a stiffness"):
         stability_limit(paddle(), law=law)
+
+
+@pytest.mark.parametrize(
+    ("law", "K", "words"),
+    [
+        ("zoh", None, "K = None N/m"),
+        (hl.wall(unilateral=None), None, "bind it"),
+        (lambda K: LinearLaw.of(K=K, T=T), None, "the law holds none"),
+        (hl.wall(unilateral=None)(k=100), 300.0, "K = 300 N/m beside zoh wall with k = 100; leave K out"),
+        (LinearLaw.of(K=100, T=T), 300.0, "holds its own stiffness"),
+        (hl.virtual_damper()(B=0.1), 300.0, "has no parameter k"),
+    ],
+)
+def test_a_stiffness_given_twice_or_not_at_all_is_refused(law, K, words):
+    with pytest.raises(AnalysisError, match=words):
+        closed_loop_poles(paddle(), law=law, K=K)
+
+
+@pytest.mark.parametrize("rise", [1, -1])
+@pytest.mark.parametrize("grip", [None, SimpleNamespace(m=0.02, b=0.3, k=120.0)])
+def test_a_constant_stiffness_beside_K(rise, grip):
+    """(K - 500) x falls over below 500 N/m less the hand's spring, and (500 - K) x above 500 and that: poles by scipy's expm."""
+    p, k = paddle(hand=grip), 0.0 if grip is None else grip.k
+    law = lambda K: LinearLaw.of(K=rise * (K - 500), T=T)  # noqa: E731
+
+    def stable(K):
+        m, b = p.m + (grip.m if grip else 0), p.b + (grip.b if grip else 0)
+        E = expm(np.array([[0, 1, 0], [-k / m, -b / m, -1 / m], [0, 0, 0]]) * T)
+        return abs(np.linalg.eigvals(E[:2, :2] + np.outer(E[:2, 2], [rise * (K - 500), 0]))).max() < 1
+
+    limit = stability_limit(p, law=law)
+    if rise > 0:
+        assert limit.K == 0
+        low, high = (float(w) for w in limit.reason.split("from ")[1].removesuffix(" N/m").split(" to "))
+        assert low == pytest.approx(500 - k, rel=1e-9)
+        assert [stable(K) for K in (low - 0.01, low + 0.01, high - 0.01, high + 0.01)] == [False, True, True, False]
+    else:
+        assert stable(500 + k - 0.01) and not stable(500 + k + 0.01)
+        if grip is None:  # 500 N/m is too stiff for the paddle alone; with K it gets stable, and falls over at 500
+            assert limit.K == 0 and limit.reason.endswith("to 500 N/m")
+        else:
+            assert limit.K == pytest.approx(620, rel=1e-12) and limit.frequency == 0.0
+
+
+def test_falling_over_is_a_limit_at_no_frequency():
+    limit = stability_limit(paddle(), law=lambda K: LinearLaw.of(K=100 - K, T=T))
+    assert limit.K == pytest.approx(100, rel=1e-12) and limit.frequency == 0.0
 
 
 def test_a_slow_pole_keeps_its_digits():

@@ -85,6 +85,50 @@ def test_largest_stiffness_with_a_fraction_of_delay_is_its_own_inverse():
         largest_passive_stiffness(lambda K: LinearLaw.of("zoh", K=0, B=K / 1000, T=T), b=0.1)
 
 
+@pytest.mark.parametrize("delay", [0.0, 0.5, 1.0])
+def test_a_constant_negative_stiffness_beside_K(delay):
+    """A spring of K - 500: its own limit, 500 higher, and passive only where the sum is not negative."""
+    law = lambda K: LinearLaw.of(K=K - 500, T=T)  # noqa: E731
+    k, c = hl.parameters("k", units="N/m"), hl.parameters("c", units="N/m", values=500)
+    alone = hl.passivity_limit(b=0.1, T=T, delay=delay * T).K  # 200, 94.4, 66.7: closed forms
+    for given, name in ((law, "law"), (hl.Scene(force=(k - c) * hl.x(hl.n), name="detent"), "detent")):
+        limit = hl.passivity_limit(b=0.1, T=T, delay=delay * T, law=given)
+        assert limit.K == pytest.approx(500 + alone, rel=1e-9)
+        assert limit.reason.endswith(f"{name}, passive only from K = 500 N/m on: below it its stiffness at rest is negative")
+    found = [passivity_margin(law(K), b=0.1, delay=delay * T).passive for K in (500.0, 499.9 + alone, 500.1 + alone)]
+    assert found == [True, True, False]
+    with pytest.raises(AnalysisError, match="negative stiffness, -1 N/m"):
+        passivity_margin(law(499.0), b=0.1)
+    assert asked_by_energy(law(400.0), 40) < 0 < asked_by_energy(law(690.0), 40) < 0.1  # frequencies alone do not see it
+
+
+def test_a_filter_of_the_velocity_is_for_named_laws():
+    wall = hl.wall(unilateral=None)(B=0.05)
+    with pytest.raises(AnalysisError, match="velocity_filter = 0.004 s beside a law of its own"):
+        hl.passivity_limit(b=0.1, T=T, law=wall, velocity_filter=4e-3)
+    for wrong in (-4e-3, np.nan, "x"):
+        with pytest.raises(AnalysisError, match=f"velocity_filter = {wrong} s"):
+            hl.passivity_limit(b=0.1, T=T, velocity_filter=wrong)
+    inside = hl.wall(velocity=hl.filtered_velocity(tau=4e-3), unilateral=None)(B=0.05)  # what the refusal says to do
+    expected = 2 / T * (0.1 - 0.05 / (1 + 2 * 4e-3 / T))
+    assert hl.passivity_limit(b=0.1, T=T, law=inside).K == pytest.approx(expected, rel=1e-7)
+
+
+@pytest.mark.parametrize(("law", "delay"), [("zoh", 0.0), ("zoh", 1.0), ("zoh", 0.5), ("backward_difference", 2.3)])
+def test_the_end_of_the_search_is_no_frequency(law, delay):
+    """Slow motion decides, or all frequencies alike: said by the margin as by the limit, of a name as of a scene."""
+    flat = delay == 0
+    margin = passivity_margin(LinearLaw.of(law, K=100, T=T), b=0.1, delay=delay * T)
+    assert margin.frequency == 0.0 and margin.flat == flat
+    words = "at every frequency alike" if flat else "for slow motion"
+    assert f"N s/m, {words}; the device" in str(margin)
+    for given in (law, hl.wall(law, unilateral=None), lambda K: LinearLaw.of(law, K=K, T=T)):
+        limit = hl.passivity_limit(b=0.1, T=T, delay=delay * T, law=given)
+        assert limit.frequency == (None if flat else 0.0)
+        assert ("all frequencies alike" if flat else "worst for slow motion") in limit.reason
+    assert not passivity_margin(LinearLaw.of("ellis", K=100, T=T), b=0.1).flat
+
+
 @pytest.mark.parametrize("delay", [0, 2])
 def test_every_law_asks_for_the_same_on_average(delay):
     """K T/2, the plain spring's own: the mean of Dirichlet's kernels. Random laws with memories and poles of all kinds."""

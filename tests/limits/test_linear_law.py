@@ -62,10 +62,34 @@ def test_refusals():
         LinearLaw.of_scene(hl.wall()(k=100, x_o=0), T=T)
     with pytest.raises(AnalysisError, match="velocity_filter = -1"):
         LinearLaw.of("zoh", K=100, T=T, velocity_filter=-1)
-    with pytest.raises(TypeError):
+    with pytest.raises(AnalysisError, match="needs a second LinearLaw"):
         LinearLaw.of("zoh", K=1, T=T) + 3
     with pytest.raises(AnalysisError, match="law = 'verlet'"):
         LinearLaw.of("verlet", K=100, T=T)
+
+
+@pytest.mark.parametrize(
+    ("taps", "T", "words"),
+    [
+        ([100.0], 0, "T = 0.0 s"),
+        ([100.0], -1e-3, "T = -0.001 s"),
+        ([np.nan, 1], T, "taps = .*finite numbers, 2 of them"),
+        ([1.0, np.inf], T, "taps = .*finite numbers"),
+        ([], T, "taps = "),
+        ([[1, 2], [3, 4]], T, "taps = "),
+        ("stiff", T, "taps = stiff"),
+    ],
+)
+def test_a_law_is_of_finite_numbers_and_of_a_period(taps, T, words):
+    with pytest.raises(AnalysisError, match=words):
+        LinearLaw.of_taps(taps, T=T)
+
+
+def test_matrices_that_do_not_fit_are_refused():
+    with pytest.raises(AnalysisError, match="needs finite numbers, 1 x 1 of them"):
+        LinearLaw(np.eye(2), np.ones(1), np.ones(1), 0.0, T, "odd")
+    with pytest.raises(AnalysisError, match="odd: D = nan; needs a finite number"):
+        LinearLaw(np.eye(1), np.ones(1), np.ones(1), np.nan, T, "odd")
 
 
 def test_a_late_force():
