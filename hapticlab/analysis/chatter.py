@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import AnalysisError
 from ..records import check_record
+from .chatter_signs import levels_off, leaves_its_drive, runs_away, scatter
 from .driven import drive_of, following
 
 #: amplitudes of the last two quarters within this ratio count as one sustained oscillation
@@ -21,8 +22,8 @@ SHORTEST = 32
 REVERSALS = 2
 #: what is left of a driven motion is its own below this part of it
 FOLLOWS = 0.02
-#: a handle that has become faster by this from one quarter to the next, and moves by more [m], runs away
-FASTER, FAR = 1.02, 1e-3
+#: a handle that turned round once, and in the last quarter moves by more than this part of all its way, does not rest
+RESTS = 0.01
 #: a cycle repeats itself where it comes back within this part of its amplitude; it is looked for up to so many samples
 REPEATS, LONGEST_CYCLE = 1e-4, 2000
 
@@ -36,7 +37,8 @@ class Chatter:
     state : {"none", "chatter", "growing", "decaying", "undecided", "driven", "runaway"}
         "chatter" is a sustained limit cycle: the last two quarters agree within 1 %, or differ by less than its own
         irregularity explains. Just inside a stability limit a decay can take 1e5 samples, so look at ``growth`` too.
-        "undecided": it oscillates, but with fewer than three cycles a quarter that neither all grow nor all decay.
+        "undecided": it oscillates, but with fewer than three cycles a quarter that neither all grow nor all decay; or it
+        turned round once in the last half and still moves, half a swing that may be a slow oscillation or none.
         "driven": it oscillates because, and as, what drives it does. "runaway": it does not turn round and becomes faster.
     amplitude : float
         Half the peak-to-peak of the handle's oscillation over the last half [m]; 0 where there is none. Without the part
@@ -58,6 +60,10 @@ class Chatter:
     period : int or None
         Samples after which a locked cycle repeats itself, to 1e-4 of its amplitude; None where it is not locked to the
         sampling within 2000 samples.
+    scatter : float
+        Standard deviation of what is left where that is white noise of the sensor, and so no motion [m]; else 0.
+    levels_off : bool
+        A decay that becomes slower and slower: onto a limit cycle, perhaps, and not to rest.
     driven : float
         Half the peak-to-peak of the part that follows the drive [m]; 0 where none was given.
     growth_error : float
@@ -76,12 +82,17 @@ class Chatter:
     period: int | None = None
     driven: float = 0.0
     growth_error: float = math.nan
+    scatter: float = 0.0
+    levels_off: bool = False
 
     def __str__(self):
         if self.state == "runaway":
             return f"runaway: the handle moves on by {1e3 * self.travel:.4g} mm in the last quarter, faster and faster"
         if self.state == "driven":
             return f"driven: {1e3 * self.driven:.4g} mm follow what drives the handle; no oscillation of its own beside it"
+        if self.scatter:
+            noise = f"the sensor scatters by {1e3 * self.scatter:.3g} mm (standard deviation)"
+            return f"none: the handle rests at {1e3 * self.rest:.4g} mm; {noise}, which is no motion"
         if self.state == "none":
             moves = self.travel > 1e-3 * abs(self.rest) + 1e-6
             where = f"moves on by {1e3 * self.travel:.4g} mm" if moves else f"rests at {1e3 * self.rest:.4g} mm"
@@ -95,6 +106,7 @@ class Chatter:
             cycle = f", repeats itself every {self.period} samples" if self.period else ""
             return f"chatter: {place}; sustained (growth {self.growth:+.2g} 1/s){cycle}"
         cure = "it dies out" if self.state == "decaying" else "run longer for its final amplitude"
+        cure = "it decays more and more slowly, onto a cycle perhaps: run longer" if self.levels_off else cure
         return f"{self.state}: {place}; not locked (growth {self.growth:+.3g} 1/s): {cure}"
 
 
@@ -106,7 +118,10 @@ def chatter(log, driven=None):
     call it sustained takes three cycles in a quarter of the record. Motion that is driven, by a hand's noise or moving
     intent or by a scene's own vibration, looks like chatter, unless ``driven`` says what drives: the part that follows it
     is then taken off (:func:`~hapticlab.analysis.driven.following`). A chatter that has locked onto its drive's own
-    frequency cannot be told from it.
+    frequency, or onto a harmonic of it up to the eighth, cannot be told from it and counts as driven.
+
+    Without ``x_true`` a sensor's noise is all there is of a resting handle: what is white at every lag up to 40 samples is
+    no chatter, and a chatter below 0.6 standard deviations of that noise is not seen.
 
     Parameters
     ----------
@@ -146,15 +161,29 @@ def chatter(log, driven=None):
     rest, travel = float(x[-quarter:].mean()), float(np.ptp(x[-quarter:]))
     least = max(1e-9, 1e-6 * np.ptp(x), 4 * np.finfo(np.float32).eps * abs(x).max())
     size, quarter_before = 0.0, slice(-2 * quarter, -quarter)
+
+    def still(state, scatter=0.0, amplitude=0.0, growth=0.0):
+        return Chatter(
+            state, amplitude, None, contacts, growth, False, False, rest, travel, None, size, math.nan, scatter
+        )
+
+    whole = float(np.ptp(x))
     if driven is not None:
-        follows = following(x, drive_of(log, driven))
+        drive = drive_of(log, driven)
+        if leaves_its_drive(x, drive, quarter):
+            return still("runaway")
+        follows = following(x, drive)
         size, x = float(np.ptp(follows)) / 2, x[-half:] - follows
         if _strength(x) < max(least, FOLLOWS * _strength(follows)):
-            return Chatter("driven", 0.0, None, contacts, 0.0, False, False, rest, travel, None, size)
-    if _strength(x[-quarter:]) < least or _reversals(x[-half:]) < REVERSALS:
-        state = "runaway" if size == 0 and _runs_away(x, quarter) else "none"
-        return Chatter(state, 0.0, None, contacts, 0.0, False, False, rest, travel, None, size)
+            return still("driven")
+    turns = _reversals(x[-half:])
+    if turns == 1 and travel > RESTS * whole and not size and _strength(x[-quarter:]) >= least:
+        return still("undecided", 0.0, float(np.ptp(x[-half:]) / 2), math.nan)
+    if _strength(x[-quarter:]) < least or turns < REVERSALS:
+        return still("runaway" if runs_away(x, quarter) else "none")
     y, _ = _around_trend(x[-half:])
+    if "x_true" not in log.channels and len(np.unique(log.x[-half:])) > 2 and (noise := scatter(y)):
+        return still("none", noise)
     crossings = _upward_crossings(y) * log.T
     frequency = float((len(crossings) - 1) / (crossings[-1] - crossings[0])) if len(crossings) > 1 else None
     if len(crossings) > 2 * CYCLES:
@@ -167,8 +196,10 @@ def chatter(log, driven=None):
     dither, amplitude = len(np.unique(log.x[-half:])) == 2, float(np.ptp(y) / 2)
     period = cycle_length(x[-half:], amplitude) if locked else None
     growth, error = ratio / (quarter * log.T), uneven / (quarter * log.T)
+    size4 = half // 4
+    slower = state == "decaying" and levels_off([_strength(y[i * size4 : (i + 1) * size4]) for i in range(4)])
     return Chatter(
-        state, amplitude, frequency, contacts, growth, locked, dither, rest, travel, period, size, error
+        state, amplitude, frequency, contacts, growth, locked, dither, rest, travel, period, size, error, 0.0, slower
     )
 
 
@@ -178,12 +209,6 @@ def cycle_length(x, amplitude):
         if abs(x[-1] - x[-1 - p]) < REPEATS * amplitude and abs(x[p:] - x[:-p])[-3 * p :].max() < REPEATS * amplitude:
             return p
     return None
-
-
-def _runs_away(x, quarter):
-    """Return whether the handle goes one way, and farther in the last quarter than in the one before."""
-    last, before = x[-quarter:], x[len(x) - 2 * quarter : len(x) - quarter]
-    return np.ptp(last) > max(FAR, FASTER * np.ptp(before))
 
 
 def decaying(largest, least_before, largest_before):

@@ -1,0 +1,46 @@
+"""Signs in a record that tell motions apart before anything is called chatter: scatter, running away, a decay that ends."""
+
+import numpy as np
+
+#: a handle that has become faster by this from one quarter to the next, and moves by more [m], runs away
+FASTER, FAR = 1.02, 1e-3
+#: the scatter of a sensor: at no lag up to so many samples is the correlation as large as this
+LAGS, CORRELATED = 40, 0.2
+#: a driven motion that has grown by more than this more than its drive, to one side, runs away
+OUTGROWS, ONE_SIDE = 2.0, 0.25
+#: a decay loses, in the last of four windows, at least this part of what it lost in the first of them
+LEVELS = 0.5
+
+
+def runs_away(x, quarter):
+    """Return whether the handle goes one way, and farther in the last quarter than in the one before."""
+    last, before = x[-quarter:], x[len(x) - 2 * quarter : len(x) - quarter]
+    return bool(np.ptp(last) > max(FAR, FASTER * np.ptp(before)))
+
+
+def leaves_its_drive(x, drive, quarter):
+    """Return whether a driven handle moves off to one side, much farther than it did before and than its drive asks."""
+    last, before = x[-quarter:], x[-2 * quarter : -quarter]
+    asked = np.ptp(drive[-quarter:]) / max(np.ptp(drive[-2 * quarter : -quarter]), 1e-300)
+    up, down = max(0.0, last.max() - before.max()), max(0.0, before.min() - last.min())
+    one_way = min(up, down) < ONE_SIDE * max(up, down)
+    return bool(one_way and np.ptp(last) > max(FAR, OUTGROWS * max(1.0, asked) * np.ptp(before)))
+
+
+def scatter(y):
+    """Return the standard deviation of y where it is white noise, else 0: a handle has mass and cannot jump about so.
+
+    An oscillation is correlated with itself a period or half of one later, whatever its frequency.
+    """
+    power = float(y @ y)
+    if power == 0:
+        return 0.0
+    lags = range(1, min(LAGS, len(y) // 4) + 1)
+    white = all(abs(y[k:] @ y[:-k]) < CORRELATED * power for k in lags)
+    return float(np.sqrt(power / len(y))) if white else 0.0
+
+
+def levels_off(strengths):
+    """Return whether four amplitudes, one after the other, fall more and more slowly: a decay onto a cycle, not to rest."""
+    steps = np.diff(np.log(np.asarray(strengths) + 1e-300))
+    return bool(steps[0] < 0 and steps[-1] > LEVELS * steps[0])
