@@ -1,5 +1,6 @@
 """Measure the impedance that a paddle renders: the hand or the motor shakes the handle in whole periods."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from ..device.simulated import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
 from .excitation import Excitation
 from .measured import MeasuredImpedance
+from .shaking import bearable, most_force, shake_board
 from .signals import lines_of
 from .small_signal import force_at_rest, law_at
 from .spectrum import held_transfer, lines_in, ramp_transfer, response
@@ -21,13 +23,15 @@ COMPILED = ("method", "substeps", "hold", "force_at", "dtype")
 AMPLITUDE = {"hand": 1e-3, "motor": 0.1}
 #: frequencies by default, and the highest as a part of the sampling rate
 FREQUENCIES, LOWEST, HIGHEST = 24, 2.0, 0.2
+#: where the handle is measured by default, beyond a wall's boundary [m]
+DEPTH = 0.005
 #: images of the handle's motion between samples that are taken off
 IMAGES = 200
 
 
 def measured_impedance(
     paddle, scene, *, how="multisine", drive=None, frequency=None, amplitude=None, place=None, period=1.0, blocks=4,
-    realizations=2, settle=2.0, ideal=None, seed=0, **options,
+    realizations=2, settle=2.0, ideal=None, seed=0, force_max=None, reach=0.02, speed_max=1.0, **options,
 ):  # fmt: skip
     """Measure the impedance that a scene renders at the handle, by a periodic excitation in whole periods.
 
@@ -36,6 +40,9 @@ def measured_impedance(
     simulation and on a board alike. A board has no force sensor: from it the scene's force over the sensed motion is
     observable, and the mechanics that the motor moves, device and hand together; that the motor gives the force that was
     computed, and what the hand feels, is not.
+
+    On a board the motor first leads the handle to the place, softly. Then its force rises over half a second, keeps below
+    a limit, and is off for good where the handle goes too far or too fast; the record is refused then.
 
     Parameters
     ----------
@@ -52,7 +59,7 @@ def measured_impedance(
         Peak of the intent [m], 1 mm, or of the motor's force [N], 0.1 N.
     place : float, optional
         Mean position of the handle [m] that a driving hand holds: inside a wall, deeper than it moves. By default where
-        the scene's x_o is, and 5 mm beyond it.
+        the scene's x_o is, and 5 mm beyond it, or less: half of what the motor stands for long holds it there.
     period, settle : float
         Of the excitation, and of what is waited for before the first block [s].
     blocks, realizations : int
@@ -62,6 +69,10 @@ def measured_impedance(
         a wall.
     seed : int
         Of the phases.
+    force_max : float, optional
+        The largest force of a board's motor [N]; by default what holds the place and twice the amplitude.
+    reach, speed_max : float
+        How far from where it began the handle of a board may go [m], and how fast [m/s].
     **options
         Of the paddle's run: dtype, method, and on a board every.
 
@@ -83,6 +94,9 @@ def measured_impedance(
     """
     if how not in HOW:
         raise AnalysisError(f"how = {how!r}; needs one of {', '.join(HOW)}")
+    _check(period=period, blocks=blocks, realizations=realizations, amplitude=amplitude, settle=settle, place=place)
+    limits = {"force": force_max, "reach": reach, "speed_max": speed_max}
+    _check(**limits)
     simulated = isinstance(paddle, SimulatedPaddle)
     drive = _drive(paddle, drive, simulated)
     amplitude = AMPLITUDE[drive] if amplitude is None else amplitude
@@ -90,8 +104,7 @@ def measured_impedance(
     wanted = np.geomspace(max(LOWEST, 2 / period), top, FREQUENCIES) if frequency is None else frequency
     samples, lines = lines_of(wanted, paddle.T, period)
     lines = np.arange(lines.min(), lines.max() + 1) if how == "swept_sine" else lines
-    place = scene.values.get("x_o", 0.0) + (0.005 if "x_o" in scene.values else 0.0) if place is None else float(place)
-    run, exact = _runs(paddle, scene, drive, place, simulated, options)
+    run, exact, place = _runs(paddle, scene, drive, place, settle, None if simulated else limits, options)
     skip, kept = round(settle / paddle.T), []
     for k in range(realizations if how == "multisine" else 1):
         excitation = Excitation(how, lines, samples, paddle.T, amplitude, seed + k)
@@ -115,37 +128,66 @@ def _drive(paddle, drive, simulated):
     return drive
 
 
-def _runs(paddle, scene, drive, place, simulated, options):
-    """Return run(excitation, duration) -> Telemetry, and the scene's own program in float64 for its law."""
+def _check(**values):
+    """Refuse what no measurement can be made with."""
+    for name, value in values.items():
+        whole, above = name in ("blocks", "realizations"), name not in ("place", "settle")
+        number = None if isinstance(value, (str, bool)) else value
+        try:
+            good = value is None or (math.isfinite(number) and (not whole or number == int(number)))
+        except TypeError:
+            good = False
+        if not good or (value is not None and ((above and value <= 0) or (name == "settle" and value < 0))):
+            needs = ("a whole number > 0" if whole else "a number > 0") if above else "a finite number"
+            raise AnalysisError(
+                f"measured_impedance: {name} = {value!r}; needs {needs if name != 'settle' else 'a number >= 0'}"
+            )
+
+
+def _runs(paddle, scene, drive, place, settle, limits, options):
+    """Return run(excitation, duration) -> Telemetry, the scene's own program in float64 for its law, and the place [m].
+
+    ``limits`` of a board's motor; None for a simulated paddle, whose handle nobody holds.
+    """
     compiled = {name: a for name, a in options.items() if name in COMPILED}
     others = {name: a for name, a in options.items() if name not in COMPILED}
     exact = compile(scene, T=paddle.T, velocity=paddle.velocity, **{**compiled, "dtype": "float64"})
-    hand = paddle.hand if simulated else None
+    origin = scene.values.get("x_o", 0.0)
+    if place is None:
+        depth = DEPTH if "x_o" in scene.values else 0.0
+        place = bearable(exact, paddle, origin, depth) if drive == "motor" else origin + depth
+    place, hand = float(place), None if limits else paddle.hand
     pull = force_at_rest(exact, place) - (hand.push if hand else 0.0)  # what holds the handle at the place
-    if drive == "motor":
-        pull += hand.k * (place - (hand.intent or 0.0)) if hand else 0.0
-        start = {"x": place} if simulated else {}
+    if drive == "motor" and limits:
 
         def run(excitation, duration):
-            return paddle.run(excitation.beside(scene, pull), duration=duration, progress=False, **start, **options)
+            size = excitation.amplitude
+            most = {**limits, "force": most_force(paddle, pull, size, limits["force"])}
+            at = {"place": place, "origin": origin, "amplitude": size, "settle": settle}
+            return shake_board(paddle, excitation.beside(scene, pull), duration, **at, **most, options=options)
 
-        return run, exact
+    elif drive == "motor":
+        pull += hand.k * (place - (hand.intent or 0.0)) if hand else 0.0
 
-    program = paddle.program(scene, **compiled)
+        def run(excitation, duration):
+            return paddle.run(excitation.beside(scene, pull), duration=duration, progress=False, x=place, **options)
 
-    def run(excitation, duration):
-        driven = replace(paddle, hand=excitation.hand(hand, place, pull))
-        return driven.run(program, duration=duration, x=place, progress=False, **others)
+    else:
+        program = paddle.program(scene, **compiled)
 
-    return run, exact
+        def run(excitation, duration):
+            driven = replace(paddle, hand=excitation.hand(hand, place, pull))
+            return driven.run(program, duration=duration, x=place, progress=False, **others)
+
+    return run, exact, place
 
 
 def _blocks(log, samples, blocks, skip):
     """Return x, F and the scene's own part of F as blocks of one period, shape (B, N)."""
     if log.fault or log.gap.any() or log.every > 1 or len(log) < skip + blocks * samples:
         raise PaddleError(
-            f"the record is not whole: {log.fault or 'samples were lost or left out'}. Drive less, hold the handle, or "
-            "measure with a longer T"
+            f"measured_impedance: the record is not whole: {log.fault or 'samples were lost or left out'}. Drive less, "
+            "hold the handle, or measure with a longer T"
         )
     columns = [log.channels.get("x_true", log.x), log.F, log.channels.get("own", log.F)]
     return [c[skip : skip + blocks * samples].reshape(blocks, samples) for c in columns]
