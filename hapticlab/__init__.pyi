@@ -67,9 +67,10 @@ from .experiments.reaching import Load, follow, reach
 from .experiments.shared_control import assistance
 from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
 from .experiments.up_down import UpDown
-from .identification.hand import identify_hand, push_hand
+from .identification.hand import identify_hand
 from .identification.handle_records import HandleRecord, chirp_response, identify, spin_down, step_response
 from .identification.paddle import identify_paddle
+from .identification.pushes import push_hand
 from .limits.admittance import admittance_design
 from .limits.bounds import abbott_okamura_limit, bounds, diolaiti_limit, gil_limit
 from .limits.colgate import equivalent_damper, passivity_margin, wall_damping

@@ -7,6 +7,7 @@ import numpy as np
 import sympy as sp
 
 from ..errors import AnalysisError
+from ..measurement.leash import leashed
 from ..scene.laws import virtual_damper
 from ..scene.parameters import parameters
 from ..scene.scene import Scene
@@ -50,14 +51,14 @@ class Excitation:
         return self.size * sum(by * (at >= start * self.length) for start, by in self._changes())
 
     def scene(self, travel):
-        """Return it as a scene that gives no force further than ``travel`` [m] from where it began."""
-        A, limit = parameters("A limit", units="N m", values=(self.size, travel))
+        """Return it as a scene whose force ends, for good, further than ``travel`` [m] from where the handle began."""
+        A = parameters("A", units="N", values=self.size)
         at = n - LEAD
         if self.kind == "chirp":
             force = when(at >= 0, A * sp.cos(self._phase(at, sp.Float)), 0)
         else:
             force = A * sp.Add(*(when(at >= start * self.length, by, 0) for start, by in self._changes()))
-        return Scene(when(sp.Abs(x(n)) <= limit, force, 0), name=self.kind)
+        return leashed(Scene(force, name=self.kind), travel)
 
     def _changes(self):
         return ((0, 1), (1, -1)) if self.kind == "kick" else CHANGES

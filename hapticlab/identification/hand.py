@@ -3,27 +3,22 @@
 from dataclasses import dataclass
 
 import numpy as np
-import sympy as sp
 
 from ..device.board import SerialPaddle
-from ..device.hand import Hand, require
+from ..device.hand import Hand
 from ..device.simulated import SimulatedPaddle
 from ..errors import AnalysisError
 from ..records import Telemetry, check_record
-from ..scene.parameters import parameters
-from ..scene.scene import Scene
-from ..scene.symbols import n, when, x
 from .found import Found, told
 from .hand_motion import hand_positions
-from .paddle import after, counts_per_metre_of, given
+from .paddle import counts_per_metre_of
+from .pushes import FORCE, push_hand
 from .scoring import fit
 
 #: s that a hand is taken not to react; a stretch reflex begins after 25 to 50 ms, the will after 100 and more
 WINDOW = 0.06
-#: s of rest before a push that a window takes in, s that a push lasts, s from one push to the next: least and most
-BEFORE, LASTS, APART = 0.02, 0.015, (0.45, 0.75)
-#: N, and how far the handle may go before the motor gives nothing [m]
-FORCE, TRAVEL = 1.0, 0.03
+#: s of rest before a push that a window takes in
+BEFORE = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +53,8 @@ def identify_hand(
     Parameters
     ----------
     source : Telemetry or Paddle
-        A record with ``F`` zero but for pushes; or a paddle, which then pushes the hand that holds it, at random times.
+        A record with ``F`` zero but for pushes; or a paddle, which then pushes the hand that holds it, at random times:
+        on a board weaker first, until the handle is seen to come back (:func:`push_hand`).
     device : PaddleProfile, SimulatedPaddle or None
         m, b, coulomb, delay of the handle alone; None takes the paddle's own. A free handle tells them to
         :func:`identify_paddle`.
@@ -102,28 +98,6 @@ def identify_hand(
     start, scales = _start(source, windows, own)
     fitted = fit(_motion(source, windows, own), y[:, None], start[:, None, None], scales[:, None], quantum=quantum)
     return told(HandFit, y, fitted, ("m", "b", "k"), quantum=quantum, T=source.T, confidence=confidence)
-
-
-def push_hand(paddle, *, force=FORCE, pushes=8, seed=0):
-    """Push a hand that holds the handle, at times and in directions it cannot foresee, and return the record.
-
-    Further than 30 mm from where it began the motor gives nothing.
-    """
-    force, T = require("force", force, "N", "a push", above=0), paddle.T
-    draws = np.random.default_rng(seed)
-    starts = np.cumsum(draws.uniform(*APART, pushes)) / T
-    signs = draws.permutation(np.resize([1, -1], pushes))
-    A, limit = parameters("A limit", units="N m", values=(force, TRAVEL))
-    length = max(2, round(LASTS / T))
-    pushed = [
-        sign * when((n >= int(at)) & (n < int(at) + length), A, 0) for at, sign in zip(starts, signs, strict=True)
-    ]
-    scene = Scene(when(sp.Abs(x(n)) <= limit, sp.Add(*pushed), 0), name="pushes")
-    duration = float(starts[-1] * T + APART[0])
-    if isinstance(paddle, SerialPaddle):
-        log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False))
-        return Telemetry(**{**vars(log), "F": given(paddle, log.F)})
-    return paddle.run(scene, duration=duration, progress=False)
 
 
 def _windows(log, window):

@@ -149,14 +149,15 @@ def _run(paddle, excited, force, travel):
     if not isinstance(paddle, SerialPaddle):
         return paddle.run(scene, duration=duration, progress=False)
     back = centring(force / travel, BACK_DAMPING * force / travel)
-    after(paddle.run(back, duration=BACK_TIME, force_max=force, progress=False))
-    log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False))
+    after(paddle.run(back, duration=BACK_TIME, force_max=force, progress=False), "identify_paddle")
+    log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False), "identify_paddle")
     return replace(log, F=given(paddle, log.F))
 
 
-def after(log):
+def after(log, asked):
+    """Return the record of a run on a board that ``asked`` made, or raise what stopped it."""
     if log.fault:
-        raise PaddleError(f"identify_paddle stopped: {log.fault}")
+        raise PaddleError(f"{asked} stopped: {log.fault}")
     return log
 
 

@@ -7,7 +7,9 @@ import pytest
 
 import hapticlab as hl
 from hapticlab.errors import AnalysisError
+from hapticlab.identification.excitation import Excitation
 from hapticlab.identification.hand import _motion, _start, _windows
+from hapticlab.identification.paddle import after
 from hapticlab.identification.scoring import fit
 
 GRIP = hl.Hand(m=0.1, b=5, k=500, push=0.5)
@@ -74,3 +76,55 @@ def test_refusals_say_what_to_do():
         hl.identify_hand(log, PADDLE)
     with pytest.raises(AnalysisError, match="whose handle.*identify_paddle"):
         hl.identify_hand(log)
+
+
+def board_of(paddle):
+    """Return a simulated board and the list of the records it makes."""
+    pytest.importorskip("serial")
+    board, logs = hl.connect("sim://hapkit", paddle=paddle), []
+    run = board.run
+
+    def kept(*given, **options):
+        logs.append(run(*given, **options))
+        return logs[-1]
+
+    board.run = kept
+    return board, logs
+
+
+@pytest.mark.parametrize("coulomb", [0.0, 0.05])
+def test_a_handle_that_nobody_holds_is_not_pushed_with_all_force(coulomb):
+    free = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, coulomb=coulomb, noise=5e-6, counts_per_metre=1 / 12.8e-6)
+    board, logs = board_of(free)
+    with (
+        board,
+        pytest.raises(hl.PaddleError, match="identify_hand: pushed by .* did not come back: somebody has to hold"),
+    ):
+        hl.identify_hand(board)
+    assert max(abs(log.F).max() for log in logs) <= 0.5
+    assert max(np.ptp(log.x) for log in logs) < 0.03  # of 50 mm to the nearest stop
+
+
+def test_a_push_counts_from_where_the_handle_is_and_ends_for_good():
+    """30 mm from 15 mm on, where the board's zero would have left 15: the free handle goes 1 N 15 ms / 0.1 N s/m = 0.15 m."""
+    free = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3)
+    with pytest.raises(hl.PaddleError, match="identify_hand: the motor was switched off .* further than 30 mm"):
+        hl.push_hand(free, pushes=2)
+    scene = Excitation("kick", 0.5, 40, 400).scene(0.01)
+    log = free.run(scene, duration=0.4, x=0.015)
+    assert abs(log.x[log.cut > 0][0] - 0.015) > 0.01 >= abs(log.x[log.cut == 0] - 0.015).max()
+    assert not log.F[log.cut > 0].any() and log.F[:59].any()
+
+
+def test_a_fault_names_the_call_and_an_interrupt_leaves_the_motor_off(monkeypatch):
+    board, _ = board_of(replace(PADDLE, counts_per_metre=1 / 12.8e-6))
+    with board:
+        with pytest.raises(hl.PaddleError, match="identify_hand: force = 99 N; the motor stands for"):
+            hl.identify_hand(board, force=99.0)
+        monkeypatch.setattr("hapticlab.device.board.collect", lambda *given: (_ for _ in ()).throw(KeyboardInterrupt))
+        with pytest.raises(KeyboardInterrupt):
+            hl.identify_hand(board)
+        assert board.state()["state"] == 0 and board.state()["force"] == 0
+    log = PADDLE.run(hl.virtual_damper()(B=0), duration=0.2)
+    with pytest.raises(hl.PaddleError, match="identify_hand stopped: tick 3"):
+        after(replace(log, fault="tick 3"), "identify_hand")

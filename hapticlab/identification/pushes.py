@@ -1,0 +1,94 @@
+"""Pushes of the motor against a hand that holds the handle: weak ones first, to see that somebody does."""
+
+from dataclasses import replace
+
+import numpy as np
+import sympy as sp
+
+from ..device.board import SerialPaddle
+from ..device.hand import require
+from ..errors import PaddleError
+from ..measurement.leash import held_back
+from ..measurement.trials import speed_limit
+from ..scene.parameters import parameters
+from ..scene.scene import Scene
+from ..scene.symbols import n, when
+from .paddle import after, given
+
+#: s that a push lasts, and s from one push to the next: least and most
+LASTS, APART = 0.015, (0.45, 0.75)
+#: N, how far from where it began the handle may go [m], and how fast [m/s]
+FORCE, TRAVEL, SPEED = 1.0, 0.03, 1.0
+#: parts of the force that look whether a hand holds the handle: with the first at which it moves and comes back, one does
+LOOKS = (1 / 8, 1 / 4, 1 / 2)
+#: of its way out, what a handle may be off where it was once it came back
+BACK = 0.5
+#: encoder counts, below which a handle did not move; s of quiet after a look
+STILL, QUIET = 2.5, 0.4
+
+
+def push_hand(paddle, *, force=FORCE, pushes=8, seed=0):
+    """Push a hand that holds the handle, at times and in directions it cannot foresee, and return the record.
+
+    Further than 30 mm from where it began, or faster than 1 m/s, the motor is off for good. On a board an eighth, a
+    quarter and half of the force are tried before, until the handle comes back: a free one is not pushed harder.
+
+    Raises
+    ------
+    PaddleError
+        Where nothing brings the handle back, and where it went too far or too fast.
+    """
+    force, T = require("force", force, "N", "a push", above=0), paddle.T
+    if not isinstance(pushes, (int, np.integer)) or isinstance(pushes, bool) or pushes < 1:
+        raise PaddleError(f"pushes = {pushes!r}; identify_hand needs a whole number >= 1.")
+    if isinstance(paddle, SerialPaddle):
+        if paddle.settings is None:
+            raise PaddleError("identify_hand: the board has no calibration: run `hapticlab calibrate` first.")
+        most = min(paddle.settings.force_continuous, paddle.settings.force_max)
+        if force > most:
+            raise PaddleError(f"identify_hand: force = {force:g} N; the motor stands for {most:.3g} N: give less.")
+        _look(paddle, force)
+    draws = np.random.default_rng(seed)
+    starts = np.cumsum(draws.uniform(*APART, pushes)) / T
+    signs = draws.permutation(np.resize([1, -1], pushes))
+    return _pushed(paddle, force, starts.astype(int), signs, float(starts[-1] * T + APART[0]))
+
+
+def _pushed(paddle, force, starts, signs, duration):
+    """Return the record of pushes at samples and of signs; raise where the motor was cut."""
+    A, length = parameters("A", units="N", values=force), max(2, round(LASTS / paddle.T))
+    parts = [sign * when((n >= int(at)) & (n < int(at) + length), A, 0) for at, sign in zip(starts, signs, strict=True)]
+    fastest = speed_limit(paddle, SPEED)
+    scene = Scene(sp.Add(*parts), name="pushes")
+    scene = held_back(scene, TRAVEL, speed_max=fastest, work=force * fastest * LASTS * len(starts))
+    if isinstance(paddle, SerialPaddle):
+        log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False), "identify_hand")
+        log = replace(log, F=given(paddle, log.F))
+    else:
+        log = paddle.run(scene, duration=duration, progress=False)
+    if log.cut.any():
+        raise PaddleError(
+            f"identify_hand: the motor was switched off after {log.t[log.cut.argmax()]:.3g} s, a push of {force:.3g} N moved "
+            f"the handle further than {1e3 * TRAVEL:.3g} mm from where it began, or faster than {fastest:.3g} m/s: hold it, "
+            "or give a smaller force="
+        )
+    return log
+
+
+def _look(paddle, force):
+    """Raise unless a hand holds the handle: pushed by a part of the force, it comes back. A handle that sticks may."""
+    count, way, pushed = abs(paddle.settings.metres_per_count), 0.0, 0.0
+    for part, sign in zip(LOOKS, (1, -1, 1), strict=True):
+        if 4 * way > TRAVEL:  # twice the force moves a handle with friction four times as far
+            break
+        length, pushed = max(2, round(LASTS / paddle.T)), part * force
+        log = _pushed(paddle, pushed, [2], [sign], (2 + length) * paddle.T + QUIET)
+        moved = log.x - log.x[0]
+        way = float(abs(moved).max())
+        if way > STILL * count and abs(moved[-1]) <= BACK * way + count:
+            return
+    if way > STILL * count:
+        raise PaddleError(
+            f"identify_hand: pushed by {pushed:.3g} N for {1e3 * LASTS:g} ms the handle went {1e3 * way:.2g} mm and did "
+            "not come back: somebody has to hold it, where they want to keep it; a hand without stiffness is not pushed"
+        )
