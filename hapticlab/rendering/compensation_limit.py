@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -29,11 +30,13 @@ class CompensationLimit:
     dry : float
         Largest part of the Coulomb friction at viscous = 0: 1, or where the paddle begins to hunt about its hand's spring.
     m, b, k : float
-        Of handle and hand: mass [kg], damping [N s/m], stiffness [N/m].
+        Of handle and hand: mass [kg], damping at the least [N s/m], stiffness [N/m].
     b_device, coulomb : float
-        What is compensated: the device's own damping [N s/m] and Coulomb friction [N].
+        What is compensated: the device's own damping [N s/m] and Coulomb friction [N], as they are believed to be.
     T : float
         Sampling period [s].
+    b_least, coulomb_least : float
+        What they may be at the least [N s/m], [N]; the limits hold from there on.
     """
 
     viscous: float
@@ -44,6 +47,8 @@ class CompensationLimit:
     b_device: float
     coulomb: float
     T: float
+    b_least: float
+    coulomb_least: float
 
     @property
     def dry(self):
@@ -58,13 +63,14 @@ class CompensationLimit:
 
         Without a hand's spring that is 1. About a spring the handle must break away at every turn, so that more is
         needed: 2/(1 + r), where r is the part of its swing that half a period with the damping left keeps. Of sampling
-        period and width ``speed`` to zero.
+        period and width ``speed`` to zero. Less by as much as the friction may be less than believed.
         """
         kept = self._kept(viscous)
-        return 2 / (1 + kept) if self.k and kept < 1 else 1.0
+        sure = self.coulomb_least / self.coulomb if self.coulomb else 1.0
+        return 2 / (1 + kept) * sure if self.k and kept < 1 else sure
 
     def speed(self, viscous, dry):
-        """Return the steady speed [m/s] of a free handle that is over-compensated: (dry - 1) coulomb/(damping left).
+        """Return the steady speed [m/s] of a free handle that is over-compensated: (dry coulomb - coulomb_least)/(damping left).
 
         0 where it comes to rest, infinite where nothing holds it. Exact for the sampled loop and any estimate of v,
         with ``shape="dead_zone"``; for ``"smooth"`` where it is far beyond ``speed``.
@@ -72,22 +78,23 @@ class CompensationLimit:
         self._free("a steady speed")
         if viscous >= self.viscous:
             return math.inf
-        return max((dry - 1) * self.coulomb / self.left(viscous), 0.0)
+        return max(self._excess(dry) / self.left(viscous), 0.0)
 
     def kick(self, viscous, dry):
         """Return the speed [m/s] beyond which a free handle runs away though its Coulomb friction holds it at rest.
 
-        coulomb (1 - dry)/(-damping left) where more than all viscous damping is compensated; infinite where it is not.
+        (coulomb_least - dry coulomb)/(-damping left) where more than all viscous damping is compensated; infinite where
+        it is not.
         """
         self._free("a kick")
         if viscous <= self.viscous:
             return math.inf
-        return max(self.coulomb * (1 - dry) / -self.left(viscous), 0.0)
+        return max(self._excess(dry) / self.left(viscous), 0.0)
 
     def hunting(self, viscous, dry):
         """Return the amplitude [m] of the limit cycle about the hand's spring; 0 where the paddle comes to rest.
 
-        g/k (1 + r)/(1 - r) with g = (dry - 1) coulomb the force left over: over half a period the handle swings about
+        g/k (1 + r)/(1 - r) with g = dry coulomb - coulomb_least the force left over: over half a period the handle swings about
         g/k and keeps the part r of its swing. Infinite where the damping left is not positive.
         """
         if not self.k:
@@ -95,7 +102,11 @@ class CompensationLimit:
         if dry <= self.hunts_from(viscous):
             return 0.0
         kept = self._kept(viscous)
-        return (dry - 1) * self.coulomb / self.k * (1 + kept) / (1 - kept) if kept < 1 else math.inf
+        return self._excess(dry) / self.k * (1 + kept) / (1 - kept) if kept < 1 else math.inf
+
+    def _excess(self, dry):
+        """Return the force [N] that compensates more than there is."""
+        return dry * self.coulomb - self.coulomb_least
 
     def _kept(self, viscous):
         """Return which part of a swing half a period keeps."""
@@ -119,6 +130,9 @@ class CompensationLimit:
         if self.coulomb:
             then = "hunts about the hand's spring" if self.k else "keeps moving, once kicked"
             lines.append(f"  dry        up to {self.dry:.6g} of {self.coulomb:g} N at viscous = 0; beyond, it {then}")
+        if self.b_least < self.b_device or self.coulomb_least < self.coulomb:
+            friction = f", Coulomb friction from {self.coulomb_least:.6g} N" if self.coulomb else ""
+            lines.append(f"  for every device of b from {self.b_least:.6g} N s/m{friction} up to that")
         return "\n".join(lines)
 
     def plot(self):
@@ -148,7 +162,7 @@ class CompensationLimit:
         return figure
 
 
-def compensation_limit(paddle, *, velocity=None):
+def compensation_limit(paddle, *, velocity=None, b_least=None, coulomb_least=None):
     """Largest part of a paddle's friction that :func:`~hapticlab.scene.compensation.damping_compensation` may cancel.
 
     The viscous part is a pole on the unit circle of the sampled loop, with hand, delay and the lag of the velocity. A free
@@ -162,6 +176,9 @@ def compensation_limit(paddle, *, velocity=None):
         b > 0.
     velocity : VelocityEstimate, optional
         A linear one; the paddle's own v(n) unless given.
+    b_least, coulomb_least : float, optional
+        What b [N s/m] and coulomb [N] may be in truth, at the least: the lower ends of the intervals that they were
+        identified with. The parts found are of the paddle's b and coulomb, and safe from there up to these.
 
     Returns
     -------
@@ -170,7 +187,7 @@ def compensation_limit(paddle, *, velocity=None):
     Raises
     ------
     AnalysisError, SceneError
-        Without damping there is nothing to compensate; a window that adapts has no poles.
+        Without damping, or where it may be zero, there is nothing to compensate; a window that adapts has no poles.
 
     Examples
     --------
@@ -183,6 +200,15 @@ def compensation_limit(paddle, *, velocity=None):
       dry        up to 1 of 0.02 N at viscous = 0; beyond, it keeps moving, once kicked
     >>> round(limit.speed(viscous=0.5, dry=1.5), 6)
     0.2
+
+    Friction that is identified first, ``found = hl.identify_paddle(paddle)``, is known within an interval. With
+    ``found.paddle()``, ``b_least=found["b"].low`` and ``coulomb_least=found["coulomb"].low`` the parts are those of
+    ``hl.damping_compensation(b=found["b"].value, coulomb=found["coulomb"].value, ...)`` that are safe whatever the friction
+    is inside the intervals. For instance b = 0.1 N s/m, between 0.095 and 0.105:
+
+    >>> safe = hl.compensation_limit(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), b_least=0.095)
+    >>> round(safe.viscous, 9)
+    0.95
     """
     lacking = [name for name in ("m", "b", "T", "delay", "hand") if not hasattr(paddle, name)]
     if lacking:
@@ -193,14 +219,30 @@ def compensation_limit(paddle, *, velocity=None):
     b = check_number("b", paddle.b, "N s/m", "without damping there is nothing to compensate", lambda b: b > 0)
     if velocity is not None:
         velocity.transfer(paddle.T)  # refuses, in words, what has no poles
+    coulomb = getattr(paddle, "coulomb", 0.0)
+    b_least, coulomb_least = _least(b, b_least, coulomb, coulomb_least)
     scene, hand = damping_compensation(b=b, velocity=velocity), paddle.hand
     m, damping, k = (getattr(paddle, q, 0.0) + (getattr(hand, q) if hand else 0.0) for q in ("m", "b", "k"))
-    if k:
-        limit = stability_limit(paddle, law=scene, parameter="viscous")
-        viscous, frequency = limit.K, limit.frequency or 0.0
-    else:
-        viscous, frequency = _of_a_free_handle(paddle, scene, damping / b)
-    return CompensationLimit(viscous, frequency, m, damping, k, b, getattr(paddle, "coulomb", 0.0), paddle.T)
+    ends = []
+    for true in {b_least, b}:
+        plant = SimpleNamespace(m=paddle.m, b=true, T=paddle.T, delay=paddle.delay, hand=hand)
+        plant.velocity = getattr(paddle, "velocity", "measured")
+        if k:
+            limit = stability_limit(plant, law=scene, parameter="viscous")
+            ends.append((limit.K, limit.frequency or 0.0))
+        else:
+            ends.append(_of_a_free_handle(plant, scene, (damping - b + true) / b))
+    return CompensationLimit(*min(ends), m, damping - b + b_least, k, b, coulomb, paddle.T, b_least, coulomb_least)
+
+
+def _least(b, b_least, coulomb, coulomb_least):
+    """Return the least damping and Coulomb friction that the device may have."""
+    b_least = b if b_least is None else b_least
+    coulomb_least = coulomb if coulomb_least is None else coulomb_least
+    why = f"no part of a damping that may be zero is safe to cancel; identify it better: needs 0 < b_least <= {b:g}"
+    need = f"needs coulomb_least <= {coulomb:g}, the paddle's"
+    b_least = check_number("b_least", b_least, "N s/m", why, lambda a: 0 < a <= b)
+    return b_least, max(check_number("coulomb_least", coulomb_least, "N", need, lambda a: a <= coulomb), 0.0)
 
 
 def _of_a_free_handle(paddle, scene, drifting):

@@ -19,8 +19,9 @@ def damping_compensation(scene=None, *, b, coulomb=0, speed=None, shape="smooth"
 
     The physical damper stays, and with it the passivity that it buys at all frequencies; the compensation acts where
     the hand is slow. So Eq. (23.10) reads b > K T/2 + viscous b beside a wall K: of what is compensated nothing is left
-    for the wall. Beyond ``viscous`` = 1, or ``dry`` = 1, the paddle runs away: see
-    :func:`~hapticlab.rendering.compensation_limit.compensation_limit`.
+    for the wall. Beyond ``viscous`` = 1, or ``dry`` = 1, the paddle runs away, and sooner where its
+    friction is less than b and coulomb say: :func:`~hapticlab.rendering.compensation_limit.compensation_limit` tells how
+    much of an identified friction is safe.
 
     Parameters
     ----------

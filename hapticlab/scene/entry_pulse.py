@@ -81,7 +81,7 @@ def braking_pulse(
 
 
 def friction_pulse(scene, *, friction, mass, periods, velocity=None, x_o=None, name="friction"):
-    """Add dry friction for a while after entry: it opposes the motion, either way, and it holds the handle once that has stopped.
+    """Add dry friction for a while after entry: it opposes the motion, either way, and holds what has stopped.
 
     For ``periods`` T from the first sample inside the force is ``friction`` against the motion, and never more than
     stops this mass within the next period, mass v(n)/T: the part of Karnopp's friction that a sampled force can render.

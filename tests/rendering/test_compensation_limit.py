@@ -151,6 +151,53 @@ def test_it_hunts_from_the_part_said(part, hunts):
     assert (limit.hunting(0.0, dry) > 0) == hunts
 
 
+@pytest.mark.parametrize("delay", [0.0, 2e-3])
+@pytest.mark.parametrize("hand", [hl.Hand(k=150), hl.Hand(m=0.05, b=1, k=400)], ids=["spring", "hand"])
+def test_a_damping_believed_too_high_leaves_less_to_cancel(hand, delay):
+    """5 % too high: the loop of the true handle, by hand, is unstable from 1.05 times that part on."""
+    late = hl.filtered_velocity(tau=3e-3)
+    limit = compensation_limit(paddle(hand=hand, delay=delay, b=1.05 * DAMPING), b_least=DAMPING, velocity=late)
+    at = (DAMPING + hand.b) / DAMPING
+    expected = brentq(lambda part: radius(part, hand, delay, 3e-3) - 1, 0.5 * at, 3 * at, xtol=1e-14)
+    assert limit.viscous == pytest.approx(expected / 1.05, rel=1e-9)
+    alone = compensation_limit(paddle(b=1.05 * DAMPING, delay=delay), b_least=DAMPING)
+    assert alone.viscous == pytest.approx(1 / 1.05, rel=1e-15)
+    assert "for every device of b from 0.1 N s/m" in str(alone)
+
+
+@quick
+def test_the_whole_of_a_friction_believed_too_high_runs_away():
+    """The speed and the kick said, of a true handle with 5 % less damping and 10 % less Coulomb friction than believed."""
+    believed, true = paddle(b=1.05 * DAMPING, coulomb=1.1 * COULOMB), paddle()
+    limit = compensation_limit(believed, b_least=DAMPING, coulomb_least=COULOMB)
+    assert limit.dry == pytest.approx(1 / 1.1, rel=1e-15)
+    scene = hl.damping_compensation(b=believed.b, coulomb=believed.coulomb, speed=0.01, shape="dead_zone")
+    expected = limit.speed(viscous=0.5, dry=1.0)
+    assert expected == pytest.approx(0.1 * COULOMB / (DAMPING - 0.5 * believed.b), rel=1e-12)
+    assert true.run(scene(viscous=0.5, dry=1.0), duration=25.0, v=0.1).v[-1] == pytest.approx(expected, rel=1e-4)
+    kick = limit.kick(viscous=1.0, dry=0.5)
+    assert kick == pytest.approx(0.45 * COULOMB / (0.05 * DAMPING), rel=1e-12)
+    for start, away in ((0.99 * kick, False), (1.01 * kick, True)):
+        log = true.run(scene(viscous=1.0, dry=0.5), duration=3.0, v=start)
+        assert (log.v[-1] > start) == away
+
+
+@quick
+def test_friction_identified_then_cancelled_comes_to_rest_up_to_the_limit_of_its_intervals():
+    """The intervals hold the truth here; so 0.99 of the limit rests, and 1.02 of all that is there keeps moving."""
+    true = hl.SimulatedPaddle(m=M, b=0.4, T=T, coulomb=0.05, noise=5e-6, force_max=2.0)
+    found = hl.identify_paddle(true, kinds=("steps",))
+    like = found.paddle()
+    safe = compensation_limit(like, b_least=found["b"].low, coulomb_least=found["coulomb"].low)
+    assert safe.viscous == pytest.approx(found["b"].low / found["b"].value, rel=1e-12) and 0.9 < safe.viscous < 1
+    assert safe.dry == pytest.approx(found["coulomb"].low / found["coulomb"].value, rel=1e-12) and safe.dry < 1
+    scene = hl.damping_compensation(b=like.b, coulomb=like.coulomb, speed=0.01, shape="dead_zone")
+    exact = hl.SimulatedPaddle(m=M, b=0.4, T=T, coulomb=0.05)
+    for part, rests in ((0.99, True), (1.02 / safe.viscous, False)):
+        log = exact.run(scene(viscous=part * safe.viscous, dry=part * safe.dry), duration=15.0, v=0.05)
+        assert (log.v[-1] == 0) == rests
+
+
 def test_it_says_what_it_is():
     text = str(compensation_limit(paddle(hand=hl.Hand(k=150), delay=1e-3)))
     assert "exact linear stability of this plant" in text
@@ -169,6 +216,8 @@ def test_it_says_what_it_is():
             "paddle is a str; what runs away is simulated",
         ),
         (lambda: compensation_limit(paddle(b=0)), AnalysisError, "b = 0.*nothing to compensate"),
+        (lambda: compensation_limit(paddle(), b_least=-1e-3), AnalysisError, "b_least = -0.001.*identify it better"),
+        (lambda: compensation_limit(paddle(), coulomb_least=1), AnalysisError, "coulomb_least <= 0.02"),
         (
             lambda: compensation_limit(paddle(), velocity=hl.window_velocity(band=1e-5)),
             SceneError,
