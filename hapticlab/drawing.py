@@ -19,7 +19,7 @@ STYLES = [
 ]
 HOUSE = {
     "font.size": 11, "axes.grid": True, "grid.alpha": 0.35, "axes.spines.top": False, "axes.spines.right": False,
-    "lines.linewidth": 1.6, "legend.frameon": False, "savefig.dpi": 150,
+    "axes.axisbelow": True, "lines.linewidth": 1.6, "legend.frameon": False, "savefig.dpi": 150,
 }  # fmt: skip
 #: SI unit -> (what to multiply by, the unit an axis shows)
 SHOWN = {"m": (1e3, "mm"), "J": (1e3, "mJ"), "s": (1e3, "ms")}

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..device.asked import check_simulated
 from ..device.hand import require
 from ..device.hands import hand as named_hand
 from ..drawing import house_style, new_figure, scale_axis, style_of
@@ -27,6 +28,9 @@ class Rendered:
     k, mass, damping, friction : float
         What the hand felt, by the force sensor's record: mass, damping and Coulomb friction moving freely, by least
         squares; k holding still in the wall, or by least squares where it still moves. SI.
+    misfit : float
+        What mass, damping and friction leave of the force felt moving freely, root mean square [N]: friction below it says
+        nothing.
     wanted : float
         The wall's stiffness [N/m].
     state : {"at rest", "moving", "unstable"}
@@ -40,6 +44,7 @@ class Rendered:
     mass: float
     damping: float
     friction: float
+    misfit: float
     wanted: float
     state: str
     t: np.ndarray = field(repr=False)
@@ -50,9 +55,10 @@ class Rendered:
         if self.state == "unstable":
             return f"{self.display:<11} {self.wanted:8.4g} N/m: unstable"
         ringing = " while it rings" if self.state == "moving" else ""
+        rubs = f"{self.friction:.3g} N friction" if self.friction > self.misfit else f"friction below {self.misfit:.2g} N"
         return (
             f"{self.display:<11} {self.wanted:8.4g} N/m: felt {self.k:.4g} N/m{ringing}; free: {1e3 * self.mass:.4g} g, "
-            f"{self.damping:.3g} N s/m, {self.friction:.3g} N friction"
+            f"{self.damping:.3g} N s/m{' (it drives the hand)' if self.damping < 0 else ''}, {rubs}; told to {self.misfit:.2g} N"
         )
 
 
@@ -77,18 +83,19 @@ def render(paddle, display, *, sensor_delay=0):
     whole = len(t) == held.ticks(HELD)
     swing = [float(np.ptp(x[(t >= a) & (t < b)])) for a, b in ((PRESSED, 1.7), (1.7, HELD))] if whole else [0.0, math.inf]
     if swing[1] > max(REST, swing[0]):
-        nothing = [math.nan] * 4
+        nothing = [math.nan] * 5
         return Rendered(display.name, *nothing, display.k, "unstable", t, x, f_h)
     mean = (v + np.r_[v[0], v[:-1]]) / 2  # over the period before, as the sensor's reading and this acceleration are
     motion = np.column_stack([np.diff(v, prepend=v[0]) / held.T, mean, np.sign(mean)])
     free, contact = (t > 0.15 * FREE) & (t < 0.95 * FREE), (t > FREE) & (x > 0)
     mass, damping, friction = (float(c) for c in np.linalg.lstsq(motion[free], f_h[free], rcond=None)[0])
+    misfit = float(np.sqrt(np.mean((f_h[free] - motion[free] @ [mass, damping, friction]) ** 2)))
     state = "at rest" if swing[1] < REST else "moving"
     if state == "at rest":
         k = float(f_h[t >= 1.7].mean() / x[t >= 1.7].mean())
     else:
         k = float(np.linalg.lstsq(np.column_stack([x, motion])[contact], f_h[contact], rcond=None)[0][0])
-    return Rendered(display.name, k, mass, damping, friction, display.k, state, t, x, f_h)
+    return Rendered(display.name, k, mass, damping, friction, misfit, display.k, state, t, x, f_h)
 
 
 def _task(t):
@@ -142,7 +149,9 @@ def compare_displays(paddle, stiffnesses, *, m_v=0.2, b=0.0, k_p=None, k_d=None,
 
     An impedance display lets device mass and friction be felt, and has a largest stiffness that its damping sets. An
     admittance display hides them, holds a stiff wall, and has a least virtual mass. R. J. Adams and B. Hannaford, *IEEE
-    Trans. Robotics and Automation* 15 (1999) 465. Simulated alone: a paddle has no force sensor.
+    Trans. Robotics and Automation* 15 (1999) 465. Its body is late by half a period, so that free motion at the frequency w
+    is felt with a damping of about b - m_v w^2 T/2: below zero where b is 0, it drives the hand. Simulated alone: a paddle
+    has no force sensor.
 
     Parameters
     ----------
@@ -170,10 +179,11 @@ def compare_displays(paddle, stiffnesses, *, m_v=0.2, b=0.0, k_p=None, k_d=None,
     >>> [(row.display, round(row.k), round(row.mass, 2)) for row in found.rows]
     [('impedance', 300, 0.05), ('admittance', 300, 0.2)]
     """
+    check_simulated(paddle, "compare_displays")
     m_v = require("m_v", m_v, "kg", "an admittance display", "It divides the force.", above=0)
     stiffnesses = [float(k) for k in stiffnesses]
-    if not stiffnesses or min(stiffnesses) <= 0:
-        raise AnalysisError(f"stiffnesses = {stiffnesses}; needs some k > 0 N/m")
+    if not stiffnesses or not all(0 < k < math.inf for k in stiffnesses):
+        raise AnalysisError(f"stiffnesses = {stiffnesses}; needs some k > 0 N/m, each a finite number")
     paddle = replace(paddle, hand=paddle.hand or named_hand("grip"))
     k_p = 0.03 * paddle.m / paddle.T**2 if k_p is None else k_p
     k_d = 2 * math.sqrt(k_p * paddle.m) if k_d is None else k_d

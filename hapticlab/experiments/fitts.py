@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ..device.asked import check_held
 from ..device.intents import Intent
 from ..device.reacting import REACTION, Reacting
 from ..drawing import FRAME, house_style, new_figure, style_of
-from ..errors import AnalysisError, PaddleError
+from ..errors import AnalysisError
 from ..scene.scene import Scene
 from ..scene.symbols import n, parameters, x
 from .arm import Arm, along, quintic
@@ -165,8 +166,7 @@ def fitts(paddle, scene=None, *, distances=(0.02, 0.04, 0.08), widths=(0.004, 0.
     >>> [round(a.difficulty, 2) for a in found.targets]
     [2.81, 2.0]
     """
-    if paddle.hand is None or paddle.hand.k <= 0:
-        raise PaddleError("a hand moves by its spring; give hl.SimulatedPaddle(..., hand=hl.hand('grip')) or hl.Hand(k=...)")
+    check_held(paddle, "fitts")
     pairs = [(float(d), float(w)) for d in distances for w in widths if d > w > 0]
     if len(pairs) < 2 or movements < 3:
         raise AnalysisError(f"{len(pairs)} pairs with distance > width > 0, {movements} movements; needs 2 and 3 at least")

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..device.hand import require
+from ..device.asked import check_held
+from ..device.hand import UNITS, require
 from ..device.intents import Intent, MinimumJerk
 from ..device.reacting import REACTION, Reacting
 from ..drawing import house_style, new_figure, style_of
@@ -22,11 +23,31 @@ ARRIVED = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class Load:
-    """What a person believes to move, beside their own hand: a mass [kg], a damper [N s/m] and a spring [N/m] from x = 0."""
+    """What a person believes to move, beside their own hand.
+
+    Parameters
+    ----------
+    m : float
+        Mass [kg], >= 0.
+    b : float
+        Damping [N s/m], >= 0.
+    k : float
+        Stiffness [N/m] of a spring from x = 0, >= 0.
+
+    Examples
+    --------
+    >>> from hapticlab.experiments.reaching import Load
+    >>> Load(m=0.5)
+    Load(m=0.5, b=0.0, k=0.0)
+    """
 
     m: float = 0.0
     b: float = 0.0
     k: float = 0.0
+
+    def __post_init__(self):
+        for name in ("m", "b", "k"):
+            object.__setattr__(self, name, require(name, getattr(self, name), UNITS[name], "a load", low=0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,14 +169,16 @@ def follow(
     path : object with ``at(t)`` that returns position [m], velocity [m/s], acceleration [m/s^2]
         ``hl.MinimumJerk`` or an :class:`~hapticlab.analysis.motions.HandleMotion`. The others are those of :func:`reach`.
     """
+    check_held(paddle, "reach")
+    check_path(path)
     hand = paddle.hand
-    if hand is None or hand.k <= 0:
-        raise PaddleError("a hand reaches by its spring; give hl.SimulatedPaddle(..., hand=hl.hand('grip')) or hl.Hand(k=...)")
     if how not in HOW:
         raise PaddleError(f"how = {how!r}; needs one of {', '.join(HOW)}")
     every = max(round(0.01 / paddle.T), 1) * paddle.T
     gain = 1 / (math.e * (reaction + every)) if gain is None else require("gain", gain, "1/s", "feedback", low=0)
     known = Load(m=paddle.m, b=paddle.b) if expects is None else expects
+    if not isinstance(known, Load):
+        raise PaddleError(f"expects = {expects!r}; needs what the person believes to move, hl.Load(m=0.5) in kg.")
     times = np.arange(paddle.ticks(record) + 1) * paddle.T
     ahead = Anticipated(times, inverse_dynamics(hand, known, path, times))
 
@@ -181,6 +204,12 @@ class Anticipated(Intent):
 
     def __call__(self, t):
         return np.interp(t, self.times, self.places)
+
+
+def check_path(path):
+    """Refuse what is no path."""
+    if not hasattr(path, "at"):
+        raise PaddleError(f"path = {path!r}; needs a path of time, as hl.MinimumJerk(end=0.02, duration=0.4).")
 
 
 def inverse_dynamics(hand, load, path, times):

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..analysis.energy import energy
+from ..device.asked import check_held
 from ..device.hand import require
 from ..device.intents import Tremor
 from ..drawing import house_style, new_figure, style_of
@@ -12,7 +13,7 @@ from ..errors import PaddleError
 from ..records import Telemetry
 from ..scene.scene import Scene
 from ..scene.symbols import n, parameters, x
-from .reaching import Anticipated, Load, handle, inverse_dynamics
+from .reaching import Anticipated, Load, check_path, handle, inverse_dynamics
 
 #: what is in this band of a handle's motion is tremor [Hz]
 BAND = (6.0, 14.0)
@@ -109,8 +110,11 @@ def assistance(paddle, scenes, path, *, tremor=None, record=4.0, band=BAND, **op
     >>> bool(filtered.tremor < 0.4 * alone.tremor), bool(filtered.error < 0.0003)
     (True, True)
     """
-    if paddle.hand is None or paddle.hand.k <= 0:
-        raise PaddleError("shared control needs a hand that holds the handle; give hand=hl.hand('pinch') or hl.Hand(k=...)")
+    check_held(paddle, "assistance")
+    check_path(path)
+    scenes = (scenes,) if isinstance(scenes, Scene) else scenes
+    if not (tremor is None or callable(tremor)):
+        raise PaddleError(f"tremor = {tremor!r}; needs a path of times in metres, as hl.Tremor(rms=3e-4).")
     low, high = (require("band", edge, "Hz", "a tremor", above=0) for edge in band)
     tremor = Tremor(rms=3e-4) if tremor is None else tremor
     times = np.arange(paddle.ticks(record) + 1) * paddle.T

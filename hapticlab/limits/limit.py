@@ -63,7 +63,7 @@ def check_number(name, value, unit, need, allowed):
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):
-        number = math.nan
+        raise AnalysisError(f"{name} = {value!r}; {need}, as a number in {unit}") from None
     if not (math.isfinite(number) and allowed(number)):
         raise AnalysisError(f"{name} = {value} {unit}; {need}")
     return number

@@ -39,6 +39,8 @@ def guidance(path):
     >>> bool(abs(log.x[2000:] - 0.01 * np.sin(2 * log.t[2000:])).max() < 1e-4)
     True
     """
+    if not isinstance(path, sp.Expr | int | float):
+        raise SceneError(f"path = {path!r}; needs an expression of hl.t and parameters, such as A*sympy.sin(w*hl.t)")
     k, b, most = parameters("k b F_max", units="N/m N*s/m N")
     force = k * (x(n) - path) + b * (v(n) - sp.diff(path, t))
     return Scene(force=sp.Max(sp.Min(force, most), -most), name="guidance")

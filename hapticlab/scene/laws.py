@@ -6,7 +6,7 @@ import sympy as sp
 
 from ..errors import SceneError
 from .estimators import VelocityEstimate
-from .scene import Scene
+from .scene import Scene, check_scene
 from .symbols import T, delay, n, parameters, t, v, when, x
 from .taps import LEAD, TAPS
 
@@ -122,6 +122,7 @@ def force_filter(scene, clamp=False):
     >>> hl.force_filter(hl.wall(unilateral=None)).name
     'filtered zoh wall'
     """
+    check_scene(scene)
     F = scene.force
     # 2*F is kept whole: SymPy would multiply it out, and F would be computed twice
     filtered = sp.Mul(2, F, evaluate=False) - sp.Rational(3, 2) * delay(F) + delay(delay(F)) / 2

@@ -10,7 +10,7 @@ from dataclasses import replace
 import sympy as sp
 
 from ..errors import SceneError
-from .scene import Scene
+from .scene import check_scene
 from .symbols import T, delay, n, parameters, signal, v, when, x
 from .written import expression
 
@@ -60,7 +60,7 @@ def passivity_observer(scene, *, lag=0):
     >>> bool(abs(log.W[-1] + hl.energy(log).generated) < 1e-9)
     True
     """
-    _check_scene(scene)
+    check_scene(scene)
     lag = _whole(lag)
     W, sent = signal("W", unit="J"), signal("F_sent", unit="N")
     work = sp.Eq(W(n), W(n - 1) + sent(n - 1 - lag) * _moved(), evaluate=False)
@@ -142,10 +142,12 @@ def passivity_controller(
     >>> [bool(hl.energy(log).W[-1] < -1e-4) for log in (bare, kept)]
     [True, False]
     """
-    _check_scene(scene)
+    check_scene(scene)
     lag, stored = _whole(lag), expression(stored, "stored")
     _check(form, scene, stored, predict, lag)
-    p = {name: parameters(name, units=unit, values=given) for name, unit, given in _asked(form, locals())}
+    given = {"alpha_max": alpha_max, "beta_max": beta_max, "force_max": force_max, "forget": forget}
+    given |= {"credit_max": credit_max, "reset": reset}
+    p = {name: parameters(name, units=unit, values=given) for name, unit, given in _asked(form, given)}
     make = _series if form == "series" else _parallel
     force, equations, watch = make(scene, p, stored, predict, lag)
     watch = {**scene.watch, **_fresh(scene, watch)}
@@ -232,11 +234,6 @@ def _asked(form, given):
     for name, unit in _UNITS.items():
         if name == own or given[name] is not None:
             yield name, unit, given[name]
-
-
-def _check_scene(scene):
-    if not isinstance(scene, Scene):
-        raise SceneError(f"scene = {scene!r}; needs a Scene, such as hl.wall()")
 
 
 def _whole(lag):

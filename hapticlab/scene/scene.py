@@ -20,7 +20,7 @@ from .checks import (
 from .explicit import explicit_form
 from .frozen import Frozen
 from .units import unit_of
-from .written import expression
+from .written import expression, no_scene
 
 
 @dataclass(frozen=True)
@@ -146,3 +146,9 @@ def _bound(known, name, value):
         listed = ", ".join(f"{p.name} [{p.unit}]" for p in known.values()) or "none"
         raise ParameterError(f"{name} = {value!r}: the scene has no parameter {name}; it has {listed}")
     return known[name].check(value)
+
+
+def check_scene(scene, cure="needs a Scene, such as hl.wall()"):
+    """Refuse what is no scene."""
+    if not isinstance(scene, Scene):
+        raise SceneError(no_scene(scene, cure))

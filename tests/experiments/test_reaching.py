@@ -64,7 +64,7 @@ def test_a_trill_is_anticipated_and_cannot_be_followed():
 
 
 def test_a_hand_without_a_spring_and_other_words_are_refused():
-    with pytest.raises(PaddleError, match="a hand reaches by its spring"):
+    with pytest.raises(PaddleError, match="reach needs a hand that holds the handle by a spring"):
         reach(hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3), FREE, end=0.02)
     with pytest.raises(PaddleError, match="how = 'blind'; needs one of anticipatory, feedback, both"):
         reach(PADDLE, FREE, end=0.02, how="blind")
@@ -76,3 +76,22 @@ def test_a_reach_prints_and_draws():
     found = reach(PADDLE, FREE, end=0.02)
     assert str(found).startswith("anticipatory: there after 0.32")
     assert [a.get_xlabel() for a in found.plot().axes] == ["time [s]"]
+
+
+def test_boards_and_wrong_things_are_refused_in_words():
+    with hl.connect("sim://hapkit", paddle=PADDLE) as board:
+        for asker, call in {
+            "reach": lambda: reach(board, FREE, end=0.02),
+            "assistance": lambda: hl.assistance(board, [], hl.MinimumJerk(end=0.02, duration=0.5)),
+            "juggle": lambda: hl.juggle(board),
+            "fitts": lambda: hl.fitts(board),
+            "compare_displays": lambda: hl.compare_displays(board, [300]),
+        }.items():
+            with pytest.raises(PaddleError, match=f"{asker} runs in simulation alone; needs hl.SimulatedPaddle"):
+                call()
+    with pytest.raises(PaddleError, match=r"m = -1 kg; a load needs m >= 0"):
+        Load(m=-1)
+    with pytest.raises(PaddleError, match="expects = 0.1; needs what the person believes to move"):
+        reach(PADDLE, FREE, end=0.02, expects=0.1)
+    with pytest.raises(PaddleError, match="path = 3; needs a path of time"):
+        follow(PADDLE, FREE, 3)

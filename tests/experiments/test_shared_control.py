@@ -82,7 +82,7 @@ def test_a_band_pass_has_its_gain_and_its_edges():
 
 
 def test_a_hand_is_needed():
-    with pytest.raises(PaddleError, match="shared control needs a hand"):
+    with pytest.raises(PaddleError, match="assistance needs a hand that holds"):
         assistance(hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3), [], REACH)
 
 
