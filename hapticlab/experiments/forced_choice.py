@@ -123,7 +123,8 @@ def forced_choice(paddle, task, observer=None, procedure=None, *, seed=0, keep=N
     """Measure a difference threshold by two-alternative forced choice, on a simulated paddle or a board.
 
     Each trial shows the standard and a comparison exp(level) times as strong, in an order drawn from the seed, with the
-    motor off between them and while the observer is asked. A fault of the paddle ends it; what was answered is returned.
+    motor off between them and while the observer is asked. A fault of the paddle ends it, and so does a simulated observer
+    who felt nothing, or a staircase that finds no turning points; what was answered is returned, with the reason.
 
     Parameters
     ----------
@@ -172,12 +173,17 @@ def forced_choice(paddle, task, observer=None, procedure=None, *, seed=0, keep=N
             shown = shown[::-1] if reverse else shown
             logs, stopped = _present(show, task, observer, shown)
             if stopped is None:
-                answer = observer.compare(task, logs, len(trials))
+                try:
+                    answer = observer.compare(task, logs, len(trials))
+                except AnalysisError as nothing:
+                    stopped = f"no answer to {task.parameter} = {shown[0]:.4g} and {shown[1]:.4g} {task.unit}: {nothing}"
+                    break
                 trial = Trial(level, *shown, answer, answer == ("first" if reverse else "second"))
                 observer.told(trial.right)
                 procedure.answer(trial.right)
                 trials.append(trial)
                 row(trial)
+    stopped = stopped or getattr(procedure, "gave_up", None)
     estimate = None if stopped or not hasattr(procedure, "estimate") else procedure.estimate()
     return ForcedChoice(task.name, task.parameter, task.unit, task.standard, tuple(trials), estimate, str(procedure),
                         str(observer), str(paddle), seed, stopped)  # fmt: skip

@@ -13,6 +13,8 @@ SLOPES = (0.2, 20.0)
 #: probabilities nearer to 0 and 1 than this are rounding, not certainty
 CERTAIN = 1e-9
 STEPS = 200
+#: an interval's end is looked for on so many grids of so many values, each between two of the one before
+FINER, GRID = 4, 17
 
 
 class Likelihood:
@@ -64,24 +66,27 @@ class Likelihood:
             terms = right * np.log(part), (self.trials - right) * np.log1p(-part)
         return -sum(np.nan_to_num(a, nan=0.0).sum(-1) for a in terms)
 
-    def most_likely(self, right, start):
+    def most_likely(self, right, start, low=None, high=None):
         """Climb by Fisher's scoring, damped as Levenberg and Marquardt do, inside the bounds.
 
         Parameters
         ----------
         right : array, shape (sets, N)
         start : array, shape (sets, parameters)
+        low, high : array, shape (sets, parameters), optional
+            Bounds of each set; a parameter between equal ones stays.
 
         Returns
         -------
         array, shape (sets, parameters), and the losses
         """
-        q = np.clip(start, self.low, self.high)
+        low, high = self.low if low is None else low, self.high if high is None else high
+        q = np.clip(start, low, high)
         damping = np.full(len(q), 1e-3)
         loss, gradient, information = self.loss(q, right)
         for _ in range(STEPS):
-            held = ((q <= self.low) & (gradient > 0)) | ((q >= self.high) & (gradient < 0))
-            moved = np.clip(q + _step(gradient, information, damping, held), self.low, self.high)
+            held = ((q <= low) & (gradient > 0)) | ((q >= high) & (gradient < 0))
+            moved = np.clip(q + _step(gradient, information, damping, held), low, high)
             its_loss, its_gradient, its_information = self.loss(moved, right)
             better = its_loss < loss
             small = np.abs(moved - q).max(-1) < 1e-9
@@ -91,6 +96,45 @@ class Likelihood:
             if (small | (damping > 1e9)).all():
                 break
         return q, loss
+
+    def intervals(self, right, best, most):
+        """Return the least and the largest place and log slope whose likelihood ratio 2 log(L(best)/L) is below ``most``.
+
+        Each end is the outermost value of a grid that is likely enough, looked for again just beyond it, on ever finer grids.
+
+        Parameters
+        ----------
+        right : array, shape (N,)
+        best : array, shape (parameters,)
+            The most likely ones.
+        most : float
+
+        Returns
+        -------
+        array, shape (2, 2)
+            One row a parameter.
+        """
+        least = self.loss(best[None], right[None])[0][0]
+        held, ends = np.array([0, 0, 1, 1]), np.arange(4)
+        inside, outside = best[held], np.column_stack([self.low, self.high])[:2].ravel()
+        for _ in range(FINER):
+            values = np.linspace(inside, outside, GRID)
+            likely = 2 * (self._profile(right, best, held, values) - least) <= most
+            likely[0] = True
+            last = GRID - 1 - np.argmax(likely[::-1], axis=0)
+            inside, outside = values[last, ends], values[np.minimum(last + 1, GRID - 1), ends]
+        return inside.reshape(2, 2)
+
+    def _profile(self, right, best, held, values):
+        """Return the least loss with parameter ``held[j]`` at ``values[i, j]``, shape (GRID, 4)."""
+        middle = np.where(np.arange(len(best)) < 2, (self.low + self.high) / 2, best)
+        starts = np.stack([np.broadcast_to(q, (*values.shape, len(best))) for q in (best, middle)])
+        low, high = np.broadcast_to(self.low, starts.shape).copy(), np.broadcast_to(self.high, starts.shape).copy()
+        for j, which in enumerate(held):
+            low[:, :, j, which] = high[:, :, j, which] = values[:, j]
+        flat = [a.reshape(-1, len(best)) for a in (starts, low, high)]
+        losses = self.most_likely(np.tile(right, (len(flat[0]), 1)), *flat)[1]
+        return losses.reshape(2, *values.shape).min(0)
 
     def starts(self):
         """Return parameters all over the bounds, one row each."""

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..errors import AnalysisError
 from .curves import rise
+from .likelihood import CERTAIN
 
 
 class Psi:
@@ -21,8 +22,9 @@ class Psi:
     slopes : sequence of float
         Slopes that are thought possible, equally likely; one of them fixes it.
     lapse : float
-        Taken as known; a small one keeps a single slip from ruling out the truth.
+        Taken as known, 0 <= lapse < 1 - guess; a small one keeps a single slip from ruling out the truth.
     guess : float
+        >= 0.
     shape : {"d_prime", "weibull"}
     trials : int
         After which it ends.
@@ -52,10 +54,13 @@ class Psi:
             )
         if shape not in ("d_prime", "weibull"):
             raise AnalysisError(f"shape = {shape!r}; psi needs 'd_prime' or 'weibull', whose levels are positive")
+        if not (0 <= guess and 0 <= lapse and guess + lapse < 1):
+            raise AnalysisError(f"guess = {guess!r}, lapse = {lapse!r}; psi needs both >= 0 and guess + lapse < 1")
         self.levels, self.thresholds = np.geomspace(low, high, levels), np.geomspace(low, high, thresholds)
         self.slopes, self.trials, self.told = np.array(slopes, float), int(trials), 0
         place, log_slope = np.log(self.thresholds)[:, None, None], np.log(self.slopes)[None, :, None]
-        self._right = guess + (1 - guess - lapse) * rise(shape, self.levels, place, log_slope)[0]
+        right = guess + (1 - guess - lapse) * rise(shape, self.levels, place, log_slope)[0]
+        self._right = np.clip(right, CERTAIN, 1 - CERTAIN)  # no answer is impossible, or one could rule out everything
         self.belief = np.full((thresholds, len(self.slopes)), 1.0 / (thresholds * len(self.slopes)))
 
     @property

@@ -8,7 +8,8 @@ import numpy as np
 from ..drawing import house_style, new_figure, scale_axis, style_of
 from ..errors import AnalysisError
 from .curves import SHAPES, Psychometric
-from .likelihood import Likelihood
+from .fit import chi_squared
+from .likelihood import MOST_LAPSES, Likelihood
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +22,7 @@ class PsychometricFit:
     levels, right, trials : array
         What was fitted: at each level so many right answers of so many trials.
     interval : dict of str to (float, float)
-        Of threshold and slope, by parametric bootstrap.
+        Of threshold and slope, by the likelihood's ratio.
     confidence : float
     deviance : float
         2 log of the likelihood ratio between a free proportion at each level and the curve.
@@ -78,7 +79,11 @@ def psychometric(
     """Fit a psychometric function by maximum likelihood to answers at several levels.
 
     F. A. Wichmann and N. J. Hill, *Perception & Psychophysics* 63 (2001) 1293 and 1314: the lapses are fitted beside
-    threshold and slope, the intervals and the goodness of fit come from samples drawn of the fitted curve.
+    threshold and slope, and the goodness of fit comes from samples drawn of the fitted curve. These treat the levels as
+    fixed also where a procedure placed them by the answers. The intervals are those of the likelihood's ratio: each value of
+    the threshold for which some slope and lapses explain the answers nearly as well as the best, by a chi-squared of one
+    degree of freedom, and the same for the slope. The likelihood does not depend on how levels were placed, and answers that
+    are all right above a level and all wrong below leave the threshold anywhere in between.
 
     Parameters
     ----------
@@ -97,8 +102,9 @@ def psychometric(
         Fixed; fitted if left out. 1 for ``d_prime`` is an observer whose noise does not depend on the level; few trials
         tell a threshold much better with it than without.
     bootstrap : int
-        Samples.
+        Samples for the goodness of fit, >= 1.
     confidence : float
+        Of the intervals, between 0 and 1.
     seed : int
 
     Returns
@@ -123,32 +129,40 @@ def psychometric(
         raise AnalysisError(f"lapse = {lapse:g}; needs 0 <= lapse < 0.5, or None to fit it")
     if slope is not None and not 0 < slope < math.inf:
         raise AnalysisError(f"slope = {slope:g}; needs slope > 0, or None to fit it")
+    if not (isinstance(bootstrap, (int, np.integer)) and bootstrap >= 1 and 0 < confidence < 1):
+        raise AnalysisError(
+            f"bootstrap = {bootstrap!r}, confidence = {confidence!r}; needs a whole number of samples >= 1 and a confidence "
+            "between 0 and 1, such as 0.95"
+        )
+    if guess is not None and not 0 <= guess < 1 - (MOST_LAPSES if lapse is None else lapse):
+        raise AnalysisError(f"guess = {guess:g}; needs guess >= 0 and guess + lapse < 1, or None for one as large as the lapse")
     _check_telling(levels, right, trials, shape)
     fitting = Likelihood(levels, trials, shape, guess, lapse, slope)
     starts = fitting.starts()
     climbed, losses = fitting.most_likely(np.tile(right, (len(starts), 1)), starts)
     found, curve = climbed[losses.argmin()], fitting.curve(climbed[losses.argmin()])
     drawn = np.random.default_rng(seed).binomial(trials.astype(int), curve(levels), (bootstrap, len(levels)))
-    again, its_losses = fitting.most_likely(drawn, np.tile(found, (bootstrap, 1)))
+    _, its_losses = fitting.most_likely(drawn, np.tile(found, (bootstrap, 1)))
     deviance = 2 * float(losses.min() - fitting.saturated(right))
     p = float(np.mean(2 * (its_losses - fitting.saturated(drawn)) >= deviance))
-    curves, tail = [fitting.curve(q) for q in again], (1 - confidence) / 2
-    interval = {
-        name: tuple(float(a) for a in np.quantile([getattr(c, name) for c in curves], [tail, 1 - tail]))
-        for name in ("threshold", "slope")
-    }
-    notes = _left_open(found, fitting)
+    ends = fitting.intervals(right, found, chi_squared(confidence))
+    low, high = (fitting.curve(np.r_[end, found[2:]]) for end in ends.T)
+    interval = {name: (getattr(low, name), getattr(high, name)) for name in ("threshold", "slope")}
+    notes = _left_open(found, ends, fitting)
     return PsychometricFit(curve, levels, right, trials, interval, confidence, deviance, p, notes)
 
 
-def _left_open(q, fitting):
+def _left_open(q, ends, fitting):
     """Return what the answers leave open."""
-    near = np.minimum(q - fitting.low, fitting.high - q) < 1e-6 * (fitting.high - fitting.low)  # never of what is fixed
-    return tuple(
-        f"the {name} is at the end of what was looked for: these levels do not tell it"
-        for name, at_end in zip(("threshold", "slope"), near, strict=False)
-        if at_end
-    )
+    notes = []
+    for name, at, (low, high), least, most in zip(("threshold", "slope"), q, ends, fitting.low, fitting.high, strict=False):
+        near = 1e-6 * (most - least)
+        if min(at - least, most - at) < near:  # never of what is fixed
+            notes.append(f"the {name} is at the end of what was looked for: these levels do not tell it")
+        elif min(low - least, most - high) < near:
+            way = "below" if low - least < near else "above"
+            notes.append(f"the interval of the {name} ends where the search does: these levels do not bound it {way}")
+    return tuple(notes)
 
 
 def _counts(levels, right, trials):

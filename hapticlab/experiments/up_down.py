@@ -6,6 +6,9 @@ import numpy as np
 
 from ..errors import AnalysisError
 
+#: as many answers in a row, all right at the lowest level or all wrong at the highest, and it ends: 1 in a million by guessing
+ENOUGH = 20
+
 
 class UpDown:
     """Transformed and weighted up-down staircase: after ``down`` right answers in a row a step down, after a wrong one up.
@@ -30,13 +33,17 @@ class UpDown:
     skip : int
         First turning points that the estimate leaves out; until then steps are twice as long.
     low, high : float
-        Levels stay between these.
+        Levels stay between these. It ends after 20 answers in a row that are all right at ``low``, or all wrong at ``high``.
+    most : int
+        Trials after which it ends at the latest.
 
     Attributes
     ----------
     level : float
         What to ask next.
     done : bool
+    gave_up : str or None
+        Why it ended before all its turning points.
 
     Examples
     --------
@@ -49,19 +56,22 @@ class UpDown:
     0.7071
     """
 
-    def __init__(self, *, start, factor=1.25, down=2, weight=1.0, reversals=12, skip=4, low=1e-3, high=2.0):
-        if not (factor > 1 and weight > 0 and low < high and low <= start <= high and low > 0):
+    def __init__(self, *, start, factor=1.25, down=2, weight=1.0, reversals=12, skip=4, low=1e-3, high=2.0,
+                 most=300):  # fmt: skip
+        if not (1 < factor < math.inf and 0 < weight < math.inf and 0 < low < high < math.inf and low <= start <= high):
             raise AnalysisError(
                 f"start = {start:g}, factor = {factor:g}, weight = {weight:g}, low = {low:g}, high = {high:g}; a staircase "
-                "needs 0 < low <= start <= high, factor > 1 and weight > 0"
+                "needs 0 < low <= start <= high, low < high, factor > 1 and weight > 0, all finite"
             )
-        if not (int(down) == down and down >= 1 and 0 <= skip < reversals):
+        if not (int(down) == down and down >= 1 and 0 <= skip < reversals and most >= 1):
             raise AnalysisError(
-                f"down = {down}, reversals = {reversals}, skip = {skip}; needs down = 1, 2, ... and 0 <= skip < reversals"
+                f"down = {down}, reversals = {reversals}, skip = {skip}, most = {most}; needs down = 1, 2, ..., "
+                "0 <= skip < reversals and most >= 1"
             )
         self.start, self.factor, self.down, self.weight = float(start), float(factor), int(down), float(weight)
         self.reversals, self.skip, self.low, self.high = int(reversals), int(skip), float(low), float(high)
         self.level, self.turned, self._row, self._heading = float(start), [], 0, 0
+        self.most, self.told, self._at_end, self.gave_up = int(most), 0, 0, None
 
     @property
     def target(self):
@@ -70,10 +80,20 @@ class UpDown:
 
     @property
     def done(self):
-        return len(self.turned) >= self.reversals
+        return len(self.turned) >= self.reversals or self.gave_up is not None
 
     def answer(self, right):
         """Take an answer at this level and set the next."""
+        self.told += 1
+        self._at_end = self._at_end + 1 if self.level == (self.low if right else self.high) else 0
+        self._step(right)
+        if self._at_end >= ENOUGH:
+            end = f"right {ENOUGH} times in a row at the lowest" if right else f"wrong {ENOUGH} times in a row at the highest"
+            self.gave_up = f"{end} level, {self.level:.4g}: the threshold lies beyond it"
+        elif self.told >= self.most and len(self.turned) < self.reversals:
+            self.gave_up = f"{self.told} trials brought {len(self.turned)} of {self.reversals} turning points; most = {self.most}"
+
+    def _step(self, right):
         self._row = self._row + 1 if right else 0
         if right and self._row < self.down:
             return
@@ -86,6 +106,8 @@ class UpDown:
 
     def estimate(self):
         """Return the geometric mean of the levels at the turning points, an even number of them, after the first ones."""
+        if self.gave_up:
+            raise AnalysisError(f"no estimate: {self.gave_up}; ask again with other low, high or most")
         used = self.turned[self.skip :]
         used = used[len(used) % 2 :]
         if not used:

@@ -50,6 +50,15 @@ def test_each_display_shows_its_own_mass():
     assert render(PADDLE, Admittance(k=400.0, **LAW)).mass == pytest.approx(0.2, rel=0.06)
 
 
+def test_a_body_that_is_late_by_half_a_period_drives_the_hand():
+    """Force of a body m a(t - T/2): at 3 Hz a damping of -m w^2 T/2, -0.036 N s/m."""
+    found = render(PADDLE, Admittance(k=300.0, **LAW))
+    assert found.damping == pytest.approx(-0.2 * (6 * math.pi) ** 2 * 1e-3 / 2, rel=0.2) and "drives the hand" in str(found)
+    assert found.misfit > abs(found.friction) and "friction below" in str(found)  # there is none
+    alone = render(PADDLE, Impedance(k=300.0))
+    assert alone.damping == pytest.approx(0.1, rel=0.01) and alone.misfit < 1e-4
+
+
 def test_an_admittance_display_hides_friction():
     rough = replace(PADDLE, coulomb=0.1)
     assert render(rough, Impedance(k=400.0)).friction == pytest.approx(0.1, rel=0.1)
@@ -86,5 +95,8 @@ def test_what_cannot_be_compared_is_refused():
         growth(replace(PADDLE, hand=None), Impedance(k=1.0))
     with pytest.raises(PaddleError, match="m_v"):
         compare_displays(PADDLE, [100.0], m_v=0.0)
+    for k in (math.nan, math.inf):
+        with pytest.raises(AnalysisError, match="finite"):
+            compare_displays(PADDLE, [k])
     with pytest.raises(AnalysisError, match="some k > 0"):
         compare_displays(PADDLE, [])

@@ -96,6 +96,22 @@ def test_a_fault_ends_it_and_keeps_what_was_answered():
     assert "not finite" in found.stopped and "presentation" in found.stopped and "ended early" in str(found)
 
 
+def test_who_feels_nothing_keeps_what_was_answered():
+    class Numb(SimulatedObserver):
+        def compare(self, task, logs, trial):
+            if trial == 2:
+                raise AnalysisError("nothing was felt: the hand never touched the wall")
+            return super().compare(task, logs, trial)
+
+    found = forced_choice(PADDLE, QUICK, Numb(weber=0.1), ConstantLevels([0.5], repeats=5))
+    assert len(found.trials) == 2 and found.estimate is None and "nothing was felt" in str(found)
+
+
+def test_who_is_always_right_comes_to_an_end():
+    found = forced_choice(PADDLE, QUICK, SimulatedObserver(weber=1e-9), UpDown(start=0.5, factor=2, low=0.4))
+    assert len(found.trials) == 22 and found.estimate is None and "lowest level" in found.stopped
+
+
 def test_every_trial_is_on_the_disk_at_once(tmp_path):
     path = tmp_path / "trials.csv"
 

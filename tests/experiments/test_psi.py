@@ -66,6 +66,14 @@ def test_the_interval_holds_the_estimate():
     assert psi.thresholds[0] <= low < psi.estimate() < high <= psi.thresholds[-1]
 
 
+def test_answers_that_contradict_each_other_leave_a_belief():
+    """No lapse, no guess, a slope of 20: after a right answer a wrong one is all but impossible, and not more."""
+    psi = Psi(low=0.02, high=1.0, guess=0.0, lapse=0.0, slopes=(20.0,), trials=5)
+    for right in (True, False, True, False, True):
+        psi.answer(right)
+    assert psi.belief.sum() == pytest.approx(1.0) and 0.02 < psi.estimate() < 1.0
+
+
 def test_constant_levels_are_all_asked():
     asked = ConstantLevels([0.1, 0.2, 0.4], repeats=5, seed=2)
     seen = []
@@ -79,6 +87,9 @@ def test_constant_levels_are_all_asked():
 def test_what_cannot_be_asked_is_refused():
     with pytest.raises(AnalysisError, match="0 < low < high"):
         Psi(low=0.5, high=0.1)
+    for wrong in ({"guess": 1.2}, {"lapse": -0.1}, {"guess": 0.5, "lapse": 0.5}, {"lapse": float("nan")}):
+        with pytest.raises(AnalysisError, match="guess \\+ lapse < 1"):
+            Psi(low=0.1, high=0.5, **wrong)
     with pytest.raises(AnalysisError, match="positive"):
         Psi(low=0.1, high=0.5, shape="normal")
     with pytest.raises(AnalysisError, match="one of each"):

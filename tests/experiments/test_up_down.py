@@ -71,7 +71,30 @@ def test_levels_stay_within_their_range():
     assert stairs.level == 0.3
 
 
+@pytest.mark.parametrize(("right", "words"), [(True, "right 20 times in a row at the lowest"), (False, "wrong 20 times")])
+def test_who_is_always_right_or_wrong_is_let_go(right, words):
+    stairs, asked = UpDown(start=0.4, factor=2, low=0.1, high=0.8), 0
+    while not stairs.done:
+        stairs.answer(right)
+        asked += 1
+    # down 1: 0.4, 0.4 -> 0.1 in one doubled step of 4, then twenty there; up: one to 0.8, then twenty
+    assert asked == (2 + 20 if right else 1 + 20) and words in stairs.gave_up
+    with pytest.raises(AnalysisError, match="no estimate"):
+        stairs.estimate()
+
+
+def test_no_more_trials_than_said():
+    stairs = UpDown(start=0.4, most=9)
+    for _ in range(9):
+        assert not stairs.done
+        stairs.answer(False)
+    assert stairs.done and "0 of 12 turning points" in stairs.gave_up
+
+
 def test_what_is_no_staircase_is_refused():
+    for wrong in ({"factor": math.inf}, {"weight": math.inf}, {"weight": math.nan}, {"high": math.inf}):
+        with pytest.raises(AnalysisError, match="all finite"):
+            UpDown(start=0.5, **wrong)
     with pytest.raises(AnalysisError, match="low <= start <= high"):
         UpDown(start=3.0)
     with pytest.raises(AnalysisError, match="0 <= skip < reversals"):
