@@ -106,8 +106,8 @@ def test_a_filter_of_the_velocity_is_for_named_laws():
     wall = hl.wall(unilateral=None)(B=0.05)
     with pytest.raises(AnalysisError, match="velocity_filter = 0.004 s beside a law of its own"):
         hl.passivity_limit(b=0.1, T=T, law=wall, velocity_filter=4e-3)
-    for wrong in (-4e-3, np.nan, "x"):
-        with pytest.raises(AnalysisError, match=f"velocity_filter = {wrong} s"):
+    for wrong in (-4e-3, float("nan"), "x"):
+        with pytest.raises(AnalysisError, match=f"velocity_filter = {wrong!r}.*needs a time constant >= 0"):
             hl.passivity_limit(b=0.1, T=T, velocity_filter=wrong)
     inside = hl.wall(velocity=hl.filtered_velocity(tau=4e-3), unilateral=None)(B=0.05)  # what the refusal says to do
     expected = 2 / T * (0.1 - 0.05 / (1 + 2 * 4e-3 / T))
