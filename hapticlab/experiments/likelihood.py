@@ -89,7 +89,7 @@ class Likelihood:
             moved = np.clip(q + _step(gradient, information, damping, held), low, high)
             its_loss, its_gradient, its_information = self.loss(moved, right)
             better = its_loss < loss
-            small = np.abs(moved - q).max(-1) < 1e-9
+            small = np.abs((gradient * (moved - q)).sum(-1)) < 1e-12  # what it could gain
             q[better], loss[better], gradient[better] = moved[better], its_loss[better], its_gradient[better]
             information[better] = its_information[better]
             damping = np.where(better, damping / 5, damping * 5)
