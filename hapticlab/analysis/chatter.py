@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import AnalysisError
 from ..records import check_record
-from .chatter_signs import levels_off, leaves_its_drive, runs_away, scatter
+from .chatter_signs import leaves_its_drive, levels_off, runs_away, scatter, upward_crossings
 from .driven import drive_of, following
 
 #: amplitudes of the last two quarters within this ratio count as one sustained oscillation
@@ -63,7 +63,7 @@ class Chatter:
     scatter : float
         Standard deviation of what is left where that is white noise of the sensor, and so no motion [m]; else 0.
     levels_off : bool
-        A decay that becomes slower and slower: onto a limit cycle, perhaps, and not to rest.
+        A decay that becomes slower and slower, or whose force is at its limit: onto a cycle, perhaps, and not to rest.
     driven : float
         Half the peak-to-peak of the part that follows the drive [m]; 0 where none was given.
     growth_error : float
@@ -106,8 +106,9 @@ class Chatter:
             cycle = f", repeats itself every {self.period} samples" if self.period else ""
             return f"chatter: {place}; sustained (growth {self.growth:+.2g} 1/s){cycle}"
         cure = "it dies out" if self.state == "decaying" else "run longer for its final amplitude"
-        cure = "it decays more and more slowly, onto a cycle perhaps: run longer" if self.levels_off else cure
-        return f"{self.state}: {place}; not locked (growth {self.growth:+.3g} 1/s): {cure}"
+        cure = "it may end in a cycle and not at rest: run longer" if self.levels_off else cure
+        growth = "growth unknown" if math.isnan(self.growth) else f"growth {self.growth:+.3g} 1/s"
+        return f"{self.state}: {place}; not locked ({growth}): {cure}"
 
 
 def chatter(log, driven=None):
@@ -184,7 +185,7 @@ def chatter(log, driven=None):
     y, _ = _around_trend(x[-half:])
     if "x_true" not in log.channels and len(np.unique(log.x[-half:])) > 2 and (noise := scatter(y)):
         return still("none", noise)
-    crossings = _upward_crossings(y) * log.T
+    crossings = upward_crossings(y) * log.T
     frequency = float((len(crossings) - 1) / (crossings[-1] - crossings[0])) if len(crossings) > 1 else None
     if len(crossings) > 2 * CYCLES:
         ratio = math.log(_strength(x[-quarter:]) / max(_strength(x[quarter_before]), least * 1e-3))
@@ -196,11 +197,19 @@ def chatter(log, driven=None):
     dither, amplitude = len(np.unique(log.x[-half:])) == 2, float(np.ptp(y) / 2)
     period = cycle_length(x[-half:], amplitude) if locked else None
     growth, error = ratio / (quarter * log.T), uneven / (quarter * log.T)
-    size4 = half // 4
-    slower = state == "decaying" and levels_off([_strength(y[i * size4 : (i + 1) * size4]) for i in range(4)])
+    clipped = log.saturated is not None and np.any(log.saturated[-half:])
+    slower = state == "decaying" and bool(clipped or levels_off(_amplitudes(x[-half:], y, len(crossings))))
     return Chatter(
         state, amplitude, frequency, contacts, growth, locked, dither, rest, travel, period, size, error, 0.0, slower
     )
+
+
+def _amplitudes(x, y, cycles):
+    """Return amplitudes one after the other: of four windows that hold three cycles each, or else of every swing."""
+    size = len(y) // 4
+    if cycles > 4 * CYCLES:
+        return [_strength(y[i * size : (i + 1) * size]) for i in range(4)]
+    return _swings(x)[1]
 
 
 def cycle_length(x, amplitude):
@@ -284,11 +293,3 @@ def _irregularity(y):
     slope = (at @ logs) / (at @ at)
     residual = logs - logs.mean() - slope * at
     return math.sqrt((residual @ residual) / 2 / (at @ at))
-
-
-def _upward_crossings(y):
-    """Return where y rises through zero, in samples; swings below a quarter of its rms do not count."""
-    swing = np.flatnonzero(abs(y) > 0.25 * math.sqrt(np.mean(y**2)))
-    turns = np.flatnonzero((y[swing[:-1]] < 0) & (y[swing[1:]] > 0))
-    before, after = swing[turns], swing[turns + 1]
-    return before + (after - before) * y[before] / (y[before] - y[after])

@@ -1,5 +1,7 @@
 """Signs in a record that tell motions apart before anything is called chatter: scatter, running away, a decay that ends."""
 
+import math
+
 import numpy as np
 
 #: a handle that has become faster by this from one quarter to the next, and moves by more [m], runs away
@@ -8,7 +10,7 @@ FASTER, FAR = 1.02, 1e-3
 LAGS, CORRELATED = 40, 0.2
 #: a driven motion that has grown by more than this more than its drive, to one side, runs away
 OUTGROWS, ONE_SIDE = 2.0, 0.25
-#: a decay loses, in the last of four windows, at least this part of what it lost in the first of them
+#: a decay loses in the second half at least this part of what it lost in the first
 LEVELS = 0.5
 
 
@@ -41,6 +43,18 @@ def scatter(y):
 
 
 def levels_off(strengths):
-    """Return whether four amplitudes, one after the other, fall more and more slowly: a decay onto a cycle, not to rest."""
-    steps = np.diff(np.log(np.asarray(strengths) + 1e-300))
-    return bool(steps[0] < 0 and steps[-1] > LEVELS * steps[0])
+    """Return whether amplitudes, one after the other, fall more and more slowly: a decay onto a cycle, not to rest."""
+    logs = np.log(np.asarray(strengths) + 1e-300)
+    if len(logs) < 4:
+        return False
+    part = len(logs) // 2
+    first, last = logs[part] - logs[0], logs[-1] - logs[-1 - part]
+    return bool(first < 0 and last > LEVELS * first)
+
+
+def upward_crossings(y):
+    """Return where y rises through zero, in samples; swings below a quarter of its rms do not count."""
+    swing = np.flatnonzero(abs(y) > 0.25 * math.sqrt(np.mean(y**2)))
+    turns = np.flatnonzero((y[swing[:-1]] < 0) & (y[swing[1:]] > 0))
+    before, after = swing[turns], swing[turns + 1]
+    return before + (after - before) * y[before] / (y[before] - y[after])

@@ -15,14 +15,11 @@ from ..scene.symbols import parameters
 from ..scene.taps import TAPS
 from .guard import guarded
 from .search_plot import plot_search
+from .search_start import durations_of, first_of, hopeless, pushes_of
 from .trials import Trial, speed_limit, try_wall, wall_of
 
-#: how deep the push presses the handle into the first, softest wall [m]
-DEEPEST = 0.01
-#: samples of a trial, at least
-SHORTEST = 500
 #: parts of the first stiffness tried before none is said to stand
-SOFTER = 1e-3
+SOFTER = 1e-2
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,9 +29,9 @@ class LargestStiffness:
     Attributes
     ----------
     K : float
-        The largest stiffness that stood [N/m]; 0 where none did.
+        The largest stiffness that stood [N/m]; 0 where all chattered, nan where the trials could not tell.
     chatters_at : float
-        The smallest that did not [N/m]; inf where all stood.
+        The smallest that chattered or could not be told [N/m]; inf where all stood.
     trials : tuple of Trial
         In the order they were made.
     law : str
@@ -62,12 +59,18 @@ class LargestStiffness:
         return plot_search(self)
 
     def __str__(self):
-        if self.K == 0:
+        end = {t.K: t.stands for t in self.trials}.get(self.chatters_at)
+        if not self.trials:
+            head = f"{self.law}: no trial was made, as no stiffness helps: {self.theory['stability'].reason}"
+        elif math.isnan(self.K):
+            head = f"{self.law}: undecided, no stiffness from {self.chatters_at:.3g} N/m on stood, and not all were told"
+        elif self.K == 0:
             head = f"{self.law}: no stiffness stood, down to {self.chatters_at:.3g} N/m"
         elif math.isinf(self.chatters_at):
             head = f"{self.law}: {self.K:.5g} N/m stood, and no more was asked for"
         else:
-            head = f"{self.law}: {self.K:.5g} N/m stands, {self.chatters_at:.5g} N/m chatters"
+            head = f"{self.law}: {self.K:.5g} N/m stands, {self.chatters_at:.5g} N/m "
+            head += "is undecided" if end is None else "chatters"
         rows = [f"  {name:<10} {limit.K:.5g} N/m: {limit.kind}" for name, limit in self.theory.items()]
         return "\n".join(
             [head, f"  simulated outcome of one start, {self.about}", *rows, *(f"  {t}" for t in self.trials)]
@@ -88,8 +91,13 @@ def largest_stiffness(
     Every trial lets the handle fall from rest at the wall's boundary under a constant push, and looks whether the
     oscillation dies out (:func:`hapticlab.chatter`). The stiffness grows by a ratio until a wall chatters; then the ratio
     is halved, from the last that stood, until it is within ``tolerance``. No trial goes further than one ratio beyond what
-    stood. A guard in the scene cuts the motor at the sample at which the wall has given too much energy or the handle is
-    too fast, and between trials it is off.
+    stood. Where not even the first stands, softer ones are tried, down to a hundredth; the motor's push falls with them.
+    A guard in the scene cuts the motor at the sample at which the wall has given too much energy or the handle is too fast,
+    and between trials it is off.
+
+    A trial lasts ten periods of handle and hand on the wall's spring at least, of 50 g where a board does not say its
+    mass. What follows a simulated hand's moving intent is no chatter (``driven`` of :func:`hapticlab.chatter`). A trial
+    that cannot tell is undecided, and bounds the answer as a chatter does; where none stood the answer is then nan, not 0.
 
     What is found is an outcome: this handle, this hand, this start. A passive hand that grips otherwise may chatter
     sooner (:func:`hapticlab.passivity_limit`).
@@ -105,7 +113,8 @@ def largest_stiffness(
     parameter : str
         What is searched in a scene of one's own.
     push : float, optional
-        Constant force of the motor into the wall [N]. By default 0.2 N, and none where a simulated hand pushes or leans.
+        Constant force of the motor into the wall [N]. By default 0.2 N, at most a quarter of what the paddle's force limit
+        leaves the wall, and none where a simulated hand pushes or leans. Friction above it hides what the wall does.
     first : float, optional
         The softest wall [N/m]; by default one that 10 mm withstand the push, 20 N/m for a push of 0.2 N.
     most : float
@@ -115,8 +124,8 @@ def largest_stiffness(
     tolerance : float
         Of the stiffness, relative.
     duration, longest : float, optional
-        Of a trial [s]; doubled up to the longest while the record does not tell. By default 1 s, 500 samples at least,
-        and four times that.
+        Of a trial [s], 128 samples at least; doubled up to the longest while the record does not tell. By default 1 s,
+        500 samples and ten periods at least, and four times that.
     energy_max, speed_max : float
         What trips the guard [J], [m/s]; the speed leaves room for three encoder counts a period.
     buzz_max : float
@@ -141,23 +150,15 @@ def largest_stiffness(
     >>> abs(float(found) / hl.stability_limit(paddle).K - 1) < 0.03
     True
     """
-    duration = max(1.0, SHORTEST * paddle.T) if duration is None else duration
-    longest = 4 * duration if longest is None else max(longest, duration)
     scene = wall_of(law, parameter)
     name = law if isinstance(law, str) else scene.name
     if not (growth > 1 and tolerance > 0 and most > 0):
         raise AnalysisError(
             f"growth = {growth}, tolerance = {tolerance}, most = {most}; needs growth > 1 and the others > 0"
         )
-    hand = getattr(paddle, "hand", None)
-    leaning = 0.0 if hand is None or hand.moves else hand.push + hand.k * ((hand.intent or 0.0) - place)
-    push = (0.0 if leaning else 0.2) if push is None else float(push)
-    pressing = push + leaning
-    if hand is not None and pressing <= 0:
-        raise AnalysisError(
-            f"the hand pulls the handle off the wall with {-pressing:g} N; needs a push: push={0.2 - leaning:.3g}"
-        )
-    first = (pressing or 0.2) / DEEPEST if first is None else float(first)
+    durations = durations_of(paddle, duration, longest)
+    push, leaning = pushes_of(paddle, push, place, durations(most)[1])
+    first = first_of(paddle, push + leaning, longest) if first is None else float(first)
     if not 0 < first < most:
         raise AnalysisError(f"first = {first:g} N/m, most = {most:g} N/m; needs 0 < first < most")
     known = {
@@ -165,46 +166,53 @@ def largest_stiffness(
     }
     if B and "B" not in scene.parameters:
         raise PaddleError(f"{scene.name} has no parameter B; leave B out, or give the scene one")
+    theory = theory_of(paddle, law, B)
+    if B and hopeless(paddle, theory):  # on a board every trial would only throw the handle
+        return LargestStiffness(0.0, 0.0, (), name, B, theory, "no trial made")
     pressed = _pressed(scene(**known, **{parameter: first}), push)
     periods = whole_and_fraction(getattr(paddle, "delay", 0.0), paddle.T)[0]
     limits = {"energy_max": energy_max, "speed_max": speed_limit(paddle, speed_max), "periods": periods}
     program = paddle.program(guarded(pressed, **limits))  # compiled once: only a parameter's value changes
 
-    def trial(K, begin):
+    def trial(K, seconds):
         values = named_values(program) | {parameter: K}
+        if push:  # softer than the first, it would sink in ever deeper
+            values["pressed"] = push * min(1.0, K / first)
         tried = replace(program, values=tuple(values.values()))
-        return try_wall(paddle, tried, K=K, place=place, duration=begin, longest=longest, buzz_max=buzz_max)
+        return try_wall(
+            paddle, tried, K=K, place=place, duration=seconds, longest=durations(K)[1], buzz_max=buzz_max
+        )
 
-    trials, good, bad = search(trial, first, most, growth, tolerance, (duration, longest))
-    about = f"pressed with {pressing:.3g} N from rest at its boundary"
+    trials, good, bad = search(trial, first, most, growth, tolerance, durations)
+    about = f"pressed with {push + leaning:.3g} N from rest at its boundary"
     about += "" if isinstance(paddle, SimulatedPaddle) else "; theory below is without a hand"
-    return LargestStiffness(good, bad, trials, name, B, theory_of(paddle, law, B), about)
+    return LargestStiffness(good, bad, trials, name, B, theory, about)
 
 
 def search(trial, first, most, growth, tolerance, durations):
     """Return (trials, largest that stood, smallest that did not), from below, never further than one ratio beyond.
 
     A trial is as short as tells; the one that is the answer is repeated at full length. Where that finds a chatter which
-    a short one did not see, the search goes on below it, at full length only.
+    a short one did not see, the search goes on below it, at full length only. ``durations(K)`` gives both lengths [s].
+    Where none stood, the answer is 0 if every trial says so, and nan if one could not tell.
     """
-    K, stood, sure, bad, made = first, [], set(), math.inf, []
-    begin, full = durations
+    K, stood, sure, bad, made, short = first, [], set(), math.inf, [], True
     while True:
-        made.append(trial(K, begin))
+        made.append(trial(K, durations(K)[0 if short else 1]))
         if made[-1].stands:
             stood.append(K)
-            sure |= {K} if made[-1].duration >= full else set()
+            sure |= {K} if made[-1].duration >= 0.999 * durations(K)[1] else set()
         else:
             bad = K
         while stood and (stood[-1] >= most or bad / stood[-1] <= 1 + tolerance):
             if stood[-1] in sure:
                 return tuple(made), stood[-1], bad
-            made.append(trial(stood[-1], full))
+            made.append(trial(stood[-1], durations(stood[-1])[1]))
             if made[-1].stands:
                 return tuple(made), stood[-1], bad
-            bad, begin = stood.pop(), full
-        if not stood and bad < first * SOFTER:
-            return tuple(made), 0.0, bad
+            bad, short = stood.pop(), False
+        if not stood and bad <= first * SOFTER * 1.001:
+            return tuple(made), math.nan if any(t.stands is None for t in made) else 0.0, bad
         if not stood:
             K = bad / 10
         else:

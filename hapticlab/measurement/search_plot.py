@@ -11,16 +11,18 @@ def plot_search(found):
         figure = new_figure(height=3.6)
         axes = figure.add_subplot()
         number, K = np.arange(1, len(found.trials) + 1), np.array([t.K for t in found.trials])
-        stands = np.array([t.stands for t in found.trials])
+        outcome = [t.stands for t in found.trials]
+        stands, chatters, unclear = (np.array([o is which for o in outcome], bool) for which in (True, False, None))
         axes.plot(number, K, color="0.75", linewidth=1)
         axes.plot(number[stands], K[stands], "o", color="black", label="comes to rest")
-        axes.plot(number[~stands], K[~stands], "X", color="#c1440e", markersize=8, label="chatters")
+        axes.plot(number[chatters], K[chatters], "X", color="#c1440e", markersize=8, label="chatters")
+        if unclear.any():
+            axes.plot(number[unclear], K[unclear], "s", color="0.4", fillstyle="none", label="undecided")
         for i, (name, limit) in enumerate(found.theory.items()):
             if 0 < limit.K < 1e9:
                 axes.axhline(limit.K, **style_of(i + 2), label=f"{name}: {limit.K:.4g} N/m")
-        axes.set(
-            yscale="log", xlabel="trial", ylabel="stiffness K [N/m]", title=f"{found.law}: {found.K:.4g} N/m stands"
-        )
+        outcome = f"{found.K:.4g} N/m stands" if found.K > 0 else "undecided" if np.isnan(found.K) else "none stands"
+        axes.set(yscale="log", xlabel="trial", ylabel="stiffness K [N/m]", title=f"{found.law}: {outcome}")
         axes.xaxis.get_major_locator().set_params(integer=True)
         axes.legend(loc="lower right", **FRAME)
     return figure
@@ -39,10 +41,10 @@ def plot_border(width):
             known = np.isfinite(getattr(width, name)) & (getattr(width, name) > 0)
             if known.any():
                 axes.plot(width.B[known], getattr(width, name)[known], **style_of(i + 1), label=label)
-        axes.plot(width.B, top, "x", color="#c1440e", label="chatters")
+        axes.plot(width.B, top, "x", color="#c1440e", label="does not stand")
         axes.plot(width.B, width.K, "o-", color="black", markersize=4, linewidth=1, label="comes to rest")
         # a lossless corner of theory may lie far above; the picture is of the border
-        axes.set_ylim(0, 1.25 * top.max())
+        axes.set_ylim(0, 1.25 * np.nanmax([*top, 1.0]))
         axes.set(xlabel="virtual damping B [N s/m]", ylabel="stiffness K [N/m]", title=f"Z-width, law {width.law}")
         axes.legend(loc="best", **FRAME)
     return figure

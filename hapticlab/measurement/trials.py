@@ -18,6 +18,12 @@ LEADS_BACK, TAKES = 20.0, 0.5
 WELL_DAMPED = 0.7
 #: standard errors by which a slow decay has to differ from none
 SURE = 5.0
+#: seconds of a trial, in periods of handle and hand on the wall's spring: what it begins with, and what it takes at least
+PERIODS, ENOUGH = 10.0, 3.0
+#: mass of a handle that does not say its own [kg]
+A_HANDLE = 0.05
+#: a push that moves the handle by less [m] has not tried the wall
+MOVED = 1e-7
 #: a handle that moves on by less than this part of its way, in the last quarter of a trial, rests
 RESTS = 0.01
 #: encoder counts in a period that a speed limit must leave room for
@@ -32,8 +38,8 @@ class Trial:
     ----------
     K : float
         [N/m]
-    stands : bool
-        Whether the oscillation of the entry died out.
+    stands : bool or None
+        Whether the oscillation of the entry died out; None where the trial could not tell.
     verdict : str
         Why, in words.
     amplitude : float
@@ -47,7 +53,7 @@ class Trial:
     """
 
     K: float
-    stands: bool
+    stands: bool | None
     verdict: str
     amplitude: float
     frequency: float | None
@@ -57,56 +63,93 @@ class Trial:
     def __str__(self):
         tone = "" if self.frequency is None else f" at {self.frequency:.4g} Hz"
         swing = f", {1e3 * self.amplitude:.3g} mm{tone}" if self.amplitude else ""
-        return f"{self.K:10.5g} N/m  {'stands  ' if self.stands else 'chatters'}  {self.verdict}{swing}"
+        outcome = {True: "stands   ", False: "chatters ", None: "undecided"}[self.stands]
+        return f"{self.K:10.5g} N/m  {outcome} {self.verdict}{swing}"
 
 
 def try_wall(paddle, scene, *, K, place, duration, longest, buzz_max=0.05):
     """Try one stiffness, longer and longer until the record tells; a simulated handle starts at rest at ``place`` [m].
 
     A limit cycle and a decay too slow to see look alike. At ``longest`` [s] a decay has to be five times its own standard
-    error; what then neither died out nor grew counts as chatter, so that near its limit a wall is called chattering
-    sooner than sound. A handle that dithers over the edge of one encoder count stands where the force jumps by no more than
-    ``buzz_max`` [N].
+    error; what then lasts counts as chatter, and what neither lasts nor dies out is undecided. A handle that dithers over
+    the edge of one encoder count stands where the force jumps by no more than ``buzz_max`` [N]. A motion that follows a
+    simulated hand's moving intent is no chatter.
     """
+    needs = ENOUGH * period_on(paddle, K)
+    if needs > longest * 1.001:
+        return Trial(K, None, f"not tried: three swings take {needs:.3g} s; needs longest={needs:.2g}", 0.0, None, 0.0, 0.0)
+    duration = max(duration, min(needs, longest))
     while True:
         log = run_from(paddle, scene, place, duration)
-        trial = _judged(log, K, place, duration, buzz_max)
-        if trial is not None:
-            return trial
-        if 2 * duration > longest * 1.001:
-            return _judged(log, K, place, duration, buzz_max, last=True)
+        last = 2 * duration > longest * 1.001
+        outcome = _judged(paddle, log, place, buzz_max, last)
+        if outcome is not None:
+            stands, verdict, amplitude, frequency = outcome
+            return Trial(K, stands, verdict, amplitude, frequency, max(0.0, float(log.drawn.max(initial=0.0))), duration)
         duration *= 2
 
 
-def _judged(log, K, place, duration, buzz_max, last=False):
-    """Return the trial, or None where the record does not tell yet."""
-    drawn = max(0.0, float(log.drawn.max(initial=0.0)))
-    if log.fault:
-        return Trial(K, False, f"the paddle stopped: {log.fault}", 0.0, None, drawn, duration)
-    if log.tripped.any():
-        at = log.t[log.tripped.argmax()]
-        return Trial(K, False, f"the guard cut the motor after {at:.3g} s", 0.0, None, drawn, duration)
-    found = chatter(log)
-    x = log.channels.get("x_true", log.x)
-    rests = found.state == "none" and found.travel < RESTS * max(abs(x - place).max(), 1e-9)
-    if rests:
-        return Trial(K, True, "it comes to rest", found.amplitude, found.frequency, drawn, duration)
-    bounces = bool((x[len(x) // 2 :] < place).any())
-    if found.dither:
-        jump = float(np.ptp(log.F[len(x) // 2 :]))
+def _judged(paddle, log, place, buzz_max, last):
+    """Return (stands, verdict, amplitude, frequency), or None where the record does not tell yet and can be longer."""
+    stopped = _stopped(log)
+    if stopped:
+        return *stopped, 0.0, None
+    hand = getattr(paddle, "hand", None)
+    found = chatter(log, driven=hand if hand is not None and hand.moves else None)
+    swing, x = (found.amplitude, found.frequency), log.channels.get("x_true", log.x)
+    way, half = float(abs(x - place).max()), len(x) // 2
+    if way < MOVED:
+        return None, "the push did not move the handle: friction holds it; push harder", *swing
+    if found.scatter or (found.state == "none" and found.travel < RESTS * way):
+        return True, "it comes to rest", *swing
+    if found.state == "driven":
+        return True, "it only follows the hand", *swing
+    if found.dither or ("x_true" not in log.channels and 0 < found.amplitude < 1.01 * count_of(paddle)):
+        jump = float(np.ptp(log.F[half:]))
         felt = "too little to feel" if jump <= buzz_max else "felt"
-        verdict = f"it buzzes by one encoder count, {jump:.2g} N, {felt}"
-        return Trial(K, jump <= buzz_max, verdict, found.amplitude, found.frequency, drawn, duration)
-    # while it bounces, a small chatter may hide below; what stays inside is nearly linear, and dies out however slowly
+        return jump <= buzz_max, f"it buzzes by {_counts(found)}, {jump:.2g} N, {felt}", *swing
+    # what bounces or is clipped may decay onto a small chatter; what stays inside is nearly linear: it dies out
+    clipped = log.saturated is not None and bool(np.any(log.saturated[half:]))
+    nonlinear = clipped or found.levels_off or bool((x[half:] < place).any())
     decays = found.state == "decaying" or (last and found.growth < -SURE * found.growth_error)
-    if decays and not bounces:
-        return Trial(K, True, "it dies out", found.amplitude, found.frequency, drawn, duration)
-    if found.state in ("growing", "runaway"):
-        return Trial(K, False, "it grows", found.amplitude, found.frequency, drawn, duration)
+    if decays and not nonlinear:
+        return True, "it dies out", *swing
+    if found.state == "growing" or (last and found.state == "runaway"):
+        return False, "it grows", *swing
     if not last:
         return None
-    verdict = "it lasts" if found.locked else f"it has not died out after {duration:g} s"
-    return Trial(K, False, verdict, found.amplitude, found.frequency, drawn, duration)
+    seconds = f"{log.t[-1]:.3g} s"
+    if found.locked:
+        return False, "it lasts", *swing
+    ends = f"it decays, onto a cycle perhaps; still moving after {seconds}" if decays else f"no rest and no cycle in {seconds}"
+    return None, ends, *swing
+
+
+def _stopped(log):
+    """Return (stands, why) of a trial that was cut short, or None."""
+    if log.fault:  # a wall too soft for its push lets the handle through its travel as a wall that throws it does
+        return (None if "OVER_TRAVEL" in log.fault else False), f"the paddle stopped: {log.fault}"
+    if log.tripped.any():
+        return False, f"the guard cut the motor after {log.t[log.tripped.argmax()]:.3g} s"
+    return None
+
+
+def _counts(found):
+    return "one encoder count" if found.dither else "an encoder count or two"
+
+
+def period_on(paddle, K):
+    """Return the period of handle and hand on a spring of K [s]."""
+    hand = getattr(paddle, "hand", None)
+    m = paddle.m if isinstance(paddle, SimulatedPaddle) else getattr(paddle.settings, "m", 0.0) or A_HANDLE
+    return 2 * math.pi * math.sqrt((m + (hand.m if hand else 0.0)) / (K + (hand.k if hand else 0.0)))
+
+
+def count_of(paddle):
+    """Return one encoder count [m]; 0 where there is no encoder."""
+    if isinstance(paddle, SimulatedPaddle):
+        return 1 / paddle.counts_per_metre if paddle.counts_per_metre else 0.0
+    return abs(paddle.settings.metres_per_count)
 
 
 def run_from(paddle, scene, place, duration):
@@ -119,7 +162,7 @@ def run_from(paddle, scene, place, duration):
 
 def lead_back(paddle, place):
     """Lead the handle of a board to a place [m] with a soft spring, and let go of it at rest."""
-    m = getattr(paddle.settings, "m", 0.0) or 0.05
+    m = getattr(paddle.settings, "m", 0.0) or A_HANDLE
     damper = 2 * WELL_DAMPED * math.sqrt(LEADS_BACK * m)
     spring = wall(unilateral=None)(k=LEADS_BACK, B=damper, x_o=place)
     log = paddle.run(
@@ -134,11 +177,7 @@ def lead_back(paddle, place):
 
 def speed_limit(paddle, speed):
     """Return a speed limit [m/s] that leaves room for a jump of some encoder counts in one period."""
-    if isinstance(paddle, SimulatedPaddle):
-        count = 1 / paddle.counts_per_metre if paddle.counts_per_metre else 0.0
-    else:
-        count = abs(paddle.settings.metres_per_count)
-    return max(speed, COUNTS * count / paddle.T)
+    return max(speed, COUNTS * count_of(paddle) / paddle.T)
 
 
 def wall_of(law, parameter="k"):

@@ -22,7 +22,7 @@ class ZWidth:
     B : array, shape (N,)
         Virtual damping [N s/m].
     K : array, shape (N,)
-        The largest stiffness that stood a trial [N/m].
+        The largest stiffness that stood a trial [N/m]; 0 where all chattered, nan where the trials could not tell.
     chatters_at : array, shape (N,)
         The smallest that did not [N/m].
     passivity, stability : array, shape (N,)
@@ -50,13 +50,15 @@ class ZWidth:
         return plot_border(self)
 
     def __str__(self):
+        about = next((s.about for s in self.searches if s.trials), "no trial made")
         rows = [f"{b:10.4g} {k:12.5g} {top:12.5g} {p:12.5g} {s:12.5g}" for b, k, top, p, s in zip(
             self.B, self.K, self.chatters_at, self.passivity, self.stability, strict=True)]  # fmt: skip
-        head = f"{'B [N s/m]':>10} {'K stands':>12} {'K chatters':>12} {'passivity':>12} {'stability':>12}  K in N/m"
-        return "\n".join([f"Z-width, law {self.law}: {self.searches[0].about}", head, *rows])
+        head = f"{'B [N s/m]':>10} {'K stands':>12} {'K does not':>12} {'passivity':>12} {'stability':>12}  K in N/m"
+        return "\n".join([f"Z-width, law {self.law}: {about}", head, *rows])
 
     def __repr__(self):
-        return f"ZWidth({self.law}, {len(self.B)} dampings, K = {self.K.min():.4g} to {self.K.max():.4g} N/m)"
+        least, most = np.nanmin([*self.K, np.inf]), np.nanmax([*self.K, 0.0])
+        return f"ZWidth({self.law}, {len(self.B)} dampings, K = {least:.4g} to {most:.4g} N/m)"
 
 
 def z_width(paddle, *, B, law="zoh", **options):
@@ -94,7 +96,7 @@ def z_width(paddle, *, B, law="zoh", **options):
     searches = []
     for b in B.tolist():
         if (
-            searches and searches[-1].K and "first" not in options
+            searches and searches[-1].K > 0 and "first" not in options
         ):  # the next damping's border is near: begin well below
             searches.append(largest_stiffness(paddle, law=law, B=b, **options, first=searches[-1].K / BELOW))
         else:

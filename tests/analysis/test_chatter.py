@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+import hapticlab as hl
 from hapticlab.analysis.chatter import chatter
 from hapticlab.errors import AnalysisError
 from hapticlab.records import Telemetry
@@ -150,3 +151,44 @@ def test_a_cycle_locked_to_the_sampling_is_counted(f, samples):
     found = chatter(record(oscillation(f=f)))
     assert found.period == samples
     assert ("repeats itself" in str(found)) == (samples is not None)
+
+
+def test_a_runaway_is_seen_beside_what_drives_it():
+    t = np.arange(4000) * T
+    drive = 2e-3 * np.sin(2 * np.pi * 5 * t)
+    assert chatter(record(drive + 1e-5 * np.exp(3 * t)), driven=drive).state == "runaway"
+    assert chatter(record(0.5 * drive), driven=drive).state == "driven"
+    swelling = drive * (1 + 3 * (t > 3))  # farther to both sides, as its drive goes
+    assert chatter(record(swelling), driven=swelling).state == "driven"
+    hand = hl.Hand(m=0.1, b=0.5, k=20, intent=lambda t: 0.005 * np.sin(2 * np.pi * 3 * t))
+    log = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hand).run(hl.wall(unilateral=None)(k=60, B=-8), duration=1)
+    assert chatter(log, driven=hand).state == "runaway"
+
+
+@pytest.mark.parametrize("count", [0.0, 4e-6])
+def test_noise_of_a_sensor_at_rest_is_no_chatter(count):
+    noise = 1e-5 * np.random.default_rng(0).standard_normal(4000)
+    sensed = 5e-3 + noise
+    sensed = np.round(sensed / count) * count if count else sensed
+    found = chatter(record(sensed))
+    assert found.state == "none" and found.amplitude == 0 and found.scatter == pytest.approx(1e-5, rel=0.06)
+    assert "is no motion" in str(found)
+    for f in (20.0, 197.0, 250.0):  # twice the noise, even of four samples a cycle, is an oscillation
+        both = chatter(record(sensed + oscillation(f=f, amplitude=2e-5)))
+        assert both.state != "none" and both.scatter == 0 and both.amplitude > 2e-5
+
+
+@pytest.mark.parametrize("phase", range(6))
+def test_half_a_slow_swing_is_undecided(phase):
+    found = chatter(record(oscillation(f=0.4, amplitude=1e-3, phase=phase)))
+    assert found.state == "undecided" and found.amplitude > 0.5e-3
+    assert "run longer" in str(found)
+
+
+@pytest.mark.parametrize("f", [2.3, 37.3])
+def test_a_decay_that_levels_off_is_told(f):
+    t = np.arange(4000) * T
+    plain, onto = 1e-3 * np.exp(-1.5 * t), 1e-3 * (0.5 + np.exp(-1.5 * t))
+    dies, ends = (chatter(record(size * np.sin(2 * np.pi * f * t))) for size in (plain, onto))
+    assert dies.state == ends.state == "decaying" and not dies.levels_off
+    assert ends.levels_off and "it may end in a cycle" in str(ends)

@@ -13,6 +13,10 @@ pytest.importorskip("llvmlite")  # some hundred thousand ticks
 T = 1e-3
 
 
+def lengths(K):
+    return 1.0, 4.0
+
+
 def paddle(**changes):
     return hl.SimulatedPaddle(**{"m": 0.05, "b": 0.1, "T": T, **changes})
 
@@ -47,9 +51,58 @@ def test_no_trial_goes_further_than_one_ratio_beyond_what_stood():
 
 
 def test_without_damping_no_stiffness_stands():
-    found = largest_stiffness(paddle(b=0.0), longest=1.0)
+    """Each period a held spring adds energy; in softer walls it takes longer to see, and three swings at least."""
+    found = largest_stiffness(paddle(b=0.0))
     assert found.K == 0 and "no stiffness stood" in str(found)
-    assert found.chatters_at < 20.0 * 1e-3
+    assert found.chatters_at == pytest.approx(0.2)
+    short = largest_stiffness(paddle(b=0.0), longest=1.0)
+    assert math.isnan(short.K) and "undecided" in str(short) and "needs longest=3" in str(short)
+    assert "undecided" in short.plot().axes[0].get_legend_handles_labels()[1]
+
+
+@pytest.mark.parametrize("m", [pytest.param(1.0, marks=pytest.mark.slow), 2.0])
+def test_a_heavy_handle_is_given_the_time_that_it_swings(m):
+    """On 200 N/m a handle of 2 kg takes 0.63 s a period, on the first wall, of 20 N/m, 2 s."""
+    heavy = paddle(m=m)
+    found = largest_stiffness(heavy, tolerance=0.1)
+    assert found.K < hl.stability_limit(heavy).K <= found.chatters_at < 1.1 * found.K
+    assert found.trials[0].duration >= 10 * 2 * math.pi * math.sqrt(m / 20.0)
+
+
+def test_a_motor_of_little_force_does_not_hide_the_limit():
+    """Force at its limit turns growth into a cycle, onto which a larger entry decays."""
+    weak = paddle(force_max=0.1)
+    for push in (None, 0.09):
+        found = largest_stiffness(weak, push=push, first=100.0, tolerance=0.1)
+        assert 0.9 * hl.stability_limit(weak).K < found.K < hl.stability_limit(weak).K
+    with pytest.raises(hl.AnalysisError, match="push of 0.2 N .* 0.1 N at most: .* as push=0.025"):
+        largest_stiffness(weak, push=0.2)
+
+
+def test_a_tremor_is_no_chatter():
+    tremor = hl.Hand(m=0.1, b=5, k=500, intent=lambda t: 0.01 + 0.0005 * np.sin(2 * np.pi * 9 * t))
+    held = paddle(hand=tremor)
+    found = largest_stiffness(held, first=9000.0, growth=1.2, tolerance=0.2, duration=1.0, longest=1.0)
+    assert found.K < hl.stability_limit(held).K < found.chatters_at <= 1.2 * found.K
+    assert "pressed with 5 N" in found.about  # 500 N/m times 10 mm, and none of the motor
+    with pytest.raises(hl.AnalysisError, match="noise of 0.1 N"):
+        largest_stiffness(paddle(hand=hl.Hand(push=1.0, noise=0.1)))
+
+
+def test_a_push_that_friction_holds_tells_nothing():
+    found = largest_stiffness(paddle(coulomb=0.3))
+    assert math.isnan(found.K) and "push harder" in str(found)
+
+
+def test_a_damper_that_is_unstable_alone_is_not_tried():
+    found = largest_stiffness(paddle(), B=-0.2)
+    assert found.K == 0 and not found.trials and "no stiffness helps: B = -0.2 N s/m" in str(found)
+    assert found.plot().axes[0].get_title() == "zoh: none stands"
+
+
+def test_a_length_without_samples_is_refused_by_name():
+    with pytest.raises(hl.AnalysisError, match="duration = 0.001 s; a trial needs 128 samples, duration=0.128"):
+        largest_stiffness(paddle(), duration=0.001)
 
 
 @pytest.mark.slow  # what a buzz is called is in test_trials
@@ -110,23 +163,23 @@ def test_a_buzz_of_one_encoder_count_does_not_stand():
 
 @pytest.mark.parametrize("limit", [0.5, 21.0, 333.0, 98765.0])
 def test_the_search_encloses_any_limit(limit):
-    trials, good, bad = search(scripted(limit), 20.0, 1e5, 1.5, 0.02, (1.0, 4.0))
+    trials, good, bad = search(scripted(limit), 20.0, 1e5, 1.5, 0.02, lengths)
     assert good < limit <= bad <= good * 1.02 and any(t.K == good and t.duration == 4.0 for t in trials)
 
 
 def test_a_chatter_that_only_a_long_trial_sees_lowers_the_answer():
-    trials, good, bad = search(scripted(1000.0, hidden=700.0), 20.0, 1e5, 1.5, 0.02, (1.0, 4.0))
+    trials, good, bad = search(scripted(1000.0, hidden=700.0), 20.0, 1e5, 1.5, 0.02, lengths)
     assert good < 700.0 <= bad <= good * 1.02
     assert trials[-1].duration == 4.0
 
 
 def test_the_ends_of_a_search():
-    assert search(scripted(0.0), 20.0, 1e5, 1.5, 0.02, (1.0, 4.0))[1:] == (0.0, pytest.approx(2e-3))
-    assert search(scripted(1e9), 20.0, 1e5, 1.5, 0.02, (1.0, 4.0))[1:] == (1e5, math.inf)
+    assert search(scripted(0.0), 20.0, 1e5, 1.5, 0.02, lengths)[1:] == (0.0, pytest.approx(0.2))
+    assert search(scripted(1e9), 20.0, 1e5, 1.5, 0.02, lengths)[1:] == (1e5, math.inf)
 
 
 def test_the_picture_has_trials_and_limits():
-    trials, good, bad = search(scripted(333.0), 20.0, 1e5, 1.5, 0.02, (1.0, 4.0))
+    trials, good, bad = search(scripted(333.0), 20.0, 1e5, 1.5, 0.02, lengths)
     figure = LargestStiffness(good, bad, trials, "zoh", theory={"stability": hl.stability_limit(paddle())}).plot()
     axes = figure.axes[0]
     labels = axes.get_legend_handles_labels()[1]

@@ -38,6 +38,23 @@ def test_verdicts_and_how_long_they_took():
     assert damped.stands and damped.verdict == "it comes to rest"
 
 
+def test_a_decay_onto_a_cycle_is_no_rest():
+    """285 N/m, above the limit of 200, with a motor of 0.1 N: from 3 s on a locked cycle of 0.618 mm lasts."""
+    weak = paddle(force_max=0.1)
+    short, full = trial(285.0, weak, longest=1.0), trial(285.0, weak, longest=8.0)
+    assert short.stands is None and str(short).split()[2] == "undecided"
+    assert full.stands is False and full.verdict == "it lasts" and full.amplitude == pytest.approx(0.618e-3, rel=0.01)
+
+
+def test_noise_of_a_resting_handle_stands_on_a_board_too():
+    noisy = paddle(b=1.0, noise=1e-5, counts_per_metre=78125)
+    with hl.connect("sim://hapkit", paddle=noisy) as board:
+        found = try_wall(
+            board, board.program(scene(50.0, energy_max=0.05, speed_max=3.0)), K=50.0, place=0.0, duration=1.0, longest=2.0
+        )
+    assert found.stands and found.verdict == "it comes to rest"
+
+
 def test_the_guard_ends_a_trial_at_once():
     cut = trial(5000.0, energy_max=1e-3)
     assert not cut.stands and "the guard cut the motor after" in cut.verdict and cut.duration == 1.0
@@ -55,9 +72,9 @@ def test_a_buzz_of_one_encoder_count_stands_where_it_is_not_felt():
 def test_a_fault_of_the_paddle_is_told():
     """A wall too soft for the push: the handle leaves its travel, and the board stops the motor."""
     with hl.connect("sim://hapkit", paddle=paddle()) as board:
-        soft = board.program(scene(0.01, energy_max=9.0, speed_max=99.0))
-        found = try_wall(board, soft, K=0.01, place=0.0, duration=1.0, longest=1.0)
-    assert not found.stands and "OVER_TRAVEL" in found.verdict and found.verdict.startswith("the paddle stopped:")
+        soft = board.program(scene(0.1, energy_max=9.0, speed_max=99.0))
+        found = try_wall(board, soft, K=0.1, place=0.0, duration=1.0, longest=14.0)
+    assert found.stands is None and "OVER_TRAVEL" in found.verdict and found.verdict.startswith("the paddle stopped:")
 
 
 def test_a_handle_that_cannot_be_led_back_is_told():

@@ -1,0 +1,77 @@
+"""How a search of walls begins: how long a trial lasts, how hard the push, how soft the first, and is there hope at all."""
+
+import math
+
+import numpy as np
+
+from ..device.simulated import SimulatedPaddle
+from ..errors import AnalysisError
+from .trials import ENOUGH, PERIODS, period_on
+
+#: how deep the push presses the handle into the first, softest wall [m]
+DEEPEST = 0.01
+#: samples of a trial by default, and of one that is asked for
+SHORTEST, FEWEST = 500, 128
+#: the motor's push by default [N], and the part of the paddle's force limit that it may be
+PUSH, OF_LIMIT = 0.2, 0.25
+
+
+def durations_of(paddle, duration, longest):
+    """Return a function of K that gives (how long a trial begins, how long it may become) [s]."""
+    for name, value in (("duration", duration), ("longest", longest)):
+        if value is not None and not FEWEST * paddle.T <= value < math.inf:
+            raise AnalysisError(
+                f"{name} = {value:g} s; a trial needs {FEWEST} samples, {name}={FEWEST * paddle.T:g} at least, and an end"
+            )
+
+    def durations(K):
+        periods = PERIODS * period_on(paddle, K)
+        begin = max(1.0, SHORTEST * paddle.T, periods) if duration is None else duration
+        full = 4 * max(begin, periods) if longest is None else max(longest, duration or 0.0)
+        return min(begin, full), full
+
+    return durations
+
+
+def pushes_of(paddle, push, place, seconds):
+    """Return the motor's push and how hard a simulated hand leans on the wall [N]; a moving hand in the mean."""
+    hand, most = getattr(paddle, "hand", None), _force_max(paddle)
+    leaning = 0.0
+    if hand is not None:
+        if hand.noise:
+            raise AnalysisError(
+                f"the hand's force is noise of {hand.noise:g} N, which never lets a handle rest; search with Hand(noise=0)"
+            )
+        ticks = max(1, round(seconds / paddle.T))
+        at = float(np.mean(hand.samples(ticks, paddle.T))) if hand.moves else hand.intent or 0.0
+        leaning = hand.push + hand.k * (at - place)
+    push = (0.0 if leaning else min(PUSH, OF_LIMIT * most)) if push is None else float(push)
+    if hand is not None and push + leaning <= 0:
+        raise AnalysisError(
+            f"the hand pulls the handle off the wall with {-push - leaning:g} N; needs a push: push={PUSH - leaning:.3g}"
+        )
+    if push + leaning >= most:
+        raise AnalysisError(
+            f"a push of {push + leaning:g} N on a paddle whose motor gives {most:g} N at most: no wall of it can answer "
+            f"that; needs less, as push={OF_LIMIT * most - leaning:.3g}"
+        )
+    return push, leaning
+
+
+def _force_max(paddle):
+    most = paddle.force_max if isinstance(paddle, SimulatedPaddle) else paddle.settings.force_max
+    return most or math.inf
+
+
+def first_of(paddle, pressing, longest):
+    """Return the softest wall to begin with [N/m]: not too deep, and with three periods in the longest trial."""
+    soft = (pressing or PUSH) / DEEPEST
+    needs = 0.0 if longest is None else ENOUGH * period_on(paddle, soft) / longest
+    return soft * max(1.0, needs**2)
+
+
+def hopeless(paddle, theory):
+    """Return whether theory knows the wall to be unstable at every stiffness; friction may hold what is."""
+    limit = theory.get("stability")
+    known = limit is not None and limit.K == 0 and "stable again" not in limit.reason
+    return known and not getattr(paddle, "coulomb", 0.0)
