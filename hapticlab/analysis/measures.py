@@ -67,6 +67,8 @@ class Chatter(Swing):
     """Sustained or growing amplitude [m]; 0 where the handle rests, its swings decay or stay within one encoder count.
 
     nan where the run cannot tell: nothing ever moved, or a handle that turned has no swing in one of the quarters.
+    Two quarters do not tell a decay to rest from one onto a limit cycle (a force at its limit, an encoder): run so long that
+    it has ended, or look at one run with :func:`hapticlab.chatter`, whose ``levels_off`` says so.
     """
 
     unit = "m"
