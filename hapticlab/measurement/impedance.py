@@ -189,6 +189,11 @@ def _blocks(log, samples, blocks, skip):
             f"measured_impedance: the record is not whole: {log.fault or 'samples were lost or left out'}. Drive less, "
             "hold the handle, or measure with a longer T"
         )
+    if "own" in log.channels and log.saturated is not None and log.saturated.any():
+        raise PaddleError(
+            "measured_impedance: the motor came to its limit, so nothing in the record is linear: drive less, or give a "
+            "place= nearer to the boundary"
+        )
     columns = [log.channels.get("x_true", log.x), log.F, log.channels.get("own", log.F)]
     return [c[skip : skip + blocks * samples].reshape(blocks, samples) for c in columns]
 

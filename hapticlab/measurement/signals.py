@@ -76,7 +76,7 @@ def lines_of(frequency, T, period):
     if samples < 8:
         raise AnalysisError(f"period = {period:g} s is {samples} samples of T = {T:g} s; needs at least 8")
     asked = np.atleast_1d(np.asarray(frequency, float)) * samples * T
-    if not np.isfinite(asked).all() or (asked <= 0).any() or (asked >= samples / 2).any():
+    if not asked.size or not np.isfinite(asked).all() or (asked <= 0).any() or (asked >= samples / 2).any():
         raise AnalysisError(
             f"frequency = {frequency} Hz; needs frequencies between 0 and half the sampling rate, {0.5 / T:g} Hz, each "
             f"a cycle or more in the period of {period:g} s"

@@ -5,6 +5,8 @@ import pytest
 import sympy as sp
 
 import hapticlab as hl
+from hapticlab.device.serial import open_port
+from hapticlab.device.settings import changed, simulated
 from hapticlab.measurement.excitation import Excitation
 from hapticlab.measurement.impedance import measured_impedance
 from hapticlab.measurement.signals import lines_of
@@ -191,3 +193,82 @@ def test_refusals(arguments, words):
         measured_impedance(paddle(), hl.wall()(k=K), **arguments)
     with pytest.raises(hl.PaddleError, match="needs a simulated hand"):
         measured_impedance(hl.SimulatedPaddle(m=0.05, b=0.1, T=T), hl.wall()(k=K), drive="hand")
+
+
+COUNTED = {"m": 0.03, "b": 0.6, "T": T, "counts_per_metre": 1 / 12.8e-6, "noise": 5e-6}
+SHORT = {"frequency": [5.0, 21.0], "period": 0.5, "settle": 0.2, "blocks": 2, "realizations": 1}
+
+
+def with_motor(stands, **changes):
+    """Return a simulated board whose motor stands for so much force for long [N], and the list of its records."""
+    paddle = hl.SimulatedPaddle(**{**COUNTED, **changes})
+    port, kept = open_port("sim://hapkit"), simulated(paddle)
+    kept = changed(kept, force_continuous=stands)
+    port.put_on(paddle, settings=kept, store=kept.to_bytes())
+    board, logs = hl.SerialPaddle("sim://hapkit", port=port), []
+    board.home(at=0.0)
+    run = board.run
+
+    def recorded(*given, **options):
+        logs.append(run(*given, **options))
+        return logs[-1]
+
+    board.run = recorded
+    return board, logs
+
+
+@pytest.mark.parametrize("stiffness", [150.0, 500.0, 1000.0])
+def test_a_board_is_moved_gently_whatever_the_wall(stiffness):
+    """Stable below 2 b/T = 1200 N/m. The motor stands for 2 N: it holds 5 mm, or K depth = 1 N, and is led there."""
+    board, logs = with_motor(2.0)
+    with board:
+        found = measured_impedance(board, hl.wall()(k=stiffness), **SHORT)
+    pull = min(stiffness * 0.005, 1.0)
+    assert max(abs(log.F).max() for log in logs) < 0.1 + max(0.5 * pull, 0.2)
+    # twice three counts of backward difference beside 0.1 N at its quickest
+    assert max(abs(log.v).max() for log in logs) < 0.2
+    assert max(log.x.max() for log in logs) < pull / stiffness + 1.5e-3
+    s = 2j * np.pi * found.frequency
+    assert found.left_wall == 0 and found.rendered == pytest.approx(stiffness / s * held(s, 0.0), rel=1e-3)
+    assert abs(logs[-1].F[0]) < 0.01  # it rises
+
+
+def test_a_wall_that_chatters_on_a_board_is_cut_and_told():
+    """Unstable above 2 b/T = 200 N/m: force below its hold and twice the amplitude, and the call is named."""
+    board, logs = with_motor(2.0, b=0.1)
+    with board:
+        with pytest.raises(hl.PaddleError, match="measured_impedance: the .*softer wall"):
+            measured_impedance(board, hl.wall()(k=900), **SHORT)
+        assert board.state()["state"] == 0 and board.state()["force"] == 0
+    assert max(abs(log.F).max() for log in logs) <= 1.2 + 1e-6
+    limits = {"place": 0.003, "speed_max": 0.06, "force_max": 5.0}
+    with (
+        hl.connect("sim://hapkit", paddle=hl.SimulatedPaddle(**COUNTED | {"b": 0.1})) as slow,
+        pytest.raises(hl.PaddleError, match="measured_impedance: the motor was switched off after .*speed_max="),
+    ):
+        measured_impedance(slow, hl.wall()(k=900), **limits, **SHORT)
+
+
+def test_a_board_refuses_more_than_its_motor_stands_and_an_interrupt_leaves_it_off(monkeypatch):
+    board, logs = with_motor(2.0)
+    with board:
+        with pytest.raises(hl.PaddleError, match="2.5 N to hold the place and 0.1 N .* more than the 2 N"):
+            measured_impedance(board, hl.wall()(k=500), place=0.005, **SHORT)
+        assert not logs  # before anything moves
+        monkeypatch.setattr("hapticlab.device.board.collect", lambda *given: (_ for _ in ()).throw(KeyboardInterrupt))
+        with pytest.raises(KeyboardInterrupt):
+            measured_impedance(board, hl.wall()(k=150), **SHORT)
+        assert board.state()["state"] == 0 and board.state()["force"] == 0
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"realizations": 0}, {"blocks": 0}, {"blocks": 1.5}, {"amplitude": 0}, {"amplitude": -1.0}, {"settle": -1},
+        {"period": 0}, {"place": float("nan")}, {"reach": 0}, {"speed_max": "fast"}, {"frequency": []},
+    ],
+)  # fmt: skip
+def test_a_number_that_measures_nothing_is_named(wrong):
+    (name,) = wrong
+    with pytest.raises(hl.AnalysisError, match=f"{name} = "):
+        measured_impedance(paddle(), hl.wall()(k=K), **wrong)
