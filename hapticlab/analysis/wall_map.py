@@ -1,12 +1,16 @@
 """Maps of a wall: where it is passive, stable, chatters or is unusable, theory and simulation on one picture."""
 
+import inspect
+import math
 import time
 from dataclasses import replace
+from difflib import get_close_matches
 
 import numpy as np
 
 from ..device.simulated import SimulatedPaddle
 from ..errors import AnalysisError
+from ..limits.limit import check_number
 from ..scene.laws import wall
 from ..scene.scene import Scene
 from .lane_runs import LaneRuns
@@ -15,8 +19,8 @@ from .wall_regions import WallMap, beyond, regions_of
 
 #: what a map may be over beside K, and its unit
 OTHERS = {
-    "B": "N*s/m", "T": "s", "delay": "s", "m": "kg", "b": "N*s/m", "coulomb": "N", "counts_per_metre": "1/m",
-    "hand_m": "kg", "hand_b": "N*s/m",
+    "B": "N s/m", "T": "s", "delay": "s", "m": "kg", "b": "N s/m", "coulomb": "N", "counts_per_metre": "1/m",
+    "hand_m": "kg", "hand_b": "N s/m",
 }  # fmt: skip
 #: rows at which theory is computed, exactly; between them its lines are straight
 ROWS = 41
@@ -36,11 +40,13 @@ def wall_map(paddle, *, law="zoh", over=("K", "B"), **given):
     paddle : SimulatedPaddle
         Its hand pushes, or has a spring: else the handle bounces off and is gone.
     law : {"zoh", "half_sample", "backward_difference", "ellis"} or Scene
-        A scene of its own with its stiffness unbound and its boundary at 0 has regions, and no line of passivity.
+        A scene of its own with its stiffness unbound and its boundary at 0 has regions, and no line of passivity; a name
+        draws the theory too.
     over : ("K", other)
         other is one of B, T, delay, m, b, coulomb, counts_per_metre, hand_m, hand_b.
     **given
-        The axes by their names, arrays of SI values; without one a range of ``points`` = 100 values that shows the limits.
+        The axes by their names, arrays of SI values; without one a range of ``points`` = 100 values that shows the limits,
+        or, of a scene without ``linear=``, where simulated contacts cease to come to rest.
         And what :class:`WallMaps` takes: B, duration, x, v, unusable, unilateral, clamp, workers, engine.
 
     Returns
@@ -103,7 +109,9 @@ class WallMaps:
         points=100, unilateral="gate", clamp=False, linear=None, parameter="k", workers=-1, engine="auto", **axes,
     ):  # fmt: skip
         self._check(paddle, over, unusable)
-        self.over, self.T, self.start, self.unusable = tuple(over), paddle.T, (x, v), unusable
+        if not (isinstance(points, int) and points >= 2):
+            raise AnalysisError(f"points = {points!r}; an axis of a map needs two or more points, a whole number")
+        self.over, self.T, self.start, self.unusable = tuple(over), paddle.T, _start(x, v), float(unusable)
         self.parameter = parameter if isinstance(law, Scene) else "k"
         if isinstance(law, Scene):
             self._check_scene(law)
@@ -111,17 +119,18 @@ class WallMaps:
         else:
             scene, self.limits = wall(law, unilateral=unilateral, clamp=clamp)(x_o=0.0), ChapterLimits(law, bounds)
         axes |= {"B": B} if over[1] == "B" and np.ndim(B) else {}
-        self.B = 0.0 if np.ndim(B) or over[1] == "B" else float(B)
-        unknown = [name for name in axes if name not in self.over]
-        if unknown:
-            raise AnalysisError(f"{unknown[0]}: the map is over {' and '.join(self.over)}; set it on the paddle, or map over it")
+        self.B = 0.0 if np.ndim(B) else check_number("B", B, "N s/m", "needs a finite B", math.isfinite)
+        if self.B and over[1] == "B":
+            raise AnalysisError(f'B = {self.B:g} N s/m; B is an axis: needs an array, or over=("K", other)')
+        _check_names(axes, self.over)
+        duration = check_number("duration", duration, "s", "a contact needs a duration > 0", lambda a: a > 0)
+        self.runs = LaneRuns(scene(**{self.parameter: 1.0}), duration, workers=workers, engine=engine)
         other = self._axis(self.over[1], axes.get(over[1]), lambda: _range(paddle, self.over[1], points))
         K = self._axis("K", axes.get("K"), lambda: self._stiffnesses(paddle, other, points))
-        self.axes = {"K": K, self.over[1]: other}
+        self.axes, self.ranged = {"K": K, self.over[1]: other}, "K" not in axes
         most = FEW_ROWS if isinstance(law, Scene) and over[1] == "B" else ROWS
         rows = other[np.unique(np.linspace(0, len(other) - 1, min(len(other), most)).round().astype(int))]
         self.rows = np.union1d(rows, [0.0]) if other[0] < 0 < other[-1] else rows  # |B| has a corner at 0
-        self.runs = LaneRuns(scene(**{self.parameter: 1.0}), duration, workers=workers, engine=engine)
 
     def of(self, paddle):
         """Return the WallMap of a paddle."""
@@ -130,13 +139,8 @@ class WallMaps:
             raise AnalysisError(f"T = {paddle.T:g} s; the maps of this scene are made for {self.T:g} s: make new ones")
         begun = time.perf_counter()
         K, other = self.axes.values()
-        points = {self.parameter: np.repeat(K, len(other)), "B": np.full(K.size * other.size, self.B)}
-        points[self.over[1].replace("hand_", "hand.")] = np.tile(other, len(K))
-        if "T" not in points and paddle.T != self.T:
-            points["T"] = np.full(K.size * other.size, paddle.T)
         limits = self._limits(paddle, self.rows)
-        runs = self.runs.chatter(replace(paddle, T=self.T), points, self.start)
-        amplitude, last, fault = (a.reshape(len(K), len(other)) for a in runs)
+        amplitude, last, fault = self._run(paddle, K, other)
         found = WallMap(
             axes=self.axes, regions=np.zeros(amplitude.shape, int), amplitude=amplitude, undecided=np.isnan(amplitude) & ~fault,
             rows=self.rows, limits=limits, unusable=self.unusable, duration=self.runs.duration,
@@ -146,6 +150,15 @@ class WallMaps:
         free = beyond(found) & (other == 0 if self.over[1] == "coulomb" else paddle.coulomb == 0)
         found = replace(found, amplitude=np.where(free, np.maximum(amplitude, last), amplitude))
         return replace(found, regions=regions_of(found, fault), seconds=time.perf_counter() - begun)
+
+    def _run(self, paddle, K, other):
+        """Return amplitude, last amplitude and fault of the contacts at every K and other, arrays of that shape."""
+        points = {self.parameter: np.repeat(K, len(other)), "B": np.full(K.size * other.size, self.B)}
+        points[self.over[1].replace("hand_", "hand.")] = np.tile(other, len(K))
+        if "T" not in points and paddle.T != self.T:
+            points["T"] = np.full(K.size * other.size, paddle.T)
+        runs = self.runs.chatter(replace(paddle, T=self.T), points, self.start)
+        return (a.reshape(len(K), len(other)) for a in runs)
 
     def _limits(self, paddle, rows):
         """Return the limits at values of the other quantity, by name."""
@@ -160,11 +173,22 @@ class WallMaps:
         rows = other[np.unique(np.linspace(0, len(other) - 1, 9).astype(int))]
         limits = np.array([one.K for one in self._limits(paddle, rows).get("stability", ())])
         ends = limits[(limits > 0) & np.isfinite(limits)]
-        top = 1.5 * min(ends.max(), 4 * np.median(ends)) if len(ends) else paddle.m / paddle.T**2
+        top = 1.5 * min(ends.max(), 4 * np.median(ends)) if len(ends) else 2 * self._softest(paddle, rows)
         return np.linspace(top / points, top, points)
 
+    def _softest(self, paddle, rows):
+        """Return, where no theory is known, about the softest wall that does not come to rest in the middle of the map."""
+        K = np.geomspace(1e-4, 1.0, 41) * paddle.m / paddle.T**2
+        amplitude, _, fault = self._run(paddle, K, rows[len(rows) // 2 :][:1])
+        rests = (~fault & (amplitude == 0)).ravel()
+        bad = ~rests & (np.arange(len(K)) > np.argmax(rests))  # softer than the softest that rests: too slow to tell
+        return K[np.argmax(bad)] if bad.any() else K[-1]
+
     def _axis(self, name, given, default):
-        array = np.asarray(default() if given is None else given, float)
+        try:
+            array = np.asarray(default() if given is None else given, float)
+        except (TypeError, ValueError):
+            array = np.array([])
         if array.ndim != 1 or len(array) < 2 or not np.isfinite(array).all() or (np.diff(array) <= 0).any():
             raise AnalysisError(f"{name} = {given}; an axis of a map needs two or more finite numbers that rise")
         if name == "K" and array[0] < 0:
@@ -180,8 +204,7 @@ class WallMaps:
             raise AnalysisError(f"over = {over}; the paddle has no hand: hand=hl.Hand(push=1.0)")
         if over[1] == "counts_per_metre" and paddle.counts_per_metre is None:
             raise AnalysisError(f"over = {over}; the paddle has no encoder: counts_per_metre=2e4")
-        if not unusable > 0:
-            raise AnalysisError(f"unusable = {unusable} m; needs an amplitude > 0")
+        check_number("unusable", unusable, "m", "needs an amplitude > 0", lambda a: a > 0)
 
     def _check_scene(self, scene):
         """Refuse a scene that cannot be mapped: without the parameters of the axes, or over T, on which its times depend."""
@@ -193,11 +216,35 @@ class WallMaps:
             if name not in scene.parameters:
                 known = ", ".join(scene.parameters) or "none"
                 raise AnalysisError(f"{scene.name} has no parameter {name}; it has {known}: parameter= names its stiffness")
+            if name in scene.values and math.isnan(scene.parameters[name].value):
+                raise AnalysisError(f"{scene.name} has {name} = {scene.values[name]:g}, and the map is over it: leave it unbound")
 
     def _about(self, paddle):
         B = f", B = {self.B:g} N s/m" if self.B else ""
         x, v = self.start
-        return f"{self.limits.name}{B}; a contact begins at {1e3 * x:g} mm with {v:g} m/s\n{paddle}"
+        ends = ""
+        if self.ranged and getattr(self.limits, "linear", True) is None:
+            ends = "\nK ends at twice the softest wall found that does not come to rest; K=... for another range"
+        return f"{self.limits.name}{B}; a contact begins at {1e3 * x:g} mm with {v:g} m/s{ends}\n{paddle}"
+
+
+def _start(x, v):
+    """Return where a contact begins."""
+    return tuple(
+        check_number(name, value, unit, "a contact begins at a finite one", math.isfinite)
+        for name, value, unit in (("x", x, "m"), ("v", v, "m/s"))
+    )
+
+
+def _check_names(axes, over):
+    """Refuse what is no axis of the map, and say what it may be."""
+    for name in (name for name in axes if name not in over):
+        if name in OTHERS or name == "K":
+            raise AnalysisError(f"{name}: the map is over {' and '.join(over)}; set it on the paddle, or map over it")
+        options = [option for option in inspect.signature(WallMaps).parameters if option not in ("paddle", "axes")]
+        near = get_close_matches(name, [*over, *options], 1) or [one for one in over if one.lower() == name.lower()]
+        mean = f"; did you mean {near[0]}?" if near else ""
+        raise AnalysisError(f"{name} is none of the axes {', '.join(over)} and the options {', '.join(options)}{mean}")
 
 
 def changed(paddle, name, value):

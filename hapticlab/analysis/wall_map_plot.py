@@ -48,7 +48,7 @@ class WallMapPicture:
         (across, K), (up, other) = found.axes.items()
         self.x_scale, x_label = axis_label(across, found.units[across])
         self.y_scale, y_label = axis_label(LABELS.get(up, up), found.units[up])
-        self.edge = K[-1]
+        self.start, self.edge = self.x_scale * K[0], K[-1]
         with house_style():
             self.figure = new_figure(height=5.6)
             axes = self.figure.subplots()
@@ -62,7 +62,7 @@ class WallMapPicture:
             axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
             axes.grid(False)
             axes.set_title(found.about.splitlines()[0], fontsize="small")
-            self.figure.legend(fontsize="small", loc="outside lower center", ncols=3)
+            self.figure.legend(fontsize="small", loc="outside lower center", ncols=2)
 
     def show(self, found):
         """Draw another map in place of the one shown; where its labels stay, they are not laid out again."""
@@ -74,7 +74,8 @@ class WallMapPicture:
     def _line(self, axes, found, name, every):
         label, colour, dash = LINES[name]
         x, y = self._curve(found, name)
-        label = label if every or np.isfinite(x).sum() > 1 else None
+        shown = np.isfinite(x).sum() > 1 and np.nanmax(x) >= self.start
+        label = label if every or shown else None
         return axes.plot(x, y, color=colour, linestyle=dash, path_effects=[outline(3.6)], label=label)[0]
 
     def _curve(self, found, name):

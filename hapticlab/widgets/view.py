@@ -1,5 +1,8 @@
 """A wall map that follows its sliders; the only module that opens ipywidgets."""
 
+import math
+from collections.abc import Mapping
+
 from ..analysis.wall_map import OTHERS, WallMaps, changed
 from ..analysis.wall_map_plot import WallMapPicture
 from ..errors import AnalysisError, EngineMissingError
@@ -67,6 +70,10 @@ class MapView:
         self.maps, self.first, self.paddle, self.map = maps, paddle, paddle, None
         self._picture = None
         spans = _default_sliders(paddle, maps.over) if sliders is None else sliders
+        if not isinstance(spans, Mapping):
+            raise AnalysisError(
+                f'sliders = {sliders!r}; needs a dict of name to (low, high), as sliders={{"b": (0.05, 0.5)}}'
+            )
         self.sliders = {name: _slider(widgets, paddle, maps.over, name, span) for name, span in spans.items()}
         self.image, self.text = widgets.Image(format="png"), widgets.HTML()
         self.box = widgets.VBox([*self.sliders.values(), self.image, self.text])
@@ -135,8 +142,11 @@ def _slider(widgets, paddle, over, name, span):
     value = value_of(paddle, name)
     if value is None:
         raise AnalysisError(f"the paddle has no {name}; give it one for its slider to move")
-    low, high = (float(end) for end in span)
-    if not low < high:
+    try:
+        low, high = (float(end) for end in span)
+    except (TypeError, ValueError):
+        raise AnalysisError(f"{name} = {span!r}; a slider needs (low, high), two numbers in {units[name]}") from None
+    if not low < high < math.inf:
         raise AnalysisError(f"{name} = {span}; a slider needs (low, high) with low < high")
     return widgets.FloatSlider(
         value=min(max(value, low), high), min=low, max=high, step=(high - low) / STEPS, description=f"{name} [{units[name]}]",

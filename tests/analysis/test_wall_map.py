@@ -1,5 +1,6 @@
 """Wall maps against single runs with stored traces, closed forms of the limits, and regions chosen by hand."""
 
+import io
 import math
 from dataclasses import replace
 
@@ -136,6 +137,35 @@ def test_an_exact_velocity_is_never_passive_and_an_estimate_is():
     assert estimated.limit("passivity")[0] == pytest.approx(100.0, rel=1e-9)  # b/T, as of Eq. (23.5)
 
 
+def test_a_scene_without_theory_says_so_and_shows_its_own_border():
+    found = wall_map(BARE, law=hl.wall(), points=12, duration=0.5)
+    assert 'passive: not known of a scene (law="zoh"' in str(found) and "passive 0.0 %" not in str(found)
+    assert "K ends at twice the softest" in str(found)
+    exact = hl.stability_limit(BARE, B=float(np.median(found.axes["B"]))).K
+    assert 1.5 * exact < found.axes["K"][-1] < 3 * exact
+    assert 0.2 < found.share("stable") < 0.8
+
+
+@pytest.mark.parametrize(
+    ("over", "law"), [(("K", "delay"), "zoh"), (("K", "b"), "zoh"), (("K", "B"), "ellis"), (("K", "B"), "half_sample")]
+)
+def test_the_legend_lies_within_the_picture(over, law):
+    pytest.importorskip("matplotlib")
+    figure = wall_map(replace(FULL, coulomb=0.0), over=over, law=law, points=3, duration=0.04).plot()
+    figure.savefig(io.BytesIO())
+    (legend,) = figure.legends
+    inner, outer = legend.get_window_extent(), figure.bbox
+    assert outer.x0 <= inner.x0 and inner.x1 <= outer.x1 and outer.y0 <= inner.y0 and inner.y1 <= outer.y1
+
+
+def test_a_line_left_of_the_picture_is_not_in_its_legend():
+    pytest.importorskip("matplotlib")
+    found = wall_map(replace(FULL, coulomb=0.0), K=[300.0, 2000.0], B=[0.0, 0.02], duration=0.05)
+    assert found.limit("passivity").max() < 300 < found.limit("stability").min() < 2000
+    labels = [text.get_text() for text in found.plot().legends[0].get_texts()]
+    assert "passivity, any passive hand" not in labels and "Gil, this hand" in labels
+
+
 def test_a_scene_of_its_own():
     """Eq. (23.8) around a wall with its boundary is felt; around the wall without one it is law ellis, Eq. (23.7)."""
     filtered, linear = hl.force_filter(hl.wall()), hl.force_filter(hl.wall(unilateral=None))
@@ -181,6 +211,16 @@ def test_passivity_of_a_law_with_a_memory_says_where_it_ends():
         ({"bounds": ("minsky",)}, "minsky is none of"),
         ({"duration": 0.01, "K": [1.0, 2.0]}, "needs at least 32"),
         ({"law": "foh"}, "law = 'foh'"),
+        ({"duraton": 3}, "none of the axes K, B and the options .*; did you mean duration"),
+        ({"k": [1.0, 2.0]}, "did you mean K"),
+        ({"points": 1}, "points = 1; an axis of a map needs two or more points"),
+        ({"B": 0.1}, "B = 0.1 N s/m; B is an axis: needs an array"),
+        ({"points": "4"}, "a whole number"),
+        ({"B": "0.1 N*s/m"}, "needs a finite B"),
+        ({"K": [1, 2, "a"]}, "two or more finite numbers that rise"),
+        ({"duration": "1 s"}, "a duration > 0"),
+        ({"v": "fast"}, "a contact begins at a finite one"),
+        ({"law": hl.wall()(k=100)}, "has k = 100, and the map is over it: leave it unbound"),
     ],
 )
 def test_what_makes_no_map_is_refused(given, words):
@@ -204,7 +244,7 @@ def test_picture():
     pytest.importorskip("matplotlib")
     figure = wall_map(FULL, K=np.linspace(20, 4000, 8), B=np.linspace(-0.1, 0.3, 6), duration=0.2).plot()
     axes = figure.axes[0]
-    assert axes.get_xlabel() == "stiffness K [N/m]" and axes.get_ylabel() == "virtual damping B [N*s/m]"
+    assert axes.get_xlabel() == "stiffness K [N/m]" and axes.get_ylabel() == "virtual damping B [N s/m]"
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert {"passive", "stable, not passive", "chatters", "exact linear stability, this hand", "Gil, this hand"} <= set(labels)
     grey = [sum(w * int(c[i : i + 2], 16) for w, i in zip((0.299, 0.587, 0.114), (1, 3, 5), strict=True)) for c in COLOURS]

@@ -89,7 +89,7 @@ def test_a_notebook_shows_it(view):
     bundle = view._repr_mimebundle_()
     assert "application/vnd.jupyter.widget-view+json" in (bundle[0] if isinstance(bundle, tuple) else bundle)
     assert list(view.sliders) == ["m", "b", "delay", "coulomb", "hand_m", "hand_b"]
-    assert view.sliders["b"].description == "b [N*s/m]" and view.sliders["b"].continuous_update
+    assert view.sliders["b"].description == "b [N s/m]" and view.sliders["b"].continuous_update
 
 
 @pytest.mark.parametrize(
@@ -99,6 +99,9 @@ def test_a_notebook_shows_it(view):
         ({"B": (0, 1)}, "nothing has that name"),
         ({"counts_per_metre": (1e3, 1e4)}, "has no counts_per_metre"),
         ({"b": (1, 1)}, "low < high"),
+        ({"b": 0.3}, r"b = 0.3; a slider needs \(low, high\)"),
+        ({"b": ("low", 1)}, "two numbers in N s/m"),
+        (["b"], "needs a dict of name to"),
     ],
 )
 def test_sliders_that_move_nothing_are_refused(sliders, words):
