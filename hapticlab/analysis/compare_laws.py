@@ -6,12 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..device.link import link, load_linked
+from ..device.simulated import SimulatedPaddle
 from ..drawing import house_style, new_figure
 from ..errors import AnalysisError
+from ..limits.limit import check_number
 from ..records import Telemetry
 from ..rendering.hybrid import hybrid_wall
 from .energy import energy
-from .wall_laws import LAWS, wall_law
+from .wall_laws import LAWS, checked_laws, wall_law
 
 #: samples before the entry, so that laws with a memory know the approach
 APPROACH = 4
@@ -106,7 +108,7 @@ class LawComparison:
             left.set(xlabel="energy generated [% of what came in]", yticks=places, yticklabels=names)
             left.invert_yaxis()
             left.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize="small")
-            right.barh(places, [100 * max(b.path, 1e-6) for b in self.bounces], color="#c1440e", height=0.6)
+            right.plot([100 * max(b.path, 1e-6) for b in self.bounces], places, "o", color="#c1440e")  # no foot: a log scale
             right.set(xscale="log", xlabel="stray from the wall's path [% of depth]")
             right.set_xlim(left=1e-4)
         return figure
@@ -130,7 +132,7 @@ def compare_laws(
         [N/m]
     speed : float
         Of the start, four to five of its periods before the boundary [m/s], > 0.
-    laws : sequence of str
+    laws : str or sequence of str
         Of :data:`hapticlab.analysis.wall_laws.LAWS`.
     entries : int
         Phases of the entry.
@@ -140,6 +142,12 @@ def compare_laws(
     Returns
     -------
     LawComparison
+        A law that cannot render this wall on this paddle is in ``refused``.
+
+    Raises
+    ------
+    AnalysisError
+        For a law that is none, and a stiffness, speed or number of entries that no bounce has.
 
     Examples
     --------
@@ -149,10 +157,9 @@ def compare_laws(
     >>> result["zoh"].rebound > 1.05 > result["half_sample"].rebound
     True
     """
-    if not (speed > 0 and math.isfinite(speed)):
-        raise AnalysisError(f"speed = {speed!r} m/s; an entry needs a finite speed > 0")
-    if not (isinstance(entries, int) and entries >= 1):
-        raise AnalysisError(f"entries = {entries!r}; needs a whole number >= 1")
+    laws = _checked(paddle, laws, entries)
+    K = check_number("K", K, "N/m", "a wall needs K > 0", lambda a: a > 0)
+    speed = check_number("speed", speed, "m/s", "an entry needs a finite speed > 0", lambda a: a > 0)
     M = paddle.m + (paddle.hand.m if paddle.hand else 0.0)
     starts = -(APPROACH + (np.arange(entries) + 0.5) / entries) * speed * paddle.T
     ticks = math.ceil(2 * math.pi * math.sqrt(M / K) / paddle.T) + 3 * APPROACH + 2 * math.ceil(paddle.delay / paddle.T)
@@ -169,6 +176,17 @@ def compare_laws(
         bounces.append(_bounce(name, [_entry(log, wall, added) for log, wall in zip(logs, exact, strict=True)]))
     incoming = float(np.mean([M * wall.speeds[0] ** 2 / 2 for wall in exact]))
     return LawComparison(tuple(bounces), K, speed, incoming, entries, str(paddle), refused)
+
+
+def _checked(paddle, laws, entries):
+    """Return the names of the laws, or say what no comparison can be made of."""
+    if not isinstance(paddle, SimulatedPaddle):
+        raise AnalysisError(
+            f"compare_laws simulates a bounce under every law; needs a SimulatedPaddle, not a {type(paddle).__name__}"
+        )
+    if not (isinstance(entries, int) and entries >= 1):
+        raise AnalysisError(f"entries = {entries!r}; needs a whole number >= 1")
+    return checked_laws(laws)
 
 
 def lane_logs(scene, paddle, starts, speed, ticks, engine="auto"):

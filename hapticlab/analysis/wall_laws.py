@@ -1,6 +1,7 @@
 """Every law that renders one and the same wall, by name: of the chapter, of its model-based section, and of a real damper."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -30,6 +31,9 @@ class WallLaw:
     name: str
     scene: Scene
     paddle: object
+
+    def __str__(self):
+        return f"{self.name}: {LAWS[self.name]}\n  {self.scene.name} on {self.paddle}"
 
 
 def _deadbeat(begins, between):
@@ -63,6 +67,18 @@ def _damper():
     return parameters("B", units="N*s/m", ranges=(-math.inf, math.inf)) * (x(n) - x(n - 1)) / T
 
 
+def checked_laws(laws):
+    """Return names of :data:`LAWS` as a tuple, one name alone too, or say which is none."""
+    names = tuple(laws) if isinstance(laws, Iterable) and not isinstance(laws, str) else (laws,)
+    for name in names:
+        if not isinstance(name, str) or name not in LAWS:
+            given = repr(name) if isinstance(name, str) else f"a {type(name).__name__}"
+            raise AnalysisError(f"laws hold {given}; needs names, of {', '.join(LAWS)}; of a scene, hl.wall_map draws a map")
+    if not names:
+        raise AnalysisError(f"laws = {laws!r}; needs one name or more, of {', '.join(LAWS)}")
+    return names
+
+
 def wall_law(name, paddle, *, K, model=None, unilateral="gate", clamp=False, velocity="handle"):
     """Return a wall of stiffness K as one of :data:`LAWS` renders it.
 
@@ -88,8 +104,9 @@ def wall_law(name, paddle, *, K, model=None, unilateral="gate", clamp=False, vel
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(hl.wall_law("damped", hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), K=400).paddle.b)
-    0.30000000000000004
+    >>> law = hl.wall_law("damped", hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), K=400)
+    >>> round(law.paddle.b, 9)
+    0.3
     """
     if name not in LAWS:
         raise AnalysisError(f"law = {name!r}; needs one of {', '.join(LAWS)}")

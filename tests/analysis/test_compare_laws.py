@@ -45,6 +45,34 @@ def test_each_step_of_the_chapter_leaves_less(bounce):
     assert bounce["half_sample"].spread > 1e-3 > 100 * bounce["deadbeat"].spread
 
 
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"laws": "zho"}, "hold 'zho'; needs names, of zoh, half_sample"),
+        ({"laws": [hl.wall()]}, "a Scene; needs names, .* hl.wall_map draws a map"),
+        ({"laws": ()}, "needs one name or more"),
+        ({"laws": 3}, "hold a int"),
+        ({"K": -1}, "a wall needs K > 0"),
+        ({"K": "500 N/m"}, "a wall needs K > 0"),
+        ({"speed": "fast"}, "finite speed > 0"),
+    ],
+)
+def test_what_no_bounce_has_is_refused_before_any_run(given, words):
+    with pytest.raises(AnalysisError, match=words):
+        hl.compare_laws(FREE, **{"K": K, **given})
+
+
+def test_one_law_needs_no_list_and_a_board_is_refused(bounce):
+    assert hl.compare_laws(FREE, K=K, laws="zoh", entries=8)["zoh"] == bounce["zoh"]
+    with pytest.raises(AnalysisError, match="needs a SimulatedPaddle, not a Scene"):
+        hl.compare_laws(hl.wall(), K=K)
+
+
+def test_a_law_prints_in_words():
+    text = str(wall_law("damped", FREE, K=400))
+    assert text.startswith("damped: Eq. (23.1), with a damper") and "damped wall on simulated paddle" in text
+
+
 def test_half_a_period_of_delay_undoes_the_prediction_of_the_chapter_alone():
     late = hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3, delay=5e-4)
     result = hl.compare_laws(late, K=K, laws=["half_sample", "digital", "deadbeat"], entries=4)
