@@ -8,6 +8,7 @@ from ..errors import AnalysisError, ProgramLimitError
 from ..scene.scene import Scene
 from .deadbeat import deadbeat_wall
 from .digital import digital_wall
+from .model import WallModel
 from .predictive import predictive_wall
 
 #: dearest first: what it is, what makes it, with what
@@ -69,6 +70,8 @@ def wall_for_board(paddle, *, K, board="uno", **options):
 
     Raises
     ------
+    AnalysisError
+        For constants that no wall can have, and a paddle without them, as one on a board is.
     ProgramLimitError
         Where not even the cheapest fits; it names the period that would do.
 
@@ -79,6 +82,8 @@ def wall_for_board(paddle, *, K, board="uno", **options):
     >>> print(hl.wall_for_board(paddle, K=500).name)
     half a sample, dead-beat pairs at crossings, to 5 %
     """
+    # what is wrong with the constants is said once, as itself
+    WallModel.of(paddle, K=K, **{name: options[name] for name in ("B", "hand") if name in options})
     over = {}
     for name, make, own in CANDIDATES:
         try:

@@ -49,6 +49,12 @@ class HybridMotion:
         depth = np.where(inside, (self.F - m.B * self.v) / m.K, 0.0)
         return m.M * self.v**2 / 2 + m.k * self.x**2 / 2 - m.push * self.x + m.K * depth**2 / 2
 
+    @property
+    def begins_inside(self):
+        """Whether the start lies inside the wall, or on its boundary and going in."""
+        depth, v = self.x[0] - self.x_o, self.v[0]
+        return bool(depth > 0 or (depth == 0 and (v > 0 or (v == 0 and self.x[1] > self.x_o))))
+
     def plot(self, *logs):
         """Draw the motion, where it crosses the boundary, and runs of rendered walls beside it, from one start."""
         with house_style():
@@ -67,10 +73,12 @@ class HybridMotion:
 
     def __str__(self):
         entered = self.speeds > 0
+        begins, times = self.begins_inside, int(np.count_nonzero(entered)) + self.begins_inside
         return (
-            f"{len(self.t)} samples over {self.t[-1]:g} s; {np.count_nonzero(entered)} times into the wall"
+            f"{len(self.t)} samples over {self.t[-1]:g} s; {times} {'time' if times == 1 else 'times'} into the wall"
+            + (", it begins inside" if begins else "")
             + (
-                f", first at {self.crossings[entered][0]:.6g} s with {self.speeds[entered][0]:.4g} m/s"
+                f", {'then' if begins else 'first'} at {self.crossings[entered][0]:.6g} s with {self.speeds[entered][0]:.4g} m/s"
                 if any(entered)
                 else ""
             )

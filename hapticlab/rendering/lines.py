@@ -101,6 +101,8 @@ class Lines:
         own = Amount(self.model.T, "s")
         of_this_period = self.let("of_this_period", when(sp.Abs(T - own) < 1e-3 * own, 1, 0), "1")
         self.let(self.held, force / of_this_period)
+        # in the name, for a fault prints it: another period is its likeliest cause
+        name = f"{name} (made for T = {1e3 * self.model.T:g} ms)"
         return Scene(force=self.k * self.held(n), eom=self.eom, watch=watch or {}, name=name)
 
 

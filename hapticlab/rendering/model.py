@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..device.hand import Hand
 from ..device.transition import transition
 from ..errors import AnalysisError
 from ..limits.limit import MOST_PERIODS, check_number, whole_and_fraction
@@ -55,6 +56,8 @@ class WallModel:
             raise AnalysisError(
                 f"a {type(paddle).__name__} has no {lacking[0]}; needs its constants, as hl.SimulatedPaddle has them"
             )
+        if hand is not None and not isinstance(hand, Hand):
+            raise AnalysisError(f'hand = {hand!r}; needs a Hand, as hl.hand("pinch") or hl.Hand(m=0.02, b=1, k=200)')
         hand = paddle.hand if hand is None else hand
         of_hand = dict.fromkeys(("m", "b", "k", "push"), 0.0)
         if hand is not None:

@@ -104,6 +104,7 @@ def test_at_another_period_there_is_no_force_but_a_fault(make):
     scene = make(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), K=500.0)
     log = hl.SimulatedPaddle(m=0.05, b=0.1, T=1.1e-3).run(scene, duration=0.02, x=1e-3, progress=False)
     assert log.fault is not None and not log.F.any()
+    assert "(made for T = 1 ms) was not finite" in log.fault
 
 
 @pytest.mark.parametrize("make", [hl.digital_wall, hl.predictive_wall])
@@ -114,3 +115,9 @@ def test_they_run_bit_for_bit_in_the_firmware_core_and_fit_the_uno_at_1_khz(make
     there, here = (load(program, engine).run(200, path).outputs for engine in ("vm", "interpreter"))
     np.testing.assert_array_equal(there, here)
     assert cost(program).fits
+
+
+@pytest.mark.parametrize("make", [hl.digital_wall, hl.predictive_wall, hl.deadbeat_wall, hl.digital_gains])
+def test_the_name_of_a_hand_is_no_hand(make):
+    with pytest.raises(AnalysisError, match=r"hand = 'pinch'; needs a Hand, as hl\.hand\(\"pinch\"\)"):
+        make(hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3), K=500, hand="pinch")

@@ -4,7 +4,7 @@ import pytest
 
 import hapticlab as hl
 from hapticlab.compiler.cost import cost
-from hapticlab.errors import ProgramLimitError
+from hapticlab.errors import AnalysisError, ProgramLimitError
 
 
 def paddle(T):
@@ -24,3 +24,11 @@ def test_where_nothing_fits_the_period_is_named():
         ProgramLimitError, match=r"no model-based wall of 500 N/m fits uno at T = 0.5 ms; .*needs T >= 0\.\d+ ms"
     ):
         hl.wall_for_board(paddle(5e-4), K=500)
+
+
+def test_what_is_wrong_with_the_constants_is_said_once():
+    for given, words in (({"K": -1}, "a wall needs K > 0"), ({"K": 500, "hand": "pinch"}, 'as hl.hand\\("pinch"\\)')):
+        with pytest.raises(AnalysisError, match=words):
+            hl.wall_for_board(paddle(1e-3), **given)
+    with pytest.raises(AnalysisError, match="^a Scene has no m; needs its constants, as hl.SimulatedPaddle has them$"):
+        hl.wall_for_board(hl.wall(), K=500)

@@ -80,6 +80,22 @@ def test_a_touch_between_two_samples_is_seen():
     assert math.floor(motion.crossings[0] * 1e3) == math.floor(motion.crossings[1] * 1e3)
 
 
+@pytest.mark.parametrize(
+    ("x", "v", "push", "words"),
+    [
+        (0.0, 0.1, 0.0, "; 1 time into the wall, it begins inside"),
+        (1e-3, 0.0, 0.0, "; 1 time into the wall, it begins inside"),
+        (0.0, 0.0, 1.0, "; 1 time into the wall, it begins inside"),
+        (0.0, -0.1, 0.0, "; 0 times into the wall\n"),
+        (0.0, 0.0, -1.0, "; 0 times into the wall\n"),
+        (0.0, 0.0, 0.0, "; 0 times into the wall\n"),
+    ],
+)
+def test_a_start_inside_counts_as_one_time_into_the_wall(x, v, push, words):
+    paddle = hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3, hand=hl.Hand(push=push))
+    assert words in str(hl.hybrid_wall(paddle, K=500, duration=0.05, x=x, v=v))
+
+
 def test_less_than_a_period_is_refused():
     with pytest.raises(AnalysisError, match="needs at least one period"):
         hl.hybrid_wall(hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3), K=500, duration=1e-4)
