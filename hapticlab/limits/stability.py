@@ -146,8 +146,9 @@ def _loop_at(paddle, K, law, B, parameter):
     """Return the loop and the stiffness to take it at; refuse a stiffness given twice, or not at all."""
     if K is None and isinstance(law, (LinearLaw, Scene)):
         return Loop.of(paddle, law, B, None), 0.0  # what holds its own is the same at every K
-    need = "needs a finite stiffness" if K is not None else "needs one, as the law holds none: closed_loop_poles(..., K=100)"
-    K = check_number("K", K, "N/m", need, lambda v: True)
+    if K is None:
+        raise AnalysisError("K = None, and the law holds no stiffness of its own; needs one in N/m: closed_loop_poles(..., K=100)")
+    K = check_number("K", K, "N/m", "needs a finite stiffness", lambda v: True)
     if isinstance(law, LinearLaw):
         raise AnalysisError(f"K = {K:g} N/m beside {law.name}, which holds its own stiffness; leave K out")
     if isinstance(law, Scene) and parameter in law.values:

@@ -158,9 +158,9 @@ def test_a_law_that_holds_its_stiffness_has_poles_and_no_limit():
 @pytest.mark.parametrize(
     ("law", "K", "words"),
     [
-        ("zoh", None, "K = None N/m"),
+        ("zoh", None, "K = None, and the law holds no stiffness"),
         (hl.wall(unilateral=None), None, "bind it"),
-        (lambda K: LinearLaw.of(K=K, T=T), None, "the law holds none"),
+        (lambda K: LinearLaw.of(K=K, T=T), None, "the law holds no stiffness"),
         (hl.wall(unilateral=None)(k=100), 300.0, "K = 300 N/m beside zoh wall with k = 100; leave K out"),
         (LinearLaw.of(K=100, T=T), 300.0, "holds its own stiffness"),
         (hl.virtual_damper()(B=0.1), 300.0, "has no parameter k"),
