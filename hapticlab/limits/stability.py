@@ -147,7 +147,7 @@ def _loop_at(paddle, K, law, B, parameter):
     if K is None and isinstance(law, (LinearLaw, Scene)):
         return Loop.of(paddle, law, B, None), 0.0  # what holds its own is the same at every K
     if K is None:
-        raise AnalysisError("K = None, and the law holds no stiffness of its own; needs one in N/m: closed_loop_poles(..., K=100)")
+        raise AnalysisError("K = None, and the law holds no stiffness; needs one in N/m: closed_loop_poles(..., K=100)")
     K = check_number("K", K, "N/m", "needs a finite stiffness", lambda v: True)
     if isinstance(law, LinearLaw):
         raise AnalysisError(f"K = {K:g} N/m beside {law.name}, which holds its own stiffness; leave K out")
