@@ -103,6 +103,10 @@ class WallMap:
         if self.undecided.any():
             judge = "by the linear theory" if "stability" in self.limits else "against the wall"
             lines.append(f"  {self.undecided.sum()} points are decided {judge}: the handle does not come back in time")
+        if "stability" not in self.limits:
+            lines.append(
+                "  without linear= no theory is known of a scene: a swing that only gets smaller counts as coming to rest"
+            )
         if self.inside_only:
             lines.append("  passivity is that of the spring always acting: switching at the boundary is not in it")
         return "\n".join(lines)

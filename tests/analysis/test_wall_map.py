@@ -140,15 +140,13 @@ def test_an_exact_velocity_is_never_passive_and_an_estimate_is():
 def test_a_scene_without_theory_says_so_and_shows_its_own_border():
     found = wall_map(BARE, law=hl.wall(), points=12, duration=0.5)
     assert 'passive: not known of a scene (law="zoh"' in str(found) and "passive 0.0 %" not in str(found)
-    assert "K ends at twice the softest" in str(found)
+    assert "K ends at twice the softest" in str(found) and "only gets smaller counts as coming to rest" in str(found)
     exact = hl.stability_limit(BARE, B=float(np.median(found.axes["B"]))).K
     assert 1.5 * exact < found.axes["K"][-1] < 3 * exact
     assert 0.2 < found.share("stable") < 0.8
 
 
-@pytest.mark.parametrize(
-    ("over", "law"), [(("K", "delay"), "zoh"), (("K", "b"), "zoh"), (("K", "B"), "ellis"), (("K", "B"), "half_sample")]
-)
+@pytest.mark.parametrize(("over", "law"), [(("K", "delay"), "zoh"), (("K", "B"), "half_sample")])
 def test_the_legend_lies_within_the_picture(over, law):
     pytest.importorskip("matplotlib")
     figure = wall_map(replace(FULL, coulomb=0.0), over=over, law=law, points=3, duration=0.04).plot()
