@@ -97,8 +97,29 @@ class Likelihood:
                 break
         return q, loss
 
+    def ratios(self, right, q, losses):
+        """Return 2 log of the likelihood ratio between the best and the best with place, or log slope, as in q.
+
+        Parameters
+        ----------
+        right : array, shape (sets, N)
+        q : array, shape (parameters,)
+        losses : array, shape (sets,)
+            The least ones.
+
+        Returns
+        -------
+        array, shape (sets, 2)
+        """
+        found = []
+        for held in (0, 1):
+            low, high = np.tile(self.low, (len(right), 1)), np.tile(self.high, (len(right), 1))
+            low[:, held] = high[:, held] = q[held]
+            found.append(2 * (self.most_likely(right, np.tile(q, (len(right), 1)), low, high)[1] - losses))
+        return np.column_stack(found)
+
     def intervals(self, right, best, most):
-        """Return the least and the largest place and log slope whose likelihood ratio 2 log(L(best)/L) is below ``most``.
+        """Return the least and the largest place and log slope with 2 log(L(best)/L) of at most ``most``.
 
         Each end is the outermost value of a grid that is likely enough, looked for again just beyond it, on ever finer grids.
 
@@ -107,7 +128,8 @@ class Likelihood:
         right : array, shape (N,)
         best : array, shape (parameters,)
             The most likely ones.
-        most : float
+        most : array, shape (2,)
+            For each.
 
         Returns
         -------
@@ -119,7 +141,7 @@ class Likelihood:
         inside, outside = best[held], np.column_stack([self.low, self.high])[:2].ravel()
         for _ in range(FINER):
             values = np.linspace(inside, outside, GRID)
-            likely = 2 * (self._profile(right, best, held, values) - least) <= most
+            likely = 2 * (self._profile(right, best, held, values) - least) <= np.repeat(most, 2)
             likely[0] = True
             last = GRID - 1 - np.argmax(likely[::-1], axis=0)
             inside, outside = values[last, ends], values[np.minimum(last + 1, GRID - 1), ends]

@@ -11,6 +11,9 @@ from .curves import SHAPES, Psychometric
 from .fit import chi_squared
 from .likelihood import MOST_LAPSES, Likelihood
 
+#: samples from which on they say how much less likely than the best an interval's end may be
+ENOUGH = 100
+
 
 @dataclass(frozen=True, eq=False)
 class PsychometricFit:
@@ -81,9 +84,11 @@ def psychometric(
     F. A. Wichmann and N. J. Hill, *Perception & Psychophysics* 63 (2001) 1293 and 1314: the lapses are fitted beside
     threshold and slope, and the goodness of fit comes from samples drawn of the fitted curve. These treat the levels as
     fixed also where a procedure placed them by the answers. The intervals are those of the likelihood's ratio: each value of
-    the threshold for which some slope and lapses explain the answers nearly as well as the best, by a chi-squared of one
-    degree of freedom, and the same for the slope. The likelihood does not depend on how levels were placed, and answers that
-    are all right above a level and all wrong below leave the threshold anywhere in between.
+    the threshold for which some slope and lapses explain the answers nearly as well as the best, and the same for the slope.
+    How nearly, samples of the fitted curve say, or chi-squared of one degree of freedom, whichever is wider; with fewer than
+    100 samples chi-squared alone, which covers 94 % for 95 % at seven levels of 40 trials, 91 % at 10. The likelihood does
+    not depend on how levels were placed, and answers that are all right above a level and all wrong below leave the threshold
+    anywhere in between.
 
     Parameters
     ----------
@@ -102,7 +107,7 @@ def psychometric(
         Fixed; fitted if left out. 1 for ``d_prime`` is an observer whose noise does not depend on the level; few trials
         tell a threshold much better with it than without.
     bootstrap : int
-        Samples for the goodness of fit, >= 1.
+        Samples for the goodness of fit and the intervals, >= 1.
     confidence : float
         Of the intervals, between 0 and 1.
     seed : int
@@ -145,7 +150,10 @@ def psychometric(
     _, its_losses = fitting.most_likely(drawn, np.tile(found, (bootstrap, 1)))
     deviance = 2 * float(losses.min() - fitting.saturated(right))
     p = float(np.mean(2 * (its_losses - fitting.saturated(drawn)) >= deviance))
-    ends = fitting.intervals(right, found, chi_squared(confidence))
+    most = np.full(2, chi_squared(confidence))
+    if bootstrap >= ENOUGH:
+        most = np.maximum(most, np.quantile(fitting.ratios(drawn, found, its_losses), confidence, axis=0))
+    ends = fitting.intervals(right, found, most)
     low, high = (fitting.curve(np.r_[end, found[2:]]) for end in ends.T)
     interval = {name: (getattr(low, name), getattr(high, name)) for name in ("threshold", "slope")}
     notes = _left_open(found, ends, fitting)

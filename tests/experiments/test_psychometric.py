@@ -114,6 +114,23 @@ def test_intervals_end_where_the_likelihood_ratio_says():
             assert 2 * (best - least) == pytest.approx(3.8415, abs=0.01)  # ends to a part in 1e4 of what is looked through
 
 
+def test_samples_say_how_unlikely_an_end_may_be():
+    """Ratios at a held threshold against scipy's search over the slope, and intervals that are never narrower for it."""
+    q, each = np.array([math.log(0.2), 0.0]), np.full(8, 10.0)
+    fitting = Likelihood(LEVELS, each, "d_prime", 0.5, 0.0)
+    right = np.random.default_rng(1).binomial(10, Psychometric(0.2, 1.0)(LEVELS), (6, 8)).astype(float)
+    _, losses = fitting.most_likely(right, np.tile(q, (6, 1)))
+    found = fitting.ratios(right, q, losses)
+    for one, least, ratio in zip(right, losses, found[:, 0], strict=True):
+        held = minimize_scalar(lambda b, one=one: fitting.loss(np.array([[q[0], b]]), one[None])[0][0],
+                               bounds=(fitting.low[1], fitting.high[1]), method="bounded", options={"xatol": 1e-9})  # fmt: skip
+        assert ratio == pytest.approx(2 * (held.fun - least), abs=1e-8)
+    plain, sampled = (psychometric(LEVELS, right[0], each, lapse=0.0, bootstrap=n).interval for n in (1, 200))
+    for name in ("threshold", "slope"):
+        assert sampled[name][0] <= plain[name][0] < plain[name][1] <= sampled[name][1]
+    assert sampled["threshold"] != plain["threshold"]
+
+
 def test_answers_without_an_error_leave_the_threshold_open_in_between():
     """Never right at 0.1, always at 0.2: a steep curve anywhere in between explains it, by hand for the steepest."""
     found = psychometric([0.05, 0.1, 0.2, 0.4], [0, 0, 40, 40], [40] * 4, guess=0.0, lapse=0.0, bootstrap=2)
@@ -132,7 +149,7 @@ def test_intervals_cover_threshold_and_slope_at_forty_trials_a_level(sets):
     truth, levels, hits = Psychometric(0.2, 1.0), np.geomspace(0.05, 0.8, 7), np.zeros(2)
     for k in range(sets):
         right = np.random.default_rng(100 + k).binomial(40, truth(levels))
-        found = psychometric(levels, right, np.full(7, 40), lapse=0.0, bootstrap=1).interval
+        found = psychometric(levels, right, np.full(7, 40), lapse=0.0, bootstrap=100 if sets > 20 else 1).interval
         hits += [found["threshold"][0] <= 0.2 <= found["threshold"][1], found["slope"][0] <= 1.0 <= found["slope"][1]]
     assert np.all(np.abs(hits / sets - 0.95) < 3 * math.sqrt(0.95 * 0.05 / sets))
 
