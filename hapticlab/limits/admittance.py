@@ -1,36 +1,45 @@
-"""The virtual coupler of an admittance display: the lightest body that it can show to every passive hand.
+"""The virtual coupler of an admittance display: the lightest body that it can show, in a continuous approximation.
 
 An admittance display measures the hand's force, lets the environment answer with a velocity and makes the device follow by
-a servo, here a damper b_s and a spring k_s from the device to where it should be, late by half a period of hold and the
-delay, ``C = (b_s + k_s/s) e^(-s tau)`` with ``tau = T/2 + delay``. With ``Z = m s + b`` for the device it is the two-port
+a servo, a damper b_s and a spring k_s from the device to where it should be. The servo works on positions, its velocities
+are backward differences, and its force is held and late by the delay. Between sampled velocities it is
 
-    [v_1, -F_2] = [[1/(Z + C), C/(Z + C)], [-e^(-s delay), Z_a]] [F_1, v_2],
+    C_2 = (b_s + k_s T/(1 - 1/z)) e^(-s (T/2 + delay)),    C_1 = C_2 e^(-s T/2),
+
+C_2 for the environment's velocity and C_1 for the device's, which the backward difference tells half a period later. With
+``Z = m s + b`` for the device the display is the two-port
+
+    [v_1, -F_2] = [[1/(Z + C_1), C_2/(Z + C_1)], [-e^(-s delay), Z_a]] [F_1, v_2],
 
 where ``Z_a = m_a (1 - 1/z)/T + b_a`` is the coupler: a body at the sample rate, beside the environment. Llewellyn's criterion
 then asks for a *least* mass, as it asks an impedance display for a *largest* stiffness (Adams and Hannaford 1999).
 
-The frequencies are those below Nyquist and the device is taken as continuous: this leaves out what a hand can do between
-the samples, which for an impedance display :mod:`~hapticlab.limits.coupler` has exactly. A paddle has no force sensor: it
-is simulated only.
+It is an approximation: frequencies below Nyquist, the device continuous, without what a hand can do between the samples,
+which for an impedance display :mod:`~hapticlab.limits.coupler` has exactly. Exact is what the servo alone is asked for:
+with the environment at rest it is a wall of stiffness k_s and damper b_s, Eq. (23.10), ``b >= k_s T/2 + b_s`` without
+delay. A paddle has no force sensor: it is simulated only.
 """
 
-import math
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 
 from ..errors import AnalysisError
 from .limit import check_number, check_paddle
+from .loop import Loop
+from .passivity import required_damping
 from .plots import plot_admittance
-from .two_port import TwoPort, frequencies
+from .two_port import TwoPort, frequencies, stopped
 
+KIND = "continuous approximation below the Nyquist frequency; exact for the servo alone"
 #: w T of motion so slow that a ton of coupler is no resistance
 SLOW = 1e-6
 
 
 @dataclass(frozen=True)
 class AdmittanceDesign:
-    """The lightest body of an admittance display beside a damper, absolutely stable with one device and servo.
+    """The lightest body of an admittance display beside a damper, by the criterion for one device and servo.
 
     Attributes
     ----------
@@ -39,7 +48,9 @@ class AdmittanceDesign:
     b_a : float
         Damping of the coupler [N s/m].
     frequency : float
-        That stops a lighter one [Hz].
+        That stops a lighter one [Hz]; 0 for slow motion.
+    kind : str
+        What is claimed.
     two_port : TwoPort
         The display with this coupler.
     """
@@ -48,6 +59,7 @@ class AdmittanceDesign:
     b_a: float
     frequency: float
     two_port: TwoPort
+    kind: str = KIND
 
     def plot(self):
         """Draw the criterion against frequency, and the least that a hand can be made to feel."""
@@ -55,19 +67,23 @@ class AdmittanceDesign:
 
     def __str__(self):
         return (
-            f"admittance coupler m_a = {self.m_a:.6g} kg, b_a = {self.b_a:.6g} N s/m: stable with every passive hand and every "
-            f"passive environment below the Nyquist frequency; stopped at {self.frequency:.4g} Hz"
+            f"admittance coupler m_a = {self.m_a:.6g} kg, b_a = {self.b_a:.6g} N s/m: Llewellyn's criterion in a "
+            f"{self.kind}; stopped {stopped(self.frequency)}"
         )
 
 
 def admittance_design(paddle, *, servo, servo_stiffness=0.0, b_a=0.0):
     """Design the virtual coupler of an admittance display by Llewellyn's criterion (after Adams and Hannaford 1999).
 
+    The servo alone is held to Eq. (23.10), exactly: stable in every passive hand with the environment at rest. The coupler
+    is designed in a continuous approximation, see this module: a hand that moves faster than half the sampling rate is
+    left out, and on a device whose damping stops it within few samples, ``m/b`` below some 10 T, such hands do upset it.
+
     Parameters
     ----------
     paddle : SimulatedPaddle or any object with m [kg], b [N s/m], T [s], delay [s]
     servo : float
-        Damper b_s of the servo that makes the device follow [N s/m], > 0.
+        Damper b_s of the servo that makes the device follow [N s/m], > 0, by backward difference of positions.
     servo_stiffness : float
         Spring k_s of the servo [N/m], >= 0. It makes slow motion rigid, for which only b_a can pay.
     b_a : float
@@ -80,12 +96,12 @@ def admittance_design(paddle, *, servo, servo_stiffness=0.0, b_a=0.0):
     Raises
     ------
     AnalysisError
-        The servo itself is active: ``b + b_s cos(w tau) < k_s sin(w tau)/w``; or b_a does not pay for slow motion.
+        The sampled servo itself is active in some hand, or diverges in none; or b_a does not pay for slow motion.
 
     Examples
     --------
     >>> import hapticlab as hl
-    >>> design = admittance_design(hl.SimulatedPaddle(m=0.05, b=0.5, T=1e-3), servo=2.0)
+    >>> design = admittance_design(hl.SimulatedPaddle(m=0.05, b=5.0, T=1e-3), servo=2.0)
     >>> design.two_port.absolutely_stable
     True
     """
@@ -94,16 +110,10 @@ def admittance_design(paddle, *, servo, servo_stiffness=0.0, b_a=0.0):
     b_s = check_number("servo", servo, "N s/m", "a device that follows needs a servo > 0", lambda v: v > 0)
     k_s = check_number("servo_stiffness", servo_stiffness, "N/m", "needs >= 0", lambda v: v >= 0)
     b_a = check_number("b_a", b_a, "N s/m", "a coupler's damper needs b_a >= 0", lambda v: v >= 0)
-    theta = frequencies()
     bare = admittance_display(**values, b_s=b_s, k_s=k_s, m_a=0.0, b_a=0.0)
-    h = bare.h(theta)
-    if (lost := h[:, 0, 0].real < 0).any():
-        hertz = theta[lost][0] / (2 * math.pi * paddle.T)
-        raise AnalysisError(
-            f"servo = {b_s:g} N s/m, {k_s:g} N/m: active in the hand at {hertz:.4g} Hz, before any environment; "
-            f"needs a device of more damping than b = {paddle.b:g} N s/m, a softer servo or a shorter delay"
-        )
-    needed, body = _needed(bare, theta), (1 - np.cos(theta)) / paddle.T
+    _servo_passive(bare, b_s, k_s, **values)
+    theta = frequencies()
+    needed, body = _needed(bare, theta), 2 * np.sin(theta / 2) ** 2 / paddle.T
     slow = float(_needed(bare, np.array([SLOW]))[0])  # no body resists motion as slow as this: a damper has to
     if slow > b_a + SLOW:
         raise AnalysisError(f"b_a = {b_a:g} N s/m: slow motion against the servo's spring needs b_a >= {slow:.4g}")
@@ -111,7 +121,20 @@ def admittance_design(paddle, *, servo, servo_stiffness=0.0, b_a=0.0):
     worst = int(masses.argmax())
     m_a = max(float(masses[worst]), 0.0)
     display = admittance_display(**values, b_s=b_s, k_s=k_s, m_a=m_a * (1 + 1e-9), b_a=b_a)
-    return AdmittanceDesign(m_a, b_a, float(theta[worst] / (2 * math.pi * paddle.T)), display)
+    at = 0.0 if theta[worst] < 1e-3 else float(theta[worst] / (2 * np.pi * paddle.T))  # the grid begins there
+    return AdmittanceDesign(m_a, b_a, at, display)
+
+
+def _servo_passive(bare, b_s, k_s, *, m, b, T, delay):
+    """Refuse a servo that some passive hand makes unstable, the environment at rest: exactly, then as approximated."""
+    asked = required_damping(K=k_s, T=T, B=b_s, delay=delay)
+    if bare.stable and asked <= b * (1 + 1e-12) and (bare.h(frequencies())[:, 0, 0].real > 0).all():
+        return
+    alone = "" if bare.stable else "it diverges without a hand; "
+    raise AnalysisError(
+        f"servo = {b_s:g} N s/m, {k_s:g} N/m: {alone}active in some hand, before any environment: sampled and held it needs a "
+        f"device of more than {asked:.4g} N s/m, and this one has b = {b:g}; needs a softer servo or a shorter delay"
+    )
 
 
 def _needed(display, theta):
@@ -124,10 +147,12 @@ def admittance_display(*, m, b, T, b_s, k_s=0.0, m_a=0.0, b_a=0.0, delay=0.0):
 
     def g(theta):
         s = 1j * theta / T
-        servo = (b_s + k_s / s) * np.exp(-s * (T / 2 + delay))
-        whole = m * s + b + servo
+        servo = (b_s + k_s * T / (1 - np.exp(-1j * theta))) * np.exp(-s * (T / 2 + delay))
+        whole = m * s + b + servo * np.exp(-s * T / 2)
         coupler = m_a * (1 - np.exp(-1j * theta)) / T + b_a
         rows = [1 / whole, servo / whole], [-np.exp(-s * delay), coupler]
         return np.moveaxis(np.array(rows), 2, 0)
 
-    return TwoPort(g, T, f"admittance display, m_a = {m_a:g} kg, b_a = {b_a:g} N s/m")
+    alone = SimpleNamespace(m=m, b=b, T=T, delay=delay, hand=None)
+    stable = not Loop.of(alone, "zoh", b_s).unstable(k_s)  # the sampled servo, on the device alone
+    return TwoPort(g, T, f"admittance display, m_a = {m_a:g} kg, b_a = {b_a:g} N s/m", stable)

@@ -1,17 +1,19 @@
 """The bounds of the field by their authors' names: what each promises, what it assumes, and an error where that fails."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..errors import AnalysisError
-from .limit import Limit, check_law, check_number, check_paddle
+from ..scene.taps import LEAD
+from .limit import Limit, check_law, check_number, check_paddle, whole_and_fraction
 from .passivity import passivity_limit
 from .plots import plot_bounds
 from .stability import stability_limit
 
-#: what (K + k_h) tau^2/M + |B| tau/M may be at most for Gil's formula
+#: what e of :func:`gil_limit` may be at most for Gil's formula
 SLOW_ENOUGH = 0.1
 PASSIVITY = "passivity: any hand, sufficient"
+SINUSOIDS = "of slow sinusoids alone: no passivity, which ends sooner"
 STABILITY = "stability of this plant, to first order in the delay"
 
 
@@ -57,7 +59,8 @@ def diolaiti_limit(*, b, T, coulomb=0.0, resolution=0.0, delay=0.0, B=0.0, law="
     """Largest stiffness of the passive region of Diolaiti et al. (2006): b/(K T) >= 1/2 + delay/T and f_c/(K Delta) >= 1/2.
 
     With a whole number of periods of delay the first is exact. With a fraction it is what slow sinusoids ask for, and up
-    to 8 % above what every motion allows (:func:`~hapticlab.limits.passivity.passivity_limit`).
+    to 8 % above what every motion allows (:func:`~hapticlab.limits.passivity.passivity_limit`): its kind then says that it
+    is no passivity limit.
 
     Parameters
     ----------
@@ -74,15 +77,20 @@ def diolaiti_limit(*, b, T, coulomb=0.0, resolution=0.0, delay=0.0, B=0.0, law="
     if B:
         raise AnalysisError(f"B = {B:g} N s/m; Diolaiti's regions are for a plain spring without virtual damping")
     _plain(law, "Diolaiti")
-    return _two_modes(b, T, coulomb, resolution, 0.5 + delay / T, "Diolaiti et al. 2006")
+    found = _two_modes(b, T, coulomb, resolution, 0.5 + delay / T, "Diolaiti et al. 2006")
+    if not whole_and_fraction(delay, T)[1]:
+        return found
+    note = "a fraction of a period of delay: a hand that moves faster before the force changes draws energy up to 8 % lower"
+    return replace(found, kind=SINUSOIDS, assumptions=(*found.assumptions, note))
 
 
 def gil_limit(paddle, *, B=0.0, law="zoh"):
     """Largest stable stiffness to first order in the delay, K < (b + B)/(T/2 + delay) (Gil et al. 2004, 2009).
 
     A stability claim for one plant, not a passivity claim; damping of the hand counts with the device's. It holds where
-    ``e = (K + k_h) tau^2/M + |B| tau/M`` is small, with ``tau = T/2 + delay``: it differs from the exact limit by about
-    1.7 e, to either side, so it is no bound in the strict sense.
+    ``e = ((K + k_h) tau^2/M + |B| tau/M) (b + |B|)/(b + B)`` is small, with ``tau = T/2 + delay``: it differs from the exact
+    limit by up to 1.7 e, to either side, so it is no bound in the strict sense. The last factor is 1 for B >= 0; a negative
+    damper leaves little of b, and what the formula neglects stays.
 
     Parameters
     ----------
@@ -93,7 +101,7 @@ def gil_limit(paddle, *, B=0.0, law="zoh"):
     Raises
     ------
     AnalysisError
-        e > 0.1: damping is not low, or sampling not fast, for this mass.
+        e > 0.1: damping is not low, or sampling not fast, for this mass, or a negative B takes nearly all of b.
 
     Examples
     --------
@@ -108,19 +116,25 @@ def gil_limit(paddle, *, B=0.0, law="zoh"):
     b = paddle.b + (hand.b if hand else 0.0)
     M = check_number("m", paddle.m + (hand.m if hand else 0.0), "kg", "the handle needs a mass m > 0", lambda v: v > 0)
     K = max((b + B) / tau, 0.0)
-    small = (K + (hand.k if hand else 0.0)) * tau**2 / M + abs(B) * tau / M
-    if small > SLOW_ENOUGH:
+    small = ((K + (hand.k if hand else 0.0)) * tau**2 / M + abs(B) * tau / M) * (b + abs(B))
+    if small > SLOW_ENOUGH * (b + B):
+        e = f"{small / (b + B):.3g}" if b + B > 0 else "inf"
         raise AnalysisError(
-            f"(K + k_h) tau^2/M + |B| tau/M = {small:.3g} with K = {K:.4g} N/m and tau = T/2 + delay = {1e3 * tau:g} ms; "
+            f"((K + k_h) tau^2/M + |B| tau/M) (b + |B|)/(b + B) = {e} with K = {K:.4g} N/m, tau = T/2 + delay = "
+            f"{1e3 * tau:g} ms, b + B = {b + B:.4g} N s/m; "
             f"Gil's formula needs at most {SLOW_ENOUGH:g}: read hl.stability_limit, which is exact"
         )
-    notes = (f"linear, slow against the sampling: about {100 * 1.7 * small:.2g} % off the exact limit, to either side",)
+    off = 100 * 1.7 * small / (b + B) if small else 0.0
+    notes = (f"linear, slow against the sampling: up to {off:.2g} % off the exact limit, to either side",)
     return Limit(K, math.sqrt((K + (hand.k if hand else 0.0)) / M) / (2 * math.pi), STABILITY, "Gil et al. 2004, 2009", notes)
 
 
 @dataclass(frozen=True)
 class Bounds:
-    """The bounds of one paddle and law, each a Limit or the sentence that says why it does not apply."""
+    """The bounds of one paddle and law, each a Limit or the sentence that says why it does not apply.
+
+    ``law`` is the one the bounds are of: "backward_difference" where "half_sample" was asked for on an estimated velocity.
+    """
 
     law: str
     B: float
@@ -137,7 +151,7 @@ class Bounds:
         return "\n".join(lines)
 
     def plot(self):
-        """Draw the bounds side by side, passivity and stability told apart."""
+        """Draw the bounds side by side, those of passivity told apart from the others."""
         return plot_bounds(self)
 
 
@@ -149,6 +163,7 @@ def bounds(paddle, *, law="zoh", B=0.0):
     paddle : SimulatedPaddle
         Its m, b, T, delay, coulomb, counts_per_metre and hand are read.
     law : {"zoh", "half_sample", "backward_difference", "ellis"}
+        Where the paddle estimates its velocity by backward difference, half_sample is backward_difference, in every row.
     B : float
         Virtual damper of either sign [N s/m].
 
@@ -165,6 +180,8 @@ def bounds(paddle, *, law="zoh", B=0.0):
     """
     check_law(law)
     check_paddle(paddle, "m", "b", "T", "delay", "hand")
+    if LEAD[law] and getattr(paddle, "velocity", "measured") == "backward_difference":
+        law = "backward_difference"  # Eq. (23.3) with the estimate is Eq. (23.5)
     device = {"b": paddle.b, "T": paddle.T, "B": B, "delay": paddle.delay, "law": law}
     counts = getattr(paddle, "counts_per_metre", None)
     quantised = {"coulomb": getattr(paddle, "coulomb", 0.0), "resolution": 1 / counts if counts else 0.0}

@@ -25,7 +25,7 @@ import numpy as np
 from ..errors import AnalysisError
 from .limit import MOST_PERIODS, check_number, check_paddle, whole_and_fraction
 from .plots import plot_coupler
-from .two_port import TwoPort, frequencies
+from .two_port import TwoPort, frequencies, hertz, stopped
 
 #: part of the damping to which the best pair is searched
 NARROW = 1e-10
@@ -42,15 +42,15 @@ class CouplerDesign:
         Stiffness [N/m].
     b_c : float
         Damping [N s/m].
-    frequency : float
-        That stops a stiffer one [Hz].
+    frequency : float or None
+        That stops a stiffer one [Hz]; 0 for slow motion, None where all frequencies are alike.
     b, T, delay : float
         Of the device [N s/m, s, s].
     """
 
     k_c: float
     b_c: float
-    frequency: float
+    frequency: float | None
     b: float
     T: float
     delay: float
@@ -71,9 +71,10 @@ class CouplerDesign:
 
     def __str__(self):
         late = f", delay {1e3 * self.delay:g} ms" if self.delay else ""
+        at = stopped(self.frequency)
         return (
             f"coupler k_c = {self.k_c:.6g} N/m, b_c = {self.b_c:.6g} N s/m: stable with every passive hand and every passive "
-            f"environment on a device of b = {self.b:g} N s/m, T = {1e3 * self.T:g} ms{late}; stopped at {self.frequency:.4g} Hz"
+            f"environment on a device of b = {self.b:g} N s/m, T = {1e3 * self.T:g} ms{late}; stopped {at}"
         )
 
 
@@ -117,7 +118,7 @@ def coupler_design(paddle, *, b_c=None):
     if b_c > most:
         raise AnalysisError(f"b_c = {b_c:g} N s/m; a device of b = {b:g} N s/m carries at most {most:.6g}: its own pays for it")
     k_c, theta = _stiffest(b_c, b, T, delay)
-    return CouplerDesign(k_c, b_c, theta / (2 * math.pi * T), b, T, delay)
+    return CouplerDesign(k_c, b_c, hertz(_stops(b_c, b, T, delay), theta, T), b, T, delay)
 
 
 def impedance_display(*, k_c, b_c, b, T, delay=0.0):
@@ -139,7 +140,8 @@ def impedance_display(*, k_c, b_c, b, T, delay=0.0):
         rows = [np.full(theta.shape, b + 0j), turned], [-1 / z, 1 / (b_c + k_c * T / (1 - 1 / z))]
         return np.moveaxis(np.array(rows), 2, 0)
 
-    return TwoPort(h, T, f"impedance display, k_c = {k_c:g} N/m, b_c = {b_c:g} N s/m")
+    stable = abs(b_c) < abs(b_c + k_c * T)  # the pole of h22 = 1/Z_c
+    return TwoPort(h, T, f"impedance display, k_c = {k_c:g} N/m, b_c = {b_c:g} N s/m", stable or k_c == 0 < b_c)
 
 
 def _needed(theta, T, delay):
@@ -150,7 +152,13 @@ def _needed(theta, T, delay):
 
 
 def _stiffest(b_c, b, T, delay):
-    """Return (k_c, theta): the stiffest spring beside b_c, and what stops it.
+    """Return (k_c, theta): the stiffest spring beside b_c, and what stops it."""
+    q, theta = _least(_stops(b_c, b, T, delay))
+    return 2 * q / T, theta
+
+
+def _stops(b_c, b, T, delay):
+    """Return the function of theta that is the largest k_c T/2 which it allows beside b_c.
 
     With q = k_c T/2 and G the need above, over b: ``G q^2 + (2 G s b_c - 1) q + (G s b_c - 1) b_c <= 0``, s = sin^2(theta/2).
     """
@@ -161,8 +169,7 @@ def _stiffest(b_c, b, T, delay):
         root = np.sqrt(half**2 + G * rest)
         return np.where(half >= 0, (half + root) / G, rest / np.maximum(root - half, 1e-300))
 
-    q, theta = _least(largest)
-    return 2 * q / T, theta
+    return largest
 
 
 def _most_damping(b, T, delay):

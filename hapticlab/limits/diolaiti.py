@@ -2,7 +2,8 @@
 
 Two numbers without unit: beta = b/(K T) and sigma = f_c/(K Delta). The hold gains ``(1/2 + delay/T - beta) K T w X^2 pi`` from a
 cycle of amplitude X at w, the encoder at most a count's work each way, friction takes ``4 f_c X``. So with beta >= 1/2 + delay/T
-large motions die away and with sigma >= 1/2 small ones do; the four combinations are the regions.
+large motions die away and with sigma >= 1/2 small ones do; the four combinations are the regions. They are regions of slow
+sinusoids: with a fraction of a period of delay a wall in the first may still not be passive, and is then not called so.
 """
 
 import math
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 
 from .bounds import diolaiti_limit
 from .limit import check_number
+from .passivity import required_damping
 from .plots import plot_diolaiti
 
 REGIONS = {
@@ -18,6 +20,8 @@ REGIONS = {
     (False, True): "locally stable: comes to rest from small motions, large ones grow",
     (False, False): "unstable: small and large motions grow",
 }
+#: beta is large enough for slow sinusoids, and a delay of a fraction of a period lets a hand draw energy all the same
+NOT_PASSIVE = "slow motions come to rest, not passive: a hand that moves faster before the force changes draws energy"
 
 
 @dataclass(frozen=True)
@@ -33,7 +37,8 @@ class DiolaitiPoint:
     region : str
     amplitude : float
         Of a sinusoid at the natural frequency [m], in contact, above which the motion grows: ``4 f_c/(pi w (K (T/2 + delay) -
-        b))``, by its describing function. inf where beta is large enough, 0 without friction; nan without a mass.
+        b))``, by its describing function. inf where beta is large enough, 0 where small motions grow too or without friction;
+        nan without a mass.
     """
 
     beta: float
@@ -75,11 +80,16 @@ motions above 16.44 mm grow
     """
     diolaiti_limit(b=b, T=T, coulomb=coulomb, resolution=resolution, delay=delay)  # refuses what is no device
     K = check_number("K", K, "N/m", "a wall needs K > 0", lambda v: v > 0)
+    if m is not None:
+        m = check_number("m", m, "kg", "handle and hand need a mass m > 0", lambda v: v > 0)
     beta, sigma = b / (K * T), coulomb / (K * resolution) if resolution else math.inf
     tau = delay / T
     calm, settled = beta >= 0.5 + tau, sigma >= 0.5
-    amplitude = math.inf
+    region, amplitude = REGIONS[calm, settled], math.inf
+    if calm and settled and required_damping(K=K, T=T, delay=delay) > b * (1 + 1e-9):
+        region = NOT_PASSIVE
     if not calm:
         pull = K * T * (0.5 + tau) - b  # the negative damper of hold and delay that is left over [N s/m]
         amplitude = 4 * coulomb / (math.pi * math.sqrt(K / m) * pull) if m else math.nan
-    return DiolaitiPoint(beta, sigma, tau, REGIONS[calm, settled], amplitude)
+        amplitude = amplitude if settled else 0.0
+    return DiolaitiPoint(beta, sigma, tau, region, amplitude)

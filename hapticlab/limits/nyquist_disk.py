@@ -21,6 +21,10 @@ from .colgate import passivity_margin
 from .limit import check_number, whole_and_fraction
 from .linear_law import LinearLaw
 from .plots import plot_nyquist_disk
+from .two_port import SLOW
+
+#: |M| past which 1 + H c is rounding
+INFINITE = 1e9
 
 
 @dataclass(frozen=True)
@@ -35,7 +39,8 @@ class NyquistDisk:
     delay : float
         [s]
     worst : float
-        theta that asks for the most damping: which shrinks its disk last. (Slow motion has |M| near 1 with any spring.)
+        theta that asks for the most damping: which shrinks its disk last; pi where it is one of several. Slow motion, given
+        as 1e-5, has |M| near 1 with any spring.
     passive : bool
         Whether the mapped law stays inside.
     """
@@ -62,6 +67,12 @@ class NyquistDisk:
         with np.errstate(divide="ignore", invalid="ignore"):
             return H * self._hold(theta) / (1 + H * self.centre(theta))
 
+    @property
+    def size(self):
+        """The worst |M| in words: "= 0.857143", or "infinite" where the map divides by nothing but rounding."""
+        worst = float(np.abs(self.mapped(self.worst)))
+        return f"= {worst:.6g}" if worst < INFINITE else "infinite"
+
     def _hold(self, theta):
         return -self.law.T / (4 * self.b) * (1 + 1j / np.tan(np.asarray(theta, dtype=float) / 2))  # r/(2b)
 
@@ -70,11 +81,11 @@ class NyquistDisk:
         return plot_nyquist_disk(self)
 
     def __str__(self):
-        hertz = self.worst / (2 * math.pi * self.law.T)
+        at = "for slow motion" if self.worst < 2 * SLOW else f"at {self.worst / (2 * math.pi * self.law.T):.4g} Hz"
         inside = "inside the unit circle: passive in every passive hand" if self.passive else (
             "outside the unit circle: some passive hand closes an unstable loop"
         )  # fmt: skip
-        return f"{self.law.name} on b = {self.b:g} N s/m: |M| = {abs(self.mapped(self.worst)):.6g} at {hertz:.4g} Hz, {inside}"
+        return f"{self.law.name} on b = {self.b:g} N s/m: |M| {self.size} {at}, {inside}"
 
 
 def nyquist_disk(law, *, b, delay=0.0):
@@ -107,4 +118,8 @@ def nyquist_disk(law, *, b, delay=0.0):
     margin = passivity_margin(law, b=b, delay=delay)
     if math.isinf(margin.required):
         raise AnalysisError(f"{law.name}: a resonance without damping reaches every circle; needs a law that damps its own")
-    return NyquistDisk(law, margin.b, margin.delay, 2 * math.pi * margin.frequency * law.T, margin.passive)
+    if float(margin.asked([math.pi])[0]) >= margin.required * (1 - 1e-9):  # all alike, or there alone
+        worst = math.pi
+    else:
+        worst = max(2 * math.pi * (margin.frequency or 0.0) * law.T, SLOW)
+    return NyquistDisk(law, margin.b, margin.delay, worst, margin.passive)

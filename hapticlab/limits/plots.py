@@ -67,13 +67,17 @@ def plot_nyquist_disk(disk):
         mapped = disk.mapped(theta)
         right.plot(turn.real, turn.imag, label="unit circle", **STYLES[0])
         right.plot(mapped.real, mapped.imag, label="the law, mapped", **STYLES[1])
-        worst = disk.mapped(disk.worst)
-        right.plot(worst.real, worst.imag, "ko", markersize=5, label=f"worst: |M| = {abs(worst):.3g}")
         reach = min(max(1.3, 1.15 * np.abs(mapped).max()), 8.0)
+        worst = complex(disk.mapped(disk.worst))
+        seen = max(abs(worst.real), abs(worst.imag)) <= reach
+        if seen:
+            right.plot(worst.real, worst.imag, "ko", markersize=5, label=f"worst: |M| {disk.size}")
+        else:  # in words only
+            right.plot([], [], linestyle="", label=f"worst: |M| {disk.size}, off the picture")
         right.set(xlabel="Re M", ylabel="Im M", xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
         right.set_title(f"{disk.law.name}, b = {disk.b:g} N s/m", fontsize="small")
         for axes in (left, right):
-            axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
+            axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
     return figure
 
 
@@ -136,7 +140,7 @@ def plot_admittance(design):
 
 
 def plot_bounds(bounds):
-    """Draw the named bounds as bars, those of passivity and those of stability told apart.
+    """Draw the named bounds as bars, those of passivity told apart from the others.
 
     Parameters
     ----------
@@ -160,7 +164,7 @@ def plot_bounds(bounds):
             axes.barh(row, min(limit.K, most), height=0.6, **bar)
             axes.text(min(limit.K, most) + 0.01 * most, row, f"{limit.K:.4g}", va="center", fontsize="small")
         axes.set(yticks=range(len(bounds.found)), yticklabels=list(bounds.found), xlim=(0, 1.1 * most))
-        axes.set_xlabel("largest stiffness K [N/m]   (filled: passivity, hatched: stability of this plant)")
+        axes.set_xlabel("largest stiffness K [N/m]\n(filled: passivity in any hand, hatched: no such claim)")
         axes.set_title(f"law {bounds.law}, B = {bounds.B:g} N s/m", fontsize="small")
         axes.invert_yaxis()
     return figure

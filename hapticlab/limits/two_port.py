@@ -7,7 +7,9 @@ A haptic display lies between the hand and the virtual environment (Adams and Ha
 with the hand at port 1 and the environment at port 2; an admittance display exchanges v_1 and F_1, v_2 and F_2, and reads the
 same. It is stable with every pair of passive terminations where, at every frequency up to Nyquist,
 
-    Re h11 >= 0,  Re h22 >= 0,  2 Re h11 Re h22 >= |h12 h21| + Re(h12 h21).
+    Re h11 >= 0,  Re h22 >= 0,  2 Re h11 Re h22 >= |h12 h21| + Re(h12 h21),
+
+and where h itself is stable. That is no matter of its values at frequencies, so who builds a two-port has to say it.
 """
 
 import math
@@ -20,11 +22,29 @@ import numpy as np
 ROUNDING = 1e-9
 #: slow motion is looked at down to this w T
 SLOW = 1e-5
+#: relative difference of values that count as the same
+ALIKE = 1e-9
 
 
 def frequencies(points=2000):
     """Return theta = w T, close together at both ends, shape (P,)."""
     return np.unique(np.r_[np.geomspace(SLOW, np.pi, points), np.linspace(SLOW, np.pi, points)])
+
+
+def hertz(curve, theta, T, size=0.0):
+    """Return in Hz where a function of w T is least, from the theta that was found: None where flat, 0.0 for slow motion."""
+    values = curve(np.r_[theta, frequencies()])
+    alike = np.abs(values - values[0]) <= ALIKE * max(abs(values[0]), size)
+    if alike.all():
+        return None
+    return 0.0 if alike[1] else float(theta / (2 * math.pi * T))
+
+
+def stopped(frequency):
+    """Return in words what stops a coupler."""
+    if frequency is None:
+        return "by all frequencies alike"
+    return f"at {frequency:.4g} Hz" if frequency else "by slow motion"
 
 
 @dataclass(frozen=True)
@@ -38,10 +58,14 @@ class TwoPort:
     T : float
         Sampling period [s].
     name : str
+    stable : bool
+        Whether h has no pole outside the unit circle: stable with a hand that holds nothing (v_1 given) and no environment
+        (F_2 given). Without that the criterion says nothing.
 
     Examples
     --------
-    >>> damper = TwoPort(lambda theta: np.tile([[0.1, 1.0], [-1.0, 0.0]], (len(theta), 1, 1)) + 0j, T=1e-3, name="a damper")
+    >>> h = lambda theta: np.tile([[0.1, 1.0], [-1.0, 0.0]], (len(theta), 1, 1)) + 0j
+    >>> damper = TwoPort(h, T=1e-3, name="a damper", stable=True)
     >>> damper.absolutely_stable
     True
     """
@@ -49,6 +73,7 @@ class TwoPort:
     h: Callable = field(repr=False)
     T: float
     name: str
+    stable: bool
 
     def criterion(self, theta):
         """Return 2 Re h11 Re h22 - |h12 h21| - Re(h12 h21), a number without unit that has to be >= 0; theta of shape (P,)."""
@@ -60,15 +85,16 @@ class TwoPort:
     @property
     def absolutely_stable(self):
         """Whether every pair of passive terminations is stable."""
+        if not self.stable:
+            return False
         h = self.h(theta := frequencies())
         own = np.minimum(_part(h[:, 0, 0]), _part(h[:, 1, 1]))
         return bool(own.min() >= -ROUNDING and self.criterion(theta).min() >= -ROUNDING)
 
     @property
     def worst(self):
-        """Frequency [Hz] at which the criterion is least."""
-        theta = frequencies()
-        return float(theta[self.criterion(theta).argmin()] / (2 * math.pi * self.T))
+        """Frequency [Hz] at which the criterion is least; 0 where slow motion is as bad to 1e-9, None where all are."""
+        return hertz(self.criterion, frequencies()[self.criterion(frequencies()).argmin()], self.T, size=1.0)
 
     def felt(self, theta, environment):
         """Return F_1/v_1 at theta of shape (P,) with ``F_2 = environment v_2`` at the other port, complex (P,)."""

@@ -75,23 +75,24 @@ def between():
 
 
 def gil():
-    """Ratios to the exact limit over a grid of plants, by the size of what the formula leaves out."""
+    """Ratios to the exact limit over a grid of plants, by e, the size of what the formula leaves out."""
     found = []
     for m in (0.01, 0.05, 0.3):
         for b in (0.01, 0.1, 1.0):
-            for B in (-0.5, 0.0, 1.0, 3.0):
+            for B in (-0.9, -0.5, 0.0, 1.0, 3.0):
                 for delay in (0.0, 0.7, 2.0):
                     paddle = hl.SimulatedPaddle(m=m, b=b, T=T, delay=delay * T)
                     tau = T / 2 + paddle.delay
                     K = (b + B * b) / tau
                     exact = hl.stability_limit(paddle, B=B * b).K
-                    found.append((K * tau**2 / m + abs(B * b) * tau / m, K / exact))
+                    factor = (1 + abs(B)) / (1 + B)
+                    found.append(((K * tau**2 / m + abs(B * b) * tau / m) * factor, K / exact))
     left_out, ratio = np.array(found).T
     rows = []
     for low, high in ((0, 0.01), (0.01, 0.1), (0.1, 0.5), (0.5, np.inf)):
         here = ratio[(left_out >= low) & (left_out < high)]
         rows.append([f"{low:g} to {high:g}", len(here), f"{here.min():.3f}", f"{here.max():.3f}"])
-    return table(["(K + k_h) tau^2/M + abs(B) tau/M", "plants", "least Gil/exact", "largest"], rows)
+    return table(["e", "plants", "least Gil/exact", "largest"], rows)
 
 
 def couplers():
@@ -121,17 +122,16 @@ def compiled():
 
 def admittance():
     rows = []
-    for servo in (0.2, 0.5, 1.0, 2.0, 5.0, 10.0):
+    for part in (0.1, 0.3, 0.5, 0.7, 0.9, 1.1, 100.0):
         cells = []
-        for delay in (0.0, 0.2):
-            paddle = hl.SimulatedPaddle(m=0.05, b=0.5, T=T, delay=delay * T)
+        for b, delay in ((0.5, 0.0), (0.5, 0.2), (2.0, 0.0), (2.0, 0.2)):
+            paddle = hl.SimulatedPaddle(m=0.05, b=b, T=T, delay=delay * T)
             try:
-                design = hl.admittance_design(paddle, servo=servo)
-                cells.append(f"{1e3 * design.m_a:.0f}")
-            except AnalysisError:
-                cells.append("the servo is active")
-        rows.append([f"{servo:g}", *cells])
-    return table(["servo [N s/m]", "lightest body [g]", "sensor and servo 0.2 T late [g]"], rows)
+                cells.append(f"{1e3 * hl.admittance_design(paddle, servo=part * b).m_a:.0f}")
+            except AnalysisError as refused:
+                cells.append("diverges alone" if "diverges" in str(refused) else "active in some hand")
+        rows.append([f"{part:g}", *cells])
+    return table(["b_s/b", "b = 0.5 N s/m: body [g]", "0.2 T late", "b = 2 N s/m: body [g]", "0.2 T late"], rows)
 
 
 TEXT = """# Bounds on the stiffness of a wall: what each promises, and how far apart they lie
@@ -145,7 +145,7 @@ Passivity in any passive hand, the spring always acting (Colgate and Schenkel 19
 {laws}
 
 With x(n), v(n) exact at the samples, Eq. (23.3) is passive on no device: the velocity jumps there. `hl.bounds` refuses the
-formulas below for it, which are for laws in position.
+formulas below for it, which are for laws in position; on a paddle with an encoder it is Eq. (23.5), in every row.
 
 **No linear law is passive with K > 2 b/T.** Averaged over frequency every stable law of stiffness K at rest asks for
 K T/2, which the plain spring without delay asks for at every frequency; a predictor that asks for less of slow motion asks
@@ -173,7 +173,8 @@ b > K T/2 + B/(1 + 2 tau/T). A negative one asks for slow motion, which no filte
 
 * **Colgate, Schenkel**: passivity, any passive hand; viscous damping alone.
 * **Abbott, Okamura** (2005): passivity with an encoder, min(2 b/T, 2 f_c/Delta); no delay, no virtual damping, Eq. (23.1).
-* **Diolaiti** (2006): the same with delay; `hl.diolaiti` says which region of its plane a wall lies in.
+* **Diolaiti** (2006): the same with delay, passivity for whole periods; with a fraction (T/2 late above) it is a limit of
+  slow sinusoids and its kind says so. `hl.diolaiti` says which region of its plane a wall lies in.
 * **Gil** (2004, 2009): stability of this plant to first order in the delay; no passivity claim, and no bound in the strict
   sense: it errs to both sides.
 * **exact stability**: eigenvalues of the sampled loop.
@@ -189,7 +190,9 @@ Exact for whole periods. Between them a hand may move faster before the force ch
 
 ### Gil against the exact limit
 
-108 plants without a hand. `hl.gil_limit` refuses past 0.1.
+135 plants without a hand, B from -0.9 b to 3 b; e = ((K + k_h) tau^2/M + |B| tau/M) (b + |B|)/(b + B) with tau = T/2 + delay.
+What the formula leaves out is an amount of stiffness, so a negative damper that leaves little of b makes it large beside K.
+`hl.gil_limit` refuses past e = 0.1.
 
 {gil}
 
@@ -214,13 +217,17 @@ own resonance (15 Hz for 50 g), where the hold lags and the coupler damps little
 
 ## Virtual couplers for an admittance display
 
-The dual: not the stiffest spring but the lightest body that can be shown (`hl.admittance_design`; a device of 50 g and
-0.5 N s/m, simulated only, since a paddle has no force sensor). Frequencies below Nyquist, the device taken as continuous.
+The dual: not the stiffest spring but the lightest body that can be shown (`hl.admittance_design`; a device of 50 g,
+simulated only, since a paddle has no force sensor). A continuous approximation: frequencies below Nyquist, the servo late by
+half a period of hold, by the delay, and by half a period more for its velocity, a backward difference. The servo alone,
+the environment at rest, is held to Eq. (23.10) exactly: b >= k_s T/2 + b_s without delay. Where late, sensor and servo both are.
 
 {admittance}
 
-A device of 50 g shows nothing lighter than several times itself: the servo lags, and only inertia pays for a lag. Too firm a
-servo is active in the hand before any environment is shown.
+Nothing in the table is lighter than the device itself: the servo lags, and only inertia pays for a lag. A servo firmer than that damping is unstable in the hand of some spring before any
+environment is shown, though many a hand of flesh bears it; far beyond, it diverges alone (`hl.damper_limit`). The
+approximation has been seen to fail on a device of 50 g and 10 N s/m, m/b = 5 T: sampled loops of springs
+and bodies grow there by up to 1 % a sample beside the mass it gives.
 """
 
 

@@ -68,6 +68,7 @@ def test_gil_is_near_the_exact_limit_where_it_does_not_refuse():
             continue
         kept += 1
         errors.append(abs(limit.K / hl.stability_limit(plant, B=B).K - 1))
+        assert errors[-1] < float(limit.assumptions[0].split("up to ")[1].split(" %")[0]) / 100 + 1e-9  # as it says
     assert kept > 15 and max(errors) < 0.18
     assert gil_limit(paddle(m=5.0)).K == pytest.approx(hl.stability_limit(paddle(m=5.0)).K, rel=1e-5)  # slow: exact
     exact = hl.stability_limit(paddle(m=5.0), B=0.05)
@@ -113,9 +114,28 @@ def test_all_of_them_on_one_paddle():
     assert found["Diolaiti"].K == 100 == found["Gil"].K
     assert found["exact stability"].kind.startswith("exact linear stability") and found["Colgate, Schenkel"].K < 100
     kinds = [limit.kind.split()[0].strip(":") for limit in found.found.values() if isinstance(limit, Limit)]
-    assert kinds == ["passivity", "passivity", "stability", "exact"]
+    assert kinds == ["passivity", "of", "stability", "exact"]  # Diolaiti: half a period late
     assert "does not apply: delay = 0.0005 s" in str(found)
+    assert "no passivity" in found["Diolaiti"].kind and "8 %" in found["Diolaiti"].assumptions[-1]
+    assert diolaiti_limit(b=b, T=T, delay=T).kind.startswith("passivity")
     half = bounds(paddle(), law="half_sample")
     assert half["Colgate, Schenkel"].K == 0 and half["exact stability"].K > 0
     axes = found.plot().axes[0]
     assert len(axes.patches) == 4 and "N/m" in axes.get_xlabel()
+
+
+def test_gil_refuses_where_a_negative_damper_takes_nearly_all_of_b():
+    """What the formula leaves out is an amount, and stays while b + B goes to zero: 62 % off at B = -0.99 b."""
+    plant = paddle(b=0.5, hand=hl.Hand(m=0.02, b=1e-4, k=2000))
+    for B in (-0.495, -0.4995, -0.6):
+        with pytest.raises(AnalysisError, match=r"\(b \+ \|B\|\)/\(b \+ B\) = "):
+            gil_limit(plant, B=B)
+    assert gil_limit(plant, B=-0.1).K == pytest.approx(hl.stability_limit(plant, B=-0.1).K, rel=0.027)
+
+
+def test_an_estimated_velocity_is_one_in_every_row():
+    """Eq. (23.3) on an encoder is Eq. (23.5): passivity from its taps by hand, b/(K T) = 1 at Nyquist."""
+    estimated = bounds(paddle(counts_per_metre=5e4, coulomb=0.02), law="half_sample")
+    assert estimated["Colgate, Schenkel"].K == pytest.approx(b / T, rel=1e-9) and estimated.law == "backward_difference"
+    exact = hl.stability_limit(paddle(), law="backward_difference").K
+    assert estimated["exact stability"].K == pytest.approx(exact, rel=1e-9)

@@ -24,6 +24,7 @@ def test_without_delay_it_is_eq_23_10(b_c):
     """Adams and Hannaford's couple alone: k_c < 2 (b - b_c)/T; nothing that hangs on it asks for more."""
     assert coupler_design(paddle(), b_c=b_c).k_c == pytest.approx(2 * (b - b_c) / T, rel=1e-9, abs=1e-9)
     assert coupler_design(paddle()).k_c == pytest.approx(2 * b / T, rel=1e-9)
+    assert coupler_design(paddle()).frequency is None and "by all frequencies alike" in str(coupler_design(paddle()))
 
 
 def stiffest(b_c, periods):
@@ -58,6 +59,7 @@ def test_one_period_of_delay_in_closed_form():
 def test_a_spring_alone_is_stopped_by_slow_motion(whole, f):
     design = coupler_design(paddle(whole + f), b_c=0.0)
     assert design.k_c * T / b == pytest.approx(2 / ((1 - f) * (whole + 1) ** 2 + f * (whole + 2) ** 2), rel=1e-9)
+    assert design.frequency == (0.0 if whole + f else None)
 
 
 def environment(generator, theta):
@@ -101,7 +103,7 @@ def test_the_border_is_where_a_passive_pair_first_asks_for_more(delay):
     """At the frequency that stops it, some reactance asks for all of b; with 1 % more spring, for more."""
     for b_c in (0.01, 0.05):
         design = coupler_design(paddle(delay), b_c=b_c)
-        theta = 2 * np.pi * design.frequency * T
+        theta = max(2 * np.pi * design.frequency * T, 1e-4)  # 0 for slow motion
         Z_e = 1j * np.outer([1, -1], np.geomspace(1e-6, 1e6, 20000)).ravel()
         for factor, expected in ((1.0, b), (1.01, None)):
             Z_c = b_c + factor * design.k_c * T / (1 - np.exp(-1j * theta))
@@ -139,7 +141,8 @@ def test_whole_loops_with_random_hands_and_a_body_on_the_coupler():
 def test_words_picture_and_refusals():
     design = coupler_design(paddle(0.5), b_c=0.05)
     assert "stable with every passive hand and every passive environment" in str(design)
-    assert design.two_port.absolutely_stable
+    assert design.two_port.absolutely_stable and design.two_port.stable
+    assert not impedance_display(k_c=-100, b_c=0.05, b=b, T=T).absolutely_stable  # falls by itself
     left, right = design.plot().axes
     assert "N s/m" in left.get_xlabel() and right.lines[0].get_ydata().min() > -1e-9
     with pytest.raises(AnalysisError, match="carries at most 0.2"):

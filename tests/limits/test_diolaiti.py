@@ -50,5 +50,30 @@ def test_numbers_words_and_picture():
     axes = point.plot().axes[0]
     assert {text.get_text() for text in axes.texts} == {"passive", "limit cycles", "locally stable", "unstable"}
     assert np.isnan(diolaiti(K=300, b=0.1, T=T).amplitude) and diolaiti(K=100, b=0.1, T=T).amplitude == np.inf
+    for mass in (-1, 0):
+        with pytest.raises(AnalysisError, match="m = .* needs? a mass m > 0|need a mass m > 0"):
+            diolaiti(K=300, b=0.1, T=T, m=mass)
     with pytest.raises(AnalysisError, match="needs K > 0"):
         diolaiti(K=0, b=0.1, T=T)
+
+
+def test_it_is_called_passive_only_where_every_motion_is_paid_for():
+    """Half a period late: passive to 94.43 N/m, slow sinusoids to 100 N/m; energy of an alternating cycle by hand."""
+    words = {K: diolaiti(K=K, b=0.1, T=T, delay=T / 2, m=m).region for K in (94, 98)}
+    assert words[94].startswith("passive") and "not passive" in words[98]
+    assert diolaiti(K=66, b=0.1, T=T, delay=T).region.startswith("passive")
+    # closed cycles of 150 samples, D1 before the force changes and D2 after, F the spring's: least work + b(D1^2 + D2^2)/(T/2)
+    n = 150
+    moved = np.kron(np.eye(n), [1.0, 1.0])  # displacement of each period
+    x = np.tril(np.ones((n, n)), -1) @ moved
+    late, now = np.kron(np.eye(n), [1.0, 0.0]), np.kron(np.eye(n), [0.0, 1.0])
+    basis = np.linalg.svd(np.ones((1, 2 * n)))[2][1:].T  # it comes back
+    for K, sign in ((94, 1), (98, -1)):
+        work = K * (np.roll(x, 1, axis=0).T @ late + x.T @ now)
+        form = basis.T @ (work + work.T + 4 * 0.1 / T * np.eye(2 * n)) @ basis
+        assert np.linalg.eigvalsh(form)[0] * sign > -1e-9
+
+
+def test_where_small_motions_grow_no_amplitude_is_told():
+    point = diolaiti(K=300, b=0.1, T=T, coulomb=0.01, resolution=0.2e-3, m=m)
+    assert point.amplitude == 0 and str(point).endswith("small and large motions grow")

@@ -72,6 +72,11 @@ def test_words_picture_and_refusals():
     assert "some passive hand closes an unstable loop" in str(nyquist_disk(ELLIS, b=0.1))
     left, right = disk.plot().axes
     assert "T/b" in left.get_xlabel() and len(right.lines) == 3
+    endless = nyquist_disk(LinearLaw.of("zoh", K=400, T=T), b=0.1)  # 1 + H c = 1 - K T/(4 b) at Nyquist
+    assert "|M| infinite at 500 Hz, outside" in str(endless)
+    worst = endless.plot().axes[1].lines[2]
+    assert worst.get_label() == "worst: |M| infinite, off the picture" and not len(worst.get_xdata())
+    assert "for slow motion" in str(nyquist_disk(LinearLaw.of("zoh", K=60, T=T), b=0.1, delay=1e-3))
     with pytest.raises(AnalysisError, match="b = 0"):
         nyquist_disk(ELLIS, b=0)
     mass = LinearLaw(np.array([[2.0, -1.0], [1.0, 0.0]]), np.array([1.0, 0]), np.array([1.0, 0]), 1.0, T, "free mass")

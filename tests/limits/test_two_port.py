@@ -8,8 +8,8 @@ from hapticlab.limits.two_port import TwoPort, frequencies
 T = 1e-3
 
 
-def flat(h):
-    return TwoPort(lambda theta: np.tile(np.array(h, dtype=complex), (len(theta), 1, 1)), T=T, name="flat")
+def flat(h, stable=True):
+    return TwoPort(lambda theta: np.tile(np.array(h, dtype=complex), (len(theta), 1, 1)), T=T, name="flat", stable=stable)
 
 
 def passive(generator, count):
@@ -46,6 +46,7 @@ def test_the_least_resistance_is_reached_by_a_reactance():
 def test_a_network_that_hides_nothing_and_one_with_a_negative_port():
     wire = flat([[0, 1], [-1, 0]])  # an ideal display: the hand feels the environment
     assert wire.absolutely_stable and wire.felt([1.0], [2 + 3j])[0] == 2 + 3j
+    assert not flat([[0, 1], [-1, 0]], stable=False).absolutely_stable  # the criterion knows nothing of it
     assert not flat([[-0.1, 0.1], [-0.1, 5.0]]).absolutely_stable
     assert not flat([[5.0, 0.1], [-0.1, -0.1]]).absolutely_stable
 
@@ -54,6 +55,6 @@ def test_the_worst_frequency():
     def h(theta):
         return np.moveaxis(np.array([[0.2 + 0 * theta, 1 + 0 * theta], [-1 + 0 * theta, (theta - 2) ** 2]]), 2, 0) + 0j
 
-    port = TwoPort(h, T=T, name="dip")
+    port = TwoPort(h, T=T, name="dip", stable=True)
     assert port.worst == pytest.approx(2 / (2 * np.pi * T), rel=1e-3)
     assert frequencies()[0] < 1.1e-5 and frequencies()[-1] == np.pi
