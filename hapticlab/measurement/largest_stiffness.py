@@ -99,6 +99,9 @@ def largest_stiffness(
     mass. What follows a simulated hand's moving intent is no chatter (``driven`` of :func:`hapticlab.chatter`). A trial
     that cannot tell is undecided, and bounds the answer as a chatter does; where none stood the answer is then nan, not 0.
 
+    Within six standard deviations of the sensor's noise a handle is at rest: a smaller chatter is not seen. A board shows
+    that noise in the softer walls, where the handle rests and nothing but white scatter is left.
+
     What is found is an outcome: this handle, this hand, this start. A passive hand that grips otherwise may chatter
     sooner (:func:`hapticlab.passivity_limit`).
 
@@ -174,14 +177,18 @@ def largest_stiffness(
     limits = {"energy_max": energy_max, "speed_max": speed_limit(paddle, speed_max), "periods": periods}
     program = paddle.program(guarded(pressed, **limits))  # compiled once: only a parameter's value changes
 
+    noise = getattr(paddle, "noise", 0.0)
+
     def trial(K, seconds):
+        nonlocal noise
         values = named_values(program) | {parameter: K}
         if push:  # softer than the first, it would sink in ever deeper
             values["pressed"] = push * min(1.0, K / first)
         tried = replace(program, values=tuple(values.values()))
-        return try_wall(
-            paddle, tried, K=K, place=place, duration=seconds, longest=durations(K)[1], buzz_max=buzz_max
-        )
+        options = {"duration": seconds, "longest": durations(K)[1], "buzz_max": buzz_max, "noise": noise}
+        made = try_wall(paddle, tried, K=K, place=place, **options)
+        noise = max(noise, made.scatter)  # a board shows its sensor's noise where it rests
+        return made
 
     trials, good, bad = search(trial, first, most, growth, tolerance, durations)
     about = f"pressed with {push + leaning:.3g} N from rest at its boundary"

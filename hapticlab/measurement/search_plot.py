@@ -24,7 +24,7 @@ def plot_search(found):
         outcome = f"{found.K:.4g} N/m stands" if found.K > 0 else "undecided" if np.isnan(found.K) else "none stands"
         axes.set(yscale="log", xlabel="trial", ylabel="stiffness K [N/m]", title=f"{found.law}: {outcome}")
         axes.xaxis.get_major_locator().set_params(integer=True)
-        axes.legend(loc="lower right", **FRAME)
+        axes.legend(loc="lower right" if found.K > 0 else "upper right", **FRAME)
     return figure
 
 

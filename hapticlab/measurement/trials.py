@@ -26,6 +26,8 @@ A_HANDLE = 0.05
 MOVED = 1e-7
 #: a handle that moves on by less than this part of its way, in the last quarter of a trial, rests
 RESTS = 0.01
+#: standard deviations of the sensor's noise that a resting handle may swing by
+SCATTER = 6.0
 #: encoder counts in a period that a speed limit must leave room for
 COUNTS = 3
 
@@ -50,6 +52,8 @@ class Trial:
         The most energy the wall had given at any time, more than it took [J].
     duration : float
         Of the trial [s].
+    scatter : float
+        Standard deviation of the sensor's noise [m], where a handle at rest shows nothing else; else 0.
     """
 
     K: float
@@ -59,6 +63,7 @@ class Trial:
     frequency: float | None
     drawn: float
     duration: float
+    scatter: float = 0.0
 
     def __str__(self):
         tone = "" if self.frequency is None else f" at {self.frequency:.4g} Hz"
@@ -67,13 +72,14 @@ class Trial:
         return f"{self.K:10.5g} N/m  {outcome} {self.verdict}{swing}"
 
 
-def try_wall(paddle, scene, *, K, place, duration, longest, buzz_max=0.05):
+def try_wall(paddle, scene, *, K, place, duration, longest, buzz_max=0.05, noise=0.0):
     """Try one stiffness, longer and longer until the record tells; a simulated handle starts at rest at ``place`` [m].
 
     A limit cycle and a decay too slow to see look alike. At ``longest`` [s] a decay has to be five times its own standard
     error; what then lasts counts as chatter, and what neither lasts nor dies out is undecided. A handle that dithers over
     the edge of one encoder count stands where the force jumps by no more than ``buzz_max`` [N]. A motion that follows a
-    simulated hand's moving intent is no chatter.
+    simulated hand's moving intent is no chatter; nor is what stays within six standard deviations ``noise`` of the sensor [m],
+    which the loop colours.
     """
     needs = ENOUGH * period_on(paddle, K)
     if needs > longest * 1.001:
@@ -82,15 +88,16 @@ def try_wall(paddle, scene, *, K, place, duration, longest, buzz_max=0.05):
     while True:
         log = run_from(paddle, scene, place, duration)
         last = 2 * duration > longest * 1.001
-        outcome = _judged(paddle, log, place, buzz_max, last)
+        outcome = _judged(paddle, log, place, buzz_max, last, noise)
         if outcome is not None:
-            stands, verdict, amplitude, frequency = outcome
-            return Trial(K, stands, verdict, amplitude, frequency, max(0.0, float(log.drawn.max(initial=0.0))), duration)
+            stands, verdict, amplitude, frequency, *scatter = outcome
+            drawn = max(0.0, float(log.drawn.max(initial=0.0)))
+            return Trial(K, stands, verdict, amplitude, frequency, drawn, duration, *scatter)
         duration *= 2
 
 
-def _judged(paddle, log, place, buzz_max, last):
-    """Return (stands, verdict, amplitude, frequency), or None where the record does not tell yet and can be longer."""
+def _judged(paddle, log, place, buzz_max, last, noise):
+    """Return (stands, verdict, amplitude, frequency, scatter where it rests), or None where a longer record may tell."""
     stopped = _stopped(log)
     if stopped:
         return *stopped, 0.0, None
@@ -101,13 +108,15 @@ def _judged(paddle, log, place, buzz_max, last):
     if way < MOVED:
         return None, "the push did not move the handle: friction holds it; push harder", *swing
     if found.scatter or (found.state == "none" and found.travel < RESTS * way):
-        return True, "it comes to rest", *swing
+        return True, "it comes to rest", *swing, found.scatter
     if found.state == "driven":
         return True, "it only follows the hand", *swing
     if found.dither or ("x_true" not in log.channels and 0 < found.amplitude < 1.01 * count_of(paddle)):
         jump = float(np.ptp(log.F[half:]))
         felt = "too little to feel" if jump <= buzz_max else "felt"
         return jump <= buzz_max, f"it buzzes by {_counts(found)}, {jump:.2g} N, {felt}", *swing
+    if 0 < found.amplitude < SCATTER * noise:
+        return True, "it rests but for the noise of its sensor", *swing
     # what bounces or is clipped may decay onto a small chatter; what stays inside is nearly linear: it dies out
     clipped = log.saturated is not None and bool(np.any(log.saturated[half:]))
     nonlinear = clipped or found.levels_off or bool((x[half:] < place).any())
@@ -160,14 +169,13 @@ def run_from(paddle, scene, place, duration):
     return paddle.run(scene, duration=duration, progress=False)
 
 
-def lead_back(paddle, place):
-    """Lead the handle of a board to a place [m] with a soft spring, and let go of it at rest."""
+def lead_back(paddle, place, force_max=math.inf):
+    """Lead the handle of a board to a place [m] with a soft spring of at most so much force [N]; let go of it at rest."""
     m = getattr(paddle.settings, "m", 0.0) or A_HANDLE
     damper = 2 * WELL_DAMPED * math.sqrt(LEADS_BACK * m)
     spring = wall(unilateral=None)(k=LEADS_BACK, B=damper, x_o=place)
-    log = paddle.run(
-        guarded(spring, energy_max=0.1, speed_max=speed_limit(paddle, 2.0)), duration=TAKES, progress=False
-    )
+    safe = guarded(spring, energy_max=0.1, speed_max=speed_limit(paddle, 2.0))
+    log = paddle.run(safe, duration=TAKES, force_max=force_max, progress=False)
     if log.fault or log.tripped.any():
         raise PaddleError(
             f"the handle could not be led back to {1e3 * place:.3g} mm with {LEADS_BACK:g} N/m: "

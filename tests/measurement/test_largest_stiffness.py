@@ -89,6 +89,17 @@ def test_a_tremor_is_no_chatter():
         largest_stiffness(paddle(hand=hl.Hand(push=1.0, noise=0.1)))
 
 
+def test_noise_of_the_sensor_gives_the_same_answer_on_a_board():
+    """A simulated handle tells its noise; a board shows it where the handle rests in a softer wall."""
+    noisy = paddle(b=1.0, noise=1e-5, counts_per_metre=78125)
+    options = {"first": 200.0, "growth": 2.5, "tolerance": 1.5, "longest": 1.0}
+    with hl.connect("sim://hapkit", paddle=noisy) as board:
+        both = [largest_stiffness(made, **options) for made in (noisy, board)]
+    exact = hl.stability_limit(noisy).K
+    assert all(0.6 * exact < found.K < exact for found in both)
+    assert both[1].trials[0].scatter == pytest.approx(1e-5, rel=0.2)
+
+
 def test_a_push_that_friction_holds_tells_nothing():
     found = largest_stiffness(paddle(coulomb=0.3))
     assert math.isnan(found.K) and "push harder" in str(found)
