@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .motion import positions
-from .scoring import fit
+from .scoring import fit, noise_of
 from .start import begin
 
 #: what a paddle has, with units; scale is newtons at the handle for each commanded
@@ -20,6 +20,9 @@ LATE = (0.0, 1.0, 2.0)
 LATEST = 20
 #: what first values are found without
 WITHOUT = ((), ("b",), ("b", "coulomb"))
+#: parts of the largest force that friction is taken for, each one a beginning of its own; and those of m and b there
+RUNGS = (0.5, 0.6, 0.7, 0.8, 0.9)
+LIGHTER = tuple((m, b, 1.0) for m in (1.0, 0.5, 0.25) for b in (1.0, 0.1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,11 +75,19 @@ class Problem:
         # no step is taken to where nothing moves any more, whatever the other constants are
         sane = (values["m"] > 0) & (np.abs(values["delay"]) < LATEST * self.traces[0].T)
         values["m"] = np.where(sane, values["m"], np.nan)
-        starts = iter(p[len(self.free) :])
+        begun = p[len(self.free) :]
+        if not np.any(values["coulomb"] < 0):
+            return self._moved(values, begun)
+        # less than none turns about none, so that the motion has one slope there and intervals hold a friction of zero
+        moved = self._moved(values | {"coulomb": np.abs(values["coulomb"])}, begun)
+        return np.where(values["coulomb"] < 0, 2 * self._moved(values | {"coulomb": 0.0}, begun) - moved, moved)
+
+    def _moved(self, values, begun):
+        starts, side = iter(begun), begun.shape[-1] // self.lanes  # several beginnings of a record lie side by side
         return np.concatenate([
             positions(
-                trace.F, trace.T, m=values["m"] + trace.added, push=trace.push, x0=next(starts),
-                v0=0.0 if trace.rests else next(starts),
+                trace.F if trace.F.ndim == 1 else np.tile(trace.F, (1, side)), trace.T, m=values["m"] + trace.added,
+                push=trace.push, x0=next(starts), v0=0.0 if trace.rests else next(starts),
                 **{name: values[name] for name in ("b", "coulomb", "delay", "scale")},
             )
             for trace in self.traces
@@ -84,16 +95,24 @@ class Problem:
 
     def solve(self):
         """Return the Fitted of all lanes."""
-        ways = [(noise, without) for noise in sorted({0.0, self.quantum}) for without in WITHOUT]
-        starts = [np.array([self._start(lane, *way) for lane in range(self.lanes)]).T for way in ways]
+        ways = [{"noise": noise, "without": without} for noise in sorted({0.0, self.quantum}) for without in WITHOUT]
         y = np.concatenate([trace.y for trace in self.traces])
-        guesses = np.stack([guess for start in starts for guess in self._guesses(start)], axis=1)
-        return fit(self.motion, y, guesses, self._scales, quantum=self.quantum)
+        groups = [self._side(ways, PARTS)]
+        force = max(float(np.abs(trace.push - trace.F).max()) for trace in self.traces)
+        if "coulomb" in self.free and force:
+            noise = max(self.quantum, float(np.median(noise_of(y))))
+            groups += [self._side([{"noise": noise, "coulomb": part * force}], LIGHTER) for part in RUNGS]
+        return fit(self.motion, y, groups, self._scales, quantum=self.quantum)
 
-    def _guesses(self, start):
+    def _side(self, ways, parts):
+        """Return the guesses, shape (P, C, L), that come of first values found in these ways."""
+        starts = [np.array([self._start(lane, **way) for lane in range(self.lanes)]).T for way in ways]
+        return np.stack([guess for start in starts for guess in self._guesses(start, parts)], axis=1)
+
+    def _guesses(self, start, tried):
         """Yield starts with parts of its m, b and coulomb, and with other delays."""
         row = {name: k for k, name in enumerate(self.free)}
-        for parts in PARTS:
+        for parts in tried:
             part = dict(zip(("m", "b", "coulomb"), parts, strict=True))
             guess = start * np.array([part.get(name, 1.0) for name in (*row, *range(len(start) - len(row)))])[:, None]
             yield guess
@@ -102,9 +121,9 @@ class Problem:
                 guess[row["delay"]] = late * self.traces[0].T
                 yield guess
 
-    def _start(self, lane, noise, without):
+    def _start(self, lane, **how):
         delays = range(6) if "delay" in self.free else (round(self.known.get("delay", 0.0) / self.traces[0].T),)
-        found = [trace.start(lane, self.known, noise=noise, delays=delays, without=without) for trace in self.traces]
+        found = [trace.start(lane, self.known, delays=delays, **how) for trace in self.traces]
         told = max(found, key=lambda one: one[0]["m"] < 1e3)[0] | {"scale": 1.0}
         begun = (begun[: 2 - trace.rests] for trace, (_, begun) in zip(self.traces, found, strict=True))
         return [*(told[name] for name in self.free), *(a for start in begun for a in start)]

@@ -13,8 +13,8 @@ from .sensor import DITHERED, information, log_likelihood, run_weights, spread
 
 #: of a parameter's scale: the step of central differences
 STEP = 1e-5
-#: scoring steps; and the part of a standard error that is no step any more
-STEPS, ENOUGH = 30, 1e-2
+#: scoring steps, and those of a race between beginnings; and the part of a standard error that is no step any more
+STEPS, RACE, ENOUGH = 30, 12, 1e-2
 #: of a fit that is said to have converged: what another step would gain, in squared standard errors
 SETTLED = 0.02
 #: smallest eigenvalue of the information, its diagonal scaled to one, of a direction that the record tells nothing about
@@ -84,8 +84,9 @@ def fit(motion, y, start, scales, *, quantum=0.0):
         Takes parameters of shape (P, K, L), returns positions of shape (N, K, L).
     y : array, shape (N, L)
         Of a counted position, the middles of the counts.
-    start : array, shape (P, C, L)
-        Where to begin: of C guesses for each record the one is taken whose motion is nearest.
+    start : array, shape (P, C, L), or sequence of these
+        Where to begin: of C guesses for each record the one is taken whose motion is nearest. Of several sequences each
+        one's nearest climbs RACE steps, and the one with the least residuals is followed: a likelihood has more than one top.
     scales : array, shape (P, L), or callable
         How much is a considerable change, or what returns it for a start of that shape; differences take STEP of it.
     quantum : float
@@ -103,10 +104,12 @@ def fit(motion, y, start, scales, *, quantum=0.0):
     >>> bool(abs(line.values[1, 0] - 0.5) < line.half_width()[1, 0])
     True
     """
+    starts = start if isinstance(start, (list, tuple)) else [start]
     weights = run_weights(y, quantum)
-    freedom = np.sum(weights, axis=0) - len(start)
+    freedom = np.sum(weights, axis=0) - len(starts[0])
     even, no = np.ones_like(y), np.zeros(y.shape[1], bool)
-    found, rest = _nearest(motion, y, start)
+    begun = [_nearest(motion, y, start) for start in starts]
+    found, rest = _first(motion, y, [found for found, _ in begun], scales) if len(begun) > 1 else begun[0]
     scales = scales(found) if callable(scales) else scales
     sigma, before = _rms(rest), np.inf
     # what is a small step is said by sigma, and sigma by what is left after the steps
@@ -145,6 +148,36 @@ def _nearest(motion, y, start):
     return best, rest
 
 
+def _first(motion, y, begun, scales):
+    """Let each beginning climb RACE steps; return of each record the one that leaves the least residuals, and these."""
+    lanes, ended = y.shape[1], []
+    some = max(1, LANES // lanes)
+    for first in range(0, len(begun), some):
+        side = begun[first : first + some]
+        at, ys = np.concatenate(side, axis=1), np.tile(y, len(side))
+        even, no = np.ones_like(ys), np.zeros(ys.shape[1], bool)
+        of = scales(at) if callable(scales) else np.tile(scales, len(side))
+        # sigma only says when to stop: here with the noise of neighbours, which motion hardly adds to
+        at, rest = _scored(motion, ys, at, of, np.tile(noise_of(y), len(side)), 0.0, even, no, steps=RACE)
+        ended += [(at[:, k : k + lanes], rest[:, k : k + lanes]) for k in range(0, len(side) * lanes, lanes)]
+    left = np.array([np.sum(rest**2, axis=0) for _, rest in ended])
+    won = np.nanargmin(np.where(np.isfinite(left), left, np.finfo(float).max), axis=0)
+    lane = np.arange(lanes)
+    return tuple(np.moveaxis(np.array(part)[won, :, lane], 0, -1) for part in zip(*ended, strict=True))
+
+
+def noise_of(y):
+    """Return the noise of each record as its second differences tell it, shape (L,): what motion adds to them is small.
+
+    Examples
+    --------
+    >>> y = np.linspace(0, 1, 5000)**2 + 0.01 * np.random.default_rng(1).standard_normal(5000)
+    >>> print(noise_of(y[:, None]).round(3))
+    [0.01]
+    """
+    return np.sqrt(np.median(np.diff(y, 2, axis=0) ** 2, axis=0) / (6 * 0.4549)) + LEAST
+
+
 def _counted(motion, y, found, rest, scales, quantum, weights, freedom):
     """Return the fit of counts: by their own likelihood in dither, else as numbers, a run of one count being one."""
     dithered = spread(rest, quantum) >= DITHERED * quantum
@@ -161,12 +194,12 @@ def _counted(motion, y, found, rest, scales, quantum, weights, freedom):
     return _finished(motion, y, found, scales, sigma, quantum, weights, whole, dithered)
 
 
-def _scored(motion, y, start, scales, sigma, quantum, weights, counted):
+def _scored(motion, y, start, scales, sigma, quantum, weights, counted, steps=STEPS):
     """Climb to the likelihood's top with sigma given; return parameters and residuals."""
     at, damping = start.copy(), np.full(y.shape[1], DAMPING)
     rest, slopes = _linearised(motion, y, at, scales)
     best = _likelihood(rest, sigma, quantum, weights, counted)
-    for _ in range(STEPS):
+    for _ in range(steps):
         score, info = information(rest, sigma, quantum, counted)
         gradient = np.einsum("npl,nl->lp", slopes, weights * score)
         fisher = np.einsum("npl,nl,nql->lpq", slopes, weights * info, slopes)

@@ -8,7 +8,7 @@ MOVED, WINDOW = 4.0, 3
 DELAYS = range(6)
 
 
-def begin(y, F, T, *, push=0.0, m=None, noise=0.0, delays=DELAYS, without=()):
+def begin(y, F, T, *, push=0.0, m=None, noise=0.0, delays=DELAYS, without=(), coulomb=None):
     """Return first values of (m, b, coulomb, delay) and of the start (x0, v0), from one record.
 
     x = x0 + (v0 + b/m x0) t - b/m int x - coulomb/m iint sign(x') + 1/m iint (push - F): least squares, for each whole
@@ -24,6 +24,8 @@ def begin(y, F, T, *, push=0.0, m=None, noise=0.0, delays=DELAYS, without=()):
         What a resting handle seems to move by [m].
     without : sequence of {"b", "coulomb"}
         Taken for zero: over a short record damping and friction may stand for each other, and for some of the mass.
+    coulomb : float, optional
+        Friction [N] that is taken for known: where most of the force goes into it, least squares take it for damping.
 
     Examples
     --------
@@ -32,18 +34,19 @@ def begin(y, F, T, *, push=0.0, m=None, noise=0.0, delays=DELAYS, without=()):
     >>> round(found["coulomb"], 3), round(float(start[1]), 3)
     (0.05, 0.4)
     """
-    tries = [_with_delay(y, F, T, push, m, noise, whole, without) for whole in delays]
+    tries = [_with_delay(y, F, T, push, m, noise, whole, without, coulomb) for whole in delays]
     return min(tries, key=lambda found: found[0])[1:]
 
 
-def _with_delay(y, F, T, push, m, noise, whole, without):
+def _with_delay(y, F, T, push, m, noise, whole, without, coulomb):
     samples = np.arange(len(y))
     felt = np.interp(samples - whole, samples, F, left=0.0)
     sign = _heading(y, noise)
-    driven = _sum(_sum((push - felt) * (sign != 0), T), T)
+    rubbed = 0.0 if coulomb is None else coulomb * sign
+    driven = _sum(_sum((push - felt) * (sign != 0) - rubbed, T), T)
     columns = [np.ones(len(y)), samples * T, -_sum(y - y[0], T), -_sum(_sum(sign, T), T)]
     for column, name in ((2, "b"), (3, "coulomb")):
-        columns[column] = columns[column] * (name not in without)
+        columns[column] = columns[column] * (name not in without and (name != "coulomb" or coulomb is None))
     rest = y - y[0]
     if m is None:
         columns.append(driven)
@@ -55,8 +58,9 @@ def _with_delay(y, F, T, push, m, noise, whole, without):
     found = np.linalg.lstsq(A / size, rest, rcond=1e-9)[0] / size
     left = np.sum((rest - A @ found) ** 2)
     m = float(1 / max(found[4], 0.2)) if m is None else m
-    b, coulomb = (max(float(a), 0.0) * m for a in found[2:4])
-    return left, {"m": m, "b": b, "coulomb": coulomb, "delay": whole * T}, (y[0] + found[0], found[1])
+    b, friction = (max(float(a), 0.0) * m for a in found[2:4])
+    friction = friction if coulomb is None else coulomb
+    return left, {"m": m, "b": b, "coulomb": friction, "delay": whole * T}, (y[0] + found[0], found[1])
 
 
 def _sum(values, T):

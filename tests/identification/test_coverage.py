@@ -17,11 +17,14 @@ KINDS, SENSORS = trials.kinds(), trials.SENSORS
 
 
 def check(rows, count):
-    for name, covered, width, bias in rows:
-        # four standard errors of a binomial draw with 95 %, and of a mean
-        assert abs(covered - 0.95) < 4 * (0.95 * 0.05 / count) ** 0.5, (name, covered)
+    for name, covered, width, bias, pull, converged in rows:
+        # three standard errors of a binomial draw with 95 %; four of a mean
+        assert abs(covered - 0.95) < 3 * (0.95 * 0.05 / count) ** 0.5, (name, covered)
         assert 0.9 < width < 1.1, (name, width)
         assert abs(bias) < 4 / count**0.5, (name, bias)
+        # the size of the errors tells an interval too narrow from fewer trials than their count; 3 standard errors
+        assert abs(pull**2 - 1) < 3 * (2 / count) ** 0.5, (name, pull)
+        assert converged == 1.0
 
 
 def test_spin_down_covers_with_noise():
@@ -32,13 +35,38 @@ def test_steps_cover_with_counts():
     check(trials.trial_rows(KINDS["steps"], SENSORS["noise 5 um, counts of 12.8 um"], 24), 24)
 
 
+def test_a_handle_without_friction_is_fitted_to_the_end():
+    """The likelihood has a kink where friction begins, unless it is turned about zero."""
+    kind = trials.kinds(b=0.0, coulomb=0.0)["chirp"]
+    y, F = trials.recorded(kind, SENSORS["noise 10 um"], 6)
+    found = trials.fitted(kind, SENSORS["noise 10 um"], y, F)
+    assert found.converged.all()
+    assert np.all(np.abs(found.values[1:3]) < 4 * found.error[1:3])
+    assert np.any(found.values[2] < 0) and np.any(found.values[2] > 0)
+
+
+def test_of_two_tops_the_higher_is_found_where_friction_takes_half_the_force():
+    """From least squares alone all of these end at m = 0.037 kg, b = 1.5 N s/m with residuals of 12 um for 10 um."""
+    kind = trials.kinds(coulomb=0.2)["chirp"]
+    y, F = trials.recorded(kind, SENSORS["noise 10 um"], 2, first=4)
+    found = trials.fitted(kind, SENSORS["noise 10 um"], y, F)
+    np.testing.assert_allclose(found.values[0], 0.03, rtol=0.03)
+    np.testing.assert_allclose(found.values[2], 0.2, rtol=0.03)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("sensor", SENSORS)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_thousand_trials_cover(kind, sensor):
-    for name, covered, width, _ in trials.trial_rows(KINDS[kind], SENSORS[sensor], 1000):
+    for name, covered, width, *_ in trials.trial_rows(KINDS[kind], SENSORS[sensor], 1000):
         assert 0.93 <= covered <= 0.97, (name, covered)
         assert width < 2, (name, width)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("changed", [{"b": 0.0}, {"coulomb": 0.2}, {"m": 0.1, "delay": 0.0}])
+def test_other_constants_are_covered_as_well(changed):
+    check(trials.trial_rows(trials.kinds(**changed)["steps"], SENSORS["noise 10 um"], 200), 200)
 
 
 def test_a_trial_is_what_a_paddle_of_that_seed_records():

@@ -101,6 +101,13 @@ def test_a_hand_on_the_handle_is_told_as_not_explained():
     assert "NOT EXPLAINED" in str(found) and "a hand" in str(found)
 
 
+def test_a_sensor_without_dither_is_told_and_its_rounding_is_no_misfit():
+    for seed in range(2):
+        found = hl.step_response(run(STEPS, replace(PADDLE, noise=5e-7, seed=seed)), counts_per_metre=COUNTS)
+        assert found.explained and not found.dithered
+        assert "NOT DITHERED" in str(found) and "too wide" in str(found)
+
+
 def test_refusals_say_what_to_do(steps):
     cases = {
         "few steps": lambda: hl.step_response(run(CHIRP)),
@@ -132,6 +139,7 @@ def test_it_prints_intervals_and_draws_residuals(found):
     text = str(found)
     for word in ("300 samples", "95% confidence", "mass", "Coulomb friction", "delay", "counts of 12.8 um"):
         assert word in text
+    assert found.dithered and "NOT DITHERED" not in text
     assert 0.03 in found["m"] and float(found["m"]) == found["m"].value
     above, below = found.plot().axes
     assert above.get_ylabel().endswith("[mm]") and below.get_ylabel().endswith("[um]")
