@@ -8,7 +8,7 @@ import sympy as sp
 from ..device.board import SerialPaddle
 from ..device.hand import require
 from ..errors import PaddleError
-from ..measurement.leash import held_back
+from ..measurement.leash import leashed
 from ..measurement.trials import speed_limit
 from ..scene.parameters import parameters
 from ..scene.scene import Scene
@@ -57,18 +57,20 @@ def push_hand(paddle, *, force=FORCE, pushes=8, seed=0):
 def _pushed(paddle, force, starts, signs, duration):
     """Return the record of pushes at samples and of signs; raise where the motor was cut."""
     A, length = parameters("A", units="N", values=force), max(2, round(LASTS / paddle.T))
-    parts = [sign * when((n >= int(at)) & (n < int(at) + length), A, 0) for at, sign in zip(starts, signs, strict=True)]
+    on = [(sign, (n >= int(at)) & (n < int(at) + length)) for at, sign in zip(starts, signs, strict=True)]
+    there, back = (sp.Or(*(during for way, during in on if way == sign)) for sign in (1, -1))
     fastest = speed_limit(paddle, SPEED)
-    scene = Scene(sp.Add(*parts), name="pushes")
-    scene = held_back(scene, TRAVEL, speed_max=fastest, work=force * fastest * LASTS * len(starts))
+    scene = leashed(Scene(when(there, A, when(back, -A, 0)), name="pushes"), TRAVEL, fastest)
+    scene = replace(scene, watch={})  # x and v tell the cut as well; the slowest board has no time for one channel more
     if isinstance(paddle, SerialPaddle):
         log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False), "identify_hand")
         log = replace(log, F=given(paddle, log.F))
     else:
         log = paddle.run(scene, duration=duration, progress=False)
-    if log.cut.any():
+    cut = (abs(log.x - log.x[0]) > TRAVEL) | (abs(log.v) > fastest)
+    if cut.any():
         raise PaddleError(
-            f"identify_hand: the motor was switched off after {log.t[log.cut.argmax()]:.3g} s, a push of {force:.3g} N moved "
+            f"identify_hand: the motor was switched off after {log.t[cut.argmax()]:.3g} s, a push of {force:.3g} N moved "
             f"the handle further than {1e3 * TRAVEL:.3g} mm from where it began, or faster than {fastest:.3g} m/s: hold it, "
             "or give a smaller force="
         )

@@ -4,19 +4,18 @@ from dataclasses import replace
 
 import sympy as sp
 
-from ..scene.cases import when
-from ..scene.symbols import n, parameters, signal, x
+from ..scene.symbols import n, parameters, signal, v, when, x
 from .guard import guarded
 
 #: [J] that a guarded scene may give beside what its excitation does
 SPARE = 0.05
 
 
-def leashed(scene, reach):
+def leashed(scene, reach, speed_max=None):
     """Return the scene with no force from the tick on at which the handle is further than ``reach`` from where it began.
 
     Counted from the handle's place at the first tick, wherever that is, and for good: a handle that comes back past the
-    limit is not pushed again. It watches ``cut``, 1 from that tick on.
+    limit is not pushed again. Nor is one that was faster than ``speed_max`` [m/s]. It watches ``cut``, 1 from that tick on.
 
     Examples
     --------
@@ -29,6 +28,8 @@ def leashed(scene, reach):
     limit = parameters("reach", units="m", values=reach)
     began, strayed = signal("began", unit="m"), signal("strayed", unit="1")
     too_far = sp.Or(strayed(n - 1) > sp.Rational(1, 2), sp.Abs(x(n) - began(n)) > limit)
+    if speed_max is not None:
+        too_far = sp.Or(too_far, sp.Abs(v(n)) > parameters("speed_max", units="m/s", values=speed_max))
     rules = sp.Eq(began(n), when(n <= 0, x(n), began(n - 1))), sp.Eq(strayed(n), when(too_far, 1, 0))
     force = when(strayed(n) > sp.Rational(1, 2), 0, scene.force)
     return replace(scene, force=force, eom=(*scene.eom, *rules), watch={**scene.watch, "cut": strayed(n)})

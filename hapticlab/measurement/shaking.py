@@ -55,7 +55,7 @@ def most_force(paddle, pull, amplitude, force_max):
 
 def shake_board(paddle, shaken, duration, *, place, origin, amplitude, force, reach, speed_max, settle, options):
     """Lead the handle to a place [m], run a shaken scene there, and return the record; refuse one that was cut short."""
-    lead_back(paddle, place)
+    lead_back(paddle, place, force)
     depth, at = abs(place - origin), paddle.state()["x"]
     if abs(at - place) > (depth or reach):
         raise PaddleError(

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
+from hapticlab.compiler.cost import cost
 from hapticlab.errors import AnalysisError
 from hapticlab.identification.excitation import Excitation
 from hapticlab.identification.hand import _motion, _start, _windows
@@ -128,3 +129,16 @@ def test_a_fault_names_the_call_and_an_interrupt_leaves_the_motor_off(monkeypatc
     log = PADDLE.run(hl.virtual_damper()(B=0), duration=0.2)
     with pytest.raises(hl.PaddleError, match="identify_hand stopped: tick 3"):
         after(replace(log, fault="tick 3"), "identify_hand")
+
+
+def test_all_pushes_on_their_leash_fit_the_slowest_board(monkeypatch):
+    scenes = []
+
+    def kept(self, scene, **options):
+        scenes.append(scene)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(hl.SimulatedPaddle, "run", kept)
+    with pytest.raises(KeyboardInterrupt):
+        hl.push_hand(PADDLE)
+    assert cost(hl.compile(scenes[0], T=1e-3), board="uno").fits
