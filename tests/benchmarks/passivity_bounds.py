@@ -220,14 +220,15 @@ own resonance (15 Hz for 50 g), where the hold lags and the coupler damps little
 The dual: not the stiffest spring but the lightest body that can be shown (`hl.admittance_design`; a device of 50 g,
 simulated only, since a paddle has no force sensor). A continuous approximation: frequencies below Nyquist, the servo late by
 half a period of hold, by the delay, and by half a period more for its velocity, a backward difference. The servo alone,
-the environment at rest, is held to Eq. (23.10) exactly: b >= k_s T/2 + b_s without delay. Where late, sensor and servo both are.
+the environment at rest, is held to Eq. (23.10) exactly: b >= k_s T/2 + b_s without delay. Where
+late, sensor and servo both are.
 
 {admittance}
 
-Nothing in the table is lighter than the device itself: the servo lags, and only inertia pays for a lag. A servo firmer than that damping is unstable in the hand of some spring before any
-environment is shown, though many a hand of flesh bears it; far beyond, it diverges alone (`hl.damper_limit`). The
-approximation has been seen to fail on a device of 50 g and 10 N s/m, m/b = 5 T: sampled loops of springs
-and bodies grow there by up to 1 % a sample beside the mass it gives.
+Nothing in the table is lighter than the device itself: the servo lags, and only inertia pays for a lag. A servo firmer than
+the device's own damping is unstable in the hand of some spring before any environment is shown, though many a hand of
+flesh bears it; far beyond, it diverges alone (`hl.damper_limit`). The approximation has been seen to fail on a device of
+50 g and 10 N s/m, m/b = 5 T: sampled loops of springs and bodies grow there by up to 1 % a sample beside the mass it gives.
 """
 
 
