@@ -86,7 +86,7 @@ def psychometric(
     fixed also where a procedure placed them by the answers. The intervals are those of the likelihood's ratio: each value of
     the threshold for which some slope and lapses explain the answers nearly as well as the best, and the same for the slope.
     How nearly, samples of the fitted curve say, or chi-squared of one degree of freedom, whichever is wider; with fewer than
-    100 samples chi-squared alone. At seven levels of 40 trials 95 % intervals hold both in 95 % of 799 sets, by chi-squared
+    100 samples chi-squared alone. At seven levels of 40 trials 95 % intervals hold each in 95 % of 799 sets, by chi-squared
     alone in 94 %; at levels of 10 trials the slope in about 90 % either way. The likelihood does not depend on how levels
     were placed, and answers that are all right above a level and all wrong below leave the threshold anywhere in between.
 
