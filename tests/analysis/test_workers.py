@@ -171,8 +171,12 @@ def test_an_interrupt_ends_the_threads_and_keeps_what_they_had(tmp_path, alone, 
 
     monkeypatch.setattr(module, "measured", counted)
     monkeypatch.setattr(workers_module, "wait", interrupted)
-    with pytest.raises(KeyboardInterrupt) as stop:
-        swept(workers=2, resume=tmp_path / "a")
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
+    try:
+        with pytest.raises(KeyboardInterrupt) as stop:
+            swept(workers=2, resume=tmp_path / "a")
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert threads >= {*threading.enumerate()}
     assert len(begun) <= len(finished) + 4  # those under way, of 27 and more
     assert "points are in" in stop.value.__notes__[0] and int(stop.value.__notes__[0].split()[0]) >= 20
