@@ -146,9 +146,9 @@ class WallMaps:
             rows=self.rows, limits=limits, unusable=self.unusable, duration=self.runs.duration,
             units={"K": "N/m", self.over[1]: OTHERS[self.over[1]]}, about=self._about(paddle),
         )  # fmt: skip
-        # without friction an unstable loop does not come to rest: irregular swings that happen to get smaller are no decay
-        free = beyond(found) & (other == 0 if self.over[1] == "coulomb" else paddle.coulomb == 0)
-        found = replace(found, amplitude=np.where(free, np.maximum(amplitude, last), amplitude))
+        # irregular swings of an unstable loop that happen to get smaller are no decay; friction stops small ones alone
+        free = (other == 0 if self.over[1] == "coulomb" else paddle.coulomb == 0) | (last > self.unusable)
+        found = replace(found, amplitude=np.where(beyond(found) & free, np.maximum(amplitude, last), amplitude))
         return replace(found, regions=regions_of(found, fault), seconds=time.perf_counter() - begun)
 
     def _run(self, paddle, K, other):

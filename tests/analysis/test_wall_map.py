@@ -252,3 +252,16 @@ def test_picture():
 def test_straight_lines_between_rows():
     found = wall_map(BARE, K=[100.0, 190.0, 200.5], B=[0.0, 0.1], duration=0.1)
     assert under(found, "passivity")[:, 0].tolist() == [True, True, False]
+
+
+def test_a_large_swing_of_an_unstable_loop_that_happens_to_shrink_is_no_rest():
+    pytest.importorskip("llvmlite")
+    # 16 Hz, 10 mm from peak to peak for ever; the fourth second quarter's swings are 0.3 % smaller than the third's
+    hand = hl.hand("pinch", push=1.0)
+    delay = 0.002482758620689655
+    paddle = hl.SimulatedPaddle.from_profile("hapkit", coulomb=0.03, delay=delay, hand=hand)
+    K = 1104.416772563491
+    x = paddle.run(hl.wall()(k=K), duration=5.0, v=0.1, progress=False).x_true
+    assert abs(np.ptp(x[4000:]) / np.ptp(x[2000:3000]) - 1) < 0.01 and np.ptp(x[4000:]) > 0.01
+    found = hl.wall_map(paddle, over=("K", "delay"), K=[K, K + 1], delay=[delay, 1.001 * delay])
+    assert found.regions[0, 0] == 3 and found.amplitude[0, 0] > 5e-3
