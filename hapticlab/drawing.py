@@ -109,5 +109,6 @@ def spacing(array):
 
 
 def axis_label(name, unit):
+    """Return what to multiply SI values by, and the label of their axis with the unit it shows."""
     scale, shown = SHOWN.get(unit, (1.0, unit))
     return scale, f"{NAMES.get(name, name)} [{shown}]"

@@ -16,6 +16,7 @@ LEAST = 2e-8
 
 
 def f64(*names):
+    """Return float64 channels from pairs of name and unit."""
     return tuple(Channel(name, unit, "f64") for name, unit in names)
 
 

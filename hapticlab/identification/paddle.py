@@ -118,6 +118,7 @@ def _limits(paddle, force, travel):
 
 
 def counts_per_metre_of(paddle):
+    """Return the encoder counts per metre of a board or of a simulated paddle, None without an encoder."""
     return 1 / paddle.settings.metres_per_count if isinstance(paddle, SerialPaddle) else paddle.counts_per_metre
 
 

@@ -86,6 +86,7 @@ def lines_of(frequency, T, period):
 
 
 def checked_lines(samples, lines):
+    """Return lines as whole numbers of cycles in a period of so many samples, or say what they have to be."""
     lines = np.asarray(lines, int)
     if lines.ndim != 1 or not lines.size or lines.min() < 1 or lines.max() >= samples / 2:
         raise AnalysisError(f"lines = {lines}; needs whole cycles from 1 to below half of the {samples} samples")
