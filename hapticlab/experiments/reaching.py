@@ -15,6 +15,7 @@ from ..device.reacting import REACTION, Reacting
 from ..drawing import house_style, new_figure, style_of
 from ..errors import PaddleError
 from ..records import Telemetry
+from .arm import Arm
 
 HOW = ("anticipatory", "feedback", "both")
 #: of the distance: so near, a reach has arrived
@@ -218,15 +219,11 @@ def inverse_dynamics(hand, load, path, times):
     Where the hand has a damper the intent solves that first-order equation, its right side linear between times.
     """
     x, v, a = (np.asarray(part, float) for part in path.at(times))
-    force = (hand.m + load.m) * a + (hand.b + load.b) * v + (hand.k + load.k) * x
+    arm = Arm(m=hand.m + load.m, b=load.b, b_hand=hand.b, k=hand.k)
+    lasting = arm.force(x, v, a) + load.k / hand.k * x
     if hand.b == 0:
-        return force / hand.k
-    h = times[1] - times[0]
-    rate = hand.k / hand.b
-    decay = math.exp(-rate * h)
-    first = (1 - decay) / (rate * h)  # of the exact step under a linear right side
-    i, found = x[0], [x[0]]
-    for now, following in zip(force[:-1] / hand.k, force[1:] / hand.k, strict=True):
-        i = decay * i + (first - decay) * now + (1 - first) * following
-        found.append(i)
+        return lasting
+    found = [x[0]]
+    for now, following in zip(lasting[:-1], lasting[1:], strict=True):
+        found.append(arm.intent(found[-1], now, following, times[1] - times[0]))
     return np.array(found)
