@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from ..errors import AnalysisError
 from ..scene.taps import LEAD
-from .limit import Limit, check_law, check_number, check_paddle, whole_and_fraction
+from .limit import Limit, check_law, check_number, check_paddle, check_period, whole_and_fraction
 from .passivity import passivity_limit
 from .plots import plot_bounds
 from .stability import stability_limit
@@ -204,7 +204,7 @@ def bounds(paddle, *, law="zoh", B=0.0):
 def _device(b, T, coulomb, resolution):
     return (
         check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda v: v >= 0),
-        check_number("T", T, "s", "a sampling period needs T > 0", lambda v: v > 0),
+        check_period(T),
         check_number("coulomb", coulomb, "N", "friction opposes motion: needs coulomb >= 0", lambda v: v >= 0),
         check_number("resolution", resolution, "m", "an encoder count needs a size >= 0", lambda v: v >= 0),
     )

@@ -23,7 +23,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import AnalysisError
-from .limit import MOST_PERIODS, check_number, whole_and_fraction
+from .limit import MOST_PERIODS, check_number, check_period, whole_and_fraction
 from .linear_law import LinearLaw
 from .plots import plot_passivity_margin
 from .port import ALIKE, SLOWEST, asked, negative, required, unstable_pole
@@ -157,7 +157,7 @@ def wall_damping(*, K, T, B=0.0, velocity_filter=0.0):
 
     ``K T/2 + |B|`` for a damper on the plain backward difference. A first-order filter of time constant tau leaves
     ``K T/2 + B/(1 + 2 tau/T)`` for B >= 0, which asks at Nyquist where the filter is small; for B < 0 it changes
-    nothing, as slow motion asks (after Brown 1995, derived anew). No delay.
+    nothing, as slow motion asks (after Brown 1995). No delay.
 
     Examples
     --------
@@ -165,7 +165,7 @@ def wall_damping(*, K, T, B=0.0, velocity_filter=0.0):
     0.15
     """
     K = check_number("K", K, "N/m", "a wall needs K >= 0. A negative spring feeds energy to the user.", lambda v: v >= 0)
-    T = check_number("T", T, "s", "a sampling period needs T > 0", lambda v: v > 0)
+    T = check_period(T)
     tau = check_number("velocity_filter", velocity_filter, "s", "needs a time constant >= 0", lambda v: v >= 0)
     B = check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
     return K * T / 2 + (B / (1 + 2 * tau / T) if B >= 0 else -B)

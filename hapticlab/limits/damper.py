@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from .limit import MOST_PERIODS, check_number, whole_and_fraction
+from .limit import MOST_PERIODS, check_number, check_period, whole_and_fraction
 
 
 def damper_limit(*, m, b, T, delay=0.0):
@@ -35,7 +35,7 @@ def damper_limit(*, m, b, T, delay=0.0):
     """
     m = check_number("m", m, "kg", "a handle needs m > 0", lambda a: a > 0)
     b = check_number("b", b, "N s/m", "a device needs b >= 0", lambda a: a >= 0)
-    T = check_number("T", T, "s", "a sampling period needs T > 0", lambda a: a > 0)
+    T = check_period(T)
     delay = check_number("delay", delay, "s", "a force cannot come before its sample", lambda a: a >= 0)
     whole, fraction = whole_and_fraction(delay, T, most=MOST_PERIODS)
     plant, force = _loop(m, b, T, fraction)

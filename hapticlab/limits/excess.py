@@ -23,7 +23,7 @@ from dataclasses import dataclass
 
 from ..drawing import STYLES, house_style, new_figure
 from ..errors import AnalysisError
-from .limit import check_number, whole_and_fraction
+from .limit import check_number, check_period, whole_and_fraction
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ def passivity_ledger(*, b, T, K=0.0, B=0.0, delay=0.0, delayed=False, bounded=Fa
       device damping b alone: no encoder, no Coulomb friction
     """
     b = check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda a: a >= 0)
-    T = check_number("T", T, "s", "a sampling period needs T > 0", lambda a: a > 0)
+    T = check_period(T)
     delay = check_number("delay", delay, "s", "a force cannot come before its sample", lambda a: a >= 0)
     (k_min, k_max), (B_min, B_max) = _range("K", K, "N/m"), _range("B", B, "N s/m")
     stiff, damped = max(abs(k_min), abs(k_max)), max(abs(B_min), abs(B_max))

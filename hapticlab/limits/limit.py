@@ -76,6 +76,11 @@ def check_paddle(paddle, *names):
         raise AnalysisError(f"a {type(paddle).__name__} has no {lacking[0]}; needs a paddle, as hl.SimulatedPaddle(...)")
 
 
+def check_period(T):
+    """Return a sampling period [s] as a float, or say what it has to be."""
+    return check_number("T", T, "s", "a sampling period needs T > 0", lambda seconds: seconds > 0)
+
+
 def whole_and_fraction(delay, T, most=math.inf):
     """Split a delay [s] into whole periods and a fraction of one; 1e-9 of a period is rounding, not delay."""
     periods = delay / T

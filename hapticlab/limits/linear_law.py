@@ -8,7 +8,7 @@ import numpy as np
 from ..compiler.lower import compile
 from ..errors import AnalysisError
 from ..scene.taps import LEAD, TAPS
-from .limit import check_law, check_number
+from .limit import check_law, check_number, check_period
 from .port import static_stiffness, tick_map
 
 #: Eq. (23.8), the force filter, on F[n], F[n-1], F[n-2]
@@ -89,7 +89,7 @@ class LinearLaw:
                 "With a velocity estimated by backward difference it is the law backward_difference"
             )
         K = check_number("K", K, "N/m", "needs a finite stiffness", lambda v: True)
-        T = check_number("T", T, "s", "a sampling period needs T > 0", lambda v: v > 0)
+        T = check_period(T)
         B = check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
         tau = check_number("velocity_filter", velocity_filter or 0.0, "s", "needs a time constant >= 0", lambda v: v >= 0)
         name = f"{law}, K = {K:g} N/m" + (f", B = {B:g} N s/m" if B else "")

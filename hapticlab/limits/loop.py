@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import AnalysisError
 from .affine_law import AffineLaw, affine_law
-from .limit import MOST_PERIODS, check_number, whole_and_fraction
+from .limit import MOST_PERIODS, check_number, check_period, whole_and_fraction
 from .matrix import held
 
 #: |w| below which an eigenvalue's absolute rounding would show, so that it is moved onto the characteristic equation
@@ -60,7 +60,7 @@ class Loop:
         if lacking:
             raise AnalysisError(f"a {type(paddle).__name__} has no {lacking[0]}; needs a paddle, as hl.SimulatedPaddle(...)")
         B = check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
-        T = check_number("T", paddle.T, "s", "a sampling period needs T > 0", lambda v: v > 0)
+        T = check_period(paddle.T)
         law = affine_law(law, T=T, B=B, parameter=parameter, velocity=getattr(paddle, "velocity", "measured"))
         hand = paddle.hand
         sums = {}

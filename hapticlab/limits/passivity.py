@@ -23,7 +23,7 @@ from ..errors import AnalysisError
 from ..scene.taps import LEAD, TAPS
 from .affine_law import affine_law
 from .colgate import largest_passive_stiffness, least_passive_stiffness
-from .limit import MOST_PERIODS, Limit, check_law, check_number, whole_and_fraction
+from .limit import MOST_PERIODS, Limit, check_law, check_number, check_period, whole_and_fraction
 from .linear_law import LinearLaw
 from .port import unstable_pole
 
@@ -98,7 +98,7 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0, p
     if tau and B:
         name = f"with B = {B:g} N s/m on a velocity filtered over {1e3 * tau:g} ms"
         filtered = lambda K: LinearLaw.of(law, K=K, T=T, B=B, velocity_filter=tau)  # noqa: E731
-        return _of_any_law(filtered, b, T, delay, name, notes)
+        return _of_any_law(filtered, b, delay, name, notes)
     beta = B / b
     _, margin = _worst(_law_taps(0.0, beta, law), whole, fraction, 1.0)
     if margin < 0:
@@ -147,7 +147,7 @@ def required_damping(*, K, T, B=0.0, delay=0.0, law="zoh"):
     return b
 
 
-def _of_any_law(law, b, T, delay, name, notes):
+def _of_any_law(law, b, delay, name, notes):
     """The limit by a search over frequencies, of a function of K that gives a LinearLaw."""
     K, hertz = largest_passive_stiffness(law, b=b, delay=delay)
     if not K:
@@ -178,12 +178,12 @@ def _of_own_law(law, b, T, B, delay, parameter, notes):
     pole = unstable_pole(parts.A, at(1.0).B, at(1.0).C)
     if pole is not None:
         raise AnalysisError(f"{parts.name}: unstable with the handle held (a pole at {pole:.6g}); needs a stable law")
-    return _of_any_law(at, b, T, delay, parts.name, notes)
+    return _of_any_law(at, b, delay, parts.name, notes)
 
 
 def _checked(T, B, delay, law):
     check_law(law)
-    T = check_number("T", T, "s", "a sampling period needs T > 0", lambda v: v > 0)
+    T = check_period(T)
     check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
     delay = check_number(
         "delay", delay, "s", "needs delay >= 0: a force cannot come before its sample", lambda v: v >= 0

@@ -13,7 +13,7 @@ import numpy as np
 from ..device.hand import Hand
 from ..device.transition import transition
 from ..errors import AnalysisError
-from ..limits.limit import MOST_PERIODS, check_number, whole_and_fraction
+from ..limits.limit import MOST_PERIODS, check_number, check_period, whole_and_fraction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +75,7 @@ class WallModel:
             push=of_hand["push"] + of_hand["k"] * intent,
             K=check_number("K", K, "N/m", "a wall needs K > 0", lambda a: a > 0),
             B=check_number("B", B, "N s/m", "the wall that is meant needs B >= 0", lambda a: a >= 0),
-            T=check_number("T", paddle.T, "s", "a sampling period needs T > 0", lambda a: a > 0),
+            T=check_period(paddle.T),
             delay=check_number("delay", paddle.delay, "s", "needs delay >= 0", lambda a: a >= 0),
         )
 
