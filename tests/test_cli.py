@@ -491,7 +491,7 @@ def test_doctor_walks_without_a_board_and_with_one(capsys):
     assert cli.main(["doctor", "--port", "sim://hapkit", "--json"]) == 0
     assert {check["state"] for check in json.loads(capsys.readouterr().out)} <= {"ok", "attention", "skipped"}
     assert cli.main(["doctor", "--port", "sim://xx", "--json"]) == 1
-    assert [check["state"] for check in json.loads(capsys.readouterr().out)] == ["ok", "fault"]
+    assert [check["state"] for check in json.loads(capsys.readouterr().out)][-2:] == ["ok", "fault"]
 
 
 def test_doctor_asks_nobody_to_move_a_simulated_handle(answering, capsys):

@@ -3,6 +3,7 @@
 from dataclasses import asdict, dataclass
 
 from ..errors import HapticlabError
+from . import computer_checks
 from . import doctor_checks as checks
 from .board import SerialPaddle
 from .port_faults import permission_cure
@@ -22,6 +23,10 @@ class Report:
         """0, or 1 where anything is a fault."""
         return int(any(check.state == "fault" for check in self.checks))
 
+    def __getitem__(self, name):
+        """Return the last check of that name; KeyError where the walk did not come so far."""
+        return {check.name: check for check in self.checks}[name]
+
     def records(self):
         """Return the checks as dictionaries."""
         return [asdict(check) for check in self.checks]
@@ -34,7 +39,7 @@ class Report:
 
 
 def doctor(url=None, person=None, *, tell=lambda check: None):
-    """Walk through cable, port, firmware, settings, sensor, home, motor sign, latency, loop and link.
+    """Walk through notebook, rights, cable, port, firmware, settings, latency, loop, link, sensor, home and motor sign.
 
     Parameters
     ----------
@@ -56,7 +61,7 @@ def doctor(url=None, person=None, *, tell=lambda check: None):
     >>> report = doctor("sim://hapkit")
     >>> report.exit_code
     0
-    >>> print(report.checks[1])
+    >>> print(report["port"])
     ok         port       sim://hapkit opens
     """
     made = []
@@ -68,6 +73,9 @@ def doctor(url=None, person=None, *, tell=lambda check: None):
 
 def _walk(url, person):
     """Yield one Check after another, until one leaves nothing to go on with."""
+    yield computer_checks.notebook()
+    if url is None or "://" not in url:
+        yield computer_checks.rights(url)
     found, url = _ports(url)
     yield found
     if url is None:
