@@ -1,0 +1,42 @@
+"""What a front end draws at one moment."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+#: columns of the rows of a frame
+COLUMNS = ("t", "x", "F", "E", "intent")
+#: rows of a frame are so far apart at least [s]
+THINNED = 2e-3
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What happened since the frame before, and what to show now.
+
+    Attributes
+    ----------
+    time : float
+        Scene time of the last sample [s].
+    rows : array of float32, shape (samples, 5)
+        Since the frame before, at least 2 ms apart: t [s], x [m], F [N], E [J], the energy drawn from the environment since
+        the start, and intent [m], where the hand means to be (nan where nobody knows: on a board, or let go).
+    picture : tuple
+        Display list of the moving picture, as :mod:`hapticlab.widgets.picture` describes it.
+    status : str
+        One or two sentences; empty where they are as in the frame before.
+    flags : dict
+        ``running``, ``recording``, ``replaying``, ``held`` (a hand is on the handle), ``motor`` (a board's is on): bool.
+        And ``values``, dict of name to SI, in a frame after parameters changed or were refused: where the sliders belong.
+
+    Examples
+    --------
+    >>> Frame(0.0, status="paused", flags={"running": False}).rows.shape
+    (0, 5)
+    """
+
+    time: float
+    rows: np.ndarray = field(default_factory=lambda: np.zeros((0, len(COLUMNS)), np.float32))
+    picture: tuple = ()
+    status: str = ""
+    flags: dict = field(default_factory=dict)
