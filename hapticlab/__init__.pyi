@@ -29,6 +29,7 @@ from .compiler.order import order_of
 from .compiler.pairs import contacts_between
 from .compiler.replay import replay
 from .compiler.requires import requires
+from .course.check import check
 from .device.board import SerialPaddle
 from .device.calibrate import calibrate
 from .device.connect import connect
@@ -42,6 +43,7 @@ from .device.reacting import Reacting
 from .device.simulated import SimulatedPaddle
 from .errors import (
     AnalysisError,
+    CourseError,
     EngineMissingError,
     HapticlabError,
     LinkError,
@@ -135,6 +137,7 @@ __all__ = [
     "CompensationLimit",
     "ConstantLevels",
     "Contact",
+    "CourseError",
     "Curve",
     "EngineMissingError",
     "HalfPlane",
@@ -185,6 +188,7 @@ __all__ = [
     "braking_pulse",
     "calibrate",
     "chatter",
+    "check",
     "chirp_response",
     "closed_loop_matrix",
     "closed_loop_poles",

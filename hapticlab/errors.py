@@ -14,6 +14,7 @@
     |   +-- PortError         a serial port is missing, taken, forbidden, or left during use
     |   +-- LinkError         a board does not answer, refuses, or speaks another version
     +-- AnalysisError         a record or a model does not allow the question asked of it
+    +-- CourseError           a lab, an exercise or a folder of labs is not as it is meant to be
     +-- EngineMissingError    an engine cannot run on this machine
 """
 
@@ -79,6 +80,10 @@ class LinkError(PaddleError):
 
 class AnalysisError(HapticlabError, ValueError):
     """A record or a model does not allow the question asked of it."""
+
+
+class CourseError(HapticlabError, ValueError):
+    """A lab, an exercise or a folder of labs is not as it is meant to be."""
 
 
 class EngineMissingError(HapticlabError, ImportError):

@@ -1,0 +1,146 @@
+"""hl.check: an answer is judged at once, in the notebook, by the public cases of its exercise."""
+
+import io
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import CourseError
+from .evaluate import evaluate
+from .judge import verdict
+from .labs import find_lab
+
+#: of what a student's code prints while it is checked
+MOST_LINES = 10
+
+
+@dataclass(frozen=True)
+class CheckResult:
+    """What a check found.
+
+    Attributes
+    ----------
+    name : str
+        Lab and exercise, "01.wall_force".
+    passed : bool
+        Every case is right; of what is only noted, that something is there.
+    answered : bool
+    verdicts : tuple of Verdict
+    text : str
+        What was printed.
+    """
+
+    name: str
+    passed: bool
+    answered: bool
+    verdicts: tuple
+    text: str
+
+    def require(self):
+        """Raise AssertionError with the text unless the check passed: for a test cell of nbgrader."""
+        if not self.passed:
+            raise AssertionError(self.text)
+
+    def __str__(self):
+        return self.text
+
+    def _ipython_display_(self):
+        """Show nothing: the check has printed it."""
+
+
+def check(name, answer):
+    """Check an answer by the public cases of its exercise; prints, and never raises.
+
+    Parameters
+    ----------
+    name : str
+        Lab and exercise, ``"01.wall_force"``.
+    answer : object
+        The function, scene, number or text asked for.
+
+    Returns
+    -------
+    CheckResult
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> result = hl.check("99.wall_force", lambda x: 200 * x)
+    99.wall_force: there is no lab 99; there are ...
+    >>> result.passed
+    False
+    """
+    printed = io.StringIO()
+    try:
+        lab, _, exercise = str(name).partition(".")
+        exercise = find_lab(lab, beside=Path.cwd()).exercise(exercise)
+        with redirect_stdout(printed):
+            result = checked(f"{lab}.{exercise.name}", exercise, answer)
+    except CourseError as problem:
+        result = CheckResult(str(name), False, False, (), f"{name}: {problem}")
+    print(*_said(printed), result.text, sep="\n")
+    return result
+
+
+def checked(name, exercise, answer):
+    """Return the result for one exercise, by its public cases."""
+    if not exercise.judged or not exercise.cases:
+        return _noted(name, exercise, answer)
+    outcomes = [evaluate(exercise.kind, answer, case.given) for case in exercise.cases]
+    if not any(outcome.answered for outcome in outcomes):
+        return CheckResult(name, False, False, (), _unanswered(name, exercise))
+    verdicts = tuple(verdict(exercise, case, outcome) for case, outcome in zip(exercise.cases, outcomes, strict=True))
+    passed = all(v.right for v in verdicts)
+    lines = [f"{name}: {'right' if passed else 'not right yet'} ({points_words(exercise.points)})"]
+    lines += [_line(case, v) for case, v in zip(exercise.cases, verdicts, strict=True)]
+    lines += [f"  hint: {exercise.hint}"] if exercise.hint and not passed else []
+    return CheckResult(name, passed, True, verdicts, "\n".join(lines))
+
+
+def points_words(points):
+    """Return a number of points in words."""
+    return f"{points:g} point{'' if points == 1 else 's'}"
+
+
+def _noted(name, exercise, answer):
+    """Return the result for what is handed in and not judged here."""
+    outcome = evaluate("value", answer, {})
+    if not outcome.answered:
+        return CheckResult(name, False, False, (), _unanswered(name, exercise))
+    if outcome.problem:
+        return CheckResult(name, False, True, (), f"{name}: {outcome.problem}")
+    words = len(outcome.value.split()) if isinstance(outcome.value, str) else 0
+    if words < exercise.least_words:
+        said = f"{words} words, needs at least {exercise.least_words}: {exercise.asks}"
+        return CheckResult(name, False, True, (), f"{name}: {said}")
+    later = {"prediction": "noted; compare it with what you find", "text": f"{words} words noted; a person reads them"}
+    said = later.get(exercise.kind, "noted; it is judged when handed in")
+    return CheckResult(name, True, True, (), f"{name}: {said}")
+
+
+def _unanswered(name, exercise):
+    return f"{name}: not answered yet: {exercise.asks}"
+
+
+def _line(case, found):
+    given = ", ".join(f"{name} = {_brief(value)}" for name, value in case.given.items())
+    return f"  {'right' if found.right else 'wrong'}: {given + ': ' if given else ''}{found.words}"
+
+
+def _brief(value):
+    """Return a given in a few characters."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name}: {_brief(part)}" for name, part in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        shown = ", ".join(_brief(part) for part in value[:4])
+        return f"[{shown}]" if len(value) <= 4 else f"[{shown}, ... {len(value)} in all]"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _said(printed):
+    """Return what a student's code printed, its first lines."""
+    try:
+        lines = printed.getvalue().splitlines()
+    except ValueError:  # closed by that code
+        return []
+    return lines[:MOST_LINES] + ([f"... {len(lines) - MOST_LINES} more lines"] if len(lines) > MOST_LINES else [])

@@ -1,0 +1,179 @@
+"""From an answer to plain values: whatever a student wrote is called, converted, and never believed.
+
+What comes out holds numbers, texts, lists and dicts of Python itself, so it can cross a pipe as JSON. What is expected is
+not known here.
+"""
+
+import copy
+import inspect
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import HapticlabError
+from ..scene.scene import Scene
+from .felt import felt
+
+#: more numbers than any exercise asks for
+MOST_NUMBERS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What an answer gave for one case: a plain value; or why there is none, in words; or nothing, where unanswered."""
+
+    value: object = None
+    problem: str = ""
+
+    @property
+    def answered(self):
+        """Whether anything was answered at all."""
+        return self.value is not None or bool(self.problem)
+
+
+def evaluate(kind, answer, given):
+    """Return what an answer gives for one case; it never raises, except where a person interrupts.
+
+    Parameters
+    ----------
+    kind : str
+        Of the exercise, see :class:`hapticlab.course.exercise.Exercise`.
+    answer : object
+        Whatever the notebook holds under the exercise's name.
+    given : dict
+        Of the case.
+
+    Returns
+    -------
+    Outcome
+
+    Examples
+    --------
+    >>> evaluate("function", lambda x, k: k * x, {"x": 0.012, "k": 200.0})
+    Outcome(value=2.4, problem='')
+    >>> evaluate("function", lambda position: 200 * position, {"x": 0.012}).problem
+    'it takes (position), and is called with x=; keep the names of the notebook'
+    >>> evaluate("value", None, {}).answered
+    False
+    """
+    try:
+        return _evaluated(kind, answer, copy.deepcopy(dict(given)))
+    except KeyboardInterrupt:
+        raise
+    except NotImplementedError:
+        return Outcome()
+    except HapticlabError as problem:
+        return Outcome(problem=_bounded(problem))
+    except BaseException as problem:  # sys.exit() and whatever else a student's code may raise
+        return Outcome(problem=_raised(problem))
+
+
+def _evaluated(kind, answer, given):
+    if _empty(answer):
+        return Outcome()
+    if kind == "scene":
+        scene = answer if isinstance(answer, Scene) or not callable(answer) else answer()
+        if _empty(scene):
+            return Outcome()
+        return Outcome(plain(felt(scene, **given)))
+    if kind != "function":
+        return Outcome(plain(answer))
+    if not callable(answer):
+        return Outcome(problem=f"it is {_a(answer)}, needs a function of ({', '.join(given)})")
+    mismatch = _mismatch(answer, given)
+    if mismatch:
+        return Outcome(problem=mismatch)
+    found = answer(**{name: np.array(g) if isinstance(g, list | tuple) else g for name, g in given.items()})
+    if found is None:
+        return Outcome(problem="it returns None; is its `return` missing?")
+    return Outcome(plain(found))
+
+
+def plain(value):
+    """Return a value in floats, bools, texts, lists and dicts of Python itself.
+
+    Examples
+    --------
+    >>> plain(np.array([1, 2])), plain({"F": np.float32(0.5)}), plain(np.True_)
+    ([1.0, 2.0], {'F': 0.5}, True)
+    """
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    if isinstance(value, str):
+        return str.__str__(value)
+    if isinstance(value, Mapping):
+        return {str(name): plain(part) for name, part in value.items()}
+    if isinstance(value, np.ndarray | list | tuple):
+        return _array(value)
+    if isinstance(value, complex | np.complexfloating):
+        raise _NotPlain(f"{complex(value):g} is a complex number; needs a real one")
+    try:
+        return float.__float__(float(value))
+    except (TypeError, ValueError, OverflowError):
+        raise _NotPlain(f"{_a(value)} is no number; needs a number, or an array of them{_symbols(value)}") from None
+
+
+class _NotPlain(HapticlabError):
+    """Said to the student as it is."""
+
+
+def _array(value):
+    try:
+        numbers = np.array(value)
+        if numbers.dtype.kind == "O":
+            numbers = numbers.astype(float)
+    except (TypeError, ValueError):
+        raise _NotPlain("its parts are not all numbers, or its rows not equally long; needs an array of numbers") from None
+    if numbers.dtype.kind not in "biuf":
+        raise _NotPlain(f"it is an array of {numbers.dtype.name}; needs an array of real numbers")
+    if numbers.size > MOST_NUMBERS:
+        raise _NotPlain(f"it has {numbers.size} numbers, more than {MOST_NUMBERS}")
+    return numbers.astype(float).tolist()
+
+
+def _empty(answer):
+    """Whether nothing was written yet: None, an ellipsis, an empty text."""
+    return answer is None or answer is ... or (isinstance(answer, str) and not str.strip(answer))
+
+
+def _mismatch(function, given):
+    """Return why a function cannot be called with these names, or an empty text."""
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):  # what is written in C may have none
+        return ""
+    try:
+        signature.bind(**given)
+        return ""
+    except TypeError:
+        called = ", ".join(f"{name}=" for name in given) or "no argument"
+        return f"it takes ({', '.join(signature.parameters)}), and is called with {called}; keep the names of the notebook"
+
+
+def _raised(problem):
+    """Return an error of the student's in one line, with the line of their code where it arose."""
+    lines, trace = [], problem.__traceback__
+    while trace:
+        if trace.tb_frame.f_globals.get("__name__") == "__main__":
+            lines.append(trace.tb_lineno)
+        trace = trace.tb_next
+    where = f" in line {lines[-1]} of its cell" if lines else ""
+    return f"it raises {type(problem).__name__}{where}: {_bounded(problem)}"
+
+
+def _bounded(problem):
+    try:
+        return " ".join(str.__str__(str(problem)).split())[:300] or "no message"
+    except Exception:
+        return "no readable message"
+
+
+def _symbols(value):
+    names = sorted(map(str, getattr(value, "free_symbols", ())))
+    return f"; it still holds {', '.join(names)}: put numbers in" if names else ""
+
+
+def _a(value):
+    name = type(value).__name__
+    return f"{'an' if name[:1] in 'aeiou' else 'a'} {name}"

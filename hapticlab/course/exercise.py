@@ -1,0 +1,146 @@
+"""What a lab asks: exercises with their public cases. Cases hold numbers, never a formula of the answer."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ..errors import CourseError
+
+#: what is judged, and what is only noted
+JUDGED, NOTED = ("function", "scene", "value", "choice"), ("prediction", "text")
+
+
+@dataclass(frozen=True)
+class Case:
+    """One set of givens with the answer expected.
+
+    Parameters
+    ----------
+    given : dict
+        The arguments of a function, by name (lists become NumPy arrays); what a scene is run with, see
+        :func:`hapticlab.course.felt.felt`; empty for a value or a choice.
+    expected : float, bool, str, sequence of float (nested for more axes), or dict of str to these
+    unit : str
+        Of what is expected.
+    slips : dict or sequence of (wrong, sentence)
+        A typical wrong result, a number or a tuple shaped as what is expected, and the sentence that teaches.
+
+    Examples
+    --------
+    >>> Case({"x": 0.012, "k": 200.0}, 2.4, unit="N", slips={-2.4: "The sign is turned."}).slips
+    ((-2.4, 'The sign is turned.'),)
+    """
+
+    given: dict
+    expected: object
+    unit: str = ""
+    slips: tuple = ()
+
+    def __post_init__(self):
+        if not isinstance(self.given, Mapping):
+            raise CourseError(f"given = {self.given!r}; a case needs a dict, such as Case({{'x': 0.01}}, 2.0)")
+        pairs = self.slips.items() if isinstance(self.slips, Mapping) else self.slips
+        object.__setattr__(self, "slips", tuple((wrong, sentence) for wrong, sentence in pairs))
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """One question of a lab; the student's answer has its name in the notebook.
+
+    Parameters
+    ----------
+    name : str
+    kind : {"function", "scene", "value", "choice", "prediction", "text"}
+        The last two are noted and never judged.
+    points : float
+        Earned where every case is right, else none.
+    asks : str
+        What is asked for, in a few words with units.
+    cases : sequence of Case
+        The public ones.
+    options : dict of str to str
+        Of a choice: key and words.
+    rtol, atol : float
+        How far a number may be off: ``atol + rtol*|expected|``, of an array's largest number.
+    hint : str
+        Printed where a case is wrong.
+    least_words : int
+        Of a text.
+
+    Examples
+    --------
+    >>> Exercise("stiffness", kind="value", points=1, cases=[Case({}, 150.0, unit="N/m")]).judged
+    True
+    """
+
+    name: str
+    kind: str = "function"
+    points: float = 0
+    asks: str = ""
+    cases: tuple = ()
+    options: dict = field(default_factory=dict)
+    rtol: float = 1e-6
+    atol: float = 1e-12
+    hint: str = ""
+    least_words: int = 0
+
+    def __post_init__(self):
+        object.__setattr__(self, "cases", tuple(self.cases))
+        if self.kind not in JUDGED + NOTED:
+            raise CourseError(f"{self.name}: kind = {self.kind!r}; needs one of {', '.join(JUDGED + NOTED)}")
+        if not self.name.isidentifier():
+            raise CourseError(f"exercise {self.name!r}: needs the name of a Python variable, such as 'wall_force'")
+        if not self.judged and (self.points or self.cases):
+            raise CourseError(f"{self.name}: a {self.kind} is noted, not judged; leave out points and cases")
+        strange = [c.expected for c in self.cases if self.kind == "choice" and c.expected not in self.options]
+        if strange:
+            raise CourseError(f"{self.name}: {strange[0]!r} is none of the options {', '.join(self.options)}")
+
+    @property
+    def judged(self):
+        """Whether it can be right or wrong."""
+        return self.kind in JUDGED
+
+
+@dataclass(frozen=True)
+class Lab:
+    """A lab: what a student opens, with its exercises.
+
+    Parameters
+    ----------
+    number : str
+        Two digits, as its folder begins.
+    title : str
+    minutes : int
+        What a student needs for it.
+    exercises : sequence of Exercise
+
+    Examples
+    --------
+    >>> lab = Lab("02", "The virtual wall", minutes=90, exercises=[Exercise("force", points=2), Exercise("k", "value", 1)])
+    >>> lab.points, lab.exercise("k").kind
+    (3, 'value')
+    """
+
+    number: str
+    title: str
+    minutes: int
+    exercises: tuple
+
+    def __post_init__(self):
+        object.__setattr__(self, "exercises", tuple(self.exercises))
+        names = [e.name for e in self.exercises]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise CourseError(f"lab {self.number}: {', '.join(twice)} twice; each exercise needs a name of its own")
+
+    @property
+    def points(self):
+        """What all exercises are worth together."""
+        return sum(e.points for e in self.exercises)
+
+    def exercise(self, name):
+        """Return the exercise of that name."""
+        found = {e.name: e for e in self.exercises}
+        if name not in found:
+            raise CourseError(f"lab {self.number} has no exercise {name}; it has {', '.join(found) or 'none'}")
+        return found[name]

@@ -1,0 +1,59 @@
+"""What a scene does at the handle: its force, sample by sample, over a motion that is given."""
+
+import numpy as np
+
+from ..compiler.engine import load
+from ..compiler.lower import compile
+from ..errors import CourseError
+from ..scene.scene import check_scene
+
+#: what may be given beside the motion, as hl.compile takes it
+OPTIONS = ("method", "substeps", "hold", "force_at")
+
+
+def felt(scene, *, x, v=None, T=1e-3, values=None, channels=None, **options):
+    """Force of a scene over given samples, in float64.
+
+    Parameters
+    ----------
+    scene : Scene
+    x : sequence of float
+        Handle position [m], one a sample.
+    v : sequence of float, optional
+        Handle velocity [m/s]; by default the backward difference of x.
+    T : float
+        Sampling period [s].
+    values : dict of str to float, optional
+        Values of the scene's parameters, SI.
+    channels : sequence of str, optional
+        What it watches that is wanted beside the force.
+    **options
+        Of :func:`hapticlab.compile`: method, substeps, hold, force_at.
+
+    Returns
+    -------
+    ndarray of F [N], or with ``channels`` a dict of "F" and each channel
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> felt(hl.wall(), x=[0, 0.005, 0.012], values={"k": 150.0, "x_o": 0.01}).round(12).tolist()
+    [0.0, 0.0, 0.3]
+    """
+    check_scene(scene)
+    strange = sorted(set(options) - set(OPTIONS))
+    if strange:
+        raise CourseError(f"{', '.join(strange)} given; a scene is run with x, v, T, values, channels, {', '.join(OPTIONS)}")
+    velocity = "backward_difference" if v is None else "measured"
+    bound = scene(**(values or {}))
+    program = compile(bound, T=T, dtype="float64", velocity=velocity, live=(), **options)
+    motion = {"x": x, "v": v}
+    rows = np.array([np.asarray(motion[c.name], float) for c in program.inputs]).T.reshape(len(x), len(program.inputs))
+    outputs = load(program).run(len(x), rows).outputs[:, :, 0]
+    named = dict(zip((c.name for c in program.outputs), outputs.T, strict=True))
+    if channels is None:
+        return named["F"]
+    missing = [name for name in channels if name not in named]
+    if missing:
+        raise CourseError(f"the scene does not watch {', '.join(missing)}; add watch=[...]; it has {', '.join(named)}")
+    return {name: named[name] for name in ("F", *channels)}
