@@ -86,9 +86,9 @@ class Sketch:
         along = (end - start) / length
         away = np.array([along[1], -along[0]])
         self.line(start, end, width=1.6)
-        for s in np.arange(1.5 * u, length + 0.1 * u, 1.5 * u):
-            foot = start + s * along
-            self.line(foot, foot - depth * u * along + depth * u * away, width=0.8)
+        feet = start + np.outer(np.arange(1.5 * u, length + 0.1 * u, 1.5 * u), along)
+        hatched = np.stack([feet, feet + depth * u * (away - along), feet], axis=1)  # there and back, in one line
+        self.line(*hatched.reshape(-1, 2), width=0.8)
 
     def spring(self, start, end, label="", up=3.4, right=0.0, coils=6, height=1.6):
         """Draw a spring between two points, its label beside the middle."""

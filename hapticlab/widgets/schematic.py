@@ -1,0 +1,162 @@
+"""A schematic of any scene, drawn from its equations: the handle, its walls, a block or a pendulum a coordinate."""
+
+import numpy as np
+import sympy as sp
+
+from ..errors import HapticlabError
+from ..library.sketch import SOFT, Sketch, clearance
+from ..scene.symbols import t, v, x
+from .boundaries import boundaries
+from .formulas import formula
+from .outlines import Outline
+
+#: from one body to the next, and from the handle to either end of the picture [m]
+APART, REACH = 0.055, 0.06
+WALL = "#efefef"
+#: coordinates up to which couplings are looked for; more stand in a row, each coupled to the one before
+LOOKED_AT = 4
+
+
+class Schematic:
+    """Draws a scene in a state; see :func:`~hapticlab.widgets.picture.moving_picture`.
+
+    Attributes
+    ----------
+    names : set of str
+        Coordinates and parameters that the picture depends on.
+    """
+
+    def __init__(self, scene, shapes=()):
+        self.outlines = [Outline(shape) for shape in shapes]
+        self.walls = boundaries(scene)
+        placed = set().union(*(outline.names for outline in self.outlines)) if shapes else set()
+        free = [q for q in scene.coordinates if type(q).__name__ not in placed]
+        self.blocks = [type(q).__name__ for q in _chain(scene, [q for q in free if type(q).unit == "m"])]
+        angles = [q for q in free if type(q).unit == "rad"]
+        self.turning = {type(q).__name__: _carrier(scene, q) for q in angles}
+        self.stands = {type(q).__name__: _stands(scene, q) for q in angles}
+        self.springs = _springs(scene, self.blocks)
+        self.names = placed.union(self.blocks, self.turning, *(wall.names for wall in self.walls))
+
+    def __call__(self, axes, *, x, **state):
+        state = {"x": x, **state}
+        s = self._frame(axes)
+        u, offset = s.u, {"x": 0.0}
+        for place, name in enumerate(self.blocks):
+            offset[name] = (0.8 + place) * APART + clearance(x, state.get(name, 0.0))
+        at = {name: state.get(name, 0.0) + away for name, away in offset.items()}
+        half = {"x": 1.5 * u} | dict.fromkeys(self.blocks, 7 * u)
+        for outline in self.outlines:
+            outline.draw(s, state)
+        for wall in self.walls:
+            if wall.mover in at:
+                self._wall(s, wall, offset[wall.mover] + wall.side * half[wall.mover], state)
+        for first, second in self.springs:
+            s.spring((at[first] + half[first], 0), (at[second] - half[second], 0))
+        for name in self.blocks:
+            s.block((at[name], 0), 14, 12)
+            s.coordinate(_letters(name), state.get(name, 0.0), -11 * u, origin=offset[name])
+        self._turning(s, at, state)
+        s.handle(x)
+
+    def _frame(self, axes):
+        dials = sum(not carrier for carrier in self.turning.values())
+        right = REACH + APART * (len(self.blocks) + 0.3 * bool(self.blocks)) + 0.04 * dials
+        high = 0.022 * (right + REACH) / 0.12
+        low = 2.0 * high if any(self.turning.values()) else 1.2 * high
+        top = low if any(self.turning[name] and self.stands[name] for name in self.turning) else high
+        return Sketch(axes, -REACH, right, -low, top)
+
+    @staticmethod
+    def _wall(s, wall, away, state):
+        place, high = wall.where(state)[0] + away, 9 * s.u
+        end = s.right if wall.side > 0 else s.left
+        if (end - place) * wall.side > 0:
+            s.area([(place, -high), (end, -high), (end, high), (place, high)], color=WALL, edge="none", zorder=1)
+        s.ground((place, wall.side * high), (place, -wall.side * high), depth=-1.5)
+        s.text((place, -high), _letters(wall.label), up=-2.4)
+
+    def _turning(self, s, at, state):
+        """Draw what turns: hanging from or standing on what carries it, else a dial."""
+        free = s.right
+        for name, carrier in self.turning.items():
+            turn, u = state.get(name, 0.0), s.u
+            if carrier in at:
+                pivot, rest = np.array([at[carrier], 0.0]), (1 if self.stands[name] else -1) * np.pi / 2
+                angle = rest + (turn if rest < 0 else -turn)
+                bob = pivot + 22 * u * np.array([np.cos(angle), np.sin(angle)])
+                s.line(pivot, pivot + [0, np.sign(rest) * 24 * u], width=0.8, color=SOFT, linestyle="--")
+                s.rod(pivot, bob, width=2.5)
+                s.disc(bob, 2.4 * u, zorder=5)
+                s.pin(pivot)
+                s.angle(pivot, 14, rest, angle, _letters(name))
+            else:
+                free -= 0.04
+                s.disc((free + 0.02, 0), 0.015, np.pi / 2 - turn)
+                s.text((free + 0.02, -0.015), _letters(name), up=-2.8)
+
+
+def _letters(name):
+    """Return a name as it is set: theta_1 with the Greek letter."""
+    return f"${sp.latex(sp.Symbol(name))}$" if name else ""
+
+
+def _chain(scene, lengths):
+    """Return the coordinates in the order in which they follow the handle."""
+    order, waiting = [], list(lengths)
+    while waiting:
+        last = order[-1] if order else x(t)
+        order.append(next((q for q in waiting if _coupled(scene, last, q)), waiting[0]))
+        waiting.remove(order[-1])
+    return order
+
+
+def _springs(scene, names):
+    """Return the pairs (left, right) of neighbours that pull on each other: the handle's name is x."""
+    by_name = {"x": x(t)} | {type(q).__name__: q for q in scene.coordinates}
+    row = ["x", *names]
+    return [pair for pair in zip(row, row[1:], strict=False) if _coupled(scene, *(by_name[name] for name in pair))]
+
+
+def _coupled(scene, first, second):
+    """Tell whether two movers pull on each other when apart, not in a contact or a case alone."""
+    if len(scene.coordinates) > LOOKED_AT:
+        return True
+    if first == x(t):
+        return scene.force.has(second) or any(expr.has(x, v) for expr in _acting(scene, second))
+    return any(expr.has(first) for expr in _acting(scene, second)) or any(expr.has(second) for expr in _acting(scene, first))
+
+
+def _acting(scene, q):
+    """Return what accelerates a coordinate, without what acts in cases alone."""
+    try:
+        form = scene.explicit()
+    except HapticlabError:
+        return ()
+    if q not in form.coordinates:
+        return ()
+    f = form.f[form.coordinates.index(q)].doit()
+    return (f.xreplace(dict.fromkeys(f.atoms(sp.Piecewise, sp.Max), sp.S.Zero)),)
+
+
+def _carrier(scene, q):
+    """Return what an angle's pivot moves with: a coordinate in metres whose inertia it shares, the handle, or ""."""
+    try:
+        form = scene.explicit()
+    except HapticlabError:
+        return ""
+    if len(form.coordinates) > LOOKED_AT or q not in form.coordinates:
+        return ""
+    row = form.M[form.coordinates.index(q)]
+    shared = [type(p).__name__ for p, m in zip(form.coordinates, row, strict=True) if type(p).unit == "m" and m.doit() != 0]
+    return shared[0] if shared else ""
+
+
+def _stands(scene, q):
+    """Tell whether an angle of zero is up: it falls away from there at the scene's own values."""
+    acting = _acting(scene, q) if len(scene.coordinates) <= LOOKED_AT else ()
+    try:
+        moment, names = formula(*acting)
+        return moment({**dict.fromkeys(names, 0.0), **scene.values, type(q).__name__: 0.01})[0] > 0
+    except (TypeError, NotImplementedError, KeyError, ZeroDivisionError, IndexError):
+        return False
