@@ -1,0 +1,173 @@
+"""A notebook as plain text: its code cells, run one after another, and the solutions written into it.
+
+Answers are found by the name they have in the code, never by what a cell's metadata says: students split, copy and
+delete cells.
+"""
+
+import ast
+import io
+import json
+from contextlib import chdir, redirect_stdout
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..errors import CourseError
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What a cell raised."""
+
+    cell: int
+    words: str
+
+
+def read(path):
+    """Return the notebook at a path, as a dict."""
+    try:
+        notebook = json.loads(Path(path).read_text("utf-8"))
+        notebook["cells"]
+    except (ValueError, KeyError, TypeError):
+        raise CourseError(f"{path} is no notebook; it needs the JSON that Jupyter writes") from None
+    return notebook
+
+
+def code_of(notebook):
+    """Return the source of each code cell."""
+    return [_source(cell) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+
+
+def run(sources, folder):
+    """Run cells in this process, in a folder; one that fails stops none after it.
+
+    Returns
+    -------
+    names : dict
+        What the notebook holds at its end.
+    problems : list of Problem
+    """
+    names, problems = {"__name__": "__main__"}, []
+    with chdir(folder), redirect_stdout(io.StringIO()):
+        for number, source in enumerate(sources, start=1):
+            try:
+                exec(compile(source, f"cell {number}", "exec"), names)
+            except Exception as problem:
+                problems.append(Problem(number, f"{type(problem).__name__}: {problem}"))
+    return names, problems
+
+
+def solved(notebook, solution, exercises):
+    """Return the notebook with the answers of a solution written in.
+
+    Replaced are, at the top level of a cell, definitions ``def name`` and assignments ``name = ...`` of what the
+    solution has under the same name: of an exercise, or of what the notebook leaves open by ``None``, ``""`` or
+    ``raise NotImplementedError``. What else the solution has goes with the answer that follows it, and its imports go
+    into a cell of their own before the first.
+
+    Parameters
+    ----------
+    notebook : dict
+    solution : str
+        Plain Python.
+    exercises : sequence of str
+        Their names.
+
+    Raises
+    ------
+    CourseError
+        Where the notebook has no place for an exercise that the solution answers.
+
+    Examples
+    --------
+    >>> cell = {"cell_type": "code", "id": "a", "metadata": {}, "outputs": [], "source": "k = None  # [N/m]"}
+    >>> written = solved({"cells": [cell]}, "import math\\nk = 150.0", ["k"])
+    >>> [cell["source"] for cell in written["cells"]]
+    ['import math', 'k = 150.0']
+    """
+    changed = [_answered(cell, _parts(solution), exercises) for cell in notebook["cells"]]
+    written = {name for _, names in changed for name in names}
+    lost = [part.name for part in _parts(solution) if part.name in exercises and part.name not in written]
+    if lost:
+        raise CourseError(f"the notebook has no place for {', '.join(lost)}: no line begins with its def, or with its name =")
+    imports, answers = _answers(solution, written)
+    changed = [_answered(cell, answers, exercises) for cell in notebook["cells"]]
+    cells = [cell for cell, _ in changed]
+    if imports:
+        cells.insert(next(place for place, (_, names) in enumerate(changed) if names), _code_cell("solution-imports", imports))
+    return {**notebook, "cells": cells}
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A definition or an assignment at the top level of a source: its lines, and whether it is left open."""
+
+    name: str
+    first: int
+    last: int
+    text: str
+    is_open: bool
+
+
+def _parts(source):
+    """Return the named parts of a source; of one that is no Python, none."""
+    try:
+        tree, lines = ast.parse(source), source.splitlines()
+    except SyntaxError:
+        return []
+    found = []
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            first = min([node.lineno, *(d.lineno for d in node.decorator_list)])
+            name, is_open = node.name, _raises_not_implemented(node)
+        elif isinstance(node, ast.Assign) and len(node.targets) == 1 and isinstance(node.targets[0], ast.Name):
+            first, name = node.lineno, node.targets[0].id
+            is_open = isinstance(node.value, ast.Constant) and node.value.value in (None, "", ...)
+        else:
+            continue
+        found.append(_Part(name, first, node.end_lineno, "\n".join(lines[first - 1 : node.end_lineno]), is_open))
+    return found
+
+
+def _raises_not_implemented(node):
+    raised = [n.exc for n in ast.walk(node) if isinstance(n, ast.Raise) and n.exc is not None]
+    return any(isinstance(n, ast.Name) and n.id == "NotImplementedError" for exc in raised for n in ast.walk(exc))
+
+
+def _answered(cell, answers, exercises):
+    """Return a cell with the answers written in, and their names."""
+    if cell["cell_type"] != "code":
+        return cell, []
+    source, texts = _source(cell), {part.name: part.text for part in answers}
+    lines = source.splitlines()
+    places = [part for part in _parts(source) if part.name in texts and (part.is_open or part.name in exercises)]
+    for part in reversed(places):
+        lines[part.first - 1 : part.last] = texts[part.name].splitlines()
+    return {**cell, "source": "\n".join(lines)} if places else cell, [part.name for part in places]
+
+
+def _answers(solution, written):
+    """Return the imports of a solution, and its answers with what stands before each."""
+    lines, end, imports, waiting, answers = solution.splitlines(), 0, [], [], []
+    parts = {part.last: part for part in _parts(solution) if part.name in written}
+    for node in ast.parse(solution).body:
+        text = "\n".join(lines[end : node.end_lineno]).strip("\n")
+        end = node.end_lineno
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            imports.append(text)
+        elif end in parts:
+            answers.append(replace(parts[end], text="\n".join([*waiting, text])))
+            waiting = []
+        elif not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)):  # a docstring is for its reader
+            waiting.append(text)
+    if waiting and answers:
+        answers[-1] = replace(answers[-1], text="\n".join([answers[-1].text, *waiting]))
+    return "\n".join(imports), answers
+
+
+def _code_cell(name, source):
+    return {"cell_type": "code", "execution_count": None, "id": name, "metadata": {}, "outputs": [], "source": source}
+
+
+def _source(cell):
+    source = cell["source"]
+    return source if isinstance(source, str) else "".join(source)

@@ -1,0 +1,123 @@
+"""Every lab: well formed; untouched it runs and earns nothing; solved it earns all; wrong answers earn nothing and are taught.
+
+Beside labs/NN_name stand the answers in tests/instructor/NN_name; wrong_answers.py holds wrong ones that students write.
+"""
+
+import json
+import re
+import shutil
+import time
+from pathlib import Path
+
+import pytest
+
+from hapticlab.course.exercise import JUDGED
+from hapticlab.course.judge import judge
+from hapticlab.course.labs import find_labs
+from hapticlab.course.marks import SOLUTION, hidden_cases, instructor_names, marks
+from hapticlab.course.notebook import code_of, read, run, solved
+
+ROOT = Path(__file__).parents[2]
+LABS, INSTRUCTOR = find_labs(ROOT / "labs"), ROOT / "tests" / "instructor"
+LAST = """
+import json as _json
+from hapticlab.course.labs import load_lab as _load_lab
+from hapticlab.course.marks import marks as _marks
+print(_json.dumps([[m.exercise, m.earned, m.right] for m in _marks(_load_lab("checks.py"), globals())]))
+"""
+
+pytestmark = pytest.mark.parametrize("folder", LABS, ids=[folder.name for folder in LABS])
+
+
+def test_lab_is_well_formed(folder):
+    nbformat = pytest.importorskip("nbformat")
+    lab, notebook = folder.lab(), read(folder.notebook)
+    nbformat.validate(nbformat.from_dict(notebook))
+    assert lab.number == folder.number
+    assert notebook["metadata"]["kernelspec"]["name"] == "python3"
+    assert [c for c in notebook["cells"] if c.get("outputs") or c.get("execution_count")] == []
+    assert [c["metadata"] for c in notebook["cells"] if c["metadata"]] == []
+    text = "\n".join("".join(c["source"]) for c in notebook["cells"] if c["cell_type"] == "markdown")
+    plain = re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
+    assert re.findall(r"^# (?:Lab )?\d+", plain, re.M) and len(re.findall(r"^# ", plain, re.M)) == 1
+    assert f"{lab.minutes} min" in plain
+    code = "\n".join(code_of(notebook))
+    assert not re.search(r"^\s*[%!]", code, re.M), "magics and shell lines run in Jupyter alone"
+    unchecked = [e.name for e in lab.exercises if f'check("{lab.number}.{e.name}"' not in code]
+    assert not unchecked
+    judged = [e for e in lab.exercises if e.judged]
+    assert lab.points == 10
+    assert 4 <= len(judged) <= 8
+    assert all(e.points > 0 and e.asks for e in judged)
+    assert {e.kind for e in lab.exercises} > {"prediction", "text"}, "predict first; a text is handed in"
+
+
+def test_untouched_lab_runs_and_earns_nothing(folder, tmp_path, monkeypatch, record_property):
+    nbclient = pytest.importorskip("nbclient")
+    nbformat = pytest.importorskip("nbformat")
+    shutil.copytree(folder.path, tmp_path / folder.name)
+    notebook = nbformat.read(folder.notebook, as_version=4)
+    notebook.cells.append(nbformat.v4.new_code_cell(LAST))
+    notebook.cells.append(nbformat.v4.new_code_cell("import time as _time; print(_time.process_time())"))
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    nbclient.NotebookClient(notebook, timeout=60, resources={"metadata": {"path": str(tmp_path / folder.name)}}).execute()
+    earned = json.loads(notebook.cells[-2].outputs[-1].text)
+    assert earned == [[e.name, 0, 0] for e in folder.lab().exercises if e.judged]
+    said = "".join(o.get("text", "") for c in notebook.cells if c.cell_type == "code" for o in c.outputs)
+    assert said.count("not answered yet") >= len(earned)
+    seconds = float(notebook.cells[-1].outputs[-1].text)
+    record_property("seconds", seconds)
+    assert seconds < 10, "a lab untouched is to run in 4 s on an idle computer"
+
+
+def test_solved_lab_earns_everything(folder, tmp_path, record_property):
+    shutil.copytree(folder.path, tmp_path / folder.name)
+    lab, began = folder.lab(), time.process_time()
+    solution = (INSTRUCTOR / folder.name / SOLUTION).read_text("utf-8")
+    written = solved(read(folder.notebook), solution, [e.name for e in lab.exercises])
+    names, problems = run(code_of(written), tmp_path / folder.name)
+    record_property("seconds", time.process_time() - began)
+    assert problems == []
+    for seed in (0, 1):
+        found = marks(lab, names, hidden_cases(lab, INSTRUCTOR / folder.name, seed))
+        assert [m for m in found if m.earned != m.points] == []
+        assert sum(m.earned for m in found) == lab.points
+    assert time.process_time() - began < 12, "a lab solved is to run in 5 s on an idle computer"
+
+
+def test_wrong_answers_earn_nothing_and_are_taught(folder):
+    lab = folder.lab()
+    hidden = hidden_cases(lab, INSTRUCTOR / folder.name)
+    right = instructor_names(INSTRUCTOR / folder.name / SOLUTION)
+    for exercise in lab.exercises:
+        for case in exercise.cases:
+            for wrong, sentence in case.slips:
+                value = list(wrong) if isinstance(wrong, tuple) else wrong
+                if isinstance(wrong, dict):
+                    value = {**case.expected, **wrong}
+                found = judge(exercise, case, value)
+                assert not found.right and found.words.endswith(sentence), (exercise.name, wrong, found.words)
+    for name, kind in ((e.name, e.kind) for e in lab.exercises if e.kind in JUDGED):
+        for wrong in wrong_answers(lab.exercise(name), right[name]):
+            (found,) = (m for m in marks(lab, {name: wrong}, hidden) if m.exercise == name)
+            assert found.earned == 0, (name, kind)
+
+
+def wrong_answers(exercise, right):
+    """Yield answers that any exercise refuses; of a function also one that knows the public cases by heart."""
+    yield from (None, ..., "", "no", float("nan"), [], {}, object())
+    if exercise.kind == "function":
+        known = {repr(sorted(case.given.items())): case.expected for case in exercise.cases}
+        yield lambda **given: known.get(repr(sorted((k, getattr(v, "tolist", lambda v=v: v)()) for k, v in given.items())), 0.0)
+        yield lambda **given: _scaled(right(**given), -1.0)
+        yield lambda **given: _scaled(right(**given), 1e3)
+        yield lambda **given: _scaled(right(**given), float("nan"))
+    elif exercise.kind == "scene":
+        scene = right if hasattr(right, "force") else right()
+        yield type(scene)(force=-scene.force, eom=scene.eom, watch=scene.watch, values=scene.values)
+
+
+def _scaled(value, factor):
+    if isinstance(value, dict):
+        return {name: _scaled(part, factor) for name, part in value.items()}
+    return value if isinstance(value, str) else not value if isinstance(value, bool) else value * factor
