@@ -4,14 +4,13 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..compiler.bounds import BEYOND
-from ..compiler.elementary import TABLES
 from ..errors import PaddleError
 from ..records import PaddleProfile, Telemetry
 from .friction import ROUNDED_UP
 from .hand import Hand, require
 from .lanes import device_values
 from .link import link, load_linked
+from .not_finite import not_finite
 from .paddle import Paddle
 from .plant import delay_parts, dynamics, plant_of
 from .profiles import profile as named_profile
@@ -236,11 +235,7 @@ class SimulatedPaddle(Paddle):
         fault = None
         if code.any():
             first = int(np.argmax(code > 0))
-            watched = (f"the watched {c.name}" for c in program.outputs[1:])
-            names = ["the force F", *watched, *(f"the state {c.name}" for c in program.states)]
-            culprit = f"{names[int(code[first]) - 1]} of {program.name}"
-            when = f"tick {first} (t = {first * self.T:g} s)"
-            fault = f"{when}: {culprit} was not finite; the motor is off from there on{_likely_cause(program)}"
+            fault = not_finite(program, code[first], first, self.T)
         limited = np.abs(F) >= self.force_max if self.force_max is not None else None
         return Telemetry(
             t=np.arange(len(x)) * self.T, x=x, v=v, F=F, T=self.T, delay=self.delay, channels=columns,
@@ -272,17 +267,6 @@ class SimulatedPaddle(Paddle):
         if self.profile is not None:
             lines.append(f"  from {self.profile}")
         return "\n".join(lines)
-
-
-def _likely_cause(program):
-    """Return what to look for where a program stopped: what its notes say, an angle past all sines; else nothing."""
-    left = [note.removeprefix(BEYOND) for note in program.notes if note.startswith(BEYOND)]
-    likely = f". Most likely {' or '.join(left)}" if left else ""
-    if not any(i.op in ("sin", "cos") for i in program.tick.instructions):
-        return likely
-    real = program.outputs[0].type
-    dtype = "float32" if real == "f32" else "float64"
-    return f"{likely}. Look for an angle beyond {TABLES[real].angle_limit:g} rad: it has no meaning in {dtype}, and no sine"
 
 
 def _run_in_chunks(loaded, inputs, parameters, chunk, progress):
