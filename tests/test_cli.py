@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import workbench
+from commands import run_command
 
 import hapticlab as hl
 from hapticlab import board_commands, cli
@@ -23,6 +24,11 @@ PNG = b"\x89PNG\r\n\x1a\n"
 
 
 def command(*arguments, folder):
+    return run_command(arguments, folder)
+
+
+def from_nothing(*arguments, folder):
+    """Run it as a shell does: a new Python."""
     call = [sys.executable, "-m", "hapticlab", *map(str, arguments)]
     environment = {"PYTHONPATH": str(Path(hl.__file__).parents[1])}
     return subprocess.run(call, cwd=folder, capture_output=True, text=True, env=os.environ | environment)
@@ -31,7 +37,7 @@ def command(*arguments, folder):
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory):
     folder = tmp_path_factory.mktemp("demo")
-    return command("demo", "--quick", "--json", folder=folder), folder
+    return from_nothing("demo", "--quick", "--json", folder=folder), folder
 
 
 def test_demo_prints_json_and_nothing_else(demo):
@@ -328,7 +334,7 @@ def test_an_unwritable_folder_is_one_line(tmp_path):
 
 
 def test_version_and_help(tmp_path):
-    assert command("--version", folder=tmp_path).stdout.strip() == f"hapticlab {hl.__version__}"
+    assert from_nothing("--version", folder=tmp_path).stdout.strip() == f"hapticlab {hl.__version__}"
     helped = command("-h", folder=tmp_path)
     assert helped.returncode == 0
     assert "demo" in helped.stdout
