@@ -124,6 +124,7 @@ from .scene.proxy import proxy_curve, proxy_wall
 from .scene.scene import Scene
 from .scene.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, ground, replacement
 from .scene.symbols import T, coordinate, delay, n, parameters, signal, t, v, when, x
+from .widgets.show import show
 from .widgets.view import explore
 
 __version__: str
@@ -286,6 +287,7 @@ __all__ = [
     "rigid",
     "root_locus",
     "sensor_floor",
+    "show",
     "signal",
     "spin_down",
     "stability_limit",
