@@ -1,0 +1,46 @@
+"""Answers of lab 00, by the names of the notebook."""
+
+import numpy as np
+
+prediction = 1.8
+which_way = "b"
+
+
+def handle_position(counts, left, right, travel):
+    """Return positions [m]: the middle of the two readings is x = 0, and the stops span the travel, with its sign."""
+    return (counts - (left + right) / 2) * travel / (right - left)
+
+
+def sign_evidence(asked, moved, on):
+    """Return Z: the signed work over the root of the sum of squares."""
+    work = asked * moved
+    return np.sum(np.where(on == 1, 1, -1) * work) / np.sqrt(np.sum(work**2))
+
+
+def force_full(duty, grams):
+    """Return the slope of the weight over the square of the duty [N]."""
+    slope, _ = np.polyfit(duty**2, grams * 1e-3 * 9.80665, 1)
+    return slope
+
+
+def felt_stiffness(x, F):
+    """Return the stiffness of the best line through the origin [N/m]."""
+    return np.sum(F * x) / np.sum(x * x)
+
+
+def limits(k, metres_per_count, force_max, T):
+    """Return reach [m], force_step [N] and speed_step [m/s]."""
+    return {
+        "reach": force_max / k,
+        "force_step": k * metres_per_count,
+        "speed_step": metres_per_count / T,
+    }
+
+
+discussion = """
+With the wires swapped the motor applies +F_e instead of -F_e, so the wall behaves as a spring of stiffness -300 N/m about
+its boundary: the deeper the handle is, the harder it is pulled in. The equilibrium at the boundary is unstable and the
+handle runs away, exponentially with sqrt(k/m), until the stop. The board gives at most 0.5 N before the sign is checked,
+and its limits of speed, of travel and of force held too long switch the motor off with a fault; the switch of the motor's
+supply does it at once.
+"""
