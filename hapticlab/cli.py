@@ -1,4 +1,4 @@
-"""The command line: demo, run FILE.py, tradeoff FILE.py, and with a paddle plugged in ports, doctor, flash and calibrate."""
+"""The command line: demo, labs, run FILE.py, tradeoff FILE.py, and with a paddle plugged in ports, doctor, flash, calibrate."""
 
 import argparse
 import json
@@ -9,7 +9,7 @@ import traceback
 from dataclasses import replace
 from pathlib import Path
 
-from . import __version__
+from . import __version__, lab_commands
 from . import board_commands as board
 from . import demo as demonstration
 from .analysis.plots import plot
@@ -192,13 +192,14 @@ def _parser():
     parser = argparse.ArgumentParser(prog="hapticlab", description="From an equation of motion to a felt virtual wall.")
     parser.add_argument("--version", action="version", version=f"hapticlab {__version__}")
     parser.set_defaults(command=None, parser=parser)
-    commands = parser.add_subparsers(title="commands", metavar="{demo,run,tradeoff,ports,doctor,flash,calibrate}")
+    commands = parser.add_subparsers(title="commands", metavar="{demo,labs,run,tradeoff,ports,doctor,flash,calibrate}")
     shared = argparse.ArgumentParser(add_help=False)
     shared.add_argument("--json", action="store_true", help="print the numbers, named with units, as JSON and nothing else")
     text = "show where the chapter's wall begins to chatter, and run a student's own equation of motion"
     shown = commands.add_parser("demo", parents=[shared], help=text, description=text)
     shown.add_argument("--quick", action="store_true", help="fewer stiffnesses, shorter runs")
     shown.set_defaults(command=demo, parser=shown)
+    _add_labs(commands)
     text = "run a Python file that defines `scene`, and optionally `paddle` and `duration`"
     ran = commands.add_parser("run", parents=[shared], help=text, description=text)
     ran.add_argument("file", metavar="FILE.py")
@@ -217,6 +218,16 @@ def _parser():
         one.add_argument("--out", metavar="DIR", default=folder, help="where figure and telemetry go (default: %(default)s)")
     _add_board_commands(commands, shared)
     return parser
+
+
+def _add_labs(commands):
+    """Add what a course opens."""
+    text = "copy the labs into a folder, never over a file that is there, and open JupyterLab on them"
+    made = commands.add_parser("labs", help=text, description=text)
+    made.add_argument("folder", metavar="DIR", nargs="?", default="hapticlab-labs", help="(default: %(default)s)")
+    made.add_argument("--no-open", action="store_true", help="only copy, and say how to open them")
+    made.add_argument("--instructor", metavar="PATH", help="folder of answers: write solved notebooks beside, and mark them")
+    made.set_defaults(command=lab_commands.labs, parser=made)
 
 
 def _add_tradeoff(commands, shared):

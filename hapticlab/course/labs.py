@@ -1,4 +1,4 @@
-"""The labs: where they are, and the checks beside each."""
+"""The labs: where they are, the checks beside each, and copies of them, which overwrite nothing."""
 
 import runpy
 from dataclasses import dataclass
@@ -58,10 +58,59 @@ def labs_folder():
     raise CourseError(f"no labs in {' or '.join(map(str, PLACES))}; install hapticlab anew")
 
 
+def copy_labs(target):
+    """Copy the student's labs into a folder; a file that is there already stays as it is.
+
+    Parameters
+    ----------
+    target : str or Path
+        Made where it is missing.
+
+    Returns
+    -------
+    dict of str to str
+        Path in the folder to what happened: "new", "as it came", or "kept" where it differs from what came with the
+        package, as a student's own work does.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     first, again = copy_labs(folder), copy_labs(folder)
+    >>> set(first.values()), set(again.values())
+    ({'new'}, {'as it came'})
+    """
+    source, target = labs_folder(), Path(target)
+    if target.exists() and not target.is_dir():
+        raise CourseError(f"{target} is a file; name a folder for the labs")
+    if target.resolve() == source.resolve():
+        raise CourseError(f"{target} is where the labs come from; name another folder, for your own copy")
+    return {str(path): _copied(source / path, target / path) for path in _files(source)}
+
+
+def _files(source):
+    """Return the files of the labs, by their paths in the folder; none that Python or Jupyter made."""
+    paths = (path.relative_to(source) for path in sorted(source.rglob("*")) if path.is_file())
+    return [path for path in paths if not any(part.startswith((".", "__")) for part in path.parts)]
+
+
+def _copied(source, target):
+    """Copy a file to where there is none; what is there is never opened for writing."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    content = source.read_bytes()
+    try:
+        with target.open("xb") as file:
+            file.write(content)
+        return "new"
+    except FileExistsError:
+        return "as it came" if target.is_file() and target.read_bytes() == content else "kept"
+
+
 def find_labs(folder=None):
     """Return the labs in a folder, by default those that came with the package, in their order."""
     folder = labs_folder() if folder is None else Path(folder)
-    return [LabFolder(path) for path in sorted(folder.glob("[0-9][0-9]_*")) if (path / CHECKS).is_file()]
+    found = [LabFolder(path) for path in sorted(folder.glob("[0-9][0-9]_*"))]
+    return [lab for lab in found if lab.notebook.is_file() and (lab.path / CHECKS).is_file()]
 
 
 def find_lab(number, beside=None):

@@ -7,7 +7,7 @@ delete cells.
 import ast
 import io
 import json
-from contextlib import chdir, redirect_stdout
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -32,6 +32,17 @@ def read(path):
     return notebook
 
 
+def write(path, notebook):
+    """Write a notebook to where there is none; return whether it is there as given. A file that differs is left alone."""
+    text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
+    try:
+        with Path(path).open("x", encoding="utf-8") as file:
+            file.write(text)
+        return True
+    except FileExistsError:
+        return Path(path).is_file() and Path(path).read_text("utf-8") == text
+
+
 def code_of(notebook):
     """Return the source of each code cell."""
     return [_source(cell) for cell in notebook["cells"] if cell["cell_type"] == "code"]
@@ -47,7 +58,7 @@ def run(sources, folder):
     problems : list of Problem
     """
     names, problems = {"__name__": "__main__"}, []
-    with chdir(folder), redirect_stdout(io.StringIO()):
+    with chdir(folder), redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
         for number, source in enumerate(sources, start=1):
             try:
                 exec(compile(source, f"cell {number}", "exec"), names)
@@ -121,11 +132,15 @@ def _parts(source):
             name, is_open = node.name, _raises_not_implemented(node)
         elif isinstance(node, ast.Assign) and len(node.targets) == 1 and isinstance(node.targets[0], ast.Name):
             first, name = node.lineno, node.targets[0].id
-            is_open = isinstance(node.value, ast.Constant) and node.value.value in (None, "", ...)
+            is_open = isinstance(node.value, ast.Constant) and _is_empty(node.value.value)
         else:
             continue
         found.append(_Part(name, first, node.end_lineno, "\n".join(lines[first - 1 : node.end_lineno]), is_open))
     return found
+
+
+def _is_empty(value):
+    return value is None or value is ... or (isinstance(value, str) and not value.strip())
 
 
 def _raises_not_implemented(node):

@@ -1,0 +1,73 @@
+"""An instructor's folder of answers: the solved notebook of a lab, and what a notebook earns."""
+
+import shutil
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import CourseError
+from .marks import SOLUTION, hidden_cases, marks
+from .notebook import code_of, read, run, solved
+
+
+@dataclass(frozen=True)
+class Marked:
+    """What a notebook earned, and what its cells raised."""
+
+    marks: tuple
+    problems: list
+
+    @property
+    def earned(self):
+        """Points of all exercises together."""
+        return sum(mark.earned for mark in self.marks)
+
+
+def answers_for(labs, tree):
+    """Return the folders in an instructor's tree with the answers of labs, NN_name as the labs' own."""
+    folders = [Path(tree) / lab.name for lab in labs]
+    missing = [folder.name for folder in folders if not (folder / SOLUTION).is_file()]
+    if missing:
+        raise CourseError(
+            f"{tree} holds no {SOLUTION} for {', '.join(missing)}; name the folder of an instructor's answers, "
+            "tests/instructor of a checkout"
+        )
+    return folders
+
+
+def solved_notebook(folder, answers):
+    """Return a lab's notebook with the solution written in.
+
+    Parameters
+    ----------
+    folder : LabFolder
+    answers : Path
+        With solution.py.
+    """
+    solution = (answers / SOLUTION).read_text("utf-8")
+    return solved(read(folder.notebook), solution, [exercise.name for exercise in folder.lab().exercises])
+
+
+def mark_notebook(folder, notebook, answers, seed=0):
+    """Run a notebook of a lab in a copy of its folder, in this process, and mark what it holds at its end.
+
+    Only for notebooks that are trusted: their code runs with the rights of whoever marks.
+
+    Parameters
+    ----------
+    folder : LabFolder
+    notebook : dict
+    answers : Path
+        With solution.py and hidden.py.
+    seed : int
+        Of the hidden cases.
+
+    Returns
+    -------
+    Marked
+    """
+    with tempfile.TemporaryDirectory() as scratch:
+        place = shutil.copytree(folder.path, Path(scratch) / folder.name)
+        names, problems = run(code_of(notebook), place)
+    lab = folder.lab()
+    return Marked(marks(lab, names, hidden_cases(lab, answers, seed)), problems)

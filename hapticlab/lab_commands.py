@@ -1,0 +1,91 @@
+"""What the command line does with labs: a student's copy opened in JupyterLab, and an instructor's table of marks."""
+
+import importlib.util
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+from .course.instructor import answers_for, mark_notebook, solved_notebook
+from .course.labs import copy_labs, find_labs
+from .course.notebook import read, write
+from .errors import EngineMissingError
+
+
+def labs(parser, options):
+    """Copy the labs and open JupyterLab on them; for an instructor first the solved notebooks and their marks."""
+    folder, found = Path(options.folder), find_labs()
+    if options.instructor:
+        answers_for(found, options.instructor)
+    copied = copy_labs(folder)
+    _tell(folder, found, copied)
+    code = _mark_all(found, folder, options.instructor) if options.instructor else 0
+    if options.no_open:
+        print(f"\nto open them: {shlex.join(_jupyter(folder))}")
+        return code
+    fresh = [lab for lab in found if copied.get(f"{lab.name}/{lab.notebook.name}") == "new"]
+    return _open(_jupyter(folder, *fresh[:1])) or code
+
+
+def _tell(folder, found, copied):
+    """Say what is there, and what was left alone."""
+    print(f"labs in {folder.resolve()}")
+    for lab in (f.lab() for f in found):
+        print(f"  {lab.number}  {lab.title:<60} {lab.minutes:>4} min")
+    kept = [path for path, state in copied.items() if state == "kept"]
+    if kept:
+        print(f"left as they are, for they differ from what came with hapticlab and may hold your work:\n  {', '.join(kept)}")
+        print(f"to have these as they came, name another folder: hapticlab labs {folder.name}-new")
+
+
+def _mark_all(found, target, tree):
+    """Write the solved notebooks and print what they and the untouched ones earn; 1 unless that is all and nothing."""
+    print(f"\n{'lab':<30} {'points':>6} {'solution':>9} {'untouched':>10}")
+    good = [_mark(folder, Path(tree) / folder.name, target / folder.name) for folder in found]
+    return 0 if all(good) else 1
+
+
+def _mark(folder, answers, target):
+    """Write a lab's solved notebook and print its line; whether the solution earns all, the untouched notebook nothing."""
+    notebook, path = solved_notebook(folder, answers), target / f"{folder.name}-solved.ipynb"
+    solution, untouched = (mark_notebook(folder, given, answers) for given in (notebook, read(folder.notebook)))
+    state = "written" if write(path, notebook) else "left as it is: it differs from the solution"
+    points = folder.lab().points
+    print(f"{folder.name:<30} {points:>6g} {solution.earned:>9g} {untouched.earned:>10g}  {path.name} {state}", flush=True)
+    for name, marked in (("solution", solution), ("untouched", untouched)):
+        for problem in marked.problems:
+            print(f"  {name}, cell {problem.cell}: {problem.words}")
+    for mark in solution.marks:
+        if mark.earned != mark.points:
+            print(f"  solution, {mark.exercise}: {mark.right} of {mark.cases} cases; {mark.words}")
+    return solution.earned == points and untouched.earned == 0 and not solution.problems and not untouched.problems
+
+
+def _jupyter(folder, first=None):
+    """Return the command that opens JupyterLab of this environment on a folder, the first time on its first lab."""
+    command = [sys.executable, "-m", "jupyterlab", str(folder)]
+    if first is not None:
+        command.append(f"--LabApp.default_url=/lab/tree/{first.name}/{first.notebook.name}")
+    return command
+
+
+def _open(command):
+    """Run JupyterLab until it ends; Ctrl-C is its own to answer."""
+    if importlib.util.find_spec("jupyterlab") is None:
+        raise EngineMissingError(
+            "the labs are copied, and JupyterLab, which opens them, is not installed beside hapticlab; do: "
+            f'{shlex.quote(sys.executable)} -m pip install "hapticlab[notebook]"; then the same command again'
+        )
+    print(f"\nJupyterLab opens in your browser. Two Ctrl-C here end it; it runs as: {shlex.join(command)}", flush=True)
+    # the kernels of this environment before those of the same name that a user may have elsewhere
+    process = subprocess.Popen(command, env={**os.environ, "JUPYTER_PREFER_ENV_PATH": "1"})
+    while True:
+        try:
+            code = process.wait()
+            break
+        except KeyboardInterrupt:
+            continue
+    if code:
+        print(f"hapticlab: JupyterLab ended with code {code}; what it said is above", file=sys.stderr)
+    return 1 if code else 0
