@@ -1,0 +1,158 @@
+"""The live view in a browser: what a session does as bytes for a canvas, and what its hand says; opens anywidget.
+
+To the browser: what changed of the picture's items, the status, the flags and the values as JSON; beside it one buffer,
+float64 dispatch [s], scene time [s], number of rows; then float32 the rows and every point of the picture. From the
+browser: four float64, the view's number, what it says (``KINDS``), and up to two values.
+"""
+
+import struct
+import time
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import EngineMissingError
+from .frame import COLUMNS
+from .session import PRESSES
+
+KINDS = ("ready", "alive", "gone", "intend", "hold", "move", "press")
+BROWSER = Path(__file__).parent / "browser"
+SCRIPTS = ("playback.js", "picture.js", "traces.js", "view.js")
+#: time on view in the traces [s]
+SECONDS = 4.0
+
+
+def front(session):
+    """Return the widget that shows a session in a notebook and hands it what the browser says.
+
+    Parameters
+    ----------
+    session : Session
+
+    Raises
+    ------
+    EngineMissingError
+        Without anywidget.
+    """
+    widget = _canvas()(about=about(session))
+    speaker, listener = Speaker(widget.send), Listener(session)
+
+    def heard(_, content, buffers):
+        if buffers and listener.heard(bytes(buffers[0])):
+            speaker.forget()  # a new view has seen nothing yet
+
+    widget.on_msg(heard)
+    session.connect(speaker.say)
+    return widget
+
+
+def about(session):
+    """Return what a view has to know of a session before its first frame."""
+    return {"seconds": SECONDS, "along": session.picture.along, **session.description(), "presses": PRESSES}
+
+
+class Speaker:
+    """Tells every view of a widget what a frame shows; what is as before is not said again."""
+
+    def __init__(self, send):
+        self._send, self._said = send, {}
+
+    def forget(self):
+        """Say everything with the next frame."""
+        self._said = {}
+
+    def say(self, frame):
+        """Send a frame."""
+        shape, points = take_apart(frame.picture)
+        said = {"shape": shape, "flags": frame.flags, "status": frame.status or self._said.get("status", "")}
+        before, self._said = self._said, said
+        news = {name: value for name, value in said.items() if value != before.get(name)}
+        self._send(news, buffers=[pack(time.perf_counter(), frame, points)])
+
+
+class Listener:
+    """Hands a session what its views say.
+
+    A page that was loaded anew ends what the page before it showed, also where that one could not say goodbye: a board's
+    motor is off and waits for its Start button.
+    """
+
+    def __init__(self, session):
+        self._session, self._pages = session, {}
+        self._names = [parameter["name"] for parameter in session.description()["parameters"]]
+
+    def heard(self, message):
+        """Take a message of a view; return whether that view is new."""
+        number, kind, value, more = struct.unpack("<4d", message)
+        view, name, session = f"{number:.0f}", KINDS[int(kind)], self._session
+        if name == "ready":
+            self._welcome(view, page=value)
+        elif name == "gone":
+            self._pages.pop(view, None)
+            session.gone(view)
+        elif name == "alive":
+            self._pages[view] = value
+            session.alive(view)
+        elif name == "press":
+            session.press(PRESSES[int(value)])
+        elif name == "move":
+            session.move(self._names[int(value)], more)
+        elif name == "hold":
+            session.hold(bool(value))
+        else:
+            session.intend(value)
+        return name == "ready"
+
+    def _welcome(self, view, page):
+        if page not in self._pages.values():
+            for other in self._pages:
+                self._session.gone(other)
+            self._pages.clear()
+        self._pages[view] = page
+        self._session.ready(view)
+
+
+def take_apart(picture):
+    """Return what the items of a picture are, each with its number of points; and all points, shape (points, 2)."""
+    shape, points = [], []
+    for kind, *rest in picture:
+        if kind == "text":
+            (place, *style), places = rest, 1
+            points.append(place)
+        elif kind == "arrow":
+            (tail, tip, *style), places = rest, 2
+            points += [tail, tip]
+        else:
+            (corners, *style), places = rest, len(rest[0])
+            points += list(corners)
+        shape.append([kind, places, *style])
+    return shape, np.array(points, dtype="<f4").reshape(-1, 2)
+
+
+def pack(now, frame, points):
+    """Return the bytes of a frame that leaves at a moment [s]."""
+    rows = np.asarray(frame.rows, dtype="<f4").reshape(-1, len(COLUMNS))
+    return struct.pack("<3d", now, frame.time, len(rows)) + rows.tobytes() + points.tobytes()
+
+
+@cache
+def _canvas():
+    """Return the class of the widget; all that it draws with travels in it, so no network is needed."""
+    try:
+        import anywidget
+        import traitlets
+    except ImportError as missing:
+        raise EngineMissingError(
+            "hl.live draws with anywidget, which does not import here; do: pip install anywidget, in the environment of the "
+            "notebook"
+        ) from missing
+
+    class LiveCanvas(anywidget.AnyWidget):
+        """A canvas with buttons and sliders."""
+
+        _esm = "\n".join((BROWSER / script).read_text("utf-8") for script in SCRIPTS)
+        _css = (BROWSER / "view.css").read_text("utf-8")
+        about = traitlets.Dict().tag(sync=True)
+
+    return LiveCanvas

@@ -1,0 +1,126 @@
+"""A JupyterLab of its own, with a scripted student in a headless Chromium before it."""
+
+import importlib.util
+import json
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+REPOSITORY = Path(__file__).parents[2]
+FLAGS = (
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync",
+)  # fmt: skip
+IDLE = "() => /\\| Idle/.test(document.querySelector('#jp-main-statusbar')?.textContent)"  # also: connected
+SECONDS = 60  # how long anything may take before a test gives up
+NO_NEWS = {"fetchNews": "false", "checkForUpdates": False}
+
+
+def chromium():
+    """Return where Chromium is, or None."""
+    names = ("chromium", "chromium-browser", "google-chrome", "chrome")
+    return os.environ.get("HAPTICLAB_CHROMIUM") or next(filter(None, map(shutil.which, names)), None)
+
+
+def missing():
+    """Return what is missing here for a test in a browser; empty where nothing is."""
+    lacks = [name for name in ("playwright", "jupyterlab", "anywidget") if importlib.util.find_spec(name) is None]
+    lacks += [] if chromium() else ["Chromium"]
+    return f"a browser test needs {', '.join(lacks)}" if lacks else ""
+
+
+class Lab:
+    """A server, a browser, and the folder ``notebooks`` they share; ``prompt`` is whether hapticlab's extension is on."""
+
+    def __init__(self, folder, *, prompt=True):
+        self.folder, self.prompt = Path(folder), prompt
+        self.notebooks = self.folder / "notebooks"
+        self.notebooks.mkdir(parents=True)
+
+    def __enter__(self):
+        from playwright.sync_api import sync_playwright
+
+        self._server = self._serve()
+        self._playwright = sync_playwright().start()
+        self.browser = self._playwright.chromium.launch(executable_path=chromium(), args=FLAGS)
+        return self
+
+    def __exit__(self, *_):
+        self.browser.close()
+        self._playwright.stop()
+        self._server.terminate()
+        self._server.wait(30)
+        self._reader.join()
+        self._server.stderr.close()
+
+    def _serve(self):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        self.address = f"http://127.0.0.1:{port}"
+        home = self.folder / "home"
+        settings = home / "config" / "lab" / "user-settings" / "@jupyterlab" / "apputils-extension"
+        settings.mkdir(parents=True)
+        (settings / "notification.jupyterlab-settings").write_text(json.dumps(NO_NEWS))
+        places = {"JUPYTER_CONFIG_DIR": "config", "JUPYTER_DATA_DIR": "data", "JUPYTER_RUNTIME_DIR": "runtime", "IPYTHONDIR": "ipython"}
+        environment = os.environ | {name: str(home / place) for name, place in places.items()}
+        environment["PYTHONPATH"] = os.pathsep.join([str(REPOSITORY), os.environ.get("PYTHONPATH", "")])
+        environment["JUPYTER_CONFIG_PATH"] = str(REPOSITORY / "etc" / "jupyter") if self.prompt else ""
+        extensions = {} if self.prompt else {"hapticlab._jupyter": False}
+        command = [
+            sys.executable, "-m", "jupyterlab", "--allow-root", "--no-browser", "--ip=127.0.0.1", f"--port={port}",
+            "--IdentityProvider.token=", "--ServerApp.disable_check_xsrf=True", f"--ServerApp.root_dir={self.notebooks}",
+            f"--ServerApp.jpserver_extensions={json.dumps(extensions)}",
+        ]  # fmt: skip
+        server = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True, cwd=self.notebooks)
+        self.said = []
+        for line in server.stderr:
+            self.said.append(line)
+            if "is running at" in line:
+                break
+        else:
+            raise RuntimeError(f"JupyterLab did not start:\n{''.join(self.said)}")
+        self._reader = threading.Thread(target=lambda: self.said.extend(server.stderr), daemon=True)
+        self._reader.start()
+        return server
+
+    def write(self, name, *cells):
+        """Write a notebook of code cells, their code folded away so that what they show is on the screen."""
+        folded = {"jupyter": {"source_hidden": True}}
+        code = [
+            {"cell_type": "code", "id": f"cell{k}", "source": cell, "metadata": folded, "outputs": [], "execution_count": None}
+            for k, cell in enumerate(cells)
+        ]
+        kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
+        metadata = {"kernelspec": kernel, "language_info": {"name": "python"}}
+        notebook = {"cells": code, "metadata": metadata, "nbformat": 4, "nbformat_minor": 5}
+        (self.notebooks / f"{name}.ipynb").write_text(json.dumps(notebook), encoding="utf-8")
+
+    def open(self, name, *cells, width=1000, height=1100, **context):
+        """Write a notebook, open it in a page of its own and run all of it; return the page."""
+        self.write(name, *cells)
+        page = self.browser.new_context(viewport={"width": width, "height": height}, **context).new_page()
+        page.set_default_timeout(1000 * SECONDS)
+        page.goto(f"{self.address}/doc/tree/{name}.ipynb?reset")
+        page.wait_for_selector(".jp-Notebook .jp-Cell")
+        page.wait_for_function(IDLE)
+        run_all(page)
+        return page
+
+
+def run_all(page):
+    """Run every cell, by the menu."""
+    page.locator("li.lm-MenuBar-item:has-text('Run')").click()
+    page.locator("li.lm-Menu-item[data-command='runmenu:run-all']").click()
+
+
+def picture(page, name):
+    """Keep a picture of the page where $HAPTICLAB_ARTIFACTS says, if it does; a person looks at it."""
+    folder = os.environ.get("HAPTICLAB_ARTIFACTS")
+    if folder:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        page.screenshot(path=str(Path(folder) / f"{name}.png"))
