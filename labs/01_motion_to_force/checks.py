@@ -1,0 +1,172 @@
+"""Public checks of lab 01: numbers and the sentences that teach; no answers."""
+
+from hapticlab.course.exercise import Case, Exercise, Lab
+
+DAMPER_SIGN = "The damper feeds the hand: its power F v must be positive, so its force points along v, as a spring's along x."
+TURNED = "The sign is turned: F_e is the force ON the environment, Eq. (23.1); the motor applies -F_e."
+STEPS = {
+    "x": [0, 0.002, 0.005, 0.008, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01],
+    "T": 5e-3,
+    "values": {"m": 0.1, "K": 160.0, "b_c": 0.2},
+}
+
+LAB = Lab(
+    number="01",
+    title="From equations of motion to force",
+    minutes=90,
+    exercises=(
+        Exercise("prediction", kind="prediction", asks="the frequency at which the mass rings in your hand [Hz]"),
+        Exercise(
+            "spring_damper_force",
+            points=1,
+            asks="the force on the environment F_e [N] at x [m], v [m/s]",
+            cases=(
+                Case(
+                    {"x": 0.012, "v": -0.1, "k": 200.0, "b": 1.5}, 2.25, unit="N",
+                    slips={-2.25: TURNED, 2.55: DAMPER_SIGN, 2.4: "That is the spring alone.", -0.15: "The spring is missing."},
+                ),
+                Case(
+                    {"x": 0.0, "v": 0.2, "k": 200.0, "b": 1.5}, 0.3, unit="N",
+                    slips={-0.3: "Moved to the right, a damper is pushed to the right: it takes power in, F v > 0."},
+                ),
+            ),
+            hint="stretch a spring with your hands: which way do you push it where x > 0? Then the same for the damper",
+        ),
+        Exercise(
+            "spring_damper",
+            kind="scene",
+            points=1,
+            asks="a scene with force=..., of k, b, x(n) and v(n)",
+            cases=(
+                Case(
+                    {"x": [0, 0.001, 0.003, 0.003], "T": 1e-3, "values": {"k": 200.0, "b": 0.5}},
+                    [0.0, 0.7, 1.6, 0.6],
+                    unit="N",
+                    slips={(0.0, -0.7, -1.6, -0.6): TURNED, (0.0, -0.3, -0.4, 0.6): DAMPER_SIGN},
+                ),
+            ),
+            hint="the formula of spring_damper_force, in the symbols k, b, x(n), v(n)",
+        ),
+        Exercise(
+            "thousand",
+            kind="choice",
+            points=1,
+            asks='"a", "b" or "c"',
+            options={"a": "from metres to millimetres", "b": "1/T", "c": "from newtons to duty"},
+            cases=(
+                Case(
+                    {},
+                    "b",
+                    slips={
+                        "a": "Everything inside is in SI; only plots show millimetres. Compile with T=5e-4 and look again.",
+                        "c": "The board makes a duty of F, after the program. Compile with T=5e-4 and look again.",
+                    },
+                ),
+            ),
+            hint="print(hl.compile(damper(b=0.5), T=5e-4)) and compare",
+        ),
+        Exercise(
+            "spring_and_damper",
+            points=2,
+            asks='{"k": [N/m], "b": [N s/m]} of the best F = k x + b v',
+            rtol=1e-4,
+            cases=(
+                Case(
+                    {
+                        "x": [0.012, 0.008, -0.002, -0.01, -0.004],
+                        "v": [0.05, -0.2, -0.1, 0.02, 0.15],
+                        "F": [2.47, 1.31, -0.54, -1.97, -0.56],
+                    },
+                    {"k": 199.723785812, "b": 1.480876092},
+                    slips=(
+                        ({"k": 192.5}, "That is a spring fitted alone: it takes some of the damper's force for its own. "
+                         "Fit both at once."),
+                        ({"b": -2.757294430}, "That is a damper fitted alone: it takes some of the spring's force for its own. "
+                         "Fit both at once."),
+                        ({"k": 199.676498}, "There is no constant force in this model: two columns, x and v."),
+                    ),
+                ),
+            ),
+            hint="np.linalg.lstsq(np.column_stack([x, v]), F, rcond=None)[0]",
+        ),
+        Exercise(
+            "count_step",
+            points=1,
+            asks="the jump of the force [N] at one count",
+            cases=(
+                Case(
+                    {"m": 0.1, "metres_per_count": 12.8e-6, "T": 1e-3}, 1.28, unit="N",
+                    slips={
+                        0.00128: "A second difference is divided by T squared; by T it would be a velocity.",
+                        2.56: "The middle sample has the weight 2, and it has not moved yet: only x(n) has.",
+                        12.8: "That is the acceleration; the force is m times it.",
+                    },
+                ),
+                Case({"m": 0.05, "metres_per_count": 1e-4, "T": 2e-3}, 1.25, unit="N",
+                     slips={0.0025: "A second difference is divided by T squared; by T it would be a velocity."}),
+            ),
+            hint="only x(n) has moved by one count; x(n-1) and x(n-2) are as before",
+        ),
+        Exercise(
+            "mass_on_coupler",
+            kind="scene",
+            points=3,
+            asks="a scene of a mass m with coordinate z, tied to the handle by K and b_c; force, eom, watch=[z]",
+            rtol=1e-5,
+            cases=(
+                Case(
+                    STEPS,
+                    [0.0, 0.4, 0.89934168, 1.314201618, 1.47108638, 1.208461989, 0.983042509, 0.724304734, 0.439410422,
+                     0.139920776],
+                    unit="N",
+                    slips={
+                        (0.0, 0.4, 0.94094232, 1.489167668, 1.904716781, 2.040872419, 2.338173781, 2.729270253, 3.234379173,
+                         3.875019361): "The mass runs away from the handle: in its equation the coupler must pull it TOWARDS "
+                        "the handle, so m z'' = +F_c with F_c = K (x - z) + ...",
+                        (0.0, -0.4, -0.89934168, -1.314201618, -1.47108638, -1.208461989, -0.983042509, -0.724304734,
+                         -0.439410422, -0.139920776): TURNED,
+                        (0.0, -0.4, -0.94094232, -1.489167668, -1.904716781, -2.040872419, -2.338173781, -2.729270253,
+                         -3.234379173, -3.875019361): "Both signs are turned, as with K (z - x): the force on the mass points "
+                        "to the handle, and the force on the environment is that same force.",
+                        (0.0, 0.24, 0.677321953, 1.131772137, 1.424247649, 1.380335491, 1.197347694, 0.966940288, 0.695476377,
+                         0.393419815): "The coupler's damper has the wrong sign: it must resist the relative velocity x' - z'.",
+                        (0.0, 0.32, 0.783841097, 1.209456947, 1.421673848, 1.255526064, 1.042697965, 0.793003254, 0.514336953,
+                         0.218041227): "The damper lies between handle and mass: it sees x' - z', not z' alone.",
+                        (0.0, 0.4, 0.903785333, 1.329011063, 1.500056826, 1.251435499, 1.034390461, 0.77850388, 0.491581859,
+                         0.185062796): "The mass does not feel the damper that the hand feels: action and reaction must be "
+                        "the same F_c.",
+                        (0.0, 0.32, 0.787002593, 1.214042313, 1.425906273, 1.257660422, 1.041089729, 0.790914967, 0.511856227,
+                         0.215270371): "The hand does not feel the damper that the mass feels: action and reaction must be "
+                        "the same F_c.",
+                    },
+                ),
+            ),
+            hint="name it first: F_c = K*(x(t) - z) + b_c*(v(t) - z.diff(t)); it is force=, and the right side of m z''",
+        ),
+        Exercise(
+            "resonance",
+            points=1,
+            asks='{"f": natural frequency [Hz], "zeta": damping ratio}',
+            rtol=1e-4,
+            cases=(
+                Case(
+                    {"m": 0.1, "K": 160.0, "b_c": 0.02},
+                    {"f": 6.366197724, "zeta": 0.0025},
+                    slips=(
+                        ({"f": 40.0}, "That is in rad/s; a hertz is 2 pi of them."),
+                        ({"zeta": 0.005}, "The critical damping is 2 sqrt(K m), not sqrt(K m)."),
+                        ({"zeta": 0.1}, "That is a decay rate, b_c/(2m) in 1/s; divide it by the natural frequency in rad/s."),
+                    ),
+                ),
+                Case({"m": 0.05, "K": 300.0, "b_c": 1.5}, {"f": 12.328088881, "zeta": 0.193649167}),
+            ),
+            hint="m z'' + b_c z' + K z = 0, beside z'' + 2 zeta w z' + w^2 z = 0",
+        ),
+        Exercise(
+            "discussion",
+            kind="text",
+            asks="what the second difference does, and what the coupler costs, in 40 words or more",
+            least_words=40,
+        ),
+    ),
+)
