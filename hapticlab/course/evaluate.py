@@ -6,8 +6,10 @@ not known here.
 
 import copy
 import inspect
+import io
 from collections.abc import Mapping
-from dataclasses import dataclass
+from contextlib import redirect_stdout
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,10 +23,14 @@ MOST_NUMBERS = 1_000_000
 
 @dataclass(frozen=True)
 class Outcome:
-    """What an answer gave for one case: a plain value; or why there is none, in words; or nothing, where unanswered."""
+    """What an answer gave for one case: a plain value; or why there is none, in words; or nothing, where unanswered.
+
+    ``printed`` is what its code printed meanwhile.
+    """
 
     value: object = None
     problem: str = ""
+    printed: str = ""
 
     @property
     def answered(self):
@@ -51,12 +57,19 @@ def evaluate(kind, answer, given):
     Examples
     --------
     >>> evaluate("function", lambda x, k: k * x, {"x": 0.012, "k": 200.0})
-    Outcome(value=2.4, problem='')
+    Outcome(value=2.4, problem='', printed='')
     >>> evaluate("function", lambda position: 200 * position, {"x": 0.012}).problem
     'it takes (position), and is called with x=; keep the names of the notebook'
     >>> evaluate("value", None, {}).answered
     False
     """
+    output = io.StringIO()
+    with redirect_stdout(output):
+        outcome = _guarded(kind, answer, given)
+    return outcome if output.closed else replace(outcome, printed=output.getvalue())
+
+
+def _guarded(kind, answer, given):
     try:
         return _evaluated(kind, answer, copy.deepcopy(dict(given)))
     except KeyboardInterrupt:

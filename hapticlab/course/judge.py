@@ -153,13 +153,15 @@ def _slip(case, exercise, wanted, got):
     if np.abs(wanted).max(initial=0) <= exercise.atol:
         return ""
     for factor, sentence in FACTORS:
-        if _close(factor * wanted, got):
+        if _close(factor * wanted, got, min(max(NEAR, exercise.rtol), 0.1)):
             return sentence
     if wanted.ndim == 1 and wanted.size > 3 and np.ptp(wanted) > 0:
         if _close(wanted[:-1], got[1:]):
             return "It is one sample late."
         if _close(wanted[1:], got[:-1]):
             return "It is one sample early."
+    if _close(wanted, got, 1e-2):
+        return "It is within one percent: is a number rounded, or a constant another, such as 9.8 for 9.81 m/s^2?"
     return ""
 
 
@@ -176,6 +178,8 @@ def _value(number, unit):
 def _shape_words(shape):
     if shape == ():
         return "one number"
+    if shape == (1,):
+        return "an array of one number"
     return f"{shape[0]} numbers" if len(shape) == 1 else f"an array of shape {shape}"
 
 

@@ -62,7 +62,7 @@ def run(sources, folder):
         for number, source in enumerate(sources, start=1):
             try:
                 exec(compile(source, f"cell {number}", "exec"), names)
-            except Exception as problem:
+            except (Exception, SystemExit) as problem:
                 problems.append(Problem(number, f"{type(problem).__name__}: {problem}"))
     return names, problems
 

@@ -1,0 +1,322 @@
+"""hl.check: what it says of right, wrong, missing and hostile answers; it never raises, and a wrong one earns nothing."""
+
+import builtins
+import math
+import sys
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import hapticlab as hl
+from hapticlab import n, x
+from hapticlab.course.check import checked
+from hapticlab.course.exercise import Case, Exercise, Lab
+from hapticlab.course.marks import marks
+
+CASES = (
+    Case({"x": 0.012, "v": -0.1, "k": 200.0}, 2.4, unit="N", slips={2.0: "Here the wall begins at x_o."}),
+    Case({"x": -0.01, "v": 0.0, "k": 200.0}, -2.0, unit="N"),
+)
+FORCE = Exercise("force", points=2, asks="the force [N] at x [m]", cases=CASES, hint="Eq. (23.1)")
+FOUR = Case({"x": [0.0, 0.01, 0.02, 0.04]}, [0.0, 2.0, 4.0, 8.0], unit="N")
+TABLE = Exercise("table", points=1, asks="forces [N]", cases=[FOUR])
+WALL = Exercise(
+    "wall", kind="scene", points=3, asks="a wall",
+    cases=[Case({"x": [0, 0.005, 0.012], "values": {"k": 150.0, "x_o": 0.01}}, [0, 0, 0.3], unit="N")],
+)  # fmt: skip
+LAB = Lab("98", "Tests", 1, (FORCE, TABLE, WALL))
+
+
+def right(x, v, k):
+    return k * x
+
+
+def look(exercise, answer):
+    result = checked(f"98.{exercise.name}", exercise, answer)
+    earned = sum(m.earned for m in marks(LAB, {exercise.name: answer}))
+    assert earned == (exercise.points if result.passed else 0)
+    return result
+
+
+def test_a_right_answer_passes_and_earns():
+    result = look(FORCE, right)
+    assert result.passed and result.answered
+    assert result.text == (
+        "98.force: right (2 points)\n"
+        "  right: x = 0.012, v = -0.1, k = 200: 2.4 N\n"
+        "  right: x = -0.01, v = 0, k = 200: -2 N"
+    )  # fmt: skip
+    result.require()
+
+
+def test_a_wrong_answer_names_the_case_the_slip_and_the_hint():
+    result = look(FORCE, lambda x, v, k: 2.0)
+    assert "wrong: x = 0.012, v = -0.1, k = 200: 2 N, expected 2.4 N. Here the wall begins at x_o." in result.text
+    assert result.text.endswith("hint: Eq. (23.1)")
+    with pytest.raises(AssertionError, match="not right yet"):
+        result.require()
+
+
+@pytest.mark.parametrize("open_answer", [None, ..., "", "  "])
+def test_what_is_not_answered_is_told_so(open_answer):
+    for exercise in (FORCE, TABLE, WALL):
+        assert look(exercise, open_answer).text == f"98.{exercise.name}: not answered yet: {exercise.asks}"
+
+
+def test_a_body_that_is_still_missing_is_not_answered():
+    def force(x, v, k):
+        raise NotImplementedError
+
+    assert not look(FORCE, force).answered
+    assert not look(WALL, lambda: None).answered
+
+
+def test_one_case_of_two_answered_is_not_right():
+    def half(x, v, k):
+        if x < 0:
+            raise NotImplementedError
+        return k * x
+
+    assert [v.right for v in look(FORCE, half).verdicts] == [True, False]
+
+
+class Hostile:
+    """Raises whatever is asked of it."""
+
+    def __getattribute__(self, name):
+        raise SystemExit(f"no {name}")
+
+
+class LikesEverything(float):
+    """A number that claims to be near every other."""
+
+    def __sub__(self, other):
+        return 0.0
+
+    __rsub__ = __sub__
+
+    def __float__(self):
+        return 99.0
+
+    def __eq__(self, other):
+        return True
+
+    __hash__ = float.__hash__
+
+
+class Array(np.ndarray):
+    def __array_ufunc__(self, *_, **__):
+        return np.array(0.0)
+
+
+def exits(x, v, k):
+    sys.exit(0)
+
+
+def loops(x, v, k):
+    return loops(x, v, k)
+
+
+def closes(x, v, k):
+    sys.stdout.close()
+    return 0
+
+
+def floods(x, v, k):
+    for line in range(1000):
+        print("line", line)
+    return 0
+
+
+def changes(x, v, k):
+    builtins_print, builtins.print = builtins.print, None
+    builtins.print = builtins_print
+    raise ValueError("  two\nlines " + 1000 * "!")
+
+
+def itself():
+    nested = []
+    nested.append(nested)
+    return nested
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (lambda x, v, k: math.nan, "nan N, expected 2.4 N. NaN (no number)"),
+        (lambda x, v, k: math.inf, "inf N, expected"),
+        (lambda position, v, k: 200 * position, "it takes (position, v, k), and is called with x=, v=, k=; keep the names"),
+        (lambda: 2.4, "it takes (), and is called"),
+        (lambda x, v, k, b: 2.4, "it takes (x, v, k, b)"),
+        (lambda x, v, k: None, "it returns None; is its `return` missing?"),
+        (lambda x, v, k: "2.4 N", "a text, needs one number"),
+        (lambda x, v, k: True, "True or False, needs one number"),
+        (lambda x, v, k: [2.4], "an array of one number, needs one number"),
+        (lambda x, v, k: np.full((2, 3), 2.4), "an array of shape (2, 3), needs one number"),
+        (lambda x, v, k: [[1], [2, 3]], "its rows not equally long"),
+        (lambda x, v, k: np.array(["a"]), "needs an array of real numbers"),
+        (lambda x, v, k: 2.4 + 1j, "2.4+1j is a complex number"),
+        (lambda x, v, k: 10**400, "is no number"),
+        (lambda x, v, k: {"F": 2.4}, "a dict, needs one number"),
+        (lambda x, v, k: iter([2.4]), "a list_iterator is no number"),
+        (lambda x, v, k: (yield 2.4), "a generator is no number"),
+        (lambda x, v, k: sp.Symbol("k") * x, "it still holds k: put numbers in"),
+        (lambda x, v, k: np.zeros(2_000_000), "more than 1000000"),
+        (lambda x, v, k: itself(), ""),
+        (lambda x, v, k: LikesEverything(1.0), "99 N, expected"),
+        (lambda x, v, k: np.array(1.0).view(Array), "1 N, expected"),
+        (lambda x, v, k: Hostile(), "it raises SystemExit"),
+        (lambda x, v, k: 1 / 0, "it raises ZeroDivisionError: division by zero"),
+        (lambda x, v, k: -k * x, "The sign is turned."),
+        (lambda x, v, k: 1e3 * k * x, "1000 times too large"),
+        (lambda x, v, k: 1.002 * k * x, "within one percent"),
+        (exits, "it raises SystemExit: 0"),
+        (loops, "it raises RecursionError"),
+        (closes, "0 N, expected"),
+        (floods, "0 N, expected"),
+        (changes, "it raises ValueError: two lines !!!"),
+        (2.4, "it is a float, needs a function of (x, v, k)"),
+        (Hostile, "it takes (), and is called"),
+        (math.hypot, "it raises TypeError"),
+    ],
+)
+def test_no_answer_breaks_a_check_or_earns_what_it_should_not(answer, words):
+    result = look(FORCE, answer)
+    assert result.answered and not result.passed
+    assert words in result.text
+    assert max(map(len, result.text.splitlines())) < 500
+
+
+def test_an_object_that_refuses_every_question_is_refused():
+    for exercise in (FORCE, TABLE, WALL, Exercise("p", "prediction"), Exercise("k", "value", 1, cases=[Case({}, 1.0)])):
+        result = checked("98.x", exercise, Hostile())
+        assert not result.passed and "it raises SystemExit: no __" in result.text
+
+
+def test_the_line_of_a_cell_is_named_where_it_raises():
+    names = {"__name__": "__main__"}
+    exec("def force(x, v, k):\n    y = 0\n    return 1 / y", names)
+    assert "it raises ZeroDivisionError in line 3 of its cell: division by zero" in look(FORCE, names["force"]).text
+
+
+def test_a_person_who_interrupts_is_obeyed():
+    def interrupted(x, v, k):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        checked("98.force", FORCE, interrupted)
+
+
+def test_an_answer_cannot_change_what_it_is_given():
+    def spoils(x):
+        x *= 0
+        return [0.0, 2.0, 4.0, 8.0]
+
+    assert look(TABLE, spoils).passed
+    assert TABLE.cases[0].given["x"] == [0.0, 0.01, 0.02, 0.04]
+    assert look(TABLE, lambda x: 200 * x).passed  # lists come as arrays
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (lambda x: 200 * x[:-1], "3 numbers, needs 4 numbers"),
+        (lambda x: 100 * x, "3 of 4 numbers differ, first [1]: 1 N, expected 2 N. It is half"),
+        (lambda x: 200 * np.append(0.0, x[:-1]), "It is one sample late."),
+        (lambda x: 200 * np.append(x[1:], 0.0), "It is one sample early."),
+    ],
+)
+def test_arrays_are_compared_number_by_number(answer, words):
+    assert words in look(TABLE, answer).text
+
+
+def scene(force=None, **given):
+    k, x_o = hl.parameters("k x_o", units="N/m m")
+    return hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n) - x_o)) if force is None else force(k, x_o), **given)
+
+
+def test_scenes_are_compared_by_what_they_do():
+    assert look(WALL, hl.wall()).passed
+    assert look(WALL, scene).passed  # a function that makes it
+    assert look(WALL, scene()).passed
+    k, x_o = hl.parameters("k x_o", units="N/m m")
+    assert look(WALL, hl.Scene(force=k * sp.Max(x(n) - x_o, 0))).passed  # another way to write it
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (lambda: scene(lambda k, x_o: hl.when(x(n) >= x_o, -k * (x(n) - x_o))), "The sign is turned"),
+        (lambda: scene(lambda k, x_o: k * (x(n) - x_o)), "2 of 3 numbers differ"),
+        (lambda: hl.Scene(force=hl.parameters("k", units="N/m") * x(n)), "the scene has no parameter x_o"),
+        (lambda: scene(lambda k, x_o: k * sp.sqrt(x(n) - x_o)), "in m^(1/2)*kg*s^-2 but (force, in N) is in N"),
+        (lambda: scene(lambda k, x_o: k * x_o * sp.sqrt(x(n) / x_o - 1)), "NaN (no number)"),
+        (3.0, "needs a Scene"),
+        (lambda: 1 / 0, "ZeroDivisionError"),
+    ],
+)
+def test_wrong_scenes_are_told_why(answer, words):
+    result = look(WALL, answer)
+    assert not result.passed and result.answered
+    assert words in result.text
+
+
+def test_a_scene_with_motion_is_run_as_asked():
+    z = hl.coordinate("z", unit="m")
+    m, K, b = hl.parameters("m K b", units="kg N/m N*s/m", values=(0.05, 300.0, 0.5))
+    F = hl.virtual_coupler(z, K=K, b=b)
+    body = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)], watch=[z])
+    time = np.arange(20) * 1e-3
+    given = {"x": list(1e-3 * np.sin(60 * time)), "v": list(0.06 * np.cos(60 * time)), "method": "exact", "channels": ["z"]}
+    program = hl.compile(body, "exact", T=1e-3, dtype="float64", velocity="measured", live=())
+    rows = np.array([given[c.name] for c in program.inputs]).T
+    out = hl.compiler.engine.load(program).run(20, rows).outputs[:, :, 0]
+    names = [c.name for c in program.outputs]
+    exercise = Exercise(
+        "body", kind="scene", points=1, cases=[Case(given, {name: out[:, names.index(name)].tolist() for name in ("F", "z")})]
+    )
+    assert checked("98.body", exercise, body).passed
+    still = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F / 2)], watch=[z])
+    assert "F: 1" in checked("98.body", exercise, still).text
+    unwatched = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)])
+    assert "does not watch z" in checked("98.body", exercise, unwatched).text
+
+
+def test_what_is_noted_is_never_judged():
+    prediction, text = Exercise("p", "prediction", asks="a number"), Exercise("t", "text", least_words=3, asks="why")
+    assert checked("98.p", prediction, 12).text == "98.p: noted; compare it with what you find"
+    assert checked("98.p", prediction, "more").passed
+    assert not checked("98.p", prediction, Hostile()).passed
+    assert checked("98.t", text, "two words").text == "98.t: 2 words, needs at least 3: why"
+    assert checked("98.t", text, "these are three").passed
+    assert marks(Lab("98", "", 1, (prediction, text)), {"p": 1}) == ()
+
+
+def test_a_value_or_a_choice_never_tells_its_answer():
+    value = Exercise("k", "value", 1, asks="k", cases=[Case({}, 151.5, unit="N/m")])
+    case = Case({}, "motor", slips={"hand": "Look again."})
+    choice = Exercise("w", "choice", 1, options={"hand": "A", "motor": "B"}, cases=[case])
+    assert checked("98.k", value, 151.5).passed and checked("98.w", choice, " Motor ").passed
+    for exercise, wrong, words in (
+        (value, 3.0, "3 N/m: not yet."), (value, "B", "needs one number"), (value, -151.5, "The sign is turned."),
+        (choice, "hand", "hand: not this one. Look again."), (choice, "x", "'x', needs one of 'hand', 'motor'"),
+        (choice, 2, "a number, needs a text"),
+    ):  # fmt: skip
+        result = checked("98.x", exercise, wrong)
+        assert words in result.text and not result.passed
+        assert "151" not in result.text.replace("-151.5 N/m", "") and "motor:" not in result.text
+
+
+def test_parts_of_a_dict_are_judged_one_by_one():
+    slips = [({"F": 2.4}, "Hooke, not Coulomb."), ({"fits": True}, "It overflows.")]
+    both = Exercise("b", points=1, cases=[Case({}, {"F": -2.4, "fits": False, "T": [1.0, 2.0]}, unit="N", slips=slips)])
+    good = {"F": -2.4, "fits": False, "T": (1, 2)}
+    assert checked("98.b", both, lambda: good | {"more": 1}).passed
+    for change, words in (
+        ({"F": 2.4}, "F: 2.4 N, expected -2.4 N. Hooke, not Coulomb."), ({"fits": np.True_}, "It overflows."),
+        ({"fits": 1}, "fits: a number, needs True or False"), ({"T": 1}, "T: one number, needs 2 numbers"),
+    ):  # fmt: skip
+        assert words in checked("98.b", both, lambda change=change: good | change).text
+    assert "T is missing" in checked("98.b", both, lambda: {"F": 1, "fits": False}).text
+    assert "needs a dict with F, fits, T" in checked("98.b", both, lambda: 1).text
