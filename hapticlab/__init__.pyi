@@ -124,6 +124,7 @@ from .scene.proxy import proxy_curve, proxy_wall
 from .scene.scene import Scene
 from .scene.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, ground, replacement
 from .scene.symbols import T, coordinate, delay, n, parameters, signal, t, v, when, x
+from .widgets.live import live
 from .widgets.show import show
 from .widgets.view import explore
 
@@ -248,6 +249,7 @@ __all__ = [
     "largest_stiffness",
     "law_limits",
     "library",
+    "live",
     "local_stiffness",
     "measured_impedance",
     "methods",

@@ -38,8 +38,10 @@ class Stepping:
         With the hand that holds the handle.
     held : bool
         Whether the hand holds the handle.
-    ticks : int
-        Done since the start.
+    begun : bool
+        Whether it can go on from where it is.
+    t : float
+        Time of the next sample [s].
     place : float
         Position of the handle at the next sample [m].
     fault : str or None
@@ -57,7 +59,7 @@ class Stepping:
     600
     """
 
-    kind, sends_every = "simulated", 1
+    kind, begun, motor, waits = "simulated", True, False, ""
 
     def __init__(self, paddle, scene, *, x=0.0, v=0.0, engine="auto", **options):
         self.program = paddle.program(scene, **options)
@@ -73,6 +75,10 @@ class Stepping:
             (deviation, np.random.default_rng([self.paddle.seed, stream]))
             for stream, deviation in enumerate((self.paddle.noise, hand.noise))
         ]
+
+    @property
+    def t(self):
+        return self.ticks * self.paddle.T
 
     def advance(self, intent):
         """Advance by one tick less than there are places, and return what was sampled.
@@ -131,6 +137,9 @@ class Stepping:
             self.held = held
             self._states = np.array([[known.get(name, 0.0)] for name in self._loop().names])
         self.held = held
+
+    def stop(self):
+        """Stand still: a simulation moves only when it is advanced."""
 
     def warm(self):
         """Compile what taking and letting go need, so that no tick waits for it."""

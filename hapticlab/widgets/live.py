@@ -1,0 +1,202 @@
+"""hl.live: a paddle and a scene in a notebook, moving."""
+
+import weakref
+
+import numpy as np
+
+from ..device.hand import require
+from ..device.intents import MinimumJerk
+from ..device.stepping import with_grip
+from ..errors import EngineMissingError, PaddleError
+from ..records import Telemetry
+from ..scene.scene import check_scene
+from .front import front as canvas
+from .plain import front as plain
+from .session import Session
+
+#: scene time over the clock's time
+SPEEDS = (1e-3, 10.0)
+#: how far the rehearsal goes to either side [m]
+REACH = 0.015
+RECORDED, REHEARSED = "recorded in the view", "rehearsal: nobody recorded here"
+
+
+def live(paddle, scene, *, sliders=None, speed=1.0, picture=None, rehearsal=None, duration=4.0, **compile_options):
+    """Show a paddle and a scene in a notebook: it moves, can be pushed, and every parameter has a slider.
+
+    On a simulated paddle the pointer, a finger or the arrow keys say where the hand means to be; the hand is the paddle's
+    own, its intent and push replaced, or ``hl.hand("pinch")`` where that has no spring. On a board the hand is yours, and
+    the motor goes on only when Start is pressed. Nothing runs before a notebook shows the view; all ends when its last view
+    closes or falls silent for 2 s.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle or SerialPaddle
+    scene : Scene
+        With values for all its parameters.
+    sliders : dict of str to (low, high), optional
+        In SI; by default of every live parameter.
+    speed : float
+        Scene time over the clock's: 0.1 is slow motion. A board's is 1.
+    picture : str, shapes or callable, optional
+        Instead of the scene's own picture: see :func:`~hapticlab.widgets.picture.moving_picture`.
+    rehearsal : callable, optional
+        An intent of an array of times [s], in metres, for ``view.log`` where nobody recorded: by default a push from -15 mm
+        to 15 mm and back.
+    duration : float
+        Of the rehearsal [s].
+    **compile_options
+        Of hapticlab.compile: method, substeps, hold, dtype, live.
+
+    Returns
+    -------
+    LiveView
+        A notebook shows it where it is the last line of a cell; ``view.log`` is what was recorded.
+
+    Raises
+    ------
+    PaddleError, ParameterError, SceneError, AnalysisError
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.hand("pinch"))
+    >>> view = hl.live(paddle, hl.wall()(k=300, x_o=0.01), duration=1.0)
+    >>> view.set(k=600)
+    >>> print(view)
+    live view of zoh wall: not on view; B = 0 N*s/m, k = 600 N/m, x_o = 0.01 m
+    >>> log = view.log
+    >>> print(view.log_from, len(log), round(float(log.F.max()), 1))
+    rehearsal: nobody recorded here 1000 1.1
+    """
+    check_scene(scene)
+    low, high = SPEEDS
+    speed = require("speed", speed, "", "a live view", "1 is real time, 0.1 slow motion.", low=low)
+    if speed > high:
+        raise PaddleError(f"speed = {speed:g}; a live view needs {low:g} to {high:g}. 1 is real time, 0.1 slow motion.")
+    duration = require("duration", duration, "s", "a rehearsal", above=0)
+    session = Session(paddle, scene, sliders=sliders, speed=speed, picture=picture, **compile_options)
+    return LiveView(session, rehearsal, duration, compile_options)
+
+
+class LiveView:
+    """A paddle and a scene on view; made by :func:`live`."""
+
+    def __init__(self, session, rehearsal, duration, options):
+        self._session, self._options = session, options
+        self._rehearsal, self._duration = rehearsal or _push(duration), duration
+        self._front, self._rehearsed = None, (None, None)
+        # whoever else keeps the session, its thread or a widget, it ends with this view
+        weakref.finalize(self, session.close)
+
+    @property
+    def values(self):
+        """The scene's parameters as they are now, SI."""
+        return self._session.values
+
+    @property
+    def status(self):
+        """What goes on, in words."""
+        return self._session.status
+
+    @property
+    def log(self):
+        """What was recorded last; on a simulated paddle where nobody recorded, what a hand without a view does."""
+        recorded = self._session.recorded()
+        if recorded is not None:
+            return recorded
+        if self._session.source.kind == "board":
+            raise PaddleError("nothing was recorded: press Start and then Record in the view, push, and press Stop recording")
+        if self._rehearsed[0] != self.values:
+            self._rehearsed = dict(self.values), self._rehearse()
+        return self._rehearsed[1]
+
+    @property
+    def log_from(self):
+        """Where :attr:`log` comes from, in words."""
+        return REHEARSED if self._session.recorded() is None else RECORDED
+
+    def set(self, **values):
+        """Set parameters from the next tick on, as sliders do; what is out of range is refused."""
+        known = self._session.scene.parameters
+        numbers = {name: known[name].check(value) if name in known else value for name, value in values.items()}
+        self._session.set(**numbers)
+
+    def start(self):
+        """Run from the beginning. A board's motor is started by hand, in the view."""
+        self._by_hand("Start")
+        self._session.pressed("start")
+
+    def pause(self):
+        """Stand still; a board's motor goes off."""
+        self._session.pressed("pause")
+
+    def resume(self):
+        """Run on."""
+        self._by_hand("Start")
+        self._session.pressed("resume")
+
+    def record(self):
+        """Record from the next sample on, once the scene runs."""
+        self._session.pressed("record")
+
+    def stop_recording(self):
+        """End the recording; :attr:`log` is what it holds."""
+        self._session.pressed("stop")
+
+    def save(self, path):
+        """Write :attr:`log` to a file and return its path; ``hl.Telemetry.load`` reads it."""
+        return self.log.save(path)
+
+    def replay(self, log=None):
+        """Play a log in the view, the last one recorded by default; a board's motor is off meanwhile."""
+        if log is not None and not isinstance(log, Telemetry):
+            raise PaddleError(f"replay of a {type(log).__name__}; needs a record: view.log, or hl.Telemetry.load(path)")
+        self._session.pressed("replay", self.log if log is None else log)
+
+    def close(self):
+        """End the view; a board's motor goes off."""
+        self._session.end()
+
+    def _by_hand(self, button):
+        if self._session.source.kind == "board":
+            raise PaddleError(f"a motor does not start because a cell ran: press {button} in the view, and hold the handle")
+
+    def _rehearse(self):
+        session = self._session
+        start = float(np.asarray(self._rehearsal(np.zeros(1)), float).reshape(-1)[0])
+        paddle = with_grip(session.source.paddle, self._rehearsal)
+        scene = session.scene(**self.values)
+        return paddle.run(scene, duration=self._duration, x=start, progress=False, **self._options)
+
+    def __repr__(self):
+        shown = ", ".join(f"{s.name} = {self.values[s.name]:g} {s.unit}" for s in self._session.spans)
+        state = self.status.rstrip(".") if self._session.on_view else "not on view"
+        return f"live view of {self._session.source.program.name}: {state}; {shown or 'no parameters'}"
+
+    def _repr_mimebundle_(self, **options):
+        if self._front is None:
+            self._front = _front(self._session)
+        bundle = {} if self._front is None else self._front._repr_mimebundle_(**options)
+        text = f"{self!r}\nIt moves where a notebook shows widgets (JupyterLab, with: pip install 'hapticlab[notebook]')."
+        if isinstance(bundle, tuple):
+            return {**bundle[0], "text/plain": text}, bundle[1]
+        return {**(bundle or {}), "text/plain": text}
+
+
+def _push(duration):
+    """Return the usual rehearsal: from 0 to -15 mm, to 15 mm, a rest, and back."""
+    out, to, back = 0.15 * duration, 0.35 * duration, 0.35 * duration
+    begin = MinimumJerk(end=-REACH, duration=out)
+    push = MinimumJerk(end=2 * REACH, duration=to, begin=out)
+    return begin + push + MinimumJerk(end=-2 * REACH, duration=back, begin=duration - back)
+
+
+def _front(session):
+    """Return the widget that shows a session: anywidget's where it imports, else plain ones, else None."""
+    for make in (canvas, plain):
+        try:
+            return make(session)
+        except EngineMissingError:
+            continue
+    return None

@@ -1,0 +1,171 @@
+"""What moves in a live view: the scene, by the clock and led by a hand, or a record of it that is played again."""
+
+import math
+
+import numpy as np
+
+from ..device.live import named_values
+from .pace import Pace
+from .recorder import Recorder, Replay
+from .traces import Traces
+
+#: a hand goes no faster to where the pointer is [m/s], and follows it so late [s]: a pointer's steps would shake it
+FASTEST, FOLLOWS = 1.0, 0.025
+
+
+class Motion:
+    """The scene on its paddle, advanced to the clock whenever somebody asks.
+
+    Parameters
+    ----------
+    source : Stepping or Streaming
+        What gives samples.
+    speed : float
+        Scene time over the clock's time.
+    clock : callable
+        Seconds.
+
+    Attributes
+    ----------
+    running : bool
+        The scene runs; on a board the motor is on, or waits for the handle's home.
+    held : bool
+    log : Telemetry or None
+        What was recorded last.
+    """
+
+    def __init__(self, source, speed, clock):
+        self.source, self.speed, self.clock = source, speed, clock
+        self.pace = Pace(source.paddle.T, speed)
+        self.running, self.held, self.log = False, True, None
+        self._recorder = self._replay = self._live = None
+        self._at = 0.0
+        self._last = {"x": 0.0, "F": 0.0}
+        self.traces = Traces(source.paddle.T)
+
+    @property
+    def recording(self):
+        return self._recorder is not None
+
+    @property
+    def replaying(self):
+        return self._replay is not None
+
+    @property
+    def time(self):
+        """Of the last sample shown [s]."""
+        return float(self._last.get("t", 0.0))
+
+    @property
+    def place(self):
+        """Of the handle as last shown [m]."""
+        return self._last.get("x_true", self._last["x"])
+
+    def start(self):
+        """Run from the beginning; a recording ends."""
+        self.stop_recording()
+        self.source.stop()
+        self.traces, self._at = Traces(self.source.paddle.T), 0.0
+        self.source.start()
+        self.running, self._replay = True, None
+        self.wake()
+
+    def resume(self):
+        """Run on; from the beginning after a fault, and on a board."""
+        if self.source.fault or not self.source.begun:
+            self.start()
+        elif not self.running:
+            self.running = True
+            self.wake()
+
+    def pause(self):
+        """Stand still; a board's motor goes off, and its recording ends."""
+        self.running = False
+        self.source.stop()
+        if not self.source.begun:
+            self.stop_recording()
+
+    def wake(self):
+        """Count time from now on: what passed before is not made up for."""
+        self.pace.start(self.clock())
+
+    def hold(self, held):
+        """Take the handle, or let go of it."""
+        if held != self.held:
+            self.held, self._at = held, self.source.place
+            self.source.hold(held)
+
+    def set(self, **values):
+        """Set parameters between two ticks, or refuse them."""
+        numbers = self.source.check(**values)
+        self.source.set(**numbers)
+        if self._recorder is not None:
+            self._recorder.changed(self.source.t, numbers)
+
+    def record(self):
+        """Record from the next sample on."""
+        self._recorder = Recorder(self.source)
+
+    def stop_recording(self):
+        """End a recording; what has samples is the log."""
+        if self._recorder is not None and self._recorder.samples:
+            self.log = self._recorder.log()
+        self._recorder = None
+
+    def recorded(self):
+        """Return the log of what is being recorded, or of what was; None without one."""
+        if self._recorder is not None and self._recorder.samples:
+            return self._recorder.log()
+        return self.log
+
+    def replay(self, log):
+        """Play a log, while the scene stands still; None ends it."""
+        if log is None:
+            self._end_replay()
+            return
+        if self.source.kind == "board":
+            self.pause()
+        self._live = self._live or (self.traces, self._last)
+        self._replay, self.traces = Replay(log, self.speed, self.clock()), Traces(log.T)
+
+    def advance(self, wanted):
+        """Go on to the clock, with a hand that means to be at a place [m]; return rows as a Frame has them, or None."""
+        now = self.clock()
+        if self._replay is not None:
+            samples = self._replay.take(now)
+            if samples is None and self._replay.done:
+                self._end_replay()
+        else:
+            samples = self._lead(self.pace.due(now), wanted) if self.running else None
+        if samples is None or not len(samples["t"]):
+            return None
+        self._last = {name: float(column[-1]) for name, column in samples.items()}
+        return self.traces.add(samples)
+
+    def values(self):
+        """Return what a picture is drawn from: the last sample, and the parameters."""
+        parameters = self._replay.parameters if self._replay is not None else named_values(self.source.program)
+        return {"T": self.source.paddle.T, **parameters, **self._last, "x": self.place}
+
+    def _lead(self, ticks, wanted):
+        if not ticks:
+            return None
+        began, seconds = self.clock(), ticks * self.source.paddle.T
+        way = (wanted - self._at) * -math.expm1(-seconds / self.speed / FOLLOWS)
+        to = self._at + float(np.clip(way, -FASTEST * seconds, FASTEST * seconds))
+        samples = self.source.advance(np.linspace(self._at, to, ticks + 1))
+        self._at = to
+        self.pace.spent(ticks, self.clock() - began)
+        if samples is not None and self._recorder is not None:
+            self._recorder.add(samples)
+            if self._recorder.full:
+                self.stop_recording()
+        if self.source.fault is not None or not self.source.begun:
+            self.pause()
+        return samples
+
+    def _end_replay(self):
+        self._replay = None
+        if self._live is not None:
+            (self.traces, self._last), self._live = self._live, None
+        self.wake()

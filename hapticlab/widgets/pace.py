@@ -1,0 +1,65 @@
+"""Ticks that are due by the clock, counted from where it began so that nothing drifts."""
+
+from collections import deque
+
+#: at most so much of the clock is made up for at once [s]; what is more is dropped, and told
+LONGEST = 0.05
+#: one turn may compute for so long [s], that inputs and pictures go on where the computer is slow
+WORK = 0.02
+#: what was dropped is told for so long [s]
+TOLD = 1.0
+
+
+class Pace:
+    """How many ticks are due.
+
+    Parameters
+    ----------
+    T : float
+        Period [s].
+    speed : float
+        Scene time over the clock's time.
+
+    Examples
+    --------
+    >>> pace = Pace(1e-3)
+    >>> pace.start(7.0)
+    >>> pace.due(7.0165), pace.due(7.0175), pace.due(7.3)    # 233 ms late: 50 are made up for
+    (16, 1, 50)
+    >>> round(pace.behind(7.3), 4)
+    0.233
+    """
+
+    def __init__(self, T, speed=1.0):
+        self.T, self.speed = T, speed
+        self._dropped, self._cost = deque(), 0.0
+
+    def start(self, now):
+        """Count from here on [s]."""
+        self._begun, self._done = now, 0
+
+    def due(self, now):
+        """Return the ticks to do now."""
+        wanted = int((now - self._begun) * self.speed / self.T + 1e-6) - self._done
+        most = LONGEST * self.speed / self.T
+        if self._cost:
+            most = min(most, WORK / self._cost)
+        most = max(1, int(most + 1e-6))
+        if wanted > most:
+            late = (wanted - most) * self.T / self.speed
+            self._begun += late
+            self._dropped.append((now, late))
+            wanted = most
+        self._done += max(wanted, 0)
+        return max(wanted, 0)
+
+    def spent(self, ticks, seconds):
+        """Note how long ticks took to compute."""
+        if ticks:
+            self._cost += 0.2 * (seconds / ticks - self._cost)
+
+    def behind(self, now):
+        """Return how much of the clock was dropped within the last second [s]."""
+        while self._dropped and self._dropped[0][0] < now - TOLD:
+            self._dropped.popleft()
+        return sum(late for _, late in self._dropped)

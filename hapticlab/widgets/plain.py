@@ -1,0 +1,181 @@
+"""The live view without anywidget: a picture in SVG, sliders and buttons of ipywidgets."""
+
+import html
+import time
+
+import numpy as np
+
+from ..errors import EngineMissingError
+
+#: an SVG is drawn so often a second at most
+RATE = 30.0
+#: in pixels
+WIDTH, HEIGHT, GRAPH = 640, 220, 130
+#: time on view in the traces [s]
+SECONDS = 4.0
+#: the browser counts while its page is open, every so many milliseconds
+BEAT = 500
+STEPS = 200
+DASHES = ("", "7 3", "2 3")
+
+
+def front(session):
+    """Return the widget that shows a session.
+
+    Raises
+    ------
+    EngineMissingError
+        Without ipywidgets.
+    """
+    return PlainFront(_open_ipywidgets(), session).box
+
+
+def _open_ipywidgets():
+    try:
+        import ipywidgets
+    except ImportError as missing:
+        raise EngineMissingError(
+            "hl.live draws with widgets, which do not import here; do: pip install 'hapticlab[notebook]', in the environment "
+            "of the notebook"
+        ) from missing
+    return ipywidgets
+
+
+class PlainFront:
+    """Widgets on a session. ``box`` is what a notebook shows."""
+
+    def __init__(self, widgets, session):
+        self.session, self.about = session, session.description()
+        self._rows, self._drawn, self._showing = np.zeros((0, 5)), -1.0, False
+        self.image, self.status = widgets.HTML(), widgets.HTML()
+        # counts in the browser by itself, and so says that a page is there; ipywidgets has nothing else that does
+        self.heart = widgets.Play(
+            min=0, max=2**30, interval=BEAT, playing=True, layout={"display": "none"}
+        )
+        self.heart.observe(lambda change: session.alive("page"), names="value")
+        self.sliders = [self._slider(widgets, number, given) for number, given in enumerate(self.about["parameters"])]
+        self.buttons = {name: widgets.Button(description=words) for name, words in self._presses().items()}
+        for name, button in self.buttons.items():
+            button.on_click(lambda _, name=name: session.press(name))
+        low, high = (1e3 * end for end in self.about["x_range"])
+        self.hand = widgets.FloatSlider(
+            value=0.0, min=low, max=high, step=0.1, description="hand [mm]", continuous_update=True,
+            layout={"width": f"{WIDTH}px"},
+        )  # fmt: skip
+        self.hand.observe(lambda change: session.intend(1e-3 * change["new"]), names="value")
+        hand = [self.hand] if self.about["kind"] == "simulated" else []
+        help_ = widgets.HTML(html.escape(self.about["help"]))
+        self.box = widgets.VBox(
+            [widgets.HBox(list(self.buttons.values())), self.image, self.status, *hand, *self.sliders, help_, self.heart]
+        )
+        session.connect(self.show)
+
+    def show(self, frame):
+        """Draw a frame, if the one before is long enough ago."""
+        self._rows = np.concatenate([self._rows, frame.rows])
+        if len(frame.rows) and frame.rows[0, 0] < self._rows[0, 0]:
+            self._rows = np.asarray(frame.rows)  # time began anew
+        self._rows = self._rows[self._rows[:, 0] > frame.time - SECONDS]
+        if frame.status:
+            self.status.value = html.escape(frame.status)
+        now = time.monotonic()
+        if frame.flags.get("running") and now < self._drawn + 1 / RATE - 2e-3:
+            return
+        self._drawn = now
+        self.image.value = svg(frame, self._rows, self.about)
+        self._follow(frame.flags.get("values", {}))
+
+    def _follow(self, values):
+        """Put the sliders where the parameters are."""
+        self._showing = True
+        try:
+            for slider, given in zip(self.sliders, self.about["parameters"], strict=True):
+                value = values.get(given["name"], slider.value)
+                if abs(value - slider.value) > 1e-6 * (given["high"] - given["low"]):
+                    slider.value = value
+        finally:
+            self._showing = False
+
+    def _presses(self):
+        board = self.about["kind"] == "board"
+        run = {"start": "Start motor", "pause": "Stop motor"} if board else {"resume": "Run", "pause": "Pause"}
+        return {**run, "record": "Record", "stop": "Stop recording", "save": "Save", "replay": "Replay"}
+
+    def _slider(self, widgets, number, given):
+        slider = widgets.FloatSlider(
+            value=given["value"], min=given["low"], max=given["high"], step=(given["high"] - given["low"]) / STEPS,
+            description=f"{given['name']} [{given['unit']}]", description_tooltip=given["limit_words"],
+            readout_format=".4g", style={"description_width": "9em"}, layout={"width": f"{WIDTH}px"},
+        )  # fmt: skip
+
+        def moved(change):
+            if not self._showing:
+                self.session.move(number, change["new"])
+
+        slider.observe(moved, names="value")
+        return slider
+
+
+def svg(frame, rows, about):
+    """Return a frame as SVG: the picture, and the traces of the last seconds under it."""
+    left, right, bottom, top = about["box"]
+    scale = min(WIDTH / (right - left), HEIGHT / (top - bottom))
+
+    def place(point):
+        x = (point[0] - (left + right) / 2) * scale + WIDTH / 2
+        return f"{x:.1f},{(HEIGHT / 2 - (point[1] - (bottom + top) / 2) * scale):.1f}"
+
+    picture = "".join(_item(item, place) for item in frame.picture)
+    traces = "".join(_trace(k, trace, rows, frame.time) for k, trace in enumerate(about["traces"]))
+    title = html.escape(f"{about['title']} at {frame.time:.1f} s")
+    return (
+        f'<svg role="img" aria-label="{title}" viewBox="0 0 {WIDTH} {HEIGHT + 3 * GRAPH}" width="{WIDTH}" '
+        f'style="background:#fff;font:12px sans-serif">{picture}{traces}</svg>'
+    )
+
+
+def _item(item, place):
+    kind, where, *rest = item
+    if kind == "line":
+        width, colour, dash = rest
+        dashed = f' stroke-dasharray="{" ".join(map(str, dash))}"' if dash else ""
+        return _path(where, place, f'fill="none" stroke="{colour}" stroke-width="{width:g}"{dashed}')
+    if kind == "area":
+        fill, edge = rest
+        return _path(where, place, f'fill="{fill or "none"}" stroke="{edge or "none"}"', " Z")
+    if kind == "arrow":
+        tip, colour = rest[:2]
+        return _path([where, tip], place, f'stroke="{colour}" stroke-width="2.5"') + _head(where, tip, place, colour)
+    text, colour = rest[0], rest[1]
+    x, y = place(where).split(",")
+    return f'<text x="{x}" y="{y}" text-anchor="middle" fill="{colour}">{html.escape(str(text))}</text>'
+
+
+def _path(points, place, style, end=""):
+    return f'<path d="M{" L".join(map(place, points))}{end}" {style}/>' if len(points) else ""
+
+
+def _head(tail, tip, place, colour):
+    tip, tail = (np.array([float(c) for c in place(p).split(",")]) for p in (tip, tail))
+    along = (tip - tail) / (np.hypot(*(tip - tail)) or 1.0)
+    across = np.array([-along[1], along[0]])
+    corners = [tip, tip - 9 * along + 4 * across, tip - 9 * along - 4 * across]
+    return f'<path d="M{" L".join(f"{x:.1f},{y:.1f}" for x, y in corners)} Z" fill="{colour}"/>'
+
+
+def _trace(k, trace, rows, time):
+    """Return one scrolling trace with its name, unit and range."""
+    top = HEIGHT + k * GRAPH
+    shown = rows[:, k + 1] * trace["scale"] if len(rows) else np.zeros(1)
+    low, high = min(float(shown.min()), 0.0), max(float(shown.max()), 0.0)
+    span = (high - low) or 1.0
+    y = top + GRAPH - 12 - (shown - low) / span * (GRAPH - 32)
+    x = WIDTH * (1 - (time - rows[:, 0]) / SECONDS) if len(rows) else np.array([0.0])
+    points = " L".join(f"{a:.0f},{b:.1f}" for a, b in zip(x, y, strict=True))
+    zero = top + GRAPH - 12 + low / span * (GRAPH - 32)
+    words = html.escape(f"{trace['label']} [{trace['unit_shown']}], {low:.3g} to {high:.3g}")
+    return (
+        f'<line x1="0" x2="{WIDTH}" y1="{zero:.1f}" y2="{zero:.1f}" stroke="#999"/>'
+        f'<path d="M{points}" fill="none" stroke="#222" stroke-dasharray="{DASHES[k]}"/>'
+        f'<text x="4" y="{top + 12}" fill="#222">{words}</text>'
+    )

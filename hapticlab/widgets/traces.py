@@ -1,0 +1,77 @@
+"""From samples as they come to the rows that a front end draws, the energy among them, and the recent second."""
+
+from collections import deque
+
+import numpy as np
+
+from .frame import COLUMNS, THINNED
+
+#: how much is kept in full to say what goes on [s]
+RECENT = 1.0
+
+
+class Traces:
+    """The rows of frames.
+
+    The energy drawn from the environment is minus the work on it, force and displacement paired as they acted, Fig. 23.6:
+    what :func:`hapticlab.energy` gives of the whole record.
+
+    Parameters
+    ----------
+    T : float
+        Time between two samples [s].
+
+    Examples
+    --------
+    >>> traces = Traces(1e-3)
+    >>> t, x = np.arange(4) * 1e-3, np.array([0.0, 0.002, 0.0, -0.001])
+    >>> traces.add({"t": t, "x": x, "F": np.array([0.0, 0.2, 0.0, 0.0])})[:, 3].tolist()
+    [0.0, 0.00039999998989515007]
+    """
+
+    def __init__(self, T):
+        self.T = T
+        self._step = max(1, int(np.ceil(THINNED / T - 1e-9)))
+        self._energy, self._last, self._count = 0.0, None, 0
+        self._recent, self._length = deque(), 0
+
+    def add(self, samples):
+        """Take samples, a dict of arrays as a Telemetry names them; return their rows, thinned, as a Frame has them."""
+        x, F = samples["x"], samples["F"]
+        energy = self._drawn(samples)
+        intent = samples.get("intent", np.full(len(x), np.nan))
+        rows = np.column_stack([samples["t"], x, F, energy, intent]).astype(np.float32)
+        kept = (self._count + np.arange(len(x))) % self._step == 0
+        self._count += len(x)
+        self._keep(x, F)
+        return rows[kept].reshape(-1, len(COLUMNS))
+
+    def recent(self):
+        """Return x [m] and F [N] of the last second."""
+        if not self._recent:
+            return np.zeros(0), np.zeros(0)
+        return tuple(np.concatenate(part) for part in zip(*self._recent, strict=True))
+
+    def _keep(self, x, F):
+        self._recent.append((x, F))
+        self._length += len(x)
+        while self._length - len(self._recent[0][0]) >= RECENT / self.T:
+            self._length -= len(self._recent.popleft()[0])
+
+    def _drawn(self, samples):
+        """Return the energy drawn from the environment at each sample [J]."""
+        x = samples.get("x_true", samples["x"]).astype(float)
+        held = samples.get("F_applied", samples["F"]).astype(float)
+        switch = samples.get("x_switch")
+        switch = x if switch is None else switch
+        last = self._last or {"x": x[0], "held": held[0], "before": 0.0, "switch": switch[0]}
+        places = np.r_[last["x"], x]
+        forces = np.r_[last["before"], last["held"], held]
+        at = np.r_[last["switch"], switch][:-1]
+        work = forces[:-2] * (at - places[:-1]) + forces[1:-1] * (places[1:] - at)
+        if self._last is None:
+            work[0] = 0.0
+        found = self._energy - np.cumsum(work)
+        self._energy = float(found[-1])
+        self._last = {"x": x[-1], "held": held[-1], "before": forces[-2], "switch": switch[-1]}
+        return found

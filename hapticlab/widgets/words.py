@@ -1,0 +1,64 @@
+"""What goes on, in words that change only when it does."""
+
+import numpy as np
+
+from ..analysis.chatter import SHORTEST, chatter
+from ..errors import AnalysisError
+from ..records import Telemetry
+
+#: a hand moves slower than this, chatter is faster [Hz]; and larger than this [m]
+SLOWEST, SMALLEST = 8.0, 2e-5
+#: of a moving mean that takes a hand's own motion away [s]
+MEAN = 0.1
+#: what is sustained is at least so strong in every quarter of the last half as in the strongest: a bounce is not
+SUSTAINED = 0.5
+#: what was dropped of a second of the clock is told from here on, and from here on with what to do [s]
+LATE, MUCH = 0.02, 0.3
+
+
+def chatter_words(x, F, T):
+    """Say how a handle chatters in its recent second, or nothing.
+
+    Parameters
+    ----------
+    x, F : array
+        Position [m] and force [N], a sample every T [s].
+
+    Examples
+    --------
+    >>> t = np.arange(1000) * 1e-3
+    >>> x = 0.02 * t + 5e-4 * np.sin(2 * np.pi * 30 * t)
+    >>> chatter_words(x, 100 * x, 1e-3)
+    'Chatter: 0.5 mm at 30 Hz'
+    >>> chatter_words(0.01 * np.sin(6 * t), 100 * x, 1e-3)
+    ''
+    """
+    width = max(1, round(MEAN / T))
+    if len(x) < max(SHORTEST, 4 * width) or not np.ptp(x) > SMALLEST or not np.any(F):
+        return ""
+    total = np.cumsum(np.r_[0.0, x])
+    fast = x[width // 2 : width // 2 + len(x) - width + 1] - (total[width:] - total[:-width]) / width
+    kept = F[width // 2 : width // 2 + len(fast)]
+    strengths = [np.std(part) for part in np.array_split(fast[len(fast) // 2 :], 4)]
+    if not min(strengths) >= SUSTAINED * max(strengths):
+        return ""
+    try:
+        found = chatter(Telemetry(t=np.arange(len(fast)) * T, x=fast, v=0 * fast, F=kept, T=T))
+    except AnalysisError:  # not finite: the fault says more
+        return ""
+    if found.frequency is None or found.frequency < SLOWEST or found.amplitude < SMALLEST:
+        return ""
+    return f"Chatter: {1e3 * found.amplitude:.2g} mm at {found.frequency:.0f} Hz"
+
+
+def late_words(behind):
+    """Say that the computer did not keep up, from so many seconds dropped within the last one; or nothing."""
+    if behind < LATE:
+        return ""
+    said = f"The computer fell behind by {round(1e3 * behind, -1):.0f} ms in the last second"
+    return said if behind < MUCH else f"{said}: too slow for this scene; give speed=0.1 or a cheaper method"
+
+
+def contact_words(F):
+    """Say whether the environment pushes, from recent forces [N]."""
+    return "in contact" if np.any(F) else "nothing touched"
