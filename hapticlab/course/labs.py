@@ -83,8 +83,9 @@ def copy_labs(target):
     source, target = labs_folder(), Path(target)
     if target.exists() and not target.is_dir():
         raise CourseError(f"{target} is a file; name a folder for the labs")
-    if target.resolve() == source.resolve():
-        raise CourseError(f"{target} is where the labs come from; name another folder, for your own copy")
+    if source.resolve() in (target.resolve(), *target.resolve().parents):
+        inside = "" if target.resolve() == source.resolve() else "inside the folder "
+        raise CourseError(f"{target} is {inside}where the labs come from; name another, for your own copy")
     return {str(path): _copied(source / path, target / path) for path in _files(source)}
 
 

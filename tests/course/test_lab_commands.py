@@ -1,0 +1,181 @@
+"""`hapticlab labs`: what is copied, what is never touched, how JupyterLab is opened, and an instructor's table."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from hapticlab.cli import main
+from hapticlab.course import labs as course_labs
+from hapticlab.course.notebook import read, write
+
+CHECKS = """
+from hapticlab.course.exercise import Case, Exercise, Lab
+LAB = Lab("{0}", "Springs {0}", 10, [Exercise("force", points=2, asks="a force", cases=[Case({{"k": 2.0}}, 6.0)])])
+"""
+UNTOUCHED = "def force(k):\n    raise NotImplementedError"
+#: stands for JupyterLab: it writes down how it was called, and asks once before it ends
+STAND_IN = """
+import json, os, signal, sys
+asked = []
+signal.signal(signal.SIGINT, lambda *_: sys.exit(3) if asked else (asked.append(1), print("sure?", flush=True)))
+open("called.json", "w").write(json.dumps([sys.argv[1:], os.environ.get("JUPYTER_PREFER_ENV_PATH")]))
+print("serving", flush=True)
+if os.environ.get("STAY"):
+    while True:
+        signal.pause()
+sys.exit(int(os.environ.get("CODE", 0)))
+"""
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    """Two small labs, their answers, a stand-in for JupyterLab, and an empty folder to be in."""
+    for number in ("08", "09"):
+        lab, answers = tmp_path / "labs" / f"{number}_springs", tmp_path / "answers" / f"{number}_springs"
+        lab.mkdir(parents=True)
+        answers.mkdir(parents=True)
+        (lab / "checks.py").write_text(CHECKS.format(number))
+        cell = {"cell_type": "code", "id": "a", "metadata": {}, "outputs": [], "execution_count": None, "source": UNTOUCHED}
+        write(lab / f"{number}_springs.ipynb", {"cells": [cell], "metadata": {}, "nbformat": 4, "nbformat_minor": 5})
+        (answers / "solution.py").write_text("def force(k):\n    return 3 * k")
+        (answers / "hidden.py").write_text("def cases(random):\n    return {'force': [{'k': random.uniform()}]}")
+    for junk in ("__pycache__/checks.pyc", ".ipynb_checkpoints/08.ipynb"):
+        (tmp_path / "labs" / "08_springs" / junk).parent.mkdir()
+        (tmp_path / "labs" / "08_springs" / junk).touch()
+    (tmp_path / "labs" / "README.md").write_text("Labs")
+    stand_in = tmp_path / "modules" / "jupyterlab"
+    stand_in.mkdir(parents=True)
+    (stand_in / "__init__.py").touch()
+    (stand_in / "__main__.py").write_text(STAND_IN)
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    monkeypatch.setattr(course_labs, "PLACES", (tmp_path / "labs",))
+    root = str(Path(course_labs.__file__).parents[2])
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(tmp_path / "modules"), root]))
+    monkeypatch.syspath_prepend(tmp_path / "modules")
+    return tmp_path
+
+
+def files(folder):
+    return {str(path.relative_to(folder)): path.read_text() for path in Path(folder).rglob("*") if path.is_file()}
+
+
+def test_labs_are_copied_and_jupyterlab_of_this_environment_opens_on_them(place, capfd):
+    assert main(["labs"]) == 0
+    copied = files("hapticlab-labs")
+    assert sorted(copied) == [
+        "08_springs/08_springs.ipynb", "08_springs/checks.py", "09_springs/09_springs.ipynb", "09_springs/checks.py", "README.md",
+    ]  # fmt: skip
+    assert copied == {path: text for path, text in files(place / "labs").items() if path in copied}
+    arguments, prefers_this_environment = json.loads(Path("called.json").read_text())
+    assert arguments == ["hapticlab-labs", "--LabApp.default_url=/lab/tree/08_springs/08_springs.ipynb"]
+    assert prefers_this_environment == "1"
+    out = capfd.readouterr().out
+    assert "  08  Springs 08" in out and f"labs in {Path('hapticlab-labs').resolve()}" in out
+    assert f"{sys.executable} -m jupyterlab" in out
+    assert "serving" in out
+    assert main(["labs"]) == 0
+    assert json.loads(Path("called.json").read_text())[0] == ["hapticlab-labs"]  # where the student left it
+
+
+def test_a_students_work_is_never_overwritten(place, capsys):
+    assert main(["labs", "mine", "--no-open"]) == 0
+    Path("mine/08_springs/08_springs.ipynb").write_text("my work")
+    Path("mine/09_springs/checks.py").unlink()
+    Path("mine/README.md").unlink()
+    Path("mine/README.md").mkdir()
+    Path("mine/notes.txt").write_text("also mine")
+    capsys.readouterr()
+    assert main(["labs", "mine", "--no-open"]) == 0
+    out = capsys.readouterr().out
+    assert "may hold your work:\n  08_springs/08_springs.ipynb, README.md\n" in out
+    assert "hapticlab labs mine-new" in out
+    found = files("mine")
+    assert (found["08_springs/08_springs.ipynb"], found["notes.txt"]) == ("my work", "also mine")
+    assert found["09_springs/checks.py"] == CHECKS.format("09")  # what was missing is there again
+    assert not Path("called.json").exists()
+
+
+@pytest.mark.skipif(not hasattr(os, "symlink"), reason="no links here")
+def test_a_link_leads_no_writing_elsewhere(place):
+    Path("mine/08_springs").mkdir(parents=True)
+    os.symlink(place / "elsewhere.ipynb", "mine/08_springs/08_springs.ipynb")
+    assert main(["labs", "mine", "--no-open"]) == 0
+    assert not (place / "elsewhere.ipynb").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["labs", "file", "--no-open"], "file is a file; name a folder for the labs"),
+        (["labs", "../labs", "--no-open"], "is where the labs come from"),
+        (["labs", "new", "--no-open", "--instructor", "nowhere"], "nowhere holds no solution.py for 08_springs, 09_springs"),
+        (["labs", "../labs/sub", "--no-open"], "is inside the folder where the labs come from"),
+    ],
+)
+def test_a_folder_that_cannot_be_is_refused_before_anything_is_written(place, arguments, words, capsys):
+    Path("file").touch()
+    before = files(place)
+    assert main(arguments) == 1
+    assert words in capsys.readouterr().err
+    assert files(place) == before
+
+
+def test_without_jupyterlab_the_labs_are_copied_and_the_cure_is_said(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "jupyterlab", None)
+    assert main(["labs"]) == 1
+    assert f'{sys.executable} -m pip install "hapticlab[notebook]"' in capsys.readouterr().err
+    assert Path("hapticlab-labs/08_springs/08_springs.ipynb").is_file()
+
+
+def test_without_labs_it_is_said(place, monkeypatch, capsys):
+    monkeypatch.setattr(course_labs, "PLACES", (place / "none",))
+    assert main(["labs"]) == 1
+    assert "no labs in" in capsys.readouterr().err
+
+
+def test_jupyterlab_that_fails_is_reported(monkeypatch, capfd):
+    monkeypatch.setenv("CODE", "5")
+    assert main(["labs"]) == 1
+    assert "JupyterLab ended with code 5" in capfd.readouterr().err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no process groups here")
+def test_ctrl_c_is_answered_by_jupyterlab_alone(place):
+    code = "import sys; from hapticlab.course import labs; from hapticlab.cli import main; from pathlib import Path\n"
+    code += f"labs.PLACES = (Path({str(place / 'labs')!r}),); sys.exit(main(['labs']))"
+    process = subprocess.Popen(
+        [sys.executable, "-c", code], env={**os.environ, "STAY": "1"}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, start_new_session=True,
+    )  # fmt: skip
+    with process:
+        for words in ("serving\n", "sure?\n"):
+            assert words in iter(process.stdout.readline, "")
+            os.killpg(process.pid, signal.SIGINT)
+        assert process.wait(30) == 1
+        assert process.stderr.read() == "hapticlab: JupyterLab ended with code 3; what it said is above\n"
+
+
+def test_an_instructor_gets_solved_notebooks_and_their_marks(place, capsys):
+    command = ["labs", "--no-open", "--instructor", str(place / "answers")]
+    Path("hapticlab-labs/08_springs").mkdir(parents=True)
+    Path("hapticlab-labs/08_springs/08_springs.ipynb").write_text("a student's")  # the table is of what came with the package
+    assert main(command) == 0
+    out = capsys.readouterr().out
+    assert [line.split()[:4] for line in out.splitlines() if "_springs  " in line] == [
+        ["08_springs", "2", "2", "0"], ["09_springs", "2", "2", "0"],
+    ]  # fmt: skip
+    solved = Path("hapticlab-labs/09_springs/09_springs-solved.ipynb")
+    assert read(solved)["cells"][0]["source"] == "def force(k):\n    return 3 * k"
+    solved.write_text("changed")
+    assert main(command) == 0
+    assert "09_springs-solved.ipynb left as it is" in capsys.readouterr().out
+    assert solved.read_text() == "changed"
+    (place / "answers" / "09_springs" / "solution.py").write_text("def force(k):\n    return -3 * k")
+    assert main(command) == 1
+    assert "solution, force: 1 of 2 cases; -6, expected 6. The sign is turned." in capsys.readouterr().out
