@@ -7,17 +7,21 @@ notebook shows what is returned (``_repr_png_``); a script calls ``savefig``.
 import base64
 import html
 import io
+import re
 import sys
 
 import numpy as np
 
-#: readable on a projector and in grey print: lines differ in dash and darkness, not in colour alone
+#: a light and a dark colour, told apart in grey print too
+WARM, COLD = "#cc5a1a", "#1a4b84"
+#: readable on a projector and in grey print: neighbours differ in dash and by a fifth of the way from black to white at
+#: least; each has a contrast of 3 on white
 STYLES = [
     {"color": "#000000", "linestyle": "-"},
-    {"color": "#c1440e", "linestyle": "--"},
-    {"color": "#1f6fb4", "linestyle": "-."},
-    {"color": "#6b8e23", "linestyle": ":"},
-    {"color": "#7a4a9c", "linestyle": (0, (5, 1, 1, 1, 1, 1))},
+    {"color": WARM, "linestyle": "--"},
+    {"color": COLD, "linestyle": "-."},
+    {"color": "#7d9e30", "linestyle": ":"},
+    {"color": "#553077", "linestyle": (0, (5, 1, 1, 1, 1, 1))},
     {"color": "#8a8a8a", "linestyle": (0, (8, 3))},
 ]
 HOUSE = {
@@ -151,72 +155,116 @@ def describe(figure):
     --------
     >>> figure = new_figure(height=2)
     >>> axes = figure.subplots()
-    >>> _ = axes.plot([0, 1, 2], [5, 3, 1], label="falling body")
-    >>> _ = axes.set(xlabel="time t [s]", ylabel="height [m]", xlim=(0, 2), ylim=(0, 5))
+    >>> _ = axes.plot([0, 1, 2], [5, 3, 1])
+    >>> _ = axes.set(xlabel="time t [s]", ylabel="height [m]")
     >>> describe(figure)
-    'Time t [s] from 0 to 2 across, height [m] from 0 to 5 up. Falling body: falls from 5 to 1.'
+    'Height [m] over time t [s], 0 to 2: falls from 5 to 1.'
     """
-    panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
-    scales = [f"Colour: {axes.get_ylabel() or axes.get_xlabel()}." for axes in figure.axes if axes not in panels]
+    panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>" and axes.get_visible()]
+    scales = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
     told = [_panel(axes) for axes in panels]
     if len(told) > 1:
         told = [f"Panel {number} of {len(told)}: {text}" for number, text in enumerate(told, 1)]
-    title = figure.get_suptitle()
-    return " ".join(([_sentence(title)] if title else []) + told + scales)
+    told += [_sentence(f"colour: {_span(axes, 'y')}") for axes in scales]
+    told += [_legend(figure.legends, panels)]
+    return " ".join(filter(None, [_sentence(figure.get_suptitle()), *told]))
 
 
 def _panel(axes):
     """Return what one pair of axes shows."""
-    told = [_sentence(axes.get_title())] if axes.get_title() else []
+    title = _sentence(axes.get_title())
     if not axes.axison:
-        named = dict.fromkeys(text.get_text().replace("$", "") for text in axes.texts if text.get_text())
-        return " ".join([*told, f"A drawing of {', '.join(named)}." if named else "A drawing."])
-    across, up = (_axis(axes, side) for side in "xy")
-    told.append(_sentence(f"{across} across, {up} up"))
-    for line in axes.lines:
-        told += _course(axes, line)
-    if axes.collections and axes.images:
-        told.append("A map.")
-    bars = [patch for box in axes.containers for patch in getattr(box, "patches", ())]
-    if bars:
-        told.append("Bars: " + ", ".join(f"{bar.get_height():.3g}" for bar in bars[:12]) + ".")
-    return " ".join(dict.fromkeys(told))
+        named = dict.fromkeys(_plain(text.get_text()) for text in axes.texts if text.get_text())
+        return " ".join(filter(None, [title, _sentence(f"a drawing: {', '.join(named)}")]))
+    told = [_course(axes, line) for line in axes.lines]
+    for bars in axes.containers:
+        told += _bars(axes, bars)
+    told = list(dict.fromkeys(filter(None, told)))
+    across, up = _span(axes, "x"), _span(axes, "y")
+    if any(getattr(bars, "orientation", "") == "horizontal" for bars in axes.containers):
+        text = across
+    else:
+        text = f"{up.split(', ')[0] if told and axes.lines else up} over {across}"
+    text += (": " if told else "") + "; ".join(told)
+    return " ".join(filter(None, [title, _sentence(text), _legend([axes.get_legend()], [axes])]))
 
 
-def _axis(axes, side):
-    low, high = sorted(getattr(axes, f"get_{side}lim")())
-    label = getattr(axes, f"get_{side}label")() or "an axis"
-    ticks = [text.get_text() for text in getattr(axes, f"get_{side}ticklabels")()]
-    if any(word and not _is_number(word) for word in ticks):
-        return f"{label} {', '.join(word for word in ticks if word)}" if label != "an axis" else ", ".join(filter(None, ticks))
-    return f"{label} from {low:.3g} to {high:.3g}"
+def _span(axes, side):
+    """Return the label of one side with its range, or the words at its ticks."""
+    peers = getattr(axes, f"get_shared_{side}_axes")().get_siblings(axes)
+    labels = [getattr(peer, f"get_{side}label")() for peer in (axes, *peers)]
+    label = _plain(next(filter(None, labels), ""))
+    words = [_plain(text.get_text()) for text in getattr(axes, f"get_{side}ticklabels")()]
+    words = [word for word in words if re.search("[a-zA-Z]{2}", word)]
+    if words:
+        return f"{label or 'cases'}, {', '.join(words)}"
+    ends = [end for line in axes.lines if line.get_transform() == axes.transData for end in _ends(line, side)]
+    low, high = (min(ends), max(ends)) if side == "x" and ends else sorted(getattr(axes, f"get_{side}lim")())
+    return f"{label or 'values'}, {low:.3g} to {high:.3g}"
+
+
+def _ends(line, side):
+    values = np.asarray(line.get_data()["xy".index(side)], float)
+    values = values[np.isfinite(values)]
+    return (values.min(), values.max()) if len(values) else ()
 
 
 def _course(axes, line):
-    """Return how one line runs, as a list of one sentence; none for what only guides the eye."""
-    name, (xs, ys) = line.get_label(), map(np.asarray, line.get_data())
-    if name.startswith("_") and len(xs) < 3:
-        return []
-    name = "A line" if name.startswith("_") else name
+    """Return how one line runs; nothing for what only guides the eye."""
+    name, (xs, ys) = _plain(line.get_label()), (np.asarray(part, float) for part in line.get_data())
+    guide = name.startswith("_")
     if line.get_transform() != axes.transData:  # drawn right across: a level, or a place
-        return [_sentence(name)]
-    ys = np.asarray(ys, float)[np.isfinite(np.asarray(ys, float))]
-    if not len(ys):
-        return []
+        side, at = ("y", ys[0]) if np.ptp(ys) == 0 else ("x", xs[0])
+        return "" if guide else f"{name}: {side} at {at:.3g}"
+    known = np.isfinite(xs) & np.isfinite(ys)
+    xs, ys = xs[known], np.where(abs(ys[known]) < 1e-9 * np.ptp(axes.get_ylim()), 0.0, ys[known])
+    alone = sum(not _plain(other.get_label()).startswith("_") for other in axes.lines) == 0 and len(axes.lines) <= 2
+    if not len(ys) or (guide and not alone):
+        return ""
+    name = "" if guide else f"{name}: "
+    if len(ys) == 1:
+        return f"{name}at {xs[0]:.3g}, {ys[0]:.3g}"
+    if (np.diff(xs) < 0).any() and (np.diff(xs) > 0).any():
+        return f"{name}a curve" if name else ""
+    return name + _trend(ys)
+
+
+def _trend(ys):
     rises, falls = (np.diff(ys) >= 0).all(), (np.diff(ys) <= 0).all()
     if rises and falls:
-        course = f"stays at {ys[0]:.3g}"
-    elif rises or falls:
-        course = f"{'rises' if rises else 'falls'} from {ys[0]:.3g} to {ys[-1]:.3g}"
-    else:
-        course = f"from {ys[0]:.3g} to {ys[-1]:.3g}, between {ys.min():.3g} and {ys.max():.3g}"
-    return [_sentence(f"{name}: {course}")]
+        return f"stays at {ys[0]:.3g}"
+    if rises or falls:
+        return f"{'rises' if rises else 'falls'} from {ys[0]:.3g} to {ys[-1]:.3g}"
+    return f"from {ys[0]:.3g} to {ys[-1]:.3g}, between {ys.min():.3g} and {ys.max():.3g}"
 
 
-def _is_number(word):
-    return bool(word) and all(letter in "0123456789.,eE+-−×$\\mathdefault{}^ " for letter in word)
+def _bars(axes, container):
+    """Return the lengths of bars, each with the word at its foot."""
+    bars, flat = getattr(container, "patches", ()), getattr(container, "orientation", "") == "horizontal"
+    axis = axes.yaxis if flat else axes.xaxis
+    feet = dict(zip(axis.get_ticklocs(), (_plain(text.get_text()) for text in axis.get_ticklabels()), strict=False))
+    told = []
+    for bar in bars:
+        at, length = (bar.get_y(), bar.get_width()) if flat else (bar.get_x(), bar.get_height())
+        middle = at + (bar.get_height() if flat else bar.get_width()) / 2
+        foot = min(feet, key=lambda place: abs(place - middle), default=None)
+        told.append(f"{feet.get(foot, '')} {length:.3g}".strip())
+    return told
+
+
+def _legend(legends, panels):
+    """Return what legends name beyond what the lines were told by."""
+    told = {_plain(line.get_label()) for axes in panels for line in axes.lines}
+    words = [_plain(text.get_text()) for legend in legends if legend for text in legend.get_texts()]
+    words = [word for word in dict.fromkeys(words) if word not in told]
+    return _sentence(f"also shown: {', '.join(words)}") if words else ""
+
+
+def _plain(words):
+    """Return a text without typesetting."""
+    return " ".join(re.sub(r"[${}\\]|mathdefault", "", words).split())
 
 
 def _sentence(words):
-    words = " ".join(words.replace("$", "").split())
-    return (words[:1].upper() + words[1:]).rstrip(".") + "."
+    words = _plain(words)
+    return (words[:1].upper() + words[1:]).rstrip(".") + "." if words else ""

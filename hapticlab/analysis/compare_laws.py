@@ -7,7 +7,7 @@ import numpy as np
 
 from ..device.link import link, load_linked
 from ..device.simulated import SimulatedPaddle
-from ..drawing import house_style, new_figure
+from ..drawing import COLD, WARM, house_style, new_figure
 from ..errors import AnalysisError
 from ..limits.limit import check_number
 from ..records import Telemetry
@@ -102,13 +102,13 @@ class LawComparison:
             left, right = figure.subplots(1, 2, sharey=True)
             shares = np.array([b.generated for b in self.bounces]) / self.incoming
             worst = np.array([b.worst for b in self.bounces]) / self.incoming
-            left.barh(places, 100 * shares, color="#1f6fb4", height=0.6, label="mean of the entries")
+            left.barh(places, 100 * shares, color=COLD, height=0.6, label="mean of the entries")
             left.plot(100 * worst, places, "k|", markersize=13, markeredgewidth=2, label="worst entry")
             left.axvline(0, color="black", linewidth=0.8)
             left.set(xlabel="energy generated [% of what came in]", yticks=places, yticklabels=names)
             left.invert_yaxis()
             left.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize="small")
-            right.plot([100 * max(b.path, 1e-6) for b in self.bounces], places, "o", color="#c1440e")  # no foot: a log scale
+            right.plot([100 * max(b.path, 1e-6) for b in self.bounces], places, "o", color=WARM)  # no foot: a log scale
             right.set(xscale="log", xlabel="stray from the wall's path [% of depth]")
             right.set_xlim(left=1e-4)
         return figure

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..device.hand import Hand, require
-from ..drawing import house_style, new_figure, scale_axis
+from ..drawing import COLD, house_style, new_figure, scale_axis
 from ..errors import AnalysisError, HapticlabError
 from .chatter import SHORTEST, chatter
 from .wall_laws import LAWS, wall_law
@@ -83,7 +83,7 @@ class LawLimits:
         with house_style():
             figure = new_figure(height=0.6 + 0.42 * len(names))
             axes = figure.subplots()
-            axes.barh(places, np.nan_to_num([m.K for m in self.limits]), color="#1f6fb4", height=0.6)
+            axes.barh(places, np.nan_to_num([m.K for m in self.limits]), color=COLD, height=0.6)
             stood = [m.K for m in self.limits if m.K > 0]
             axes.set_xlim((0.5 * min(stood), 1.1 * max(stood)) if stood else (10, 1e5))
             scale_axis(axes, "x", np.geomspace(10, 1e5, 5))

@@ -130,7 +130,7 @@ def _map(figure, axes, result):
     if least is None:
         figure.colorbar(image, ax=axes, label=label)
     else:
-        figure.colorbar(image, ax=axes, extend="min", label=f"{label}; light: none")
+        figure.colorbar(image, ax=axes, extend="min", label=f"{label}\nlight: none")
     axes.set(xlabel=x_label, ylabel=y_label)
     scale_axis(axes, "x", x)
     scale_axis(axes, "y", y)

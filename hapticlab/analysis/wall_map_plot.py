@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..drawing import axis_label, house_style, new_figure, outline, scale_axis
+from ..drawing import WARM, axis_label, house_style, new_figure, outline, scale_axis
 
 #: light to dark, so that grey print keeps their order
 COLOURS = ("#eef4d4", "#a9cfa0", "#4f93a8", "#2b2f5c")
@@ -14,9 +14,9 @@ SHADES = np.array([[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in COL
 LINES = {
     "passivity": ("passivity, any passive hand", "black", (0, (6, 2))),
     "stability": ("exact linear stability, this hand", "black", "-"),
-    "abbott_okamura": ("Abbott and Okamura, any hand", "#c1440e", (0, (4, 1, 1, 1))),
-    "diolaiti": ("Diolaiti, any hand", "#c1440e", (0, (3, 1, 1, 1, 1, 1))),
-    "gil": ("Gil, this hand", "#c1440e", (0, (1, 1))),
+    "abbott_okamura": ("Abbott and Okamura, any hand", WARM, (0, (4, 1, 1, 1))),
+    "diolaiti": ("Diolaiti, any hand", WARM, (0, (3, 1, 1, 1, 1, 1))),
+    "gil": ("Gil, this hand", WARM, (0, (1, 1))),
 }
 
 

@@ -108,4 +108,4 @@ def _legend(figure, axes, methods, holds):
     signs += [sign("hollow: not allowed", marker="D", markerfacecolor="white", **grey)]
     signs += [sign("black edge: float64", marker="D", markeredgecolor="black", **grey)]
     signs += [sign("asked for", color="black", linestyle=":")]
-    figure.legend(handles=signs, loc="outside lower center", ncols=4, fontsize="small", **FRAME)
+    figure.legend(handles=signs, loc="outside lower center", ncols=3 if len(figure.axes) == 1 else 4, fontsize="small", **FRAME)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..device.person import Person
-from ..drawing import house_style, new_figure, scale_axis
+from ..drawing import COLD, WARM, house_style, new_figure, scale_axis
 from ..errors import AnalysisError
 from .observers import PersonObserver, SimulatedObserver
 from .psychometric import psychometric
@@ -108,10 +108,10 @@ class ForcedChoice:
             right = np.array([t.right for t in self.trials], bool)
             axes.plot(number, level, color="#8a8a8a", linewidth=0.8, zorder=1)
             axes.scatter(number[right], level[right], 28, color="#000000", label="right", zorder=2)
-            axes.scatter(number[~right], level[~right], 36, marker="x", color="#c1440e", label="wrong", zorder=3)
+            axes.scatter(number[~right], level[~right], 36, marker="x", color=WARM, label="wrong", zorder=3)
             if self.estimate is not None:
                 at = 100 * math.expm1(self.estimate)
-                axes.axhline(at, color="#1f6fb4", linestyle="--", label=f"threshold {at:.3g} %")
+                axes.axhline(at, color=COLD, linestyle="--", label=f"threshold {at:.3g} %")
             axes.set(xlabel="trial", ylabel=f"difference in {self.task} [%]")
             if level.min() > 0:
                 scale_axis(axes, "y", np.geomspace(level.min(), max(level.max(), 10 * level.min()), 3))

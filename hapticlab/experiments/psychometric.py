@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..drawing import house_style, new_figure, scale_axis, style_of
+from ..drawing import COLD, WARM, house_style, new_figure, scale_axis, style_of
 from ..errors import AnalysisError
 from .curves import SHAPES, Psychometric
 from .fit import chi_squared
@@ -66,11 +66,11 @@ class PsychometricFit:
                 scale_axis(axes, "x", np.geomspace(span[0], max(span[-1], 10 * span[0]), 3))
             axes.plot(span, self.curve(span), **style_of(0), label=f"{self.curve.shape} curve")
             size = 20 + 160 * self.trials / self.trials.max()
-            axes.scatter(self.levels, self.right / self.trials, size, facecolors="none", edgecolors="#1f6fb4",
+            axes.scatter(self.levels, self.right / self.trials, size, facecolors="none", edgecolors=COLD,
                          label=f"answers, {int(self.trials.max())} in the largest circle")  # fmt: skip
             at, (low, high) = self.curve.threshold, self.interval["threshold"]
             axes.errorbar([at], [float(self.curve(at))], xerr=[[max(at - low, 0)], [max(high - at, 0)]], fmt="s", capsize=4,
-                          color="#c1440e", label=f"threshold, {100 * self.confidence:g} % interval")  # fmt: skip
+                          color=WARM, label=f"threshold, {100 * self.confidence:g} % interval")  # fmt: skip
             axes.set(xlabel=f"level [{unit}]", ylabel="part of right answers", ylim=(-0.05, 1.05))
             figure.legend(loc="outside upper center", ncols=2)
         return figure

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..drawing import STYLES, house_style, new_figure
+from ..drawing import COLD, FRAME, STYLES, house_style, new_figure
 from ..errors import AnalysisError
 from .sensor import DITHERED
 
@@ -146,13 +146,13 @@ class Found:
             above.plot(t, 1e3 * self.measured, ".", color="#8a8a8a", markersize=3, label="measured")
             above.plot(t, 1e3 * self.fitted, **STYLES[1], label="fitted")
             above.set(ylabel="handle position x [mm]", title="Positions, and what the fit leaves")
-            above.legend()
+            above.legend(**FRAME)
             below.plot(t, 1e6 * (self.measured - self.fitted), ".", color="#000000", markersize=2)
             below.axhspan(
-                -2e6 * self.sigma, 2e6 * self.sigma, color="#1f6fb4", alpha=0.15, label="2 standard deviations"
+                -2e6 * self.sigma, 2e6 * self.sigma, color=COLD, alpha=0.15, label="2 standard deviations"
             )
             below.set(xlabel="time, records one after the other [s]", ylabel="residual [um]")
-            below.legend(loc="upper right")
+            below.legend(loc="upper right", **FRAME)
         return figure
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..drawing import FRAME, STYLES, house_style, new_figure, style_of
+from ..drawing import COLD, FRAME, STYLES, WARM, house_style, new_figure, style_of
 
 
 def plot_passivity_margin(margin):
@@ -25,7 +25,7 @@ def plot_passivity_margin(margin):
         axes.plot(frequency, asked, label="any motion through the samples (Colgate and Schenkel)", **STYLES[0])
         axes.plot(frequency, -margin.equivalent_damper(theta), label="a sinusoid: $-b_{eq}$", **STYLES[1])
         axes.axhline(margin.b, label="the device's b", **STYLES[5])
-        axes.fill_between(frequency, asked, margin.b, where=asked > margin.b, color="#c1440e", alpha=0.2, linewidth=0)
+        axes.fill_between(frequency, asked, margin.b, where=asked > margin.b, color=WARM, alpha=0.2, linewidth=0)
         if np.isfinite(margin.required):
             axes.plot(margin.frequency, margin.required, "ko", markersize=5)
         axes.set(xlim=(0, frequency[-1]), xlabel="frequency [Hz]", ylabel="damping asked for [N s/m]")
@@ -98,11 +98,12 @@ def plot_coupler(design):
         figure = new_figure(height=4.0, width=9.6)
         left, right = figure.subplots(1, 2)
         left.plot(dampers, springs, **STYLES[0])
-        left.fill_between(dampers, springs, color="#1f6fb4", alpha=0.15, linewidth=0)
+        left.fill_between(dampers, springs, color=COLD, alpha=0.15, linewidth=0)
         left.plot(design.b_c, design.k_c, "ko", label="this design")
         left.set(xlabel="coupler damping $b_c$ [N s/m]", ylabel="coupler stiffness $k_c$ [N/m]", ylim=(0, 1.15 * springs.max()))
         left.set_title("absolutely stable below the line", fontsize="small")
         left.legend(fontsize="small", **FRAME)
+        left.locator_params(axis="x", nbins=5)
         right.plot(theta / (2 * np.pi * design.T), design.two_port.criterion(theta), **STYLES[0])
         right.axhline(0.0, **STYLES[5])
         right.set(xlabel="frequency [Hz]", ylabel="Llewellyn's criterion, to be >= 0", xlim=(0, 0.5 / design.T))
@@ -160,7 +161,7 @@ def plot_bounds(bounds):
                 axes.text(0.01 * most, row, "does not apply", va="center", fontsize="small", color="#555555")
                 continue
             passive = limit.kind.startswith("passivity")
-            bar = {"color": "#1f6fb4"} if passive else {"color": "white", "hatch": "///", "edgecolor": "#c1440e"}
+            bar = {"color": COLD} if passive else {"color": "white", "hatch": "///", "edgecolor": WARM}
             axes.barh(row, min(limit.K, most), height=0.6, **bar)
             axes.text(min(limit.K, most) + 0.01 * most, row, f"{limit.K:.4g}", va="center", fontsize="small")
         axes.set(yticks=range(len(bounds.found)), yticklabels=list(bounds.found), xlim=(0, 1.1 * most))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..drawing import FRAME, house_style, log_scales, new_figure, style_of
+from ..drawing import FRAME, WARM, house_style, log_scales, new_figure, style_of
 
 
 def plot_impedance(found):
@@ -33,7 +33,7 @@ def plot_impedance(found):
                 axes[2].plot(f, at_handle, **style_of(2), label="|Z at the handle, device included / ideal|")
                 axes[2].set_ylim(top=min(1.05 * at_handle.max(), 4), bottom=-1.5)
             axes[2].plot(f, abs(ratio), "o-", color="black", label="|Z / ideal|", **small)
-            axes[2].plot(f, np.angle(ratio, deg=True) / 90, "s--", color="#c1440e", label="angle / 90 degrees", **small)
+            axes[2].plot(f, np.angle(ratio, deg=True) / 90, "s--", color=WARM, label="angle / 90 degrees", **small)
             axes[2].set(ylabel="transparency [1]")
             axes[2].legend(loc="best", **FRAME)
         axes[-1].set(xlabel="frequency [Hz]")

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..device.link import link, load_linked
 from ..device.simulated import SimulatedPaddle
-from ..drawing import house_style, new_figure
+from ..drawing import WARM, house_style, new_figure
 from ..errors import AnalysisError
 from ..limits.limit import check_number
 from ..scene.compensation import damping_compensation
@@ -71,7 +71,7 @@ class OverCompensation:
             figure = new_figure(height=3.8)
             axes = figure.subplots()
             axes.plot(fine, scale * closed, color="black", linestyle="--", label="closed form")
-            axes.plot(self.dry, scale * self.motion, color="#c1440e", linestyle="", marker="o", ms=4, label="simulated")
+            axes.plot(self.dry, scale * self.motion, color=WARM, linestyle="", marker="o", ms=4, label="simulated")
             axes.axvline(self.limit, color="0.5", linestyle=":", label="simulated limit")
             axes.set_xlabel(f"part of the Coulomb friction compensated, of {self.ideal.coulomb:g} N")
             axes.set_ylabel(name)
