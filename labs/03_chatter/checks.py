@@ -1,0 +1,213 @@
+"""Public checks of lab 03."""
+
+from hapticlab.course.exercise import Case, Exercise, Lab
+
+ONE_PERIOD = "That takes the hold for a whole period of delay. In the mean a force that is held for T is late by T/2."
+HOLD_ALONE = "That leaves the computational delay out: it comes on top of the half period of the hold."
+TAKEN_TWICE = "With k tau <= b the limit is b/tau; there is no factor 2 beside it, it comes from tau = T/2."
+DETERMINANT = "That is the determinant, |z|^2 of the two complex eigenvalues. The amplitude grows by its root."
+NO_HALF = (
+    "That is what a position without the term - k T^2/(2 m) x gives: the handle moves on a "
+    "parabola while the force is constant, "
+    "and the force acts on x in this very period."
+)
+TRACE = "That is half the trace, the real part of the eigenvalues. Their magnitude is the root of the determinant."
+EULER = (
+    "That comes of x(n+1) = x(n) + T v(n+1), a way to integrate that keeps energy. The handle itself moves on a "
+    "parabola while the force is held, and gains."
+)
+BOTH_WAYS = "Twice too much: crossings of both directions were counted. A cycle has one upward crossing."
+PER_TIME = (
+    "Crossings over the whole time count a part of a cycle at both ends. Take whole cycles, from crossing to crossing."
+)
+NO_PI = "The integral of cos^2 over a cycle brings a pi: the hold gives pi w X^2 (k T/2 - b)."
+ONE_QUARTER = "Friction acts along the whole way of a cycle, which is 4 X, and the integral brings a pi."
+HALF_WAY = "In a cycle of amplitude X the handle goes 4 X, not 2 X: from one end to the other and back."
+WHOLE_T = "The hold is a damper of -k T/2, half a period of delay, not a whole one."
+NO_DAMPER = "The damping b takes its part of what the hold gives: what is left is k T/2 - b."
+SUM = (
+    "The encoder's leak is not paid by b, and the hold's not by friction: each has to pay for "
+    "its own, so the smaller counts."
+)
+ENCODER_ALONE = "That is what friction pays for. The damper has to pay for the hold too: the smaller of the two counts."
+HOLD_ONLY = "That is what the damper pays for. Friction has to pay for the encoder too: the smaller of the two counts."
+HALF_COUNT = "Friction pays twice that: the work of friction over a count, there and back, is 2 f_c Delta."
+
+LAB = Lab(
+    number="03",
+    title="Chatter",
+    minutes=110,
+    exercises=(
+        Exercise(
+            "prediction", kind="prediction", asks="the stiffness [N/m] from which the wall chatters in a pinching hand"
+        ),
+        Exercise(
+            "stability_estimate",
+            points=1,
+            asks="the largest stable stiffness [N/m] to first order, of damping b [N s/m], period T [s] and delay [s]",
+            cases=(
+                Case(
+                    {"b": 1.1, "T": 1e-3, "delay": 0.0},
+                    2200.0,
+                    unit="N/m",
+                    slips={1100.0: ONE_PERIOD, 4400.0: TAKEN_TWICE},
+                ),
+                Case(
+                    {"b": 0.5, "T": 2e-3, "delay": 0.5e-3},
+                    333.3333333333333,
+                    unit="N/m",
+                    slips={200.0: ONE_PERIOD, 500.0: HOLD_ALONE, 666.6666666666666: TAKEN_TWICE},
+                ),
+            ),
+            hint="The damping of the loop is b - k tau, with tau = T/2 + delay. From which k on is it negative?",
+        ),
+        Exercise(
+            "growth_per_sample",
+            points=2,
+            asks="the factor on the amplitude in one sample, of m [kg], k [N/m], T [s], without damping",
+            cases=(
+                Case({"m": 0.05, "k": 500.0, "T": 1e-3}, 1.0024968827881711, slips={1.005: DETERMINANT, 1.0: EULER}),
+                Case(
+                    {"m": 0.03, "k": 3000.0, "T": 2e-3},
+                    1.0954451150103321,
+                    slips={1.2: DETERMINANT, 1.1832159566199232: NO_HALF, 0.9: TRACE, 1.0: EULER},
+                ),
+            ),
+            rtol=1e-7,
+            hint="The matrix is [[1 - k T^2/(2 m), T], [-k T/m, 1]]; for complex eigenvalues |z|^2 is its determinant.",
+        ),
+        Exercise(
+            "late_wall",
+            kind="scene",
+            points=1,
+            asks="a Scene with k [N/m] and x_o [m]: Eq. (23.1) with x(n-1) in place of x(n)",
+            cases=(
+                Case(
+                    {"x": [-1e-3, 1e-3, 3e-3, 5e-3, 2e-3, -1e-3], "values": {"k": 500.0, "x_o": 1e-3}},
+                    [0.0, 0.0, 0.0, 1.0, 2.0, 0.5],
+                    unit="N",
+                    slips=(
+                        ((0.0, 0.0, 1.0, 2.0, 0.5, 0.0), "That is the wall without delay: x(n) everywhere."),
+                        (
+                            (0.0, -1.0, 0.0, 1.0, 2.0, 0.0),
+                            "The condition still looks at x(n): a late wall does not yet know that "
+                            "the handle is in, or out.",
+                        ),
+                        (
+                            (0.0, 0.0, 1.0, 2.0, 0.5, -1.0),
+                            "The condition is late and the spring is not: both look at x(n-1).",
+                        ),
+                        ((0.0, 0.0, 0.0, -1.0, -2.0, -0.5), "The sign is turned: force is F_e, on the environment."),
+                        ((0.0, 0.0, 0.5, 1.5, 2.5, 1.0), "The spring is pressed by x(n-1) - x_o, from the wall on."),
+                    ),
+                ),
+            ),
+            hint="hl.when(x(n - 1) >= x_o, k*(x(n - 1) - x_o))",
+        ),
+        Exercise(
+            "chatter_frequency",
+            points=2,
+            asks="the frequency [Hz] of the oscillation in x [m] over t [s]",
+            cases=(
+                Case(
+                    {
+                        "t": [0.0, 0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.035, 0.04, 0.045, 0.05, 0.055]
+                        + [0.06, 0.065, 0.07, 0.075, 0.08, 0.085, 0.09, 0.095, 0.1, 0.105, 0.11, 0.115],
+                        "x": [2.5e-3, 3.5e-3, 3.5e-3, 2.5e-3, 1.5e-3, 0.5e-3, 0.5e-3, 1.5e-3] * 3,
+                    },
+                    25.0,
+                    unit="Hz",
+                    slips={
+                        50.0: BOTH_WAYS,
+                        17.391304347826086: PER_TIME,
+                        16.666666666666668: PER_TIME,
+                        26.08695652173913: PER_TIME,
+                        43.47826086956522: BOTH_WAYS,
+                    },
+                ),
+            ),
+            rtol=0.02,
+            hint="y = x - x.mean(); i where y[i] < 0 <= y[i+1]; each crossing at t[i] + (t[i+1] - "
+            "t[i]) y[i]/(y[i] - y[i+1]).",
+        ),
+        Exercise(
+            "threshold_speed",
+            points=2,
+            asks="the speed amplitude [m/s] above which an oscillation grows, of k [N/m], b [N s/m], T [s], f_c [N]",
+            cases=(
+                Case(
+                    {"k": 4000.0, "b": 1.1, "T": 1e-3, "f_c": 0.03},
+                    0.042441318157838762,
+                    unit="m/s",
+                    slips={
+                        0.13333333333333333: NO_PI,
+                        0.033333333333333333: ONE_QUARTER,
+                        0.02122065907891938: HALF_WAY,
+                        0.013171443566225821: WHOLE_T,
+                        0.01909859317102744: NO_DAMPER,
+                    },
+                ),
+                Case(
+                    {"k": 6000.0, "b": 0.5, "T": 1e-3, "f_c": 0.05},
+                    0.025464790894703253,
+                    unit="m/s",
+                    slips={
+                        0.08: NO_PI,
+                        0.02: ONE_QUARTER,
+                        0.012732395447351627: HALF_WAY,
+                        0.011574904952137845: WHOLE_T,
+                        0.02122065907891938: NO_DAMPER,
+                    },
+                ),
+            ),
+            hint="Per cycle friction takes 4 f_c X. The integral of (X w)^2 cos^2(w t) over 2 pi/w "
+            "is pi w X^2. Solve for X w.",
+        ),
+        Exercise(
+            "quantised_limit",
+            points=1,
+            asks="the largest passive stiffness [N/m], of b [N s/m], T [s], f_c [N] and a count of resolution [m]",
+            cases=(
+                Case(
+                    {"b": 0.1, "T": 1e-3, "f_c": 0.1, "resolution": 0.742e-3},
+                    200.0,
+                    unit="N/m",
+                    slips={269.54177897574124: ENCODER_ALONE, 469.54177897574124: SUM, 134.77088948787062: HALF_COUNT},
+                ),
+                Case(
+                    {"b": 0.1, "T": 1e-3, "f_c": 0.05, "resolution": 0.742e-3},
+                    134.77088948787062,
+                    unit="N/m",
+                    slips={200.0: HOLD_ONLY, 334.77088948787062: SUM, 67.38544474393531: HALF_COUNT},
+                ),
+            ),
+            hint="The smaller of 2 b/T and 2 f_c/resolution.",
+        ),
+        Exercise(
+            "culprit",
+            kind="choice",
+            points=1,
+            asks="what drives the oscillation of the record",
+            options={"a": "the hold", "b": "a delay", "c": "the encoder", "d": "tremor"},
+            cases=(
+                Case(
+                    {},
+                    "c",
+                    slips={
+                        "a": "Below the stability limit the hold is paid for, and at half the "
+                        "stiffness or twice the rate "
+                        "twice over. The swing stayed.",
+                        "b": "A delay drives a swing that grows until the handle leaves the wall, "
+                        "and that dies in a softer "
+                        "one. This one never leaves it, and stayed.",
+                        "d": "24 Hz that become 18 Hz when the wall is softer belong to the wall. "
+                        "A tremor, of 8 to 12 Hz, "
+                        "keeps its own.",
+                    },
+                ),
+            ),
+            hint="Look at what the sensed position does, and at what did not change anything.",
+        ),
+        Exercise("discussion", kind="text", least_words=60, asks="what you would double, why, and why not the others"),
+    ),
+)
