@@ -87,5 +87,7 @@ def _open(command):
         except KeyboardInterrupt:
             continue
     if code:
-        print(f"hapticlab: JupyterLab ended with code {code}; what it said is above", file=sys.stderr)
+        root = getattr(os, "geteuid", lambda: 1)() == 0
+        nevertheless = f"; as root it runs only by: {shlex.join([*command, '--allow-root'])}" if root else ""
+        print(f"hapticlab: JupyterLab ended with code {code}; what it said is above{nevertheless}", file=sys.stderr)
     return 1 if code else 0
