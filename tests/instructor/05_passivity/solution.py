@@ -1,0 +1,50 @@
+"""Answers of lab 05, by the names they have in its notebook."""
+
+import numpy as np
+
+prediction = 200.0
+
+
+def period_energy(x, D, K, b, T):
+    """Leak of a held spring and least loss of the device's damper in one period [J]."""
+    stored = K * (x + D) ** 2 / 2 - K * x**2 / 2
+    return {"leak": stored - K * x * D, "loss": b * D**2 / T}
+
+
+def passive_stiffness(b, B, T):
+    """Eq. (23.10) solved for K [N/m]."""
+    return max(0.0, 2 * (b - abs(B)) / T)
+
+
+def observed_energy(x, F):
+    """Work on the environment until each sample [J]."""
+    return np.concatenate([[0.0], np.cumsum(F[:-1] * np.diff(x))])
+
+
+def damping_asked(taps, theta, T):
+    """Colgate and Schenkel's condition at one angle a sample [N s/m]."""
+    H = np.sum(taps * np.exp(-1j * theta * np.arange(len(taps))))
+    return T / 2 * ((1 - np.exp(-1j * theta)) * H).real / (1 - np.cos(theta))
+
+
+def disk_size(K, theta, b, T):
+    """Size of the mapped law; below 1 it is passive in every hand."""
+    centre = -T / (4 * b) * (1 + 1j / np.tan(theta / 2))
+    return abs(K * abs(centre) / (1 + K * centre))
+
+
+def controlled_force(f, credit, D, T, alpha_max):
+    """Force with the series passivity controller [N]."""
+    if credit >= 0 or D == 0:
+        return f
+    return f + min(-credit * T / D**2, alpha_max) * D / T
+
+
+why_it_failed = "b"
+
+discussion = (
+    "I predicted the stiffness of my own pinch, which is far above 200 N/m, since I counted on the damping that my fingers "
+    "bring; the bound counts on nothing but the device. I would insist on it for a surgeon's handle that anybody may touch in "
+    "any way, and not for a knob that is always held firmly. With b = 0.5 and B = -0.3 the bound is 400 N/m, twice that of "
+    "the bare paddle, while slow motion feels only 0.2 N s/m."
+)
