@@ -1,0 +1,192 @@
+"""Public checks of lab 07: numbers and the sentences that teach; no answers."""
+
+from hapticlab.course.exercise import Case, Exercise, Lab
+
+EXPLICIT = "That is forward Euler: here z moves with the new velocity."
+LATE = "The acceleration belongs to the start of the step: compute the new velocity first, from the old z, then the new z."
+PULL = "The coupler pulls the mass towards the handle: K (x - z), not K (z - x)."
+NO_DAMPER = "The damper is missing: -b u, with the handle at rest."
+FEEDING = "The damper's sign is turned: it acts against u."
+NO_MASS = "A force over a mass is an acceleration: divide by m."
+SWAPPED = "The order is [z, u]."
+DETERMINANT = "That is the determinant: it multiplies the square of the amplitude; take its root."
+UNDAMPED = "That is the growth without the damper: 1 - h b/m stands in the determinant, too."
+TRACE = "That is the trace, the sum of the eigenvalues. The squared magnitude of a complex pair is their product, the determinant."
+LESS = "The factor itself is asked for, slightly above 1, not by how much it exceeds 1."
+NO_B = "That is the step without damping, 2/omega; with forward differences the damper *shortens* it: 4 - 2 h b/m - h^2 K/m = 0."
+OTHER_ROOT = "The quadratic equation for h has two roots; the other is negative, and this is its magnitude: mind b's sign."
+HALF = "Check the 2 in the denominator: h^2 K/m + 2 h b/m - 4 = 0 has the roots (-b +- sqrt(b^2 + 4 K m))/K."
+INVERSE = "That is the slope of log(h) against log(error); the order is how the error follows the step."
+STRAIGHT = "That is the slope of the errors themselves; a power law is a straight line in logarithms of both."
+CONSTANT = "That is log(C); numpy.polyfit gives the slope first."
+TWO_POINTS = "That is the slope between two of the points; fit the line to all of them."
+FULL = "That period is wholly used; only the part load of it may be."
+TIMES = "To leave some of the period free it must be longer: divide by load."
+NO_REST = "Sensor, motor and link need their cycles in every tick as well: add rest."
+RATE = "That is the rate in Hz; the period is its reciprocal."
+
+LAB = Lab(
+    number="07",
+    title="Integrators, felt",
+    minutes=120,
+    exercises=(
+        Exercise("prediction", kind="prediction", asks="error of semi-implicit Euler divided by that of RK4"),
+        Exercise(
+            "semi_implicit_step",
+            points=2,
+            asks="the array [z, u] after one step of semi-implicit Euler",
+            cases=(
+                Case(
+                    {"z": 0.0, "u": 0.05, "x": 0.01, "m": 0.05, "K": 200.0, "b": 0.5, "h": 0.01},
+                    [0.00445, 0.445],
+                    slips={
+                        (0.0005, 0.445): EXPLICIT,
+                        (0.0005, 0.425): LATE,
+                        (-0.00355, -0.355): PULL,
+                        (0.0045, 0.45): NO_DAMPER,
+                        (0.00455, 0.455): FEEDING,
+                        (0.0006975, 0.06975): NO_MASS,
+                        (0.445, 0.00445): SWAPPED,
+                    },
+                ),
+                Case(
+                    {"z": 0.002, "u": -0.2, "x": -0.003, "m": 0.1, "K": 300.0, "b": 0.5, "h": 0.01},
+                    [-0.0014, -0.34],
+                    slips={
+                        (0.0, -0.34): EXPLICIT,
+                        (0.0, -0.28): LATE,
+                        (0.0016, -0.04): PULL,
+                        (-0.0015, -0.35): NO_DAMPER,
+                        (-0.0016, -0.36): FEEDING,
+                        (-0.34, -0.0014): SWAPPED,
+                    },
+                ),
+            ),
+            hint="two lines: u = u + h*(K*(x - z) - b*u)/m, and then z with that u.",
+        ),
+        Exercise(
+            "euler_growth",
+            points=2,
+            asks="the factor by which the amplitude grows in a step of forward Euler",
+            cases=(
+                Case(
+                    {"m": 0.05, "K": 800.0, "b": 0.3, "h": 0.002},
+                    1.0256705123966467,
+                    slips={1.052: DETERMINANT, 1.0315037566582101: UNDAMPED, 1.988: TRACE, 0.02567051239664675: LESS},
+                ),
+                Case(
+                    {"m": 0.1, "K": 500.0, "b": 1.0, "h": 0.002},
+                    1.0,
+                    slips={1.0099504938362078: UNDAMPED, 1.98: TRACE},
+                ),
+                Case(
+                    {"m": 0.05, "K": 200.0, "b": 0.0, "h": 0.005},
+                    1.0488088481701516,
+                    slips={1.1: DETERMINANT, 2.0: TRACE, 0.04880884817015163: LESS},
+                ),
+            ),
+            hint="the determinant of A is (1 - h b/m) + h^2 K/m; the amplitude grows by its square root.",
+        ),
+        Exercise(
+            "longest_step",
+            points=2,
+            asks="the longest stable step [s] of semi-implicit Euler",
+            cases=(
+                Case(
+                    {"m": 0.1, "K": 400.0, "b": 4.0},
+                    0.023166247903553996,
+                    unit="s",
+                    slips={0.03162277660168379: NO_B, 0.043166247903554: OTHER_ROOT, 0.011583123951776998: HALF},
+                ),
+                Case(
+                    {"m": 0.2, "K": 300.0, "b": 0.0},
+                    0.051639777949432225,
+                    unit="s",
+                    slips={0.025819888974716113: HALF, 77.45966692414834: "That is 2 omega; without damping the step is 2/omega."},
+                ),
+                Case(
+                    {"m": 0.05, "K": 800.0, "b": 0.1},
+                    0.015686882399006133,
+                    unit="s",
+                    slips={0.015811388300841896: NO_B, 0.015936882399006133: OTHER_ROOT, 0.007843441199503066: HALF},
+                ),
+            ),
+            hint="trace = 2 - h b/m - h^2 K/m, determinant = 1 - h b/m; 1 + trace + determinant = 0 is quadratic in h.",
+        ),
+        Exercise(
+            "order_seen",
+            points=2,
+            asks="the order p of error = C h^p, the slope of the best line in logarithms",
+            cases=(
+                Case(
+                    {"h": [4e-3, 2e-3, 1e-3, 5e-4], "error": [0.16, 0.04, 0.01, 0.0025]},
+                    2.0,
+                    slips={0.5: INVERSE, 46.304347826086946: STRAIGHT, 9.210340371976164: CONSTANT},
+                ),
+                Case(
+                    {"h": [4e-3, 2e-3, 1e-3], "error": [25.0, 7.0, 2.5]},
+                    1.660964047443683,
+                    slips={
+                        0.5998268171717914: INVERSE,
+                        7714.285714285714: STRAIGHT,
+                        12.349266189030837: CONSTANT,
+                        1.8365012677171209: TWO_POINTS,
+                        1.4854268271702415: TWO_POINTS,
+                    },
+                ),
+            ),
+            rtol=1e-5,
+            hint="numpy.polyfit(x, y, 1) fits a straight line; what are x and y here?",
+        ),
+        Exercise(
+            "why_order_one",
+            kind="choice",
+            points=1,
+            asks='"a", "b", "c" or "d"',
+            options={
+                "a": "one step a period is too few",
+                "b": "float32 has too few digits",
+                "c": "it solves a problem whose handle stands still during each step, half a period late on average",
+                "d": "the coupler is too stiff",
+            },
+            cases=(
+                Case(
+                    {},
+                    "c",
+                    slips={
+                        "a": "Try substeps=4 in the cell below: the error stays what it was.",
+                        "b": "Try dtype='float64' in the cell below: the error stays what it was; float32 is good to 1e-7.",
+                        "d": "The same coupler and the same RK4 are wrong by less than 0.1 % with hold='soh'.",
+                    },
+                ),
+            ),
+            hint="what changed between the two rows of RK4 in the table?",
+        ),
+        Exercise(
+            "shortest_period",
+            points=1,
+            asks="the shortest period [s] of which a tick takes at most the part load",
+            cases=(
+                Case(
+                    {"cycles": 4570.0, "rest": 7000.0, "load": 0.5, "hz": 16e6},
+                    0.00144625,
+                    unit="s",
+                    slips={0.000723125: FULL, 0.0003615625: TIMES, 0.00057125: NO_REST, 691.4433880726016: RATE},
+                ),
+                Case(
+                    {"cycles": 13899.0, "rest": 7000.0, "load": 0.8, "hz": 16e6},
+                    0.001632734375,
+                    unit="s",
+                    slips={
+                        0.0013061875: FULL,
+                        0.00104495: TIMES,
+                        0.001085859375: NO_REST,
+                        0.0065309375: "load is the part that is used, not the part that stays free.",
+                    },
+                ),
+            ),
+            hint="a period has hz T cycles, of which load hz T may be used.",
+        ),
+        Exercise("discussion", kind="text", least_words=60, asks="your comparison, at least 60 words"),
+    ),
+)  # fmt: skip
