@@ -1,0 +1,236 @@
+"""Public checks of lab 09: numbers to compare with, and what a typical slip gives."""
+
+from hapticlab.course.exercise import Case, Exercise, Lab
+
+#: a handle that coasts, one sample every 2 ms [m]; counts of 12.8 um
+COASTING = (
+    0.0, 0.0007936, 0.0015872, 0.0023424, 0.0030848, 0.00384, 0.0045568, 0.0052736, 0.0059648, 0.006656, 0.0073344, 0.008,
+    0.00864, 0.00928, 0.0098816, 0.0105216, 0.0110976, 0.0116992, 0.0122624, 0.0128256, 0.013376, 0.0139264, 0.0144512,
+    0.014976, 0.015488, 0.0159616, 0.0164608, 0.0169216, 0.0173952, 0.0178304, 0.0182912, 0.0187264, 0.019136, 0.0195584,
+    0.0199552, 0.020352, 0.020736, 0.0210944, 0.0214656, 0.0218112, 0.0221696, 0.0225024, 0.0228096, 0.0231296, 0.0234368,
+    0.0237312, 0.0240256, 0.0243072, 0.0245888, 0.024832, 0.025088, 0.025344, 0.0255616, 0.0258048, 0.0260224, 0.02624,
+    0.026432, 0.0266368, 0.026816, 0.0269952, 0.0271744, 0.0273408, 0.0274944, 0.027648, 0.0277888, 0.0279168, 0.0280448,
+    0.0281728, 0.0282752, 0.0283776, 0.0284928, 0.0285696,
+)  # fmt: skip
+TIMES = tuple(round(0.002 * i, 3) for i in range(len(COASTING)))
+
+TWICE = (
+    "This is what differentiating twice gives: each difference divides the counts by T, and the answer is the noise's. "
+    "Integrate the equation of motion instead."
+)
+OTHER_END = "That is the upper end. A promise has to hold for every b of the interval, and the least b promises least."
+DEVICE = "That is handle and hand together: take the handle's own share away."
+
+LAB = Lab(
+    number="09",
+    title="Identify the paddle and your own hand",
+    minutes=120,
+    exercises=(
+        Exercise("prediction_coasts", kind="prediction", asks="how far the handle coasts [mm]"),
+        Exercise("prediction_slows", kind="prediction", asks="damping or friction, at 0.4 m/s and at 0.1 m/s"),
+        Exercise("prediction_grip", kind="prediction", asks="the stiffness of your grip [N/m]"),
+        Exercise(
+            "coasting_speed",
+            points=2,
+            asks="the speed [m/s] of a coasting handle at the times t [s]",
+            cases=(
+                Case(
+                    {"t": [0, 0.05, 0.1, 0.15, 0.3], "v0": 0.4, "m": 0.03, "b": 0.15, "coulomb": 0.05},
+                    (0.4, 0.2377872, 0.1114558, 0.01306881, 0.0),
+                    unit="m/s",
+                    slips={
+                        (0.4, 0.2377872, 0.1114558, 0.01306881, -0.1697045): (
+                            "The handle turns round and speeds away backwards. Friction stops it and then holds it: from the "
+                            "stop on the speed is 0."
+                        ),
+                        (0.4, 0.3115203, 0.2426123, 0.1889466, 0.08925206): (
+                            "That is damping alone, which never stops a handle. Where is the Coulomb friction?"
+                        ),
+                        (
+                            0.4,
+                            0.3166667,
+                            0.2333333,
+                            0.15,
+                            0.0,
+                        ): "That is friction alone: a straight line. Where is the damping b?",
+                        (0.4, 0.3852534, 0.3737687, 0.3648244, 0.3482087): (
+                            "Your handle heads for +coulomb/b. With v' = -(b v + coulomb)/m, v' = 0 at a negative speed."
+                        ),
+                    },
+                ),
+                Case(
+                    {"t": [0, 0.1, 0.2], "v0": 0.3, "m": 0.166, "b": 0.057, "coulomb": 0.0},
+                    (0.3, 0.2898736, 0.2800891),
+                    unit="m/s",
+                ),
+            ),
+            hint="Write v' = -(b/m)(v - v_inf) with v_inf = -coulomb/b, solve it, and keep the result above zero (np.maximum).",
+        ),
+        Exercise(
+            "coast_fit",
+            points=2,
+            rtol=0.03,
+            asks='{"b/m": [1/s], "coulomb/m": [m/s^2]} of a handle that coasts at positions x [m] at times t [s]',
+            cases=(
+                Case(
+                    {"t": TIMES, "x": COASTING},
+                    {"b/m": 5.000717, "coulomb/m": 1.499087},
+                    slips=[
+                        ({"b/m": 6.6043961, "coulomb/m": 1.2158733}, TWICE),
+                        ({"b/m": 1.70638593, "coulomb/m": 2.22145303}, TWICE),
+                        ({"b/m": 4.18624176, "coulomb/m": 1.71873286}, TWICE),
+                        ({"b/m": 3.22725529, "coulomb/m": 1.87218129}, TWICE),
+                        (
+                            {"b/m": 0.01000143},
+                            "The sum of positions is no integral yet: each trapezoid has the width t[1] - t[0].",
+                        ),
+                        ({"coulomb/m": 0.7495436}, "The column of gamma is -t^2/2, with its half."),
+                    ],
+                ),
+            ),
+            hint=(
+                "Four columns: ones, t, -(integral of x) and -t^2/2; the coefficients of the last two are b/m and coulomb/m. "
+                "The integral starts at 0: np.concatenate([[0], np.cumsum(...)])."
+            ),
+        ),
+        Exercise(
+            "mass_and_friction",
+            points=1,
+            asks='{"m": [kg], "coulomb": [N]} from the force A [N] and the two accelerations [m/s^2]',
+            cases=(
+                Case(
+                    {"A": 0.2, "rising": 8.0, "falling": 5.0},
+                    {"m": 0.030769231, "coulomb": 0.046153846},
+                    slips=[
+                        ({"m": 0.025}, "A/rising takes the motor for all there is: friction helped it to brake."),
+                        (
+                            {"m": 0.04},
+                            "A/falling forgets that friction held the handle back: the force was less than A.",
+                        ),
+                        (
+                            {"coulomb": 0.3},
+                            "A (rising - falling)/2 is no force yet: it is m, not A, that turns m/s^2 into N.",
+                        ),
+                    ],
+                ),
+                Case({"A": 0.3, "rising": 10.0, "falling": 10.0}, {"m": 0.03, "coulomb": 0.0}),
+            ),
+            hint="Add the two equations, and friction drops out; take their difference, and the motor does.",
+        ),
+        Exercise(
+            "what_95_means",
+            kind="choice",
+            points=1,
+            asks="what the interval says: a, b, c or d",
+            options={
+                "a": "b is inside with a probability of 95 %",
+                "b": "95 % of the samples lie between the ends",
+                "c": "about 95 % of the intervals of many repetitions hold b",
+                "d": "b is known to 5 %",
+            },
+            cases=(
+                Case(
+                    {},
+                    "c",
+                    slips={
+                        "a": (
+                            "b does not move about: it is inside this interval or it is not. What is random is the "
+                            "interval; look at the figure of 100 sensors again."
+                        ),
+                        "b": "The interval is about b, in N s/m. The samples are positions, in m.",
+                        "d": "95 % says how often the method holds the truth; the interval's width says how well b is known.",
+                    },
+                ),
+            ),
+            hint="What differs from bar to bar in the figure, and what does not?",
+        ),
+        Exercise(
+            "promised_stiffness",
+            points=1,
+            asks="the largest K [N/m] that Eq. (23.10) promises for every b between b_low and b_high",
+            cases=(
+                Case(
+                    {"b_low": 0.14, "b_high": 0.16, "T": 1e-3, "B": 0.0},
+                    280.0,
+                    unit="N/m",
+                    slips={
+                        320.0: OTHER_END,
+                        300.0: "That is the middle of the interval: half the time too much was promised.",
+                    },
+                ),
+                Case(
+                    {"b_low": 0.14, "b_high": 0.16, "T": 1e-3, "B": -0.05},
+                    180.0,
+                    unit="N/m",
+                    slips={
+                        380.0: "A negative B does not add to the damping: in Eq. (23.10) it stands as |B|.",
+                        280.0: "Where is B? Eq. (23.10) reads b > KT/2 + |B|.",
+                        220.0: OTHER_END,
+                    },
+                ),
+                Case(
+                    {"b_low": 0.03, "b_high": 0.05, "T": 1e-3, "B": 0.04},
+                    0.0,
+                    unit="N/m",
+                    slips={
+                        -20.0: "No stiffness is promised here, and a negative one is no answer: give 0.",
+                        20.0: OTHER_END,
+                    },
+                ),
+            ),
+            hint="Solve b > K T/2 + |B| for K, then ask which b of the interval you dare to put in.",
+        ),
+        Exercise(
+            "hand_constants",
+            points=2,
+            asks='{"m": [kg], "b": [N s/m], "k": [N/m]} of the hand alone',
+            cases=(
+                Case(
+                    {"M": 0.05, "sigma": 11.0, "omega": 62.0, "m": 0.03, "b": 0.1},
+                    {"m": 0.02, "b": 1.0, "k": 198.25},
+                    slips=[
+                        ({"m": 0.05}, DEVICE),
+                        ({"b": 1.1}, DEVICE),
+                        ({"b": 0.45}, "sigma is (b + b_h)/(2 M): where is the 2?"),
+                        (
+                            {"b": 0.34},
+                            "The damper slows handle and hand together: it is M, not the hand's own mass, that swings.",
+                        ),
+                        (
+                            {"k": 192.2},
+                            "M omega^2 is a little too soft: the damper slows the swing, omega^2 = k_h/M - sigma^2.",
+                        ),
+                        ({"k": 79.3}, "The spring swings handle and hand together: M, not the hand's own mass."),
+                    ],
+                ),
+            ),
+            hint="Solve sigma = (b + b_h)/(2 M) for b_h, and omega^2 = k_h/M - sigma^2 for k_h.",
+        ),
+        Exercise(
+            "which_window",
+            kind="choice",
+            points=1,
+            asks="which window to choose: a, b, c or d",
+            options={"a": "100 ms", "b": "60 ms", "c": "40 ms", "d": "20 ms"},
+            cases=(
+                Case(
+                    {},
+                    "c",
+                    slips={
+                        "a": "Narrow is not right: at 100 ms the fit itself says that it does not explain the record.",
+                        "b": (
+                            "The fit explains the record, and is wrong: look where its interval lies, and where k is. What looks "
+                            "like noise in the remains is no proof; you know from elsewhere that the reflex began at 40 ms."
+                        ),
+                        "d": (
+                            "Before the reflex the model is right at any length, and each sample more tells more: at 20 ms the "
+                            "interval for k is some ten times as wide as at 40 ms."
+                        ),
+                    },
+                ),
+            ),
+            hint="The model holds until the reflex begins. Up to there, more samples tell more.",
+        ),
+        Exercise("discussion", kind="text", least_words=80, asks="your discussion, 80 words or more"),
+    ),
+)
