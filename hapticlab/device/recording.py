@@ -2,6 +2,7 @@
 
 import math
 import struct
+from collections import deque
 
 import numpy as np
 
@@ -30,7 +31,7 @@ class Recording:
     def __init__(self, program, every):
         self.program, self.every = program, every
         self.fault, self.last_tick, self.changes, self.begun = None, -1, [], False
-        self._rows = []
+        self._rows, self._taken = deque(), -every
         self._row = np.dtype([("tick", "<u4"), ("flags", "u1"), ("x", "<f4"), ("v", "<f4"), ("F", "<f4")] + [
             (f"channel.{c.name}", _NUMPY[c.type]) for c in program.outputs[1:]])  # fmt: skip
 
@@ -51,23 +52,41 @@ class Recording:
                 self._rows.append(frame.payload)
                 self.last_tick = tick
 
+    def take(self):
+        """Return what came since the last look, a dict of columns, and forget it; what is left is the telemetry."""
+        rows = self._table([self._rows.popleft() for _ in range(len(self._rows))])
+        found = self._columns(rows, self._taken)
+        self._taken = int(rows["tick"][-1]) if len(rows) else self._taken
+        return found
+
     def telemetry(self, *, ticks, delay, paddle):
         """Return the Telemetry of the first so many ticks; None takes them all."""
-        T, program = self.program.T, self.program
-        rows = np.frombuffer(b"".join(self._rows), self._row)
+        rows = self._table(self._rows)
         rows = rows if ticks is None else rows[rows["tick"] < ticks]
-        tick = rows["tick"].astype(np.int64)
-        missing = np.diff(tick, prepend=-self.every) > self.every
-        flags = {name.lower(): rows["flags"] & bit > 0 for name, bit in SAMPLE_FLAGS.items()}
-        columns = {c.name: rows[f"channel.{c.name}"].astype(float) for c in program.outputs[1:]}
+        return self.as_telemetry(self._columns(rows, self._taken), delay=delay, paddle=paddle, changes=self.changes)
+
+    def as_telemetry(self, columns, *, delay, paddle, changes=(), values=None):
+        """Return columns of :meth:`take`, put together, as Telemetry; values are the parameters', the program's if None."""
+        program = self.program
+        values = dict(zip((c.name for c in program.parameters), program.values, strict=True)) if values is None else values
+        own = {name: columns[name] for name in ("t", "x", "v", "F", "saturated", "gap", "overrun")}
         return Telemetry(
-            t=tick * T, x=rows["x"].astype(float), v=rows["v"].astype(float), F=rows["F"].astype(float),
-            T=T * self.every, delay=delay, channels=columns, units={c.name: c.unit for c in program.outputs[1:]},
-            paddle=paddle, scene=program.name,
-            parameters={c.name: a for c, a in zip(program.parameters, program.values, strict=True)},
-            fault=fault_words(self.fault, T), saturated=flags["saturated"], gap=missing, overrun=flags["overrun"],
-            every=self.every, changes=tuple(self.changes),
+            **own, T=program.T * self.every, delay=delay, channels={c.name: columns[c.name] for c in program.outputs[1:]},
+            units={c.name: c.unit for c in program.outputs[1:]}, paddle=paddle, scene=program.name, parameters=values,
+            fault=fault_words(self.fault, program.T), every=self.every, changes=tuple(changes),
         )  # fmt: skip
+
+    def _table(self, rows):
+        return np.frombuffer(b"".join(rows), self._row)
+
+    def _columns(self, rows, before):
+        """Return rows as columns by name; before is the tick of the row before the first."""
+        tick = rows["tick"].astype(np.int64)
+        flags = {name.lower(): rows["flags"] & bit > 0 for name, bit in SAMPLE_FLAGS.items()}
+        found = {name: rows[name].astype(float) for name in ("x", "v", "F")}
+        found |= {c.name: rows[f"channel.{c.name}"].astype(float) for c in self.program.outputs[1:]}
+        missing = np.diff(tick, prepend=before) > self.every
+        return {"t": tick * self.program.T, **found, "saturated": flags["saturated"], "gap": missing, "overrun": flags["overrun"]}
 
 
 def decimation(program, port, every=None):

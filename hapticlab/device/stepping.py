@@ -40,8 +40,6 @@ class Stepping:
         Whether the hand holds the handle.
     begun : bool
         Whether it can go on from where it is.
-    t : float
-        Time of the next sample [s].
     place : float
         Position of the handle at the next sample [m].
     fault : str or None
@@ -53,7 +51,8 @@ class Stepping:
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.hand("pinch"))
     >>> stepping = Stepping(paddle, hl.wall()(k=300, x_o=0.01))
     >>> some = stepping.advance(np.linspace(0.0, 0.02, 201))
-    >>> stepping.set(k=600.0)
+    >>> stepping.set(k=600.0)                       # from this time on [s]
+    0.2
     >>> more = stepping.advance(np.full(301, 0.02))
     >>> round(float(more["F"][-1] / (more["x"][-1] - 0.01)))
     600
@@ -75,10 +74,6 @@ class Stepping:
             (deviation, np.random.default_rng([self.paddle.seed, stream]))
             for stream, deviation in enumerate((self.paddle.noise, hand.noise))
         ]
-
-    @property
-    def t(self):
-        return self.ticks * self.paddle.T
 
     def advance(self, intent):
         """Advance by one tick less than there are places, and return what was sampled.
@@ -121,7 +116,7 @@ class Stepping:
         return numbers
 
     def set(self, **values):
-        """Set parameters of the scene, all from the same tick on.
+        """Set parameters of the scene, all from the same tick on; return the time of that tick [s].
 
         Raises
         ------
@@ -129,6 +124,7 @@ class Stepping:
             As a board does: for an unknown name, a value past its range or past what keeps the steps stable.
         """
         self._take(self.check(**values))
+        return self.ticks * self.paddle.T
 
     def hold(self, held):
         """Take the handle, or let go of it; position and velocity stay as they are at that tick."""
@@ -174,11 +170,12 @@ class Stepping:
     def _loop(self, held=None):
         held = self.held if held is None else held
         if held not in self._loops:
-            self._loops[held] = _Loop(self.program, self.paddle if held else replace(self.paddle, hand=None), self._engine)
+            paddle = self.paddle if held else replace(self.paddle, hand=None)
+            self._loops[held] = _Loop(self.program, paddle, self._engine, self._begin)
         return self._loops[held]
 
     def _parameters(self, loop):
-        return *self.program.values, *loop.paddle.plant_values(*self._begin)
+        return *self.program.values, *loop.plant_values
 
     def _inputs(self, intent):
         """Return the linked program's inputs, in the order of SimulatedPaddle.inputs."""
@@ -192,8 +189,8 @@ class Stepping:
 class _Loop:
     """A scene's program linked to a paddle, ready to run."""
 
-    def __init__(self, program, paddle, engine):
-        self.paddle, self.linked = paddle, link(program, paddle)
+    def __init__(self, program, paddle, engine, begin):
+        self.linked, self.plant_values = link(program, paddle), paddle.plant_values(*begin)
         self.loaded = load_linked(self.linked, engine)
         self.names = [c.name for c in self.linked.states]
 

@@ -62,12 +62,15 @@ class Motion:
         return self._last.get("x_true", self._last["x"])
 
     def start(self):
-        """Run from the beginning; a recording ends."""
+        """Run from the beginning; a recording that has samples ends."""
+        recording = self.recording
         self.stop_recording()
         self.source.stop()
         self.traces, self._at = Traces(self.source.paddle.T), 0.0
         self.source.start()
         self.running, self._replay = True, None
+        if recording:
+            self.record()
         self.wake()
 
     def resume(self):
@@ -81,9 +84,11 @@ class Motion:
     def pause(self):
         """Stand still; a board's motor goes off, and its recording ends."""
         self.running = False
-        self.source.stop()
-        if not self.source.begun:
-            self.stop_recording()
+        try:
+            self.source.stop()
+        finally:
+            if not self.source.begun:
+                self.stop_recording()
 
     def wake(self):
         """Count time from now on: what passed before is not made up for."""
@@ -98,9 +103,9 @@ class Motion:
     def set(self, **values):
         """Set parameters between two ticks, or refuse them."""
         numbers = self.source.check(**values)
-        self.source.set(**numbers)
+        since = self.source.set(**numbers)
         if self._recorder is not None:
-            self._recorder.changed(self.source.t, numbers)
+            self._recorder.changed(since, numbers)
 
     def record(self):
         """Record from the next sample on."""

@@ -37,7 +37,7 @@ class Recorder:
     def log(self):
         """Return the Telemetry."""
         rows = {name: np.concatenate([some[name] for some in self._rows]) for name in self._rows[0]}
-        if np.isnan(rows["intent"]).all():
+        if "intent" in rows and np.isnan(rows["intent"]).all():
             del rows["intent"]
         return self._source.telemetry(rows, values=self._values, changes=self._changes)
 

@@ -7,10 +7,12 @@ from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 
+from ..device.board import SerialPaddle
 from ..device.live import named_values
 from ..device.running import is_refusal
 from ..device.simulated import SimulatedPaddle
 from ..device.stepping import Stepping
+from ..device.streaming import Streaming
 from ..errors import HapticlabError, PaddleError
 from .frame import COLUMNS, Frame
 from .motion import Motion
@@ -304,7 +306,7 @@ class Session:
             said += ["" if motion.held else "The handle is let go"]
         else:
             said = ["Motor off: press Start, and hold the handle" if board else "Paused"]
-            said += [f"Stopped at {source.fault}" if source.fault else ""]
+            said += [f"Stopped: {source.fault}" if source.fault else ""]
         said += ["Recording" if motion.recording else "", self._note if self.clock() < self._note_until else ""]
         return " ".join(f"{sentence.rstrip('.')}." for sentence in said if sentence)
 
@@ -327,8 +329,10 @@ class Session:
 
 def source_of(paddle, scene, **options):
     """Return what gives samples of a scene on a paddle."""
-    if isinstance(paddle, SimulatedPaddle):
-        return Stepping(paddle, scene, **options)
+    kinds = {SimulatedPaddle: Stepping, SerialPaddle: Streaming}
+    for kind, source in kinds.items():
+        if isinstance(paddle, kind):
+            return source(paddle, scene, **options)
     raise PaddleError(f"paddle = {paddle!r}; a live view needs a SimulatedPaddle, or a board: hl.connect()")
 
 
