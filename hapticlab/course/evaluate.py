@@ -97,10 +97,18 @@ def _evaluated(kind, answer, given):
     mismatch = _mismatch(answer, given)
     if mismatch:
         return Outcome(problem=mismatch)
-    found = answer(**{name: np.array(g) if isinstance(g, list | tuple) else g for name, g in given.items()})
+    found = answer(**{name: _argument(value) for name, value in given.items()})
     if found is None:
         return Outcome(problem="it returns None; is its `return` missing?")
     return Outcome(plain(found))
+
+
+def _argument(value):
+    """Return an array of float for a list of numbers: in one of integers, what a student writes into it is cut off."""
+    if not isinstance(value, list | tuple):
+        return value
+    array = np.array(value)
+    return array.astype(float) if array.dtype.kind == "i" else array
 
 
 def plain(value):

@@ -5,12 +5,14 @@ Beside labs/NN_name stand the answers in tests/instructor/NN_name; wrong_answers
 
 import json
 import re
+import runpy
 import shutil
 import time
 from pathlib import Path
 
 import pytest
 
+from hapticlab.course.check import checked
 from hapticlab.course.exercise import JUDGED
 from hapticlab.course.instructor import mark_notebook, solved_notebook
 from hapticlab.course.judge import judge
@@ -19,6 +21,7 @@ from hapticlab.course.marks import SOLUTION, hidden_cases, instructor_names, mar
 from hapticlab.course.notebook import code_of, read
 
 ROOT = Path(__file__).parents[2]
+WRONG = runpy.run_path(str(Path(__file__).with_name("wrong_answers.py")))["WRONG"]
 LABS, INSTRUCTOR = find_labs(ROOT / "labs"), ROOT / "tests" / "instructor"
 LAST = """
 import json as _json
@@ -98,6 +101,18 @@ def test_wrong_answers_earn_nothing_and_are_taught(folder):
         for wrong in wrong_answers(lab.exercise(name), right[name]):
             (found,) = (m for m in marks(lab, {name: wrong}, hidden) if m.exercise == name)
             assert found.earned == 0, (name, kind)
+
+
+def test_what_students_write_is_taught(folder):
+    lab, hidden = folder.lab(), hidden_cases(folder.lab(), INSTRUCTOR / folder.name)
+    tried = WRONG.get(folder.number, [])
+    for name, answer in tried:
+        exercise = lab.exercise(name)
+        sentences = [sentence for case in exercise.cases for _, sentence in case.slips]
+        text = checked(f"{lab.number}.{name}", exercise, answer).text
+        assert any(sentence in text for sentence in sentences), text
+        assert {m.earned for m in marks(lab, {name: answer}, hidden)} == {0}
+    assert {name for name, _ in tried} == {e.name for e in lab.exercises if e.judged}
 
 
 def wrong_answers(exercise, right):
