@@ -87,6 +87,13 @@ def new_figure(*, height, width=7.2):
     return figure
 
 
+def legend_above(axes, lines):
+    """Draw a legend of so many lines in room that is made for it above what is drawn."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.14 * lines * (high - low))
+    axes.legend(fontsize="small", loc="upper left", **FRAME)
+
+
 def log_scales(axes):
     """Make both scales logarithmic, with plain numbers: at 1, 2 and 5 within two decades, else at powers of ten."""
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter

@@ -16,6 +16,7 @@ from ..scene.derivative import Partial, Rate
 from ..scene.mechanics import Mechanics
 from ..scene.symbols import acceleration, coordinate, lag_of, t, v, x
 from .energy import energy
+from .record_plots import plot_balance
 
 #: what a scene's books record [J]
 CHANNELS = ("supplied", "stored", "dissipated", "leak")
@@ -195,6 +196,10 @@ class Balance:
     leak: np.ndarray
     port: np.ndarray
     sampling: np.ndarray
+
+    def plot(self):
+        """Return a figure: where the supplied energy is, and what the books cannot account for."""
+        return plot_balance(self)
 
     def __str__(self):
         put_in, kept, lost = (a[-1] - a[0] for a in (self.supplied, self.stored, self.dissipated))

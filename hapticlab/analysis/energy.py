@@ -7,6 +7,7 @@ import numpy as np
 from ..errors import AnalysisError
 from ..limits.limit import whole_and_fraction
 from ..records import check_record
+from .record_plots import plot_energy
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +37,10 @@ class Energy:
     extracted: float
     contacts: int
     exact: bool
+
+    def plot(self):
+        """Return a figure: the energy that the environment holds over time, and where it gave more than it took."""
+        return plot_energy(self)
 
     def __str__(self):
         if np.isnan(self.generated):

@@ -13,6 +13,7 @@ from ..scene.derivative import Partial
 from ..scene.scene import Scene
 from ..scene.symbols import Parameter, delay, lag_of, n, t, v, x
 from ..scene.written import no_scene
+from .impedance_curve import LOOKED_AT, Impedance
 
 #: the handle as a force sees it at the sample, and as an equation of motion sees it
 SEEN = ((x(t), x(n)), (v(t), v(n)))
@@ -51,7 +52,7 @@ class Port:
         return (F / S[:, 0, 0]).reshape(np.shape(s))
 
 
-def impedance(scene, frequency):
+def impedance(scene, frequency=None):
     """Impedance Z = F/v at the handle [N s/m], of the scene linearised about its start with the handle at x = 0.
 
     A mass at the handle would have Z = m s, a spring k/s, a damper b, at s = 2 pi j frequency. Continuous: without the
@@ -61,12 +62,12 @@ def impedance(scene, frequency):
     ----------
     scene : Scene
         Every parameter bound; of the present sample and its equations of motion, without memory of past samples.
-    frequency : float or array
-        [Hz], > 0.
+    frequency : float or array, optional
+        [Hz], > 0. Without it 0.1 to 200 Hz, as a curve that plots itself.
 
     Returns
     -------
-    complex array of the shape of ``frequency``
+    complex array of the shape of ``frequency``, or Impedance
 
     Raises
     ------
@@ -79,6 +80,8 @@ def impedance(scene, frequency):
     >>> complex(impedance(hl.Scene(force=k * hl.x(hl.n) + b * hl.v(hl.n)), 1 / (2 * np.pi)).round(9))
     (3-200j)
     """
+    if frequency is None:
+        return Impedance(scene.name, LOOKED_AT, port_of(scene).impedance(LOOKED_AT))
     try:
         frequency = np.asarray(frequency, float)
     except (TypeError, ValueError):

@@ -7,6 +7,7 @@ import numpy as np
 import sympy as sp
 
 from ..compiler.graph import Graph, driven
+from ..drawing import STYLES, house_style, new_figure
 from ..errors import AnalysisError
 from ..scene.derivative import Partial
 from ..scene.symbols import t
@@ -73,6 +74,20 @@ class HandleMotion:
         angles = {u: 2 * np.pi * float(u.args[0]) * times for u in graph.variables if isinstance(u, driven)}
         found = graph.evaluate(wanted, {t: times} | angles)
         return np.array([np.broadcast_to(part, times.shape) for part in found])
+
+    def plot(self):
+        """Return a figure: position and velocity over time."""
+        t = np.linspace(0.0, self.duration, 1000)
+        position, velocity, _ = self.at(t)
+        with house_style():
+            figure = new_figure(height=4.2)
+            panels = figure.subplots(2, 1, sharex=True)
+            panels[0].plot(t, 1e3 * position, **STYLES[0])
+            panels[0].set(ylabel="handle position x [mm]")
+            panels[0].set_title(f"{self.name}: {self.why}" if self.why else self.name, fontsize="small", wrap=True)
+            panels[1].plot(t, 1e3 * velocity, **STYLES[0])
+            panels[1].set(xlabel="time t [s]", ylabel="velocity v [mm/s]")
+        return figure
 
     def scaled(self, factor):
         """Return the same motion, so many times as large."""

@@ -14,6 +14,7 @@ from ..errors import AnalysisError, ProgramError
 from ..scene.symbols import acceleration, n, t, v, x
 from .hybrid import Field, Hybrid
 from .motions import HandleMotion
+from .reference_plot import plot_reference
 
 #: between two values of F [s]: 2 ms, 1 ms and 0.5 ms are whole numbers of it, and so are their quarters
 STEP = 1.25e-4
@@ -91,6 +92,10 @@ class Reference:
                 "reference(..., step=...) a step that divides your sampling period"
             )
         return np.where(times <= self.horizon + 1e-9, self.F[k.astype(int)], np.nan)
+
+    def plot(self, *programs):
+        """Return a figure: motion and force; with compiled programs, the forces that these hold and their errors."""
+        return plot_reference(self, programs)
 
     def __str__(self):
         verdict = "certified" if self.certified else "uncertified"

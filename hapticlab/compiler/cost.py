@@ -16,6 +16,7 @@ from ..errors import ProgramError
 from .angles import far_angles
 from .boards import BOARDS, Board
 from .bytecode import encode, instructions_of, layout, words_of
+from .cost_plot import plot_cost
 from .ir import Program
 from .traffic import Traffic
 
@@ -156,6 +157,10 @@ class Cost:
             f"{rest / self.board.hz * 1e3:.2g} ms for the rest of the step and what the link interrupts it for; "
             f"with telemetry it needs T >= {needed * 1e3:.3g} ms"
         )
+
+    def plot(self):
+        """Return a figure: what a step takes of its period, typically and at most."""
+        return plot_cost(self)
 
     def __str__(self):
         lines = [

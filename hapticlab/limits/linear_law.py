@@ -9,6 +9,7 @@ from ..compiler.lower import compile
 from ..errors import AnalysisError
 from ..scene.taps import LEAD, TAPS
 from .limit import check_law, check_number, check_period
+from .plots import plot_law
 from .port import static_stiffness, tick_map
 
 #: Eq. (23.8), the force filter, on F[n], F[n-1], F[n-2]
@@ -133,6 +134,10 @@ class LinearLaw:
         [150.0, -50.0]
         """
         return cls(*tick_map(compile(scene, T=T, live=(), dtype="float64", **options)), float(T), scene.name)
+
+    def plot(self):
+        """Return a figure: the spring and the damper as which slow and fast sinusoids feel the law, the hold included."""
+        return plot_law(self)
 
     def named(self, name):
         """Return the same law under another name."""

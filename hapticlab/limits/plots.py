@@ -201,3 +201,61 @@ def plot_diolaiti(point):
         axes.set_title(f"delay {point.tau:g} periods", fontsize="small")
         axes.legend(fontsize="small", loc="lower right", **FRAME)
     return figure
+
+
+def plot_law(law):
+    """Draw the spring and the damper as which slow and fast sinusoids feel a law that is sampled and held.
+
+    Parameters
+    ----------
+    law : LinearLaw
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    theta = np.linspace(1e-3, np.pi, 800)
+    frequency, omega = theta / (2 * np.pi * law.T), theta / law.T
+    felt = law.at(theta) * (1 - np.exp(-1j * theta)) / (1j * theta)  # F/x of a sinusoid, the hold included
+    with house_style():
+        figure = new_figure(height=5.2)
+        above, below = figure.subplots(2, 1, sharex=True)
+        above.plot(frequency, felt.real, **STYLES[0])
+        above.set(ylabel="felt stiffness [N/m]")
+        above.set_title(f"{law.name}: as a sinusoid feels it, sampled and held", fontsize="small", wrap=True)
+        damping = felt.imag / omega
+        below.plot(frequency, damping, **STYLES[0])
+        lacks = {"facecolor": "none", "edgecolor": WARM, "hatch": "///", "linewidth": 0}
+        if (damping < 0).any():
+            below.fill_between(frequency, damping, 0, where=damping < 0, **lacks, label="negative: it feeds energy to the hand")
+            below.legend(fontsize="small", **FRAME)
+        below.axhline(0.0, color="#4d4d4d", linewidth=0.8)
+        below.set(xlabel="frequency [Hz]", ylabel="felt damping [N s/m]", xlim=(0, 0.5 / law.T))
+    return figure
+
+
+def plot_two_port(port):
+    """Draw Llewellyn's criterion over frequency.
+
+    Parameters
+    ----------
+    port : TwoPort
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    theta = np.linspace(1e-2, np.pi, 600)
+    verdict = "absolutely stable" if port.absolutely_stable else "not absolutely stable"
+    with house_style():
+        figure = new_figure(height=3.8)
+        axes = figure.subplots()
+        criterion = port.criterion(theta)
+        axes.plot(theta / (2 * np.pi * port.T), criterion, label="criterion", **STYLES[0])
+        axes.axhline(0.0, **STYLES[5])
+        if (criterion < 0).any():
+            lacks = {"facecolor": "none", "edgecolor": WARM, "hatch": "///", "linewidth": 0}
+            axes.fill_between(theta / (2 * np.pi * port.T), criterion, 0, where=criterion < 0, label="too little", **lacks)
+        axes.set(xlabel="frequency [Hz]", ylabel="Llewellyn's criterion, to be >= 0", xlim=(0, 0.5 / port.T))
+        axes.set_title(f"{port.name}: {verdict}", fontsize="small", wrap=True)
+    return figure

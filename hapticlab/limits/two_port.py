@@ -18,6 +18,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .plots import plot_two_port
+
 #: relative rounding of the criterion
 ROUNDING = 1e-9
 #: slow motion is looked at down to this w T
@@ -95,6 +97,10 @@ class TwoPort:
     def worst(self):
         """Frequency [Hz] at which the criterion is least; 0 where slow motion is as bad to 1e-9, None where all are."""
         return hertz(self.criterion, frequencies()[self.criterion(frequencies()).argmin()], self.T, size=1.0)
+
+    def plot(self):
+        """Return a figure: Llewellyn's criterion over frequency."""
+        return plot_two_port(self)
 
     def felt(self, theta, environment):
         """Return F_1/v_1 at theta of shape (P,) with ``F_2 = environment v_2`` at the other port, complex (P,)."""

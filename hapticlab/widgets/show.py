@@ -36,7 +36,7 @@ def show(figure, alt=None):
     """
     drawn, words = _drawn(figure)
     if alt is None:
-        alt = getattr(drawn, "alt", None) or "\n".join(filter(None, (words, describe(drawn))))
+        alt = getattr(drawn, "alt", None) or _told(words, describe(drawn))
     elif not isinstance(alt, str) or not alt.strip():
         raise AnalysisError(f"alt = {alt!r}; needs what there is to see in a sentence or two, or leave it out")
     forget(drawn)
@@ -47,6 +47,12 @@ def show(figure, alt=None):
 
     data, metadata = bundle(drawn, alt)
     display(data, metadata=metadata, raw=True)
+
+
+def _told(words, described):
+    """Return a result's words before what its figure shows, unless the title says them."""
+    start = " ".join(words.split())[:40].lower()
+    return described if start in described.lower() else f"{words}\n{described}"
 
 
 def _drawn(given):
