@@ -27,7 +27,7 @@ class Frame:
         One or two sentences; empty where they are as in the frame before.
     flags : dict
         ``running``, ``recording``, ``replaying``, ``held`` (a hand is on the handle), ``motor`` (a board's is on): bool.
-        And ``values``, dict of name to SI, in a frame after parameters changed or were refused: where the sliders belong.
+        And ``values``, dict of name to SI of every slider's parameter: where the sliders belong.
 
     Examples
     --------

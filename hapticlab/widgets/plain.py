@@ -1,7 +1,6 @@
 """The live view without anywidget: a picture in SVG, sliders and buttons of ipywidgets."""
 
 import html
-import time
 
 import numpy as np
 
@@ -15,6 +14,8 @@ WIDTH, HEIGHT, GRAPH = 640, 220, 130
 SECONDS = 4.0
 #: the browser counts while its page is open, every so many milliseconds
 BEAT = 500
+#: a slider that was moved so shortly ago is not put elsewhere [s]
+MOVING = 0.4
 STEPS = 200
 DASHES = ("", "7 3", "2 3")
 
@@ -46,7 +47,8 @@ class PlainFront:
 
     def __init__(self, widgets, session):
         self.session, self.about = session, session.description()
-        self._rows, self._drawn, self._showing = np.zeros((0, 5)), -1.0, False
+        self._rows, self._drawn = np.zeros((0, 5)), -1.0
+        self._moved, self._showing = {}, False
         self.image, self.status = widgets.HTML(), widgets.HTML()
         # counts in the browser by itself, and so says that a page is there; ipywidgets has nothing else that does
         self.heart = widgets.Play(
@@ -78,7 +80,7 @@ class PlainFront:
         self._rows = self._rows[self._rows[:, 0] > frame.time - SECONDS]
         if frame.status:
             self.status.value = html.escape(frame.status)
-        now = time.monotonic()
+        now = self.session.clock()
         if frame.flags.get("running") and now < self._drawn + 1 / RATE - 2e-3:
             return
         self._drawn = now
@@ -86,11 +88,13 @@ class PlainFront:
         self._follow(frame.flags.get("values", {}))
 
     def _follow(self, values):
-        """Put the sliders where the parameters are."""
-        self._showing = True
+        """Put the sliders where the parameters are, except one that is being moved."""
+        self._showing, now = True, self.session.clock()
         try:
-            for slider, given in zip(self.sliders, self.about["parameters"], strict=True):
+            for number, (slider, given) in enumerate(zip(self.sliders, self.about["parameters"], strict=True)):
                 value = values.get(given["name"], slider.value)
+                if now - self._moved.get(number, -MOVING) < MOVING:
+                    continue
                 if abs(value - slider.value) > 1e-6 * (given["high"] - given["low"]):
                     slider.value = value
         finally:
@@ -104,12 +108,13 @@ class PlainFront:
     def _slider(self, widgets, number, given):
         slider = widgets.FloatSlider(
             value=given["value"], min=given["low"], max=given["high"], step=(given["high"] - given["low"]) / STEPS,
-            description=f"{given['name']} [{given['unit']}]", description_tooltip=given["limit_words"],
+            description=f"{given['name']} [{given['unit']}]", tooltip=given["limit_words"],
             readout_format=".4g", style={"description_width": "9em"}, layout={"width": f"{WIDTH}px"},
         )  # fmt: skip
 
         def moved(change):
             if not self._showing:
+                self._moved[number] = self.session.clock()
                 self.session.move(number, change["new"])
 
         slider.observe(moved, names="value")

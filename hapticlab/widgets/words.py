@@ -48,7 +48,7 @@ def chatter_words(x, F, T):
         return ""
     if found.frequency is None or found.frequency < SLOWEST or found.amplitude < SMALLEST:
         return ""
-    return f"Chatter: {1e3 * found.amplitude:.2g} mm at {found.frequency:.0f} Hz"
+    return f"Chatter: {float(f'{1e3 * found.amplitude:.1g}'):g} mm at {found.frequency:.0f} Hz"
 
 
 def late_words(behind):

@@ -1,0 +1,496 @@
+"""A scene on view: paced by a clock that is told, led by a hand, stopped with its last view. Nothing here sleeps."""
+
+import threading
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import hapticlab as hl
+from hapticlab.device import stepping
+from hapticlab.widgets.frame import Frame
+from hapticlab.widgets.pace import LONGEST
+from hapticlab.widgets.session import NOTE, SILENCE, Session
+from hapticlab.widgets.words import chatter_words
+
+T = 1e-3
+PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.hand("pinch"))
+WALL = hl.wall()(k=300, x_o=0.01)
+
+
+class Stage:
+    """A session whose clock, views and turns are the test's."""
+
+    def __init__(self, paddle=PADDLE, scene=WALL, **given):
+        self.now, self.frames = 50.0, []
+        self.session = Session(paddle, scene, clock=lambda: self.now, in_thread=False, **given)
+        self.session.connect(self.frames.append)
+
+    def open(self):
+        self.session.ready("page")
+        self.session.turn()
+        return self
+
+    def go(self, seconds, step=1 / 60, pointer=None):
+        """Take turns so many seconds of the clock, in which the page is there; return the frames of it."""
+        until, first = self.now + seconds, len(self.frames)
+        while self.now < until - 1e-9:
+            self.now += step
+            if pointer is not None:
+                self.session.intend(pointer(self.now))
+            self.session.alive("page")
+            self.session.turn()
+        return self.frames[first:]
+
+    @property
+    def rows(self):
+        return np.concatenate([frame.rows for frame in self.frames])
+
+    @property
+    def flags(self):
+        return self.frames[-1].flags
+
+
+def lead(now):
+    return 0.02 * np.sin(4 * (now - 50))
+
+
+# --- time
+
+
+@pytest.mark.parametrize("step", [1 / 60, 0.0071, 0.0333])
+def test_no_tick_is_lost_and_nothing_drifts(step):
+    stage = Stage().open()
+    stage.go(2.0, step)
+    elapsed = stage.now - 50.0
+    assert abs(stage.session.source.ticks - elapsed / T) <= 1
+    assert np.allclose(np.diff(stage.rows[:, 0]), 2 * T, atol=1e-6)
+
+
+def test_slow_motion_is_slow():
+    stage = Stage(speed=0.1).open()
+    stage.go(1.0)
+    assert abs(stage.session.source.ticks - 100) <= 1
+
+
+def test_a_computer_that_falls_behind_makes_up_for_little_and_says_so():
+    stage = Stage().open()
+    stage.go(0.5)
+    before = stage.session.source.ticks
+    stage.now += 0.3
+    stage.go(0.5)
+    late = 0.3 + 1 / 60 - LONGEST
+    assert abs(stage.session.source.ticks - before - (0.8 - late) / T) <= 2
+    assert f"fell behind by {round(1e3 * late, -1):.0f} ms" in stage.session.status
+    stage.go(1.1)
+    assert "behind" not in stage.session.status
+
+
+def test_a_scene_too_slow_for_the_computer_leaves_the_view_alive(monkeypatch):
+    """Where a tick takes two periods of the clock, a turn computes for 20 ms at most, and the words say why it is slow."""
+    stage, advance = Stage().open(), stepping.Stepping.advance
+
+    def slowly(self, intent):
+        stage.now += 2 * T * (len(intent) - 1)
+        return advance(self, intent)
+
+    monkeypatch.setattr(stepping.Stepping, "advance", slowly)
+    frames = stage.go(3.0)
+    late = [frame for frame in frames if frame.time > frames[-1].time - 0.3]
+    assert max(np.diff([frame.time for frame in late])) < 0.013
+    assert "too slow for this scene" in stage.session.status
+
+
+def test_paused_time_stands_still_and_goes_on_where_it_was():
+    stage = Stage().open()
+    stage.go(0.5, pointer=lead)
+    stage.session.press("pause")
+    shown = stage.go(1.0)
+    ticks = stage.session.source.ticks
+    assert not stage.flags["running"]
+    assert stage.session.status == "Paused."
+    assert len(shown) <= 6  # a picture that rests is shown four times a second
+    stage.session.press("resume")
+    stage.go(0.5, pointer=lead)
+    assert abs(stage.session.source.ticks - ticks - 500) <= 18
+    assert np.allclose(np.diff(stage.rows[:, 0]), 2 * T, atol=1e-6)
+
+
+# --- what the hand and the sliders do
+
+
+def test_what_was_recorded_is_bit_for_bit_what_a_run_gives():
+    """A hand whose intent is what the pointer said, sample for sample, feels the same on a paddle without a view."""
+    stage = Stage(hl.SimulatedPaddle.from_profile("hapkit", delay=1.4e-3, hand=hl.hand("grip")))
+    stage.session.press("record")
+    stage.open()
+    stage.go(1.0, pointer=lead)
+    log = stage.session.recorded()
+    led = np.r_[log.intent, log.intent[-1]]  # the last sample's rate is seen one sample later
+
+    def intent(t):
+        return led[np.clip(np.round(np.asarray(t) / T).astype(int), 0, len(led) - 1)]
+
+    alone = hl.SimulatedPaddle.from_profile("hapkit", delay=1.4e-3, hand=hl.hand("grip", intent=intent))
+    again = alone.run(WALL, duration=len(log) * T)
+    assert len(log) > 950
+    assert log.F.max() > 1
+    for name in ("t", "x", "v", "F", "x_true", "F_applied"):
+        assert np.array_equal(getattr(log, name), getattr(again, name)), name
+    assert np.array_equal(hl.energy(log).W, hl.energy(again).W)
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.4e-3, 1e-3, 2.3e-3])
+def test_the_energy_on_view_is_that_of_the_record(delay):
+    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.1, T=T, delay=delay, hand=hl.hand("pinch")))
+    stage.session.press("record")
+    stage.open()
+    stage.go(0.7, pointer=lead)
+    work = hl.energy(stage.session.recorded()).W
+    shown = stage.rows
+    at = np.round(shown[:, 0] / T).astype(int)
+    assert abs(shown[:, 3]).max() > 1e-3
+    assert np.allclose(shown[:, 3], -work[at], atol=1e-9)  # float32 of some mJ
+
+
+def test_a_slider_moves_between_two_ticks_and_the_log_says_when():
+    stage = Stage().open()
+    stage.session.press("record")
+    stage.go(0.2)
+    stage.session.move("k", 450)
+    stage.session.move(0, 0.5)  # B, by its number
+    stage.go(0.2)
+    log = stage.session.recorded()
+    (since, set_), = log.changes
+    assert set_ == {"k": 450.0, "B": 0.5}
+    assert abs(since - 0.2) < 0.02
+    assert round(since / T, 6) == round(since / T)
+    assert log.parameters["k"] == 300
+    assert stage.flags["values"] == {"B": 0.5, "k": 450.0, "x_o": 0.01}
+
+
+def test_a_slider_past_its_limit_is_refused_in_words_and_stays():
+    stage = Stage().open()
+    stage.session.move("k", -5)
+    stage.go(0.1)
+    assert "k = -5 N/m; a stiffness needs k >= 0" in stage.session.status
+    assert stage.flags["values"]["k"] == 300
+    assert stage.flags["running"]
+    stage.now += NOTE - 0.5
+    stage.go(1.0)
+    assert "needs" not in stage.session.status
+
+
+def test_the_handle_is_let_go_and_taken_again():
+    stage = Stage().open()
+    stage.go(0.5, pointer=lambda now: 0.005)
+    stage.session.hold(False)
+    stage.go(0.2)
+    assert not stage.flags["held"]
+    assert "let go" in stage.session.status
+    assert np.isnan(stage.frames[-1].rows[-1, 4])
+    place = stage.session.source.place
+    stage.session.hold(True)
+    (frame,) = stage.go(1 / 60, pointer=lambda now: 0.005)
+    assert abs(frame.rows[0, 4] - place) < 1e-4  # it is taken where it is, and then led
+    stage.go(1.0, pointer=lambda now: 0.005)
+    assert abs(stage.session.source.place - 0.005) < 1e-5
+
+
+def test_a_hand_is_no_faster_than_a_hand():
+    stage = Stage(scene=hl.wall()(k=0, x_o=1.0)).open()
+    stage.session.press("record")
+    stage.go(0.3, pointer=lambda now: 0.04)
+    assert np.max(np.abs(np.diff(stage.session.recorded().intent))) <= 1.0 * T * (1 + 1e-9)
+
+
+# --- what is said
+
+
+def test_chatter_is_said_and_a_bounce_is_not():
+    t = np.arange(1000) * T
+    force = np.ones(1000)
+    assert chatter_words(4e-4 * np.sin(2 * np.pi * 41 * t), force, T) == "Chatter: 0.4 mm at 41 Hz"
+    assert chatter_words(0.02 * t + 4e-4 * np.sin(2 * np.pi * 41 * t), force, T) == "Chatter: 0.4 mm at 41 Hz"
+    assert chatter_words(4e-4 * np.exp(-9 * t) * np.sin(2 * np.pi * 41 * t), force, T) == ""
+    assert chatter_words(0.02 * np.sin(2 * np.pi * 2 * t), force, T) == ""
+    assert chatter_words(np.zeros(1000), force, T) == ""
+    assert chatter_words(np.zeros(3), force[:3], T) == ""
+
+
+def test_a_stiff_wall_is_said_to_chatter_at_the_frequency_of_the_record():
+    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.hand("pinch")), hl.wall()(k=6000, x_o=0.01)).open()
+    stage.go(1.0, pointer=lambda now: 0.014)
+    stage.session.press("record")
+    stage.go(1.5, pointer=lambda now: 0.014)
+    found = hl.chatter(stage.session.recorded())
+    assert found.locked
+    assert f"at {found.frequency:.0f} Hz" in stage.session.status
+
+
+def test_a_fault_stops_and_says_why_and_start_begins_anew():
+    k, end = hl.parameters("k end", units="N/m^0.5 m", values=(1, "8 mm"))
+    torn = hl.Scene(force=k * sp.sqrt(end - hl.x(hl.n)), name="torn")
+    stage = Stage(scene=torn).open()
+    stage.go(0.5, pointer=lambda now: 0.02)
+    assert not stage.flags["running"]
+    assert "the force F of torn was not finite" in stage.session.status
+    stage.session.press("resume")
+    stage.go(0.1, pointer=lambda now: 0.0)
+    assert stage.flags["running"]
+    assert "not finite" not in stage.session.status
+    assert stage.frames[-1].time < 0.2
+
+
+def test_a_record_is_played_again_and_then_the_scene_goes_on():
+    stage = Stage().open()
+    stage.session.press("record")
+    stage.go(0.5, pointer=lead)
+    stage.session.press("stop")
+    stage.go(0.1, pointer=lead)
+    assert not stage.flags["recording"]
+    log, ticks = stage.session.recorded(), stage.session.source.ticks
+    stage.session.press("replay")
+    played = stage.go(0.45)
+    rows = np.concatenate([frame.rows for frame in played])
+    assert played[-1].flags["replaying"]
+    assert stage.session.source.ticks == ticks
+    at = np.round(rows[:, 0] / T).astype(int)
+    assert np.array_equal(rows[:, 1], log.x[at].astype(np.float32))
+    stage.go(0.2)
+    assert not stage.flags["replaying"]
+    assert stage.session.source.ticks > ticks
+
+
+def test_to_replay_or_save_nothing_is_refused_in_words(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    stage = Stage().open()
+    for press in ("replay", "save"):
+        stage.session.press(press)
+        stage.go(0.1)
+        assert "nothing is recorded yet" in stage.session.status
+    stage.session.press("record")
+    stage.go(0.1)
+    stage.session.press("save")
+    stage.go(0.1)
+    (saved,) = tmp_path.iterdir()
+    assert saved.name in stage.session.status
+    assert len(hl.Telemetry.load(saved)) >= 90
+
+
+# --- who looks
+
+
+def test_without_a_front_end_nothing_runs():
+    before = threading.active_count()
+    view = hl.live(PADDLE, WALL)
+    shown, _ = view._repr_mimebundle_()
+    assert "not on view" in shown["text/plain"]
+    assert threading.active_count() == before
+    assert view._session.source.ticks == 0
+
+
+def test_silence_and_the_last_view_stop_it_and_a_word_goes_on():
+    stage = Stage().open()
+    stage.go(0.2)
+    stage.now += SILENCE + 0.1
+    assert not stage.session.turn()
+    ticks = stage.session.source.ticks
+    assert not stage.session.turn()
+    stage.session.alive("page")
+    stage.go(0.2)
+    assert 100 < stage.session.source.ticks - ticks < 250  # the silence is not made up for
+    stage.session.ready("second")
+    stage.session.gone("page")
+    assert stage.session.turn()
+    stage.session.gone("second")
+    assert not stage.session.turn()
+
+
+def test_a_view_that_cannot_be_reached_is_gone():
+    stage = Stage().open()
+
+    def torn(frame):
+        raise ConnectionError("no comm")
+
+    stage.session.connect(torn)
+    stage.go(1 / 60)
+    assert not stage.session.on_view
+
+
+def wait_for_frames(session, count):
+    """Run a session in its thread until so many frames came; return them."""
+    frames, enough = [], threading.Event()
+
+    def sink(frame):
+        frames.append(frame)
+        session.alive("page")
+        if len(frames) >= count:
+            enough.set()
+
+    session.connect(sink)
+    session.ready("page")
+    assert enough.wait(20)
+    return frames
+
+
+def test_its_thread_runs_with_a_view_and_ends_with_it():
+    view = hl.live(PADDLE, WALL)
+    frames = wait_for_frames(view._session, 5)
+    assert all(isinstance(frame, Frame) and frame.rows.dtype == np.float32 for frame in frames)
+    assert "kind" not in frames[0].flags
+    thread = view._session._thread
+    view._session.connect(None)
+    view._session.gone("page")
+    thread.join(20)
+    assert not thread.is_alive()
+    assert wait_for_frames(view._session, 2)  # opened again
+    view.close()
+    assert view._session._thread is None or not view._session.turn()
+
+
+def test_a_view_that_nobody_keeps_ends_its_thread():
+    view = hl.live(PADDLE, WALL)
+    front = view._repr_mimebundle_()
+    wait_for_frames(view._session, 2)
+    thread = view._session._thread
+    del view, front
+    thread.join(20)
+    assert not thread.is_alive()
+
+
+def test_many_threads_may_say_what_they_like():
+    view = hl.live(PADDLE, WALL)
+    session, failed = view._session, []
+
+    def talk(k):
+        try:
+            for j in range(60):
+                session.intend(0.001 * k)
+                session.move("k", 100.0 + j)
+                view.set(B=0.01 * j)
+                session.press(("record", "stop", "pause", "resume")[j % 4])
+                assert view.values["x_o"] == 0.01
+                assert view.status
+        except Exception as problem:
+            failed.append(problem)
+
+    talkers = [threading.Thread(target=talk, args=(k,)) for k in range(3)]
+    for talker in talkers:
+        talker.start()
+    wait_for_frames(session, 3)
+    for talker in talkers:
+        talker.join(20)
+    view.close()
+    assert not failed
+
+
+# --- what a lab asks of it
+
+
+def test_what_nobody_recorded_is_rehearsed_at_the_sliders_values():
+    view = hl.live(PADDLE, WALL, duration=1.0)
+    view.set(k=450)
+    log = view.log
+    assert view.log_from == "rehearsal: nobody recorded here"
+    assert log is view.log
+    assert log.parameters["k"] == 450
+    hand = hl.hand("pinch", intent=view._rehearsal)
+    paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hand)
+    again = paddle.run(hl.wall()(k=450, x_o=0.01), duration=1.0)
+    assert np.array_equal(log.F, again.F)
+    assert (log.intent if "intent" in log.columns else view._rehearsal(log.t)).min() == pytest.approx(-0.015, abs=1e-4)
+    view.set(k=100)
+    assert view.log.F.max() < log.F.max()
+
+
+def test_a_rehearsal_of_ones_own_begins_where_it_begins():
+    view = hl.live(PADDLE, WALL, rehearsal=lambda t: 0.012 + 0 * t, duration=0.1)
+    assert view.log.x[0] == np.float32(0.012)
+
+
+def test_a_record_comes_before_a_rehearsal():
+    view = hl.live(PADDLE, WALL, duration=0.1)
+    view.record()
+    wait_for_frames(view._session, 4)
+    view.close()
+    view.stop_recording()
+    assert view.log_from == "recorded in the view"
+    assert "intent" in view.log.columns
+
+
+def test_without_llvmlite_it_runs_too(monkeypatch):
+    monkeypatch.setattr("hapticlab.compiler.engine.llvmlite_is_ready", lambda: False)
+    stage = Stage().open()
+    stage.go(0.1, pointer=lead)
+    assert next(iter(stage.session.source._loops.values())).loaded.name == "interpreter"
+    assert abs(stage.session.source.ticks - 100) <= 17
+
+
+@pytest.mark.parametrize(
+    ("given", "word"),
+    [
+        ({"speed": 0}, "0.1 slow motion"),
+        ({"speed": 100}, "needs 0.001 to 10"),
+        ({"sliders": {"q": (0, 1)}}, "q is no live parameter"),
+        ({"sliders": {"k": (5, 1)}}, "low < high"),
+        ({"sliders": {"k": (-5, 1)}}, "not in its range"),
+        ({"sliders": ["k"]}, "needs a dict"),
+        ({"sliders": {"k": 3}}, "two numbers"),
+        ({"duration": 0}, "duration > 0"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_at_once(given, word):
+    with pytest.raises(hl.HapticlabError, match=word):
+        hl.live(PADDLE, WALL, **given)
+
+
+def test_a_scene_without_values_and_a_stranger_are_refused():
+    with pytest.raises(hl.ParameterError, match="no value for k"):
+        hl.live(PADDLE, hl.Scene(force=hl.parameters("k", units="N/m") * hl.x(hl.n)))
+    with pytest.raises(hl.PaddleError, match="needs a SimulatedPaddle"):
+        hl.live("paddle", WALL)
+    with pytest.raises(hl.SceneError):
+        hl.live(PADDLE, "wall")
+
+
+def test_what_a_front_end_is_told_once():
+    view = hl.live(PADDLE, WALL, sliders={"k": (100, 900)})
+    about = view._session.description()
+    assert [p["name"] for p in about["parameters"]] == ["k"]
+    assert about["parameters"][0]["limit_words"] == "k >= 0"
+    assert about["kind"] == "simulated"
+    assert about["x_range"][0] < -0.015 < 0.015 < about["x_range"][1]
+    assert [trace["name"] for trace in about["traces"]] == ["x", "F", "E"]
+
+
+# --- plain widgets
+
+
+def test_plain_widgets_show_and_say_the_same():
+    widgets = pytest.importorskip("ipywidgets")
+    from hapticlab.widgets.plain import PlainFront
+
+    stage = Stage()
+    front = PlainFront(widgets, stage.session)
+    front.heart.value += 1  # the page is there
+    assert stage.session.on_view
+    stage.session.turn()
+    front.hand.value = 12.0
+    front.sliders[1].value = 450
+    for _ in range(30):
+        stage.now += 1 / 60
+        stage.session.alive("page")
+        stage.session.turn()
+    assert stage.session.values["k"] == 450
+    root = ElementTree.fromstring(front.image.value)
+    assert root.attrib["role"] == "img"
+    assert len([e for e in root.iter() if e.tag.endswith("text")]) >= 3
+    assert "Running" in front.status.value
+    stage.session.set(k=500.0)
+    stage.go(0.5)
+    assert front.sliders[1].value == 500
+    front.buttons["pause"].click()
+    stage.go(0.1)
+    assert not stage.session.motion.running
