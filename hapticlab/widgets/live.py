@@ -4,6 +4,7 @@ import weakref
 
 import numpy as np
 
+from ..device.board import SerialPaddle
 from ..device.hand import require
 from ..device.intents import MinimumJerk
 from ..device.stepping import with_grip
@@ -74,6 +75,8 @@ def live(paddle, scene, *, sliders=None, speed=1.0, picture=None, rehearsal=None
     speed = require("speed", speed, "", "a live view", "1 is real time, 0.1 slow motion.", low=low)
     if speed > high:
         raise PaddleError(f"speed = {speed:g}; a live view needs {low:g} to {high:g}. 1 is real time, 0.1 slow motion.")
+    if speed != 1 and isinstance(paddle, SerialPaddle):
+        raise PaddleError(f"speed = {speed:g}; a board runs in real time: leave speed out, or take a SimulatedPaddle.")
     duration = require("duration", duration, "s", "a rehearsal", above=0)
     session = Session(paddle, scene, sliders=sliders, speed=speed, picture=picture, **compile_options)
     return LiveView(session, rehearsal, duration, compile_options)

@@ -1,0 +1,255 @@
+"""A board on view: its motor goes on by a press of Start alone, and off with silence, views, faults and other users."""
+
+import threading
+
+import numpy as np
+import pytest
+
+import hapticlab as hl
+from hapticlab.device.messages import STATES
+from hapticlab.device.streaming import LEAD, LEASH
+from hapticlab.widgets.session import SILENCE, Session
+
+WALL = hl.wall("ellis")(k=150, x_o=0.002)
+HAND = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch", intent=0.01))
+
+
+@pytest.fixture
+def board():
+    """A board in virtual time: it passes while the session takes its turns."""
+    with hl.connect("sim://hapkit", paddle=HAND) as paddle:
+        yield paddle
+
+
+class Stage:
+    """A session on a board whose clock, views and turns are the test's."""
+
+    def __init__(self, paddle, scene=WALL, **given):
+        self.paddle, self.now, self.frames = paddle, 10.0, []
+        self.session = Session(paddle, scene, clock=lambda: self.now, in_thread=False, **given)
+        self.session.connect(self.frames.append)
+        self.session.ready("page")
+        self.session.turn()
+
+    def go(self, seconds):
+        until = self.now + seconds
+        while self.now < until - 1e-9:
+            self.now += 1 / 60
+            self.session.alive("page")
+            self.session.turn()
+        return self
+
+    def press(self, *names):
+        for name in names:
+            self.session.press(name)
+        return self.go(1 / 60)
+
+    @property
+    def is_running(self):
+        """What the board itself says."""
+        return self.paddle.state()["state"] == STATES["RUN"]
+
+
+def test_the_motor_goes_on_by_a_press_and_by_nothing_else(board):
+    stage = Stage(board).go(0.5)
+    assert not stage.is_running
+    assert stage.session.status == "Motor off: press Start, and hold the handle."
+    view = hl.live(board, WALL)
+    for start in (view.start, view.resume):
+        with pytest.raises(hl.PaddleError, match="does not start because a cell ran"):
+            start()
+    assert not stage.is_running
+    stage.press("start").go(0.2)
+    assert stage.is_running
+    assert stage.frames[-1].flags["motor"]
+    assert stage.session.status.startswith("Motor on")
+    stage.press("pause")
+    assert not stage.is_running
+    assert not stage.frames[-1].flags["motor"]
+
+
+@pytest.mark.parametrize("how", ["gone", "silent", "close", "sink", "error"])
+def test_the_motor_goes_off_with_whoever_looks(board, how, monkeypatch):
+    stage = Stage(board).press("start").go(0.2)
+    assert stage.is_running
+    if how == "gone":
+        stage.session.gone("page")
+    elif how == "silent":
+        stage.now += SILENCE + 0.1
+    elif how == "close":
+        stage.session.end()
+    elif how == "sink":
+        stage.session.connect(lambda frame: 1 / 0)
+        stage.go(1 / 60)
+    else:
+        monkeypatch.setattr(stage.session.motion.traces, "add", lambda samples: 1 / 0)
+        stage.go(1 / 60)
+    stage.session.turn()
+    assert not stage.is_running
+    monkeypatch.undo()
+    stage.session.connect(stage.frames.append)
+    stage.go(0.3)  # somebody looks again: only Start switches it on
+    assert not stage.is_running
+    if how == "error":
+        assert "ZeroDivisionError" in stage.session.status
+
+
+def test_a_view_that_hangs_lets_the_board_stop_its_motor(board):
+    """Nobody takes turns any more while the port is read on: the board is fed for LEASH, then stops by itself."""
+    stage = Stage(board).press("start").go(0.2)
+    board.exchange.wait(lambda: False, LEASH + 0.3)
+    assert board.state()["state"] == STATES["FAULT"]
+    stage.go(0.1)
+    assert "HOST_SILENT" in stage.session.status
+    assert not stage.session.motion.running
+
+
+def test_what_the_board_samples_is_recorded_whole(board):
+    stage = Stage(board).press("record", "start").go(1.0)
+    stage.session.move("k", 300)
+    stage.go(0.5)
+    log = stage.press("stop").session.recorded()
+    assert len(log) > 1400
+    assert np.allclose(np.diff(log.t), board.T, atol=1e-12)
+    assert not log.gap.any()
+    (since, set_), = log.changes
+    assert set_ == {"k": 300.0}
+    law = np.maximum(np.where(log.t < since - 1e-9, 150, 300) * (log.x - 0.002), 0)
+    after = slice(10, None)
+    assert abs(log.F - law)[after].max() < 0.15  # the damper of Ellis's law beside the spring
+    assert 0 <= log.delay < board.T
+    assert "intent" not in log.columns
+    stage.press("pause")
+    assert stage.session.recorded() is log
+
+
+def test_the_energy_on_view_is_that_of_the_record(board):
+    stage = Stage(board).press("record", "start").go(0.5)
+    log = stage.session.recorded()
+    rows = np.concatenate([frame.rows for frame in stage.frames])
+    work = np.r_[0.0, np.cumsum(log.F[:-1] * np.diff(log.x))]
+    assert np.allclose(rows[:, 3], -work[np.round(rows[:, 0] / board.T).astype(int)], atol=1e-8)
+
+
+def test_sliders_move_before_start_and_while_it_runs(board):
+    stage = Stage(board)
+    stage.session.move("k", 200)
+    stage.go(0.1)
+    assert stage.session.values["k"] == 200
+    stage.press("start").go(0.3)
+    before = stage.frames[-1].rows[-1]
+    assert before[2] == pytest.approx(200 * (before[1] - 0.002), rel=0.05)
+    stage.session.move("k", -1)
+    stage.go(0.1)
+    assert "needs k >= 0" in stage.session.status
+    assert stage.is_running
+
+
+def test_a_fault_is_told_and_start_clears_it(board):
+    stage = Stage(board).press("start").go(0.2)
+    board.exchange.port.lead(0.045)
+    board.exchange.port.handle.v = 3.0  # faster than a handle may be
+    stage.go(0.2)
+    assert not stage.is_running
+    assert "OVER_SPEED" in stage.session.status
+    assert not stage.frames[-1].flags["motor"]
+    stage.press("start").go(0.2)
+    assert stage.is_running
+    assert "OVER" not in stage.session.status
+
+
+def test_another_cell_takes_the_paddle(board):
+    stage = Stage(board).press("start").go(0.2)
+    log = board.run(WALL(k=100), duration=0.1)
+    assert len(log) == 100
+    stage.go(0.1)
+    assert not stage.session.motion.running
+    assert "another cell" in stage.session.status
+    board.start(WALL(k=100))
+    stage.press("pause")
+    assert stage.is_running  # what others began is not ended here
+
+
+def test_a_handle_that_is_lost_is_led_to_its_stops_first(board, monkeypatch):
+    """Until the board knows where its handle is, Start waits, in words, and blocks nothing."""
+    homed = []
+    monkeypatch.setattr("hapticlab.device.streaming.state_flag", lambda exchange, name: bool(homed))
+    monkeypatch.setattr("hapticlab.device.streaming.hasattr", lambda port, name: False, raising=False)
+    stage = Stage(board).press("start").go(0.3)
+    assert LEAD in stage.session.status
+    assert not stage.is_running
+    homed.append(True)
+    stage.go(0.1)
+    assert stage.is_running
+
+
+def test_a_record_is_played_with_the_motor_off(board):
+    stage = Stage(board).press("record", "start").go(0.3).press("replay").go(0.1)
+    assert not stage.is_running
+    assert stage.frames[-1].flags["replaying"]
+    stage.go(0.5)
+    assert not stage.frames[-1].flags["replaying"]
+    assert not stage.is_running
+
+
+def test_without_a_record_a_board_has_no_log(board):
+    view = hl.live(board, WALL)
+    with pytest.raises(hl.PaddleError, match="press Start and then Record"):
+        view.log  # noqa: B018
+
+
+def test_a_board_has_no_slow_motion(board):
+    with pytest.raises(hl.PaddleError, match="real time"):
+        hl.live(board, WALL, speed=0.1)
+
+
+def test_a_scene_that_does_not_fit_is_refused_before_it_is_shown(board, monkeypatch):
+    def too_long(*given, **options):
+        raise hl.ProgramLimitError("takes 140 % of the period")
+
+    monkeypatch.setattr(type(board), "_checked", too_long)
+    with pytest.raises(hl.ProgramLimitError, match="140 %"):
+        hl.live(board, WALL)
+
+
+def test_by_the_clock_on_the_wall_in_its_own_thread():
+    """The real protocol in real time: frames come, and with the last view the motor is off."""
+    with hl.connect("sim://hapkit?pace=real", paddle=HAND) as board:
+        view = hl.live(board, WALL)
+        session, frames, pushed = view._session, [], threading.Event()
+
+        def sink(frame):
+            frames.append(frame)
+            session.alive("page")
+            if frame.flags["motor"] and len(frame.rows) and frame.rows[-1, 2] > 0.5:
+                pushed.set()
+
+        session.connect(sink)
+        session.press("start")
+        session.ready("page")
+        assert pushed.wait(20)
+        thread = session._thread
+        session.connect(None)
+        session.gone("page")
+        thread.join(20)
+        assert board.state()["state"] != STATES["RUN"]
+
+
+def test_a_view_that_nobody_keeps_switches_its_motor_off():
+    with hl.connect("sim://hapkit?pace=real", paddle=HAND) as board:
+        view = hl.live(board, WALL)
+        session, on = view._session, threading.Event()
+
+        def sink(frame):
+            session.alive("page")
+            if frame.flags["motor"]:
+                on.set()
+
+        session.connect(sink)
+        session.press("start")
+        session.ready("page")
+        assert on.wait(20)
+        thread = session._thread
+        del view
+        thread.join(20)
+        assert board.state()["state"] != STATES["RUN"]
