@@ -43,8 +43,8 @@ def hand_constants(M, sigma, omega, m, b):
 which_window = "c"
 
 discussion = (
-    "One interval of 95 % in twenty misses, so among six of them one outside happens in about a quarter of all labs and is no "
-    "reason to distrust the method; six outside would be. Warming the paddle changes its damping, as grease thins, and a "
+    "One interval of 95 % in twenty misses, so among seven of them one outside happens in about a third of all labs and is no "
+    "reason to distrust the method; seven outside would be. Warming the paddle changes its damping, as grease thins, and a "
     "loosened screw adds backlash, which the model lacks: the interval knows only the noise of this record, not what changes "
     "between two days, and notices neither. The window of 60 ms shows that a model with enough freedom can fit data it is "
     "wrong about: that the rest looks like noise is needed, and is not enough; the time at which reflexes begin has to come "
