@@ -42,7 +42,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="a count is worth travel / (right - left), with its sign; the middle lies at (left + right)/2 counts",
+            hint="two questions: how many metres is a count, with its sign? And what does the sensor read in the middle?",
         ),
         Exercise(
             "which_way",
@@ -92,7 +92,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="work = asked*moved, e = np.where(on == 1, 1, -1); then sums",
+            hint="np.where(on == 1, 1, -1) makes e of the coins; then two sums over the work asked*moved",
         ),
         Exercise(
             "force_full",
@@ -155,7 +155,7 @@ LAB = Lab(
                     {"reach": 0.00416666667, "force_step": 0.8904, "speed_step": 1.484},
                 ),
             ),
-            hint="k x = force_max; one count more of x; one count more in one period",
+            hint="where does k x reach force_max? What does one count more do to k x? What speed is one count in one period?",
         ),
         Exercise(
             "discussion",

@@ -87,7 +87,7 @@ LAB = Lab(
                     ),
                 ),
             ),
-            hint="np.linalg.lstsq(np.column_stack([x, v]), F, rcond=None)[0]",
+            hint="a matrix with a row a sample and a column each for x and v; np.linalg.lstsq returns the coefficients first",
         ),
         Exercise(
             "count_step",
@@ -135,13 +135,16 @@ LAB = Lab(
                         (0.0, 0.4, 0.903785333, 1.329011063, 1.500056826, 1.251435499, 1.034390461, 0.77850388, 0.491581859,
                          0.185062796): "The mass does not feel the damper that the hand feels: action and reaction must be "
                         "the same F_c.",
+                        (0.0, 0.4, 0.908099734, 1.345452737, 1.534619763, 1.306593283, 1.107417624, 0.86629578, 0.59320974,
+                         0.299310094): "x(n) in an equation of motion is a handle that stands still over the whole period; "
+                        "write x(t) and v(t), the handle as it moves between the samples.",
                         (0.0, 0.32, 0.787002593, 1.214042313, 1.425906273, 1.257660422, 1.041089729, 0.790914967, 0.511856227,
                          0.215270371): "The hand does not feel the damper that the mass feels: action and reaction must be "
                         "the same F_c.",
                     },
                 ),
             ),
-            hint="name it first: F_c = K*(x(t) - z) + b_c*(v(t) - z.diff(t)); it is force=, and the right side of m z''",
+            hint="write F_c once, in x(t), v(t), z and z.diff(t), and use it twice: as force=, and in the equation of motion",
         ),
         Exercise(
             "resonance",

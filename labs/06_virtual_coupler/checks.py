@@ -37,7 +37,7 @@ LAB = Lab(
                     slips=(({"z": 0.0005}, OLD),),
                 ),
             ),
-            hint="F_c from the old state; w = w + T F_c/m; then z = z + T w",
+            hint="first the force from the old state, then the velocity, then the position: three lines, in that order",
         ),
         Exercise(
             "pendulum",
@@ -78,6 +78,12 @@ LAB = Lab(
                         (0.0, -0.402192838, -0.593062574, 0.036396408, 0.976202977, 1.190591263, 0.501293686, -0.438634664,
                          -0.348550123, 0.061512887, 0.074157944, -0.388594836): "The sign is turned: the force on the "
                         "environment is the force on the carriage, force=F_c.",
+                        (0.0, 0.394243206, 0.555110242, -0.091685517, -0.993018889, -1.149281644, -0.432670189, 0.487902494,
+                         0.345039405, -0.107128482, -0.117386441, 0.383497976): "That holds for small angles only; keep sine "
+                        "and cosine, the solver does not mind them.",
+                        (0.0, 0.402288121, 0.595437382, -0.021529536, -0.944946259, -1.161968821, -0.494844203, 0.422920002,
+                         0.325680536, -0.074067751, -0.068383287, 0.406565469): "The bob's centrifugal force on the carriage, "
+                        "m l theta'^2 sin(theta), is missing: differentiate theta' cos(theta) as a product.",
                         (0.0, 0.394700161, 0.862744684, 0.981176619, 0.705639762, 0.296547241, -0.140453221, -0.59540842,
                          -1.616538211, -2.643536863, -3.370423332, -3.596984852): "Nothing moves the carriage: what the hand "
                         "feels must also act on it, forces={z: F_c}.",
@@ -134,6 +140,7 @@ LAB = Lab(
                         8.813829239: "That is the faster mode, the carriage on the coupler; the swing is the slower one.",
                         7.998434654: "That is in rad/s; a hertz is 2 pi of them.",
                         63.974956916: "That is omega squared.",
+                        8.087026647: "That is sqrt(g/l) in rad/s; in hertz, and on a coupler that gives way, it is slower.",
                     },
                 ),
                 Case(
@@ -144,7 +151,8 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="M l w^4 - ((M + m) g + K l) w^2 + K g = 0 is what should come out; or np.linalg.eigvals of the two matrices",
+            hint="two equations for the amplitudes of z and theta; they have a solution other than zero only where their "
+            "determinant vanishes: a quadratic equation in omega squared. Or np.linalg.eigvals of M^-1 K",
         ),
         Exercise(
             "who_pays",
