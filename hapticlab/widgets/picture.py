@@ -1,21 +1,22 @@
 """The moving picture of a live view: the scene's mechanism, the handle, the hand's intent and the motor's force."""
 
 import inspect
-import re
 
 import numpy as np
 
+from ..analysis.pictures import drawing_of, named_by
+from ..analysis.schematic import Schematic
+from ..drawing import COLD
 from ..errors import AnalysisError
 from ..library.entries import CATALOGUE
 from ..library.sketch import HANDLE, INK
 from .recording import RecordingAxes
-from .schematic import Schematic
 
 #: how far the handle goes to either side [m]
 REACH = 0.05
 #: the force that is drawn as long as FULL of the picture's width, where the paddle has no limit [N]
 FORCE, FULL = 5.0, 0.2
-HAND = "#1f6fb4"
+HAND = COLD
 
 
 def moving_picture(scene, paddle=None, picture=None):
@@ -67,7 +68,7 @@ class MovingPicture:
 
     def __init__(self, scene, drawing, full_force):
         self.scene, self._drawing, self._full = scene, drawing, full_force
-        names = _named(drawing)
+        names = named_by(drawing)
         self.channels = {type(q).__name__: q for q in scene.coordinates if type(q).__name__ in names}
         self._names = names & ({*self.channels, "t", "T"} | set(scene.parameters))
         self.box, self.along = self._fit()
@@ -142,8 +143,7 @@ def _drawing(scene, picture):
     if isinstance(picture, str):
         return CATALOGUE[picture].draw
     if picture is None:
-        entry = _entry_of(scene)
-        return entry.draw if entry else Schematic(scene)
+        return drawing_of(scene)
     shapes = tuple(picture) if isinstance(picture, (list, tuple)) else (picture,)
     if not all(hasattr(shape, "shape") for shape in shapes):
         raise AnalysisError(
@@ -153,22 +153,9 @@ def _drawing(scene, picture):
     return Schematic(scene, shapes)
 
 
-def _entry_of(scene):
-    """Return the library's entry of a scene, or None; names begin alike, so that few scenes have to be made."""
-    words = re.split(r"\W+", scene.name)
-    for entry in CATALOGUE.values():
-        if entry.name.split("_")[0] == words[0]:
-            made = entry.scene()
-            if (made.name, made.coordinates) == (scene.name, scene.coordinates):
-                return entry
-    return None
-
-
-def _named(drawing):
-    return set(getattr(drawing, "names", None) or inspect.signature(drawing).parameters) - {"axes", "x", "_"}
-
-
 def _defaults(drawing):
+    if isinstance(drawing, Schematic):
+        return drawing.start
     given = inspect.signature(drawing).parameters.values()
     return {p.name: p.default for p in given if isinstance(p.default, (int, float))}
 

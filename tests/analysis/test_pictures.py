@@ -2,10 +2,17 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import hapticlab as hl
+from hapticlab import n
+from hapticlab.analysis.outlines import Outline
+from hapticlab.analysis.pictures import drawing_of
+from hapticlab.analysis.schematic import Schematic
 from hapticlab.drawing import new_figure
 from hapticlab.library.entries import CATALOGUE
+from hapticlab.library.sketch import BODY, HANDLE, Sketch
+from hapticlab.widgets.recording import RecordingAxes
 
 #: parameters that a picture does not name: constants of nature, losses, starts
 UNNAMED = {"c", "B", "theta_0", "A", "k", "k_3", "k_w", "e", "F_s", "F_c", "alpha", "g", "p", "Omega", "P", "F_0", "w"}
@@ -105,8 +112,115 @@ def test_what_a_picture_does_not_know_is_refused():
         hl.picture("detents", y=1)
     with pytest.raises(hl.AnalysisError, match="four_bar cannot be put together with b = 0.005; take other lengths"):
         hl.picture("four_bar", b=0.005)
-    with pytest.raises(hl.AnalysisError, match="a Scene has no picture; hl.picture draws the library's scenes by name"):
-        hl.picture(hl.library.detents())
+    with pytest.raises(hl.AnalysisError, match="a Telemetry has no picture; hl.picture draws a scene, or one of the library"):
+        hl.picture(hl.Telemetry(t=[0], x=[0], v=[0], F=[0], T=1e-3))
     assert hl.picture(hl.library.detents).axes[0].get_title() == "detents"
     with pytest.raises(hl.UnitsError, match="x = '3 N'"):
         hl.picture("gears", x="3 N")
+
+
+# --- scenes of one's own, drawn from their equations
+
+k, x_o, x_1 = hl.parameters("k x_o x_1", units="N/m m m", values=(300, 0.01, -0.02))
+
+
+def outline_of(figure, colour):
+    """Return the ends (left, right) of the one area of a colour [m]."""
+    from matplotlib.colors import to_hex
+
+    (found,) = (patch for patch in figure.axes[0].patches if to_hex(patch.get_facecolor()) == colour)
+    return np.asarray(found.get_xy())[:, 0].min(), np.asarray(found.get_xy())[:, 0].max()
+
+
+def hatched(figure):
+    """Return the places x of the upright lines that are drawn as ground [m]."""
+    lines = [line.get_xdata() for line in figure.axes[0].lines if line.get_linewidth() == 1.6]
+    return sorted(xs[0] for xs in lines if xs[0] == xs[-1])
+
+
+@pytest.mark.parametrize("law", ["zoh", "ellis", "half_sample"])
+@pytest.mark.parametrize("unilateral", ["gate", "clip"])
+def test_the_handles_face_meets_the_wall_where_the_force_begins(law, unilateral):
+    for place in (0.01, -0.012):
+        figure = hl.picture(hl.wall(law, unilateral=unilateral)(k=300, x_o=place), x=place)
+        assert hatched(figure) == [pytest.approx(outline_of(figure, HANDLE)[1], abs=1e-12)]
+
+
+def test_walls_to_both_sides_each_hatched_on_its_own():
+    force = hl.when(hl.x(n) >= x_o, k * (hl.x(n) - x_o)) + hl.when(hl.x(n) <= x_1, k * (hl.x(n) - x_1))
+    figure = hl.picture(hl.Scene(force=force))
+    left, right = hatched(figure)
+    half = np.diff(outline_of(figure, HANDLE))[0] / 2
+    assert (left, right) == (pytest.approx(-0.02 - half, abs=1e-12), pytest.approx(0.01 + half, abs=1e-12))
+    assert "$x_{o}$" in words(figure) and "$x_{1}$" in words(figure)
+    assert hatched(hl.picture(hl.virtual_damper()(B=1.0))) == []
+
+
+def words(figure):
+    return {text.get_text() for text in figure.axes[0].texts}
+
+
+def mass_on_a_coupler():
+    z = hl.coordinate("z", unit="m", initial=hl.x(n))
+    m, K, b_c = hl.parameters("m K b_c", units="kg N/m N*s/m", values=(0.05, 200, 0.2))
+    F = hl.virtual_coupler(z, K=K, b=b_c)
+    return z, m, F
+
+
+def test_a_mass_meets_its_wall_with_its_own_face():
+    z, m, F = mass_on_a_coupler()
+    scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F - hl.when(z >= x_o, k * (z - x_o)))])
+    figure = hl.picture(scene, x=0.011, z=0.01)
+    assert hatched(figure) == [pytest.approx(outline_of(figure, BODY)[1], abs=1e-12)]
+    apart = hl.picture(scene, x=0.011, z=0.004)
+    assert hatched(apart)[0] - outline_of(apart, BODY)[1] == pytest.approx(0.006, abs=1e-12)
+    assert max(len(line.get_xdata()) for line in apart.axes[0].lines) > 12  # the coupler's spring
+
+
+def test_a_pendulum_hangs_from_its_cart_and_a_pole_stands_on_it():
+    z, m, F = mass_on_a_coupler()
+    theta = hl.coordinate("theta", unit="rad")
+    l, g = hl.parameters("l g", units="m m/s^2", values=(0.1, 9.81))
+    dz, w = z.diff(hl.t), theta.diff(hl.t)
+    kinetic = m * dz**2 / 2 + m * (dz**2 + 2 * l * dz * w * sp.cos(theta) + (l * w) ** 2) / 2
+    for sign, below in ((1, True), (-1, False)):
+        scene = hl.Scene(force=F, eom=[hl.lagrange(kinetic + sign * m * g * l * sp.cos(theta), forces={z: F})])
+        figure = hl.picture(scene, theta=0.5)
+        rod = next(line.get_xydata() for line in figure.axes[0].lines if line.get_linewidth() == 2.5)
+        reach = rod[-1] - rod[0]
+        assert bool(reach[1] < 0) is below
+        assert np.arctan2(reach[0], abs(reach[1])) == pytest.approx(0.5, abs=1e-12)
+
+
+def test_a_scene_of_the_library_is_drawn_as_the_library_does_also_when_bound_anew():
+    for entry in CATALOGUE.values():
+        scene = entry.scene()
+        assert drawing_of(scene(**dict(scene.values))) is entry.draw
+    assert isinstance(drawing_of(hl.Scene(force=k * hl.x(n), name="detents of my own")), Schematic)
+
+
+@pytest.mark.parametrize(
+    ("shape", "core", "radius"),
+    [
+        (hl.Circle("5 mm"), [(0, 0)], 5e-3),
+        (hl.Capsule("20 mm", "4 mm"), [(-0.01, 0), (0.01, 0)], 4e-3),
+        (hl.Polygon([(0, 0), (0.02, 0), (0.01, 0.015)], radius="2 mm"), [(0, 0), (0.02, 0), (0.01, 0.015)], 2e-3),
+    ],
+)
+def test_an_outline_is_its_radius_away_from_its_core(shape, core, radius):
+    z = hl.coordinate("z", unit="m")
+    drawn = RecordingAxes()
+    Outline(shape.at(x=z, y="10 mm", angle=0.4)).draw(Sketch(drawn, -0.06, 0.06, -0.03, 0.03), {"z": 0.013})
+    (points,) = (np.array(item[1]) for item in drawn.items if item[0] == "area")
+    turned = np.array([[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]])
+    corners = np.array(core) @ turned.T + (0.013, 0.01)
+    edges = list(zip(corners, np.roll(corners, -1, axis=0), strict=True))
+    away = [min(distance(point, *edge) for edge in edges) for point in points]
+    np.testing.assert_allclose(away, radius, rtol=1e-12)  # rounding of a few turns
+
+
+def distance(point, a, b):
+    """Return how far a point is from a segment."""
+    along = b - a
+    s = np.clip((point - a) @ along / (along @ along), 0, 1) if along.any() else 0.0
+    return np.hypot(*(point - a - s * along))

@@ -1,4 +1,7 @@
-"""A schematic of any scene, drawn from its equations: the handle, its walls, a block or a pendulum a coordinate."""
+"""A schematic of any scene, drawn from its equations: the handle, its walls, a block or a pendulum a coordinate.
+
+Blocks and pendulums are not to scale; walls stand where the face of what meets them touches.
+"""
 
 import numpy as np
 import sympy as sp
@@ -18,12 +21,20 @@ LOOKED_AT = 4
 
 
 class Schematic:
-    """Draws a scene in a state; see :func:`~hapticlab.widgets.picture.moving_picture`.
+    """Draws a scene in a state: called with axes, x and what else ``names`` lists, as the functions of the library are.
+
+    Parameters
+    ----------
+    scene : Scene
+    shapes : sequence of Placed
+        Drawn in their places; coordinates that they depend on get no block of their own.
 
     Attributes
     ----------
     names : set of str
         Coordinates and parameters that the picture depends on.
+    start : dict of str to float
+        Where it is drawn unless told: the handle at 0, each coordinate where it starts.
     """
 
     def __init__(self, scene, shapes=()):
@@ -36,28 +47,29 @@ class Schematic:
         self.turning = {type(q).__name__: _carrier(scene, q) for q in angles}
         self.stands = {type(q).__name__: _stands(scene, q) for q in angles}
         self.springs = _springs(scene, self.blocks)
+        self.start = _start(scene)
         self.names = placed.union(self.blocks, self.turning, *(wall.names for wall in self.walls))
 
-    def __call__(self, axes, *, x, **state):
-        state = {"x": x, **state}
+    def __call__(self, axes, **state):
+        state = {**self.start, **state}
         s = self._frame(axes)
         u, offset = s.u, {"x": 0.0}
         for place, name in enumerate(self.blocks):
-            offset[name] = (0.8 + place) * APART + clearance(x, state.get(name, 0.0))
-        at = {name: state.get(name, 0.0) + away for name, away in offset.items()}
+            offset[name] = (0.8 + place) * APART + clearance(state["x"], state[name])
+        at = {name: state[name] + away for name, away in offset.items()}
         half = {"x": 1.5 * u} | dict.fromkeys(self.blocks, 7 * u)
         for outline in self.outlines:
             outline.draw(s, state)
         for wall in self.walls:
-            if wall.mover in at:
+            if wall.mover in at and wall.names <= set(state):
                 self._wall(s, wall, offset[wall.mover] + wall.side * half[wall.mover], state)
         for first, second in self.springs:
             s.spring((at[first] + half[first], 0), (at[second] - half[second], 0))
         for name in self.blocks:
             s.block((at[name], 0), 14, 12)
-            s.coordinate(_letters(name), state.get(name, 0.0), -11 * u, origin=offset[name])
+            s.coordinate(_letters(name), state[name], -11 * u, origin=offset[name])
         self._turning(s, at, state)
-        s.handle(x)
+        s.handle(state["x"])
 
     def _frame(self, axes):
         dials = sum(not carrier for carrier in self.turning.values())
@@ -80,7 +92,7 @@ class Schematic:
         """Draw what turns: hanging from or standing on what carries it, else a dial."""
         free = s.right
         for name, carrier in self.turning.items():
-            turn, u = state.get(name, 0.0), s.u
+            turn, u = state[name], s.u
             if carrier in at:
                 pivot, rest = np.array([at[carrier], 0.0]), (1 if self.stands[name] else -1) * np.pi / 2
                 angle = rest + (turn if rest < 0 else -turn)
@@ -94,6 +106,18 @@ class Schematic:
                 free -= 0.04
                 s.disc((free + 0.02, 0), 0.015, np.pi / 2 - turn)
                 s.text((free + 0.02, -0.015), _letters(name), up=-2.8)
+
+
+def _start(scene):
+    """Return where the handle and the coordinates are at the first sample; 0 where that is not known."""
+    start = {"x": 0.0} | {type(q).__name__: 0.0 for q in scene.coordinates}
+    for q in scene.coordinates:
+        try:
+            value, _ = formula(type(q).initial)
+            start[type(q).__name__] = float(value({**start, **scene.values})[0])
+        except (KeyError, TypeError, ValueError, ZeroDivisionError, NotImplementedError):
+            continue
+    return start
 
 
 def _letters(name):
