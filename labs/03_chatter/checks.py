@@ -4,6 +4,7 @@ from hapticlab.course.exercise import Case, Exercise, Lab
 
 ONE_PERIOD = "That takes the hold for a whole period of delay. In the mean a force that is held for T is late by T/2."
 HOLD_ALONE = "That leaves the computational delay out: it comes on top of the half period of the hold."
+NO_HOLD = "That leaves the hold out: half a period, on top of the computational delay."
 TAKEN_TWICE = "With k tau <= b the limit is b/tau; there is no factor 2 beside it, it comes from tau = T/2."
 DETERMINANT = "That is the determinant, |z|^2 of the two complex eigenvalues. The amplitude grows by its root."
 NO_HALF = (
@@ -16,6 +17,8 @@ EULER = (
     "That comes of x(n+1) = x(n) + T v(n+1), a way to integrate that keeps energy. The handle itself moves on a "
     "parabola while the force is held, and gains."
 )
+OFF_ZERO = "It never crosses zero, for it swings about 2 mm. Subtract the mean first."
+NO_GAIN = "The sign is turned: k T/2 > b here, so the hold gives k T/2 - b beyond what the dampers take."
 BOTH_WAYS = "Twice too much: crossings of both directions were counted. A cycle has one upward crossing."
 PER_TIME = (
     "Crossings over the whole time count a part of a cycle at both ends. Take whole cycles, from crossing to crossing."
@@ -56,7 +59,7 @@ LAB = Lab(
                     {"b": 0.5, "T": 2e-3, "delay": 0.5e-3},
                     333.3333333333333,
                     unit="N/m",
-                    slips={200.0: ONE_PERIOD, 500.0: HOLD_ALONE, 666.6666666666666: TAKEN_TWICE},
+                    slips={200.0: ONE_PERIOD, 500.0: HOLD_ALONE, 666.6666666666666: TAKEN_TWICE, 1000.0: NO_HOLD},
                 ),
             ),
             hint="The damping of the loop is b - k tau, with tau = T/2 + delay. From which k on is it negative?",
@@ -102,7 +105,7 @@ LAB = Lab(
                     ),
                 ),
             ),
-            hint="hl.when(x(n - 1) >= x_o, k*(x(n - 1) - x_o))",
+            hint="What does a wall know that has not seen x(n) yet? Both its condition and its spring look at x(n - 1).",
         ),
         Exercise(
             "chatter_frequency",
@@ -118,6 +121,7 @@ LAB = Lab(
                     25.0,
                     unit="Hz",
                     slips={
+                        0.0: OFF_ZERO,
                         50.0: BOTH_WAYS,
                         17.391304347826086: PER_TIME,
                         16.666666666666668: PER_TIME,
@@ -127,8 +131,7 @@ LAB = Lab(
                 ),
             ),
             rtol=0.02,
-            hint="y = x - x.mean(); i where y[i] < 0 <= y[i+1]; each crossing at t[i] + (t[i+1] - "
-            "t[i]) y[i]/(y[i] - y[i+1]).",
+            hint="With y = x - x.mean(), np.flatnonzero((y[:-1] < 0) & (y[1:] >= 0)) are the samples before upward crossings.",
         ),
         Exercise(
             "threshold_speed",
@@ -140,6 +143,7 @@ LAB = Lab(
                     0.042441318157838762,
                     unit="m/s",
                     slips={
+                        -0.042441318157838762: NO_GAIN,
                         0.13333333333333333: NO_PI,
                         0.033333333333333333: ONE_QUARTER,
                         0.02122065907891938: HALF_WAY,
@@ -152,6 +156,7 @@ LAB = Lab(
                     0.025464790894703253,
                     unit="m/s",
                     slips={
+                        -0.025464790894703253: NO_GAIN,
                         0.08: NO_PI,
                         0.02: ONE_QUARTER,
                         0.012732395447351627: HALF_WAY,
@@ -181,7 +186,7 @@ LAB = Lab(
                     slips={200.0: HOLD_ONLY, 334.77088948787062: SUM, 67.38544474393531: HALF_COUNT},
                 ),
             ),
-            hint="The smaller of 2 b/T and 2 f_c/resolution.",
+            hint="Two leaks, each with its own payer. Both have to be paid for.",
         ),
         Exercise(
             "culprit",
