@@ -66,6 +66,7 @@ LAB = Lab(
                         ((0.0, 1.5, 2.5, 3.5, -0.5, 0.0), WHOLE),
                         ((0.0, 0.0, 1.0, 2.0, 1.75, 0.0), BACK),
                         ((0.0, 0.75, 2.0, 3.0, 0.25, 0.0), CLIPPED),
+                        ((0.0, 0.75, 2.0, 3.0, 0.25, -0.5), CLIPPED),
                         ((-0.5, 1.0, 2.0, 3.0, 0.25, -1.25), ALWAYS),
                     ),
                 ),
@@ -76,11 +77,13 @@ LAB = Lab(
                     slips=(
                         ((0.0, 0.0, 1.0, 2.0, 0.5, 0.0), PLAIN),
                         ((0.0, 0.25, 1.25, 2.25, -0.5, 0.0), ONE_SHIFT),
+                        ((0.0, 0.0, 1.5, 2.5, -0.25, 0.0), CLIPPED),
+                        ((0.0, 0.0, 1.5, 2.5, -0.25, -0.25), CLIPPED),
                         ((0.0, 1.0, 2.0, 3.0, 0.25, 0.0), "The spring is pressed by x - x_o, not by x."),
                     ),
                 ),
             ),
-            hint="With p(n) = x(n) - x_o: k (1.5 p(n) - 0.5 p(n-1)) inside hl.when(x(n) >= x_o, ...).",
+            hint="Write Eq. (23.5) with p(n) = x(n) - x_o for each of its samples, inside hl.when(x(n) >= x_o, ...).",
         ),
         Exercise(
             "ellis_wall",
@@ -102,9 +105,13 @@ LAB = Lab(
                     {"x": [0.0, 2e-3, 3e-3, 3e-3, 2.5e-3, 0.5e-3], "values": {"k": 1000.0, "x_o": 1e-3}},
                     [0.0, 3.0, 2.0, 1.5, 1.0, 0.0],
                     unit="N",
+                    slips=(
+                        ((0.0, 4.0, 3.0, 2.5, 2.0, 0.0), "The spring is pressed by x - x_o, not by x."),
+                        ((0.0, 1.5, 2.5, 2.0, 1.25, 0.0), "That is Eq. (23.5), without the correction."),
+                    ),
                 ),
             ),
-            hint="k/2 (x(n) + 2 x(n) - x(n-1) + x(n) - 2 x(n-1) + x(n-2)), each x less x_o; the weights sum to 1.",
+            hint="x^(n+1) = 2 x(n) - x(n-1) and x^(n) = 2 x(n-1) - x(n-2); the three weights sum to 1.",
         ),
         Exercise(
             "nyquist_damping",
@@ -127,7 +134,7 @@ LAB = Lab(
                 ),
                 Case({"taps": [0.5, 0.5], "k": 200.0, "T": 1e-3}, 0.0, unit="N s/m", slips={0.1: ABSOLUTE, 0.2: TWICE}),
             ),
-            hint="4 b a^2/T >= 2 k a^2 h, with h = c_0 - c_1 + c_2 - ...",
+            hint="What the damper takes in a period, 4 b a^2/T, against what the law gives away, 2 k a^2 h.",
         ),
         Exercise(
             "stiffest_passive",
@@ -148,7 +155,7 @@ LAB = Lab(
                 ),
                 Case({"b": 0.1, "b_added": 0.0, "B": -0.2, "T": 1e-3}, 0.0, unit="N/m", slips={-200.0: NEGATIVE}),
             ),
-            hint="b + b_added = K T/2 + |B|.",
+            hint="In Eq. (23.10) b is all the real damping there is. Is there a stiffness left?",
         ),
         Exercise(
             "deadbeat_forces",
@@ -174,7 +181,7 @@ LAB = Lab(
             ),
             rtol=1e-6,
             atol=1e-9,
-            hint="Velocity: F_0 + F_1 = m (v - v_goal)/T. Position: 3 F_0 + F_1 = 2 m (x + 2 T v - x_goal)/T^2.",
+            hint="The velocity fixes F_0 + F_1. To the position F_0 counts three times as much as F_1: it has longer to work.",
         ),
         Exercise(
             "which_law",
@@ -197,7 +204,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="Go through what each law needs to know, and what it does with what it does not know.",
+            hint="What does each law need to know, and what does it do with what it does not know?",
         ),
         Exercise(
             "discussion",
