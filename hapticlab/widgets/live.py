@@ -1,6 +1,7 @@
 """hl.live: a paddle and a scene in a notebook, moving."""
 
 import weakref
+from dataclasses import replace
 
 import numpy as np
 
@@ -170,7 +171,9 @@ class LiveView:
         start = float(np.asarray(self._rehearsal(np.zeros(1)), float).reshape(-1)[0])
         paddle = with_grip(session.source.paddle, self._rehearsal)
         scene = session.scene(**self.values)
-        return paddle.run(scene, duration=self._duration, x=start, progress=False, **self._options)
+        log = paddle.run(scene, duration=self._duration, x=start, progress=False, **self._options)
+        intent = np.broadcast_to(np.asarray(self._rehearsal(log.t), float), log.t.shape)
+        return replace(log, channels={**log.channels, "intent": intent}, units={**log.units, "intent": "m"})
 
     def __repr__(self):
         shown = ", ".join(f"{s.name} = {self.values[s.name]:g} {s.unit}" for s in self._session.spans)

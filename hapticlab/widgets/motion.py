@@ -147,10 +147,12 @@ class Motion:
         self._last = {name: float(column[-1]) for name, column in samples.items()}
         return self.traces.add(samples)
 
-    def values(self):
-        """Return what a picture is drawn from: the last sample, and the parameters."""
+    def values(self, wanted):
+        """Return what a picture is drawn from: the last sample, the parameters, and where the hand is wanted now [m]."""
         parameters = self._replay.parameters if self._replay is not None else named_values(self.source.program)
-        return {"T": self.source.paddle.T, **parameters, **self._last, "x": self.place}
+        led = self.source.kind == "simulated" and self.held and not self.replaying
+        pointer = {"intent": wanted} if led else {}
+        return {"T": self.source.paddle.T, **parameters, **self._last, "x": self.place, **pointer}
 
     def _lead(self, ticks, wanted):
         if not ticks:

@@ -1,10 +1,12 @@
 """The live view without anywidget: a picture in SVG, sliders and buttons of ipywidgets."""
 
 import html
+import math
 
 import numpy as np
 
 from ..errors import EngineMissingError
+from .frame import COLUMNS, Frame
 
 #: an SVG is drawn so often a second at most
 RATE = 30.0
@@ -12,8 +14,8 @@ RATE = 30.0
 WIDTH, HEIGHT, GRAPH = 640, 220, 130
 #: time on view in the traces [s]
 SECONDS = 4.0
-#: the browser counts while its page is open, every so many milliseconds
-BEAT = 500
+#: the page counts every so many milliseconds; a board's motor is on for so long after the last touch [s]
+BEAT, UNTOUCHED = 500, 60.0
 #: a slider that was moved so shortly ago is not put elsewhere [s]
 MOVING = 0.4
 STEPS = 200
@@ -43,34 +45,52 @@ def _open_ipywidgets():
 
 
 class PlainFront:
-    """Widgets on a session. ``box`` is what a notebook shows."""
+    """Widgets on a session. ``box`` is what a notebook shows.
+
+    Plain widgets cannot say that a view opened, so the first touch begins: a button, a slider. From then on a counter in
+    the page says that the page is there; it cannot say that an output was cleared, so a board's motor goes off where
+    nothing was touched for a minute.
+    """
 
     def __init__(self, widgets, session):
         self.session, self.about = session, session.description()
-        self._rows, self._drawn = np.zeros((0, 5)), -1.0
+        self._rows, self._drawn = np.zeros((0, len(COLUMNS))), -1.0
         self._moved, self._showing = {}, False
-        self.image, self.status = widgets.HTML(), widgets.HTML()
-        # counts in the browser by itself, and so says that a page is there; ipywidgets has nothing else that does
-        self.heart = widgets.Play(
-            min=0, max=2**30, interval=BEAT, playing=True, layout={"display": "none"}
-        )
-        self.heart.observe(lambda change: session.alive("page"), names="value")
+        self._beaten = self._touched = -math.inf
+        self.image, self.status = widgets.HTML(), widgets.HTML("Press a button or move a slider to begin.")
+        self.heart = widgets.Play(min=0, max=2**30, interval=BEAT, layout={"display": "none"})
+        self.heart.observe(self._beat, names="value")
         self.sliders = [self._slider(widgets, number, given) for number, given in enumerate(self.about["parameters"])]
         self.buttons = {name: widgets.Button(description=words) for name, words in self._presses().items()}
         for name, button in self.buttons.items():
-            button.on_click(lambda _, name=name: session.press(name))
+            button.on_click(lambda _, name=name: self._say(session.press, name))
         low, high = (1e3 * end for end in self.about["x_range"])
         self.hand = widgets.FloatSlider(
-            value=0.0, min=low, max=high, step=0.1, description="hand [mm]", continuous_update=True,
-            layout={"width": f"{WIDTH}px"},
-        )  # fmt: skip
-        self.hand.observe(lambda change: session.intend(1e-3 * change["new"]), names="value")
+            value=0.0, min=low, max=high, step=0.1, description="hand [mm]", layout={"width": f"{WIDTH}px"}
+        )
+        self.hand.observe(lambda change: self._say(session.intend, 1e-3 * change["new"]), names="value")
         hand = [self.hand] if self.about["kind"] == "simulated" else []
         help_ = widgets.HTML(html.escape(self.about["help"]))
         self.box = widgets.VBox(
             [widgets.HBox(list(self.buttons.values())), self.image, self.status, *hand, *self.sliders, help_, self.heart]
         )
+        self.show(Frame(0.0, picture=session.picture.draw(session.motion.values(0.0))))
         session.connect(self.show)
+
+    def _say(self, what, *given):
+        """Do what was touched, and have the page count where it does not."""
+        now = self._touched = self.session.clock()
+        what(*given)
+        self.session.ready("page")
+        if now - self._beaten > 3e-3 * BEAT:
+            self.heart.playing = False
+            self.heart.playing = True
+
+    def _beat(self, change):
+        now = self._beaten = self.session.clock()
+        self.session.alive("page")
+        if self.about["kind"] == "board" and now - self._touched > UNTOUCHED and self.session.motion.running:
+            self.session.press("pause")
 
     def show(self, frame):
         """Draw a frame, if the one before is long enough ago."""
@@ -106,8 +126,9 @@ class PlainFront:
         return {**run, "record": "Record", "stop": "Stop recording", "save": "Save", "replay": "Replay"}
 
     def _slider(self, widgets, number, given):
+        low, high, step = on_a_grid(given["value"], given["low"], given["high"])
         slider = widgets.FloatSlider(
-            value=given["value"], min=given["low"], max=given["high"], step=(given["high"] - given["low"]) / STEPS,
+            value=given["value"], min=low, max=high, step=step,
             description=f"{given['name']} [{given['unit']}]", tooltip=given["limit_words"],
             readout_format=".4g", style={"description_width": "9em"}, layout={"width": f"{WIDTH}px"},
         )  # fmt: skip
@@ -115,10 +136,25 @@ class PlainFront:
         def moved(change):
             if not self._showing:
                 self._moved[number] = self.session.clock()
-                self.session.move(number, change["new"])
+                self._say(self.session.move, number, change["new"])
 
         slider.observe(moved, names="value")
         return slider
+
+
+def on_a_grid(value, low, high):
+    """Return ends and a step of a slider, so that its value is on a step: the browser would move it there.
+
+    Examples
+    --------
+    >>> on_a_grid(300.0, 60.0, 900.0)
+    (60.0, 900.0, 5.0)
+    """
+    rough = (high - low) / STEPS
+    tens = 10.0 ** math.floor(math.log10(rough))
+    step = next(tens * part for part in (1.0, 2.0, 5.0, 10.0) if tens * part >= rough * (1 - 1e-9))
+    below, above = math.floor((value - low) / step + 1e-9), math.floor((high - value) / step + 1e-9)
+    return value - below * step, value + above * step, step
 
 
 def svg(frame, rows, about):

@@ -319,10 +319,10 @@ class Session:
             self._next_look = now + LOOK
             self._status, before = self._words(), self._status
             status = self._status if self._status != before else ""
-        motion, given = self.motion, {}
+        motion = self.motion
         flags = {name: getattr(motion, name) for name in ("running", "recording", "replaying", "held")}
         flags |= {"motor": self.source.motor, "values": {span.name: self.values[span.name] for span in self.spans}}
-        picture = self.picture.draw(motion.values())
+        picture = self.picture.draw(motion.values(self._wanted))
         given = {} if rows is None else {"rows": rows}
         return Frame(motion.time, picture=picture, status=status, flags=flags, **given)
 

@@ -400,7 +400,7 @@ def test_what_nobody_recorded_is_rehearsed_at_the_sliders_values():
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hand)
     again = paddle.run(hl.wall()(k=450, x_o=0.01), duration=1.0)
     assert np.array_equal(log.F, again.F)
-    assert (log.intent if "intent" in log.columns else view._rehearsal(log.t)).min() == pytest.approx(-0.015, abs=1e-4)
+    assert log.intent.min() == pytest.approx(-0.015, abs=1e-4)
     view.set(k=100)
     assert view.log.F.max() < log.F.max()
 
@@ -474,14 +474,15 @@ def test_plain_widgets_show_and_say_the_same():
 
     stage = Stage()
     front = PlainFront(widgets, stage.session)
-    front.heart.value += 1  # the page is there
+    assert not stage.session.on_view
+    front.hand.value = 12.0  # the first touch: somebody is there
     assert stage.session.on_view
+    assert front.heart.playing
     stage.session.turn()
-    front.hand.value = 12.0
     front.sliders[1].value = 450
     for _ in range(30):
         stage.now += 1 / 60
-        stage.session.alive("page")
+        front.heart.value += 1  # as a page does
         stage.session.turn()
     assert stage.session.values["k"] == 450
     root = ElementTree.fromstring(front.image.value)
