@@ -107,7 +107,7 @@ LAB = Lab(
                     unit="N",
                     slips=(
                         ((0.0, 4.0, 3.0, 2.5, 2.0, 0.0), "The spring is pressed by x - x_o, not by x."),
-                        ((0.0, 1.5, 2.5, 2.0, 1.25, 0.0), "That is Eq. (23.5), without the correction."),
+                        ((0.0, 2.0, 2.5, 2.0, 1.25, 0.0), "That is Eq. (23.5), without the correction."),
                     ),
                 ),
             ),
