@@ -13,8 +13,8 @@ from .boundaries import boundaries
 from .formulas import formula
 from .outlines import Outline
 
-#: from one body to the next, and from the handle to either end of the picture [m]
-APART, REACH = 0.055, 0.06
+#: from one body to the next, its width, and from the handle to either end of the picture [m]
+APART, WIDE, REACH = 0.055, 0.022, 0.06
 WALL = "#efefef"
 #: coordinates up to which couplings are looked for; more stand in a row, each coupled to the one before
 LOOKED_AT = 4
@@ -57,7 +57,7 @@ class Schematic:
         for place, name in enumerate(self.blocks):
             offset[name] = (0.8 + place) * APART + clearance(state["x"], state[name])
         at = {name: state[name] + away for name, away in offset.items()}
-        half = {"x": 1.5 * u} | dict.fromkeys(self.blocks, 7 * u)
+        half = {"x": 1.5 * u} | dict.fromkeys(self.blocks, WIDE / 2)
         for outline in self.outlines:
             outline.draw(s, state)
         for wall in self.walls:
@@ -66,7 +66,7 @@ class Schematic:
         for first, second in self.springs:
             s.spring((at[first] + half[first], 0), (at[second] - half[second], 0))
         for name in self.blocks:
-            s.block((at[name], 0), 14, 12)
+            s.block((at[name], 0), WIDE / u, 12)
             s.coordinate(_letters(name), state[name], -11 * u, origin=offset[name])
         self._turning(s, at, state)
         s.handle(state["x"])
