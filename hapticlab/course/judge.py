@@ -61,7 +61,8 @@ def judge(exercise, case, value):
         return _judge_parts(exercise, case, value)
     wanted, got = np.array(expected, float), _numbers(value)
     if got is None:
-        return Verdict(False, f"{_kind(value)}, needs {_shape_words(wanted.shape)}")
+        alone = ", without quotes and unit" if isinstance(value, str) else ""
+        return Verdict(False, f"{_kind(value)}, needs {_shape_words(wanted.shape)}{alone}")
     if got.shape != wanted.shape:
         return Verdict(False, f"{_shape_words(got.shape)}, needs {_shape_words(wanted.shape)}")
     if within(exercise, wanted, got):
@@ -74,7 +75,10 @@ def verdict(exercise, case, outcome):
     """Return the verdict on what an answer gave."""
     if not outcome.answered:
         return Verdict(False, "no answer")
-    return Verdict(False, outcome.problem) if outcome.problem else judge(exercise, case, outcome.value)
+    if outcome.problem:
+        return Verdict(False, outcome.problem)
+    with np.errstate(all="ignore"):  # what overflows here is as wrong as any other number
+        return judge(exercise, case, outcome.value)
 
 
 def within(exercise, wanted, got):

@@ -99,4 +99,4 @@ def instructor_names(path):
     """Return what an instructor's file defines."""
     if not Path(path).is_file():
         raise CourseError(f"{path}: no such file; an instructor's folder of a lab holds {SOLUTION} and {HIDDEN}")
-    return runpy.run_path(str(path), run_name="__main__")
+    return runpy.run_path(str(path))

@@ -150,7 +150,7 @@ def itself():
         (lambda: 2.4, "it takes (), and is called"),
         (lambda x, v, k, b: 2.4, "it takes (x, v, k, b)"),
         (lambda x, v, k: None, "it returns None; is its `return` missing?"),
-        (lambda x, v, k: "2.4 N", "a text, needs one number"),
+        (lambda x, v, k: "2.4 N", "a text, needs one number, without quotes and unit"),
         (lambda x, v, k: True, "True or False, needs one number"),
         (lambda x, v, k: [2.4], "an array of one number, needs one number"),
         (lambda x, v, k: np.full((2, 3), 2.4), "an array of shape (2, 3), needs one number"),
@@ -198,6 +198,56 @@ def test_the_line_of_a_cell_is_named_where_it_raises():
     names = {"__name__": "__main__"}
     exec("def force(x, v, k):\n    y = 0\n    return 1 / y", names)
     assert "it raises ZeroDivisionError in line 3 of its cell: division by zero" in look(FORCE, names["force"]).text
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("97.force", '97.force: there is no lab 97; there are 00_'),
+        ("00.force", "00.force: lab 00 has no exercise force; it has "),
+        ("force", 'force: needs lab and exercise first, such as hl.check("01.wall_force", wall_force)'),
+        (right, "hl.check: needs lab and exercise first"),
+        (None, "hl.check: needs lab and exercise first"),
+        ("../01.x", "lab 00 has no exercise ./01.x"),
+    ],
+)
+def test_a_misspelt_check_is_told_and_raises_nothing(name, words, capsys):
+    result = hl.check(name, 1.0)
+    assert not result.passed
+    assert words in capsys.readouterr().out
+
+
+def test_a_check_prints_what_the_code_printed_its_first_lines_and_the_verdict(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(make(tmp_path, "LAB = Lab('98', '', 1, [Exercise('force', points=2, cases=[Case({'x': 1}, 2.0)])])"))
+
+    def force(x):
+        for line in range(12):
+            print("line", line)
+        return 2 * x
+
+    result = hl.check("98.force", force)
+    out = capsys.readouterr().out.splitlines()
+    assert out[:3] == ["98.force: right (2 points)", "  printed: line 0", "  printed: line 1"]
+    assert out[-2:] == ["  ... 2 lines more", "  right: x = 1: 2"]
+    assert result._ipython_display_() is None
+    assert str(result).splitlines() == out
+
+
+def test_a_mistake_of_an_author_is_told_as_such(capsys, tmp_path, monkeypatch):
+    case = "Case({}, 2.0, slips={'two': 'A word is no number.'})"
+    monkeypatch.chdir(make(tmp_path, f"LAB = Lab('98', '', 1, [Exercise('k', 'value', 1, cases=[{case}])])"))
+    assert not hl.check("98.k", 3.0).passed
+    assert "98.k: the check itself failed, which is no fault of yours: ValueError" in capsys.readouterr().out
+    (tmp_path / "98_tests" / "checks.py").write_text("LAB =")
+    assert not hl.check("98.k", 3.0).passed
+    assert "checks.py failed: SyntaxError" in capsys.readouterr().out
+
+
+def make(tmp_path, lab):
+    folder = tmp_path / "98_tests"
+    folder.mkdir()
+    (folder / "checks.py").write_text(f"from hapticlab.course.exercise import Case, Exercise, Lab\n{lab}\n")
+    return folder
 
 
 def test_a_person_who_interrupts_is_obeyed():

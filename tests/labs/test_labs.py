@@ -3,6 +3,7 @@
 Beside labs/NN_name stand the answers in tests/instructor/NN_name; wrong_answers.py holds wrong ones that students write.
 """
 
+import ast
 import json
 import re
 import runpy
@@ -13,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from hapticlab.course.check import checked
-from hapticlab.course.exercise import JUDGED
+from hapticlab.course.exercise import JUDGED, Exercise
 from hapticlab.course.instructor import mark_notebook, solved_notebook
 from hapticlab.course.judge import judge
 from hapticlab.course.labs import find_labs
@@ -49,6 +50,9 @@ def test_lab_is_well_formed(folder):
     assert not re.search(r"^\s*[%!]", code, re.M), "magics and shell lines run in Jupyter alone"
     unchecked = [e.name for e in lab.exercises if f'check("{lab.number}.{e.name}"' not in code]
     assert not unchecked
+    checks = ast.parse((folder.path / "checks.py").read_text("utf-8"))
+    assert [node.module for node in ast.walk(checks) if isinstance(node, ast.Import | ast.ImportFrom)] == [Exercise.__module__]
+    assert not [node for node in ast.walk(checks) if isinstance(node, ast.FunctionDef | ast.Lambda)], "numbers, no formulas"
     judged = [e for e in lab.exercises if e.judged]
     assert lab.points == 10
     assert 4 <= len(judged) <= 8
@@ -69,6 +73,8 @@ def test_untouched_lab_runs_and_earns_nothing(folder, tmp_path, monkeypatch, rec
     assert earned == [[e.name, 0, 0] for e in folder.lab().exercises if e.judged]
     said = "".join(o.get("text", "") for c in notebook.cells if c.cell_type == "code" for o in c.outputs)
     assert said.count("not answered yet") >= len(earned)
+    outputs = [o.get("data", {}) for c in notebook.cells if c.cell_type == "code" for o in c.outputs]
+    assert not [o for o in outputs if "image/png" in o and "alt=" not in o.get("text/html", "")], "hl.show(figure, alt=...)"
     seconds = float(notebook.cells[-1].outputs[-1].text)
     record_property("seconds", seconds)
     assert seconds < 10, "a lab untouched is to run in 4 s on an idle computer"
