@@ -49,14 +49,15 @@ def front(session):
 
 def about(session):
     """Return what a view has to know of a session before its first frame."""
-    return {"seconds": SECONDS, "along": session.picture.along, **session.description(), "presses": PRESSES}
+    told = session.description()
+    return {**told, "presses": list(PRESSES), "seconds": SECONDS * min(told["speed"], 1.0)}
 
 
 class Speaker:
     """Tells every view of a widget what a frame shows; what is as before is not said again."""
 
     def __init__(self, send):
-        self._send, self._said = send, {}
+        self._send, self._said, self._status = send, {}, ""
 
     def forget(self):
         """Say everything with the next frame."""
@@ -65,22 +66,25 @@ class Speaker:
     def say(self, frame):
         """Send a frame."""
         shape, points = take_apart(frame.picture)
-        said = {"shape": shape, "flags": frame.flags, "status": frame.status or self._said.get("status", "")}
+        self._status = frame.status or self._status
+        flags = {name: on for name, on in frame.flags.items() if name != "values"}
+        said = {"shape": shape, "flags": flags, "status": self._status}
         before, self._said = self._said, said
         news = {name: value for name, value in said.items() if value != before.get(name)}
+        # with every frame, so that a slider whose value was refused goes back
+        news["values"] = frame.flags.get("values", {})
         self._send(news, buffers=[pack(time.perf_counter(), frame, points)])
 
 
 class Listener:
     """Hands a session what its views say.
 
-    A page that was loaded anew ends what the page before it showed, also where that one could not say goodbye: a board's
-    motor is off and waits for its Start button.
+    A page that was loaded anew finds a board's motor off, also where the page before it could not say goodbye.
     """
 
     def __init__(self, session):
         self._session, self._pages = session, {}
-        self._names = [parameter["name"] for parameter in session.description()["parameters"]]
+        self._board = session.description()["kind"] == "board"
 
     def heard(self, message):
         """Take a message of a view; return whether that view is new."""
@@ -97,7 +101,7 @@ class Listener:
         elif name == "press":
             session.press(PRESSES[int(value)])
         elif name == "move":
-            session.move(self._names[int(value)], more)
+            session.move(int(value), more)
         elif name == "hold":
             session.hold(bool(value))
         else:
@@ -109,6 +113,8 @@ class Listener:
             for other in self._pages:
                 self._session.gone(other)
             self._pages.clear()
+            if self._board:
+                self._session.press("pause")
         self._pages[view] = page
         self._session.ready(view)
 

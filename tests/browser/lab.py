@@ -69,12 +69,11 @@ class Lab:
         places = {"JUPYTER_CONFIG_DIR": "config", "JUPYTER_DATA_DIR": "data", "JUPYTER_RUNTIME_DIR": "runtime", "IPYTHONDIR": "ipython"}
         environment = os.environ | {name: str(home / place) for name, place in places.items()}
         environment["PYTHONPATH"] = os.pathsep.join([str(REPOSITORY), os.environ.get("PYTHONPATH", "")])
-        environment["JUPYTER_CONFIG_PATH"] = str(REPOSITORY / "etc" / "jupyter") if self.prompt else ""
-        extensions = {} if self.prompt else {"hapticlab._jupyter": False}
+        own = {"ServerApp": {"jpserver_extensions": {"hapticlab._jupyter": self.prompt}}}
+        (home / "config" / "jupyter_server_config.json").write_text(json.dumps(own))
         command = [
             sys.executable, "-m", "jupyterlab", "--allow-root", "--no-browser", "--ip=127.0.0.1", f"--port={port}",
             "--IdentityProvider.token=", "--ServerApp.disable_check_xsrf=True", f"--ServerApp.root_dir={self.notebooks}",
-            f"--ServerApp.jpserver_extensions={json.dumps(extensions)}",
         ]  # fmt: skip
         server = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True, cwd=self.notebooks)
         self.said = []

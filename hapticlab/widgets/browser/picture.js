@@ -29,7 +29,7 @@ class Picture {
   resize(width) {
     const [left, right, bottom, top] = this.box
     this.width = width
-    this.height = Math.min(Math.max((width * (top - bottom)) / (right - left), 130), 340)
+    this.height = Math.min(Math.max((width * (top - bottom)) / (right - left), 130), 300)
     fit(this.canvas, this.width, this.height)
     this.scale = Math.min(width / (right - left), (this.height - AXIS) / (top - bottom))
     this.left = width / 2 - (this.scale * (left + right)) / 2

@@ -15,6 +15,7 @@ class Playback {
   }
 
   push(frame, now) {
+    frame.arrived = now
     const offset = now - frame.sent
     if (this.last !== undefined) remember(this.gaps, Math.min(frame.sent - this.last, 0.1))
     remember(this.offsets, offset)

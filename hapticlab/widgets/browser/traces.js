@@ -1,5 +1,6 @@
 // Scrolling traces over scene time, one panel each. A pixel's column keeps the least and the greatest value that fell into
-// it, so a chatter faster than the pixels shows as a band, and drawing costs the same however many samples there were.
+// it, so a chatter faster than the pixels shows as a band. Curves are drawn once, on a strip that goes round: a frame draws
+// its new columns, and copies the rest.
 
 const MARGIN = 48 // [px] left of the panels, for numbers
 const PANEL = 80 // [px] height of a panel
@@ -14,7 +15,10 @@ class Traces {
     this.context = canvas.getContext("2d")
     this.traces = traces
     this.seconds = seconds
+    this.hand = "" // what the dashed line in the first panel is, in words
     this.scales = traces.map(() => new Scale())
+    this.strip = document.createElement("canvas")
+    this.drawn = -1 // the last column on the strip
   }
 
   resize(width) {
@@ -23,6 +27,14 @@ class Traces {
     fit(this.canvas, width, this.height)
     this.columns = Math.max(Math.floor(width - MARGIN - 8), 50)
     this.bins = new Bins(this.columns + 8, this.seconds / this.columns, this.traces.length + 1)
+    this.strip.width = Math.round(this.columns * (window.devicePixelRatio || 1))
+    this.strip.height = this.canvas.height
+    this.drawn = -1
+  }
+
+  clear() {
+    this.bins.clear()
+    this.drawn = -1
   }
 
   add(rows) {
@@ -34,33 +46,40 @@ class Traces {
 
   draw(time, theme) {
     const context = this.context
+    const last = Math.floor(time / this.bins.step)
     context.clearRect(0, 0, this.width, this.height)
     context.font = FONT
-    const last = time / this.bins.step // in columns, with a fraction: scrolls smoothly
     this.traces.forEach((trace, k) => {
-      const top = k * (PANEL + GAP) + GAP - 4
-      const [low, high] = this.scales[k].around(...this.bins.range(k, last, this.columns))
-      const y = (value) => top + (PANEL * (high - value)) / (high - low)
-      this.drawPanel(trace, top, y, this.scales[k].step, low, high, theme)
-      context.save()
-      context.beginPath()
-      context.rect(MARGIN, top - 2, this.columns, PANEL + 4)
-      context.clip()
-      if (k === 0) this.drawCurve(this.traces.length, last, y, theme.quiet, [4, 4], 1.2)
-      this.drawCurve(k, last, y, theme.ink, [], 1.6)
-      context.restore()
+      const series = k === 0 ? [k, this.traces.length] : [k]
+      if (this.scales[k].reach(...this.bins.range(series, last, this.columns))) this.drawn = -1
+      this.drawPanel(trace, k, theme)
     })
+    if (this.theme !== theme.ink) this.drawn = -1
+    this.theme = theme.ink
+    this.drawStrip(last, theme)
+    this.copyStrip(last)
     this.drawTime(time, theme)
   }
 
-  drawPanel(trace, top, y, step, low, high, theme) {
+  top(k) {
+    return k * (PANEL + GAP) + GAP - 4
+  }
+
+  y(k, value) {
+    const { low, high } = this.scales[k]
+    return this.top(k) + (PANEL * (high - value)) / (high - low)
+  }
+
+  drawPanel(trace, k, theme) {
     const context = this.context
+    const { low, high, step } = this.scales[k]
+    const top = this.top(k)
     context.setLineDash([])
     context.lineWidth = 1
     context.textAlign = "right"
     context.textBaseline = "middle"
     for (let n = Math.ceil(low / step - 1e-6); n * step <= high + 1e-6 * step; n++) {
-      const line = Math.round(y(n * step)) + 0.5
+      const line = Math.round(this.y(k, n * step)) + 0.5
       context.strokeStyle = n === 0 ? theme.quiet : theme.grid
       context.beginPath()
       context.moveTo(MARGIN, line)
@@ -72,30 +91,51 @@ class Traces {
     context.textAlign = "left"
     context.fillStyle = theme.ink
     context.font = "bold " + FONT
-    context.fillText(`${trace.label} [${trace.unit_shown}]`, MARGIN, top - 11)
+    const name = `${trace.label} [${trace.unit_shown}]`
+    context.fillText(name, MARGIN, top - 11)
+    const after = MARGIN + context.measureText(name).width
     context.font = FONT
+    if (k === 0 && this.hand) context.fillText(this.hand, after + 14, top - 11)
   }
 
-  drawCurve(series, last, y, colour, dash, width) {
-    const context = this.context
+  // Draw the columns that are new, and the last one again, which was not complete.
+  drawStrip(last, theme) {
+    const ratio = this.strip.width / this.columns
+    const context = this.strip.getContext("2d")
+    const from = Math.max(this.drawn < 0 ? 0 : this.drawn, last - this.columns + 1, 0)
+    context.setTransform(ratio, 0, 0, ratio, 0, 0)
+    for (let column = from; column <= last; column++) context.clearRect(column % this.columns, 0, 1, this.height)
+    for (let column = from; column <= last; column++) {
+      if (Math.floor(column / 4) % 2) this.drawColumn(context, 0, this.traces.length, column, theme.quiet, 1.2)
+      for (let k = 0; k < this.traces.length; k++) this.drawColumn(context, k, k, column, theme.ink, 1.6)
+    }
+    this.drawn = Math.min(last, this.bins.newest) // a frame that is coming fills the columns after it
+  }
+
+  drawColumn(context, panel, series, column, colour, width) {
     const bins = this.bins
+    const slot = bins.slot(series, column)
+    if (bins.column[slot] !== column) return
+    const x = column % this.columns
+    const y = (value) => this.y(panel, value)
     context.strokeStyle = colour
     context.lineWidth = width
-    context.setLineDash(dash)
-    context.lineJoin = "round"
     context.beginPath()
-    for (let column = Math.max(Math.ceil(last - this.columns), 0); column <= last; column++) {
-      const slot = bins.slot(series, column)
-      if (bins.column[slot] !== column) continue
-      const x = MARGIN + this.columns - (last - column)
-      context.lineTo(x, y(bins.first[slot]))
-      if (bins.high[slot] > bins.low[slot]) {
-        context.lineTo(x, y(bins.high[slot]))
-        context.lineTo(x, y(bins.low[slot]))
-        context.lineTo(x, y(bins.latest[slot]))
-      }
-    }
+    const before = bins.before(series, column)
+    if (before !== undefined) context.moveTo(x - (column - bins.column[before]) + 0.5, y(bins.latest[before]))
+    for (const each of [bins.first, bins.high, bins.low, bins.latest]) context.lineTo(x + 0.5, y(each[slot]))
     context.stroke()
+  }
+
+  // Copy the strip so that its last column is at the right end.
+  copyStrip(last) {
+    const seam = (last + 1) % this.columns // columns from here on are the older ones
+    const ratio = this.strip.width / this.columns
+    for (const [from, to, count] of [[seam, 0, this.columns - seam], [0, this.columns - seam, seam]]) {
+      if (!count) continue
+      const source = [Math.round(from * ratio), 0, Math.round(count * ratio), this.strip.height]
+      this.context.drawImage(this.strip, ...source, MARGIN + to, 0, count, this.height)
+    }
   }
 
   drawTime(time, theme) {
@@ -126,6 +166,7 @@ class Bins {
     this.columns = columns
     this.step = step // [s] a column
     const size = columns * series
+    this.newest = -1 // column
     this.column = new Int32Array(size).fill(-1)
     this.first = new Float64Array(size)
     this.low = new Float64Array(size)
@@ -140,7 +181,9 @@ class Bins {
   add(time, series, value) {
     const column = Math.floor(time / this.step)
     const slot = this.slot(series, column)
-    if (!(column >= 0) || Number.isNaN(value)) return
+    if (!(column >= 0)) return
+    this.newest = column
+    if (Number.isNaN(value)) return
     if (this.column[slot] !== column) {
       this.column[slot] = column
       this.first[slot] = this.low[slot] = this.high[slot] = value
@@ -150,20 +193,31 @@ class Bins {
     this.latest[slot] = value
   }
 
+  // Where the value before a column is, if it is near.
+  before(series, column) {
+    for (let k = column - 1; k >= 0 && k > column - 12; k--) {
+      const slot = this.slot(series, k)
+      if (this.column[slot] === k) return slot
+    }
+  }
+
+  // Least and greatest value of several series in the columns on view, zero included.
   range(series, last, columns) {
-    let low = Infinity
-    let high = -Infinity
-    for (let column = Math.max(Math.ceil(last - columns), 0); column <= last; column++) {
-      const slot = this.slot(series, column)
-      if (this.column[slot] !== column) continue
-      low = Math.min(low, this.low[slot])
-      high = Math.max(high, this.high[slot])
+    let [low, high] = [0, 0]
+    for (const each of series) {
+      for (let column = Math.max(Math.ceil(last - columns), 0); column <= last; column++) {
+        const slot = this.slot(each, column)
+        if (this.column[slot] !== column) continue
+        low = Math.min(low, this.low[slot])
+        high = Math.max(high, this.high[slot])
+      }
     }
     return [low, high]
   }
 
   clear() {
     this.column.fill(-1)
+    this.newest = -1
   }
 }
 
@@ -173,16 +227,14 @@ class Scale {
     this.low = this.high = 0
   }
 
-  around(low, high) {
-    if (!(low <= high)) [low, high] = [0, 0]
-    low = Math.min(low, 0)
-    high = Math.max(high, 0)
+  // Show from low to high; return whether the axis had to change.
+  reach(low, high) {
     const needed = Math.max(high - low, 1e-3)
-    if (low < this.low || high > this.high || needed < 0.3 * (this.high - this.low) || !this.step) {
-      this.step = niceStep((1.1 * needed) / 3)
-      this.low = Math.floor(low / this.step - 0.1) * this.step
-      this.high = Math.ceil(high / this.step + 0.1) * this.step
-    }
-    return [this.low, this.high]
+    if (this.step && low >= this.low && high <= this.high && needed >= 0.3 * (this.high - this.low)) return false
+    this.step = niceStep(needed / 2.5)
+    const [least, most] = [this.low, this.high]
+    this.low = Math.floor(low / this.step + 1e-9) * this.step
+    this.high = Math.max(Math.ceil(high / this.step - 1e-9), 1) * this.step
+    return least !== this.low || most !== this.high
   }
 }

@@ -4,6 +4,8 @@ const KIND = { ready: 0, alive: 1, gone: 2, intend: 3, hold: 4, move: 5, press: 
 const HEARTBEAT = 400 // [ms]
 const PAGE = Math.floor(Math.random() * 2 ** 48) // differs after the page was loaded anew
 const STEP = 0.0005 // [m] of an arrow key
+const BUSY = 500 // [ms] after a hand moved a slider
+const TRACED = 25 // [ms] between two pictures of the traces: they scroll, and wait for nobody
 const READOUT = 250 // [ms] between two readouts in text
 
 function render({ model, el }) {
@@ -24,6 +26,7 @@ class View {
     this.build(el)
     this.picture = new Picture(this.stage, this.about.box)
     this.traces = new Traces(this.graph, this.about.traces, this.about.seconds)
+    if (this.about.kind === "simulated") this.traces.hand = "(dashed: where the hand means to be)"
     this.listen(model, "msg:custom", (content, buffers) => this.receive(content, buffers))
     this.listenToPage()
     const observer = new ResizeObserver(() => this.resize())
@@ -83,7 +86,7 @@ class View {
   makeSlider(parameter, number) {
     const { name, unit, value, low, high, limit_words } = parameter
     const id = `hl-${this.number}-${number}`
-    const step = niceStep((high - low) / 200) / 2
+    const step = niceStep((high - low) / 200)
     const limits = { min: low, max: high, "aria-describedby": id + "-limits" }
     const range = make("input", { type: "range", id, ...limits, step: "any" })
     const entry = make("input", { type: "number", ...limits, step: "any", "aria-label": `${name} in ${unit}` })
@@ -92,7 +95,7 @@ class View {
       make("label", { for: id }, [name, " ", make("span", { class: "hl-unit" }, [`[${unit}]`])]),
       range, entry, make("span", { class: "hl-limits", id: id + "-limits" }, [words]),
     ])
-    const slider = { row, range, entry, name, unit, number }
+    const slider = { row, range, entry, name, unit, number, busy: 0 }
     range.addEventListener("input", () => this.move(slider, Number(range.value)))
     range.addEventListener("keydown", (event) => stepRange(event, range, step))
     entry.addEventListener("change", () => entry.value !== "" && this.move(slider, Number(entry.value)))
@@ -147,6 +150,7 @@ class View {
   }
 
   move(slider, value) {
+    slider.busy = performance.now() + BUSY
     showValue(slider, value)
     this.tell("move", slider.number, value)
   }
@@ -159,7 +163,7 @@ class View {
   }
 
   shortcut(event) {
-    if (event.ctrlKey || event.altKey || event.metaKey || event.target.tagName === "INPUT") return
+    if (event.ctrlKey || event.altKey || event.metaKey || event.target.type === "number") return
     const name = { p: "run", l: "hold", Escape: "hold", r: "record", s: "save", y: "replay" }[event.key]
     if (!this.buttons[name] || this.buttons[name].disabled) return
     if (event.key === "Escape" && !this.flags.held) return
@@ -199,16 +203,21 @@ class View {
   receive(content, buffers) {
     if (content.shape) this.shape = content.shape
     if (content.flags) this.showFlags(content.flags)
-    for (const slider of this.sliders) {
-      const value = content.flags?.values?.[slider.name]
-      if (value !== undefined) showValue(slider, value)
-    }
+    if (content.values) this.follow(content.values)
     if (content.status) this.status.textContent = content.status
     if (!buffers.length) return
     const bytes = buffers[0]
     const frame = decode(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength), this.shape)
     this.playback.push(frame, performance.now() / 1000)
     this.ask()
+  }
+
+  // A slider goes where its parameter is, but not while a hand moves it: what the kernel says then is older.
+  follow(values) {
+    for (const slider of this.sliders) {
+      const value = values[slider.name]
+      if (value !== undefined && value !== slider.shown && performance.now() > slider.busy) showValue(slider, value)
+    }
   }
 
   showFlags(flags) {
@@ -241,7 +250,7 @@ class View {
   paint(now) {
     const { frame, next, part, passed } = this.playback.at(now)
     for (const each of passed) {
-      if (each.time < this.time - 1e-6) this.traces.bins.clear() // a replay began
+      if (each.time < this.time - 1e-6) this.traces.clear() // a replay began
       this.time = each.time
       this.traces.add(each.rows)
       if (each.rows.length) this.x = each.rows[each.rows.length - COLUMNS + 1]
@@ -249,7 +258,10 @@ class View {
     if (!frame || this.closed) return
     const theme = this.theme(now)
     this.picture.draw(frame.shape, between(frame, next, part), theme)
-    this.traces.draw(part && next ? frame.time + part * (next.time - frame.time) : frame.time, theme)
+    if (!(now - this.tracedAt < TRACED / 1000) || !frame.rows.length) {
+      this.tracedAt = now
+      this.traces.draw(part && next ? frame.time + part * (next.time - frame.time) : frame.time, theme)
+    }
     if (!(now - this.readAt < READOUT / 1000)) this.read(frame, now)
     this.root.dispatchEvent(new CustomEvent("painted", { detail: frame }))
   }
@@ -295,6 +307,7 @@ function make(tag, attributes, children = []) {
 }
 
 function showValue(slider, value) {
+  slider.shown = value
   slider.range.value = value
   slider.range.setAttribute("aria-valuetext", `${tidy(value)} ${slider.unit}`)
   if (document.activeElement !== slider.entry) slider.entry.value = Number(value.toPrecision(4))
