@@ -36,6 +36,8 @@ class Stepping:
         The scene's, with the values it has now.
     paddle : SimulatedPaddle
         With the hand that holds the handle.
+    period : float
+        From one sample to the next [s].
     held : bool
         Whether the hand holds the handle.
     begun : bool
@@ -63,7 +65,7 @@ class Stepping:
     def __init__(self, paddle, scene, *, x=0.0, v=0.0, engine="auto", **options):
         self.program = paddle.program(scene, **options)
         self.paddle, self._engine, self._begin = with_grip(paddle), engine, (float(x), float(v))
-        self.held, self._loops = True, {}
+        self.held, self._loops, self.period = True, {}, self.paddle.T
         self.start()
 
     def start(self):

@@ -8,7 +8,7 @@ from .greeting import explain_silence
 from .homing import state_flag
 from .live import checked, in_portions, named_values
 from .messages import STATES
-from .recording import fault_words
+from .recording import decimation, fault_words
 from .running import PATIENCE
 
 #: a board is fed so long after the last look at its samples, then its motor goes off by itself [s]
@@ -31,6 +31,8 @@ class Streaming:
     ----------
     program : Program
         With the values it has now.
+    period : float
+        From one sample to the next [s].
     begun : bool
         Whether the scene runs, or waits for the handle to be led to its stops.
     motor : bool
@@ -57,6 +59,7 @@ class Streaming:
     def __init__(self, paddle, scene, **options):
         self.paddle = paddle
         self.program = paddle._checked(scene, None, True, options)
+        self.period = paddle.T * decimation(self.program, paddle.exchange.port)
         self._last_run = self._recording = None
         self.place, self.waits, self.fault = 0.0, "", None
 

@@ -5,9 +5,10 @@ import math
 import numpy as np
 
 from ..device.live import named_values
+from ..records import FLAGS
 from .pace import Pace
 from .recorder import Recorder, Replay
-from .traces import Traces
+from .traces import RECENT, Traces
 
 #: a hand goes no faster to where the pointer is [m/s], and follows it so late [s]: a pointer's steps would shake it
 FASTEST, FOLLOWS = 1.0, 0.025
@@ -40,8 +41,8 @@ class Motion:
         self.running, self.held, self.log = False, True, None
         self._recorder = self._replay = self._live = None
         self._at = 0.0
-        self._last = {"x": 0.0, "F": 0.0}
-        self.traces = Traces(source.paddle.T)
+        self._last, self._noticed = {"x": 0.0, "F": 0.0}, {}
+        self.traces = Traces(source.period)
 
     @property
     def recording(self):
@@ -66,7 +67,7 @@ class Motion:
         recording = self.recording
         self.stop_recording()
         self.source.stop()
-        self.traces, self._at = Traces(self.source.paddle.T), 0.0
+        self.traces, self._at, self._noticed = Traces(self.source.period), 0.0, {}
         self.source.start()
         self.running, self._replay = True, None
         if recording:
@@ -154,6 +155,17 @@ class Motion:
         pointer = {"intent": wanted} if led else {}
         return {"T": self.source.paddle.T, **parameters, **self._last, "x": self.place, **pointer}
 
+    def noticed(self):
+        """Return the flags of a Telemetry that were raised within the last second: saturated, gap, overrun."""
+        return [name for name, when in self._noticed.items() if self.clock() - when < RECENT]
+
+    def _notice(self, samples):
+        limit = getattr(self.source.paddle, "force_max", None)
+        raised = {name: samples[name].any() for name in FLAGS if name in samples}
+        if limit is not None:
+            raised["saturated"] = np.any(np.abs(samples["F"]) >= limit)
+        self._noticed |= {name: self.clock() for name, there in raised.items() if there}
+
     def _lead(self, ticks, wanted):
         if not ticks:
             return None
@@ -163,6 +175,8 @@ class Motion:
         samples = self.source.advance(np.linspace(self._at, to, ticks + 1))
         self._at = to
         self.pace.spent(ticks, self.clock() - began)
+        if samples is not None:
+            self._notice(samples)
         if samples is not None and self._recorder is not None:
             self._recorder.add(samples)
             if self._recorder.full:

@@ -33,6 +33,7 @@ class Pace:
     def __init__(self, T, speed=1.0):
         self.T, self.speed = T, speed
         self._dropped, self._cost = deque(), 0.0
+        self.start(0.0)
 
     def start(self, now):
         """Count from here on [s]."""

@@ -19,6 +19,8 @@ BEAT, UNTOUCHED = 500, 60.0
 #: a slider that was moved so shortly ago is not put elsewhere [s]
 MOVING = 0.4
 STEPS = 200
+#: what leads the hand in a canvas, and here
+DRAG, SLIDE = "Drag the handle, or use the arrow keys: they move", "The slider of the hand moves"
 DASHES = ("", "7 3", "2 3")
 
 
@@ -70,7 +72,7 @@ class PlainFront:
         )
         self.hand.observe(lambda change: self._say(session.intend, 1e-3 * change["new"]), names="value")
         hand = [self.hand] if self.about["kind"] == "simulated" else []
-        help_ = widgets.HTML(html.escape(self.about["help"]))
+        help_ = widgets.HTML(html.escape(self.about["help"].replace(DRAG, SLIDE)))
         self.box = widgets.VBox(
             [widgets.HBox(list(self.buttons.values())), self.image, self.status, *hand, *self.sliders, help_, self.heart]
         )

@@ -18,7 +18,7 @@ from .frame import COLUMNS, Frame
 from .motion import Motion
 from .picture import moving_picture
 from .spans import spans
-from .words import chatter_words, contact_words, late_words
+from .words import NOTICED, chatter_words, contact_words, late_words
 
 #: presses that a front end has, see :meth:`Session.press`
 PRESSES = ("start", "pause", "resume", "record", "stop", "save", "replay")
@@ -31,7 +31,7 @@ LOOK, NOTE = 0.25, 6.0
 TRACES = (
     {"name": "x", "label": "x", "unit_shown": "mm", "scale": 1e3},
     {"name": "F", "label": "F", "unit_shown": "N", "scale": 1.0},
-    {"name": "E", "label": "E", "unit_shown": "mJ", "scale": 1e3},
+    {"name": "E", "label": "E drawn", "unit_shown": "mJ", "scale": 1e3},
 )
 
 
@@ -69,7 +69,7 @@ class Session:
         self.clock, self._in_thread = clock, in_thread
         self._lock, self._door, self._closed = threading.RLock(), threading.Lock(), threading.Event()
         self._views, self._thread, self._sink = {}, None, None
-        self._said, self._wanted = deque(), 0.0
+        self._said, self._wanted = deque(maxlen=1000), 0.0  # nobody may be there to do what is said
         self._watched, self._wants_to_run = False, self.source.kind == "simulated"
         self._note, self._note_until = "", -1.0
         self._status, self._next_look, self._next_frame = "", -1.0, -1.0
@@ -188,14 +188,21 @@ class Session:
 
     def _run(self):
         following = self.clock()
-        while True:
-            if not self.turn():
-                with self._door:
-                    if not self._views:
-                        self._thread = None
-                        return
-            following = max(following + 1 / RATE, self.clock())
-            self._closed.wait(following - self.clock())
+        try:
+            while self.turn() or not self._thread_may_end():
+                following = max(following + 1 / RATE, self.clock())
+                self._closed.wait(following - self.clock())
+        finally:
+            with self._lock:
+                self._rest()
+        if self._closed.is_set():
+            self._show(Frame(self.motion.time, status="This view has ended; run its cell again.", flags=self._flags()))
+
+    def _thread_may_end(self):
+        with self._door:  # a view that opens now starts a thread of its own
+            if not self._views:
+                self._thread = None
+            return not self._views
 
     def turn(self):
         """Do all that is due, and give one frame to the sink; return whether anybody looks."""
@@ -208,19 +215,23 @@ class Session:
                 return False
             rows = self._guarded(self._go_on)
             frame = self._frame(now, rows)
-        if frame is not None and self._sink is not None:
-            try:
-                self._sink(frame)
-            except Exception as problem:  # nobody can be told: as if all views had closed
-                self._tell(f"The view cannot be reached: {problem}")
-                self._views.clear()
+        if frame is not None:
+            self._show(frame)
         return True
+
+    def _show(self, frame):
+        try:
+            if self._sink is not None:
+                self._sink(frame)
+        except Exception as problem:  # nobody can be told: as if all views had closed
+            self._tell(f"The view cannot be reached: {problem}")
+            self._views.clear()
 
     def _go_on(self):
         if not self._watched:
             self._watched = True
             self.source.warm()
-            self.motion.wake()
+            self.motion.wake()  # after it, for compiling took its time
             if self._wants_to_run:
                 self._resume()
         moves, said = {}, []
@@ -236,7 +247,11 @@ class Session:
         for what, given in said:
             self._next_frame = self._next_look = -1.0
             self.motion.hold(given) if what == "hold" else self._guarded(getattr(self, f"_{given}"))
-        return self.motion.advance(self._wanted)
+        recording = self.motion.recording
+        rows = self.motion.advance(self._wanted)
+        if recording and not self.motion.recording:
+            self._tell("The recording ended: it was long, or the motor went off")
+        return rows
 
     def _guarded(self, work):
         """Do work; what it raises is told, and anything but a refusal stops what moves."""
@@ -302,7 +317,8 @@ class Session:
         elif motion.running:
             x, F = motion.traces.recent()
             said = [source.waits or f"{'Motor on' if board else 'Running'}, {contact_words(F[-len(F) // 4 :])}"]
-            said += [chatter_words(x, F, source.paddle.T), late_words(motion.pace.behind(self.clock()))]
+            said += [chatter_words(x, F, source.period), *(NOTICED[name] for name in motion.noticed())]
+            said += ["" if board else late_words(motion.pace.behind(self.clock()))]
             said += ["" if motion.held else "The handle is let go"]
         else:
             said = ["Motor off: press Start, and hold the handle" if board else "Paused"]
@@ -319,12 +335,21 @@ class Session:
             self._next_look = now + LOOK
             self._status, before = self._words(), self._status
             status = self._status if self._status != before else ""
-        motion = self.motion
-        flags = {name: getattr(motion, name) for name in ("running", "recording", "replaying", "held")}
-        flags |= {"motor": self.source.motor, "values": {span.name: self.values[span.name] for span in self.spans}}
-        picture = self.picture.draw(motion.values(self._wanted))
         given = {} if rows is None else {"rows": rows}
-        return Frame(motion.time, picture=picture, status=status, flags=flags, **given)
+        return Frame(self.motion.time, picture=self._drawn(), status=status, flags=self._flags(), **given)
+
+    def _flags(self):
+        flags = {name: getattr(self.motion, name) for name in ("running", "recording", "replaying", "held")}
+        values = self.values
+        return {**flags, "motor": self.source.motor, "values": {span.name: values[span.name] for span in self.spans}}
+
+    def _drawn(self):
+        """Return the picture; one that cannot be drawn is told, and the scene goes on without it."""
+        try:
+            return self.picture.draw(self.motion.values(self._wanted))
+        except Exception as problem:
+            self._tell(f"The picture cannot be drawn: {type(problem).__name__}: {problem}")
+            return ()
 
 
 def source_of(paddle, scene, **options):

@@ -59,6 +59,13 @@ def late_words(behind):
     return said if behind < MUCH else f"{said}: too slow for this scene; give speed=0.1 or a cheaper method"
 
 
+#: flags of a Telemetry, in words
+NOTICED = {
+    "saturated": "The motor is at its limit", "gap": "Samples were lost on the link",
+    "overrun": "A step took longer than its period on the board",
+}  # fmt: skip
+
+
 def contact_words(F):
     """Say whether the environment pushes, from recent forces [N]."""
     return "in contact" if np.any(F) else "nothing touched"

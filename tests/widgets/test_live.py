@@ -243,6 +243,23 @@ def test_a_fault_stops_and_says_why_and_start_begins_anew():
     assert stage.frames[-1].time < 0.2
 
 
+def test_a_motor_at_its_limit_is_said():
+    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.1, T=T, force_max=0.5, hand=hl.hand("pinch"))).open()
+    stage.go(0.5, pointer=lambda now: 0.02)
+    assert "The motor is at its limit" in stage.session.status
+    stage.go(1.5, pointer=lambda now: 0.0)
+    assert "limit" not in stage.session.status
+
+
+def test_a_picture_that_cannot_be_drawn_stops_nothing(monkeypatch):
+    stage = Stage().open()
+    monkeypatch.setattr(stage.session.picture, "draw", lambda values: 1 / 0)
+    stage.go(0.3)
+    assert stage.frames[-1].picture == ()
+    assert "picture cannot be drawn: ZeroDivisionError" in stage.session.status
+    assert abs(stage.session.source.ticks - 300) < 20
+
+
 def test_a_record_is_played_again_and_then_the_scene_goes_on():
     stage = Stage().open()
     stage.session.press("record")
@@ -340,14 +357,21 @@ def test_its_thread_runs_with_a_view_and_ends_with_it():
     frames = wait_for_frames(view._session, 5)
     assert all(isinstance(frame, Frame) and frame.rows.dtype == np.float32 for frame in frames)
     assert "kind" not in frames[0].flags
-    thread = view._session._thread
-    view._session.connect(None)
-    view._session.gone("page")
+    session = view._session
+    thread = session._thread
+    session.connect(None)
+    session.gone("page")
     thread.join(20)
     assert not thread.is_alive()
-    assert wait_for_frames(view._session, 2)  # opened again
+    frames = wait_for_frames(session, 2)  # opened again
+    thread = session._thread
     view.close()
-    assert view._session._thread is None or not view._session.turn()
+    thread.join(20)
+    assert not thread.is_alive()
+    assert frames[-1].status == "This view has ended; run its cell again."
+    assert not frames[-1].flags["running"]
+    session.alive("page")  # says a page that is still open
+    assert session._thread is None
 
 
 def test_a_view_that_nobody_keeps_ends_its_thread():
