@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..drawing import STYLES, axis_label, house_style, new_figure
 from ..errors import AnalysisError, ProgramError
 from ..records import Telemetry, check_record
 from ..scene.scene import Scene
@@ -39,6 +40,19 @@ class Replay:
     size: dict
     instructions: int
     units: dict = field(repr=False, default_factory=dict)
+
+    def plot(self):
+        """Return a figure: each channel of the view over time."""
+        with house_style():
+            figure = new_figure(height=1.2 + 1.7 * len(self.error))
+            rows = figure.subplots(len(self.error), 1, sharex=True, squeeze=False)[:, 0]
+            for axes, (name, error) in zip(rows, self.error.items(), strict=True):
+                scale, label = axis_label(name, self.units[name])
+                axes.plot(self.log.t, scale * self.log.channels[name], **STYLES[0])
+                axes.set(ylabel=label)
+                axes.set_title(f"computed every {self.every} rows, wrong by {error:.2g} {self.units[name]}", fontsize="small")
+            rows[-1].set_xlabel("time t [s]")
+        return figure
 
     def __str__(self):
         lines = [f"{self.instructions} instructions every {self.every} rows; largest difference from every row:"]

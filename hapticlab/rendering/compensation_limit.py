@@ -136,9 +136,9 @@ class CompensationLimit:
         return "\n".join(lines)
 
     def plot(self):
-        """Draw what the paddle does over the two parts; return the figure."""
+        """Draw what the paddle does over the two parts, or over the one that it has; return the figure."""
         if not self.coulomb:
-            raise AnalysisError("coulomb = 0 N: a map of both parts needs a paddle with both; print the limit instead")
+            return self._plot_viscous()
         parts = np.linspace(0, self.viscous, 200)
         dry = np.array([self.hunts_from(part) for part in parts])
         wide, tall, middle = 1.35 * dry.max(), 1.25 * self.viscous, 0.5 * self.viscous
@@ -159,6 +159,21 @@ class CompensationLimit:
             axes.set_xlabel(f"part of the Coulomb friction compensated, of {self.coulomb:g} N")
             axes.set_ylabel(f"part of the damping compensated,\nof {self.b_device:g} N s/m")
             figure.legend(loc="outside upper center", ncols=2)
+        return figure
+
+    def _plot_viscous(self):
+        """Draw the part of the damping that may be compensated, on a paddle without dry friction."""
+        end = 1.25 * self.viscous
+        with house_style():
+            figure = new_figure(height=1.9)
+            axes = figure.subplots()
+            axes.axvspan(self.viscous, end, color="0.7", linewidth=0)
+            axes.axvline(self.viscous, color="black", label=f"a pole leaves the unit circle: {self.viscous:.4g}")
+            axes.text(self.viscous / 2, 0.5, "comes to rest", ha="center", va="center")
+            axes.text((self.viscous + end) / 2, 0.5, "runs away", ha="center", va="center")
+            axes.set(xlim=(0, end), ylim=(0, 1), yticks=[])
+            axes.set_xlabel(f"part of the damping compensated, of {self.b_device:g} N s/m")
+            figure.legend(loc="outside upper center")
         return figure
 
 

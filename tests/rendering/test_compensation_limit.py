@@ -225,7 +225,6 @@ def test_it_says_what_it_is():
         ),
         (lambda: compensation_limit(paddle()).hunting(0, 2), AnalysisError, "no spring to hunt about"),
         (lambda: compensation_limit(paddle(hand=hl.Hand(k=9))).speed(0, 2), AnalysisError, "needs a free handle"),
-        (lambda: compensation_limit(paddle(coulomb=0)).plot(), AnalysisError, "coulomb = 0 N"),
     ],
 )
 def test_what_has_no_answer_is_refused(call, error, words):
