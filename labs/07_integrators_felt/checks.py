@@ -11,9 +11,10 @@ NO_MASS = "A force over a mass is an acceleration: divide by m."
 SWAPPED = "The order is [z, u]."
 DETERMINANT = "That is the determinant: it multiplies the square of the amplitude; take its root."
 UNDAMPED = "That is the growth without the damper: 1 - h b/m stands in the determinant, too."
-TRACE = "That is the trace, the sum of the eigenvalues. The squared magnitude of a complex pair is their product, the determinant."
+TRACE = "That is the trace, the sum of the eigenvalues; the squared magnitude of a pair is its product, the determinant."
 LESS = "The factor itself is asked for, slightly above 1, not by how much it exceeds 1."
-NO_B = "That is the step without damping, 2/omega; with forward differences the damper *shortens* it: 4 - 2 h b/m - h^2 K/m = 0."
+NO_B = "That is the step without damping, 2/omega; taken forward, the damper shortens it: 4 - 2 h b/m - h^2 K/m = 0."
+TWO_OMEGA = "That is 2 omega; without damping the step is 2/omega."
 OTHER_ROOT = "The quadratic equation for h has two roots; the other is negative, and this is its magnitude: mind b's sign."
 HALF = "Check the 2 in the denominator: h^2 K/m + 2 h b/m - 4 = 0 has the roots (-b +- sqrt(b^2 + 4 K m))/K."
 INVERSE = "That is the slope of log(h) against log(error); the order is how the error follows the step."
@@ -102,7 +103,7 @@ LAB = Lab(
                     {"m": 0.2, "K": 300.0, "b": 0.0},
                     0.051639777949432225,
                     unit="s",
-                    slips={0.025819888974716113: HALF, 77.45966692414834: "That is 2 omega; without damping the step is 2/omega."},
+                    slips={0.025819888974716113: HALF, 77.45966692414834: TWO_OMEGA},
                 ),
                 Case(
                     {"m": 0.05, "K": 800.0, "b": 0.1},
