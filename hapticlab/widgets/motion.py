@@ -148,10 +148,10 @@ class Motion:
         self._last = {name: float(column[-1]) for name, column in samples.items()}
         return self.traces.add(samples)
 
-    def values(self, wanted):
+    def values(self, wanted=None):
         """Return what a picture is drawn from: the last sample, the parameters, and where the hand is wanted now [m]."""
         parameters = self._replay.parameters if self._replay is not None else named_values(self.source.program)
-        led = self.source.kind == "simulated" and self.held and not self.replaying
+        led = wanted is not None and self.source.kind == "simulated" and self.held and not self.replaying
         pointer = {"intent": wanted} if led else {}
         return {"T": self.source.paddle.T, **parameters, **self._last, "x": self.place, **pointer}
 

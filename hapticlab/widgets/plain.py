@@ -82,8 +82,8 @@ class PlainFront:
     def _say(self, what, *given):
         """Do what was touched, and have the page count where it does not."""
         now = self._touched = self.session.clock()
-        what(*given)
         self.session.ready("page")
+        what(*given)
         if now - self._beaten > 3e-3 * BEAT:
             self.heart.playing = False
             self.heart.playing = True

@@ -11,7 +11,8 @@ import hapticlab as hl
 from hapticlab.device import stepping
 from hapticlab.widgets.frame import Frame
 from hapticlab.widgets.pace import LONGEST
-from hapticlab.widgets.session import NOTE, SILENCE, Session
+from hapticlab.widgets.session import SILENCE, Session
+from hapticlab.widgets.stage import NOTE
 from hapticlab.widgets.words import chatter_words
 
 T = 1e-3
@@ -162,8 +163,9 @@ def test_a_slider_moves_between_two_ticks_and_the_log_says_when():
     stage.session.move(0, 0.5)  # B, by its number
     stage.go(0.2)
     log = stage.session.recorded()
-    (since, set_), = log.changes
-    assert set_ == {"k": 450.0, "B": 0.5}
+    (since, moved), (again, also) = log.changes
+    assert since == again
+    assert {**moved, **also} == {"k": 450.0, "B": 0.5}
     assert abs(since - 0.2) < 0.02
     assert round(since / T, 6) == round(since / T)
     assert log.parameters["k"] == 300

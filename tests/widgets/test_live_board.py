@@ -94,6 +94,17 @@ def test_the_motor_goes_off_with_whoever_looks(board, how, monkeypatch):
         assert "ZeroDivisionError" in stage.session.status
 
 
+def test_a_press_that_comes_late_starts_nothing(board):
+    stage = Stage(board).go(0.1)
+    stage.session.press("start")
+    stage.session.gone("page")
+    stage.session.turn()
+    stage.session.press("start")
+    stage.session.ready("page")
+    stage.go(0.2)
+    assert not stage.is_running
+
+
 def test_a_view_that_hangs_lets_the_board_stop_its_motor(board):
     """Nobody takes turns any more while the port is read on: the board is fed for LEASH, then stops by itself."""
     stage = Stage(board).press("start").go(0.2)
@@ -225,8 +236,8 @@ def test_by_the_clock_on_the_wall_in_its_own_thread():
                 pushed.set()
 
         session.connect(sink)
-        session.press("start")
         session.ready("page")
+        session.press("start")
         assert pushed.wait(20)
         thread = session._thread
         session.connect(None)
@@ -246,8 +257,8 @@ def test_a_view_that_nobody_keeps_switches_its_motor_off():
                 on.set()
 
         session.connect(sink)
-        session.press("start")
         session.ready("page")
+        session.press("start")
         assert on.wait(20)
         thread = session._thread
         del view

@@ -1,0 +1,245 @@
+"""What a live view shows: a scene that moves, its picture, what is said of it, and what presses and sliders do to it."""
+
+from contextlib import suppress
+from dataclasses import asdict, replace
+from pathlib import Path
+
+from ..device.board import SerialPaddle
+from ..device.live import named_values
+from ..device.running import is_refusal
+from ..device.simulated import SimulatedPaddle
+from ..device.stepping import Stepping
+from ..device.streaming import Streaming
+from ..errors import HapticlabError, PaddleError
+from .frame import COLUMNS, Frame
+from .motion import Motion
+from .picture import moving_picture
+from .spans import spans
+from .words import NOTICED, chatter_words, contact_words, late_words
+
+#: pictures a second of a scene that rests
+RESTING = 4.0
+#: words change no sooner than this, and a note stays so long [s]
+LOOK, NOTE = 0.25, 6.0
+TRACES = (
+    {"name": "x", "label": "x", "unit_shown": "mm", "scale": 1e3},
+    {"name": "F", "label": "F", "unit_shown": "N", "scale": 1.0},
+    {"name": "E", "label": "E drawn", "unit_shown": "mJ", "scale": 1e3},
+)
+
+
+class Stage:
+    """A scene on its paddle with all that is shown of it; one caller at a time.
+
+    Parameters
+    ----------
+    paddle, scene, sliders, speed, picture, **options
+        As for :func:`hapticlab.live`.
+    clock : callable
+        Seconds.
+    """
+
+    def __init__(self, paddle, scene, *, clock, sliders=None, speed=1.0, picture=None, **options):
+        self.picture = moving_picture(scene, paddle, picture)
+        self.scene = replace(scene, watch={**scene.watch, **self.picture.channels})
+        self.source = source_of(paddle, self.scene, **options)
+        self.spans = spans(self.source.program, sliders)
+        self.motion, self.clock = Motion(self.source, speed, clock), clock
+        self._awake, self._wants_to_run = False, self.source.kind == "simulated"
+        self._note, self._note_until = "", -1.0
+        self._status, self._next_look, self._next_frame = "", -1.0, -1.0
+
+    @property
+    def values(self):
+        """The scene's parameters as they are now, SI."""
+        return named_values(self.source.program)
+
+    def description(self):
+        """Return what a front end is told once: a dict of what JSON can carry.
+
+        ``title``; ``kind``, "simulated" or "board"; ``parameters``, a list of {name, unit, value, low, high, limit_words};
+        ``traces``, a list of {name, label, unit_shown, scale}, where shown = scale * value in SI, in the order of a frame's
+        columns after t; ``x_range``, [left, right], and ``box``, [left, right, bottom, top], of the picture [m];
+        ``along``, the direction in which the handle moves there; ``help``, words on what moves it; ``speed``; ``columns``.
+        """
+        box, values = self.picture.box, self.values
+        return {
+            "title": self.source.program.name,
+            "kind": self.source.kind,
+            "parameters": [{**asdict(span), "value": values[span.name]} for span in self.spans],
+            "traces": [dict(trace) for trace in TRACES],
+            "x_range": [box[0], box[1]],
+            "box": list(box),
+            "along": list(self.picture.along),
+            "help": _help(self.source, self.motion.speed),
+            "speed": self.motion.speed,
+            "columns": list(COLUMNS),
+        }
+
+    # --- what it does
+
+    def wake(self):
+        """Begin to move because somebody looks: a simulation; a board waits for Start."""
+        if not self._awake:
+            self._awake = True
+            self.source.warm()
+            self.motion.wake()  # after it, for compiling took its time
+            if self._wants_to_run:
+                self.resume()
+
+    def rest(self):
+        """Stand still because nobody looks; a simulation goes on when somebody does, a board only after Start."""
+        if self._awake:
+            self._awake = False
+            with suppress(HapticlabError):
+                self.motion.pause()
+
+    def obey(self, said):
+        """Do what was said, in its order, as (what, given); of a slider the newest place counts."""
+        moves = {}
+        for what, given in said:
+            self.look()
+            if what == "move":
+                moves[given[0]] = given[1]
+            elif what == "hold":
+                self.motion.hold(given)
+            elif what == "press":
+                self.guarded(getattr(self, given))
+        for name, value in moves.items():
+            self.guarded(self.motion.set, **{name: value})
+
+    def advance(self, wanted):
+        """Go on to the clock, with a hand that means to be at a place [m]; return a frame's rows, or None."""
+        recording = self.motion.recording
+        rows = self.guarded(self.motion.advance, wanted)
+        if recording and not self.motion.recording:
+            self.tell("The recording ended: it was long, or the motor went off")
+        return rows
+
+    def guarded(self, work, *given, **values):
+        """Do work; what it raises is told, and anything but a refusal stops what moves."""
+        try:
+            return work(*given, **values)
+        except Exception as problem:  # a thread has nobody else to tell
+            kind = "" if isinstance(problem, HapticlabError) else f"{type(problem).__name__}: "
+            self.tell(f"{kind}{problem}")
+            if not is_refusal(problem):
+                with suppress(HapticlabError):
+                    self.motion.pause()
+        return None
+
+    # --- presses
+
+    def start(self):
+        self._wants_to_run = self.source.kind == "simulated"
+        self.motion.start()
+
+    def resume(self):
+        self._wants_to_run = self.source.kind == "simulated"
+        self.motion.resume()
+
+    def pause(self):
+        self._wants_to_run = False
+        self.motion.pause()
+
+    def record(self):
+        self.motion.record()
+
+    def stop(self):
+        self.motion.stop_recording()
+
+    def save(self):
+        log = self._recorded()
+        self.tell(f"Saved {log.save(_free_name(log.scene))}: hl.Telemetry.load reads it")
+
+    def replay(self, log=None):
+        """Play a log, or what was recorded last; pressed again, end it."""
+        ends = log is None and self.motion.replaying
+        self.motion.replay(None if ends else self._recorded() if log is None else log)
+
+    def _recorded(self):
+        log = self.motion.recorded()
+        if log is None:
+            raise PaddleError("nothing is recorded yet; press Record, and Stop recording")
+        return log
+
+    # --- frames
+
+    def tell(self, note):
+        """Say something for a while."""
+        self._note, self._note_until, self._next_look = note, self.clock() + NOTE, -1.0
+
+    def words(self):
+        """Return one or two sentences about what goes on."""
+        motion, source = self.motion, self.source
+        board = source.kind == "board"
+        if motion.replaying:
+            said = ["Replaying a record"]
+        elif motion.running:
+            x, F = motion.traces.recent()
+            said = [source.waits or f"{'Motor on' if board else 'Running'}, {contact_words(F[-len(F) // 4 :])}"]
+            said += [chatter_words(x, F, source.period), *(NOTICED[name] for name in motion.noticed())]
+            said += ["" if board else late_words(motion.pace.behind(self.clock()))]
+            said += ["" if motion.held else "The handle is let go"]
+        else:
+            said = ["Motor off: press Start, and hold the handle" if board else "Paused"]
+            said += [f"Stopped: {source.fault}" if source.fault else ""]
+        said += ["Recording" if motion.recording else "", self._note if self.clock() < self._note_until else ""]
+        return " ".join(f"{sentence.rstrip('.')}." for sentence in said if sentence)
+
+    def frame(self, rows, wanted):
+        """Return the frame that is due, or None: a picture that rests is shown now and then."""
+        now = self.clock()
+        if rows is None and now < self._next_frame:
+            return None
+        self._next_frame, status = now + 1 / RESTING, ""
+        if now >= self._next_look:
+            self._next_look = now + LOOK
+            self._status, before = self.words(), self._status
+            status = self._status if self._status != before else ""
+        given = {} if rows is None else {"rows": rows}
+        return Frame(self.motion.time, picture=self._drawn(wanted), status=status, flags=self.flags(), **given)
+
+    def look(self):
+        """Have the next frame show everything at once."""
+        self._next_frame = self._next_look = -1.0
+
+    def flags(self):
+        """Return a frame's flags."""
+        flags = {name: getattr(self.motion, name) for name in ("running", "recording", "replaying", "held")}
+        values = self.values
+        return {**flags, "motor": self.source.motor, "values": {span.name: values[span.name] for span in self.spans}}
+
+    def _drawn(self, wanted):
+        """Return the picture; one that cannot be drawn is told, and the scene goes on without it."""
+        try:
+            return self.picture.draw(self.motion.values(wanted))
+        except Exception as problem:
+            self.tell(f"The picture cannot be drawn: {type(problem).__name__}: {problem}")
+            return ()
+
+
+def source_of(paddle, scene, **options):
+    """Return what gives samples of a scene on a paddle."""
+    kinds = {SimulatedPaddle: Stepping, SerialPaddle: Streaming}
+    for kind, source in kinds.items():
+        if isinstance(paddle, kind):
+            return source(paddle, scene, **options)
+    raise PaddleError(f"paddle = {paddle!r}; a live view needs a SimulatedPaddle, or a board: hl.connect()")
+
+
+def _help(source, speed):
+    if source.kind == "board":
+        return "Start switches the motor on: hold the handle. The motor goes off with Stop, and when this view closes."
+    hand = source.paddle.hand
+    slow = f" Time runs at {speed:g} of the clock's." if speed != 1 else ""
+    return (
+        "Drag the handle, or use the arrow keys: they move where the hand means to be, and the hand's spring follows "
+        f"({hand.k:g} N/m, {hand.b:g} N s/m, {1e3 * hand.m:g} g).{slow}"
+    )
+
+
+def _free_name(scene):
+    """Return a name of a file that is not there yet."""
+    stem = "".join(c if c.isalnum() else "_" for c in scene).strip("_") or "live"
+    return next(path for k in range(1, 10_000) if not (path := Path(f"{stem}-{k}.npz")).exists())
