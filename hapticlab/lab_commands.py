@@ -22,7 +22,7 @@ def labs(parser, options):
     _tell(folder, found, copied)
     code = _mark_all(found, folder, options.instructor) if options.instructor else 0
     if options.no_open:
-        print(f"\nto open them: {shlex.join(_jupyter(folder))}")
+        print(f"\nto open them: {_words(_jupyter(folder))}")
         return code
     fresh = [lab for lab in found if copied.get(f"{lab.name}/{lab.notebook.name}") == "new"]
     return _open(_jupyter(folder, *fresh[:1])) or code
@@ -70,14 +70,19 @@ def _jupyter(folder, first=None):
     return command
 
 
+def _words(command):
+    """Return a command as it is typed into a shell."""
+    return subprocess.list2cmdline(command) if os.name == "nt" else shlex.join(command)
+
+
 def _open(command):
     """Run JupyterLab until it ends; Ctrl-C is its own to answer."""
     if importlib.util.find_spec("jupyterlab") is None:
         raise EngineMissingError(
             "the labs are copied, and JupyterLab, which opens them, is not installed beside hapticlab; do: "
-            f'{shlex.quote(sys.executable)} -m pip install "hapticlab[notebook]"; then the same command again'
+            f'{_words([sys.executable])} -m pip install "hapticlab[notebook]"; then the same command again'
         )
-    print(f"\nJupyterLab opens in your browser. Two Ctrl-C here end it; it runs as: {shlex.join(command)}", flush=True)
+    print(f"\nJupyterLab opens in your browser. Two Ctrl-C here end it; it runs as: {_words(command)}", flush=True)
     # the kernels of this environment before those of the same name that a user may have elsewhere
     process = subprocess.Popen(command, env={**os.environ, "JUPYTER_PREFER_ENV_PATH": "1"})
     while True:
@@ -88,6 +93,6 @@ def _open(command):
             continue
     if code:
         root = getattr(os, "geteuid", lambda: 1)() == 0
-        nevertheless = f"; as root it runs only by: {shlex.join([*command, '--allow-root'])}" if root else ""
+        nevertheless = f"; as root it runs only by: {_words([*command, '--allow-root'])}" if root else ""
         print(f"hapticlab: JupyterLab ended with code {code}; what it said is above{nevertheless}", file=sys.stderr)
     return 1 if code else 0
