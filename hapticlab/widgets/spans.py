@@ -14,6 +14,8 @@ FROM_ZERO = {
 }  # fmt: skip
 #: of any other, in parts of its value
 PARTS = (1 / 5, 3.0)
+#: a declared range of more than so many times the value is a fence, not a range to move in
+WIDE = 10.0
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,7 @@ def spans(program, sliders=None):
     program : Program
         Its live parameters can be moved.
     sliders : dict of str to (low, high), optional
-        In SI; by default every live parameter, over its declared range or from a fifth to three times its value.
+        In SI; by default every live parameter, over its declared range, or from a fifth to three times its value.
 
     Raises
     ------
@@ -71,7 +73,8 @@ def _span(channel, value, ends, stable):
 
 
 def _usual(channel, value):
-    if math.isfinite(channel.low) and math.isfinite(channel.high) and channel.low < channel.high:
+    declared = channel.high - channel.low
+    if math.isfinite(declared) and declared > 0 and (value == 0 or declared <= WIDE * abs(value)):
         return channel.low, channel.high
     if value == 0:
         known = {dimension(unit): ends for unit, ends in FROM_ZERO.items()}
