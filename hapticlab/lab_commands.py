@@ -7,20 +7,20 @@ import subprocess
 import sys
 from pathlib import Path
 
-from .course.instructor import answers_for, mark_notebook, solved_notebook
+from .course.instructor import check_tree, mark_notebook, solved_notebook
 from .course.labs import copy_labs, find_labs
 from .course.notebook import read, write
-from .errors import EngineMissingError
+from .errors import CourseError, EngineMissingError
 
 
 def labs(parser, options):
     """Copy the labs and open JupyterLab on them; for an instructor first the solved notebooks and their marks."""
     folder, found = Path(options.folder), find_labs()
     if options.instructor:
-        answers_for(found, options.instructor)
+        check_tree(options.instructor)
     copied = copy_labs(folder)
     _tell(folder, found, copied)
-    code = _mark_all(found, folder, options.instructor) if options.instructor else 0
+    code = _mark_all(find_labs(folder), Path(options.instructor)) if options.instructor else 0
     if options.no_open:
         print(f"\nto open them: {_words(_jupyter(folder))}")
         return code
@@ -39,16 +39,25 @@ def _tell(folder, found, copied):
         print(f"to have these as they came, name another folder: hapticlab labs {folder.name}-new")
 
 
-def _mark_all(found, target, tree):
-    """Write the solved notebooks and print what they and the untouched ones earn; 1 unless that is all and nothing."""
+def _mark_all(found, tree):
+    """Write the solved notebooks and print what these and the notebooks as they are earn; 1 unless that is all and nothing."""
     print(f"\n{'lab':<30} {'points':>6} {'solution':>9} {'untouched':>10}")
-    good = [_mark(folder, Path(tree) / folder.name, target / folder.name) for folder in found]
-    return 0 if all(good) else 1
+    good = True
+    for folder in found:
+        try:
+            good &= _mark(folder, tree / folder.name)
+        except CourseError as problem:
+            print(f"{folder.name:<30} {problem}")
+            good = False
+    return 0 if good else 1
 
 
-def _mark(folder, answers, target):
-    """Write a lab's solved notebook and print its line; whether the solution earns all, the untouched notebook nothing."""
-    notebook, path = solved_notebook(folder, answers), target / f"{folder.name}-solved.ipynb"
+def _mark(folder, answers):
+    """Write a lab's solved notebook and print its line; whether the solution earns all, the notebook as it is nothing."""
+    if not answers.is_dir():
+        print(f"{folder.name:<30} no answers in {answers.parent}")
+        return True
+    notebook, path = solved_notebook(folder, answers), folder.path / f"{folder.name}-solved.ipynb"
     solution, untouched = (mark_notebook(folder, given, answers) for given in (notebook, read(folder.notebook)))
     state = "written" if write(path, notebook) else "left as it is: it differs from the solution"
     points = folder.lab().points

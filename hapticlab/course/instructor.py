@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import CourseError
-from .marks import SOLUTION, hidden_cases, marks
+from .marks import SOLUTION, hidden_cases, instructor_names, marks
 from .notebook import code_of, read, run, solved
 
 
@@ -23,16 +23,12 @@ class Marked:
         return sum(mark.earned for mark in self.marks)
 
 
-def answers_for(labs, tree):
-    """Return the folders in an instructor's tree with the answers of labs, NN_name as the labs' own."""
-    folders = [Path(tree) / lab.name for lab in labs]
-    missing = [folder.name for folder in folders if not (folder / SOLUTION).is_file()]
-    if missing:
+def check_tree(tree):
+    """Refuse a folder without any answers; its folders are named as the labs are, NN_name."""
+    if not any(Path(tree).glob(f"[0-9][0-9]_*/{SOLUTION}")):
         raise CourseError(
-            f"{tree} holds no {SOLUTION} for {', '.join(missing)}; name the folder of an instructor's answers, "
-            "tests/instructor of a checkout"
+            f"{tree} holds no NN_name/{SOLUTION}; name the folder of an instructor's answers, tests/instructor of a checkout"
         )
-    return folders
 
 
 def solved_notebook(folder, answers):
@@ -44,6 +40,7 @@ def solved_notebook(folder, answers):
     answers : Path
         With solution.py.
     """
+    instructor_names(answers / SOLUTION)  # it is there, and it runs
     solution = (answers / SOLUTION).read_text("utf-8")
     return solved(read(folder.notebook), solution, [exercise.name for exercise in folder.lab().exercises])
 

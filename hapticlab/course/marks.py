@@ -82,7 +82,10 @@ def hidden_cases(lab, folder, seed=0):
     answers, hidden = instructor_names(folder / SOLUTION), instructor_names(folder / HIDDEN)
     if "cases" not in hidden:
         raise CourseError(f"{folder / HIDDEN} defines no cases; it needs def cases(random): return {{'exercise': [given, ...]}}")
-    found = hidden["cases"](np.random.default_rng([seed, int(lab.number)]))
+    try:
+        found = hidden["cases"](np.random.default_rng([seed, int(lab.number)]))
+    except Exception as problem:
+        raise CourseError(f"{folder / HIDDEN}: cases failed: {type(problem).__name__}: {problem}") from problem
     return {name: tuple(_case(lab.exercise(name), answers, given) for given in several) for name, several in found.items()}
 
 
@@ -99,4 +102,7 @@ def instructor_names(path):
     """Return what an instructor's file defines."""
     if not Path(path).is_file():
         raise CourseError(f"{path}: no such file; an instructor's folder of a lab holds {SOLUTION} and {HIDDEN}")
-    return runpy.run_path(str(path))
+    try:
+        return runpy.run_path(str(path))
+    except Exception as problem:
+        raise CourseError(f"{path} failed: {type(problem).__name__}: {problem}") from problem

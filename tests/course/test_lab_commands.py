@@ -114,7 +114,7 @@ def test_a_link_leads_no_writing_elsewhere(place):
     [
         (["labs", "file", "--no-open"], "file is a file; name a folder for the labs"),
         (["labs", "../labs", "--no-open"], "is where the labs come from"),
-        (["labs", "new", "--no-open", "--instructor", "nowhere"], "nowhere holds no solution.py for 08_springs, 09_springs"),
+        (["labs", "new", "--no-open", "--instructor", "nowhere"], "nowhere holds no NN_name/solution.py; name the folder"),
         (["labs", "../labs/sub", "--no-open"], "is inside the folder where the labs come from"),
     ],
 )
@@ -163,19 +163,35 @@ def test_ctrl_c_is_answered_by_jupyterlab_alone(place):
 
 def test_an_instructor_gets_solved_notebooks_and_their_marks(place, capsys):
     command = ["labs", "--no-open", "--instructor", str(place / "answers")]
-    Path("hapticlab-labs/08_springs").mkdir(parents=True)
-    Path("hapticlab-labs/08_springs/08_springs.ipynb").write_text("a student's")  # the table is of what came with the package
     assert main(command) == 0
-    out = capsys.readouterr().out
-    assert [line.split()[:4] for line in out.splitlines() if "_springs  " in line] == [
-        ["08_springs", "2", "2", "0"], ["09_springs", "2", "2", "0"],
-    ]  # fmt: skip
+    rows = table(capsys)
+    assert [row[:4] for row in rows] == [["08_springs", "2", "2", "0"], ["09_springs", "2", "2", "0"]]
     solved = Path("hapticlab-labs/09_springs/09_springs-solved.ipynb")
     assert read(solved)["cells"][0]["source"] == "def force(k):\n    return 3 * k"
     solved.write_text("changed")
     assert main(command) == 0
     assert "09_springs-solved.ipynb left as it is" in capsys.readouterr().out
     assert solved.read_text() == "changed"
+
+
+def test_an_instructors_own_labs_are_marked_and_mistakes_in_them_told(place, capsys):
+    command = ["labs", "--no-open", "--instructor", str(place / "answers")]
+    assert main(command) == 0
+    mine = Path("hapticlab-labs/12_mine")
+    mine.mkdir()
+    (mine / "checks.py").write_text(CHECKS.format(12))
+    (mine / "12_mine.ipynb").write_text(Path("hapticlab-labs/09_springs/09_springs.ipynb").read_text())
+    capsys.readouterr()
+    assert main(command) == 0
+    assert table(capsys)[-1][:5] == ["12_mine", "no", "answers", "in", str(place / "answers")]
     (place / "answers" / "09_springs" / "solution.py").write_text("def force(k):\n    return -3 * k")
+    Path("hapticlab-labs/08_springs/08_springs.ipynb").write_text("no notebook")
     assert main(command) == 1
-    assert "solution, force: 1 of 2 cases; -6, expected 6. The sign is turned." in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "solution, force: 1 of 2 cases; -6, expected 6. The sign is turned." in out
+    assert "08_springs.ipynb is no notebook; it needs the JSON that Jupyter writes" in out
+
+
+def table(capsys):
+    lines = capsys.readouterr().out.splitlines()
+    return [line.split() for line in lines if line[:2].isdecimal()]

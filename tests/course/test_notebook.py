@@ -3,7 +3,7 @@
 import pytest
 
 from hapticlab.course.exercise import Case, Exercise, Lab
-from hapticlab.course.instructor import answers_for, mark_notebook, solved_notebook
+from hapticlab.course.instructor import mark_notebook, solved_notebook
 from hapticlab.course.labs import LabFolder, find_lab, find_labs
 from hapticlab.course.marks import hidden_cases, marks
 from hapticlab.course.notebook import code_of, read, run, solved, write
@@ -149,6 +149,8 @@ def test_hidden_cases_are_those_of_their_seed(folder):
     ("file", "text", "words"),
     [
         ("hidden.py", "", "defines no cases"),
+        ("hidden.py", "def cases(random): return 1 / 0", "hidden.py: cases failed: ZeroDivisionError"),
+        ("solution.py", "def force(", "solution.py failed: SyntaxError"),
         ("hidden.py", "def cases(random): return {'nothing': [{}]}", "has no exercise nothing; it has force, stored"),
         ("solution.py", "def force(k, x): return 1 / 0", "force: the solution gives no value .*: it raises ZeroDivisionError"),
         ("solution.py", "", "force: the solution gives no value for .*: it has no answer"),
@@ -158,17 +160,10 @@ def test_an_instructor_is_told_what_is_missing(folder, file, text, words):
     lab, answers = folder
     (answers / file).write_text(text)
     with pytest.raises(CourseError, match=words):
-        hidden_cases(lab.lab(), answers)
+        mark_notebook(lab, solved_notebook(lab, answers), answers)
     (answers / file).unlink()
     with pytest.raises(CourseError, match=rf"{file}: no such file"):
         hidden_cases(lab.lab(), answers)
-
-
-def test_answers_are_looked_for_before_anything_is_written(folder, tmp_path):
-    lab, answers = folder
-    assert answers_for([lab], answers.parent) == [answers]
-    with pytest.raises(CourseError, match=r"holds no solution.py for 77_springs; name the folder"):
-        answers_for([lab], tmp_path)
 
 
 def test_checks_beside_the_notebook_come_before_those_of_the_package(folder):
