@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 
 REPOSITORY = Path(__file__).parents[2]
@@ -73,6 +74,7 @@ class Lab:
         (home / "config" / "jupyter_server_config.json").write_text(json.dumps(own))
         command = [
             sys.executable, "-m", "jupyterlab", "--allow-root", "--no-browser", "--ip=127.0.0.1", f"--port={port}",
+            "--LabApp.expose_app_in_browser=True",
             "--IdentityProvider.token=", "--ServerApp.disable_check_xsrf=True", f"--ServerApp.root_dir={self.notebooks}",
         ]  # fmt: skip
         server = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True, cwd=self.notebooks)
@@ -115,6 +117,39 @@ def run_all(page):
     """Run every cell, by the menu."""
     page.locator("li.lm-MenuBar-item:has-text('Run')").click()
     page.locator("li.lm-Menu-item[data-command='runmenu:run-all']").click()
+
+
+def ask(page, code):
+    """Run code in the kernel of a page's notebook, as a cell would; return what it prints."""
+    return page.evaluate(
+        """async (code) => {
+            const kernel = window.jupyterapp.shell.currentWidget.sessionContext.session.kernel
+            const running = kernel.requestExecute({ code })
+            let said = ""
+            running.onIOPub = ({ content }) => (said += content.text ?? content.evalue ?? "")
+            await running.done
+            return said.trim()
+        }""",
+        code,
+    )
+
+
+def eventually(page, code, answer):
+    """Ask until the kernel gives an answer: what a hand does arrives a moment later."""
+    end = time.monotonic() + SECONDS
+    while (said := ask(page, code)) != answer:
+        assert time.monotonic() < end, f"{code}: {said}; expected {answer}"
+
+
+def command(page, name, **given):
+    """Do what an entry of JupyterLab's menus does."""
+    page.evaluate("([name, given]) => window.jupyterapp.commands.execute(name, given)", [name, given])
+
+
+def until(page, selector, words):
+    """Wait until an element's text holds words; return the text."""
+    page.wait_for_function("([s, w]) => document.querySelector(s)?.textContent.includes(w)", arg=[selector, words])
+    return page.locator(selector).first.text_content()
 
 
 def picture(page, name):

@@ -163,12 +163,14 @@ function fit(canvas, width, height) {
   canvas.getContext("2d").setTransform(ratio, 0, 0, ratio, 0, 0)
 }
 
-// The same hue with its lightness turned over, so that black on white becomes white on black.
+// The same hue with its lightness turned over, so that black on white becomes white on black; a pale grey stays off the paper.
+const DARKEST = 40
 function onDark(known, context, colour) {
   if (!known.has(colour)) {
     const [r, g, b, alpha] = components(context, colour)
     const turn = 255 - Math.max(r, g, b) - Math.min(r, g, b)
-    known.set(colour, `rgba(${r + turn}, ${g + turn}, ${b + turn}, ${alpha})`)
+    const turned = [r, g, b].map((part) => DARKEST + ((255 - DARKEST) * (part + turn)) / 255)
+    known.set(colour, `rgba(${turned.map(Math.round).join(", ")}, ${alpha})`)
   }
   return known.get(colour)
 }

@@ -104,7 +104,8 @@ class Traces {
     const context = this.strip.getContext("2d")
     const from = Math.max(this.drawn < 0 ? 0 : this.drawn, last - this.columns + 1, 0)
     context.setTransform(ratio, 0, 0, ratio, 0, 0)
-    for (let column = from; column <= last; column++) context.clearRect(column % this.columns, 0, 1, this.height)
+    // one more, into which the line before it spilled when it was there a round ago
+    for (let column = from; column <= last + 1; column++) context.clearRect(column % this.columns, 0, 1, this.height)
     for (let column = from; column <= last; column++) {
       if (Math.floor(column / 4) % 2) this.drawColumn(context, 0, this.traces.length, column, theme.quiet, 1.2)
       for (let k = 0; k < this.traces.length; k++) this.drawColumn(context, k, k, column, theme.ink, 1.6)

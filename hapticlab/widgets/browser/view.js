@@ -98,7 +98,12 @@ class View {
     const slider = { row, range, entry, name, unit, number, busy: 0 }
     range.addEventListener("input", () => this.move(slider, Number(range.value)))
     range.addEventListener("keydown", (event) => stepRange(event, range, step))
-    entry.addEventListener("change", () => entry.value !== "" && this.move(slider, Number(entry.value)))
+    const commit = () => {
+      if (entry.value !== "" && Number(entry.value) !== slider.shown) this.move(slider, Number(entry.value))
+    }
+    entry.addEventListener("change", commit)
+    entry.addEventListener("keydown", (event) => event.key === "Enter" && commit()) // a notebook may keep "change" back
+    entry.addEventListener("blur", () => showValue(slider, slider.shown))
     showValue(slider, value)
     return slider
   }

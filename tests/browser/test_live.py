@@ -1,0 +1,143 @@
+"""A scripted student at the live view: JupyterLab and Chromium as they are, the kernel's answer is what counts."""
+
+import pytest
+from lab import ask, command, eventually, picture, until
+
+BEGIN = """
+import hapticlab as hl
+paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch"))
+view = hl.live(paddle, hl.wall()(k=300, x_o=0.01))
+"""
+STAGE, STATUS, READOUT = "canvas.hl-stage", ".hl-status", ".hl-readout"
+# Where the handle is, F, and E as the view says them in words.
+NUMBERS = "() => document.querySelector('.hl-readout').textContent.match(/-?[0-9.]+/g).map(Number)"
+# Contrast of two colours after WCAG 2.
+CONTRAST = """() => {
+  const light = ([r, g, b]) => {
+    const part = (c) => ((c /= 255) <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)
+    return 0.2126 * part(r) + 0.7152 * part(g) + 0.0722 * part(b)
+  }
+  const rgb = (colour) => colour.match(/[0-9.]+/g).map(Number)
+  const paper = light(rgb(getComputedStyle(document.querySelector(".hl-live")).backgroundColor))
+  const found = {}
+  for (const name of ["hl-status", "hl-readout", "hl-help", "hl-limits", "hl-unit"]) {
+    const ink = light(rgb(getComputedStyle(document.querySelector("." + name)).color))
+    found[name] = (Math.max(ink, paper) + 0.05) / (Math.min(ink, paper) + 0.05)
+  }
+  return found
+}"""
+
+
+@pytest.fixture(scope="module")
+def page(lab):
+    page = lab.open("student", BEGIN, "view", "'the cell below'")
+    page.wait_for_selector(STAGE)
+    until(page, STATUS, "Running")
+    yield page
+    page.close()
+
+
+def grab(page):
+    """Press the pointer on the picture; return where, and the pixels of a metre."""
+    box = page.locator(STAGE).bounding_box()
+    place = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(*place)
+    page.mouse.down()
+    return place
+
+
+def test_a_drag_goes_into_the_wall_even_where_it_leaves_the_picture(page):
+    x, y = grab(page)
+    for k in range(1, 13):
+        page.mouse.move(x + 10 * k, y + 30 * k)  # the last ones are far below the canvas
+    until(page, STATUS, "in contact")
+    page.wait_for_function(f"() => ({NUMBERS})()[1] > 0.5")
+    picture(page, "live-1-in-the-wall")
+    page.mouse.up()
+    x, force, *_ = page.evaluate(NUMBERS)
+    assert force == pytest.approx(300 * (1e-3 * x - 0.01), abs=0.02)  # Eq. (23.1), x shown to 0.1 mm
+    x, force = map(float, ask(page, "m = view._session.motion.values(); print(m['x'], m['F'])").split())
+    assert force == pytest.approx(300 * (x - 0.01), abs=0.02) and force > 0.5  # the wall sees the encoder's counts
+
+
+def test_a_slider_moves_its_parameter_and_follows_the_program(page):
+    slider = page.get_by_label("k [N/m]")
+    assert slider.get_attribute("type") == "range"
+    slider.focus()
+    for _ in range(5):
+        page.keyboard.press("ArrowRight")
+    page.wait_for_function("() => document.querySelectorAll('.hl-slider input[type=number]')[1].value > 300")
+    expected = float(slider.input_value())
+    assert expected == pytest.approx(300 + 5 * 5)  # 840 N/m in 168 steps
+    eventually(page, "print(view.values['k'])", f"{expected}")
+    ask(page, "view.set(k=450)")
+    page.wait_for_function("() => document.querySelectorAll('.hl-slider input[type=range]')[1].value == 450")
+    assert "450" in slider.get_attribute("aria-valuetext")
+
+
+def test_a_value_that_is_refused_goes_back_and_says_why(page):
+    entry = page.get_by_role("spinbutton", name="k in N/m")
+    entry.select_text()
+    entry.press_sequentially("-50\n")
+    assert "k" in until(page, STATUS, "needs")
+    entry.blur()
+    page.wait_for_function("() => document.querySelectorAll('.hl-slider input[type=number]')[1].value > 0")
+    assert float(ask(page, "print(view.values['k'])")) == 450
+
+
+def test_keys_move_the_hand_and_leave_the_notebook_alone(page):
+    stage = page.get_by_role("slider", name="hand on the handle")
+    stage.focus()
+    before = float(stage.get_attribute("aria-valuenow"))
+    for _ in range(4):
+        page.keyboard.press("ArrowLeft")
+    page.keyboard.press("Shift+ArrowLeft")
+    assert float(stage.get_attribute("aria-valuenow")) == pytest.approx(before - 4 * 0.5 - 5.0, abs=0.051)
+    wanted = 1e-3 * float(stage.get_attribute("aria-valuenow"))
+    assert float(ask(page, "print(view._session._wanted)")) == pytest.approx(wanted, abs=6e-5)
+    for key in ("d", "d", "x", "a", "0", "0"):
+        page.keyboard.press(key)  # in JupyterLab: delete, cut, insert a cell, restart the kernel
+    assert page.locator(".jp-Cell").count() == 3
+    page.keyboard.press("l")
+    until(page, ".hl-hold", "Take the handle")
+    page.keyboard.press("ArrowRight")
+    until(page, ".hl-hold", "Let go")
+
+
+def test_pause_record_replay_and_save_by_keyboard(page):
+    page.locator(STAGE).focus()
+    page.keyboard.press("p")
+    until(page, STATUS, "Paused")
+    page.keyboard.press("p")
+    until(page, STATUS, "Running")
+    page.keyboard.press("r")
+    until(page, STATUS, "Recording")
+    picture(page, "live-2-recording")
+    page.keyboard.press("r")
+    until(page, ".hl-record", "● Record")
+    assert ask(page, "print(view.log_from)") == "recorded in the view"
+    page.keyboard.press("y")
+    until(page, ".hl-replay", "Stop replay")
+    until(page, ".hl-replay", "Replay")
+    page.get_by_role("button", name="Save", exact=True).click()
+    until(page, STATUS, "Saved")
+
+
+def test_words_stand_out_in_both_themes(page):
+    for theme in ("JupyterLab Light", "JupyterLab Dark"):
+        command(page, "apputils:change-theme", theme=theme)
+        dark = theme.endswith("Dark")
+        page.wait_for_function("(dark) => document.querySelector('.hl-live').classList.contains('hl-dark') === dark", arg=dark)
+        picture(page, f"live-3-{'dark' if dark else 'light'}")
+        contrast = page.evaluate(CONTRAST)
+        assert min(contrast.values()) >= 4.5, (theme, contrast)  # WCAG 2, level AA
+    command(page, "apputils:change-theme", theme="JupyterLab Light")
+
+
+def test_it_stops_with_its_last_view_and_when_its_page_is_left(page):
+    assert ask(page, "print(view._session.on_view)") == "True"
+    page.evaluate("() => { window.jupyterapp.shell.currentWidget.content.activeCellIndex = 1 }")
+    command(page, "notebook:clear-cell-output")
+    page.wait_for_selector(STAGE, state="detached")
+    ask(page, "view._session._thread and view._session._thread.join(5)")
+    assert ask(page, "print(view._session.on_view, view._session.motion.running, view._session._thread)") == "False False None"
