@@ -1,0 +1,122 @@
+"""What the front says to a browser and hears from it, byte by byte; the browser's half is tests/browser."""
+
+import re
+import struct
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anywidget")
+
+from hapticlab.widgets.frame import Frame
+from hapticlab.widgets.front import BROWSER, KINDS, SCRIPTS, Listener, Speaker, front
+from hapticlab.widgets.session import PRESSES
+
+PICTURE = (
+    ("line", [(0.0, 0.0), (0.01, 0.0), (0.02, 0.005)], 1.5, "#000000", (6, 4)),
+    ("area", [[0.0, 0.0], [0.01, 0.0], [0.01, 0.02]], "#dbe6f0", ""),
+    ("text", (0.03, 0.01), "handle", "#c1440e"),
+    ("arrow", (0.0, 0.01), (0.02, 0.01), "#000000", "2.0 N"),
+)
+
+
+class Session:
+    """Notes what it is told."""
+
+    def __init__(self, kind="simulated"):
+        self.kind, self.told = kind, []
+
+    def description(self):
+        return {"kind": self.kind, "speed": 1.0, "parameters": [], "traces": [], "title": "a wall"}
+
+    def connect(self, sink):
+        self.sink = sink
+
+    def __getattr__(self, name):
+        return lambda *given: self.told.append((name, *given))
+
+
+def message(kind, value=0.0, more=0.0, view=7):
+    return np.array([view, KINDS.index(kind), value, more], "<f8").tobytes()
+
+
+def frame(**changed):
+    given = dict(time=1.5, rows=np.arange(15, dtype=np.float32).reshape(3, 5), picture=PICTURE, status="Running.")
+    return Frame(**(given | {"flags": {"running": True, "values": {"k": 300.0}}} | changed))
+
+
+def test_a_frame_is_header_rows_and_points():
+    sent = []
+    Speaker(lambda content, buffers: sent.append((content, buffers[0]))).say(frame())
+    content, data = sent[0]
+    _, time, rows = struct.unpack_from("<3d", data)
+    numbers = np.frombuffer(data, "<f4", offset=24)
+    assert (time, rows) == (1.5, 3)
+    np.testing.assert_array_equal(numbers[:15], np.arange(15))
+    np.testing.assert_allclose(numbers[15:21], [0, 0, 0.01, 0, 0.02, 0.005], rtol=1e-7)
+    assert len(numbers) == 15 + 2 * (3 + 3 + 1 + 2)
+    assert content["shape"] == [
+        ["line", 3, 1.5, "#000000", (6, 4)], ["area", 3, "#dbe6f0", ""], ["text", 1, "handle", "#c1440e"],
+        ["arrow", 2, "#000000", "2.0 N"],
+    ]  # fmt: skip
+    assert content["flags"] == {"running": True} and content["values"] == {"k": 300.0}
+
+
+def test_only_news_is_said_again_and_a_new_view_hears_everything():
+    sent = []
+    speaker = Speaker(lambda content, buffers: sent.append(content))
+    for each in (frame(), frame(status=""), frame(status="", flags={"running": False})):
+        speaker.say(each)
+    assert [sorted(each) for each in sent] == [["flags", "shape", "status", "values"], ["values"], ["flags", "values"]]
+    speaker.forget()
+    speaker.say(frame(status=""))
+    assert sent[-1]["status"] == "Running." and sent[-1]["shape"]
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        (message("intend", 0.012), ("intend", 0.012)),
+        (message("hold", 1.0), ("hold", True)),
+        (message("hold", 0.0), ("hold", False)),
+        (message("move", 2, 450.0), ("move", 2, 450.0)),
+        (message("press", PRESSES.index("record")), ("press", "record")),
+        (message("alive", 99.0), ("alive", "7")),
+        (message("gone"), ("gone", "7")),
+    ],
+)
+def test_what_a_view_says(said, told):
+    session = Session()
+    assert not Listener(session).heard(said)
+    assert session.told == [told]
+
+
+def test_a_page_that_was_loaded_anew_finds_the_motor_off():
+    session = Session("board")
+    listener = Listener(session)
+    assert listener.heard(message("ready", value=100.0, view=1))
+    listener.heard(message("ready", value=100.0, view=2))  # a second view in the same page
+    listener.heard(message("press", PRESSES.index("start"), view=1))
+    session.told.clear()
+    listener.heard(message("ready", value=101.0, view=3))  # another page: the first said no goodbye
+    assert session.told == [("gone", "1"), ("gone", "2"), ("press", "pause"), ("ready", "3")]
+
+
+def test_a_simulation_goes_on_in_a_new_page():
+    session = Session()
+    listener = Listener(session)
+    listener.heard(message("ready", value=100.0, view=1))
+    listener.heard(message("ready", value=101.0, view=2))
+    assert session.told == [("ready", "1"), ("gone", "1"), ("ready", "2")]
+
+
+def test_the_widget_brings_all_it_needs():
+    session = Session()
+    widget = front(session)
+    assert widget.about["presses"] == list(PRESSES)
+    assert all((BROWSER / script).read_text("utf-8") in widget._esm for script in SCRIPTS)
+    for text in (widget._esm, widget._css):  # a classroom may have no network
+        assert not re.search(r"https?://|\bimport\b|url\(", text)
+    kinds = re.search(r"const KIND = \{(.*?)\}", widget._esm)[1]
+    assert kinds.replace(" ", "") == ",".join(f"{kind}:{number}" for number, kind in enumerate(KINDS))
+    widget.close()
