@@ -8,9 +8,10 @@ import sympy as sp
 
 from ..errors import HapticlabError
 from ..library.sketch import SOFT, Sketch, clearance
-from ..scene.symbols import t, v, x
+from ..scene.contact import Contact
+from ..scene.symbols import n, t, v, x
 from .boundaries import boundaries
-from .formulas import formula
+from .formulas import formula, plain_symbols
 from .outlines import Outline
 
 #: from one body to the next, its width, and from the handle to either end of the picture [m]
@@ -47,6 +48,7 @@ class Schematic:
         self.turning = {type(q).__name__: _carrier(scene, q) for q in angles}
         self.stands = {type(q).__name__: _stands(scene, q) for q in angles}
         self.springs = _springs(scene, self.blocks)
+        self.held_by, self.meets = _held_by(scene), _meets(scene, self.blocks)
         self.start = _start(scene)
         self.names = placed.union(self.blocks, self.turning, *(wall.names for wall in self.walls))
 
@@ -54,15 +56,20 @@ class Schematic:
         state = {**self.start, **state}
         s = self._frame(axes)
         u, offset = s.u, {"x": 0.0}
-        for place, name in enumerate(self.blocks):
-            offset[name] = (0.8 + place) * APART + clearance(state["x"], state[name])
-        at = {name: state[name] + away for name, away in offset.items()}
         half = {"x": 1.5 * u} | dict.fromkeys(self.blocks, WIDE / 2)
+        for place, name in enumerate(self.blocks):
+            if name in self.meets:
+                before, gap = self.meets[name]
+                offset[name] = offset[before] + half[before] + half[name] + gap
+            else:
+                offset[name] = (0.8 + place) * APART + clearance(state["x"], state[name])
+        at = {name: state[name] + away for name, away in offset.items()}
         for outline in self.outlines:
             outline.draw(s, state)
         for wall in self.walls:
             if wall.mover in at and wall.names <= set(state):
                 self._wall(s, wall, offset[wall.mover] + wall.side * half[wall.mover], state)
+        self._ties(s, state["x"])
         for first, second in self.springs:
             s.spring((at[first] + half[first], 0), (at[second] - half[second], 0))
         for name in self.blocks:
@@ -79,14 +86,24 @@ class Schematic:
         top = low if any(self.turning[name] and self.stands[name] for name in self.turning) else high
         return Sketch(axes, -REACH, right, -low, top)
 
+    def _ties(self, s, x):
+        """Draw what holds the handle itself, to the left of it."""
+        u, place = s.u, s.left + 4 * s.u
+        if self.held_by:
+            s.ground((place, -4.5 * u), (place, 4.5 * u), depth=-1.5)
+        if "spring" in self.held_by:
+            s.spring((place, 2.8 * u), (x - 1.5 * u, 2.8 * u), height=1.2)
+        if "damper" in self.held_by:
+            s.damper((place, 0.0), (x - 1.5 * u, 0.0), height=1.2)
+
     @staticmethod
     def _wall(s, wall, away, state):
-        place, high = wall.where(state)[0] + away, 9 * s.u
+        place, high = wall.where(state)[0] + away, 6.8 * s.u
         end = s.right if wall.side > 0 else s.left
         if (end - place) * wall.side > 0:
             s.area([(place, -high), (end, -high), (end, high), (place, high)], color=WALL, edge="none", zorder=1)
         s.ground((place, wall.side * high), (place, -wall.side * high), depth=-1.5)
-        s.text((place, -high), _letters(wall.label), up=-2.4)
+        s.text((place, -12.2 * s.u), _letters(wall.label))
 
     def _turning(self, s, at, state):
         """Draw what turns: hanging from or standing on what carries it, else a dial."""
@@ -142,12 +159,25 @@ def _springs(scene, names):
     return [pair for pair in zip(row, row[1:], strict=False) if _coupled(scene, *(by_name[name] for name in pair))]
 
 
+def _meets(scene, names):
+    """Return name -> (neighbour to its left, gap [m] where both are at zero), of those that a contact keeps apart."""
+    contacts, found, row = (getattr(entry, "contacts", ()) for entry in scene.eom), {}, ["x", *names]
+    gaps = [plain_symbols(c.gap) for listed in contacts for c in listed if isinstance(c, Contact)]
+    for before, name in zip(row, names, strict=False):
+        here, there = sp.Symbol(before, real=True), sp.Symbol(name, real=True)
+        for gap in gaps:
+            if (gap.diff(there), gap.diff(here)) == (1, -1):
+                rest = gap.xreplace({here: sp.S.Zero, there: sp.S.Zero}).subs(dict(scene.values))
+                found[name] = (before, float(rest) if rest.is_number else 0.0)
+    return found
+
+
 def _coupled(scene, first, second):
     """Tell whether two movers pull on each other when apart, not in a contact or a case alone."""
     if len(scene.coordinates) > LOOKED_AT:
         return True
     if first == x(t):
-        return scene.force.has(second) or any(expr.has(x, v) for expr in _acting(scene, second))
+        return _apart(scene.force).has(second) or any(expr.has(x, v) for expr in _acting(scene, second))
     return any(expr.has(first) for expr in _acting(scene, second)) or any(expr.has(second) for expr in _acting(scene, first))
 
 
@@ -159,8 +189,27 @@ def _acting(scene, q):
         return ()
     if q not in form.coordinates:
         return ()
-    f = form.f[form.coordinates.index(q)].doit()
-    return (f.xreplace(dict.fromkeys(f.atoms(sp.Piecewise, sp.Max), sp.S.Zero)),)
+    return (_apart(form.f[form.coordinates.index(q)]),)
+
+
+def _apart(expr):
+    """Return a force without what acts in cases alone, as walls and contacts do."""
+    expr = expr.doit()
+    return expr.xreplace(dict.fromkeys(expr.atoms(sp.Piecewise, sp.Max, sp.Min), sp.S.Zero))
+
+
+def _held_by(scene):
+    """Return what ties the handle itself to the ground, "spring" and "damper", wherever it is.
+
+    A force that a shift of everything changes is a spring; one that a speed of the handle changes is a damper.
+    """
+    force, past, speed = _apart(scene.force), sp.Symbol("past"), sp.Symbol("speed")
+    lengths = [q for q in scene.coordinates if type(q).unit == "m"]
+    samples = {sample: sp.Symbol("x") - (n - sample.args[0]) * past for sample in force.atoms(x) if sample.args[0] != t}
+    force = force.xreplace({**samples, x(t): sp.Symbol("x"), **dict.fromkeys(force.atoms(v), speed)})
+    shifted = force.xreplace(dict.fromkeys([*lengths, sp.Symbol("x")], sp.Symbol("shift")))
+    ties = [("spring", sp.Symbol("shift"), shifted), ("damper", speed, force), ("damper", past, force)]
+    return {tie for tie, by, acts in ties if not sp.expand(acts.diff(by)).is_zero and not (tie == "damper" and lengths)}
 
 
 def _carrier(scene, q):

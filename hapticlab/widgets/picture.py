@@ -116,7 +116,8 @@ class MovingPicture:
             if length > 0.5 * u:
                 found += (("arrow", tuple(tail.tolist()), tuple((tail + side * length * along).tolist()), INK, ""),)
             beyond = 10 * u + (length if side < 0 else 3 * u)
-            found += (("text", tuple((place - beyond * along - 3.0 * u * across).tolist()), f"motor {abs(F):.1f} N", INK),)
+            beside = place - beyond * along - 3.0 * u * across if abs(along[0]) > 0.5 else place - 17 * u * across
+            found += (("text", tuple(beside.tolist()), f"motor {abs(F):.1f} N", INK),)
         return found
 
     def _fit(self):

@@ -153,7 +153,7 @@ def test_walls_to_both_sides_each_hatched_on_its_own():
     half = np.diff(outline_of(figure, HANDLE))[0] / 2
     assert (left, right) == (pytest.approx(-0.02 - half, abs=1e-12), pytest.approx(0.01 + half, abs=1e-12))
     assert "$x_{o}$" in words(figure) and "$x_{1}$" in words(figure)
-    assert hatched(hl.picture(hl.virtual_damper()(B=1.0))) == []
+    assert Schematic(hl.virtual_damper()).walls == ()
 
 
 def words(figure):
@@ -224,3 +224,30 @@ def distance(point, a, b):
     along = b - a
     s = np.clip((point - a) @ along / (along @ along), 0, 1) if along.any() else 0.0
     return np.hypot(*(point - a - s * along))
+
+
+@pytest.mark.parametrize(
+    ("scene", "ties"),
+    [
+        (hl.Scene(force=k * hl.x(n)), {"spring"}),
+        (hl.virtual_damper()(B=1.0), {"damper"}),
+        (hl.wall("ellis", unilateral=None)(k=100, B=1.0), {"spring", "damper"}),
+        (hl.Scene(force=hl.parameters("B", units="N*s/m", values=1) * hl.v(n)), {"damper"}),
+        (hl.wall()(k=100, B=1.0), set()),
+        (hl.library.mass_spring_damper(), set()),
+    ],
+)
+def test_what_holds_the_handle_itself_is_tied_to_the_ground(scene, ties):
+    assert Schematic(scene).held_by == ties
+
+
+def test_a_ball_that_the_handle_strikes_is_tied_to_nothing():
+    y = hl.coordinate("y", unit="m", initial=0.03)
+    m, g = hl.parameters("m g", units="kg m/s^2", values=(0.03, 9.81))
+    touch = hl.Contact(y - hl.x(hl.t), hl.penalty(k=k), name="touch")
+    scene = hl.Scene(force=touch.felt, eom=[hl.lagrange(m * y.diff(hl.t) ** 2 / 2 - m * g * y, contacts=[touch])])
+    drawn = Schematic(scene)
+    assert (drawn.springs, drawn.held_by, drawn.walls, drawn.start) == ([], set(), (), {"x": 0.0, "y": 0.03})
+    met, apart = (hl.picture(scene, x=0.01, y=y) for y in (0.01, 0.014))
+    assert outline_of(met, HANDLE)[1] == pytest.approx(outline_of(met, BODY)[0], abs=1e-12)
+    assert outline_of(apart, BODY)[0] - outline_of(apart, HANDLE)[1] == pytest.approx(0.004, abs=1e-12)
