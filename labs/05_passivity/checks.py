@@ -10,11 +10,12 @@ FORCE = "That is the damper's force b D/T; the loss is that force times the way 
 NO_HALF = "The spring leaks K D^2/2, half of K D^2: so K is 2 (b - |B|)/T."
 SIGNED = "|B| counts, of either sign: a negative virtual damper feeds slow motion, a positive one fast motion."
 LATE = (
-    "F[n] is paired with the way that led to x[n]. It acts after that sample: from x[n] to x[n+1]. Paired so, a wall that "
-    "leaks looks like one that dissipates."
+    "F[n] is paired with the way that led to x[n]. It acts after that sample: from x[n] to x[n+1]. Paired so, a wall "
+    "that leaks looks like one that dissipates."
 )
 MEAN = "The mean of two forces is right for a spring of steel; the motor holds F[n] all the way to the next sample."
 PERIODS = "Those are the works of single periods; W adds them up."
+NEGATIVE = "b does not even pay for |B|: no wall is passive, and the largest K is 0, not negative."
 NO_HALF_T = "The factor T/2 is missing."
 ADVANCED = "H belongs to z = e^(j theta), and a past sample x(n-i) to z^-i: e^(-j i theta)."
 NO_TURN = "That is only K times the radius: the map divides by |1 + H c|."
@@ -74,8 +75,8 @@ LAB = Lab(
                     0.0,
                     unit="N/m",
                     slips={
-                        -300.0: "b does not even pay for |B|: no wall is passive, and the largest K is 0, not negative.",
-                        -150.0: "b does not even pay for |B|: no wall is passive, and the largest K is 0, not negative.",
+                        -300.0: NEGATIVE,
+                        -150.0: NEGATIVE,
                         700.0: SIGNED,
                     },
                 ),
@@ -98,13 +99,16 @@ LAB = Lab(
                     },
                 ),
                 Case(
-                    {"x": [-0.001, 0.001, 0.003, 0.005, 0.004, 0.002, -0.001], "F": [0.0, 0.1, 0.3, 0.5, 0.4, 0.2, 0.0]},
+                    {
+                        "x": [-0.001, 0.001, 0.003, 0.005, 0.004, 0.002, -0.001],
+                        "F": [0.0, 0.1, 0.3, 0.5, 0.4, 0.2, 0.0],
+                    },
                     [0.0, 0.0, 0.0002, 0.0008, 0.0003, -0.0005, -0.0011],
                     unit="J",
                     slips={(0.0, 0.0002, 0.0008, 0.0018, 0.0014, 0.001, 0.001): LATE},
                 ),
             ),
-            hint="W[0] = 0, then W[n] = W[n-1] + F[n-1] (x[n] - x[n-1]); numpy.diff and numpy.cumsum give all but the 0.",
+            hint="W[0] = 0, then W[n] = W[n-1] + F[n-1] (x[n] - x[n-1]); see numpy.diff and numpy.cumsum.",
         ),
         Exercise(
             "damping_asked",
@@ -170,7 +174,7 @@ LAB = Lab(
                     unit="N",
                     slips={
                         -0.5: "alpha is to stay below alpha_max; what it cannot take back at once waits.",
-                        0.7: "On the way out D < 0, and the damper lowers the force that pushes the handle out: keep D's sign.",
+                        0.7: "On the way out D < 0, and the damper lowers the force that pushes out: keep D's sign.",
                     },
                 ),
                 Case(
@@ -203,9 +207,9 @@ LAB = Lab(
                     {},
                     "b",
                     slips={
-                        "a": "The finger is not in the honey while it leans; and what the honey took is positive, the credit.",
-                        "c": "The same alpha_max settled the same wall when the finger had not stirred: look at the credits.",
-                        "d": "The same encoder was there in the first run, which settled: look at the credits on arrival.",
+                        "a": "While it leans the finger is not in the honey; and what honey takes is credit, not debt.",
+                        "c": "The same alpha_max settled the same wall where nobody had stirred: look at the credits.",
+                        "d": "The same encoder was there in the first run, which settled: look at the credits.",
                     },
                 ),
             ),

@@ -3,7 +3,7 @@
 from hapticlab.course.exercise import Case, Exercise, Lab
 
 EXPLICIT = "That is forward Euler: here z moves with the new velocity."
-LATE = "The acceleration belongs to the start of the step: compute the new velocity first, from the old z, then the new z."
+LATE = "The acceleration belongs to the start of the step: first the new velocity, from the old z, then the new z."
 PULL = "The coupler pulls the mass towards the handle: K (x - z), not K (z - x)."
 NO_DAMPER = "The damper is missing: -b u, with the handle at rest."
 FEEDING = "The damper's sign is turned: it acts against u."
@@ -11,11 +11,11 @@ NO_MASS = "A force over a mass is an acceleration: divide by m."
 SWAPPED = "The order is [z, u]."
 DETERMINANT = "That is the determinant: it multiplies the square of the amplitude; take its root."
 UNDAMPED = "That is the growth without the damper: 1 - h b/m stands in the determinant, too."
-TRACE = "That is the trace, the sum of the eigenvalues; the squared magnitude of a pair is its product, the determinant."
+TRACE = "That is the trace, the sum of the eigenvalues; a pair's squared magnitude is its product, the determinant."
 LESS = "The factor itself is asked for, slightly above 1, not by how much it exceeds 1."
-NO_B = "That is the step without damping, 2/omega; taken forward, the damper shortens it: 4 - 2 h b/m - h^2 K/m = 0."
+NO_B = "That is the step without damping, 2/omega; the damper shortens it: 4 - 2 h b/m - h^2 K/m = 0."
 TWO_OMEGA = "That is 2 omega; without damping the step is 2/omega."
-OTHER_ROOT = "The quadratic equation for h has two roots; the other is negative, and this is its magnitude: mind b's sign."
+OTHER_ROOT = "The equation for h has two roots; the other is negative, and this is its magnitude: mind b's sign."
 HALF = "Check the 2 in the denominator: h^2 K/m + 2 h b/m - 4 = 0 has the roots (-b +- sqrt(b^2 + 4 K m))/K."
 INVERSE = "That is the slope of log(h) against log(error); the order is how the error follows the step."
 STRAIGHT = "That is the slope of the errors themselves; a power law is a straight line in logarithms of both."
@@ -156,7 +156,7 @@ LAB = Lab(
                     "c",
                     slips={
                         "a": "Try substeps=4 in the cell below: the error stays what it was.",
-                        "b": "Try dtype='float64' in the cell below: the error stays what it was; float32 is good to 1e-7.",
+                        "b": "Try dtype='float64' in the cell below: the error stays; float32 is good to 1e-7.",
                         "d": "The same coupler and the same RK4 are wrong by less than 0.1 % with hold='soh'.",
                     },
                 ),

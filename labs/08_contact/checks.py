@@ -14,7 +14,7 @@ FULL_SWING = "A contact lasts half a period of the swing, pi sqrt(mu/k), not a w
 TEN_OUTSIDE = "The time goes with 1/sqrt(k), so that the ten is squared with the step."
 HELD = "That is the rebound from a plate that does not move away; here it takes up momentum."
 PLASTIC = "The impulse is 1 + e times the one that makes the velocities equal: that first, then the rebound."
-HEAVY = "That is the impulse on a plate that is held, (1 + e) m (w - v); a free one gives way: the effective mass counts."
+HEAVY = "That is the impulse on a plate that is held, (1 + e) m (w - v); a free one gives way: take m M/(m + M)."
 IMPULSE_SIGN = "The ball falls and is thrown up: the impulse on it is positive, upwards."
 PLATE_SIGN = "What the ball gains upwards the plate loses: w' = w - p/M."
 RELATIVE = "It is the *relative* velocity that turns round: v' - w' = -e (v - w)."
@@ -112,7 +112,7 @@ LAB = Lab(
                     slips={
                         "a": "The handle meets the coupler alone; k_b acts between two bodies that the solver moves.",
                         "c": "It is the other way round: which of the two springs is tied to the sampled handle?",
-                        "d": "Springs of steel create none. A sampled one does, and one that is stepped too coarsely, too.",
+                        "d": "Springs of steel create none. A sampled one does, and one in too coarse steps as well.",
                     },
                 ),
             ),

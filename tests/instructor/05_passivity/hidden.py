@@ -9,7 +9,10 @@ def cases(random):
     way = lambda: float(random.choice([-1, 1]) * random.uniform(2e-5, 4e-4))  # noqa: E731
     return {
         "period_energy": [
-            {"x": uniform(1e-3, 5e-3), "D": way(), "K": uniform(50, 2000), "b": uniform(0.02, 1), "T": uniform(2e-4, 4e-3)}
+            {
+                "x": uniform(1e-3, 5e-3), "D": way(), "K": uniform(50, 2000), "b": uniform(0.02, 1),
+                "T": uniform(2e-4, 4e-3),
+            }
             for _ in range(3)
         ],
         "passive_stiffness": [

@@ -43,8 +43,8 @@ def controlled_force(f, credit, D, T, alpha_max):
 why_it_failed = "b"
 
 discussion = (
-    "I predicted the stiffness of my own pinch, which is far above 200 N/m, since I counted on the damping that my fingers "
-    "bring; the bound counts on nothing but the device. I would insist on it for a surgeon's handle that anybody may touch in "
-    "any way, and not for a knob that is always held firmly. With b = 0.5 and B = -0.3 the bound is 400 N/m, twice that of "
-    "the bare paddle, while slow motion feels only 0.2 N s/m."
+    "I predicted the stiffness of my own pinch, which is far above 200 N/m, since I counted on the damping that "
+    "my fingers bring; the bound counts on nothing but the device. I would insist on it for a surgeon's handle "
+    "that anybody may touch in any way, and not for a knob that is always held firmly. With b = 0.5 and B = -0.3 "
+    "the bound is 400 N/m, twice that of the bare paddle, while slow motion feels only 0.2 N s/m."
 )

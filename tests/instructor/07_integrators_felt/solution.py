@@ -34,8 +34,9 @@ def shortest_period(cycles, rest, load, hz):
 why_order_one = "c"
 
 discussion = (
-    "I predicted that RK4 is a hundred times better, and it was five times worse, since I had not thought of what the solver "
-    "knows about the handle between two samples. For a mass to be felt I take semi-implicit Euler at 1 ms: 2.3 % error, 43 % of "
-    "the Uno, bounded energy. For forces to 1 % I take RK4 with hold soh at 2 ms, 0.52 % and 55 %. An unstable integrator grows "
-    "by itself with the handle held; a rendering that is not passive needs a hand that answers."
+    "I predicted that RK4 is a hundred times better, and it was five times worse, since I had not thought of what "
+    "the solver knows about the handle between two samples. For a mass to be felt I take semi-implicit Euler at 1 "
+    "ms: 2.3 % error, 43 % of the Uno, bounded energy. For forces to 1 % I take RK4 with hold soh at 2 ms, 0.52 % "
+    "and 55 %. An unstable integrator grows by itself with the handle held; a rendering that is not passive needs "
+    "a hand that answers."
 )

@@ -41,8 +41,9 @@ def largest_multiplier(a, e, g):
 
 
 discussion = (
-    "I predicted the weight of the ball and was off by a factor of a hundred: 27.6 N would be needed in one period. Spread over "
-    "5 ms the same impulse is felt with 2 N, later and softer. For a drum I take the impulse, p = 23 mN s in no time; for a "
-    "box that lies on the handle the constraint, which lets go at -9.81 m/s^2; for a ball on a board the penalty, up to 411 "
-    "N/m at 500 Hz. My own juggle got better when I slowed down at impact, and with closed eyes I kept the ball by touch."
+    "I predicted the weight of the ball and was off by a factor of a hundred: 27.6 N would be needed in one "
+    "period. Spread over 5 ms the same impulse is felt with 2 N, later and softer. For a drum I take the impulse, "
+    "p = 23 mN s in no time; for a box that lies on the handle the constraint, which lets go at -9.81 m/s^2; for "
+    "a ball on a board the penalty, up to 411 N/m at 500 Hz. My own juggle got better when I slowed down at "
+    "impact, and with closed eyes I kept the ball by touch."
 )
