@@ -63,19 +63,21 @@ class Motion:
         return self._last.get("x_true", self._last["x"])
 
     def start(self):
-        """Run from the beginning; a recording that has samples ends."""
-        recording = self.recording
+        """Run from the beginning; a recording that has samples ends, and a replay."""
+        self.replay(None)
+        waits = self._recorder is not None and not self._recorder.samples
         self.stop_recording()
         self.source.stop()
         self.traces, self._at, self._noticed = Traces(self.source.period), 0.0, {}
         self.source.start()
-        self.running, self._replay = True, None
-        if recording:
+        self.running = True
+        if waits:
             self.record()
         self.wake()
 
     def resume(self):
-        """Run on; from the beginning after a fault, and on a board."""
+        """Run on; from the beginning after a fault, and on a board. A replay ends."""
+        self.replay(None)
         if self.source.fault or not self.source.begun:
             self.start()
         elif not self.running:
@@ -83,7 +85,8 @@ class Motion:
             self.wake()
 
     def pause(self):
-        """Stand still; a board's motor goes off, and its recording ends."""
+        """Stand still; a board's motor goes off, and its recording ends. So does a replay."""
+        self.replay(None)
         self.running = False
         try:
             self.source.stop()
@@ -186,7 +189,6 @@ class Motion:
         return samples
 
     def _end_replay(self):
-        self._replay = None
-        if self._live is not None:
-            (self.traces, self._last), self._live = self._live, None
-        self.wake()
+        if self._replay is not None:
+            (self.traces, self._last), self._replay, self._live = self._live, None, None
+            self.wake()

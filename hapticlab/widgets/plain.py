@@ -14,6 +14,8 @@ RATE = 30.0
 WIDTH, HEIGHT, GRAPH = 640, 220, 130
 #: time on view in the traces [s]
 SECONDS = 4.0
+#: pixels that one smallest and largest value of a trace stand for
+FINE = 2
 #: the page counts every so many milliseconds; a board's motor is on for so long after the last touch [s]
 BEAT, UNTOUCHED = 500, 60.0
 #: a slider that was moved so shortly ago is not put elsewhere [s]
@@ -209,16 +211,31 @@ def _head(tail, tip, place, colour):
 def _trace(k, trace, rows, time):
     """Return one scrolling trace with its name, unit and range."""
     top = HEIGHT + k * GRAPH
-    shown = rows[:, k + 1] * trace["scale"] if len(rows) else np.zeros(1)
-    low, high = min(float(shown.min()), 0.0), max(float(shown.max()), 0.0)
-    span = (high - low) or 1.0
-    y = top + GRAPH - 12 - (shown - low) / span * (GRAPH - 32)
-    x = WIDTH * (1 - (time - rows[:, 0]) / SECONDS) if len(rows) else np.array([0.0])
-    points = " L".join(f"{a:.0f},{b:.1f}" for a, b in zip(x, y, strict=True))
-    zero = top + GRAPH - 12 + low / span * (GRAPH - 32)
+    t, shown = envelope(rows[:, 0], rows[:, k + 1] * trace["scale"], SECONDS / WIDTH * FINE)
+    low, high = min(float(shown.min(initial=0.0)), 0.0), max(float(shown.max(initial=0.0)), 0.0)
+    scale = (GRAPH - 32) / ((high - low) or 1.0)
+    x, y = WIDTH * (1 - (time - t) / SECONDS), top + GRAPH - 12 - (shown - low) * scale
+    points = " L".join(f"{a:.0f},{b:.1f}" for a, b in zip(x.tolist(), y.tolist(), strict=True))
+    zero = top + GRAPH - 12 + low * scale
     words = html.escape(f"{trace['label']} [{trace['unit_shown']}], {low:.3g} to {high:.3g}")
+    line = f'<path d="M{points}" fill="none" stroke="#222" stroke-dasharray="{DASHES[k]}"/>' if points else ""
     return (
-        f'<line x1="0" x2="{WIDTH}" y1="{zero:.1f}" y2="{zero:.1f}" stroke="#999"/>'
-        f'<path d="M{points}" fill="none" stroke="#222" stroke-dasharray="{DASHES[k]}"/>'
+        f'<line x1="0" x2="{WIDTH}" y1="{zero:.1f}" y2="{zero:.1f}" stroke="#999"/>{line}'
         f'<text x="4" y="{top + 12}" fill="#222">{words}</text>'
     )
+
+
+def envelope(t, values, width):
+    """Return a trace as the smallest and the largest value of every so many seconds: chatter stays to be seen.
+
+    Examples
+    --------
+    >>> times, ends = envelope(np.arange(6.0), np.array([0.0, 5, 1, 2, 7, 3]), 3.0)
+    >>> times.tolist(), ends.tolist()
+    ([0.0, 0.0, 3.0, 3.0], [0.0, 5.0, 2.0, 7.0])
+    """
+    if not len(t):
+        return t, values
+    first = np.flatnonzero(np.diff(np.floor(t / width), prepend=-np.inf))
+    ends = np.column_stack([np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)])
+    return np.repeat(t[first], 2), ends.ravel()

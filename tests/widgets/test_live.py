@@ -63,7 +63,7 @@ def lead(now):
 @pytest.mark.parametrize("step", [1 / 60, 0.0071, 0.0333])
 def test_no_tick_is_lost_and_nothing_drifts(step):
     stage = Stage().open()
-    stage.go(2.0, step)
+    stage.go(1.0, step)
     elapsed = stage.now - 50.0
     assert abs(stage.session.source.ticks - elapsed / T) <= 1
     assert np.allclose(np.diff(stage.rows[:, 0]), 2 * T, atol=1e-6)
@@ -97,7 +97,7 @@ def test_a_scene_too_slow_for_the_computer_leaves_the_view_alive(monkeypatch):
         return advance(self, intent)
 
     monkeypatch.setattr(stepping.Stepping, "advance", slowly)
-    frames = stage.go(3.0)
+    frames = stage.go(2.0)
     late = [frame for frame in frames if frame.time > frames[-1].time - 0.3]
     assert max(np.diff([frame.time for frame in late])) < 0.013
     assert "too slow for this scene" in stage.session.status
@@ -280,6 +280,12 @@ def test_a_record_is_played_again_and_then_the_scene_goes_on():
     stage.go(0.2)
     assert not stage.flags["replaying"]
     assert stage.session.source.ticks > ticks
+    stage.session.press("replay")
+    stage.go(0.1)
+    stage.session.press("pause")  # ends it
+    stage.go(0.1)
+    assert not stage.flags["replaying"]
+    assert stage.session.status == "Paused."
 
 
 def test_to_replay_or_save_nothing_is_refused_in_words(tmp_path, monkeypatch):
