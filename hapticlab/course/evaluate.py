@@ -141,7 +141,7 @@ class _NotPlain(HapticlabError):
 
 def _array(value):
     try:
-        numbers = np.array(value)
+        numbers = value.astype(float).filled(np.nan) if isinstance(value, np.ma.MaskedArray) else np.array(value)
         if numbers.dtype.kind == "O":
             numbers = numbers.astype(float)
     except (TypeError, ValueError):
