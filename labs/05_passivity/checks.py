@@ -21,6 +21,7 @@ ADVANCED = "H belongs to z = e^(j theta), and a past sample x(n-i) to z^-i: e^(-
 NO_TURN = "That is only K times the radius: the map divides by |1 + H c|."
 TWICE = "c is twice too large: with r = -(T/2)(1 + j cot(theta/2)), the disk is about r/(2b)."
 REAL = "c is complex; its imaginary part, -(T/4b) cot(theta/2), belongs into 1 + H c as well."
+REAL_RADIUS = "The radius is |c|, its imaginary part included, and the map divides by |1 + H c|."
 MINUS = "The loop is 1 + H G with G about +c, and c is negative in its real part: 1 + H c."
 
 LAB = Lab(
@@ -143,12 +144,18 @@ LAB = Lab(
                         0.24576957615571218: TWICE,
                         4.242640687119286: REAL,
                         0.5570860145311556: MINUS,
+                        0.75: REAL_RADIUS,
                     },
                 ),
                 Case(
                     {"K": 200.0, "theta": 0.3, "b": 0.1, "T": 1e-3},
                     1.0,
-                    slips={3.3458662238591175: NO_TURN, 0.5990558661790127: TWICE, 6.691732447718235: REAL},
+                    slips={
+                        3.3458662238591175: NO_TURN,
+                        0.5990558661790127: TWICE,
+                        6.691732447718235: REAL,
+                        0.5: REAL_RADIUS,
+                    },
                 ),
             ),
             hint="c is a complex number in Python: -T/(4*b) * (1 + 1j/np.tan(theta/2)); abs() of it is the radius.",

@@ -12,6 +12,7 @@ SWAPPED = "The order is [z, u]."
 DETERMINANT = "That is the determinant: it multiplies the square of the amplitude; take its root."
 UNDAMPED = "That is the growth without the damper: 1 - h b/m stands in the determinant, too."
 TRACE = "That is the trace, the sum of the eigenvalues; a pair's squared magnitude is its product, the determinant."
+ALONG = "The eigenvalues turn: 1 + j h omega without damping, whose magnitude is a root of squares, not 1 + h omega."
 LESS = "The factor itself is asked for, slightly above 1, not by how much it exceeds 1."
 NO_B = "That is the step without damping, 2/omega; the damper shortens it: 4 - 2 h b/m - h^2 K/m = 0."
 TWO_OMEGA = "That is 2 omega; without damping the step is 2/omega."
@@ -63,7 +64,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="two lines: u = u + h*(K*(x - z) - b*u)/m, and then z with that u.",
+            hint="two lines: the new u from the old z and u, and then the new z with the new u.",
         ),
         Exercise(
             "euler_growth",
@@ -73,7 +74,13 @@ LAB = Lab(
                 Case(
                     {"m": 0.05, "K": 800.0, "b": 0.3, "h": 0.002},
                     1.0256705123966467,
-                    slips={1.052: DETERMINANT, 1.0315037566582101: UNDAMPED, 1.988: TRACE, 0.02567051239664675: LESS},
+                    slips={
+                        1.052: DETERMINANT,
+                        1.0315037566582101: UNDAMPED,
+                        1.988: TRACE,
+                        0.02567051239664675: LESS,
+                        1.2529822128134704: ALONG,
+                    },
                 ),
                 Case(
                     {"m": 0.1, "K": 500.0, "b": 1.0, "h": 0.002},
@@ -83,10 +90,10 @@ LAB = Lab(
                 Case(
                     {"m": 0.05, "K": 200.0, "b": 0.0, "h": 0.005},
                     1.0488088481701516,
-                    slips={1.1: DETERMINANT, 2.0: TRACE, 0.04880884817015163: LESS},
+                    slips={1.1: DETERMINANT, 2.0: TRACE, 0.04880884817015163: LESS, 1.316227766016838: ALONG},
                 ),
             ),
-            hint="the determinant of A is (1 - h b/m) + h^2 K/m; the amplitude grows by its square root.",
+            hint="a complex pair multiplies to its squared magnitude, and all eigenvalues to the determinant of A.",
         ),
         Exercise(
             "longest_step",
