@@ -67,8 +67,10 @@ class Lab:
         settings = home / "config" / "lab" / "user-settings" / "@jupyterlab" / "apputils-extension"
         settings.mkdir(parents=True)
         (settings / "notification.jupyterlab-settings").write_text(json.dumps(NO_NEWS))
-        places = {"JUPYTER_CONFIG_DIR": "config", "JUPYTER_DATA_DIR": "data", "JUPYTER_RUNTIME_DIR": "runtime", "IPYTHONDIR": "ipython"}
-        environment = os.environ | {name: str(home / place) for name, place in places.items()}
+        own_folders = {
+            "JUPYTER_CONFIG_DIR": "config", "JUPYTER_DATA_DIR": "data", "JUPYTER_RUNTIME_DIR": "runtime", "IPYTHONDIR": "ipython",
+        }  # fmt: skip
+        environment = os.environ | {name: str(home / folder) for name, folder in own_folders.items()}
         environment["PYTHONPATH"] = os.pathsep.join([str(REPOSITORY), os.environ.get("PYTHONPATH", "")])
         own = {"ServerApp": {"jpserver_extensions": {"hapticlab._jupyter": self.prompt}}}
         (home / "config" / "jupyter_server_config.json").write_text(json.dumps(own))
@@ -101,10 +103,11 @@ class Lab:
         notebook = {"cells": code, "metadata": metadata, "nbformat": 4, "nbformat_minor": 5}
         (self.notebooks / f"{name}.ipynb").write_text(json.dumps(notebook), encoding="utf-8")
 
-    def open(self, name, *cells, width=1000, height=1100, **context):
-        """Write a notebook, open it in a page of its own and run all of it; return the page."""
-        self.write(name, *cells)
-        page = self.browser.new_context(viewport={"width": width, "height": height}, **context).new_page()
+    def open(self, name, *cells, width=1000, height=1100):
+        """Open a notebook in a page of its own, written from cells if there are any, and run all of it; return the page."""
+        if cells:
+            self.write(name, *cells)
+        page = self.browser.new_context(viewport={"width": width, "height": height}).new_page()
         page.set_default_timeout(1000 * SECONDS)
         page.goto(f"{self.address}/doc/tree/{name}.ipynb?reset")
         page.wait_for_selector(".jp-Notebook .jp-Cell")
@@ -139,6 +142,22 @@ def eventually(page, code, answer):
     end = time.monotonic() + SECONDS
     while (said := ask(page, code)) != answer:
         assert time.monotonic() < end, f"{code}: {said}; expected {answer}"
+
+
+def run_cell(page, beginning, source=None):
+    """Run the cell that begins so, with other source if that is given; return what it shows as text."""
+    return page.evaluate(
+        """async ([beginning, source]) => {
+            const notebook = window.jupyterapp.shell.currentWidget.content
+            const number = notebook.widgets.findIndex((cell) => cell.model.sharedModel.getSource().startsWith(beginning))
+            const cell = notebook.widgets[number]
+            if (source !== null) cell.model.sharedModel.setSource(source)
+            notebook.activeCellIndex = number
+            await window.jupyterapp.commands.execute("notebook:run-cell")
+            return cell.outputArea.node.innerText.trim()
+        }""",
+        [beginning, source],
+    )
 
 
 def command(page, name, **given):

@@ -6,6 +6,7 @@ const MARGIN = 48 // [px] left of the panels, for numbers
 const PANEL = 80 // [px] height of a panel
 const GAP = 26 // above each, for its name
 const TIMES = 24 // below the last, for the time
+const LEAST = 0.1 // mm, N, mJ: an axis shows no less
 const INTENT = 4 // the column of the hand's intent, drawn into the first panel
 
 class Traces {
@@ -230,7 +231,7 @@ class Scale {
 
   // Show from low to high; return whether the axis had to change.
   reach(low, high) {
-    const needed = Math.max(high - low, 1e-3)
+    const needed = Math.max(high - low, LEAST)
     if (this.step && low >= this.low && high <= this.high && needed >= 0.3 * (this.high - this.low)) return false
     this.step = niceStep(needed / 2.5)
     const [least, most] = [this.low, this.high]
