@@ -22,7 +22,8 @@ class Case:
     unit : str
         Of what is expected.
     slips : dict or sequence of (wrong, sentence)
-        A typical wrong result, a number or a tuple shaped as what is expected, and the sentence that teaches.
+        A typical wrong result and the sentence that teaches: a number, a tuple shaped as what is expected, or a dict of
+        the parts that are wrong.
 
     Examples
     --------

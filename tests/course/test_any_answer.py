@@ -73,8 +73,8 @@ ANSWERS = [
     sp.Symbol("k"), sp.zoo, sp.oo, sp.Matrix([1, 2]), sp.I, 1j, {}, {"F": 1}, {"F": None}, {1: 2}, {"F": {"F": 1}},
     {"F": [1, 2]}, {"F": "a"}, Parts(F=1), NoNumber(), Row([1, 2]), b"ab", memoryview(b"ab"), range(3), {1, 2}, iter([1]), len,
     type, Nameless, Nameless(), hl, hl.wall(), hl.wall, object(), NotImplemented, fails, np.float16(2.4), np.int8(3),
-    np.bool_(True), np.str_("a"), np.void(b"a"), 10**400, sys.stdout, Exception("x"), np.array([1, 2], dtype=object), np.zeros((2, 2, 2)),
-    np.array([object()], dtype=object), np.array([1 + 2j]),
+    np.bool_(True), np.str_("a"), np.void(b"a"), 10**400, sys.stdout, Exception("x"), np.array([1, 2], dtype=object),
+    np.zeros((2, 2, 2)), np.array([object()], dtype=object), np.array([1 + 2j]),
 ]  # fmt: skip
 EXPECTED = [
     2.4, True, False, "a", (1.0, 2.0), [[1.0, 2.0], [3.0, 4.0]], {"F": 1.0}, {"F": [1.0, 2.0]}, {"F": True, "G": "a"}, 1e308,

@@ -68,16 +68,21 @@ def test_untouched_lab_runs_and_earns_nothing(folder, tmp_path, monkeypatch, rec
     notebook.cells.append(nbformat.v4.new_code_cell(LAST))
     notebook.cells.append(nbformat.v4.new_code_cell("import time as _time; print(_time.process_time())"))
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
-    nbclient.NotebookClient(notebook, timeout=60, resources={"metadata": {"path": str(tmp_path / folder.name)}}).execute()
-    earned = json.loads(notebook.cells[-2].outputs[-1].text)
+    nbclient.NotebookClient(notebook, timeout=120, startup_timeout=120, resources={"metadata": {"path": str(tmp_path / folder.name)}}).execute()
+    earned = json.loads(printed(notebook.cells[-2]))
     assert earned == [[e.name, 0, 0] for e in folder.lab().exercises if e.judged]
-    said = "".join(o.get("text", "") for c in notebook.cells if c.cell_type == "code" for o in c.outputs)
+    said = "".join(printed(cell) for cell in notebook.cells)
     assert said.count("not answered yet") >= len(earned)
     outputs = [o.get("data", {}) for c in notebook.cells if c.cell_type == "code" for o in c.outputs]
     assert not [o for o in outputs if "image/png" in o and "alt=" not in o.get("text/html", "")], "hl.show(figure, alt=...)"
-    seconds = float(notebook.cells[-1].outputs[-1].text)
+    seconds = float(printed(notebook.cells[-1]))
     record_property("seconds", seconds)
     assert seconds < 10, "a lab untouched is to run in 4 s on an idle computer"
+
+
+def printed(cell):
+    """Return what a cell printed; a kernel sends it in pieces."""
+    return "".join(output.get("text", "") for output in cell.get("outputs", ()) if output.get("name") == "stdout")
 
 
 def test_solved_lab_earns_everything(folder, record_property):
