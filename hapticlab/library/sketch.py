@@ -28,16 +28,18 @@ class Sketch:
         self.axes, self.u = axes, (right - left) / 100
         self.turned = np.array([[np.cos(tilt), np.sin(tilt)], [-np.sin(tilt), np.cos(tilt)]])
         self.left, self.right, self.bottom, self.top = left, right, bottom, top
+        self._shown = (left, right), (bottom, top)
         axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
         axes.axis("off")
 
     def place(self, points, wide=1.0, high=1.0):
         """Return where points (x, y) are in the picture, which grows to show them and so many u around."""
         placed = np.asarray(points, float) @ self.turned
-        around = np.multiply((wide, high), self.u)
-        (left, bottom), (right, top) = placed.min(axis=0) - around, placed.max(axis=0) + around
-        (l, r), (b, t) = self.axes.get_xlim(), self.axes.get_ylim()
-        self.axes.set(xlim=(min(l, left), max(r, right)), ylim=(min(b, bottom), max(t, top)))
+        wide, high, (left, bottom), (right, top) = wide * self.u, high * self.u, placed.min(axis=0), placed.max(axis=0)
+        (l, r), (b, t) = self._shown
+        if left - wide < l or right + wide > r or bottom - high < b or top + high > t:
+            self._shown = (min(l, left - wide), max(r, right + wide)), (min(b, bottom - high), max(t, top + high))
+            self.axes.set(xlim=self._shown[0], ylim=self._shown[1])
         return placed
 
     def line(self, *points, width=1.5, color=INK, **style):
