@@ -36,7 +36,7 @@ def _tell(folder, found, copied):
     kept = [path for path, state in copied.items() if state == "kept"]
     if kept:
         print(f"left as they are, for they differ from what came with hapticlab and may hold your work:\n  {', '.join(kept)}")
-        print(f"to have these as they came, name another folder: hapticlab labs {folder.name}-new")
+        print(f"to have these as they came, name another folder: hapticlab labs {folder.resolve().name}-new")
 
 
 def _mark_all(found, tree):

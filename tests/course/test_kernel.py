@@ -19,8 +19,8 @@ def test_a_check_shows_text_alone_and_a_kernel_lives_on(tmp_path, monkeypatch):
     root = __file__.rsplit("tests", 1)[0]
     monkeypatch.setenv("PYTHONPATH", root)
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in CELLS])
-    client = nbclient.NotebookClient(notebook, timeout=120, startup_timeout=120, allow_errors=True, resources={"metadata": {"path": str(tmp_path)}})
-    client.execute()
+    place = {"metadata": {"path": str(tmp_path)}}
+    nbclient.NotebookClient(notebook, timeout=120, startup_timeout=120, allow_errors=True, resources=place).execute()
     kinds = [{output.output_type for output in cell.outputs} for cell in notebook.cells]
     assert kinds == [set(), set(), {"stream"}, set(), {"stream"}, {"stream"}, {"stream"}, {"error"}]
     text = ["".join(o.get("text", "") for o in cell.outputs) for cell in notebook.cells]  # a kernel sends it in pieces

@@ -68,7 +68,8 @@ def test_untouched_lab_runs_and_earns_nothing(folder, tmp_path, monkeypatch, rec
     notebook.cells.append(nbformat.v4.new_code_cell(LAST))
     notebook.cells.append(nbformat.v4.new_code_cell("import time as _time; print(_time.process_time())"))
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
-    nbclient.NotebookClient(notebook, timeout=120, startup_timeout=120, resources={"metadata": {"path": str(tmp_path / folder.name)}}).execute()
+    place = {"metadata": {"path": str(tmp_path / folder.name)}}
+    nbclient.NotebookClient(notebook, timeout=120, startup_timeout=120, resources=place).execute()
     earned = json.loads(printed(notebook.cells[-2]))
     assert earned == [[e.name, 0, 0] for e in folder.lab().exercises if e.judged]
     said = "".join(printed(cell) for cell in notebook.cells)
