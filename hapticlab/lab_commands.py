@@ -3,6 +3,7 @@
 import importlib.util
 import os
 import shlex
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -94,12 +95,11 @@ def _open(command):
     print(f"\nJupyterLab opens in your browser. Two Ctrl-C here end it; it runs as: {_words(command)}", flush=True)
     # the kernels of this environment before those of the same name that a user may have elsewhere
     process = subprocess.Popen(command, env={**os.environ, "JUPYTER_PREFER_ENV_PATH": "1"})
-    while True:
-        try:
-            code = process.wait()
-            break
-        except KeyboardInterrupt:
-            continue
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        code = process.wait()
+    finally:
+        signal.signal(signal.SIGINT, before)
     if code:
         root = getattr(os, "geteuid", lambda: 1)() == 0
         nevertheless = f"; as root it runs only by: {_words([*command, '--allow-root'])}" if root else ""
