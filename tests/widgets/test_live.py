@@ -1,5 +1,6 @@
 """A scene on view: paced by a clock that is told, led by a hand, stopped with its last view. Nothing here sleeps."""
 
+import sys
 import threading
 from xml.etree import ElementTree
 
@@ -10,6 +11,7 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab.device import stepping
 from hapticlab.widgets.frame import Frame
+from hapticlab.widgets.front import _canvas
 from hapticlab.widgets.pace import LONGEST
 from hapticlab.widgets.session import SILENCE, Session
 from hapticlab.widgets.stage import NOTE
@@ -314,6 +316,15 @@ def test_without_a_front_end_nothing_runs():
     assert "not on view" in shown["text/plain"]
     assert threading.active_count() == before
     assert view._session.source.ticks == 0
+
+
+def test_without_any_widgets_it_is_text_that_says_what_to_install(monkeypatch):
+    for missing in ("anywidget", "ipywidgets"):
+        monkeypatch.setitem(sys.modules, missing, None)
+    _canvas.cache_clear()
+    shown = hl.live(PADDLE, WALL)._repr_mimebundle_()
+    assert list(shown) == ["text/plain"]
+    assert "hapticlab[notebook]" in shown["text/plain"]
 
 
 def test_silence_and_the_last_view_stop_it_and_a_word_goes_on():
