@@ -193,7 +193,9 @@ def _panel(axes):
     else:
         text = f"{up.split(', ')[0] if told and axes.lines else up} over {across}"
     text += (": " if told else "") + "; ".join(told)
-    return " ".join(filter(None, [title, _sentence(text), _legend([axes.get_legend()], [axes])]))
+    marked = dict.fromkeys(word for word in (_plain(one.get_text()) for one in axes.texts) if re.search("[a-zA-Z]{3}", word))
+    marked = _sentence(f"marked: {', '.join(marked)}") if marked else ""
+    return " ".join(filter(None, [title, _sentence(text), marked, _legend([axes.get_legend()], [axes])]))
 
 
 def _span(axes, side):

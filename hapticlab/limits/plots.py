@@ -189,8 +189,8 @@ def plot_diolaiti(point):
         figure = new_figure(height=4.4)
         axes = figure.subplots()
         corners = (
-            ("passive", calm, right, 0.5, top, "#d9e7f2"), ("limit cycles", calm, right, 0, 0.5, "#eeeeee"),
-            ("locally stable", 0, calm, 0.5, top, "#f3e0d5"), ("unstable", 0, calm, 0, 0.5, "#c9c9c9"),
+            ("passive", calm, right, 0.5, top, "#ffffff"), ("limit cycles", calm, right, 0, 0.5, "#dfe6ee"),
+            ("locally stable", 0, calm, 0.5, top, "#f0cfb8"), ("unstable", 0, calm, 0, 0.5, "#a9a9a9"),
         )  # fmt: skip
         for name, x0, x1, y0, y1, colour in corners:
             axes.fill_between([x0, x1], y0, y1, color=colour, linewidth=0)
