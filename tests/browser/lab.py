@@ -160,6 +160,14 @@ def run_cell(page, beginning, source=None):
     )
 
 
+def grab(page, selector):
+    """Press the pointer on the middle of an element once that stands still; return where."""
+    page.locator(selector).hover()  # waits until it does not move, while formulas above it are still being set
+    box = page.locator(selector).bounding_box()
+    page.mouse.down()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
 def command(page, name, **given):
     """Do what an entry of JupyterLab's menus does."""
     page.evaluate("([name, given]) => window.jupyterapp.commands.execute(name, given)", [name, given])

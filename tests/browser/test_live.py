@@ -1,7 +1,7 @@
 """A scripted student at the live view: JupyterLab and Chromium as they are, the kernel's answer is what counts."""
 
 import pytest
-from lab import ask, command, eventually, picture, until
+from lab import ask, command, eventually, grab, picture, until
 
 BEGIN = """
 import hapticlab as hl
@@ -37,17 +37,9 @@ def page(lab):
     page.close()
 
 
-def grab(page):
-    """Press the pointer on the picture; return where, and the pixels of a metre."""
-    box = page.locator(STAGE).bounding_box()
-    place = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    page.mouse.move(*place)
-    page.mouse.down()
-    return place
-
-
 def test_a_drag_goes_into_the_wall_even_where_it_leaves_the_picture(page):
-    x, y = grab(page)
+    assert page.evaluate("getComputedStyle(document.querySelector('canvas.hl-stage')).touchAction") == "none"  # a finger drags
+    x, y = grab(page, STAGE)
     for k in range(1, 13):
         page.mouse.move(x + 10 * k, y + 30 * k)  # the last ones are far below the canvas
     until(page, STATUS, "in contact")

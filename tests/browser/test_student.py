@@ -4,7 +4,7 @@ import ast
 import shutil
 
 import pytest
-from lab import REPOSITORY, ask, eventually, picture, run_cell, until
+from lab import REPOSITORY, ask, eventually, grab, picture, run_cell, until
 
 LAB = "02_virtual_wall"
 ANSWERS = (REPOSITORY / "tests" / "instructor" / LAB / "solution.py").read_text("utf-8")
@@ -20,15 +20,10 @@ def answer(name):
 def test_a_student_works_through_a_lab(lab):
     shutil.copy(REPOSITORY / "labs" / LAB / f"{LAB}.ipynb", lab.notebooks)
     page = lab.open(LAB)
-    stage = page.locator(STAGE)
-    stage.wait_for()
-    stage.scroll_into_view_if_needed()
+    page.wait_for_function("() => document.querySelector('.jp-Cell:last-child .jp-OutputArea')?.innerText.includes('02.')")
     page.locator(".hl-record").click()
     until(page, STATUS, "Recording")
-    box = stage.bounding_box()
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    page.mouse.move(x, y)
-    page.mouse.down()
+    x, y = grab(page, STAGE)
     for k in range(1, 11):
         page.mouse.move(x + 9 * k, y)
     until(page, STATUS, "in contact")

@@ -329,7 +329,7 @@ function stepRange(event, range, step) {
 
 function shown(value) {
   const size = Math.abs(value)
-  return value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2)
+  return value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2).replace(/^-0.00$/, "0.00")
 }
 
 export default { render }
