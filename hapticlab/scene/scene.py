@@ -107,7 +107,7 @@ class Scene:
     @property
     def watch_units(self):
         """The SI unit of each watched channel."""
-        return {name: unit_of(expr) for name, expr in self.watch.items()}
+        return {name: _unit_shown(expr) for name, expr in self.watch.items()}
 
     def explicit(self):
         """Return the equations solved for what they determine: ``M a = f`` and the difference equations."""
@@ -135,6 +135,12 @@ class Scene:
         shown = [part for e in self.eom for part in (e.equations if is_model(e) else (e,))]
         rows = [f"F_e = {sp.latex(self.force)}", *map(sp.latex, shown)]
         return "$\\displaystyle \\begin{array}{l}" + r" \\ ".join(rows) + "\\end{array}$"
+
+
+def _unit_shown(expr):
+    """Return the SI unit of what is watched; an angle and its rate keep the rad they were declared with."""
+    unit, kind = unit_of(expr), type(expr.expr if isinstance(expr, sp.Derivative) else expr)
+    return f"rad{unit[1:]}" if getattr(kind, "unit", "") == "rad" and unit[:1] == "1" else unit
 
 
 def _set(scene, name, value):

@@ -146,3 +146,10 @@ def test_equations_in_any_order_find_their_own_coordinate():
     assert swapped.coordinates == (y, z)
     assert all(swapped.M[i][i] == m for i in range(2))
     assert swapped.M[0][1] == swapped.M[1][0] == 0
+
+
+def test_an_angle_that_is_watched_keeps_its_unit():
+    swing = hl.library.pendulum_on_the_handle()
+    theta = next(q for q in swing.coordinates if q.name == "theta")
+    watched = hl.Scene(force=swing.force, eom=swing.eom, watch={"a": theta, "w": theta.diff(t), "twice": 2 * theta})
+    assert watched.watch_units == {"a": "rad", "w": "rad/s", "twice": "1"}
