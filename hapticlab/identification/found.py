@@ -116,10 +116,10 @@ class Found:
 
     def __str__(self):
         lines = [f"{self.about} identified from {len(self.measured)} samples, {self.confidence:.0%} confidence:"]
-        lines += [f"  {CALLED[name]:<18}{found}" for name, found in self.estimates.items()]
+        lines += [f"  {CALLED[name]:<20}{found}" for name, found in self.estimates.items()]
         how = "noise" if self.dithered else "noise and counting"
         counts = f", counts of {1e6 * self.quantum:.3g} um" if self.quantum else ""
-        lines.append(f"  {'sensor':<18}{how} {1e6 * self.sigma:.3g} um{counts}")
+        lines.append(f"  {'sensor':<20}{how} {1e6 * self.sigma:.3g} um{counts}")
         if not self.explained:
             lines.append(
                 f"  NOT EXPLAINED: neighbouring residuals correlate by {self.correlation:.2f}; something moves the handle that "
