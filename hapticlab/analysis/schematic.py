@@ -3,6 +3,8 @@
 Blocks and pendulums are not to scale; walls stand where the face of what meets them touches.
 """
 
+from functools import cache
+
 import numpy as np
 import sympy as sp
 
@@ -137,6 +139,7 @@ def _start(scene):
     return start
 
 
+@cache
 def _letters(name):
     """Return a name as it is set: theta_1 with the Greek letter."""
     return f"${sp.latex(sp.Symbol(name))}$" if name else ""

@@ -4,7 +4,9 @@ Lengths are in metres, to scale where the mechanism has them. Whatever stands fo
 handle) is measured in ``u``, a hundredth of the picture's width.
 """
 
+import math
 import re
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -26,44 +28,53 @@ class Sketch:
 
     def __init__(self, axes, left, right, bottom, top, tilt=0.0):
         self.axes, self.u = axes, (right - left) / 100
-        self.turned = np.array([[np.cos(tilt), np.sin(tilt)], [-np.sin(tilt), np.cos(tilt)]])
+        self._turn = (math.cos(tilt), math.sin(tilt)) if tilt else None
         self.left, self.right, self.bottom, self.top = left, right, bottom, top
         self._shown = (left, right), (bottom, top)
         axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
         axes.axis("off")
 
     def place(self, points, wide=1.0, high=1.0):
-        """Return where points (x, y) are in the picture, which grows to show them and so many u around."""
-        placed = np.asarray(points, float) @ self.turned
-        wide, high, (left, bottom), (right, top) = wide * self.u, high * self.u, placed.min(axis=0), placed.max(axis=0)
+        """Return xs and ys of points in the picture, which grows to show them and so many u around."""
+        placed = np.asarray(points, float).tolist()  # few points: plain floats are faster than arrays from here on
+        if self._turn:
+            c, s = self._turn
+            placed = [(c * x - s * y, s * x + c * y) for x, y in placed]
+        xs, ys = zip(*placed, strict=True)
+        if math.isfinite(sum(xs) + sum(ys)):
+            self._show(min(xs) - wide * self.u, max(xs) + wide * self.u, min(ys) - high * self.u, max(ys) + high * self.u)
+        return xs, ys
+
+    def _show(self, left, right, bottom, top):
         (l, r), (b, t) = self._shown
-        if left - wide < l or right + wide > r or bottom - high < b or top + high > t:
-            self._shown = (min(l, left - wide), max(r, right + wide)), (min(b, bottom - high), max(t, top + high))
+        if left < l or right > r or bottom < b or top > t:
+            self._shown = (min(l, left), max(r, right)), (min(b, bottom), max(t, top))
             self.axes.set(xlim=self._shown[0], ylim=self._shown[1])
-        return placed
 
     def line(self, *points, width=1.5, color=INK, **style):
         """Draw a line through points (x, y)."""
-        self.axes.plot(*self.place(points).T, color=color, linewidth=width, solid_capstyle="round", **style)
+        self.axes.plot(*self.place(points), color=color, linewidth=width, solid_capstyle="round", **style)
 
     def area(self, points, color=BODY, edge=INK, zorder=3):
         """Fill a polygon."""
-        self.axes.fill(*self.place(points).T, facecolor=color, edgecolor=edge, linewidth=1.4, zorder=zorder)
+        self.axes.fill(*self.place(points), facecolor=color, edgecolor=edge, linewidth=1.4, zorder=zorder)
 
     def text(self, at, text, right=0.0, up=0.0, **style):
         """Write text centred at a point, moved by so many u."""
-        letters = len(re.sub(r"\\\w+", "o", text).strip("$"))
-        at = np.add(at, (right * self.u, up * self.u))
-        self.axes.text(*self.place([at], 1 + 0.8 * letters, 2.0)[0], text, **{"ha": "center", "va": "center", **TEXT, **style})
+        at = at[0] + right * self.u, at[1] + up * self.u
+        (x,), (y,) = self.place([at], 1 + 0.8 * _letters(text), 2.0)
+        self.axes.text(x, y, text, **{"ha": "center", "va": "center", **TEXT, **style})
 
     def arrow(self, start, end, label="", color=INK, **moved):
         """Draw an arrow; its label stands beyond the tip unless moved by ``right``, ``up`` [u]."""
         look = {"arrowstyle": "-|>", "color": color, "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
-        tail, tip = map(tuple, self.place([start, end]))
+        tail, tip = zip(*self.place([start, end]), strict=True)
         self.axes.annotate("", tip, tail, arrowprops=look, zorder=8)
         if label:
-            along = np.subtract(end, start) / (np.hypot(*np.subtract(end, start)) or 1.0)
-            self.text(end, label, **(moved or {"right": 2.6 * along[0], "up": 2.6 * along[1]}), color=color)
+            (x1, y1), (x2, y2) = start, end
+            length = math.hypot(x2 - x1, y2 - y1) or 1.0
+            beyond = {"right": 2.6 * (x2 - x1) / length, "up": 2.6 * (y2 - y1) / length}
+            self.text(end, label, **(moved or beyond), color=color)
 
     def coordinate(self, name, value, y, origin=0.0):
         """Draw a length along the picture from its origin: a tick at zero, an arrow to the value, the name beyond it."""
@@ -83,43 +94,44 @@ class Sketch:
 
     def ground(self, start, end, depth=1.5):
         """Draw a line that does not move, hatched on its right as seen from start to end."""
-        start, end, u = np.asarray(start, float), np.asarray(end, float), self.u
-        length = np.hypot(*(end - start))
-        along = (end - start) / length
-        away = np.array([along[1], -along[0]])
+        (x1, y1), (x2, y2), u = start, end, self.u
+        length = math.hypot(x2 - x1, y2 - y1)
+        ax, ay = (x2 - x1) / length, (y2 - y1) / length
         self.line(start, end, width=1.6)
-        feet = start + np.outer(np.arange(1.5 * u, length + 0.1 * u, 1.5 * u), along)
-        hatched = np.stack([feet, feet + depth * u * (away - along), feet], axis=1)  # there and back, in one line
-        self.line(*hatched.reshape(-1, 2), width=0.8)
+        feet = [1.5 * u * k for k in range(1, math.ceil((length - 1.4 * u) / (1.5 * u)) + 1)]
+        hatched = []  # there and back, in one line
+        for foot in feet:
+            x, y = x1 + foot * ax, y1 + foot * ay
+            hatched += (x, y), (x + depth * u * (ay - ax), y - depth * u * (ax + ay)), (x, y)
+        self.line(*hatched, width=0.8)
 
     def spring(self, start, end, label="", up=3.4, right=0.0, coils=6, height=1.6):
         """Draw a spring between two points, its label beside the middle."""
-        start, end, u = np.asarray(start, float), np.asarray(end, float), self.u
-        span = end - start
-        across = np.array([-span[1], span[0]]) / (np.hypot(*span) or 1.0) * height * u
-        lead = min(0.25, 2 * u / (np.hypot(*span) or 1.0))
-        zigzag = [start, start + lead * span]
-        zigzag += [
-            start + (lead + (1 - 2 * lead) * (k + 0.5) / (2 * coils)) * span + (-1) ** k * across for k in range(2 * coils)
-        ]
-        self.line(*zigzag, end - lead * span, end, width=1.2, zorder=4)
+        at, length = self._along(start, end, height)
+        lead = min(0.25, 2 * self.u / length)
+        turns = [lead + (1 - 2 * lead) * (k + 0.5) / (2 * coils) for k in range(2 * coils)]
+        zigzag = [at(part, (-1) ** k) for k, part in enumerate(turns)]
+        self.line(start, at(lead), *zigzag, at(1 - lead), end, width=1.2, zorder=4)
         if label:
-            self.text((start + end) / 2, label, right=right, up=up)
+            self.text(at(0.5), label, right=right, up=up)
 
     def damper(self, start, end, label="", up=-3.4, right=0.0, height=1.5):
         """Draw a dashpot between two points, its label beside the middle."""
-        start, end, u = np.asarray(start, float), np.asarray(end, float), self.u
-        span = end - start
-        along = span / (np.hypot(*span) or 1.0)
-        across = np.array([-along[1], along[0]]) * height * u
-        cup, open_end = start + 0.38 * span, start + 0.66 * span
-        self.line(start, cup, width=1.2, zorder=4)
-        self.line(open_end + across, cup + across, cup - across, open_end - across, width=1.2, zorder=4)
-        piston = start + 0.54 * span
-        self.line(piston + 0.7 * across, piston - 0.7 * across, width=2.0, zorder=4)
-        self.line(piston, end, width=1.2, zorder=4)
+        at, _ = self._along(start, end, height)
+        self.line(start, at(0.38), width=1.2, zorder=4)
+        self.line(at(0.66, 1), at(0.38, 1), at(0.38, -1), at(0.66, -1), width=1.2, zorder=4)
+        self.line(at(0.54, 0.7), at(0.54, -0.7), width=2.0, zorder=4)
+        self.line(at(0.54), end, width=1.2, zorder=4)
         if label:
-            self.text((start + end) / 2, label, right=right, up=up)
+            self.text(at(0.5), label, right=right, up=up)
+
+    def _along(self, start, end, height):
+        """Return a function: where is a part of the way from start to end, and heights [u] to its left; and the length."""
+        (x, y), (x2, y2) = start, end
+        dx, dy = x2 - x, y2 - y
+        length = math.hypot(dx, dy) or 1.0
+        away = height * self.u / length
+        return lambda part, left=0.0: (x + part * dx - left * away * dy, y + part * dy + left * away * dx), length
 
     def pair(self, start, end, label="$K,\\ b_c$", apart=4.6):
         """Draw a spring above a damper between two points of one height: a virtual coupler, Fig. 23.4."""
@@ -137,18 +149,16 @@ class Sketch:
 
     def disc(self, centre, radius, turn=None, color=BODY, zorder=3):
         """Draw a disc, with a mark where it is told how far it has turned [rad, counterclockwise]."""
-        angles = np.linspace(0, 2 * np.pi, 73)
-        rim = np.asarray(centre) + radius * np.column_stack([np.cos(angles), np.sin(angles)])
-        self.area(rim, color=color, zorder=zorder)
+        self.area(ring(centre, radius, 72), color=color, zorder=zorder)
         if turn is not None:
-            mark = np.asarray(centre) + radius * np.array([np.cos(turn), np.sin(turn)])
+            mark = centre[0] + radius * math.cos(turn), centre[1] + radius * math.sin(turn)
             self.line(centre, mark, width=1.0, color=SOFT, zorder=zorder + 0.5)
 
     def rod(self, start, end, label="", right=0.0, up=0.0, width=3.0):
         """Draw a rigid link, its label beside the middle."""
         self.line(start, end, width=width, zorder=4)
         if label:
-            self.text(np.add(start, end) / 2, label, right=right, up=up)
+            self.text(((start[0] + end[0]) / 2, (start[1] + end[1]) / 2), label, right=right, up=up)
 
     def pin(self, at, fixed=False):
         """Draw a pin joint; a fixed one stands on the ground."""
@@ -156,8 +166,7 @@ class Sketch:
         if fixed:
             self.area([(x, y), (x - 2 * u, y - 3 * u), (x + 2 * u, y - 3 * u)], color="#ffffff", zorder=4)
             self.ground((x - 3 * u, y - 3 * u), (x + 3 * u, y - 3 * u))
-        angles = np.linspace(0, 2 * np.pi, 25)
-        self.area(np.column_stack([x + 0.8 * u * np.cos(angles), y + 0.8 * u * np.sin(angles)]), "#ffffff", zorder=7)
+        self.area(ring(at, 0.8 * u, 24), "#ffffff", zorder=7)
 
     def angle(self, centre, radius, start, end, label):
         """Draw an angle as an arc with an arrow from start to end [rad], named beyond its middle or 45 degrees on."""
@@ -173,6 +182,23 @@ class Sketch:
 def clearance(x, z, spare=0.01):
     """Return how much farther to the right [m] a body at z stands, so that the handle at x does not run into it."""
     return max(0.0, x - z - spare)
+
+
+def ring(centre, radius, sides):
+    """Return the corners of a polygon that stands for a circle; the last is the first."""
+    return [(centre[0] + radius * c, centre[1] + radius * s) for c, s in _turns(sides)]
+
+
+@cache
+def _turns(sides):
+    angles = np.linspace(0, 2 * np.pi, sides + 1)
+    return np.column_stack([np.cos(angles), np.sin(angles)]).tolist()
+
+
+@lru_cache(1000)
+def _letters(text):
+    """Return about how many letters a text has once it is set."""
+    return len(re.sub(r"\\\w+", "o", text).strip("$"))
 
 
 def _box(centre, width, height):

@@ -1,6 +1,7 @@
 """The moving picture of a live view: the scene's mechanism, the handle, the hand's intent and the motor's force."""
 
 import inspect
+import math
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from ..analysis.schematic import Schematic
 from ..drawing import COLD
 from ..errors import AnalysisError
 from ..library.entries import CATALOGUE
-from ..library.sketch import HANDLE, INK
+from ..library.sketch import HANDLE, INK, ring
 from .recording import RecordingAxes
 
 #: how far the handle goes to either side [m]
@@ -102,22 +103,25 @@ class MovingPicture:
         handle = _handle(items)
         if handle is None:
             return ()
-        along, across = np.array(self.along), np.array([-self.along[1], self.along[0]])
-        place, u, found = np.array(handle), self._unit, ()
+        (x, y), (ax, ay), u, found = handle, self.along, self._unit, ()
         intent, F = values.get("intent"), values.get("F", 0.0)
-        if intent is not None and np.isfinite(intent):
-            held = place + (2.8 * u * across if _is_named_beside(items, place, u) else 0.0)
-            hand = held + (intent - values["x"]) * along
-            found += (("line", [held.tolist(), hand.tolist()], 2.0, HAND, (4, 3)),)
-            found += (("area", _ring(hand, 1.4 * u), "#ffffff", HAND),)
-        if np.isfinite(F):
-            side, length = -np.sign(F) or -1.0, FULL * 100 * u * min(abs(F) / self._full, 1.5)
-            tail = place + 1.5 * u * side * along - 3.0 * u * across
+
+        def beside(along, across):
+            return x + along * ax - across * ay, y + along * ay + across * ax
+
+        if intent is not None and math.isfinite(intent):
+            across = 2.8 * u if _is_named_beside(items, handle, u) else 0.0
+            hand = beside(intent - values["x"], across)
+            found += (("line", [beside(0.0, across), hand], 2.0, HAND, (4, 3)),)
+            found += (("area", ring(hand, 1.4 * u, 16), "#ffffff", HAND),)
+        if math.isfinite(F):
+            side, length = 1.0 if F < 0 else -1.0, FULL * 100 * u * min(abs(F) / self._full, 1.5)
             if length > 0.5 * u:
-                found += (("arrow", tuple(tail.tolist()), tuple((tail + side * length * along).tolist()), INK, ""),)
+                tail, tip = (beside(side * away, -3.0 * u) for away in (1.5 * u, 1.5 * u + length))
+                found += (("arrow", tail, tip, INK, ""),)
             beyond = 10 * u + (length if side < 0 else 3 * u)
-            beside = place - beyond * along - 3.0 * u * across if abs(along[0]) > 0.5 else place - 17 * u * across
-            found += (("text", tuple(beside.tolist()), f"motor {abs(F):.1f} N", INK),)
+            words = beside(-beyond, -3.0 * u) if abs(ax) > 0.5 else beside(0.0, -17 * u)
+            found += (("text", words, f"motor {abs(F):.1f} N", INK),)
         return found
 
     def _fit(self):
@@ -169,16 +173,11 @@ def _handle(items):
     """Return where the handle is drawn, its centre (x, y) [m]."""
     for item in items:
         if item[0] == "area" and item[2] == HANDLE:
-            corners = np.asarray(item[1])
-            return tuple(map(float, (corners.min(axis=0) + corners.max(axis=0)) / 2))
+            xs, ys = zip(*item[1], strict=True)
+            return (min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2
     return None
 
 
 def _is_named_beside(items, place, u):
     """Tell whether the word for the handle stands beside it, where the hand would cover it."""
     return any(item[:1] + item[2:3] == ("text", "handle") and abs(item[1][1] - place[1]) < 3 * u for item in items)
-
-
-def _ring(centre, radius):
-    turns = np.linspace(0, 2 * np.pi, 17)
-    return np.column_stack([centre[0] + radius * np.cos(turns), centre[1] + radius * np.sin(turns)]).tolist()

@@ -12,7 +12,10 @@ item                                          what it is
 Points are pairs (x, y), colours "#rrggbb". What comes later covers what came before.
 """
 
+import math
 import re
+from functools import lru_cache
+from operator import itemgetter
 
 import numpy as np
 
@@ -42,7 +45,7 @@ class RecordingAxes:
     @property
     def items(self):
         """What was drawn, from the bottom up; what lies nowhere is left out."""
-        return tuple(item for _, item in sorted(self._kept, key=lambda kept: kept[0]))
+        return tuple(item for _, item in sorted(self._kept, key=itemgetter(0)))
 
     def set(self, *, xlim=None, ylim=None, **_):
         """Set what is shown."""
@@ -78,16 +81,17 @@ class RecordingAxes:
 
     def text(self, x, y, words, *, color, zorder=3, **_):
         """Keep a text, the mathematics in it in plain letters."""
-        if np.isfinite(x) and np.isfinite(y):
+        if math.isfinite(x) and math.isfinite(y):
             self._kept.append((zorder, ("text", (float(x), float(y)), plain(words), color)))
 
     def annotate(self, words, tip, tail, *, arrowprops, zorder=3):
         """Keep an arrow."""
-        if np.isfinite([*tip, *tail]).all():
+        if all(map(math.isfinite, (*tip, *tail))):
             tail, tip = tuple(map(float, tail)), tuple(map(float, tip))
             self._kept.append((zorder, ("arrow", tail, tip, arrowprops["color"], plain(words))))
 
 
+@lru_cache(1000)
 def plain(words):
     """Return a text in letters that need no typesetting: names as Python writes them, Greek letters as such.
 
@@ -104,5 +108,5 @@ def plain(words):
 
 
 def _points(xs, ys):
-    points = np.column_stack([xs, ys])
-    return points.tolist() if np.isfinite(points).all() else []
+    points = [[float(x), float(y)] for x, y in zip(xs, ys, strict=True)]
+    return points if all(math.isfinite(x) and math.isfinite(y) for x, y in points) else []
