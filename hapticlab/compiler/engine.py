@@ -58,8 +58,8 @@ class Engine:
         if lanes == 0:
             raise ProgramError(f"{program.name}: parameters of shape {parameters.shape}; needs at least one lane")
         parameters = self._shaped("parameters", parameters, (len(program.parameters), lanes))
-        unbound = [c.name for c, row in zip(program.parameters, parameters, strict=True) if np.isnan(row).any()]
-        if unbound:
+        if np.isnan(parameters).any():
+            unbound = [c.name for c, row in zip(program.parameters, parameters, strict=True) if np.isnan(row).any()]
             raise ProgramError(f"{program.name}: no value for {', '.join(unbound)}; bind it: scene({unbound[0]}=...)")
         inputs = np.zeros((ticks, 0)) if inputs is None else self._real("inputs", inputs)
         if inputs.ndim == 1:
