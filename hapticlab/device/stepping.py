@@ -181,11 +181,13 @@ class Stepping:
 
     def _inputs(self, intent):
         """Return the linked program's inputs, in the order of SimulatedPaddle.inputs."""
-        columns, ticks = [intent[:-1], np.diff(intent) / self.paddle.T] if self.held else [], len(intent) - 1
+        ticks, columns = len(intent) - 1, []
+        if self.held:
+            columns += [intent[:-1], (intent[1:] - intent[:-1]) / self.paddle.T]
         for (deviation, draw), there in zip(self._noise, (True, self.held), strict=True):
             if deviation and there:
                 columns.append(deviation * draw.standard_normal(ticks))
-        return np.column_stack(columns) if columns else np.zeros((ticks, 0))
+        return np.array(columns).T if columns else np.zeros((ticks, 0))
 
 
 class _Loop:

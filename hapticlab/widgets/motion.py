@@ -174,7 +174,7 @@ class Motion:
             return None
         began, seconds = self.clock(), ticks * self.source.paddle.T
         way = (wanted - self._at) * -math.expm1(-seconds / self.speed / FOLLOWS)
-        to = self._at + float(np.clip(way, -FASTEST * seconds, FASTEST * seconds))
+        to = self._at + min(max(way, -FASTEST * seconds), FASTEST * seconds)
         samples = self.source.advance(np.linspace(self._at, to, ticks + 1))
         self._at = to
         self.pace.spent(ticks, self.clock() - began)

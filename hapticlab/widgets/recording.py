@@ -108,5 +108,5 @@ def plain(words):
 
 
 def _points(xs, ys):
-    points = [[float(x), float(y)] for x, y in zip(xs, ys, strict=True)]
-    return points if all(math.isfinite(x) and math.isfinite(y) for x, y in points) else []
+    points = list(map(list, zip(map(float, xs), map(float, ys), strict=True)))
+    return points if math.isfinite(sum(map(sum, points))) else []

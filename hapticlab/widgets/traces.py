@@ -39,12 +39,13 @@ class Traces:
         """Take samples, a dict of arrays as a Telemetry names them; return their rows, thinned, as a Frame has them."""
         x, F = samples["x"], samples["F"]
         energy = self._drawn(samples)
-        intent = samples.get("intent", np.full(len(x), np.nan))
-        rows = np.column_stack([samples["t"], x, F, energy, intent]).astype(np.float32)
-        kept = (self._count + np.arange(len(x))) % self._step == 0
+        first = -self._count % self._step
+        rows = np.full((len(range(first, len(x), self._step)), len(COLUMNS)), np.nan, np.float32)
+        for k, column in enumerate((samples["t"], x, F, energy, samples.get("intent", np.nan))):
+            rows[:, k] = column[first :: self._step] if np.ndim(column) else column
         self._count += len(x)
         self._keep(x, F)
-        return rows[kept].reshape(-1, len(COLUMNS))
+        return rows
 
     def recent(self):
         """Return x [m] and F [N] of the last second."""
@@ -65,9 +66,9 @@ class Traces:
         switch = samples.get("x_switch")
         switch = x if switch is None else switch
         last = self._last or {"x": x[0], "held": held[0], "before": 0.0, "switch": switch[0]}
-        places = np.r_[last["x"], x]
-        forces = np.r_[last["before"], last["held"], held]
-        at = np.r_[last["switch"], switch][:-1]
+        places = np.concatenate(([last["x"]], x))
+        forces = np.concatenate(([last["before"], last["held"]], held))
+        at = np.concatenate(([last["switch"]], switch[:-1]))
         work = forces[:-2] * (at - places[:-1]) + forces[1:-1] * (places[1:] - at)
         if self._last is None:
             work[0] = 0.0
