@@ -10,8 +10,10 @@ from .stage import Stage
 
 #: presses that a front end has, see :meth:`Session.press`
 PRESSES = ("start", "pause", "resume", "record", "stop", "save", "replay")
-#: frames a second
-RATE = 60.0
+#: frames a second; where a hand moves, at least and at most so many, each as soon as it has moved
+RATE, SLOWEST, FASTEST = 60.0, 50.0, 75.0
+#: a hand that begins to move is waited for so long after a frame [s]
+SOONEST = 4e-3
 #: a front end that says nothing for so long is gone [s]
 SILENCE = 2.0
 
@@ -47,13 +49,14 @@ class Session:
         self.scene, self.spans, self.picture = self.stage.scene, self.stage.spans, self.stage.picture
         self.source, self.motion, self.description = self.stage.source, self.stage.motion, self.stage.description
         self._lock, self._door, self._closed = threading.RLock(), threading.Lock(), threading.Event()
+        self._moved = threading.Event()  # a hand, since the turn before; or all has to end
         self._views, self._thread, self._sink = {}, None, None
         self._said, self._wanted = deque(maxlen=1000), 0.0  # nobody may be there to do what is said
 
     # --- what a front end says, from whatever thread: stored, and done in the next turn
 
     def connect(self, sink):
-        """Give frames to ``sink(frame)``, from the session's thread, 60 a second at most; one sink at a time."""
+        """Give frames to ``sink(frame)``, from the session's thread, 75 a second at most; one sink at a time."""
         self._sink = sink
 
     def ready(self, view=""):
@@ -72,8 +75,9 @@ class Session:
         self._views.pop(view, None)
 
     def intend(self, x):
-        """Say where the hand means to be [m]."""
+        """Say where the hand means to be [m]; the next frame comes at once."""
         self._wanted = float(x)
+        self._moved.set()
 
     def hold(self, held):
         """Take the handle, or let go of it."""
@@ -129,6 +133,7 @@ class Session:
         """Ask for the end: the thread stops within a turn, and a board's motor with it. Waits for nothing."""
         self._closed.set()
         self._views.clear()
+        self._moved.set()
 
     def end(self):
         """Close, and wait until all stands still."""
@@ -145,11 +150,10 @@ class Session:
                 self._thread.start()
 
     def _run(self):
-        following = self.clock()
+        due, led = self.clock(), False
         try:
             while self.turn() or not self._thread_may_end():
-                following = max(following + 1 / RATE, self.clock())
-                self._closed.wait(following - self.clock())
+                due, led = self._wait(due, led)
         finally:
             with self._lock:
                 self.stage.rest()
@@ -157,6 +161,14 @@ class Session:
                 self._thread = None if self._thread is threading.current_thread() else self._thread
         if self._closed.is_set():
             self._show(Frame(self.motion.time, status="This view has ended; run its cell again.", flags=self.stage.flags()))
+
+    def _wait(self, due, led):
+        """Wait after a turn that was due then, led by a hand or not, for the next; return when that is, and whether led."""
+        self._closed.wait(due + (1 / FASTEST if led else SOONEST) - self.clock())
+        following = due + 1 / (SLOWEST if led else RATE)
+        led = self._moved.wait(following - self.clock())
+        self._moved.clear()
+        return (self.clock() if led else max(following, self.clock())), led
 
     def _thread_may_end(self):
         with self._door:  # a view that opens now starts a thread of its own
