@@ -2,7 +2,7 @@
 // Where they arrive evenly the newest is shown at once. Where they do not, they are played back as evenly as they were
 // made, a little late, and the picture between two of them is interpolated.
 
-const EVEN = 0.025 // [s] lateness up to which the newest frame is shown at once
+const EVEN = 0.025 // [s] lateness of three frames in four up to which the newest is shown at once
 const LATEST = 0.15 // [s] the playback is never further behind
 const REMEMBERED = 64 // frames whose lateness counts
 
@@ -26,8 +26,8 @@ class Playback {
   // How far behind the fastest packet the picture has to be [s]; 0 where frames arrive evenly.
   delay() {
     const fastest = Math.min(...this.offsets)
-    const late = quantile(this.offsets, 0.9) - fastest
-    return late <= EVEN ? 0 : Math.min(late + quantile(this.gaps, 0.5), LATEST)
+    if (quantile(this.offsets, 0.75) - fastest <= EVEN) return 0 // a busy computer is late now and then, a network often
+    return Math.min(quantile(this.offsets, 0.9) - fastest + quantile(this.gaps, 0.5), LATEST)
   }
 
   // Return {frame, next, part, passed}: what to show now, and the frames whose rows have come due.

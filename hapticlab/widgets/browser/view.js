@@ -4,6 +4,7 @@ const KIND = { ready: 0, alive: 1, gone: 2, intend: 3, hold: 4, move: 5, press: 
 const HEARTBEAT = 400 // [ms]
 const PAGE = Math.floor(Math.random() * 2 ** 48) // differs after the page was loaded anew
 const STEP = 0.0005 // [m] of an arrow key
+const SOONEST = 15 // [ms] between two words on where the hand means to be
 const BUSY = 500 // [ms] after a hand moved a slider
 const TRACED = 25 // [ms] between two pictures of the traces: they scroll, and wait for nobody
 const READOUT = 250 // [ms] between two readouts in text
@@ -118,9 +119,14 @@ class View {
       this.grab = { pointer: event.pointerId, from: this.along(event), intent: this.flags.held ? this.intent : this.x }
       this.take(this.grab.intent)
     })
-    stage.addEventListener("pointermove", (event) => {
-      if (this.grab?.pointer === event.pointerId) this.take(this.grab.intent + this.along(event) - this.grab.from)
-    })
+    const follow = (event) => {
+      if (this.grab?.pointer !== event.pointerId) return
+      const way = this.along(event) - this.grab.from
+      if (way !== this.grab.way) this.take(this.grab.intent + way)
+      this.grab.way = way
+    }
+    stage.addEventListener("pointermove", follow) // as often as pictures are shown
+    stage.addEventListener("pointerrawupdate", follow) // at once, where a browser has it
     for (const end of ["pointerup", "pointercancel"]) stage.addEventListener(end, () => (this.grab = null))
     stage.addEventListener("keydown", (event) => this.key(event))
   }
@@ -149,9 +155,22 @@ class View {
     const [low, high] = this.about.x_range
     this.intent = Math.min(Math.max(x, low), high)
     if (!this.flags.held) this.tell("hold", 1)
-    this.tell("intend", this.intent)
-    this.stage.setAttribute("aria-valuenow", (1000 * this.intent).toFixed(1))
-    this.stage.setAttribute("aria-valuetext", `hand at ${(1000 * this.intent).toFixed(1)} mm`)
+    this.intend()
+  }
+
+  // Say where the hand means to be, at once but not too often; the last word is always said.
+  intend() {
+    if (this.intending) return
+    const say = () => {
+      this.intending = null
+      this.intended = performance.now()
+      this.tell("intend", this.intent)
+      this.stage.setAttribute("aria-valuenow", (1000 * this.intent).toFixed(1))
+      this.stage.setAttribute("aria-valuetext", `hand at ${(1000 * this.intent).toFixed(1)} mm`)
+    }
+    const wait = SOONEST - (performance.now() - this.intended)
+    if (wait > 0) this.intending = setTimeout(say, wait)
+    else say()
   }
 
   move(slider, value) {
@@ -198,6 +217,7 @@ class View {
   }
 
   close() {
+    clearTimeout(this.intending)
     this.tell("gone")
     this.closed = true
     for (const clean of this.cleanups) clean()
