@@ -2,7 +2,7 @@
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
-HELD = "The force is held: it is k times the position at the beginning of the period, all the way."
+HELD = "Which force acts in this period, and does it change while the handle is on its way?"
 MEAN = (
     "That is the work at the mean force, which is what a spring takes that is not sampled. "
     "The motor holds the first force."
@@ -33,6 +33,7 @@ SECOND = (
 WHOLE = "That is twice too much: the handle is inside for half a period of its oscillation, pi/w, not for a whole one."
 NO_HALF = "Half of what is expected: the energy that came in is m v0^2/2, and the mean of cos^2 is 1/2."
 NO_MASS = "The share depends on w = sqrt(k/m), the square root."
+PERCENT = "That is in percent. Asked for is the share itself: half of it would be 0.5."
 
 LAB = Lab(
     number="02",
@@ -58,7 +59,7 @@ LAB = Lab(
                 Case({"k": 500.0, "D": 1e-4}, 2.5e-6, unit="J", slips={5e-6: FULL, -2.5e-6: TAKEN}),
                 Case({"k": 300.0, "D": -2e-4}, 6e-6, unit="J", slips={1.2e-5: FULL, -6e-6: TAKEN}),
             ),
-            hint="Write out k (x + D)^2/2 - k x^2/2 - k x D. Everything with x in it goes.",
+            hint="Have you taken what the handle paid from what the spring holds more? Does x go from it?",
         ),
         Exercise(
             "bounce_gain",
@@ -66,19 +67,20 @@ LAB = Lab(
             asks="the energy generated in one bounce over that which came in, to first order in T",
             cases=(
                 Case(
-                    {"k": 500.0, "m": 0.05, "T": 1e-3},
-                    0.15707963267948966,
+                    {"k": 800.0, "m": 0.05, "T": 1e-3},
+                    0.19869176531592203,
                     slips={
-                        0.31415926535897931: WHOLE,
-                        0.07853981633974483: NO_HALF,
-                        0.17008878749642195: SECOND,
-                        15.707963267948966: NO_MASS,
+                        0.39738353063184406: WHOLE,
+                        0.09934588265796102: NO_HALF,
+                        0.2198059214550434: SECOND,
+                        25.132741228718345: NO_MASS,
+                        19.869176531592203: PERCENT,
                     },
                 ),
                 Case({"k": 1200.0, "m": 0.03, "T": 5e-4}, 0.15707963267948966, slips={0.17008878749642195: SECOND}),
                 Case({"k": 2000.0, "m": 0.05, "T": 1e-3}, 0.3141592653589793, slips={0.36910718607437147: SECOND}),
             ),
-            hint="(k T/2) times the integral of v0^2 cos^2(w t) from 0 to pi/w, over m v0^2/2; then k/m = w^2.",
+            hint="For how long is the handle inside, and what is the mean of v^2 over that time? Does v0 go from the share?",
         ),
         Exercise(
             "energy_generated",
@@ -104,7 +106,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="np.diff(x) are the ways; the force that was held on each is that of its first sample, F[:-1].",
+            hint="Which force was held while the handle went from x(n) to x(n+1)? And whose work is asked for?",
         ),
         Exercise(
             "two_walls",
@@ -138,7 +140,7 @@ LAB = Lab(
                     ),
                 ),
             ),
-            hint="A sum of two hl.when(condition, force), one for x(n) >= x_o and one for x(n) <= -x_o.",
+            hint="Where does each wall begin, how far is the handle beyond it, and which way does it press there?",
         ),
         Exercise(
             "damping_that_pays",
@@ -159,23 +161,23 @@ LAB = Lab(
                 ),
             ),
             rtol=1e-3,
-            hint="The leak is (k T/2) times the integral of v^2, the damper takes b times the same integral.",
+            hint="Leak and damper are both a number times the integral of v^2. Which number is each?",
         ),
         Exercise(
             "who_pays",
             kind="choice",
             points=1,
             asks="who supplies the energy that the staircase shows",
-            options={"a": "the hand", "b": "the motor's supply", "c": "the wall's spring", "d": "the sensor"},
+            options={"a": "the hand", "b": "the sensor", "c": "the wall's spring", "d": "the motor's supply"},
             cases=(
                 Case(
                     {},
-                    "b",
+                    "d",
                     slips={
                         "a": "The record says what the hand gave: the work on the way in. More than that came out.",
+                        "b": "The sensor's supply never reaches the handle.",
                         "c": "Before the contact the handle was outside and the wall's spring "
                         "at rest: it held nothing.",
-                        "d": "The sensor's supply never reaches the handle; what moves it is the motor.",
                     },
                 ),
             ),

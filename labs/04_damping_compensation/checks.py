@@ -5,6 +5,7 @@ from hapticlab.course.exercise import Case, Exercise, Lab
 PLAIN = "That is Eq. (23.1), which does not look ahead."
 WHOLE = "That is a whole sample ahead, 2 x(n) - x(n-1). Eq. (23.2) takes the mean of it and of x(n)."
 BACK = "That looks half a sample back: the mean of the last two samples makes the staircase later, not earlier."
+STRICT = "At x(n) = x_o the wall acts: >=, not >."
 CLIPPED = (
     "The past was clipped at the boundary. It is a wall too (hl.wall calls it unilateral='clip'); "
     "asked for is the raw past, with "
@@ -71,19 +72,20 @@ LAB = Lab(
                     ),
                 ),
                 Case(
-                    {"x": [-1e-3, 1e-3, 3e-3, 5e-3, 2e-3, -1e-3], "values": {"k": 500.0, "x_o": 1e-3}},
-                    [0.0, 0.5, 1.5, 2.5, -0.25, 0.0],
+                    {"x": [-1e-3, 1e-3, -1e-3, 2e-3, 5e-3, 2e-3, -1e-3], "values": {"k": 500.0, "x_o": 1e-3}},
+                    [0.0, 0.5, 0.0, 1.25, 2.75, -0.25, 0.0],
                     unit="N",
                     slips=(
-                        ((0.0, 0.0, 1.0, 2.0, 0.5, 0.0), PLAIN),
-                        ((0.0, 0.25, 1.25, 2.25, -0.5, 0.0), ONE_SHIFT),
-                        ((0.0, 0.0, 1.5, 2.5, -0.25, 0.0), CLIPPED),
-                        ((0.0, 0.0, 1.5, 2.5, -0.25, -0.25), CLIPPED),
-                        ((0.0, 1.0, 2.0, 3.0, 0.25, 0.0), "The spring is pressed by x - x_o, not by x."),
+                        ((0.0, 0.0, 0.0, 0.5, 2.0, 0.5, 0.0), PLAIN),
+                        ((0.0, 0.25, 0.0, 1.0, 2.5, -0.5, 0.0), ONE_SHIFT),
+                        ((0.0, 0.0, 0.0, 1.25, 2.75, -0.25, 0.0), STRICT),
+                        ((0.0, 0.0, 0.0, 0.75, 2.75, -0.25, 0.0), CLIPPED),
+                        ((0.0, 0.0, 0.0, 0.75, 2.75, -0.25, -0.25), CLIPPED),
+                        ((0.0, 1.0, 0.0, 1.75, 3.25, 0.25, 0.0), "The spring is pressed by x - x_o, not by x."),
                     ),
                 ),
             ),
-            hint="Write Eq. (23.5) with p(n) = x(n) - x_o for each of its samples, inside hl.when(x(n) >= x_o, ...).",
+            hint="How far beyond x_o is each sample that the law uses? Which sample decides whether the wall acts?",
         ),
         Exercise(
             "ellis_wall",
@@ -111,7 +113,7 @@ LAB = Lab(
                     ),
                 ),
             ),
-            hint="x^(n+1) = 2 x(n) - x(n-1) and x^(n) = 2 x(n-1) - x(n-2); the three weights sum to 1.",
+            hint="What does each hat stand for in samples you know? A handle at rest feels k x: what do the weights sum to?",
         ),
         Exercise(
             "nyquist_damping",
@@ -134,7 +136,7 @@ LAB = Lab(
                 ),
                 Case({"taps": [0.5, 0.5], "k": 200.0, "T": 1e-3}, 0.0, unit="N s/m", slips={0.1: ABSOLUTE, 0.2: TWICE}),
             ),
-            hint="What the damper takes in a period, 4 b a^2/T, against what the law gives away, 2 k a^2 h.",
+            hint="Which sign has each sample that the law sees? Does the damper take all that is given away in a period?",
         ),
         Exercise(
             "stiffest_passive",
@@ -181,26 +183,26 @@ LAB = Lab(
             ),
             rtol=1e-6,
             atol=1e-9,
-            hint="The velocity fixes F_0 + F_1. To the position F_0 counts three times as much as F_1: it has longer to work.",
+            hint="What does each force do to the last velocity, what to the last position? Which has longer to work?",
         ),
         Exercise(
             "which_law",
             kind="choice",
             points=1,
             asks="the law for an encoder, a period of delay and thirty different hands",
-            options={"a": "damper and compensation", "b": "Ellis", "c": "model-based half sample", "d": "dead-beat"},
+            options={"a": "model-based half sample", "b": "Ellis", "c": "damper and compensation", "d": "dead-beat"},
             cases=(
                 Case(
                     {},
-                    "c",
+                    "a",
                     slips={
-                        "a": "With the plain law the two dampers cancel in slow motion: section 7, "
-                        "and the row `damped` of section 5.",
                         "b": "Ellis pays for the hold, and nobody pays for the period of delay: the "
                         "second table of section 5.",
+                        "c": "With the plain law the two dampers cancel in slow motion: section 7, "
+                        "and the row `damped` of section 5.",
                         "d": "Its forces follow the position with m/T^2, so each count of the "
                         "encoder is a kick, and its model is of "
-                        "one hand: at its worst entry it errs two to three times as much as (c).",
+                        "one hand, not of thirty.",
                     },
                 ),
             ),

@@ -33,7 +33,7 @@ k, x_o = hl.parameters("k x_o", units="N/m m")
 two_walls = hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n) - x_o)) + hl.when(x(n) <= -x_o, k * (x(n) + x_o)))
 
 damping_that_pays = 0.25
-who_pays = "b"
+who_pays = "d"
 discussion = """
 The force computed from x(n) acts while the handle leaves x(n), so pairing it with the way that led there gives
 every period the force of its end instead of its beginning. Each period is then wrong by the held force's step, k D,

@@ -32,7 +32,7 @@ def deadbeat_forces(m, T, x, v, x_goal, v_goal):
     return np.array([(weighted - both) / 2, (3 * both - weighted) / 2])
 
 
-which_law = "c"
+which_law = "a"
 discussion = """
 For the plain wall it is not true: the hold leaks at every frequency alike, and in slow motion the virtual damper
 takes away what the real one gives, so the limit is that of the damping that is felt. For the laws that look ahead
