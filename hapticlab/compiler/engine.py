@@ -25,6 +25,8 @@ class Engine:
     def __init__(self, program, kernel):
         self.program, self._kernel = program, kernel
         self.name = kernel.name
+        told = {"parameters": program.parameters, "inputs": program.inputs, "states": program.states}
+        self._int32 = {what: [(k, c.name) for k, c in enumerate(all_) if c.type == "i32"] for what, all_ in told.items()}
 
     def run(self, ticks, inputs=None, parameters=None, states=None, every=1):
         """Run for a number of ticks.
@@ -67,9 +69,9 @@ class Engine:
         inputs = self._shaped("inputs", inputs, (ticks, len(program.inputs)))
         if states is not None:
             states = self._shaped("states", self._real("states", states), (len(program.states), lanes))
-            self._check_int32("states", program.states, states)
-        self._check_int32("parameters", program.parameters, parameters)
-        self._check_int32("inputs", program.inputs, inputs.T)
+            self._check_int32("states", states)
+        self._check_int32("parameters", parameters)
+        self._check_int32("inputs", inputs.T)
         return Run(self._kernel.run(ticks, inputs, parameters, states, every))
 
     def once(self):
@@ -111,13 +113,12 @@ class Engine:
             shown = repr(given) if len(repr(given)) < 60 else f"{repr(given)[:57]}..."
             raise ProgramError(f"{self.program.name}: {what} = {shown}; needs an array of real numbers") from None
 
-    def _check_int32(self, what, channels, rows):
+    def _check_int32(self, what, rows):
         """Refuse what no int32 is: the engines would each round it in their own way."""
-        for c, row in zip(channels, rows, strict=True):
-            if c.type == "i32":
-                wrong = row[~((row == np.floor(row)) & (np.abs(row + 0.5) < 2.0**31))]
-                if wrong.size:
-                    raise ProgramError(f"{self.program.name}: {what} hold {c.name} = {wrong[0]:g}; needs an int32")
+        for k, name in self._int32[what]:
+            wrong = rows[k][~((rows[k] == np.floor(rows[k])) & (np.abs(rows[k] + 0.5) < 2.0**31))]
+            if wrong.size:
+                raise ProgramError(f"{self.program.name}: {what} hold {name} = {wrong[0]:g}; needs an int32")
 
     def _shaped(self, what, array, needed):
         array = np.ascontiguousarray(array, float)
