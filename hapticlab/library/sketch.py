@@ -36,7 +36,7 @@ class Sketch:
 
     def place(self, points, wide=1.0, high=1.0):
         """Return xs and ys of points in the picture, which grows to show them and so many u around."""
-        placed = np.asarray(points, float).tolist()  # few points: plain floats are faster than arrays from here on
+        placed = [(float(x), float(y)) for x, y in points]  # few points: plain floats are faster than arrays
         if self._turn:
             c, s = self._turn
             placed = [(c * x - s * y, s * x + c * y) for x, y in placed]
