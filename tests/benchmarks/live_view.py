@@ -2,9 +2,9 @@
 
 ``python tests/benchmarks/live_view.py`` (``--seconds 10``, ``--json FILE``), with what ``pip install -e ".[test]"`` brings and a
 Chromium. JupyterLab runs as a student has it: with hapticlab's server extension, without it, and without anywidget. A hand
-drags the handle to and fro; a frame is shown when the picture differs from the one before, by its pixels or its SVG. Then the
-pointer jumps and rests, sixty times: the paint is the first that shows the hand away from its place. A time begins with the
-event as the browser stamps it and ends when the picture is drawn, before the screen shows it.
+drags the handle to and fro, sixty moves a second; a frame is shown when the picture differs from the one before, by its
+pixels or its SVG. Then the pointer jumps and rests, sixty times: the paint is the first that shows the hand away from its
+place. A time begins with the event as the browser stamps it and ends when the picture is drawn, before the screen shows it.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from lab import Lab
 
 from hapticlab.widgets.picture import HAND
 
-JUMPS = 60
+JUMPS, MOVES = 60, 60  # how often a hand jumps; moves a second of one that drags
 ROUTES = {  # name: whether the server extension is on, and what a notebook does first
     "canvas, with the server extension": (True, ""),
     "canvas, without": (False, ""),
@@ -92,9 +92,10 @@ class Hand:
     def drag(self, seconds):
         """Go to and fro, and back."""
         begun = time.perf_counter()
-        while (t := time.perf_counter() - begun) < seconds:
+        for k in range(int(seconds * MOVES)):
+            time.sleep(max(0.0, begun + k / MOVES - time.perf_counter()))
+            t = time.perf_counter() - begun
             self.page.mouse.move(self.x + 60 * math.sin(2 * math.pi * 0.6 * t), self.y)
-            time.sleep(0.004)
         self.page.mouse.move(self.x, self.y)
         self.page.wait_for_timeout(700)
 
