@@ -27,7 +27,8 @@ class Frame:
         One or two sentences; empty where they are as in the frame before.
     flags : dict
         ``running``, ``recording``, ``replaying``, ``held`` (a hand is on the handle), ``motor`` (a board's is on): bool.
-        And ``values``, dict of name to SI of every slider's parameter: where the sliders belong.
+        And ``recorded``, whether there is a record to replay or save; ``values``, dict of name to SI of every slider's
+        parameter: where the sliders belong; ``wanted`` [m], where a hand begins to lead.
 
     Examples
     --------

@@ -49,6 +49,11 @@ class Motion:
         return self._recorder is not None
 
     @property
+    def has_record(self):
+        """Whether :meth:`recorded` returns something."""
+        return self.log is not None or bool(self._recorder and self._recorder.samples)
+
+    @property
     def replaying(self):
         return self._replay is not None
 
@@ -166,7 +171,8 @@ class Motion:
         limit = getattr(self.source.paddle, "force_max", None)
         raised = {name: samples[name].any() for name in FLAGS if name in samples}
         if limit is not None:
-            raised["saturated"] = np.any(np.abs(samples["F"]) >= limit)
+            F = samples["F"]
+            raised["saturated"] = F.max() >= limit or F.min() <= -limit
         self._noticed |= {name: self.clock() for name, there in raised.items() if there}
 
     def _lead(self, ticks, wanted):

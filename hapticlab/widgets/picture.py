@@ -65,6 +65,8 @@ class MovingPicture:
         What it shows [m], whatever moves.
     along : (x, y)
         Unit vector along which the handle moves, and a pointer has to.
+    reach : (low, high)
+        How far a hand goes [m]: about the travel of a Hapkit's handle.
     """
 
     def __init__(self, scene, drawing, full_force):
@@ -74,6 +76,8 @@ class MovingPicture:
         self._names = names & ({*self.channels, "t", "T"} | set(scene.parameters))
         self.box, self.along = self._fit()
         self._unit = (self.box[1] - self.box[0]) / 100
+        ends = self.box[:2] if abs(self.along[0]) > 0.5 else self.box[2:]
+        self.reach = max(ends[0], -REACH), min(ends[1], REACH)
 
     def draw(self, values):
         """Return the items of one moment.

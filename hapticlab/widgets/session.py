@@ -1,21 +1,24 @@
 """A scene that runs while somebody looks at it: inputs of a front end go in, frames come out, in a thread of its own."""
 
+import math
 import threading
 import time
 from collections import deque
 
 from ..errors import PaddleError
-from .frame import Frame
 from .stage import Stage
 
 #: presses that a front end has, see :meth:`Session.press`
 PRESSES = ("start", "pause", "resume", "record", "stop", "save", "replay")
 #: frames a second; where a hand moves, at least and at most so many, each as soon as it has moved
-RATE, SLOWEST, FASTEST = 60.0, 50.0, 75.0
+RATE, SLOWEST, FASTEST = 60.0, 50.0, 65.0
 #: a hand that begins to move is waited for so long after a frame [s]
 SOONEST = 4e-3
 #: a front end that says nothing for so long is gone [s]
 SILENCE = 2.0
+#: a board's motor starts only where a view was heard without such a gap for so long [s]: words that waited come at once
+GAP, STEADY = 1.0, 0.5
+ENDED = "This view has ended; run its cell again."
 
 
 class Session:
@@ -52,11 +55,13 @@ class Session:
         self._moved = threading.Event()  # a hand, since the turn before; or all has to end
         self._views, self._thread, self._sink = {}, None, None
         self._said, self._wanted = deque(maxlen=1000), 0.0  # nobody may be there to do what is said
+        self._heard = self._steady = -math.inf  # when a view was heard last, and since when without a gap
+        self._silent, self._end = None, ENDED  # since when, where silence ended it; and the words of the end
 
     # --- what a front end says, from whatever thread: stored, and done in the next turn
 
     def connect(self, sink):
-        """Give frames to ``sink(frame)``, from the session's thread, 75 a second at most; one sink at a time."""
+        """Give frames to ``sink(frame)``, from the session's thread, 65 a second at most; one sink at a time."""
         self._sink = sink
 
     def ready(self, view=""):
@@ -67,12 +72,15 @@ class Session:
     def alive(self, view=""):
         """Note that a view is still there."""
         if not self._closed.is_set():
-            self._views[view] = self.clock()
+            self._views[view] = now = self.clock()
+            self._steady = self._steady if now - self._heard <= GAP else now
+            self._heard = now
             self._keep_a_thread()
 
     def gone(self, view=""):
         """Note that a view closed: the last one ends the thread, and a board's motor goes off."""
         self._views.pop(view, None)
+        self._heard = self._heard if self._views else -math.inf
 
     def intend(self, x):
         """Say where the hand means to be [m]; the next frame comes at once."""
@@ -88,13 +96,19 @@ class Session:
         name = self.spans[name].name if isinstance(name, int) else name
         self._said.append(("move", (name, float(value))))
 
-    def press(self, name):
-        """Press one of PRESSES; "stop" ends a recording, "replay" begins to play one or ends it, "save" writes a file."""
+    def press(self, name, age=0.0):
+        """Press one of PRESSES, so long after it was pressed in the page [s].
+
+        "stop" ends a recording, "replay" begins to play one or ends it, "save" writes a file. A press that would start a
+        board's motor is dropped, in words, where it comes late: :meth:`Stage.obey`. It came late too, whatever its age is
+        said to be, where the views were not heard steadily before.
+        """
         if name not in PRESSES:
             raise PaddleError(f"press {name!r}; there are {', '.join(PRESSES)}")
-        if name in ("start", "resume") and not self._views:
-            return  # a press that comes late starts no motor when somebody looks again
-        self._said.append(("press", name))
+        now = self.clock()
+        if now - self._heard > GAP or now - self._steady < STEADY:
+            age = math.inf
+        self._said.append(("press", (name, now - age)))
 
     # --- what a program says, done at once between two turns
 
@@ -106,6 +120,8 @@ class Session:
     def pressed(self, name, *given):
         """Do what a press of this name asks for."""
         with self._lock:
+            if self._closed.is_set() and name not in ("pause", "stop"):
+                raise PaddleError(f"{name}: {self._end[0].lower()}{self._end[1:]}")
             getattr(self.stage, name)(*given)
 
     @property
@@ -117,7 +133,9 @@ class Session:
     def status(self):
         """One or two sentences about what goes on."""
         with self._lock:
-            return self.stage.words()
+            if self._closed.is_set():
+                return self._end
+            return self.stage.words() if self._views else f"Not on view, so nothing moves. {self.stage.note}".rstrip()
 
     def recorded(self):
         """Return what was recorded last, or None."""
@@ -160,7 +178,7 @@ class Session:
             with self._door:
                 self._thread = None if self._thread is threading.current_thread() else self._thread
         if self._closed.is_set():
-            self._show(Frame(self.motion.time, status="This view has ended; run its cell again.", flags=self.stage.flags()))
+            self._show(self.stage.last_frame(self._end))
 
     def _wait(self, due, led):
         """Wait after a turn that was due then, led by a hand or not, for the next; return when that is, and whether led."""
@@ -179,19 +197,46 @@ class Session:
     def turn(self):
         """Do all that is due, and give one frame to the sink; return whether anybody looks."""
         with self._lock:
-            now = self.clock()
-            for view in [view for view, heard in list(self._views.items()) if now - heard > SILENCE]:
-                self._views.pop(view, None)
-            if not self._views:
+            try:
+                frame = self._turn() if self._somebody_looks() else self._rest()
+            except Exception as problem:  # a fault of the view's own: it ends, in words, with the motor off
+                self._end = f"This view has ended: {type(problem).__name__}: {problem}. Run its cell again."
+                self.close()
                 self.stage.rest()
-                self._said.clear()
-                return False
-            self.stage.guarded(self.stage.wake)
-            self.stage.obey([self._said.popleft() for _ in range(len(self._said))])
-            frame = self.stage.frame(self.stage.advance(self._wanted), self._wanted)
+                frame = self.stage.last_frame(self._end)
+            looks = bool(self._views)
         if frame is not None:
             self._show(frame)
-        return True
+        return looks
+
+    def _turn(self):
+        if self._silent is not None:
+            self.stage.tell(f"The notebook was silent for {self.clock() - self._silent:.1f} s: {self.stage.stopped}")
+            self._silent = None
+        self.stage.guarded(self.stage.wake)
+        self.stage.obey([self._said.popleft() for _ in range(len(self._said))])
+        rows = self.stage.advance(self._wanted)
+        if self.stage.caught is not None:
+            self._wanted, self.stage.caught = self.stage.caught, None
+        return self.stage.frame(rows, self._wanted)
+
+    def _somebody_looks(self):
+        """Forget views that are silent; return whether any is left."""
+        now = self.clock()
+        for view, heard in list(self._views.items()):
+            if now - heard > SILENCE:
+                self._views.pop(view, None)
+                self._silent = None if self._views else heard
+        return bool(self._views)
+
+    def _rest(self):
+        """Stand still, for nobody looks; return what to show where that is by silence: a page may still be there."""
+        was_awake = self.stage.awake
+        self.stage.rest()
+        self._said.clear()
+        if was_awake and self._silent is not None:
+            return self.stage.last_frame(f"No word from the page for {SILENCE:g} s: {self.stage.stopped}.")
+        return None
 
     def _show(self, frame):
         try:

@@ -51,7 +51,7 @@ def spans(program, sliders=None):
     >>> for span in spans(hl.compile(hl.wall()(k=300, x_o=0.01), T=1e-3)):
     ...     print((span.name, span.low, span.high, span.limit_words))
     ('B', 0.0, 2.0, '')
-    ('k', 60.0, 900.0, 'k >= 0')
+    ('k', 60.0, 900.0, 'allowed k >= 0')
     ('x_o', 0.002, 0.03, '')
     """
     if sliders is not None and not isinstance(sliders, Mapping):
@@ -98,15 +98,19 @@ def _given(channel, ends):
 
 def _words(channel, value, stable):
     """Say what the parameter's own range is, and up to where the steps are stable."""
-    low, high = channel.low, channel.high
-    said = []
+    unit = "" if channel.unit == "1" else " " + channel.unit.replace("*", " ")
+    allowed = _interval(channel.name, channel.low, channel.high, unit)
+    ends = (stable[0], stable[2]) if stable else (-math.inf, math.inf)
+    near = [math.isfinite(end) and 1 / NEAR < abs(end / (value or end)) < NEAR for end in ends]
+    low, high = (end if told else away for end, told, away in zip(ends, near, (-math.inf, math.inf), strict=True))
+    stays = _interval(channel.name, float(f"{low:.3g}"), float(f"{high:.3g}"), unit)
+    return "; ".join([f"allowed {allowed}"] * bool(allowed) + [f"steps are stable for {stays}"] * bool(stays))
+
+
+def _interval(name, low, high, unit):
+    """Return an interval in words; empty where it has no end."""
     if math.isfinite(low) and math.isfinite(high):
-        said.append(f"{low:g} to {high:g} {channel.unit}")
-    elif math.isfinite(low):
-        said.append(f"{channel.name} >= {low:g}")
-    elif math.isfinite(high):
-        said.append(f"{channel.name} <= {high:g}")
-    for end, sign in zip((stable[0], stable[2]) if stable else (), (">=", "<="), strict=False):
-        if math.isfinite(end) and 1 / NEAR < abs(end / (value or end)) < NEAR:
-            said.append(f"steps are stable for {channel.name} {sign} {end:.3g}")
-    return "; ".join(said)
+        return f"{low:g} to {high:g}{unit}"
+    if math.isfinite(low):
+        return f"{name} >= {low:g}{unit if low else ''}"
+    return f"{name} <= {high:g}{unit if high else ''}" if math.isfinite(high) else ""

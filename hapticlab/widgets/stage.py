@@ -21,6 +21,11 @@ from .words import NOTICED, chatter_words, contact_words, late_words
 RESTING = 4.0
 #: words change no sooner than this, and a note stays so long [s]
 LOOK, NOTE = 0.25, 6.0
+#: a press that starts a motor counts for so long [s]
+TIMELY = 0.5
+#: a handle that was let go is caught so far past where a hand goes [m]
+PAST = 5e-3
+CAME_LATE = "Start came late, or just after the notebook was silent: press it again"
 TRACES = (
     {"name": "x", "label": "x", "unit_shown": "mm", "scale": 1e3},
     {"name": "F", "label": "F", "unit_shown": "N", "scale": 1.0},
@@ -45,7 +50,9 @@ class Stage:
         self.source = source_of(paddle, self.scene, **options)
         self.spans = spans(self.source.program, sliders)
         self.motion, self.clock = Motion(self.source, speed, clock), clock
-        self._awake, self._wants_to_run = False, self.source.kind == "simulated"
+        self.awake, self._wants_to_run = False, self.source.kind == "simulated"
+        self.stopped = "time stood still" if self._wants_to_run else "the motor went off"
+        self.caught = None
         self._note, self._note_until = "", -1.0
         self._status, self._next_look, self._next_frame = "", -1.0, -1.0
 
@@ -59,7 +66,7 @@ class Stage:
 
         ``title``; ``kind``, "simulated" or "board"; ``parameters``, a list of {name, unit, value, low, high, limit_words};
         ``traces``, a list of {name, label, unit_shown, scale}, where shown = scale * value in SI, in the order of a frame's
-        columns after t; ``x_range``, [left, right], and ``box``, [left, right, bottom, top], of the picture [m];
+        columns after t; ``x_range``, how far a hand goes, and ``box``, [left, right, bottom, top], of the picture [m];
         ``along``, the direction in which the handle moves there; ``help``, words on what moves it; ``speed``; ``columns``.
         """
         box, values = self.picture.box, self.values
@@ -68,7 +75,7 @@ class Stage:
             "kind": self.source.kind,
             "parameters": [{**asdict(span), "value": values[span.name]} for span in self.spans],
             "traces": [dict(trace) for trace in TRACES],
-            "x_range": [box[0], box[1]],
+            "x_range": list(self.picture.reach),
             "box": list(box),
             "along": list(self.picture.along),
             "help": _help(self.source, self.motion.speed),
@@ -80,8 +87,8 @@ class Stage:
 
     def wake(self):
         """Begin to move because somebody looks: a simulation; a board waits for Start."""
-        if not self._awake:
-            self._awake = True
+        if not self.awake:
+            self.awake = True
             self.source.warm()
             self.motion.wake()  # after it, for compiling took its time
             if self._wants_to_run:
@@ -89,29 +96,49 @@ class Stage:
 
     def rest(self):
         """Stand still because nobody looks; a simulation goes on when somebody does, a board only after Start."""
-        if self._awake:
-            self._awake = False
-            with suppress(HapticlabError):
-                self.motion.pause()
+        if self.awake:
+            self.awake = False
+            self._halt()
 
     def obey(self, said):
-        """Do what was said, in its order, as (what, given); of a slider the newest place counts."""
+        """Do what was said, in its order, as (what, given); of a slider's moves in a row the last counts."""
         moves = {}
         for what, given in said:
             self.look()
             if what == "move":
                 moves[given[0]] = given[1]
-            elif what == "hold":
-                self.motion.hold(given)
+                continue
+            self._set_each(moves)
+            if what == "hold":
+                self.guarded(self.motion.hold, given)
             elif what == "press":
-                self.guarded(getattr(self, given))
-        for name, value in moves.items():
-            self.guarded(self.motion.set, **{name: value})
+                self._pressed(*given)
+        self._set_each(moves)
+
+    def _set_each(self, moves):
+        while moves:
+            name = next(iter(moves))
+            self.guarded(self.motion.set, **{name: moves.pop(name)})
+
+    def _pressed(self, name, when):
+        """Do what a press asks for that was made at a time; the hand of a late one has left the board's handle."""
+        if name in ("start", "resume") and self.source.kind == "board" and self.clock() - when > TIMELY:
+            self.tell(CAME_LATE)
+        else:
+            self.guarded(getattr(self, name))
 
     def advance(self, wanted):
-        """Go on to the clock, with a hand that means to be at a place [m]; return a frame's rows, or None."""
+        """Go on to the clock, with a hand that means to be at a place [m]; return a frame's rows, or None.
+
+        Where a handle that was let go leaves the picture, ``caught`` is where the hand now holds it [m].
+        """
         recording = self.motion.recording
         rows = self.guarded(self.motion.advance, wanted)
+        low, high = self.picture.reach
+        if not (self.motion.held or self.motion.replaying) and not low - PAST <= self.motion.place <= high + PAST:
+            self.motion.hold(True)
+            self.caught = min(max(self.motion.place, low), high)
+            self.tell("The handle that was let go came to the end of its way: the hand holds it there")
         if recording and not self.motion.recording:
             self.tell("The recording ended: it was long, or the motor went off")
         return rows
@@ -124,9 +151,15 @@ class Stage:
             kind = "" if isinstance(problem, HapticlabError) else f"{type(problem).__name__}: "
             self.tell(f"{kind}{problem}")
             if not is_refusal(problem):
-                with suppress(HapticlabError):
-                    self.motion.pause()
+                self._halt()
         return None
+
+    def _halt(self):
+        """Stand still whatever happens: what stopping raises is told, and a board that hears nothing stops by itself."""
+        try:
+            self.motion.pause()
+        except Exception as problem:
+            self.tell(f"{type(problem).__name__}: {problem}")
 
     # --- presses
 
@@ -169,6 +202,11 @@ class Stage:
         """Say something for a while."""
         self._note, self._note_until, self._next_look = note, self.clock() + NOTE, -1.0
 
+    @property
+    def note(self):
+        """What is said for a while, or nothing."""
+        return self._note if self.clock() < self._note_until else ""
+
     def words(self):
         """Return one or two sentences about what goes on."""
         motion, source = self.motion, self.source
@@ -184,7 +222,8 @@ class Stage:
         else:
             said = ["Motor off: press Start, and hold the handle" if board else "Paused"]
             said += [f"Stopped: {source.fault}" if source.fault else ""]
-        said += ["Recording" if motion.recording else "", self._note if self.clock() < self._note_until else ""]
+        records = "Recording" if motion.running and not (motion.replaying or source.waits) else "Recording waits"
+        said += [records if motion.recording else "", self.note]
         return " ".join(f"{sentence.rstrip('.')}." for sentence in said if sentence)
 
     def frame(self, rows, wanted):
@@ -198,7 +237,15 @@ class Stage:
             self._status, before = self.words(), self._status
             status = self._status if self._status != before else ""
         given = {} if rows is None else {"rows": rows}
-        return Frame(self.motion.time, picture=self._drawn(wanted), status=status, flags=self.flags(), **given)
+        return Frame(self.motion.time, picture=self._drawn(wanted), status=status, flags=self._frame_flags(wanted), **given)
+
+    def last_frame(self, words):
+        """Return a frame for a page to which no more will come for now."""
+        self.look()
+        self._status = ""
+        with suppress(Exception):
+            return Frame(self.motion.time, picture=self._drawn(None), status=words, flags=self.flags())
+        return Frame(0.0, status=words, flags=dict.fromkeys(("running", "recording", "replaying", "held", "motor"), False))
 
     def look(self):
         """Have the next frame show everything at once."""
@@ -208,7 +255,12 @@ class Stage:
         """Return a frame's flags."""
         flags = {name: getattr(self.motion, name) for name in ("running", "recording", "replaying", "held")}
         values = self.values
-        return {**flags, "motor": self.source.motor, "values": {span.name: values[span.name] for span in self.spans}}
+        flags |= {"motor": self.source.motor, "recorded": self.motion.has_record}
+        return {**flags, "values": {span.name: values[span.name] for span in self.spans}}
+
+    def _frame_flags(self, wanted):
+        """Return the flags, and where a hand begins to lead: where it means to be, or where a handle is that was let go."""
+        return {**self.flags(), "wanted": wanted if self.motion.held else self.motion.place}
 
     def _drawn(self, wanted):
         """Return the picture; one that cannot be drawn is told, and the scene goes on without it."""

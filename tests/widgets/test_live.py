@@ -502,7 +502,7 @@ def test_what_a_front_end_is_told_once():
     view = hl.live(PADDLE, WALL, sliders={"k": (100, 900)})
     about = view._session.description()
     assert [p["name"] for p in about["parameters"]] == ["k"]
-    assert about["parameters"][0]["limit_words"] == "k >= 0"
+    assert about["parameters"][0]["limit_words"] == "allowed k >= 0"
     assert about["kind"] == "simulated"
     assert about["x_range"][0] < -0.015 < 0.015 < about["x_range"][1]
     assert [trace["name"] for trace in about["traces"]] == ["x", "F", "E"]

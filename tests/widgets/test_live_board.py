@@ -8,7 +8,9 @@ import pytest
 import hapticlab as hl
 from hapticlab.device.messages import STATES
 from hapticlab.device.streaming import LEAD, LEASH
-from hapticlab.widgets.session import SILENCE, Session
+from hapticlab.widgets.plain import PlainFront
+from hapticlab.widgets.session import GAP, SILENCE, STEADY, Session
+from hapticlab.widgets.stage import CAME_LATE, TIMELY
 
 WALL = hl.wall("ellis")(k=150, x_o=0.002)
 HAND = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch", intent=0.01))
@@ -30,6 +32,7 @@ class Stage:
         self.session.connect(self.frames.append)
         self.session.ready("page")
         self.session.turn()
+        self.go(STEADY)
 
     def go(self, seconds):
         until = self.now + seconds
@@ -103,6 +106,80 @@ def test_a_press_that_comes_late_starts_nothing(board):
     stage.session.ready("page")
     stage.go(0.2)
     assert not stage.is_running
+
+
+def test_a_press_that_waited_for_the_kernel_starts_nothing_and_says_so(board):
+    """A cell ran: heartbeats and a press of Start wait for it, and come in one bunch; the hand has left the handle."""
+    stage = Stage(board)
+    stage.now += 3.2
+    stage.session.turn()
+    for _ in range(5):
+        stage.session.alive("page")
+    stage.press("start").go(0.1)
+    assert not stage.is_running
+    assert CAME_LATE in stage.session.status
+    stage.go(STEADY).press("start")
+    assert stage.is_running
+
+
+@pytest.mark.parametrize(("busy", "age", "runs"), [(0.3, 0.3, True), (0.9, 0.6, False), (GAP + 0.1, 0.0, False)])
+def test_a_start_counts_while_it_is_fresh(board, busy, age, runs):
+    """Busy for less than the silence that ends a view: the age of the press decides, or the gap in what was heard."""
+    stage = Stage(board)
+    stage.now += busy
+    stage.session.alive("page")
+    stage.session.press("start", age)
+    stage.session.turn()
+    assert stage.is_running is runs
+    assert (CAME_LATE in stage.session.status) is not runs
+
+
+def test_a_start_that_a_slow_turn_held_up_counts_no_more(board):
+    stage = Stage(board)
+    stage.session.press("start")
+    stage.now += TIMELY + 0.1
+    stage.go(1 / 60)
+    assert not stage.is_running
+
+
+def test_plain_buttons_that_waited_start_nothing(board):
+    widgets = pytest.importorskip("ipywidgets")
+    stage = Stage(board)
+    front = PlainFront(widgets, stage.session)
+
+    def beat(seconds):
+        for _ in range(round(seconds / 0.5)):
+            stage.now += 0.5
+            front.heart.value += 1
+            stage.session.turn()
+
+    beat(1.0)
+    stage.now += 3.2  # a cell runs
+    front.heart.value += 1
+    front.buttons["start"].click()
+    stage.session.turn()
+    assert not stage.is_running
+    assert "press it again" in front.status.value
+    beat(1.0)
+    front.buttons["start"].click()
+    stage.session.turn()
+    assert stage.is_running
+
+
+def test_sliders_that_moved_before_a_press_hold_for_it(board, monkeypatch):
+    """What a slow turn finds in one bunch is done in its order."""
+    stage, begun, start = Stage(board), [], board.start
+    monkeypatch.setattr(board, "start", lambda program, **given: (begun.append(program.values), start(program, **given)))
+    stage.session.move("k", 35.0)
+    stage.session.press("record")
+    stage.press("start").go(0.1)
+    names = [p.name for p in stage.session.source.program.parameters]
+    assert dict(zip(names, begun[0], strict=True))["k"] == 35
+    stage.session.move("k", 60.0)
+    stage.press("stop")
+    log = stage.session.recorded()
+    assert log.parameters["k"] == 35
+    assert [changed for _, changed in log.changes] == [{"k": 60.0}]
 
 
 def test_a_view_that_hangs_lets_the_board_stop_its_motor(board):
@@ -234,12 +311,13 @@ def test_by_the_clock_on_the_wall_in_its_own_thread():
         def sink(frame):
             frames.append(frame)
             session.alive("page")
+            if not frame.flags["running"]:
+                session.press("start")  # counts once the page was heard for a while
             if frame.flags["motor"] and len(frame.rows) and frame.rows[-1, 2] > 0.5:
                 pushed.set()
 
         session.connect(sink)
         session.ready("page")
-        session.press("start")
         assert pushed.wait(20)
         thread = session._thread
         session.connect(None)
@@ -255,12 +333,13 @@ def test_a_view_that_nobody_keeps_switches_its_motor_off():
 
         def sink(frame):
             session.alive("page")
+            if not frame.flags["running"]:
+                session.press("start")
             if frame.flags["motor"]:
                 on.set()
 
         session.connect(sink)
         session.ready("page")
-        session.press("start")
         assert on.wait(20)
         thread = session._thread
         del view
