@@ -1,4 +1,4 @@
-"""Public checks of lab 09: numbers to compare with, and what a typical slip gives."""
+"""Public checks of lab 09: numbers to compare with, letters of the choices, and what a typical slip gives."""
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
@@ -64,7 +64,7 @@ LAB = Lab(
                     unit="m/s",
                 ),
             ),
-            hint="Write v' = -(b/m)(v - v_inf) with v_inf = -coulomb/b, solve it, and keep the result above zero (np.maximum).",
+            hint="Which speed does the handle head for, and how does its distance from there shrink? What happens on the way?",
         ),
         Exercise(
             "coast_fit",
@@ -88,10 +88,7 @@ LAB = Lab(
                     ],
                 ),
             ),
-            hint=(
-                "Four columns: ones, t, -(integral of x) and -t^2/2; the coefficients of the last two are b/m and coulomb/m. "
-                "The integral starts at 0: np.concatenate([[0], np.cumsum(...)])."
-            ),
+            hint="What stands beside each of the four unknowns? And how large is the integral at the first time?",
         ),
         Exercise(
             "mass_and_friction",
@@ -115,7 +112,7 @@ LAB = Lab(
                 ),
                 Case({"A": 0.3, "rising": 10.0, "falling": 10.0}, {"m": 0.03, "coulomb": 0.0}),
             ),
-            hint="Add the two equations, and friction drops out; take their difference, and the motor does.",
+            hint="Friction changes sides. In which combination of the two slopes does it drop out, and in which the motor?",
         ),
         Exercise(
             "what_95_means",
@@ -125,20 +122,20 @@ LAB = Lab(
             options={
                 "a": "b is inside with a probability of 95 %",
                 "b": "95 % of the samples lie between the ends",
-                "c": "about 95 % of the intervals of many repetitions hold b",
-                "d": "b is known to 5 %",
+                "c": "b is known to 5 %",
+                "d": "about 95 % of the intervals of many repetitions hold b",
             },
             cases=(
                 Case(
                     {},
-                    "c",
+                    "d",
                     slips={
                         "a": (
                             "b does not move about: it is inside this interval or it is not. What is random is the "
                             "interval; look at the figure of 100 sensors again."
                         ),
                         "b": "The interval is about b, in N s/m. The samples are positions, in m.",
-                        "d": "95 % says how often the method holds the truth; the interval's width says how well b is known.",
+                        "c": "95 % says how often the method holds the truth; the interval's width says how well b is known.",
                     },
                 ),
             ),
@@ -178,7 +175,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="Solve b > K T/2 + |B| for K, then ask which b of the interval you dare to put in.",
+            hint="Which b of the interval do you dare to put in? What does B cost, whatever its sign? And where nothing is left?",
         ),
         Exercise(
             "hand_constants",
@@ -204,20 +201,20 @@ LAB = Lab(
                     ],
                 ),
             ),
-            hint="Solve sigma = (b + b_h)/(2 M) for b_h, and omega^2 = k_h/M - sigma^2 for k_h.",
+            hint="What swings, and what slows it: the hand alone, or hand and handle? Whose is the spring?",
         ),
         Exercise(
             "which_window",
             kind="choice",
             points=1,
             asks="which window to choose: a, b, c or d",
-            options={"a": "100 ms", "b": "60 ms", "c": "40 ms", "d": "20 ms"},
+            options={"a": "40 ms", "b": "60 ms", "c": "100 ms", "d": "20 ms"},
             cases=(
                 Case(
                     {},
-                    "c",
+                    "a",
                     slips={
-                        "a": "Narrow is not right: at 100 ms the fit itself says that it does not explain the record.",
+                        "c": "Narrow is not right: at 100 ms the fit itself says that it does not explain the record.",
                         "b": (
                             "The fit explains the record, and is wrong: look where its interval lies, and where k is. What looks "
                             "like noise in the remains is no proof; you know from elsewhere that the reflex began at 40 ms."
@@ -229,7 +226,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="The model holds until the reflex begins. Up to there, more samples tell more.",
+            hint="Until when is the hand what the model says? And up to there, what does a longer record give?",
         ),
         Exercise("discussion", kind="text", least_words=80, asks="your discussion, 80 words or more"),
     ),

@@ -1,4 +1,4 @@
-"""Public checks of lab 10: numbers to compare with, and what a typical slip gives."""
+"""Public checks of lab 10: numbers to compare with, the letter of the choice, and what a typical slip gives."""
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
@@ -52,7 +52,7 @@ LAB = Lab(
                 ),
                 Case({"k_1": 100.0, "k_2": 100.0, "weber": 0.3}, 0.5),
             ),
-            hint="d' = |ln(k_2/k_1)| / ln(1 + weber), and P = NormalDist().cdf(d' / sqrt(2)). Equal walls are a guess, 0.5.",
+            hint="Which level do the walls make, whichever comes first? How many sigmas is that, of two looks?",
         ),
         Exercise(
             "staircase",
@@ -71,7 +71,7 @@ LAB = Lab(
                 ),
                 Case({"answers": [0, 1], "start": 0.5, "factor": 1.25}, (0.5, 0.625)),
             ),
-            hint="Note the level first, then let the answer change it: wrong, times factor; twice right, over factor.",
+            hint="At which level was the very first answer given? And which answers in a row have changed the level by then?",
         ),
         Exercise(
             "converges_to",
@@ -93,7 +93,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="Solve P^down = weight (1 - P^down) for P.",
+            hint="How likely is a step down, and how likely a step up, and how long is each? Where do they balance?",
             rtol=1e-5,
         ),
         Exercise(
@@ -117,7 +117,7 @@ LAB = Lab(
                 ),
                 Case({"threshold": 0.3, "levels": [0.3], "right": [1]}, -0.274108039),
             ),
-            hint="P for each level, then np.log(P) where right is 1 and np.log(1 - P) where it is 0, added up.",
+            hint="How likely was each answer, a right one and a wrong one? And what does a logarithm make of a product?",
         ),
         Exercise(
             "at_d_prime_1",
@@ -152,19 +152,19 @@ LAB = Lab(
             asks="what 82 % say about the hand: a, b, c or d",
             options={
                 "a": "it is a sharp one",
-                "b": "nothing yet: the order has to be drawn",
+                "b": "nothing yet: a lapse rate is missing",
                 "c": "it got better by practice",
-                "d": "nothing yet: a lapse rate is missing",
+                "d": "nothing yet: the order has to be drawn",
             },
             cases=(
                 Case(
                     {},
-                    "b",
+                    "d",
                     slips={
                         "a": "Look at the three lines above: the same hand, at the same difference, is right in 59 % once the "
                         "order is drawn. A habit of saying 'second' did the rest.",
                         "c": "Nobody practised here: the simulated observer is the same in every trial.",
-                        "d": "Lapses make right answers fewer, not more.",
+                        "b": "Lapses make right answers fewer, not more.",
                     },
                 ),
             ),

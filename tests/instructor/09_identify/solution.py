@@ -27,7 +27,7 @@ def mass_and_friction(A, rising, falling):
     return {"m": m, "coulomb": m * (rising - falling) / 2}
 
 
-what_95_means = "c"
+what_95_means = "d"
 
 
 def promised_stiffness(b_low, b_high, T, B):
@@ -40,7 +40,7 @@ def hand_constants(M, sigma, omega, m, b):
     return {"m": M - m, "b": 2 * M * sigma - b, "k": M * (omega**2 + sigma**2)}
 
 
-which_window = "c"
+which_window = "a"
 
 discussion = (
     "One interval of 95 % in twenty misses, so among seven of them one outside happens in about a third of all labs and is no "

@@ -45,7 +45,7 @@ def at_d_prime_1(level, part):
     return level / (2**0.5 * NormalDist().inv_cdf(part))
 
 
-standard_first = "b"
+standard_first = "d"
 
 
 def steps_between(k_low, k_high, weber):
