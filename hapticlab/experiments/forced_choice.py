@@ -100,6 +100,8 @@ class ForcedChoice:
 
     def plot(self):
         """Draw the level of each trial, filled where the answer was right, and the threshold."""
+        if not self.trials:
+            raise AnalysisError(f"no trial was answered, so there is nothing to plot; it ended early: {self.stopped}")
         with house_style():
             figure = new_figure(height=3.6)
             axes = figure.subplots()

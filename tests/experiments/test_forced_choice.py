@@ -107,6 +107,12 @@ def test_who_feels_nothing_keeps_what_was_answered():
     assert len(found.trials) == 2 and found.estimate is None and "nothing was felt" in str(found)
 
 
+def test_no_answers_are_not_plotted():
+    nothing = ForcedChoice("stiffness", "k", "N/m", 200.0, (), None, "a staircase", "somebody", "a paddle", 0, "felt nothing")
+    with pytest.raises(AnalysisError, match="nothing to plot; it ended early: felt nothing"):
+        nothing.plot()
+
+
 def test_who_is_always_right_comes_to_an_end():
     found = forced_choice(PADDLE, QUICK, SimulatedObserver(weber=1e-9), UpDown(start=0.5, factor=2, low=0.4))
     assert len(found.trials) == 22 and found.estimate is None and "lowest level" in found.stopped
