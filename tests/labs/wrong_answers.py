@@ -81,6 +81,7 @@ WRONG = {
         ("held_work", lambda k, x, D: k * (x + D / 2) * D),
         ("period_leak", lambda k, D: k * D**2),
         ("bounce_gain", lambda k, m, T: np.pi * T * np.sqrt(k / m)),
+        ("bounce_gain", lambda k, m, T: 100 * np.pi / 2 * T * np.sqrt(k / m)),
         ("energy_generated", lambda x, k: -np.sum(k * np.maximum(x, 0)[1:] * np.diff(x))),
         ("energy_generated", lambda x, k: np.sum(k * np.maximum(x, 0)[:-1] * np.diff(x))),
         ("two_walls", hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n) - x_o)))),
@@ -90,6 +91,7 @@ WRONG = {
     "03": [
         ("stability_estimate", lambda b, T, delay: b / (T + delay)),
         ("growth_per_sample", lambda m, k, T: 1 + k * T**2 / (2 * m)),
+        ("growth_per_sample", lambda m, k, T: 1 + k * T**2 / (4 * m)),
         ("late_wall", hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n - 1) - x_o)))),
         ("chatter_frequency", crossings),
         ("threshold_speed", lambda k, b, T, f_c: 4 * f_c / (np.pi * (k * T - b))),
@@ -99,6 +101,7 @@ WRONG = {
     "04": [
         ("half_sample_wall", hl.wall()),
         ("half_sample_wall", hl.Scene(force=hl.when(x(n) >= x_o, k * (2 * x(n) - x(n - 1) - x_o)))),
+        ("half_sample_wall", hl.Scene(force=hl.when(x(n) > x_o, k * (1.5 * x(n) - 0.5 * x(n - 1) - x_o)))),
         ("ellis_wall", hl.Scene(force=hl.when(x(n) >= x_o, k * (1.5 * x(n) - 0.5 * x(n - 1) - x_o)))),
         ("nyquist_damping", lambda taps, k, T: k * T * np.sum(taps) / 2),
         ("stiffest_passive", lambda b, b_added, B, T: max(0, 2 * (b + b_added + B) / T)),

@@ -5,7 +5,7 @@ import numpy as np
 import hapticlab as hl
 from hapticlab import n, x
 
-prediction = 16
+prediction = "16 %"  # a text is noted as well
 
 
 def held_work(k, x, D):

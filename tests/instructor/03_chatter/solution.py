@@ -5,7 +5,7 @@ import numpy as np
 import hapticlab as hl
 from hapticlab import n, x
 
-prediction = 2200
+prediction = "about 2200 N/m"  # a text is noted as well
 
 
 def stability_estimate(b, T, delay):

@@ -5,7 +5,7 @@ import numpy as np
 import hapticlab as hl
 from hapticlab import n, x
 
-prediction = 0
+prediction = "nothing"  # a text is noted as well
 
 k, x_o = hl.parameters("k x_o", units="N/m m")
 half_sample_wall = hl.Scene(force=hl.when(x(n) >= x_o, k * (1.5 * (x(n) - x_o) - 0.5 * (x(n - 1) - x_o))))
