@@ -1,4 +1,4 @@
-"""Public checks of lab 00: numbers and the sentences that teach; no answers."""
+"""Public checks of lab 00: numbers, the letter of the choice, and the sentences that teach; no formulas of an answer."""
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
@@ -51,20 +51,20 @@ LAB = Lab(
             asks='"a", "b" or "c"',
             options={
                 "a": "to the right, deeper into the wall",
-                "b": "to the left, out of the wall",
-                "c": "that depends on which way the handle moves",
+                "b": "that depends on which way the handle moves",
+                "c": "to the left, out of the wall",
             },
             cases=(
                 Case(
                     {},
-                    "b",
+                    "c",
                     slips={
                         "a": "F is the force on the wall, which points into it; the wall, and so the motor, pushes back.",
-                        "c": "A spring does not ask for the velocity: its force follows from the position alone.",
+                        "b": "A spring does not ask for the velocity: its force follows from the position alone.",
                     },
                 ),
             ),
-            hint="F_e acts on the environment; the motor stands for the environment and applies F_m = -F_e (Fig. 23.5)",
+            hint="Which of the two does F push, the wall or the handle? And whom does the motor stand for (Fig. 23.5)?",
         ),
         Exercise(
             "sign_evidence",
@@ -92,7 +92,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="np.where(on == 1, 1, -1) makes e of the coins; then two sums over the work asked*moved",
+            hint="What is the work of one interval, and with which sign does it count? How large would such a sum be by chance?",
         ),
         Exercise(
             "force_full",
@@ -113,7 +113,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="np.polyfit(duty**2, force, 1) returns the slope first",
+            hint="Against which variable do the readings lie on a line? Which of its two numbers is asked for, in newtons?",
         ),
         Exercise(
             "felt_stiffness",

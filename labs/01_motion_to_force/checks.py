@@ -1,4 +1,4 @@
-"""Public checks of lab 01: numbers and the sentences that teach; no answers."""
+"""Public checks of lab 01: numbers, the letter of the choice, and the sentences that teach; no formulas of an answer."""
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
@@ -45,25 +45,25 @@ LAB = Lab(
                     slips={(0.0, -0.7, -1.6, -0.6): TURNED, (0.0, -0.3, -0.4, 0.6): DAMPER_SIGN},
                 ),
             ),
-            hint="the formula of spring_damper_force, in the symbols k, b, x(n), v(n)",
+            hint="What did spring_damper_force say? Which of k, b, x(n), v(n) stands for which of its arguments?",
         ),
         Exercise(
             "thousand",
             kind="choice",
             points=1,
             asks='"a", "b" or "c"',
-            options={"a": "from metres to millimetres", "b": "1/T", "c": "from newtons to duty"},
+            options={"a": "1/T", "b": "from metres to millimetres", "c": "from newtons to duty"},
             cases=(
                 Case(
                     {},
-                    "b",
+                    "a",
                     slips={
-                        "a": "Everything inside is in SI; only plots show millimetres. Compile with T=5e-4 and look again.",
+                        "b": "Everything inside is in SI; only plots show millimetres. Compile with T=5e-4 and look again.",
                         "c": "The board makes a duty of F, after the program. Compile with T=5e-4 and look again.",
                     },
                 ),
             ),
-            hint="print(hl.compile(damper(b=0.5), T=5e-4)) and compare",
+            hint="Compile the same scene with T=5e-4 and compare: what became of the 1000?",
         ),
         Exercise(
             "spring_and_damper",
@@ -87,7 +87,7 @@ LAB = Lab(
                     ),
                 ),
             ),
-            hint="a matrix with a row a sample and a column each for x and v; np.linalg.lstsq returns the coefficients first",
+            hint="Each sample is one equation for k and b: what stands beside k in it, and what beside b?",
         ),
         Exercise(
             "count_step",
@@ -105,7 +105,7 @@ LAB = Lab(
                 Case({"m": 0.05, "metres_per_count": 1e-4, "T": 2e-3}, 1.25, unit="N",
                      slips={0.0025: "A second difference is divided by T squared; by T it would be a velocity."}),
             ),
-            hint="only x(n) has moved by one count; x(n-1) and x(n-2) are as before",
+            hint="Which of x(n), x(n-1) and x(n-2) has moved at that sample, and which has not yet?",
         ),
         Exercise(
             "mass_on_coupler",
@@ -144,7 +144,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="write F_c once, in x(t), v(t), z and z.diff(t), and use it twice: as force=, and in the equation of motion",
+            hint="What does the hand feel, and what the mass? How often does F_c appear, then, and which way does it pull?",
         ),
         Exercise(
             "resonance",
@@ -163,7 +163,7 @@ LAB = Lab(
                 ),
                 Case({"m": 0.05, "K": 300.0, "b_c": 1.5}, {"f": 12.328088881, "zeta": 0.193649167}),
             ),
-            hint="m z'' + b_c z' + K z = 0, beside z'' + 2 zeta w z' + w^2 z = 0",
+            hint="What does Newton's law of the mass become with x = 0? And how does a first course write the same equation?",
         ),
         Exercise(
             "discussion",

@@ -1,4 +1,4 @@
-"""Public checks of lab 06: numbers and the sentences that teach; no answers."""
+"""Public checks of lab 06: numbers, the letter of the choice, and the sentences that teach; no formulas of an answer."""
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
@@ -37,7 +37,7 @@ LAB = Lab(
                     slips=(({"z": 0.0005}, OLD),),
                 ),
             ),
-            hint="first the force from the old state, then the velocity, then the position: three lines, in that order",
+            hint="Which z, w make the force? And which w carries the position: the one before the step, or the one after it?",
         ),
         Exercise(
             "pendulum",
@@ -90,7 +90,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="(z + l*sp.sin(theta)).diff(t) is the bob's velocity along the rail; SymPy does the chain rule",
+            hint="How fast is the bob along the rail, and how fast up? What is each mass's kinetic energy? How high is the bob?",
         ),
         Exercise(
             "coupler_stiffness",
@@ -108,7 +108,7 @@ LAB = Lab(
                 Case({"b": 2.0, "T": 2e-3, "b_c": 0.5}, 1500.0, unit="N/m",
                      slips={2000.0: "The coupler's own damper must be paid for, too: K T/2 + b_c."}),
             ),
-            hint="solve b = K T/2 + b_c for K",
+            hint="What of b is left for the spring, once the coupler's damper is paid? What does each N/m cost?",
         ),
         Exercise(
             "felt_wall",
@@ -125,7 +125,7 @@ LAB = Lab(
                 ),
                 Case({"K": 300.0, "k": 100.0}, 75.0, unit="N/m"),
             ),
-            hint="the same force F stretches both: x = F/K + F/k",
+            hint="What do coupler and wall have in common, the force or the deflection? And what adds up?",
         ),
         Exercise(
             "swing_frequency",
@@ -151,23 +151,23 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="two equations for the amplitudes of z and theta; they have a solution other than zero only where their "
-            "determinant vanishes: a quadratic equation in omega squared. Or np.linalg.eigvals of M^-1 K",
+            hint="When do two homogeneous equations for two amplitudes have a solution other than zero? Which of the two "
+            "frequencies goes to sqrt(g/l) for a stiff coupler?",
         ),
         Exercise(
             "who_pays",
             kind="choice",
             points=1,
             asks='"a", "b" or "c"',
-            options={"a": "the hand's mass", "b": "the hand's damping", "c": "the hand's reaction"},
+            options={"a": "the hand's mass", "b": "the hand's reaction", "c": "the hand's damping"},
             cases=(
                 Case(
                     {},
-                    "b",
+                    "c",
                     slips={
                         "a": "Mass stores energy and gives it back; it pays for none. Try a hand that is only mass, "
                         "hl.Hand(m=0.02), at 640 N/m.",
-                        "c": "This hand is a mass, a spring and a damper: it does not react. And a real one reacts too late "
+                        "b": "This hand is a mass, a spring and a damper: it does not react. And a real one reacts too late "
                         "for a rattle of more than 10 Hz.",
                     },
                 ),

@@ -3,7 +3,7 @@
 import numpy as np
 
 prediction = 1.8
-which_way = "b"
+which_way = "c"
 
 
 def handle_position(counts, left, right, travel):

@@ -12,7 +12,7 @@ z = hl.coordinate("z", unit="m", initial=x(n))
 K, b_c = hl.parameters("K b_c", units="N/m N*s/m")
 
 prediction = 4.5
-thousand = "b"
+thousand = "a"
 
 
 def spring_damper_force(x, v, k, b):

@@ -13,7 +13,7 @@ K, b_c = hl.parameters("K b_c", units="N/m N*s/m")
 F_c = hl.virtual_coupler(z, K=K, b=b_c)
 
 prediction = 1.64
-who_pays = "b"
+who_pays = "c"
 
 
 def euler_step(z, w, x, v, m, K, b_c, T):
