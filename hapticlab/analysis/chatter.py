@@ -27,6 +27,8 @@ FOLLOWS = 0.02
 RESTS = 0.01
 #: a cycle repeats itself where it comes back within this part of its amplitude; it is looked for up to so many samples
 REPEATS, LONGEST_CYCLE = 1e-4, 2000
+#: a swing over so many counts of the encoder or fewer: its unevenness may be what is left of a decay
+COUNTS = 4
 
 
 def chatter(log, driven=None):
@@ -113,7 +115,7 @@ def _found(log, driven):
     if len(crossings) > 2 * CYCLES:
         ratio = math.log(_strength(x[-quarter:]) / max(_strength(x[quarter_before]), least * 1e-3))
         uneven = _irregularity(y)
-        locked = abs(ratio) < max(LOCK, 2 * uneven)
+        locked = abs(ratio) < LOCK or (abs(ratio) < 2 * uneven and not _sinks_to_counts(y, log.x[-half:]))
         state = "chatter" if locked else "growing" if ratio > 0 else "decaying"
     else:
         state, ratio, locked, uneven = *_compare_swings(x, quarter), False, math.nan
@@ -133,6 +135,18 @@ def _amplitudes(x, y, cycles):
     if cycles > 4 * CYCLES:
         return [_strength(y[i * size : (i + 1) * size]) for i in range(4)]
     return _swings(x)[1]
+
+
+def _sinks_to_counts(y, sensed):
+    """Tell whether a swing of a few encoder counts has lost a third: a decay, perhaps onto a smaller cycle.
+
+    Four windows make a decay that has just ended look as uneven as an irregular cycle.
+    """
+    size = len(y) // 4
+    first, second, third, fourth = (_strength(y[i * size : (i + 1) * size]) for i in range(4))
+    steps = np.diff(np.unique(sensed))
+    few = len(steps) > 0 and round(steps.sum() / steps.min()) <= COUNTS
+    return few and max(third, fourth) < 2 / 3 * max(first, second)
 
 
 def cycle_length(x, amplitude):

@@ -95,6 +95,22 @@ def test_an_irregular_limit_cycle_is_told_from_growth():
     assert chatter(record(uneven * np.exp(0.3 * t) * carrier)).state == "growing"
 
 
+def test_a_decay_onto_a_cycle_of_a_few_counts_is_not_sustained():
+    """Between two and four counts a decay onto a smaller cycle is not sustained; that cycle itself is."""
+    count, t = 13e-6, np.arange(2000) * T
+    carrier = np.sin(2 * np.pi * 36 * t)
+
+    def found(size):
+        return chatter(record(np.round(size * carrier / count) * count, x_true=size * carrier))
+
+    falls = np.interp(t, [1.0, 1.12, 1.25, 1.5, 1.75, 2.0], [20e-6, 16e-6, 8e-6, 8e-6, 9e-6, 8.5e-6])
+    early = found(falls)
+    assert (early.state, early.locked, early.levels_off) == ("decaying", False, True)
+    assert "it may end in a cycle" in str(early)
+    assert found(8e-6).state == "chatter"
+    assert found(100 * falls).state == "chatter"  # of many counts an uneven swing is judged as ever
+
+
 def test_contacts_are_counted_from_the_force():
     x = oscillation(f=10.0)
     F = np.where(np.arange(len(x)) % 50 < 20, 1.0, 0.0)
