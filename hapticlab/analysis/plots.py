@@ -6,6 +6,8 @@ from ..drawing import FRAME, SHOWN, STYLES, axis_label, colour_map, house_style,
 from ..errors import AnalysisError
 from ..records import check_record
 
+#: forces, which a board holds from one sample to the next
+HELD = ("F", "F_applied")
 LIMIT_DASHES = [(0, (1, 1)), (0, (6, 2)), (0, (4, 1, 1, 1))]
 NONE = "#e4e4e4"
 #: two axes with at most this many values of one are drawn as lines, else as a map
@@ -20,7 +22,7 @@ def plot(log, *names):
     log : Telemetry
     *names : str
         Of what was recorded: ``"x"``, ``"v"``, ``"F"``, a watched state; ``"x"`` and ``"F"`` by default. Lengths are shown
-        in millimetres.
+        in millimetres. A force is drawn as it is held: in steps, one a period.
 
     Returns
     -------
@@ -54,7 +56,8 @@ def plot(log, *names):
         for axes, name in zip(rows, names, strict=True):
             scale, label = axis_label(name, log.units.get(name, "1"))
             thin = {"linewidth": 0.6} if len(log.t) > 5000 else {}  # thousands of cycles would be a black bar
-            axes.plot(log.t, scale * np.asarray(getattr(log, name)), **STYLES[0], **thin)
+            held = {"drawstyle": "steps-post"} if name in HELD and log.every == 1 else {}
+            axes.plot(log.t, scale * np.asarray(getattr(log, name)), **STYLES[0], **thin, **held)
             axes.set_ylabel(label)
         rows[-1].set_xlabel("time t [s]")
         if log.fault:

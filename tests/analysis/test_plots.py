@@ -1,5 +1,7 @@
 """Figures hold the numbers they were given, in the units their axes say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -20,6 +22,13 @@ def record():
     return Telemetry(
         t=t, x=2e-3 * np.sin(60 * t), v=0.12 * np.cos(60 * t), F=3 * t, T=1e-3, channels={"z": t}, units={"z": "m"}
     )
+
+
+def test_a_force_is_drawn_as_it_is_held():
+    position, force = plot(record()).axes
+    assert (position.lines[0].get_drawstyle(), force.lines[0].get_drawstyle()) == ("default", "steps-post")
+    thinned = replace(record(), every=4)  # what was held between its rows is not known
+    assert plot(thinned, "F").axes[0].lines[0].get_drawstyle() == "default"
 
 
 def swept(**axes):
