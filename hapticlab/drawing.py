@@ -208,7 +208,9 @@ def _span(axes, side):
     if words:
         return f"{label or 'cases'}, {', '.join(words)}"
     ends = [end for line in axes.lines if line.get_transform() == axes.transData for end in _ends(line, side)]
-    low, high = (min(ends), max(ends)) if side == "x" and ends else sorted(getattr(axes, f"get_{side}lim")())
+    low, high = sorted(getattr(axes, f"get_{side}lim")())
+    if side == "x" and ends:
+        low, high = max(low, min(ends)), min(high, max(ends))
     return f"{label or 'values'}, {low:.3g} to {high:.3g}"
 
 
@@ -225,7 +227,8 @@ def _course(axes, line):
     if line.get_transform() != axes.transData:  # drawn right across: a level, or a place
         side, at = ("y", ys[0]) if np.ptp(ys) == 0 else ("x", xs[0])
         return "" if guide else f"{name}: {side} at {at:.3g}"
-    known = np.isfinite(xs) & np.isfinite(ys)
+    left, right = sorted(axes.get_xlim())
+    known = np.isfinite(xs) & np.isfinite(ys) & (left <= xs) & (xs <= right)
     xs, ys = xs[known], np.where(abs(ys[known]) < 1e-9 * np.ptp(axes.get_ylim()), 0.0, ys[known])
     alone = sum(not _plain(other.get_label()).startswith("_") for other in axes.lines) == 0 and len(axes.lines) <= 2
     if not len(ys) or (guide and not alone):

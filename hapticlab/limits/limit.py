@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from ..errors import AnalysisError
 from ..scene.taps import TAPS
+from .plots import plot_limit
 
 #: a limit's polynomials have a degree for each period of delay; past this their roots lose their digits
 MOST_PERIODS = 200
@@ -46,6 +47,10 @@ class Limit:
         at = "" if self.frequency is None else f" at {self.frequency:.4g} Hz"
         notes = "".join(f"\n  {a}" for a in self.assumptions)
         return f"{self.K:.6g} N/m{at}: {self.kind}; {self.reason}{notes}"
+
+    def plot(self):
+        """Return a figure: which stiffnesses the limit promises and which not, and what it leaves out."""
+        return plot_limit(self)
 
     def __repr__(self):
         at = "None" if self.frequency is None else f"{self.frequency:.6g} Hz"

@@ -1,8 +1,41 @@
-"""Figures of the limits: damping asked for by frequency, disks of passive hands, bounds side by side, couplers."""
+"""Figures of the limits: one limit, bounds side by side, damping asked for by frequency, disks of passive hands, couplers."""
+
+import textwrap
 
 import numpy as np
 
 from ..drawing import COLD, FRAME, STYLES, WARM, house_style, new_figure, style_of
+
+
+def plot_limit(limit):
+    """Draw the stiffnesses that a limit promises, filled, and those of which it promises nothing, hatched.
+
+    Parameters
+    ----------
+    limit : Limit
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    K, told = limit.K, textwrap.wrap(str(limit).splitlines()[0], 84)
+    notes = [line for note in limit.assumptions for line in textwrap.wrap(note, 84)]
+    most = 2 * K if 0 < K < np.inf else 1000.0
+    with house_style():
+        figure = new_figure(height=1.5 + 0.2 * (len(told) + len(notes)))
+        axes = figure.subplots()
+        axes.barh(0, min(K, most), color=COLD, label=f"promised: up to {K:.4g} N/m" if K > 0 else "promised: nothing")
+        if np.isfinite(K):
+            beyond = {"color": "white", "hatch": "///", "edgecolor": WARM}
+            axes.barh(0, most - K, left=K, **beyond, label="beyond: no such promise")
+        axes.set(xlim=(0, most), yticks=[], xlabel="stiffness K [N/m]")
+        axes.set_title("\n".join(told), fontsize="small")
+        axes.grid(False)
+        figure.supxlabel("\n".join(notes), fontsize="small")
+        figure.legend(loc="outside upper center", ncols=2, **FRAME)
+        hatched = f", hatched from there to {most:.4g} N/m" if np.isfinite(K) else ""
+        figure.alt = f"{limit}\nA bar of stiffness, filled up to {min(K, most):.4g} N/m{hatched}."
+    return figure
 
 
 def plot_passivity_margin(margin):
@@ -50,7 +83,7 @@ def plot_nyquist_disk(disk):
     theta = np.linspace(0.02, np.pi, 1500)
     turn = np.exp(1j * np.linspace(0, 2 * np.pi, 200))
     with house_style(), np.errstate(divide="ignore", invalid="ignore"):  # a law that gives no force here has no -1/H
-        figure = new_figure(height=5.0, width=9.6)
+        figure = new_figure(height=5.8, width=9.6)
         left, right = figure.subplots(1, 2)
         unit = disk.law.T / disk.b
         for number, at in enumerate(np.pi * np.array([0.2, 0.3, 0.5, 1.0])):
@@ -61,9 +94,9 @@ def plot_nyquist_disk(disk):
                 left.plot(point.real, point.imag, marker="o", color=style["color"], markersize=7)
         locus = -1 / disk.law.at(theta) / unit
         shown = np.abs(locus) < 1e3
-        left.plot(locus.real[shown], locus.imag[shown], color="#8a8a8a", linewidth=1.0, label="-1/H; dots: there")
+        left.plot(locus.real[shown], locus.imag[shown], color="#8a8a8a", linewidth=1.0, label="-1/H")
         left.set(xlabel="Re G [T/b]", ylabel="Im G [T/b]", xlim=(-1.7, 1.1), ylim=(-1.8, 1.0), aspect="equal")
-        left.set_title("device in any passive hand: a disk each frequency", fontsize="small")
+        left.set_title("passive hands: a disk and a dot on -1/H\nfor each frequency", fontsize="medium")
         mapped = disk.mapped(theta)
         right.plot(turn.real, turn.imag, label="unit circle", **STYLES[0])
         right.plot(mapped.real, mapped.imag, label="the law, mapped", **STYLES[1])
@@ -75,9 +108,9 @@ def plot_nyquist_disk(disk):
         else:  # in words only
             right.plot([], [], linestyle="", label=f"worst: |M| {disk.size}, off the picture")
         right.set(xlabel="Re M", ylabel="Im M", xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
-        right.set_title(f"{disk.law.name}, b = {disk.b:g} N s/m", fontsize="small")
+        right.set_title(f"{disk.law.name},\nb = {disk.b:g} N s/m", fontsize="medium")
         for axes in (left, right):
-            axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2)
     return figure
 
 

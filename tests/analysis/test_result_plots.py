@@ -17,7 +17,7 @@ pytest.importorskip("matplotlib")
 
 #: results that are a number or two, a text, or the parts of something that is drawn elsewhere
 WITHOUT = {
-    "Limit", "Order", "PassivityIndices", "ForceError", "SensorFloor", "DigitalGains", "DeadbeatGains", "Requirements",
+    "Order", "PassivityIndices", "ForceError", "SensorFloor", "DigitalGains", "DeadbeatGains", "Requirements",
     "Report", "CheckResult", "Settings", "Contacts",
 }  # fmt: skip
 #: what is run, felt or shown, and is no result
@@ -70,6 +70,16 @@ def test_chatter_is_drawn_with_its_amplitude_and_frequency():
     assert spectrum.get_xdata()[peak] == pytest.approx(20.0, abs=0.125)  # eight points to a bin of 1 Hz
     assert spectrum.get_ydata()[peak] == pytest.approx(1.0, rel=1e-3)  # leakage of the window
     assert line(below, "found: 20 Hz").get_xdata()[0] == pytest.approx(20.0, rel=1e-4)
+
+
+def test_a_limit_is_drawn_with_what_it_promises():
+    found = hl.passivity_limit(b=0.1, T=1e-3)
+    figure = found.plot()
+    promised, beyond = (bars.patches[0] for bars in figure.axes[0].containers)
+    assert (promised.get_width(), beyond.get_x()) == pytest.approx((200.0, 200.0))  # 2 b/T
+    assert figure.alt.startswith(str(found)) and all(note in figure.get_supxlabel() for note in found.assumptions)
+    none = hl.passivity_limit(b=0.1, T=1e-3, B=1.0).plot()
+    assert none.legends[0].get_texts()[0].get_text() == "promised: nothing"
 
 
 def test_energy_is_drawn_and_what_was_given_is_hatched():
@@ -151,6 +161,7 @@ def test_figures_in_words():
     said = describe(hl.chatter(oscillation()).plot())
     assert "Panel 1 of 2" in said and "Handle position x [mm] over time t [s], 0 to 2" in said
     assert "found: 20 Hz: x at 20" in said
+    assert "Amplitude [mm] over frequency [Hz], 0 to 100:" in said  # as the axis ends, not the spectrum at 500 Hz
     ledger = describe(hl.bounds(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)).plot())
     assert "Largest stiffness K [N/m]" in ledger and "Colgate, Schenkel 200" in ledger
     drawing = describe(hl.picture("detents"))
