@@ -42,7 +42,10 @@ def plot_work_precision(tradeoff, targets=None, asked=None):
             axes.set_visible(False)
         for axes in panels[::across]:
             axes.set_ylabel("greatest error of the force [% of its peak]")
-        figure.suptitle(tradeoff.name)
+        if len(targets) == 1:
+            panels[0].set_title(f"{tradeoff.name}, on {targets[0]}")
+        else:
+            figure.suptitle(tradeoff.name)
         _legend(figure, panels[0], methods, {row.hold for rows in shown.values() for row in rows})
     return figure
 
@@ -55,7 +58,7 @@ def _panel(axes, target, rows, methods, asked):
         for row in own:
             allowed = not asked.excess(row).keys() - {"tolerance", "load"} and not row.status.startswith("does not fit")
             axes.plot(
-                *_places([row]), MARKERS[row.hold], color=style["color"], markersize=5 if row in best else 3.2, zorder=3,
+                *_places([row]), MARKERS[row.hold], color=style["color"], markersize=6, zorder=3,
                 markerfacecolor=style["color"] if allowed else "white", markeredgewidth=0.8,
                 markeredgecolor="black" if row.precision == "float64" else style["color"],
             )  # fmt: skip
@@ -103,9 +106,9 @@ def _legend(figure, axes, methods, holds):
         return axes.plot([], [], label=label, **style)[0]
 
     signs = [sign(method, **style_of(number)) for number, method in enumerate(methods)]
-    grey = {"color": "#999999", "linestyle": ""}
+    grey = {"color": "#8a8a8a", "linestyle": "", "markersize": 6}
     signs += [sign(f"hold {hold}", marker=mark, **grey) for hold, mark in MARKERS.items() if hold in holds]
-    signs += [sign("hollow: not allowed", marker="D", markerfacecolor="white", **grey)]
-    signs += [sign("black edge: float64", marker="D", markeredgecolor="black", **grey)]
+    signs += [sign("hollow: not allowed", marker="o", markerfacecolor="white", **grey)]
+    signs += [sign("black edge: float64", marker="o", markeredgecolor="black", **grey)]
     signs += [sign("asked for", color="black", linestyle=":")]
-    figure.legend(handles=signs, loc="outside lower center", ncols=3 if len(figure.axes) == 1 else 4, fontsize="small", **FRAME)
+    figure.legend(handles=signs, loc="outside lower center", ncols=2 if len(figure.axes) == 1 else 4, **FRAME)

@@ -205,6 +205,7 @@ def test_it_prints_draws_and_writes_its_table(found, tmp_path):
     with open(found.table.to_csv(tmp_path / "rows.csv"), newline="") as file:
         rows = list(csv.DictReader(file))
     assert float(rows[0]["err_max"]) == found.table[0].err_max and len(rows) == len(found.table)
+    assert found.plot("uno").axes[0].get_title() == f"{found.name}, on uno"
     pc, uno = found.plot().axes
     assert (pc.get_xscale(), pc.get_yscale(), uno.get_title()) == ("log", "log", "uno")
     dashed = [line.get_ydata()[0] for line in uno.lines if line.get_linestyle() == "--" and len(set(line.get_ydata())) == 1]
