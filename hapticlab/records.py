@@ -151,6 +151,8 @@ class Telemetry:
             return channels[name]
         if name.startswith("__"):
             raise AttributeError(name)
+        if name == "plot":
+            raise AttributeError("a record has no .plot(); draw it: hl.plot(log), or what you name, hl.plot(log, 'x', 'v')")
         recorded = ", ".join(("t", "x", "v", "F", *channels))
         raise AttributeError(
             f"{name!r} was not recorded; this log has {recorded}. Watch it: hl.Scene(..., watch=[{name}])"

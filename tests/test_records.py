@@ -74,6 +74,8 @@ def test_csv_has_units_and_every_digit(tmp_path):
 def test_missing_channel_says_what_was_recorded():
     with pytest.raises(AttributeError, match=r"'y' was not recorded; this log has t, x, v, F, z, x_true\. Watch it"):
         _ = make_log().y
+    with pytest.raises(AttributeError, match=r"draw it: hl\.plot\(log\)"):
+        make_log().plot()
     assert "z" in dir(make_log()) and not hasattr(make_log(), "w")
 
 

@@ -63,7 +63,9 @@ def _drawn(given):
         return given.figure, ""
     if isinstance(given, Telemetry):
         return plot(given), str(given)
-    if not callable(getattr(given, "plot", None)):
+    if not callable(getattr(type(given), "plot", None)):
+        if type(given).__module__.startswith("hapticlab."):
+            raise AnalysisError(f"hl.show of a {type(given).__name__}; that is words and numbers, without a picture: print it")
         raise AnalysisError(
             f"hl.show of a {type(given).__name__}; needs a figure, as hl.plot(log) makes one, or a result that has .plot()"
         )

@@ -91,5 +91,7 @@ def test_a_result_and_a_record_plot_and_describe_themselves(capsys):
 def test_what_is_no_figure_and_no_text_is_refused():
     with pytest.raises(hl.AnalysisError, match="hl.show of a int; needs a figure"):
         hl.show(3)
+    with pytest.raises(hl.AnalysisError, match="hl.show of a Requirements; that is words and numbers"):
+        hl.show(hl.requires(hl.wall()(k=300)))
     with pytest.raises(hl.AnalysisError, match="alt = ' '; needs what there is to see"):
         hl.show(new_figure(height=1), alt=" ")
