@@ -8,8 +8,8 @@ import numpy as np
 from ..errors import EngineMissingError
 from .frame import COLUMNS, Frame
 
-#: an SVG is drawn so often a second at most
-RATE = 30.0
+#: an SVG is drawn so often a second at most: of frames that come at 50 to 60 a second, every other one
+RATE = 40.0
 #: in pixels
 WIDTH, HEIGHT, GRAPH = 640, 220, 130
 #: time on view in the traces [s]
