@@ -2,9 +2,11 @@
 
 To the browser: what changed of the picture's items, the status, the flags and the values as JSON; beside it one buffer,
 float64 dispatch [s], scene time [s], number of rows; then float32 the rows and every point of the picture. From the
-browser: four float64, the view's number, what it says (``KINDS``), and up to two values.
+browser: four float64, the view's number, what it says (``KINDS``), and up to two values. With "alive" and "press" the
+second is the page's clock [s], so that a press that waited somewhere is known by its age.
 """
 
+import math
 import struct
 import time
 from functools import cache
@@ -18,9 +20,11 @@ from .session import PRESSES
 
 KINDS = ("ready", "alive", "gone", "intend", "hold", "move", "press")
 BROWSER = Path(__file__).parent / "browser"
-SCRIPTS = ("playback.js", "picture.js", "traces.js", "view.js")
+SCRIPTS = ("playback.js", "picture.js", "traces.js", "sliders.js", "hand.js", "view.js")
 #: time on view in the traces [s]
 SECONDS = 4.0
+#: two clocks may drift apart so fast, and an age of a press be wrong by that of a heartbeat at most [s/s]
+DRIFT = 0.01
 
 
 def front(session):
@@ -50,6 +54,8 @@ def front(session):
 def about(session):
     """Return what a view has to know of a session before its first frame."""
     told = session.description()
+    if told["kind"] == "board":
+        told["help"] += " So it does where nobody sees this browser tab for 3 s."
     return {**told, "presses": list(PRESSES), "seconds": SECONDS * min(told["speed"], 1.0)}
 
 
@@ -67,12 +73,14 @@ class Speaker:
         """Send a frame."""
         shape, points = take_apart(frame.picture)
         self._status = frame.status or self._status
-        flags = {name: on for name, on in frame.flags.items() if name != "values"}
+        flags = {name: on for name, on in frame.flags.items() if name not in ("values", "wanted")}
         said = {"shape": shape, "flags": flags, "status": self._status}
         before, self._said = self._said, said
         news = {name: value for name, value in said.items() if value != before.get(name)}
         # with every frame, so that a slider whose value was refused goes back
         news["values"] = frame.flags.get("values", {})
+        if "wanted" in frame.flags:  # a view that just opened, or another one, begins there
+            news["wanted"] = frame.flags["wanted"]
         self._send(news, buffers=[pack(time.perf_counter(), frame, points)])
 
 
@@ -83,7 +91,7 @@ class Listener:
     """
 
     def __init__(self, session):
-        self._session, self._pages = session, {}
+        self._session, self._pages, self._ages = session, {}, {}
         self._board = session.description()["kind"] == "board"
 
     def heard(self, message):
@@ -94,12 +102,14 @@ class Listener:
             self._welcome(view, page=value)
         elif name == "gone":
             self._pages.pop(view, None)
+            self._ages.pop(view, None)
             session.gone(view)
         elif name == "alive":
             self._pages[view] = value
+            self._ages.setdefault(view, Age(session.clock)).of(more)
             session.alive(view)
         elif name == "press":
-            session.press(PRESSES[int(value)])
+            session.press(PRESSES[int(value)], self._ages.setdefault(view, Age(session.clock)).of(more))
         elif name == "move":
             session.move(int(value), more)
         elif name == "hold":
@@ -117,6 +127,33 @@ class Listener:
                 self._session.press("pause")
         self._pages[view] = page
         self._session.ready(view)
+
+
+class Age:
+    """How old what a page says is, by the page's own clock: beside what came fastest.
+
+    Parameters
+    ----------
+    clock : callable
+        Seconds.
+
+    Examples
+    --------
+    >>> now = iter([100.00, 100.40, 103.50])
+    >>> age = Age(lambda: next(now))
+    >>> [round(age.of(page), 1) for page in (7.00, 7.40, 8.00)]    # the third waited
+    [0.0, 0.0, 2.5]
+    """
+
+    def __init__(self, clock):
+        self._clock, self._last, self._least = clock, -math.inf, math.inf
+
+    def of(self, page):
+        """Return the age of what is heard now and was said at the page's time [s]."""
+        now = self._clock()
+        self._least += DRIFT * min(now - self._last, 1.0)
+        self._least, self._last = min(self._least, now - page), now
+        return now - page - self._least
 
 
 def take_apart(picture):

@@ -38,7 +38,7 @@ def page(lab):
 
 
 def test_a_drag_goes_into_the_wall_even_where_it_leaves_the_picture(page):
-    assert page.evaluate("getComputedStyle(document.querySelector('canvas.hl-stage')).touchAction") == "none"  # a finger drags
+    assert page.evaluate("getComputedStyle(document.querySelector('canvas.hl-stage')).touchAction") == "pan-y"  # or scrolls
     x, y = grab(page, STAGE)
     for k in range(1, 13):
         page.mouse.move(x + 10 * k, y + 30 * k)  # the last ones are far below the canvas
@@ -58,7 +58,7 @@ def test_a_slider_moves_its_parameter_and_follows_the_program(page):
     slider.focus()
     for _ in range(5):
         page.keyboard.press("ArrowRight")
-    page.wait_for_function("() => document.querySelectorAll('.hl-slider input[type=number]')[1].value > 300")
+    page.wait_for_function("() => document.querySelectorAll('.hl-slider .hl-entry')[1].value > 300")
     expected = float(slider.input_value())
     assert expected == pytest.approx(300 + 5 * 5)  # 840 N/m in 168 steps
     eventually(page, "print(view.values['k'])", f"{expected}")
@@ -73,8 +73,52 @@ def test_a_value_that_is_refused_goes_back_and_says_why(page):
     entry.press_sequentially("-50\n")
     assert "k" in until(page, STATUS, "needs")
     entry.blur()
-    page.wait_for_function("() => document.querySelectorAll('.hl-slider input[type=number]')[1].value > 0")
+    page.wait_for_function("() => document.querySelectorAll('.hl-slider .hl-entry')[1].value > 0")
     assert float(ask(page, "print(view.values['k'])")) == 450
+
+
+def test_a_number_is_taken_as_it_was_typed(page):
+    entry, words = page.get_by_role("spinbutton", name="k in N/m"), page.locator(".hl-limits").nth(1)
+    for typed, value in (("12,5", 12.5), ("1234.5678", 1234.5678), ("12x", 1234.5678), ("1,000", 1234.5678)):
+        entry.fill(typed)
+        entry.press("Enter")
+        eventually(page, "print(view.values['k'])", f"{value}")
+    assert "“1,000” is no number: k stays 1234.57 N/m" in words.text_content()
+    entry.blur()
+    entry.focus()
+    entry.press("Enter")  # nothing was typed: what is shown rounded is not written back
+    entry.press("ArrowUp")
+    eventually(page, "print(view.values['k'])", "1240.0")  # 5 N/m more, on the grid of the slider's steps
+    assert "beyond the slider 60 to 900 N/m; allowed k >= 0" in words.text_content()
+    ask(page, "view.set(k=450)")
+    entry.blur()
+
+
+def test_a_hand_begins_where_another_view_left_it(page):
+    stage = page.get_by_role("slider", name="hand on the handle")
+    ask(page, "view._session.intend(-0.0075)")
+    page.wait_for_function("() => document.querySelector('canvas.hl-stage').ariaValueNow === '-7.5'")
+    stage.press("ArrowRight")
+    eventually(page, "print(round(view._session._wanted, 6))", "-0.007")
+
+
+def test_who_listens_hears_of_another_state_and_not_of_each_number(page):
+    said = """() => {
+        const view = document.querySelector('.hl-live'), spoken = view.querySelector('.hl-spoken'), heard = []
+        new MutationObserver(() => heard.push(spoken.textContent)).observe(spoken, { childList: true })
+        window.heard = heard
+    }"""
+    page.evaluate(said)
+    assert page.locator(".hl-status").get_attribute("aria-live") is None
+    page.locator(STAGE).press("P")  # Shift or Caps Lock
+    page.wait_for_function("() => heard.at(-1)?.startsWith('Paused.')")
+    page.locator(STAGE).press("p")
+    page.wait_for_function("() => heard.at(-1).startsWith('Running')")
+
+
+def test_what_cannot_be_pressed_says_so(page):
+    for name in ("Save", "Replay"):
+        assert page.get_by_role("button", name=name, exact=True).is_disabled()  # nothing is recorded yet
 
 
 def test_keys_move_the_hand_and_leave_the_notebook_alone(page):

@@ -6,12 +6,12 @@ import pytest
 from lab import REPOSITORY
 
 FOLDER = REPOSITORY / "hapticlab" / "widgets" / "browser"
-PARTS = ("Playback", "Bins", "Scale", "between", "decode", "niceStep", "onDark", "tidy", "shown")
+PARTS = ("Playback", "Bins", "Scale", "between", "decode", "niceStep", "onDark", "tidy", "shown", "number", "unitWords")
 
 
 @pytest.fixture(scope="module")
 def page(lab):
-    scripts = (FOLDER / name for name in ("playback.js", "picture.js", "traces.js", "view.js"))
+    scripts = (FOLDER / name for name in ("playback.js", "picture.js", "traces.js", "sliders.js", "hand.js", "view.js"))
     source = "\n".join(script.read_text("utf-8") for script in scripts).replace("export default { render }", "")
     page = lab.browser.new_page()
     page.add_script_tag(content=f"(() => {{ {source}\n window.parts = {{ {', '.join(PARTS)} }} }})()")
@@ -99,3 +99,11 @@ def test_colours_turn_over_for_a_dark_page(page):
 def test_numbers_read_well(page):
     said = page.evaluate("() => [0.1 + 0.2, -0.00004, 12.345, 123.4].map((x) => [parts.tidy(x), parts.shown(x)])")
     assert json.dumps(said) == '[["0.3", "0.30"], ["-0.00004", "0.00"], ["12.345", "12.3"], ["123.4", "123"]]'
+
+
+def test_a_number_may_have_a_comma_but_not_two_meanings(page):
+    typed = ["12,5", " -.5 ", "1e3", "0,005", "1,000", "1,234.5", "", "-", "12x"]
+    assert page.evaluate("(typed) => typed.map(parts.number).map((x) => (isNaN(x) ? null : x))", typed) == [
+        12.5, -0.5, 1000, 0.005, None, None, None, None, None,
+    ]  # fmt: skip
+    assert page.evaluate("() => ['N*s/m', '1', 'm'].map(parts.unitWords)") == ["N s/m", "", "m"]

@@ -24,13 +24,16 @@ class Session:
     """Notes what it is told."""
 
     def __init__(self, kind="simulated"):
-        self.kind, self.told = kind, []
+        self.kind, self.told, self.now = kind, [], 1000.0
 
     def description(self):
         return {"kind": self.kind, "speed": 1.0, "parameters": [], "traces": [], "title": "a wall"}
 
     def connect(self, sink):
         self.sink = sink
+
+    def clock(self):
+        return self.now
 
     def __getattr__(self, name):
         return lambda *given: self.told.append((name, *given))
@@ -80,7 +83,7 @@ def test_only_news_is_said_again_and_a_new_view_hears_everything():
         (message("hold", 1.0), ("hold", True)),
         (message("hold", 0.0), ("hold", False)),
         (message("move", 2, 450.0), ("move", 2, 450.0)),
-        (message("press", PRESSES.index("record")), ("press", "record")),
+        (message("press", PRESSES.index("record")), ("press", "record", 0.0)),
         (message("alive", 99.0), ("alive", "7")),
         (message("gone"), ("gone", "7")),
     ],
@@ -100,6 +103,25 @@ def test_a_page_that_was_loaded_anew_finds_the_motor_off():
     session.told.clear()
     listener.heard(message("ready", value=101.0, view=3))  # another page: the first said no goodbye
     assert session.told == [("gone", "1"), ("gone", "2"), ("press", "pause"), ("ready", "3")]
+
+
+def test_a_press_that_waited_is_told_with_its_age():
+    """Heartbeats and a press wait 3 s for the kernel, by the page's clock, and come in one bunch."""
+    session = Session("board")
+    listener, page = Listener(session), 5e8
+    for at in (0.0, 0.4, 0.8):
+        session.now = 1000.0 + at + 0.01
+        listener.heard(message("alive", 100.0, page + at))
+    session.now = 1003.8
+    for at in (1.2, 1.6, 2.0):
+        listener.heard(message("alive", 100.0, page + at))
+    listener.heard(message("press", PRESSES.index("start"), page + 2.1))
+    kind, name, age = session.told[-1]
+    assert (kind, name) == ("press", "start")
+    assert age == pytest.approx(1.7 - 0.01, abs=0.02)  # less what two clocks may drift apart meanwhile
+    session.now = 1004.0
+    listener.heard(message("press", PRESSES.index("pause"), page + 3.98))
+    assert session.told[-1][2] < 0.05
 
 
 def test_a_simulation_goes_on_in_a_new_page():

@@ -29,7 +29,9 @@ class Picture {
   resize(width) {
     const [left, right, bottom, top] = this.box
     this.width = width
-    this.height = Math.min(Math.max((width * (top - bottom)) / (right - left), 130), 300)
+    const most = Math.min(Math.max(0.4 * window.innerHeight, 160), 300)
+    this.height = Math.min(Math.max((width * (top - bottom)) / (right - left), 130), most)
+    this.font = `${Math.round(Math.min(Math.max(width / 60, 12), 16))}px system-ui, sans-serif`
     fit(this.canvas, this.width, this.height)
     this.scale = Math.min(width / (right - left), (this.height - AXIS) / (top - bottom))
     this.left = width / 2 - (this.scale * (left + right)) / 2
@@ -118,13 +120,12 @@ const DRAWN = {
   },
 
   text(picture, context, points, [, , string, colour]) {
-    context.font = FONT
+    context.font = picture.font
     context.textAlign = "center"
     context.textBaseline = "middle"
-    context.fillStyle = picture.colour(colour)
     const half = context.measureText(string).width / 2
     const x = Math.min(Math.max(picture.x(points[0]), half + 2), picture.width - half - 2)
-    context.fillText(string, x, picture.y(points[1]))
+    write(picture, string, x, Math.min(Math.max(picture.y(points[1]), 10), picture.height - 10), colour)
   },
 
   arrow(picture, context, points, [, , colour, label]) {
@@ -148,11 +149,23 @@ const DRAWN = {
       context.fill()
     }
     if (!label) return
-    context.font = "bold " + FONT
+    context.font = "bold " + picture.font
     context.textAlign = x1 < x0 ? "right" : "left"
     context.textBaseline = "bottom"
-    context.fillText(label, Math.min(Math.max(x1, 60), picture.width - 60), y1 - 8)
+    write(picture, label, Math.min(Math.max(x1, 60), picture.width - 60), y1 - 8, colour)
   },
+}
+
+// Write a text on a rim of paper, so that lines under it do not strike it through.
+function write(picture, string, x, y, colour) {
+  const context = picture.context
+  context.setLineDash([])
+  context.lineWidth = 4
+  context.lineJoin = "round"
+  context.strokeStyle = picture.theme.paper
+  context.strokeText(string, x, y)
+  context.fillStyle = picture.colour(colour)
+  context.fillText(string, x, y)
 }
 
 function fit(canvas, width, height) {

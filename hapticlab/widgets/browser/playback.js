@@ -5,6 +5,7 @@
 const EVEN = 0.025 // [s] lateness of three frames in four up to which the newest is shown at once
 const LATEST = 0.15 // [s] the playback is never further behind
 const REMEMBERED = 64 // frames whose lateness counts
+const HELD = 5 // [s] of frames wait at most to be shown: a tab that nobody sees shows none
 
 class Playback {
   constructor() {
@@ -21,6 +22,7 @@ class Playback {
     remember(this.offsets, offset)
     this.last = frame.sent
     this.queue.push(frame)
+    while (frame.sent - this.queue[0].sent > HELD) this.queue.shift()
   }
 
   // How far behind the fastest packet the picture has to be [s]; 0 where frames arrive evenly.

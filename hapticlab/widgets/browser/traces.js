@@ -16,7 +16,7 @@ class Traces {
     this.context = canvas.getContext("2d")
     this.traces = traces
     this.seconds = seconds
-    this.hand = "" // what the dashed line in the first panel is, in words
+    this.notes = {} // beside a panel's name, in words
     this.scales = traces.map(() => new Scale())
     this.strip = document.createElement("canvas")
     this.drawn = -1 // the last column on the strip
@@ -96,7 +96,7 @@ class Traces {
     context.fillText(name, MARGIN, top - 11)
     const after = MARGIN + context.measureText(name).width
     context.font = FONT
-    if (k === 0 && this.hand) context.fillText(this.hand, after + 14, top - 11)
+    if (this.notes[trace.name]) context.fillText(this.notes[trace.name], after + 14, top - 11)
   }
 
   // Draw the columns that are new, and the last one again, which was not complete.
