@@ -100,7 +100,7 @@ class Streaming:
                 self._begin()
             return None
         if not self.motor:
-            self.fault = self.fault or "another cell began a scene on this paddle, or ended this one"
+            self.fault = self.fault or self._why_off()
             return None
         exchange, recording = self.paddle.exchange, self._recording
         self._leash.renew()
@@ -159,6 +159,14 @@ class Streaming:
         if paddle.settings is None or hasattr(paddle.exchange.port, "lead"):
             return False
         return not state_flag(paddle.exchange, "HOMED")
+
+    def _why_off(self):
+        exchange = self.paddle.exchange
+        if exchange.broken is not None:
+            return str(exchange.broken)
+        if exchange._closed:
+            return "this paddle was closed: connect it again, and run the view's cell again"
+        return "another cell began a scene on this paddle, or ended this one"
 
     def _delay(self):
         """Return how long a step takes on the board [s]."""

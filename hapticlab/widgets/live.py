@@ -1,12 +1,14 @@
 """hl.live: a paddle and a scene in a notebook, moving."""
 
+import inspect
+import math
 import weakref
 from dataclasses import replace
 
 import numpy as np
 
+from ..compiler.lower import compile
 from ..device.board import SerialPaddle
-from ..device.hand import require
 from ..device.intents import MinimumJerk
 from ..device.stepping import with_grip
 from ..errors import EngineMissingError, PaddleError
@@ -20,6 +22,8 @@ from .session import Session
 SPEEDS = (1e-3, 10.0)
 #: how far the rehearsal goes to either side [m]
 REACH = 0.015
+#: of a rehearsal [s]
+DURATIONS = (0.01, 600.0)
 RECORDED, REHEARSED = "recorded in the view", "rehearsal: nobody recorded here"
 
 
@@ -73,12 +77,12 @@ def live(paddle, scene, *, sliders=None, speed=1.0, picture=None, rehearsal=None
     """
     check_scene(scene)
     low, high = SPEEDS
-    speed = require("speed", speed, "", "a live view", "1 is real time, 0.1 slow motion.", low=low)
-    if speed > high:
-        raise PaddleError(f"speed = {speed:g}; a live view needs {low:g} to {high:g}. 1 is real time, 0.1 slow motion.")
+    speed = _between("speed", speed, low, high, "", "1 is real time, 0.1 slow motion.")
     if speed != 1 and isinstance(paddle, SerialPaddle):
         raise PaddleError(f"speed = {speed:g}; a board runs in real time: leave speed out, or take a SimulatedPaddle.")
-    duration = require("duration", duration, "s", "a rehearsal", above=0)
+    duration = _between("duration", duration, *DURATIONS, " s", "It is that of the rehearsal.")
+    _check_rehearsal(rehearsal)
+    _check_options(compile_options)
     session = Session(paddle, scene, sliders=sliders, speed=speed, picture=picture, **compile_options)
     return LiveView(session, rehearsal, duration, compile_options)
 
@@ -156,7 +160,10 @@ class LiveView:
         """Play a log in the view, the last one recorded by default; a board's motor is off meanwhile."""
         if log is not None and not isinstance(log, Telemetry):
             raise PaddleError(f"replay of a {type(log).__name__}; needs a record: view.log, or hl.Telemetry.load(path)")
-        self._session.pressed("replay", self.log if log is None else log)
+        log = self.log if log is None else log
+        if not len(log):
+            raise PaddleError("replay of a record without samples; record a while first, or give another one")
+        self._session.pressed("replay", log)
 
     def close(self):
         """End the view; a board's motor goes off."""
@@ -188,6 +195,38 @@ class LiveView:
         if isinstance(bundle, tuple):
             return {**bundle[0], "text/plain": text}, bundle[1]
         return {**(bundle or {}), "text/plain": text}
+
+
+def _between(name, value, low, high, unit, why):
+    """Return value as a float, or raise PaddleError, in words, unless it is a number between low and high."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not low <= number <= high:
+        raise PaddleError(f"{name} = {value!r}; a live view needs a number, {low:g} to {high:g}{unit}. {why}")
+    return number
+
+
+def _check_rehearsal(rehearsal):
+    if rehearsal is None:
+        return
+    try:
+        at_zero = np.asarray(rehearsal(np.zeros(1)), float)
+    except Exception as problem:
+        raise PaddleError(
+            f"rehearsal = {rehearsal!r}; needs an intent: a function of an array of times [s] that returns places [m], as "
+            f"hl.MinimumJerk(end=0.02, duration=1.0) is. At 0 s: {type(problem).__name__}: {problem}"
+        ) from problem
+    if at_zero.size != 1 or not np.isfinite(at_zero).all():
+        raise PaddleError(f"rehearsal at 0 s is {at_zero}; needs one finite place [m] for each time")
+
+
+def _check_options(options):
+    allowed = [name for name in inspect.signature(compile).parameters if name not in ("scene", "T", "velocity")]
+    for name in options.keys() - {"engine"}:
+        if name not in allowed:
+            raise PaddleError(f"{name} is no option of a live view, and none of hapticlab.compile: {', '.join(allowed)}")
 
 
 def _push(duration):

@@ -137,10 +137,11 @@ class Motion:
         if log is None:
             self._end_replay()
             return
+        replay, traces = Replay(log, self.speed, self.clock()), Traces(log.T)
         if self.source.kind == "board":
             self.pause()
         self._live = self._live or (self.traces, self._last)
-        self._replay, self.traces = Replay(log, self.speed, self.clock()), Traces(log.T)
+        self._replay, self.traces = replay, traces
 
     def advance(self, wanted):
         """Go on to the clock, with a hand that means to be at a place [m]; return rows as a Frame has them, or None."""

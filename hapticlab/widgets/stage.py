@@ -4,16 +4,13 @@ from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from ..device.board import SerialPaddle
 from ..device.live import named_values
 from ..device.running import is_refusal
-from ..device.simulated import SimulatedPaddle
-from ..device.stepping import Stepping
-from ..device.streaming import Streaming
 from ..errors import HapticlabError, PaddleError
 from .frame import COLUMNS, Frame
 from .motion import Motion
 from .picture import moving_picture
+from .sources import help_words, source_of
 from .spans import spans
 from .words import NOTICED, chatter_words, contact_words, late_words
 
@@ -53,7 +50,7 @@ class Stage:
         self.awake, self._wants_to_run = False, self.source.kind == "simulated"
         self.stopped = "time stood still" if self._wants_to_run else "the motor went off"
         self.caught = None
-        self._note, self._note_until = "", -1.0
+        self._note, self._note_until, self._lost = "", -1.0, ""
         self._status, self._next_look, self._next_frame = "", -1.0, -1.0
 
     @property
@@ -78,7 +75,7 @@ class Stage:
             "x_range": list(self.picture.reach),
             "box": list(box),
             "along": list(self.picture.along),
-            "help": _help(self.source, self.motion.speed),
+            "help": help_words(self.source, self.motion.speed),
             "speed": self.motion.speed,
             "columns": list(COLUMNS),
         }
@@ -132,16 +129,30 @@ class Stage:
 
         Where a handle that was let go leaves the picture, ``caught`` is where the hand now holds it [m].
         """
-        recording = self.motion.recording
+        running, recording = self.motion.running, self.motion.recording
         rows = self.guarded(self.motion.advance, wanted)
+        if running and not self.motion.running:
+            self.look()
         low, high = self.picture.reach
         if not (self.motion.held or self.motion.replaying) and not low - PAST <= self.motion.place <= high + PAST:
             self.motion.hold(True)
             self.caught = min(max(self.motion.place, low), high)
             self.tell("The handle that was let go came to the end of its way: the hand holds it there")
+        if rows is not None:
+            self._look_for_it()
         if recording and not self.motion.recording:
             self.tell("The recording ended: it was long, or the motor went off")
         return rows
+
+    def _look_for_it(self):
+        """Stop a simulation whose handle is far out of the picture: no hand holds it there."""
+        (low, high), x = self.picture.reach, self.motion.place
+        if self.source.kind == "board" or not self.motion.running or self.motion.replaying:
+            return
+        if max(low - x, x - high) > high - low:
+            self._halt()
+            self._wants_to_run = False
+            self._lost = f"The handle left the picture, to {1e3 * x:.3g} mm: the loop is unstable. Run begins anew"
 
     def guarded(self, work, *given, **values):
         """Do work; what it raises is told, and anything but a refusal stops what moves."""
@@ -165,9 +176,13 @@ class Stage:
 
     def start(self):
         self._wants_to_run = self.source.kind == "simulated"
+        self._lost = ""
         self.motion.start()
 
     def resume(self):
+        if self._lost:
+            self.start()
+            return
         self._wants_to_run = self.source.kind == "simulated"
         self.motion.resume()
 
@@ -221,7 +236,7 @@ class Stage:
             said += ["" if motion.held else "The handle is let go"]
         else:
             said = ["Motor off: press Start, and hold the handle" if board else "Paused"]
-            said += [f"Stopped: {source.fault}" if source.fault else ""]
+            said += [f"Stopped: {source.fault}" if source.fault else "", self._lost]
         records = "Recording" if motion.running and not (motion.replaying or source.waits) else "Recording waits"
         said += [records if motion.recording else "", self.note]
         return " ".join(f"{sentence.rstrip('.')}." for sentence in said if sentence)
@@ -269,26 +284,6 @@ class Stage:
         except Exception as problem:
             self.tell(f"The picture cannot be drawn: {type(problem).__name__}: {problem}")
             return ()
-
-
-def source_of(paddle, scene, **options):
-    """Return what gives samples of a scene on a paddle."""
-    kinds = {SimulatedPaddle: Stepping, SerialPaddle: Streaming}
-    for kind, source in kinds.items():
-        if isinstance(paddle, kind):
-            return source(paddle, scene, **options)
-    raise PaddleError(f"paddle = {paddle!r}; a live view needs a SimulatedPaddle, or a board: hl.connect()")
-
-
-def _help(source, speed):
-    if source.kind == "board":
-        return "Start switches the motor on: hold the handle. The motor goes off with Stop, and when this view closes."
-    hand = source.paddle.hand
-    slow = f" Time runs at {speed:g} of the clock's." if speed != 1 else ""
-    return (
-        "Drag the handle, or use the arrow keys: they move where the hand means to be, and the hand's spring follows "
-        f"({hand.k:g} N/m, {hand.b:g} N s/m, {1e3 * hand.m:g} g).{slow}"
-    )
 
 
 def _free_name(scene):

@@ -8,6 +8,8 @@ from .frame import COLUMNS, THINNED
 
 #: how much is kept in full to say what goes on [s]
 RECENT = 1.0
+#: what a row can hold: a scene may go beyond
+LARGEST = float(np.finfo(np.float32).max)
 
 
 class Traces:
@@ -42,7 +44,7 @@ class Traces:
         first = -self._count % self._step
         rows = np.full((len(range(first, len(x), self._step)), len(COLUMNS)), np.nan, np.float32)
         for k, column in enumerate((samples["t"], x, F, energy, samples.get("intent", np.nan))):
-            rows[:, k] = column[first :: self._step] if np.ndim(column) else column
+            rows[:, k] = np.clip(column[first :: self._step], -LARGEST, LARGEST) if np.ndim(column) else column
         self._count += len(x)
         self._keep(x, F)
         return rows

@@ -12,12 +12,17 @@ SLOWEST, SMALLEST = 8.0, 2e-5
 MEAN = 0.1
 #: what is sustained is at least so strong in every quarter of the last half as in the strongest: a bounce is not
 SUSTAINED = 0.5
+#: a handle that is led further than so many amplitudes meanwhile may feel a grating of the scene
+LED = 4.0
 #: what was dropped of a second of the clock is told from here on, and from here on with what to do [s]
 LATE, MUCH = 0.02, 0.3
 
 
 def chatter_words(x, F, T):
-    """Say how a handle chatters in its recent second, or nothing.
+    """Say how a handle vibrates in its recent second, or nothing.
+
+    It is called chatter where the environment gives energy to a handle that is not led on; what a hand moves across a
+    texture vibrates too, and so does a mass that hangs on it.
 
     Parameters
     ----------
@@ -27,10 +32,13 @@ def chatter_words(x, F, T):
     Examples
     --------
     >>> t = np.arange(1000) * 1e-3
-    >>> x = 0.02 * t + 5e-4 * np.sin(2 * np.pi * 30 * t)
-    >>> chatter_words(x, 100 * x, 1e-3)
+    >>> x = 0.02 + 5e-4 * np.sin(2 * np.pi * 30 * t)
+    >>> F = 100 * np.r_[x[0], x[:-1]]                # a spring, a sample late
+    >>> chatter_words(x, F, 1e-3)
     'Chatter: 0.5 mm at 30 Hz'
-    >>> chatter_words(0.01 * np.sin(6 * t), 100 * x, 1e-3)
+    >>> chatter_words(x + 0.02 * t, F, 1e-3)
+    'The handle vibrates: 0.5 mm at 30 Hz'
+    >>> chatter_words(0.01 * np.sin(6 * t), F, 1e-3)
     ''
     """
     width = max(1, round(MEAN / T))
@@ -48,7 +56,11 @@ def chatter_words(x, F, T):
         return ""
     if found.frequency is None or found.frequency < SLOWEST or found.amplitude < SMALLEST:
         return ""
-    return f"Chatter: {float(f'{1e3 * found.amplitude:.1g}'):g} mm at {found.frequency:.0f} Hz"
+    slow = (total[width:] - total[:-width])[len(fast) // 2 :] / width
+    drawn = -np.dot(F[:-1] - F.mean(), np.diff(x))
+    chatters = drawn > 0 and np.ptp(slow) < LED * found.amplitude
+    name = "Chatter" if chatters else "The handle vibrates"
+    return f"{name}: {float(f'{1e3 * found.amplitude:.1g}'):g} mm at {found.frequency:.0f} Hz"
 
 
 def late_words(behind):

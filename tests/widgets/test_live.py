@@ -15,6 +15,7 @@ from hapticlab.widgets.front import _canvas
 from hapticlab.widgets.pace import LONGEST
 from hapticlab.widgets.session import SILENCE, Session
 from hapticlab.widgets.stage import NOTE
+from hapticlab.widgets.traces import Traces
 from hapticlab.widgets.words import chatter_words
 
 T = 1e-3
@@ -69,6 +70,17 @@ def test_no_tick_is_lost_and_nothing_drifts(step):
     elapsed = stage.now - 50.0
     assert abs(stage.session.source.ticks - elapsed / T) <= 1
     assert np.allclose(np.diff(stage.rows[:, 0]), 2 * T, atol=1e-6)
+
+
+def test_a_handle_let_go_that_leaves_is_caught_and_taken_where_it_is():
+    stage = Stage(scene=hl.wall()(k=300, x_o=0.001)).open()
+    stage.go(0.5, pointer=lambda now: 0.03)
+    stage.session.hold(False)
+    stage.go(1.0)
+    assert stage.flags["held"] and "the hand holds it there" in stage.session.status
+    assert stage.flags["wanted"] == -0.05  # where a hand goes
+    stage.go(1.0)
+    assert stage.rows[-1, 1] == pytest.approx(-0.05, abs=1e-4)  # it rests there: the hand's spring, and no wall
 
 
 def test_slow_motion_is_slow():
@@ -214,9 +226,12 @@ def test_a_hand_is_no_faster_than_a_hand():
 
 def test_chatter_is_said_and_a_bounce_is_not():
     t = np.arange(1000) * T
-    force = np.ones(1000)
-    assert chatter_words(4e-4 * np.sin(2 * np.pi * 41 * t), force, T) == "Chatter: 0.4 mm at 41 Hz"
-    assert chatter_words(0.02 * t + 4e-4 * np.sin(2 * np.pi * 41 * t), force, T) == "Chatter: 0.4 mm at 41 Hz"
+    shaken = 4e-4 * np.sin(2 * np.pi * 41 * t)
+    force = 1 + 100 * 4e-4 * np.sin(2 * np.pi * 41 * (t - T))  # a spring felt late: it gives energy
+    absorbing = 1 + 100 * 4e-4 * np.sin(2 * np.pi * 41 * (t + T))
+    assert chatter_words(shaken, force, T) == "Chatter: 0.4 mm at 41 Hz"
+    assert chatter_words(shaken, absorbing, T) == "The handle vibrates: 0.4 mm at 41 Hz"
+    assert chatter_words(0.02 * t + shaken, force, T) == "The handle vibrates: 0.4 mm at 41 Hz"
     assert chatter_words(4e-4 * np.exp(-9 * t) * np.sin(2 * np.pi * 41 * t), force, T) == ""
     assert chatter_words(0.02 * np.sin(2 * np.pi * 2 * t), force, T) == ""
     assert chatter_words(np.zeros(1000), force, T) == ""
@@ -231,6 +246,31 @@ def test_a_stiff_wall_is_said_to_chatter_at_the_frequency_of_the_record():
     found = hl.chatter(stage.session.recorded())
     assert found.locked
     assert f"at {found.frequency:.0f} Hz" in stage.session.status
+
+
+def test_a_grating_that_a_hand_is_led_across_is_not_said_to_chatter():
+    paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch"))
+    stage = Stage(paddle, hl.library.detents()).open()
+    frames = stage.go(2.0, pointer=lambda now: 0.02 * np.sin(np.pi * (now - 50)))
+    said = " ".join(frame.status for frame in frames)
+    assert "vibrates" in said
+    assert "Chatter" not in said
+
+
+def test_a_handle_that_leaves_the_picture_is_told_and_run_begins_anew():
+    """Beyond stability by far: T = 5 ms, k = 3000 N/m."""
+    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.02, T=5e-3, hand=hl.hand("pinch")), hl.wall()(k=3000, x_o=0.005)).open()
+    stage.go(3.0, pointer=lambda now: 0.012)
+    assert not stage.flags["running"]
+    assert stage.session.status.startswith("Paused. The handle left the picture, to ")
+    low, high = stage.session.picture.reach
+    assert high - low < max(low - stage.session.motion.place, stage.session.motion.place - high) < 10
+    stage.session.move("k", 100)
+    stage.session.press("resume")
+    stage.go(0.5, pointer=lambda now: 0.012)
+    assert stage.flags["running"]
+    assert stage.session.motion.time < 0.6
+    assert "picture" not in stage.session.status
 
 
 def test_a_fault_stops_and_says_why_and_start_begins_anew():
@@ -293,6 +333,9 @@ def test_a_record_is_played_again_and_then_the_scene_goes_on():
 def test_to_replay_or_save_nothing_is_refused_in_words(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     stage = Stage().open()
+    none = np.zeros(0)
+    with pytest.raises(hl.PaddleError, match="without samples"):
+        hl.live(PADDLE, WALL).replay(hl.Telemetry(t=none, x=none, v=none, F=none, T=T))
     for press in ("replay", "save"):
         stage.session.press(press)
         stage.go(0.1)
@@ -342,6 +385,65 @@ def test_silence_and_the_last_view_stop_it_and_a_word_goes_on():
     assert stage.session.turn()
     stage.session.gone("second")
     assert not stage.session.turn()
+
+
+def test_a_silence_is_told_when_it_ends_a_view_and_when_it_is_over():
+    stage = Stage().open()
+    stage.go(0.2)
+    stage.now += SILENCE + 0.1
+    stage.session.turn()
+    last = stage.frames[-1]
+    assert last.status == "No word from the page for 2 s: time stood still."
+    assert not last.flags["running"]
+    assert len(last.picture)
+    told = len(stage.frames)
+    stage.now += 1.0
+    stage.session.turn()
+    assert len(stage.frames) == told
+    assert stage.session.status.startswith("Not on view")
+    stage.session.alive("page")
+    stage.session.turn()
+    assert "The notebook was silent for 3.1 s: time stood still" in stage.session.status
+    assert stage.flags["running"]
+
+
+def test_a_view_that_has_ended_says_so_and_runs_no_more():
+    view = hl.live(PADDLE, WALL)
+    view.start()
+    assert view.status.startswith("Not on view")
+    view.close()
+    assert view.status == "This view has ended; run its cell again."
+    for run in (view.start, view.resume, view.record):
+        with pytest.raises(hl.PaddleError, match="run its cell again"):
+            run()
+
+
+@pytest.mark.parametrize("where", ["flags", "words"])
+def test_a_view_that_cannot_tell_ends_in_words(where, monkeypatch):
+    stage = Stage().open()
+    stage.go(0.1)
+    monkeypatch.setattr(stage.session.stage, where, lambda: 1 / 0)
+    stage.go(0.5)
+    assert stage.frames[-1].status.startswith("This view has ended: ZeroDivisionError: division by zero")
+    assert not stage.flags["running"]
+    told = len(stage.frames)
+    stage.go(0.5)
+    assert len(stage.frames) == told
+    assert "ZeroDivisionError" in stage.session.status
+
+
+def test_what_waits_to_be_recorded_is_said_to_wait():
+    stage = Stage().open()
+    for press, words in (("record", "Recording."), ("pause", "Recording waits."), ("replay", "Recording waits.")):
+        stage.session.press(press)
+        stage.go(0.3)
+        assert stage.session.status.endswith(words)
+
+
+def test_numbers_too_large_for_a_row_are_cut(recwarn):
+    samples = {"t": np.arange(3) * T, "x": np.zeros(3), "F": np.array([0.0, 1e200, -1e200])}
+    assert np.isfinite(Traces(2 * T).add(samples)[:, :4]).all()
+    assert not recwarn.list
 
 
 def test_a_view_that_cannot_be_reached_is_gone():
@@ -475,13 +577,19 @@ def test_without_llvmlite_it_runs_too(monkeypatch):
     ("given", "word"),
     [
         ({"speed": 0}, "0.1 slow motion"),
-        ({"speed": 100}, "needs 0.001 to 10"),
+        ({"speed": "a"}, "speed = 'a'; a live view needs a number"),
+        ({"rehearsal": 5}, "needs an intent"),
+        ({"rehearsal": lambda t: "a"}, "needs an intent"),
+        ({"rehearsal": lambda t: np.nan * t}, "one finite place"),
+        ({"duration": 1e9}, "0.01 to 600 s"),
+        ({"foo": 1}, "foo is no option of a live view, and none of hapticlab.compile: method, "),
+        ({"speed": 100}, "0.001 to 10"),
         ({"sliders": {"q": (0, 1)}}, "q is no live parameter"),
         ({"sliders": {"k": (5, 1)}}, "low < high"),
         ({"sliders": {"k": (-5, 1)}}, "not in its range"),
         ({"sliders": ["k"]}, "needs a dict"),
         ({"sliders": {"k": 3}}, "two numbers"),
-        ({"duration": 0}, "duration > 0"),
+        ({"duration": 0}, "duration = 0"),
     ],
 )
 def test_what_makes_no_sense_is_refused_at_once(given, word):

@@ -260,6 +260,32 @@ def test_another_cell_takes_the_paddle(board):
     assert stage.is_running  # what others began is not ended here
 
 
+def test_a_paddle_that_was_closed_is_told(board):
+    stage = Stage(board).press("start").go(0.1)
+    board.close()
+    stage.go(0.1)
+    assert not stage.frames[-1].flags["motor"]
+    assert "this paddle was closed" in stage.session.status
+
+
+def test_a_board_that_cannot_be_told_to_stop_is_abandoned_in_words(board, monkeypatch):
+    """A cable that is pulled: stopping raises what no library of ours raises. The view lives on; the board hears nothing."""
+    stage = Stage(board).press("start").go(0.1)
+
+    def torn(**given):
+        raise OSError("device reports readiness to read but returned no data")
+
+    monkeypatch.setattr(board, "stop", torn)
+    stage.press("pause").go(0.1)
+    assert "OSError: device reports" in stage.session.status
+    assert not stage.frames[-1].flags["motor"]
+    assert not stage.is_running
+    assert not board.exchange.beating
+    monkeypatch.undo()
+    stage.press("start").go(0.1)
+    assert stage.is_running
+
+
 def test_a_handle_that_is_lost_is_led_to_its_stops_first(board, monkeypatch):
     """Until the board knows where its handle is, Start waits, in words, and blocks nothing."""
     homed = []

@@ -1,0 +1,28 @@
+"""What gives a live view its samples, and how that is moved."""
+
+from ..device.board import SerialPaddle
+from ..device.simulated import SimulatedPaddle
+from ..device.stepping import Stepping
+from ..device.streaming import Streaming
+from ..errors import PaddleError
+
+
+def source_of(paddle, scene, **options):
+    """Return what gives samples of a scene on a paddle."""
+    kinds = {SimulatedPaddle: Stepping, SerialPaddle: Streaming}
+    for kind, source in kinds.items():
+        if isinstance(paddle, kind):
+            return source(paddle, scene, **options)
+    raise PaddleError(f"paddle = {paddle!r}; a live view needs a SimulatedPaddle, or a board: hl.connect()")
+
+
+def help_words(source, speed):
+    """Say what moves a handle on view."""
+    if source.kind == "board":
+        return "Start switches the motor on: hold the handle. The motor goes off with Stop, and when this view closes."
+    hand = source.paddle.hand
+    slow = f" Time runs at {speed:g} of the clock's." if speed != 1 else ""
+    return (
+        "Drag the handle, or use the arrow keys: they move where the hand means to be, and the hand's spring follows "
+        f"({hand.k:g} N/m, {hand.b:g} N s/m, {1e3 * hand.m:g} g).{slow}"
+    )

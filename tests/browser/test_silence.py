@@ -1,0 +1,91 @@
+"""What the view shows while the kernel says nothing, by a clock that the test turns."""
+
+import pytest
+from lab import REPOSITORY
+
+from hapticlab.widgets.front import SCRIPTS
+from hapticlab.widgets.session import PRESSES
+
+ABOUT = {
+    "title": "a wall", "kind": "board", "box": [-0.03, 0.03, -0.01, 0.01], "x_range": [-0.03, 0.03], "along": [1, 0],
+    "help": "", "speed": 1, "seconds": 4, "presses": list(PRESSES), "columns": ["t", "x", "F", "E", "intent"],
+    "parameters": [{"name": "k", "unit": "N/m", "value": 300, "low": 0, "high": 900, "limit_words": "k >= 0"}],
+    "traces": [{"name": "x", "label": "x", "unit_shown": "mm", "scale": 1000}],
+}  # fmt: skip
+# A view whose model notes what is said [kind, value, clock], and a kernel that sends a frame without rows.
+OPEN = """(about) => {
+  window.said = []
+  let receive
+  const model = {
+    get: () => about, on: (event, act) => (receive = act), off: () => {},
+    send: (content, callbacks, [data]) => said.push([...new Float64Array(data).slice(1)]),
+  }
+  window.view = new parts.View(model, document.body)
+  window.frame = (content) => receive(content, [new DataView(new Float64Array([performance.now() / 1000, 0, 0]).buffer)])
+  window.shown = () => [view.status.textContent, view.buttons.run.textContent.trim(), view.buttons.run.disabled,
+    view.buttons.record.disabled, view.sliders[0].range.disabled]
+}"""
+
+
+@pytest.fixture
+def page(lab):
+    folder = REPOSITORY / "hapticlab" / "widgets" / "browser"
+    source = "\n".join((folder / script).read_text("utf-8") for script in SCRIPTS).replace("export default { render }", "")
+    page = lab.browser.new_page()
+    page.clock.install(time=0)
+    page.add_script_tag(content=f"(() => {{ {source}\n window.parts = {{ View, Playback }} }})()")
+    page.evaluate(OPEN, ABOUT)
+    page.clock.pause_at(1000)
+    yield page
+    page.close()
+
+
+def presses(page):
+    return [PRESSES[int(value)] for kind, value, _ in page.evaluate("said") if kind == 6]
+
+
+def test_without_a_kernel_nothing_can_be_pressed(page):
+    words, button, *off = page.evaluate("shown()")
+    assert words == "Waiting for the kernel: this moves in a running notebook only."
+    assert "Start motor" in button and off == [True, True, True]
+    page.evaluate("view.press('run')")
+    assert presses(page) == []
+
+
+def test_a_silent_kernel_is_told_and_only_stop_can_be_pressed(page):
+    on = {"flags": {"running": True, "motor": True}, "status": "Motor on, nothing touched.", "values": {}}
+    page.evaluate("(on) => frame(on)", on)
+    assert page.evaluate("shown()")[0] == "Motor on, nothing touched."
+    assert page.evaluate("shown()")[2:] == [False, False, False]
+    page.clock.run_for(1300)
+    assert page.evaluate("shown()")[0] == "Motor on, nothing touched."
+    page.clock.run_for(2000)
+    words, button, *off = page.evaluate("shown()")
+    assert words == "No word from the kernel for 3 s: the motor goes off by itself."
+    assert "Stop motor" in button and off == [False, True, True]
+    page.evaluate("view.press('record'); view.press('run')")
+    assert presses(page) == ["pause"]
+    page.evaluate("frame({ flags: { running: false }, values: {} })")
+    words, button, *off = page.evaluate("shown()")
+    assert words == "Motor on, nothing touched." and off == [False, False, False]  # what the kernel said last
+    page.evaluate("view.press('run')")
+    kind, value, clock = page.evaluate("said.at(-1)")
+    assert (kind, PRESSES[value]) == (6, "start")
+    assert clock == page.evaluate("Date.now() / 1000")  # so that one that waits is known by its age
+
+
+def test_a_hidden_tab_stops_a_motor_and_keeps_few_frames(page):
+    page.evaluate("Object.defineProperty(document, 'hidden', { get: () => true })")
+    page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")
+    page.clock.run_for(2900)
+    assert presses(page) == []
+    page.clock.run_for(200)
+    assert presses(page) == ["pause"]
+    waiting = page.evaluate(
+        """() => {
+            const playback = new parts.Playback()
+            for (let k = 0; k < 6000; k++) playback.push({ sent: k / 60 }, k / 60)
+            return playback.queue.map((frame) => frame.sent)
+        }"""
+    )
+    assert waiting[-1] == pytest.approx(5999 / 60) and waiting[0] == pytest.approx(waiting[-1] - 5)
