@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..drawing import FRAME, house_style, new_figure, style_of
+from ..drawing import FRAME, WARM, house_style, new_figure, style_of
 
 
 def plot_search(found):
@@ -15,7 +15,7 @@ def plot_search(found):
         stands, chatters, unclear = (np.array([o is which for o in outcome], bool) for which in (True, False, None))
         axes.plot(number, K, color="0.75", linewidth=1)
         axes.plot(number[stands], K[stands], "o", color="black", label="comes to rest")
-        axes.plot(number[chatters], K[chatters], "X", color="#c1440e", markersize=8, label="chatters")
+        axes.plot(number[chatters], K[chatters], "X", color=WARM, markersize=8, label="chatters")
         if unclear.any():
             axes.plot(number[unclear], K[unclear], "s", color="0.4", fillstyle="none", label="undecided")
         for i, (name, limit) in enumerate(found.theory.items()):
@@ -38,10 +38,10 @@ def plot_border(width):
         for i, (name, label) in enumerate(
             (("stability", "exact stability"), ("passivity", "passivity, any passive hand"))
         ):
-            known = np.isfinite(getattr(width, name)) & (getattr(width, name) > 0)
+            known = np.isfinite(getattr(width, name))  # 0 too: no stiffness is promised there
             if known.any():
-                axes.plot(width.B[known], getattr(width, name)[known], **style_of(i + 1), label=label)
-        axes.plot(width.B, top, "x", color="#c1440e", label="does not stand")
+                axes.plot(width.B[known], getattr(width, name)[known], **style_of(i + 1), marker=".", label=label)
+        axes.plot(width.B, top, "x", color=WARM, label="does not stand")
         axes.plot(width.B, width.K, "o-", color="black", markersize=4, linewidth=1, label="comes to rest")
         # a lossless corner of theory may lie far above; the picture is of the border
         axes.set_ylim(0, 1.25 * np.nanmax([*top, 1.0]))

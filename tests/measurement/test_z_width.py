@@ -19,6 +19,8 @@ def test_the_border_follows_exact_stability(B):
     assert found.passivity == pytest.approx([max(0.0, 2 * (0.1 - abs(b)) / 1e-3) for b in B])
     assert "K stands" in str(found) and f"{len(B)} dampings" in repr(found)
     axes = found.plot().axes[0]
+    passive = next(line for line in axes.lines if line.get_label().startswith("passivity"))
+    np.testing.assert_array_equal(passive.get_ydata(), found.passivity)  # where it promises nothing, too
     assert "virtual damping B" in axes.get_xlabel() and axes.get_ylim()[1] > found.K.max()
 
 
