@@ -134,9 +134,10 @@ class Displays:
                 rows = [row for row in self.rows if row.display == name and row.state != "unstable"]
                 style = style_of(number)
                 axes.plot([row.wanted for row in rows], [row.k / row.wanted for row in rows], marker="os"[number], **style,
-                          label=name)  # fmt: skip
+                          label=name, markersize=(5, 9)[number], markerfacecolor=(style["color"], "none")[number])  # fmt: skip
                 if 0 < limit < math.inf:
-                    axes.axvline(limit, color=style["color"], linestyle=":", linewidth=1.2, label=f"{name}: stable below")
+                    edge = {"color": style["color"], "linestyle": (":", "-.")[number], "linewidth": 1.2}
+                    axes.axvline(limit, label=f"{name}: stable below", **edge)
             span = [row.wanted for row in self.rows]
             scale_axis(axes, "x", np.geomspace(min(span), max(*span, 10 * min(span)), 3))
             axes.set(xlabel="stiffness of the wall k [N/m]", ylabel="felt stiffness / k [1]", ylim=(0, 1.3))

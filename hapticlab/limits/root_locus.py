@@ -204,16 +204,17 @@ def plot_root_locus(locus):
 
 def _draw_grid(axes, T):
     """Draw the unit circle, and lines of equal damping ratio and of equal natural frequency, named on its edge."""
-    thin = {"color": "#b8b8b8", "linewidth": 0.8, "linestyle": ":"}
+    thin = {"color": "#9a9a9a", "linewidth": 1.0, "linestyle": ":"}
     angle = np.linspace(0, np.pi, 200)
     axes.plot(np.cos(2 * angle), np.sin(2 * angle), color="#4d4d4d", linewidth=1.0)
     for ratio in GRID_DAMPING:  # s = w (-ratio + j sqrt(1 - ratio^2)), up to where Im s T = pi
         z = np.exp(angle * (-ratio / math.sqrt(1 - ratio**2) + 1j))
         axes.plot(np.r_[z.real, np.nan, z.real], np.r_[z.imag, np.nan, -z.imag], **thin)
-        axes.annotate(f"{ratio:g}", (z[70].real, z[70].imag), fontsize="xx-small", color="#707070")
+        axes.annotate(f"{ratio:g}", (z[70].real, z[70].imag), fontsize="small", color="#4d4d4d")
     for part in GRID_FREQUENCY:
         phi = np.linspace(0, np.pi / 2, 100)
         z = np.exp(np.pi * part * (-np.sin(phi) + 1j * np.cos(phi)))
         axes.plot(np.r_[z.real, np.nan, z.real], np.r_[z.imag, np.nan, -z.imag], **thin)
-        axes.annotate(f"{part / (2 * T):.4g} Hz", (1.03 * z[0].real, -1.05 * z[0].imag), fontsize="xx-small", color="#707070")
+        place = {"ha": "left" if z[0].real > 0 else "right", "va": "top", "fontsize": "small", "color": "#4d4d4d"}
+        axes.annotate(f"{part / (2 * T):.4g} Hz", (1.02 * z[0].real, -1.02 * z[0].imag), **place)
     axes.grid(False)
