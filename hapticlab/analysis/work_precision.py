@@ -34,7 +34,7 @@ def plot_work_precision(tradeoff, targets=None, asked=None):
     methods = list(dict.fromkeys(row.method for rows in shown.values() for row in rows))
     down, across = -(-len(targets) // ACROSS), min(ACROSS, len(targets))
     with house_style():
-        figure = new_figure(height=1.0 + 3.4 * down + 0.22 * (len(methods) // 4 + 1), width=5.0 * across + 0.6)
+        figure = new_figure(height=1.0 + 3.4 * down + 0.25 * ((len(methods) + 6) // (2 * across) + 1), width=5.0 * across + 0.6)
         panels = figure.subplots(down, across, sharey=True, squeeze=False).ravel()
         for axes, target in zip(panels, targets, strict=False):
             _panel(axes, target, shown[target], methods, asked)
@@ -46,7 +46,7 @@ def plot_work_precision(tradeoff, targets=None, asked=None):
             panels[0].set_title(f"{tradeoff.name}, on {targets[0]}")
         else:
             figure.suptitle(tradeoff.name)
-        _legend(figure, panels[0], methods, {row.hold for rows in shown.values() for row in rows})
+        _legend(figure, panels[0], methods, [row for rows in shown.values() for row in rows])
     return figure
 
 
@@ -99,7 +99,7 @@ def _places(rows):
     return [100 * row.load for row in rows], [100 * max(row.err_max, LEAST) for row in rows]
 
 
-def _legend(figure, axes, methods, holds):
+def _legend(figure, axes, methods, rows):
     """Tell lines and markers apart below the panels."""
 
     def sign(label, **style):
@@ -107,8 +107,9 @@ def _legend(figure, axes, methods, holds):
 
     signs = [sign(method, **style_of(number)) for number, method in enumerate(methods)]
     grey = {"color": "#8a8a8a", "linestyle": "", "markersize": 6}
-    signs += [sign(f"hold {hold}", marker=mark, **grey) for hold, mark in MARKERS.items() if hold in holds]
+    signs += [sign(f"hold {hold}", marker=mark, **grey) for hold, mark in MARKERS.items() if hold in {row.hold for row in rows}]
     signs += [sign("hollow: not allowed", marker="o", markerfacecolor="white", **grey)]
-    signs += [sign("black edge: float64", marker="o", markeredgecolor="black", **grey)]
+    if any(row.precision == "float64" for row in rows):
+        signs += [sign("black edge: float64", marker="o", markeredgecolor="black", **grey)]
     signs += [sign("asked for", color="black", linestyle=":")]
     figure.legend(handles=signs, loc="outside lower center", ncols=2 if len(figure.axes) == 1 else 4, **FRAME)
