@@ -179,17 +179,34 @@ def pack(now, frame, points):
     return struct.pack("<3d", now, frame.time, len(rows)) + rows.tobytes() + points.tobytes()
 
 
+def around(words=""):
+    """Return a widget that, in a VBox with plain ones, keeps a notebook's keys from them and gives pictures these words.
+
+    Raises
+    ------
+    EngineMissingError
+        Without anywidget.
+    """
+    return _around()(words=words)
+
+
+@cache
+def _around():
+    anywidget, traitlets = _open_anywidget()
+
+    class Around(anywidget.AnyWidget):
+        """Shows nothing."""
+
+        _esm = (BROWSER / "around.js").read_text("utf-8")
+        words = traitlets.Unicode().tag(sync=True)
+
+    return Around
+
+
 @cache
 def _canvas():
     """Return the class of the widget; all that it draws with travels in it, so no network is needed."""
-    try:
-        import anywidget
-        import traitlets
-    except ImportError as missing:
-        raise EngineMissingError(
-            "hl.live draws with anywidget, which does not import here; do: pip install anywidget, in the environment of the "
-            "notebook"
-        ) from missing
+    anywidget, traitlets = _open_anywidget()
 
     class LiveCanvas(anywidget.AnyWidget):
         """A canvas with buttons and sliders."""
@@ -199,3 +216,15 @@ def _canvas():
         about = traitlets.Dict().tag(sync=True)
 
     return LiveCanvas
+
+
+def _open_anywidget():
+    try:
+        import anywidget
+        import traitlets
+    except ImportError as missing:
+        raise EngineMissingError(
+            "hl.live draws with anywidget, which does not import here; do: pip install anywidget, in the environment of the "
+            "notebook"
+        ) from missing
+    return anywidget, traitlets

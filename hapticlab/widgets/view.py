@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from ..analysis.wall_map import OTHERS, WallMaps, changed
 from ..analysis.wall_map_plot import WallMapPicture
 from ..errors import AnalysisError, EngineMissingError
+from .front import around
 from .latest import Latest
 
 #: what a slider may move beside what a map may be over, and its unit
@@ -76,7 +77,8 @@ class MapView:
             )
         self.sliders = {name: _slider(widgets, paddle, maps.over, name, span) for name, span in spans.items()}
         self.image, self.text = widgets.Image(format="png"), widgets.HTML()
-        self.box = widgets.VBox([*self.sliders.values(), self.image, self.text])
+        self._around = _around()
+        self.box = widgets.VBox([*self.sliders.values(), self.image, self.text, *self._around])
         self._latest = Latest(self._draw, self._show_error)
         for slider in self.sliders.values():
             slider.observe(self._moved, names="value")
@@ -108,12 +110,22 @@ class MapView:
         self.image.value = self._picture.figure._repr_png_()
         self.paddle, self.map = paddle, found
         self.text.value = f"{found.regions.size} contacts in {found.seconds:.2f} s"
+        for beside in self._around:
+            beside.words = str(found).splitlines()[0]
 
     def _show_error(self, error):
         self.text.value = f"<b>{type(error).__name__}</b>: {error}"
 
     def _repr_mimebundle_(self, **options):
         return self.box._repr_mimebundle_(**options)
+
+
+def _around():
+    """Return what gives the picture words and keeps a notebook's keys from the sliders; nothing without anywidget."""
+    try:
+        return (around(),)
+    except EngineMissingError:
+        return ()
 
 
 def value_of(paddle, name):
