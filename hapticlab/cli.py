@@ -152,6 +152,12 @@ def _whole(text):
     return int(text)
 
 
+def _seed(text):
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is no seed; needs a whole number from 0 on")
+    return int(text)
+
+
 def _part(text):
     try:
         part = float(text)
@@ -222,11 +228,15 @@ def _parser():
 
 def _add_labs(commands):
     """Add what a course opens."""
-    text = "copy the labs into a folder, never over a file that is there, and open JupyterLab on them"
+    text = "copy the labs into a folder, never over what was changed there, and open JupyterLab on them"
     made = commands.add_parser("labs", help=text, description=text)
     made.add_argument("folder", metavar="DIR", nargs="?", default="hapticlab-labs", help="(default: %(default)s)")
     made.add_argument("--no-open", action="store_true", help="only copy, and say how to open them")
-    made.add_argument("--instructor", metavar="PATH", help="folder of answers: write solved notebooks beside, and mark them")
+    words = "copy these labs; by default all, or those that are in the folder already"
+    made.add_argument("--lab", nargs="+", default=[], metavar="NN", help=words)
+    words = "folder of answers: write solved notebooks into DIR-solved, and mark these and the labs as they came with hapticlab"
+    made.add_argument("--instructor", metavar="PATH", help=words)
+    made.add_argument("--seed", type=_seed, metavar="N", help="of an instructor's hidden cases (default: 0)")
     made.set_defaults(command=lab_commands.labs, parser=made)
 
 

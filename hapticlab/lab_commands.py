@@ -9,57 +9,97 @@ import sys
 from pathlib import Path
 
 from .course.instructor import check_tree, mark_notebook, solved_notebook
-from .course.labs import copy_labs, find_labs
+from .course.labs import copy_labs, find_labs, incomplete_labs
 from .course.notebook import read, write
 from .errors import CourseError, EngineMissingError
 
 
 def labs(parser, options):
     """Copy the labs and open JupyterLab on them; for an instructor first the solved notebooks and their marks."""
-    folder, found = Path(options.folder), find_labs()
+    folder = Path(options.folder)
     if options.instructor:
         check_tree(options.instructor)
-    copied = copy_labs(folder)
-    _tell(folder, found, copied)
-    code = _mark_all(find_labs(folder), Path(options.instructor)) if options.instructor else 0
+    elif options.seed is not None:
+        parser.error("--seed is of the hidden cases; it needs --instructor PATH")
+    copied = copy_labs(folder, options.lab)
+    _tell(folder, copied)
+    code = _mark_all(folder, Path(options.instructor), options) if options.instructor else 0
+    here = [lab for lab in find_labs(folder) if copied.get(str(Path(lab.name, lab.notebook.name))) in ("new", "as it came")]
+    command = _jupyter(folder, *here[:1])
     if options.no_open:
-        print(f"\nto open them: {_words(_jupyter(folder))}")
+        print(f"\nto open them: {_words(command)}")
         return code
-    fresh = [lab for lab in found if copied.get(f"{lab.name}/{lab.notebook.name}") == "new"]
-    return _open(_jupyter(folder, *fresh[:1])) or code
+    return _open(command) or code
 
 
-def _tell(folder, found, copied):
+def _tell(folder, copied):
     """Say what is there, and what was left alone."""
+    found, came = find_labs(folder), find_labs()
     print(f"labs in {folder.resolve()}")
-    for lab in (f.lab() for f in found):
-        print(f"  {lab.number}  {lab.title:<60} {lab.minutes:>4} min")
+    for one in found:
+        try:
+            lab = one.lab()
+            print(f"  {lab.number}  {lab.title:<60} {lab.minutes:>4} min")
+        except CourseError as problem:
+            print(f"  {one.number}  {problem}")
+    for name in incomplete_labs(folder):
+        print(f"  {name} is no lab: it needs {name}.ipynb and checks.py")
+    _tell_files(folder, copied)
+    away = [lab.number for lab in came if lab.name not in {path.name for path in folder.iterdir()}]
+    if away:
+        print(f"not in this folder; to have them: {_words(['hapticlab', 'labs', str(folder), '--lab', *away])}")
+
+
+def _tell_files(folder, copied):
+    """Say which files were renewed, and which were left as they are."""
+    renewed = [path for path, state in copied.items() if state == "renewed"]
+    if renewed:
+        print("renewed, for a newer hapticlab checks otherwise, and nobody had changed them; the old ones are beside as")
+        print(f"checks.py.old:\n  {', '.join(renewed)}")
     kept = [path for path, state in copied.items() if state == "kept"]
     if kept:
         print(f"left as they are, for they differ from what came with hapticlab and may hold your work:\n  {', '.join(kept)}")
-        print(f"to have these as they came, name another folder: hapticlab labs {folder.resolve().name}-new")
+        print(f"to have these as they came, name another folder: {_words(['hapticlab', 'labs', str(_beside(folder, 'new'))])}")
 
 
-def _mark_all(found, tree):
-    """Write the solved notebooks and print what these and the notebooks as they are earn; 1 unless that is all and nothing."""
+def _beside(folder, ending):
+    """Return the path of a folder beside one."""
+    folder = folder if folder.name not in ("", "..") else folder.resolve()
+    return folder.with_name(f"{folder.name}-{ending}")
+
+
+def _mark_all(folder, tree, options):
+    """Write the solved notebooks and print what these and the notebooks as they came earn; 1 unless that is all and nothing.
+
+    Marked are the labs that came with hapticlab: their code runs in this process, and a folder that somebody worked in may
+    hold anything.
+    """
+    came, solved, seed = find_labs(), _beside(folder, "solved"), options.seed or 0
+    asked = [lab for lab in came if not options.lab or lab.number in options.lab]
+    print(f"\nmarked are the labs as they came with hapticlab, never the notebooks in {folder}; hidden cases of seed {seed}")
+    print(f"solved notebooks go into {solved.resolve()}: keep that folder from students")
     print(f"\n{'lab':<30} {'points':>6} {'solution':>9} {'untouched':>10}")
-    good = True
-    for folder in found:
+    good = not incomplete_labs(folder)
+    for lab in asked:
         try:
-            good &= _mark(folder, tree / folder.name)
+            good &= _mark(lab, tree / lab.name, solved, seed)
         except CourseError as problem:
-            print(f"{folder.name:<30} {problem}")
+            print(f"{lab.name:<30} {problem}")
             good = False
+    for path in sorted(set(tree.glob("[0-9][0-9]_*")) - {tree / lab.name for lab in came}):
+        print(f"{path.name:<30} answers, and no lab of that name came with hapticlab")
+        good = False
     return 0 if good else 1
 
 
-def _mark(folder, answers):
-    """Write a lab's solved notebook and print its line; whether the solution earns all, the notebook as it is nothing."""
+def _mark(folder, answers, solved, seed):
+    """Write a lab's solved notebook and print its line; whether the solution earns all, the notebook as it came nothing."""
     if not answers.is_dir():
         print(f"{folder.name:<30} no answers in {answers.parent}")
-        return True
-    notebook, path = solved_notebook(folder, answers), folder.path / f"{folder.name}-solved.ipynb"
-    solution, untouched = (mark_notebook(folder, given, answers) for given in (notebook, read(folder.notebook)))
+        return False
+    notebook, path = solved_notebook(folder, answers), solved / f"{folder.name}-solved.ipynb"
+    solution, untouched = (mark_notebook(folder, given, answers, seed) for given in (notebook, read(folder.notebook)))
+    solved.mkdir(parents=True, exist_ok=True)
     state = "written" if write(path, notebook) else "left as it is: it differs from the solution"
     points = folder.lab().points
     print(f"{folder.name:<30} {points:>6g} {solution.earned:>9g} {untouched.earned:>10g}  {path.name} {state}", flush=True)
@@ -73,7 +113,7 @@ def _mark(folder, answers):
 
 
 def _jupyter(folder, first=None):
-    """Return the command that opens JupyterLab of this environment on a folder, the first time on its first lab."""
+    """Return the command that opens JupyterLab of this environment on a folder, at a lab of it."""
     command = [sys.executable, "-m", "jupyterlab", str(folder)]
     if first is not None:
         command.append(f"--LabApp.default_url=/lab/tree/{first.name}/{first.notebook.name}")

@@ -85,9 +85,9 @@ def _failed(name, words):
 
 def _exercise(name):
     """Return the exercise of a name such as "01.wall_force", from the checks beside the notebook or the package's."""
-    if not isinstance(name, str) or "." not in name:
+    lab, _, exercise = (part.strip() for part in name.partition(".")) if isinstance(name, str) else ("", "", "")
+    if not (lab and exercise):
         raise CourseError('needs lab and exercise first, such as hl.check("01.wall_force", wall_force)')
-    lab, _, exercise = name.partition(".")
     return find_lab(lab.zfill(2), beside=Path.cwd()).exercise(exercise)
 
 

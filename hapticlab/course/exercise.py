@@ -1,5 +1,6 @@
 """What a lab asks: exercises with their public cases. Cases hold numbers, never a formula of the answer."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -129,6 +130,8 @@ class Lab:
 
     def __post_init__(self):
         object.__setattr__(self, "exercises", tuple(self.exercises))
+        if not (isinstance(self.number, str) and re.fullmatch("[0-9][0-9]", self.number)):
+            raise CourseError(f"lab number {self.number!r}: needs two digits as text, as its folder begins, such as '02'")
         names = [e.name for e in self.exercises]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:

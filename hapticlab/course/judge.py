@@ -10,6 +10,7 @@ FACTORS = (
     (-1.0, "The sign is turned."),
     (1e3, "It is 1000 times too large: is something in millimetres or milliseconds that belongs in SI?"),
     (1e-3, "It is 1000 times too small: is something in millimetres or milliseconds that belongs in SI?"),
+    (100.0, "It is 100 times too large: percent where a share of one is asked for, or centimetres?"),
     (-1e3, "The sign is turned, and it is 1000 times too large: millimetres?"),
     (-1e-3, "The sign is turned, and it is 1000 times too small: millimetres?"),
     (180 / math.pi, "It is in degrees; radians are asked for."),
@@ -63,10 +64,12 @@ def judge(exercise, case, value):
     if got is None:
         alone = ", without quotes and unit" if isinstance(value, str) else ""
         return Verdict(False, f"{_kind(value)}, needs {_shape_words(wanted.shape)}{alone}")
+    if got.shape != wanted.shape and np.squeeze(got).shape == np.squeeze(wanted).shape:
+        got = got.reshape(wanted.shape)  # an array of one number, a column
     if got.shape != wanted.shape:
         return Verdict(False, f"{_shape_words(got.shape)}, needs {_shape_words(wanted.shape)}")
     if within(exercise, wanted, got):
-        return Verdict(True, _value(wanted, case.unit))
+        return Verdict(True, _value(got, case.unit))
     words = _difference(wanted, got, case.unit, exercise, hidden)
     return Verdict(False, f"{words}. {_slip(case, exercise, wanted, got)}".strip())
 
@@ -135,15 +138,21 @@ def _numbers(value):
 def _difference(wanted, got, unit, exercise, hidden):
     """Say what is wrong; what a value should be is not told, it is the answer itself."""
     if wanted.ndim == 0:
-        said = _value(got, unit)
         if hidden:
-            return f"{said}: not yet"
-        return f"{said}, expected {_value(wanted, unit)}"
+            return f"{_value(got, unit)}: not yet"
+        digits = _digits(got, wanted)
+        return f"{_value(got, unit, digits)}, expected {_value(wanted, unit, digits)}"
     wrong = ~(np.abs(got - wanted) <= _band(exercise, wanted))
     index = tuple(int(i) for i in np.argwhere(wrong)[0])
     place = f"[{', '.join(map(str, index))}]"
-    expected = "not yet" if hidden else f"expected {_value(wanted[index], unit)}"
-    return f"{int(wrong.sum())} of {wrong.size} numbers differ, first {place}: {_value(got[index], unit)}, {expected}"
+    digits = 6 if hidden else _digits(got[index], wanted[index])
+    expected = "not yet" if hidden else f"expected {_value(wanted[index], unit, digits)}"
+    return f"{int(wrong.sum())} of {wrong.size} numbers differ, first {place}: {_value(got[index], unit, digits)}, {expected}"
+
+
+def _digits(one, other):
+    """Return how many digits tell two numbers apart, six at least."""
+    return next((d for d in range(6, 17) if f"{float(one):.{d}g}" != f"{float(other):.{d}g}"), 17)
 
 
 def _slip(case, exercise, wanted, got):
@@ -173,10 +182,10 @@ def _close(wrong, got, near=NEAR):
     return bool((np.abs(got - wrong) <= near * np.abs(wrong).max(initial=0) + 1e-12).all())
 
 
-def _value(number, unit):
+def _value(number, unit, digits=6):
     if np.ndim(number):
         return f"{np.size(number)} numbers"
-    return f"{float(number):.6g} {unit}".strip()
+    return f"{float(number):.{digits}g} {unit}".strip()
 
 
 def _shape_words(shape):

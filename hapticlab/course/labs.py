@@ -1,5 +1,9 @@
-"""The labs: where they are, the checks beside each, and copies of them, which overwrite nothing."""
+"""The labs: where they are, the checks beside each, and copies of them, which lose nothing that was changed."""
 
+import hashlib
+import itertools
+import json
+import re
 import runpy
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +15,8 @@ PACKAGE = Path(__file__).resolve().parents[1]
 #: of a wheel, and of a checkout
 PLACES = (PACKAGE / "labs", PACKAGE.parent / "labs")
 CHECKS = "checks.py"
+#: beside the copies: path to SHA-256 of what came with the package, which tells what somebody changed since
+RECORD = ".hapticlab-labs.json"
 
 
 @dataclass(frozen=True)
@@ -36,14 +42,17 @@ class LabFolder:
 
     def lab(self):
         """Return the Lab that its checks define."""
-        return load_lab(self.path / CHECKS)
+        lab = load_lab(self.path / CHECKS)
+        if lab.number != self.number:
+            raise CourseError(f"{self.path / CHECKS}: LAB has number {lab.number!r}; its folder begins with {self.number}")
+        return lab
 
 
 def load_lab(path):
     """Return the Lab of a file of checks."""
     try:
         lab = runpy.run_path(str(path)).get("LAB")
-    except Exception as problem:
+    except (Exception, SystemExit) as problem:
         raise CourseError(f"{path} failed: {type(problem).__name__}: {problem}") from None
     if not isinstance(lab, Lab):
         raise CourseError(f"{path} defines no LAB; it needs LAB = Lab(number=..., title=..., minutes=..., exercises=(...))")
@@ -58,27 +67,32 @@ def labs_folder():
     raise CourseError(f"no labs in {' or '.join(map(str, PLACES))}; install hapticlab anew")
 
 
-def copy_labs(target):
-    """Copy the student's labs into a folder; a file that is there already stays as it is.
+def copy_labs(target, only=()):
+    """Copy the student's labs into a folder; what somebody changed there stays as it is.
+
+    In a folder that has labs, those that were deleted stay away, unless ``only`` names them. A ``checks.py`` that is as it
+    once came, and differs from the package's, is brought up to date: it judges, and holds nobody's work.
 
     Parameters
     ----------
     target : str or Path
         Made where it is missing.
+    only : sequence of str
+        Numbers of labs, ``("02", "03")``; by default all, or those that are there already.
 
     Returns
     -------
     dict of str to str
-        Path in the folder to what happened: "new", "as it came", or "kept" where it differs from what came with the
-        package, as a student's own work does.
+        Path in the folder to what happened: "new", "as it came", "renewed" (the old one is beside it), or "kept" where it
+        differs from what came with the package, as a student's own work does.
 
     Examples
     --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     first, again = copy_labs(folder), copy_labs(folder)
-    >>> set(first.values()), set(again.values())
-    ({'new'}, {'as it came'})
+    ...     first, again = copy_labs(folder, only=["02"]), copy_labs(folder)
+    >>> set(first.values()), set(again.values()), len(again)
+    ({'new'}, {'as it came'}, 3)
     """
     source, target = labs_folder(), Path(target)
     if target.exists() and not target.is_dir():
@@ -86,7 +100,27 @@ def copy_labs(target):
     if source.resolve() in (target.resolve(), *target.resolve().parents):
         inside = "" if target.resolve() == source.resolve() else "inside the folder "
         raise CourseError(f"{target} is {inside}where the labs come from; name another, for your own copy")
-    return {str(path): _copied(source / path, target / path) for path in _files(source)}
+    left_out = {lab.name for lab in find_labs(source)} - _chosen(target, only)
+    paths = [path for path in _files(source) if path.parts[0] not in left_out]
+    try:
+        return _copied_all(source, target, paths)
+    except OSError as problem:
+        raise CourseError(
+            f"cannot write {problem.filename or target}: {problem.strerror or problem}; what came before it is copied. Name a "
+            "folder of your own, such as: hapticlab labs my-labs"
+        ) from None
+
+
+def _chosen(target, only):
+    """Return the names of the labs to copy."""
+    named = {lab.number: lab.name for lab in find_labs()}
+    strange = [number for number in only if number not in named]
+    if strange:
+        raise CourseError(f"there is no lab {strange[0]}; there are {', '.join(named) or 'none'}")
+    if only:
+        return {named[number] for number in only}
+    there = {path.name for path in target.glob("[0-9][0-9]_*")}
+    return {*named.values()} & there if there else {*named.values()}
 
 
 def _files(source):
@@ -95,16 +129,58 @@ def _files(source):
     return [path for path in paths if not any(part.startswith((".", "__")) for part in path.parts)]
 
 
-def _copied(source, target):
-    """Copy a file to where there is none; what is there is never opened for writing."""
+def _copied_all(source, target, paths):
+    """Copy files, and write down what came."""
+    target.mkdir(parents=True, exist_ok=True)
+    came, states = _record(target), {}
+    for path in paths:
+        name = path.as_posix()
+        states[str(path)] = _copied(source / path, target / path, came.get(name))
+        if states[str(path)] != "kept":
+            came[name] = _hash((source / path).read_bytes())
+    text = json.dumps(came, indent=1, sort_keys=True) + "\n"
+    if not (target / RECORD).is_file() or (target / RECORD).read_text("utf-8") != text:
+        (target / RECORD).write_text(text, "utf-8")
+    return states
+
+
+def _record(target):
+    """Return what was written down of the files that came, nothing where that cannot be read."""
+    try:
+        return dict(json.loads((target / RECORD).read_text("utf-8")))
+    except (OSError, ValueError, TypeError):
+        return {}
+
+
+def _hash(content):
+    return hashlib.sha256(content).hexdigest()
+
+
+def _copied(source, target, came):
+    """Copy a file to where there is none; of what is there, checks that are as they came make way and are kept beside."""
     target.parent.mkdir(parents=True, exist_ok=True)
-    content = source.read_bytes()
+    content, state = source.read_bytes(), "new"
+    if source.name == CHECKS and target.is_file() and _hash(target.read_bytes()) == came != _hash(content):
+        target.rename(_free(target.with_name(f"{CHECKS}.old")))
+        state = "renewed"
     try:
         with target.open("xb") as file:
             file.write(content)
-        return "new"
+        return state
     except FileExistsError:
         return "as it came" if target.is_file() and target.read_bytes() == content else "kept"
+
+
+def _free(path):
+    """Return the path, or one like it where that is taken."""
+    several = itertools.chain([path], (path.with_name(f"{path.name}{number}") for number in itertools.count(2)))
+    return next(one for one in several if not one.exists())
+
+
+def incomplete_labs(folder):
+    """Return the names of folders that look like a lab's, NN_name, and lack its notebook or its checks."""
+    whole = {lab.name for lab in find_labs(folder)}
+    return [path.name for path in sorted(Path(folder).glob("[0-9][0-9]_*")) if path.is_dir() and path.name not in whole]
 
 
 def find_labs(folder=None):
@@ -124,8 +200,11 @@ def find_lab(number, beside=None):
         ...
     hapticlab.errors.CourseError: there is no lab 99; there are ...
     """
-    if beside is not None and (Path(beside) / CHECKS).is_file() and Path(beside).resolve().name.startswith(f"{number}_"):
-        return load_lab(Path(beside) / CHECKS)
+    checks = None if beside is None else Path(beside) / CHECKS
+    if checks is not None and checks.is_file() and re.search(r"^LAB\b", checks.read_text("utf-8", "replace"), re.M):
+        lab = load_lab(checks)
+        if lab.number == number:  # whatever its folder is called
+            return lab
     found = find_labs()
     for folder in found:
         if folder.number == number:

@@ -1,10 +1,12 @@
 """What answers earn: the public cases of a lab and hidden ones, judged alike.
 
 An instructor's folder of a lab holds ``solution.py``, the answers under the names they have in the notebook, and
-``hidden.py`` with ``def cases(random): return {"exercise": [given, ...]}``, whose expected values the solution gives.
+``hidden.py`` with ``def cases(random): return {"exercise": lambda: [given, ...]}``, whose expected values the solution
+gives. Each exercise draws from a generator of its own, so that a change of one leaves the cases of all others.
 """
 
 import runpy
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -81,12 +83,26 @@ def hidden_cases(lab, folder, seed=0):
     folder = Path(folder)
     answers, hidden = instructor_names(folder / SOLUTION), instructor_names(folder / HIDDEN)
     if "cases" not in hidden:
-        raise CourseError(f"{folder / HIDDEN} defines no cases; it needs def cases(random): return {{'exercise': [given, ...]}}")
+        raise CourseError(
+            f"{folder / HIDDEN} defines no cases; it needs def cases(random): return {{'exercise': lambda: [given, ...]}}"
+        )
     try:
-        found = hidden["cases"](np.random.default_rng([seed, int(lab.number)]))
+        names = list(hidden["cases"](_generator(seed, lab, "")))
+        found = {name: _drawn(hidden["cases"](_generator(seed, lab, name))[name]) for name in names}
     except Exception as problem:
         raise CourseError(f"{folder / HIDDEN}: cases failed: {type(problem).__name__}: {problem}") from problem
     return {name: tuple(_case(lab.exercise(name), answers, given) for given in several) for name, several in found.items()}
+
+
+def _drawn(several):
+    if not callable(several):
+        raise TypeError("each exercise needs a function, 'exercise': lambda: [given, ...]; then it draws by itself")
+    return several()
+
+
+def _generator(seed, lab, exercise):
+    """Return the generator that an exercise's hidden cases are drawn from."""
+    return np.random.default_rng([seed, int(lab.number), zlib.crc32(exercise.encode())])
 
 
 def _case(exercise, answers, given):
@@ -104,5 +120,5 @@ def instructor_names(path):
         raise CourseError(f"{path}: no such file; an instructor's folder of a lab holds {SOLUTION} and {HIDDEN}")
     try:
         return runpy.run_path(str(path))
-    except Exception as problem:
+    except (Exception, SystemExit) as problem:
         raise CourseError(f"{path} failed: {type(problem).__name__}: {problem}") from problem

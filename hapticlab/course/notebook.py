@@ -7,6 +7,7 @@ delete cells.
 import ast
 import io
 import json
+import re
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -106,6 +107,42 @@ def solved(notebook, solution, exercises):
     if imports:
         cells.insert(next(place for place, (_, names) in enumerate(changed) if names), _code_cell("solution-imports", imports))
     return {**notebook, "cells": cells}
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a notebook answers an exercise and checks it: the ids of both cells, None where there is none."""
+
+    exercise: str
+    answer: str | None
+    check: str | None
+
+
+def places(notebook, lab):
+    """Return which cell answers which exercise of a lab, and which checks it, found by their code.
+
+    Parameters
+    ----------
+    notebook : dict
+    lab : Lab
+
+    Returns
+    -------
+    tuple of Place
+        One for each exercise, in their order.
+
+    Examples
+    --------
+    >>> from hapticlab.course.exercise import Exercise, Lab
+    >>> sources = {"a": "k = None  # [N/m]", "b": "hl.check('02.k', k)"}
+    >>> cells = [{"cell_type": "code", "id": name, "source": source} for name, source in sources.items()]
+    >>> places({"cells": cells}, Lab("02", "Springs", 10, [Exercise("k", "value", 1)]))
+    (Place(exercise='k', answer='a', check='b'),)
+    """
+    cells = {cell["id"]: _source(cell) for cell in notebook["cells"] if cell["cell_type"] == "code"}
+    answers = {part.name: key for key, source in reversed(cells.items()) for part in _parts(source)}
+    checks = {name: key for key, source in reversed(cells.items()) for name in re.findall(r"\bcheck\(\s*['\"](\S+)['\"]", source)}
+    return tuple(Place(one.name, answers.get(one.name), checks.get(f"{lab.number}.{one.name}")) for one in lab.exercises)
 
 
 @dataclass(frozen=True)

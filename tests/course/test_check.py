@@ -152,7 +152,8 @@ def itself():
         (lambda x, v, k: None, "it returns None; is its `return` missing?"),
         (lambda x, v, k: "2.4 N", "a text, needs one number, without quotes and unit"),
         (lambda x, v, k: True, "True or False, needs one number"),
-        (lambda x, v, k: [2.4], "an array of one number, needs one number"),
+        (lambda x, v, k: [], "0 numbers, needs one number"),
+        (lambda x, v, k: 100 * k * x, "100 times too large: percent"),
         (lambda x, v, k: np.full((2, 3), 2.4), "an array of shape (2, 3), needs one number"),
         (lambda x, v, k: [[1], [2, 3]], "its rows not equally long"),
         (lambda x, v, k: np.array(["a"]), "needs an array of real numbers"),
@@ -208,7 +209,10 @@ def test_the_line_of_a_cell_is_named_where_it_raises():
         ("force", 'force: needs lab and exercise first, such as hl.check("01.wall_force", wall_force)'),
         (right, "hl.check: needs lab and exercise first"),
         (None, "hl.check: needs lab and exercise first"),
-        ("../01.x", "lab 00 has no exercise ./01.x"),
+        ("../01.x", "../01.x: needs lab and exercise first"),
+        (".q", ".q: needs lab and exercise first"),
+        ("00.", "00.: needs lab and exercise first"),
+        (" 97.force", "there is no lab 97; there are 00_"),
     ],
 )
 def test_a_misspelt_check_is_told_and_raises_nothing(name, words, capsys):
@@ -370,3 +374,33 @@ def test_parts_of_a_dict_are_judged_one_by_one():
         assert words in checked("98.b", both, lambda change=change: good | change).text
     assert "T is missing" in checked("98.b", both, lambda: {"F": 1, "fits": False}).text
     assert "needs a dict with F, fits, T" in checked("98.b", both, lambda: 1).text
+
+
+def test_what_is_right_is_printed_as_the_student_gave_it_and_what_is_wrong_with_the_digits_that_tell():
+    near = Exercise("f", "value", 1, cases=[Case({}, 30.5, unit="Hz")], rtol=0.02)
+    assert checked("98.f", near, 30.0).text.endswith("right: 30 Hz")
+    root = Exercise("g", points=1, cases=[Case({}, 1.00250313)], rtol=1e-7)
+    assert "1.0025, expected 1.002503" in checked("98.g", root, lambda: 1.0025).text
+    pair = Exercise("g", cases=[Case({}, [1.0, 2.0000001])], rtol=1e-9)
+    assert "[1]: 2, expected 2.0000001" in checked("98.g", pair, lambda: [1, 2]).text
+
+
+@pytest.mark.parametrize("one", [np.array([2.4]), np.array([[2.4]]), [2.4]])
+def test_an_array_of_one_number_is_that_number_and_a_column_its_numbers(one):
+    number, pair = (Exercise("f", points=1, cases=[Case({}, expected)]) for expected in (2.4, [1.0, 2.0]))
+    assert checked("98.f", number, lambda: one).passed
+    assert checked("98.f", pair, lambda: np.linalg.solve(np.eye(2), [[1.0], [2.0]])).passed
+    assert not checked("98.f", number, lambda: -np.asarray(one)).passed
+    assert not checked("98.f", pair, lambda: [[2.0], [1.0]]).passed
+
+
+def test_checks_beside_count_by_the_number_in_them_whatever_the_folder_is_called(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    head = "from hapticlab.course.exercise import Exercise, Lab\n"
+    (tmp_path / "checks.py").write_text(head + "LAB = Lab('02', '', 1, [Exercise('mine', 'prediction')])")
+    assert hl.check("02.mine", 1).passed
+    assert "lab 03 has no exercise mine" in hl.check("03.mine", 1).text
+    (tmp_path / "checks.py").write_text("raise RuntimeError('of something else, not run')")
+    assert "lab 02 has no exercise mine" in hl.check("02.mine", 1).text
+    (tmp_path / "checks.py").write_text("LAB = exit(3)")
+    assert "checks.py failed: SystemExit: 3" in hl.check("02.mine", 1).text

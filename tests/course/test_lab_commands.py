@@ -11,6 +11,7 @@ import pytest
 
 from hapticlab.cli import main
 from hapticlab.course import labs as course_labs
+from hapticlab.course.labs import RECORD
 from hapticlab.course.notebook import read, write
 
 CHECKS = """
@@ -43,7 +44,7 @@ def place(tmp_path, monkeypatch):
         cell = {"cell_type": "code", "id": "a", "metadata": {}, "outputs": [], "execution_count": None, "source": UNTOUCHED}
         write(lab / f"{number}_springs.ipynb", {"cells": [cell], "metadata": {}, "nbformat": 4, "nbformat_minor": 5})
         (answers / "solution.py").write_text("def force(k):\n    return 3 * k")
-        (answers / "hidden.py").write_text("def cases(random):\n    return {'force': [{'k': random.uniform()}]}")
+        (answers / "hidden.py").write_text("def cases(random):\n    return {'force': lambda: [{'k': random.uniform()}]}")
     for junk in ("__pycache__/checks.pyc", ".ipynb_checkpoints/08.ipynb"):
         (tmp_path / "labs" / "08_springs" / junk).parent.mkdir()
         (tmp_path / "labs" / "08_springs" / junk).touch()
@@ -62,7 +63,8 @@ def place(tmp_path, monkeypatch):
 
 
 def files(folder):
-    return {str(path.relative_to(folder)): path.read_text() for path in Path(folder).rglob("*") if path.is_file()}
+    paths = (path for path in Path(folder).rglob("*") if path.is_file() and path.name != RECORD)
+    return {str(path.relative_to(folder)): path.read_text() for path in paths}
 
 
 def test_labs_are_copied_and_jupyterlab_of_this_environment_opens_on_them(place, capfd):
@@ -79,8 +81,10 @@ def test_labs_are_copied_and_jupyterlab_of_this_environment_opens_on_them(place,
     assert "  08  Springs 08" in out and f"labs in {Path('hapticlab-labs').resolve()}" in out
     assert f"{sys.executable} -m jupyterlab" in out
     assert "serving" in out
-    assert main(["labs"]) == 0
-    assert json.loads(Path("called.json").read_text())[0] == ["hapticlab-labs"]  # where the student left it
+    for changed, opened in (("08", ["--LabApp.default_url=/lab/tree/09_springs/09_springs.ipynb"]), ("09", [])):
+        Path(f"hapticlab-labs/{changed}_springs/{changed}_springs.ipynb").write_text("my work")
+        assert main(["labs"]) == 0  # at the first that is not begun, else where the student left it
+        assert json.loads(Path("called.json").read_text())[0] == ["hapticlab-labs", *opened]
 
 
 def test_a_students_work_is_never_overwritten(place, capsys):
@@ -94,7 +98,7 @@ def test_a_students_work_is_never_overwritten(place, capsys):
     assert main(["labs", "mine", "--no-open"]) == 0
     out = capsys.readouterr().out
     assert "may hold your work:\n  08_springs/08_springs.ipynb, README.md\n" in out
-    assert "hapticlab labs mine-new" in out
+    assert "name another folder: hapticlab labs mine-new\n" in out
     found = files("mine")
     assert (found["08_springs/08_springs.ipynb"], found["notes.txt"]) == ("my work", "also mine")
     assert found["09_springs/checks.py"] == CHECKS.format("09")  # what was missing is there again
@@ -161,37 +165,104 @@ def test_ctrl_c_is_answered_by_jupyterlab_alone(place):
         assert process.stderr.read().startswith("hapticlab: JupyterLab ended with code 3; what it said is above")
 
 
-def test_an_instructor_gets_solved_notebooks_and_their_marks(place, capsys):
+def test_an_erratum_arrives_and_checks_that_somebody_changed_survive(place, capsys):
+    assert main(["labs", "my labs", "--no-open"]) == 0
+    own = Path("my labs/09_springs/checks.py")
+    own.write_text(own.read_text() + "# an instructor's own\n")
+    for number in ("08", "09"):
+        checks = place / "labs" / f"{number}_springs" / "checks.py"
+        checks.write_text(CHECKS.format(number).replace("6.0", "8.0"))
+    capsys.readouterr()
+    assert main(["labs", "my labs", "--no-open"]) == 0
+    out = capsys.readouterr().out
+    assert "checks.py.old:\n  08_springs/checks.py\n" in out
+    assert "may hold your work:\n  09_springs/checks.py\n" in out and "hapticlab labs 'my labs-new'" in out
+    found = files("my labs")
+    assert "8.0" in found["08_springs/checks.py"] and found["08_springs/checks.py.old"] == CHECKS.format("08")
+    assert found["09_springs/checks.py"] == CHECKS.format("09") + "# an instructor's own\n"
+    Path("my labs", RECORD).write_text("no record")  # then nothing is known, and nothing makes way
+    (place / "labs" / "08_springs" / "checks.py").write_text(CHECKS.format("08"))
+    assert main(["labs", "my labs", "--no-open"]) == 0
+    assert files("my labs") == found
+
+
+def test_labs_that_were_deleted_stay_away_and_some_can_be_asked_for(place, capsys):
+    assert main(["labs", "mine", "--no-open", "--lab", "09"]) == 0
+    out = capsys.readouterr().out
+    assert "  09  Springs 09" in out and "  08  Springs" not in out
+    assert "to have them: hapticlab labs mine --lab 08\n" in out
+    Path("mine/11_own").mkdir()
+    Path("mine/12_own").mkdir()
+    Path("mine/12_own/12_own.ipynb").touch()
+    Path("mine/12_own/checks.py").write_text(CHECKS.format(12))
+    assert main(["labs", "mine", "--no-open"]) == 0
+    out = capsys.readouterr().out
+    assert not Path("mine/08_springs").exists()
+    assert "  12  Springs 12" in out and "11_own is no lab: it needs 11_own.ipynb and checks.py" in out
+    assert main(["labs", "mine", "--no-open", "--lab", "08"]) == 0
+    assert Path("mine/08_springs/checks.py").is_file()
+    assert main(["labs", "mine", "--no-open", "--lab", "13"]) == 1
+    assert "there is no lab 13; there are 08, 09" in capsys.readouterr().err
+
+
+def test_a_place_that_cannot_be_written_to_is_told_with_a_cure(capsys):
+    Path("mine").mkdir()
+    Path("mine/08_springs").touch()
+    assert main(["labs", "mine", "--no-open"]) == 1
+    err = capsys.readouterr().err
+    assert "cannot write mine/08_springs: File exists; what came before it is copied. Name a folder of your own" in err
+
+
+def test_an_instructor_gets_solved_notebooks_in_a_folder_of_their_own_and_their_marks(place, capsys):
     command = ["labs", "--no-open", "--instructor", str(place / "answers")]
     assert main(command) == 0
-    rows = table(capsys)
+    rows, out = table(capsys)
     assert [row[:4] for row in rows] == [["08_springs", "2", "2", "0"], ["09_springs", "2", "2", "0"]]
-    solved = Path("hapticlab-labs/09_springs/09_springs-solved.ipynb")
+    assert f"{Path('hapticlab-labs-solved').resolve()}: keep that folder from students" in out
+    assert not [path for path in files("hapticlab-labs") if "solved" in path]
+    solved = Path("hapticlab-labs-solved/09_springs-solved.ipynb")
     assert read(solved)["cells"][0]["source"] == "def force(k):\n    return 3 * k"
     solved.write_text("changed")
-    assert main(command) == 0
-    assert "09_springs-solved.ipynb left as it is" in capsys.readouterr().out
+    assert main([*command, "--seed", "7", "--lab", "09"]) == 0
+    rows, out = table(capsys)
+    assert "09_springs-solved.ipynb left as it is" in out and "hidden cases of seed 7" in out
+    assert [row[0] for row in rows] == ["09_springs"]
     assert solved.read_text() == "changed"
 
 
-def test_an_instructors_own_labs_are_marked_and_mistakes_in_them_told(place, capsys):
+def test_no_notebook_of_the_folder_is_run_when_an_instructor_marks(place, capsys):
+    assert main(["labs", "--no-open"]) == 0
+    mine = Path("hapticlab-labs/08_springs/08_springs.ipynb")
+    cell = {"cell_type": "code", "id": "a", "metadata": {}, "source": "open('was-run', 'w'); import os; os._exit(9)"}
+    mine.write_text(json.dumps({"cells": [cell]}))
+    assert main(["labs", "--no-open", "--instructor", str(place / "answers")]) == 0
+    rows, out = table(capsys)
+    assert rows[0][:4] == ["08_springs", "2", "2", "0"]
+    assert "marked are the labs as they came with hapticlab, never the notebooks in hapticlab-labs" in out
+
+
+def test_mistakes_in_answers_are_told(place, capsys):
     command = ["labs", "--no-open", "--instructor", str(place / "answers")]
-    assert main(command) == 0
-    mine = Path("hapticlab-labs/12_mine")
-    mine.mkdir()
-    (mine / "checks.py").write_text(CHECKS.format(12))
-    (mine / "12_mine.ipynb").write_text(Path("hapticlab-labs/09_springs/09_springs.ipynb").read_text())
-    capsys.readouterr()
-    assert main(command) == 0
-    assert table(capsys)[-1][:5] == ["12_mine", "no", "answers", "in", str(place / "answers")]
     (place / "answers" / "09_springs" / "solution.py").write_text("def force(k):\n    return -3 * k")
-    Path("hapticlab-labs/08_springs/08_springs.ipynb").write_text("no notebook")
+    (place / "answers" / "08_springs").rename(place / "answers" / "08_spring")
     assert main(command) == 1
-    out = capsys.readouterr().out
+    rows, out = table(capsys)
     assert "solution, force: 1 of 2 cases; -6, expected 6. The sign is turned." in out
-    assert "08_springs.ipynb is no notebook; it needs the JSON that Jupyter writes" in out
+    assert rows[0][:4] == ["08_springs", "no", "answers", "in"]
+    assert rows[-1] == ["08_spring", "answers,", *"and no lab of that name came with hapticlab".split()]
+    (place / "labs" / "08_springs" / "08_springs.ipynb").write_text("no notebook")
+    (place / "answers" / "08_spring").rename(place / "answers" / "08_springs")
+    assert main(command) == 1
+    assert "08_springs.ipynb is no notebook; it needs the JSON that Jupyter writes" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("arguments", [["--seed", "3"], ["--seed", "x", "--instructor", "y"]])
+def test_a_seed_that_says_nothing_is_a_wrong_command(arguments, capsys):
+    with pytest.raises(SystemExit):
+        main(["labs", "--no-open", *arguments])
+    assert "--seed" in capsys.readouterr().err
 
 
 def table(capsys):
-    lines = capsys.readouterr().out.splitlines()
-    return [line.split() for line in lines if line[:2].isdecimal()]
+    out = capsys.readouterr().out
+    return [line.split() for line in out.splitlines() if line[:2].isdecimal()], out

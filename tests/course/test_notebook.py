@@ -6,7 +6,7 @@ from hapticlab.course.exercise import Case, Exercise, Lab
 from hapticlab.course.instructor import mark_notebook, solved_notebook
 from hapticlab.course.labs import LabFolder, find_lab, find_labs
 from hapticlab.course.marks import hidden_cases, marks
-from hapticlab.course.notebook import code_of, read, run, solved, write
+from hapticlab.course.notebook import code_of, places, read, run, solved, write
 from hapticlab.errors import CourseError
 
 CHECKS = """
@@ -50,7 +50,7 @@ tail = 1
 HIDDEN = """
 def cases(random):
     given = lambda: {"k": float(random.uniform(1, 2)), "x": float(random.uniform(1, 2))}
-    return {"force": [given(), given()], "stored": [given()], "who": [{}]}
+    return {"force": lambda: [given(), given()], "stored": lambda: [given()], "who": lambda: [{}]}
 """
 CELLS = [
     "half = 3",
@@ -143,6 +143,18 @@ def test_hidden_cases_are_those_of_their_seed(folder):
     assert drawn[0] == drawn[1] != drawn[2]
     case = drawn[0]["force"][0]
     assert case.expected == case.given["k"] * case.given["x"] and case.unit == "N"
+    (answers / "hidden.py").write_text(HIDDEN.replace("given(), given()", "given(), given(), given()"))
+    more = hidden_cases(lab.lab(), answers, 1)
+    assert more["force"][:2] == drawn[0]["force"] and more["stored"] == drawn[0]["stored"]
+
+
+def test_places_are_found_by_name_wherever_the_cells_are(folder):
+    lab, _ = folder
+    stored = 'x = 1\nagain = hl.check(\n    "77.stored", stored)'
+    cells = [*CELLS, "hl.check('77.force', force)", stored, "def force(): 'again'"]
+    assert [(p.exercise, p.answer, p.check) for p in places(notebook(*cells), lab.lab())] == [
+        ("force", "c1", "c6"), ("stored", "c5", "c7"), ("who", "c3", None), ("prediction", "c3", None),
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -151,7 +163,9 @@ def test_hidden_cases_are_those_of_their_seed(folder):
         ("hidden.py", "", "defines no cases"),
         ("hidden.py", "def cases(random): return 1 / 0", "hidden.py: cases failed: ZeroDivisionError"),
         ("solution.py", "def force(", "solution.py failed: SyntaxError"),
-        ("hidden.py", "def cases(random): return {'nothing': [{}]}", "has no exercise nothing; it has force, stored"),
+        ("hidden.py", "def cases(random): return {'nothing': lambda: [{}]}", "has no exercise nothing; it has force, stored"),
+        ("hidden.py", "def cases(random): return {'force': [{}]}", "each exercise needs a function, 'exercise': lambda: "),
+        ("hidden.py", "raise SystemExit(1)", "hidden.py failed: SystemExit"),
         ("solution.py", "def force(k, x): return 1 / 0", "force: the solution gives no value .*: it raises ZeroDivisionError"),
         ("solution.py", "", "force: the solution gives no value for .*: it has no answer"),
     ],
@@ -171,6 +185,9 @@ def test_checks_beside_the_notebook_come_before_those_of_the_package(folder):
     assert find_lab("77", beside=lab.path).title == "Springs"
     with pytest.raises(CourseError, match="there is no lab 77"):
         find_lab("77")
+    (lab.path / "checks.py").write_text(CHECKS.replace("77", "01"))
+    with pytest.raises(CourseError, match="LAB has number '01'; its folder begins with 77"):
+        lab.lab()
     (lab.path / "checks.py").write_text("1 / 0")
     with pytest.raises(CourseError, match=r"checks.py failed: ZeroDivisionError"):
         LabFolder(lab.path).lab()
@@ -188,6 +205,8 @@ def test_checks_beside_the_notebook_come_before_those_of_the_package(folder):
         (lambda: Exercise("a", "choice", options={"a": ""}, cases=[Case({}, "b")]), "'b' is none of the options a"),
         (lambda: Case(3, 4), "a case needs a dict"),
         (lambda: Lab("01", "", 1, [Exercise("a"), Exercise("a")]), "a twice"),
+        (lambda: Lab("13a", "", 1, []), "lab number '13a': needs two digits"),
+        (lambda: Lab(1, "", 1, []), "lab number 1: needs two digits"),
         (lambda: read(__file__), "is no notebook"),
     ],
 )

@@ -78,7 +78,6 @@ def test_untouched_lab_runs_and_earns_nothing(folder, tmp_path, monkeypatch, rec
     assert not [o for o in outputs if "image/png" in o and "alt=" not in o.get("text/html", "")], "hl.show(figure, alt=...)"
     seconds = float(printed(notebook.cells[-1]))
     record_property("seconds", seconds)
-    assert seconds < 10, "a lab untouched is to run in 4 s on an idle computer"
 
 
 def printed(cell):
@@ -94,7 +93,6 @@ def test_solved_lab_earns_everything(folder, record_property):
     assert found.problems == []
     assert [m for m in found.marks if m.earned != m.points] == []
     assert found.earned == lab.points
-    assert seconds < 12, "a lab solved is to run in 5 s on an idle computer"
 
 
 def test_wrong_answers_earn_nothing_and_are_taught(folder):

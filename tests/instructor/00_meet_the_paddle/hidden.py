@@ -6,11 +6,11 @@ import numpy as np
 def cases(random):
     """Return givens by exercise, drawn with a NumPy Generator."""
     return {
-        "handle_position": [_stops(random, turned) for turned in (False, True, False)],
-        "sign_evidence": [_tosses(random) for _ in range(3)],
-        "force_full": [_scale(random) for _ in range(3)],
-        "felt_stiffness": [_spring(random) for _ in range(2)],
-        "limits": [
+        "handle_position": lambda: [_stops(random, turned) for turned in (False, True, False)],
+        "sign_evidence": lambda: [_tosses(random) for _ in range(3)],
+        "force_full": lambda: [_scale(random) for _ in range(3)],
+        "felt_stiffness": lambda: [_spring(random) for _ in range(2)],
+        "limits": lambda: [
             {
                 "k": random.uniform(50, 900),
                 "metres_per_count": random.uniform(5e-6, 8e-4),

@@ -6,7 +6,7 @@ import numpy as np
 def cases(random):
     """Return givens by exercise, drawn with a NumPy Generator."""
     return {
-        "spring_damper_force": [
+        "spring_damper_force": lambda: [
             {
                 "x": random.uniform(-0.02, 0.02),
                 "v": random.uniform(-0.3, 0.3),
@@ -15,16 +15,16 @@ def cases(random):
             }
             for _ in range(3)
         ],
-        "spring_damper": [
+        "spring_damper": lambda: [
             {"x": _motion(random), "T": T, "values": {"k": random.uniform(50, 500), "b": random.uniform(0.1, 2)}}
             for T in (1e-3, 5e-4)
         ],
-        "spring_and_damper": [_record(random) for _ in range(2)],
-        "count_step": [
+        "spring_and_damper": lambda: [_record(random) for _ in range(2)],
+        "count_step": lambda: [
             {"m": random.uniform(0.02, 0.3), "metres_per_count": random.uniform(5e-6, 8e-4), "T": random.uniform(5e-4, 4e-3)}
             for _ in range(2)
         ],
-        "mass_on_coupler": [
+        "mass_on_coupler": lambda: [
             {
                 "x": _motion(random),
                 "T": 2e-3,
@@ -33,7 +33,7 @@ def cases(random):
             }
             for _ in range(2)
         ],
-        "resonance": [
+        "resonance": lambda: [
             {"m": random.uniform(0.02, 0.5), "K": random.uniform(50, 900), "b_c": random.uniform(0, 2)} for _ in range(2)
         ],
     }

@@ -8,14 +8,14 @@ def cases(random):
     stiffness = lambda: float(random.uniform(50, 3000))  # noqa: E731
     way = lambda: float(random.choice([-1, 1]) * random.uniform(2e-5, 4e-4))  # noqa: E731
     return {
-        "held_work": [{"k": stiffness(), "x": float(random.uniform(5e-4, 5e-3)), "D": way()} for _ in range(3)],
-        "period_leak": [{"k": stiffness(), "D": way()} for _ in range(3)],
-        "bounce_gain": [
+        "held_work": lambda: [{"k": stiffness(), "x": float(random.uniform(5e-4, 5e-3)), "D": way()} for _ in range(3)],
+        "period_leak": lambda: [{"k": stiffness(), "D": way()} for _ in range(3)],
+        "bounce_gain": lambda: [
             {"k": stiffness(), "m": float(random.uniform(0.02, 0.3)), "T": float(random.uniform(2e-4, 2e-3))}
             for _ in range(3)
         ],
-        "energy_generated": [{"x": _contacts(random), "k": stiffness()} for _ in range(3)],
-        "two_walls": [
+        "energy_generated": lambda: [{"x": _contacts(random), "k": stiffness()} for _ in range(3)],
+        "two_walls": lambda: [
             {
                 "x": list(random.uniform(-8e-3, 8e-3, 9)),
                 "values": {"k": stiffness(), "x_o": float(random.uniform(1e-3, 4e-3))},

@@ -8,28 +8,26 @@ def cases(random):
     uniform = lambda low, high: float(random.uniform(low, high))  # noqa: E731
     way = lambda: float(random.choice([-1, 1]) * random.uniform(2e-5, 4e-4))  # noqa: E731
     return {
-        "period_energy": [
+        "period_energy": lambda: [
             {
                 "x": uniform(1e-3, 5e-3), "D": way(), "K": uniform(50, 2000), "b": uniform(0.02, 1),
                 "T": uniform(2e-4, 4e-3),
             }
             for _ in range(3)
         ],
-        "passive_stiffness": [
-            {"b": 0.3, "B": uniform(0.05, 0.25), "T": uniform(2e-4, 4e-3)},
-            {"b": 0.4, "B": -uniform(0.05, 0.35), "T": uniform(2e-4, 4e-3)},
-            {"b": uniform(0.01, 0.1), "B": -uniform(0.11, 0.4), "T": 1e-3},
+        "damper_gives": lambda: [
+            {"D": way(), "B": sign * uniform(0.05, 0.4), "T": uniform(2e-4, 4e-3)} for sign in (1, -1, 1)
         ],
-        "observed_energy": [_record(random, length) for length in (2, 9, 40)],
-        "damping_asked": [
+        "observed_energy": lambda: [_record(random, length) for length in (2, 9, 40)],
+        "damping_asked": lambda: [
             {"taps": random.uniform(-200, 400, length).tolist(), "theta": uniform(0.2, np.pi), "T": uniform(2e-4, 4e-3)}
             for length in (1, 2, 4)
         ],
-        "disk_size": [
+        "disk_size": lambda: [
             {"K": uniform(20, 900), "theta": theta, "b": uniform(0.05, 0.6), "T": uniform(2e-4, 2e-3)}
             for theta in (uniform(0.1, 1.0), uniform(1.0, 3.0), np.pi)
         ],
-        "controlled_force": [
+        "controlled_force": lambda: [
             {"f": uniform(-1, 2), "credit": credit, "D": D, "T": 1e-3, "alpha_max": alpha_max}
             for credit, D, alpha_max in (
                 (-uniform(1e-6, 1e-5), way(), 1e3), (-uniform(1e-4, 1e-3), way(), uniform(0.5, 3)),

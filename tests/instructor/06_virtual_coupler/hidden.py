@@ -6,13 +6,13 @@ import numpy as np
 def cases(random):
     """Return givens by exercise, drawn with a NumPy Generator."""
     return {
-        "euler_step": [_state(random) for _ in range(3)],
-        "pendulum": [_swing(random) for _ in range(2)],
-        "coupler_stiffness": [
+        "euler_step": lambda: [_state(random) for _ in range(3)],
+        "pendulum": lambda: [_swing(random) for _ in range(2)],
+        "coupler_stiffness": lambda: [
             {"b": random.uniform(0.2, 3), "T": random.uniform(2e-4, 4e-3), "b_c": random.uniform(0.01, 0.15)} for _ in range(3)
         ],
-        "felt_wall": [{"K": random.uniform(50, 900), "k": random.uniform(50, 5000)} for _ in range(2)],
-        "swing_frequency": [
+        "felt_wall": lambda: [{"K": random.uniform(50, 900), "k": random.uniform(50, 5000)} for _ in range(2)],
+        "swing_frequency": lambda: [
             {
                 "l": random.uniform(0.05, 0.4),
                 "g": random.uniform(1.6, 9.81),

@@ -5,10 +5,10 @@ import numpy as np
 prediction = 0.2
 
 
-def semi_implicit_step(z, u, x, m, K, b, h):
-    """One step of semi-implicit Euler, the handle at rest at x."""
-    u = u + h * (K * (x - z) - b * u) / m
-    return np.array([z + h * u, u])
+def step_matrix(m, K, b, h):
+    """Matrix of one step of semi-implicit Euler, the handle at rest: first the velocity, then the place."""
+    velocity = np.array([[1, 0], [-h * K / m, 1 - h * b / m]])
+    return np.array([[1, h], [0, 1]]) @ velocity
 
 
 def euler_growth(m, K, b, h):
@@ -31,7 +31,7 @@ def shortest_period(cycles, rest, load, hz):
     return (cycles + rest) / (load * hz)
 
 
-why_order_one = "c"
+why_order_one = "d"
 
 discussion = (
     "I predicted that RK4 is a hundred times better, and it was five times worse, since I had not thought of what "

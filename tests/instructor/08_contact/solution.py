@@ -15,7 +15,7 @@ def stiffest_penalty(m, M, h):
     return m * M / (m + M) * (np.pi / (10 * h)) ** 2
 
 
-two_springs = "b"
+two_springs = "c"
 
 
 def impact(v, w, m, M, e):

@@ -6,15 +6,15 @@ import numpy as np
 def cases(random):
     """Return what each exercise is asked beside its public cases."""
     return {
-        "coasting_speed": [
+        "coasting_speed": lambda: [
             _coast(random, coulomb) for coulomb in (0.0, random.uniform(0.01, 0.1), random.uniform(0.01, 0.1))
         ],
-        "coast_fit": [_record(random) for _ in range(3)],
-        "mass_and_friction": [_thrown(random) for _ in range(2)],
-        "promised_stiffness": [
+        "coast_fit": lambda: [_record(random) for _ in range(3)],
+        "mass_and_friction": lambda: [_thrown(random) for _ in range(2)],
+        "promised_stiffness": lambda: [
             _interval(random, B) for B in (0.0, random.uniform(0, 0.05), -random.uniform(0, 0.05), 0.5)
         ],
-        "hand_constants": [_swing(random) for _ in range(2)],
+        "hand_constants": lambda: [_swing(random) for _ in range(2)],
     }
 
 

@@ -6,16 +6,16 @@ import numpy as np
 def cases(random):
     """Return what each exercise is asked beside its public cases."""
     return {
-        "part_right": [_pair(random) for _ in range(3)],
-        "staircase": [_answers(random, trials) for trials in (1, 25, 40)],
-        "converges_to": [
+        "part_right": lambda: [_pair(random) for _ in range(3)],
+        "staircase": lambda: [_answers(random, trials) for trials in (1, 25, 40)],
+        "converges_to": lambda: [
             {"down": 3, "weight": 1.0},
             {"down": 1, "weight": random.uniform(1, 4)},
             {"down": 2, "weight": 0.74},
         ],
-        "log_likelihood": [_answered(random) for _ in range(3)],
-        "at_d_prime_1": [{"level": random.uniform(0.05, 0.5), "part": random.uniform(0.6, 0.95)} for _ in range(3)],
-        "steps_between": [_span(random) for _ in range(3)],
+        "log_likelihood": lambda: [_answered(random) for _ in range(3)],
+        "at_d_prime_1": lambda: [{"level": random.uniform(0.05, 0.5), "part": random.uniform(0.6, 0.95)} for _ in range(3)],
+        "steps_between": lambda: [_span(random) for _ in range(3)],
     }
 
 
