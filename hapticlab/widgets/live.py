@@ -33,7 +33,9 @@ def live(paddle, scene, *, sliders=None, speed=1.0, picture=None, rehearsal=None
     On a simulated paddle the pointer, a finger or the arrow keys say where the hand means to be; the hand is the paddle's
     own, its intent and push replaced, or ``hl.hand("pinch")`` where that has no spring. On a board the hand is yours, and
     the motor goes on only when Start is pressed. Nothing runs before a notebook shows the view; all ends when its last view
-    closes or falls silent for 2 s.
+    closes or falls silent for 2 s. Where a notebook's widgets wait for the cell that runs (no subshells: ipykernel before 7,
+    and editors other than JupyterLab), a cell longer than that is such a silence: a simulation then goes on after it, a
+    board waits for Start.
 
     Parameters
     ----------
