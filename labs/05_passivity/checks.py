@@ -7,15 +7,16 @@ TAKEN = "That is what the held force took in; the leak is what the spring holds 
 NEXT = "F_e(n+1) acts in the next period. In this one the motor holds F_e(n) = K x(n)."
 NO_T = "The loss is b v times the way D, with v = D/T: one division by T is missing."
 FORCE = "That is the damper's force b D/T; the loss is that force times the way D."
-NO_HALF = "The spring leaks K D^2/2, half of K D^2: so K is 2 (b - |B|)/T."
-SIGNED = "|B| counts, of either sign: a negative virtual damper feeds slow motion, a positive one fast motion."
+NO_HALF = "The half belongs to a spring, whose force grows on the way; this force is held all the way."
+TAKES = "The force on the environment times the way is what the damper takes in; what it gives is less than nothing."
+HELD = "The held force is that of the last period's velocity, -D/T: it goes the other way than this period's motion."
+SIGNED = "Keep the sign of B: below zero it turns which of the two motions is paid for."
 LATE = (
     "F[n] is paired with the way that led to x[n]. It acts after that sample: from x[n] to x[n+1]. Paired so, a wall "
     "that leaks looks like one that dissipates."
 )
 MEAN = "The mean of two forces is right for a spring of steel; the motor holds F[n] all the way to the next sample."
 PERIODS = "Those are the works of single periods; W adds them up."
-NEGATIVE = "b does not even pay for |B|: no wall is passive, and the largest K is 0, not negative."
 NO_HALF_T = "The factor T/2 is missing."
 ADVANCED = "H belongs to z = e^(j theta), and a past sample x(n-i) to z^-i: e^(-j i theta)."
 NO_TURN = "That is only K times the radius: the map divides by |1 + H c|."
@@ -29,7 +30,7 @@ LAB = Lab(
     title="Passivity, a promise about every hand",
     minutes=120,
     exercises=(
-        Exercise("prediction", kind="prediction", asks="the stiffest wall that no hand can set chattering [N/m]"),
+        Exercise("prediction", kind="prediction", asks="the stiffest wall that is stable under the light finger [N/m]"),
         Exercise(
             "period_energy",
             points=2,
@@ -61,28 +62,42 @@ LAB = Lab(
                 ),
             ),
             rtol=1e-5,
-            hint="insert W(x) = K x^2/2 and F_e(n) = K x(n); x drops out. The damper's force at v = D/T acts along D.",
+            hint="what does the spring hold before and after, and what did the held force take in? What does friction cost?",
         ),
         Exercise(
-            "passive_stiffness",
+            "damper_gives",
             points=2,
-            asks="the largest K [N/m] that Eq. (23.10) allows",
+            asks='{"slow": and "alternating": energy [J] that the held virtual damper gives in a period}',
             cases=(
-                Case({"b": 0.1, "B": 0.0, "T": 1e-3}, 200.0, unit="N/m", slips={100.0: NO_HALF}),
-                Case({"b": 0.3, "B": 0.1, "T": 1e-3}, 400.0, unit="N/m", slips={200.0: NO_HALF, 800.0: SIGNED}),
-                Case({"b": 0.5, "B": -0.3, "T": 2e-3}, 200.0, unit="N/m", slips={100.0: NO_HALF, 800.0: SIGNED}),
                 Case(
-                    {"b": 0.1, "B": -0.25, "T": 1e-3},
-                    0.0,
-                    unit="N/m",
-                    slips={
-                        -300.0: NEGATIVE,
-                        -150.0: NEGATIVE,
-                        700.0: SIGNED,
-                    },
+                    {"D": 4e-4, "B": 0.25, "T": 1e-3},
+                    {"slow": -4e-5, "alternating": 4e-5},
+                    unit="J",
+                    slips=(
+                        ({"slow": 4e-5}, TAKES),
+                        ({"alternating": -4e-5}, HELD),
+                        ({"slow": -4e-8}, NO_T),
+                        ({"alternating": 4e-8}, NO_T),
+                        ({"slow": -0.1}, FORCE),
+                        ({"alternating": 0.1}, FORCE),
+                        ({"slow": -2e-5}, NO_HALF),
+                        ({"alternating": 2e-5}, NO_HALF),
+                    ),
+                ),
+                Case(
+                    {"D": -5e-4, "B": -0.3, "T": 2e-3},
+                    {"slow": 3.75e-5, "alternating": -3.75e-5},
+                    unit="J",
+                    slips=(
+                        ({"slow": -3.75e-5}, SIGNED),
+                        ({"alternating": 3.75e-5}, SIGNED),
+                        ({"slow": 1.875e-5}, NO_HALF),
+                        ({"alternating": -1.875e-5}, NO_HALF),
+                    ),
                 ),
             ),
-            hint="solve b = K T/2 + |B| for K; below zero there is none.",
+            rtol=1e-5,
+            hint="which force is held from x(n) on, and does the handle go on with it or against it? Who gives then?",
         ),
         Exercise(
             "observed_energy",
@@ -109,7 +124,7 @@ LAB = Lab(
                     slips={(0.0, 0.0002, 0.0008, 0.0018, 0.0014, 0.001, 0.001): LATE},
                 ),
             ),
-            hint="W[0] = 0, then W[n] = W[n-1] + F[n-1] (x[n] - x[n-1]); see numpy.diff and numpy.cumsum.",
+            hint="which sample's force does the motor hold on the way to x[n]? How many such ways are there until then?",
         ),
         Exercise(
             "damping_asked",
@@ -128,7 +143,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="numpy.exp(-1j * theta * numpy.arange(len(taps))) holds all powers of 1/z; .real takes the real part.",
+            hint="which power of e^(j theta) belongs to a sample that is i periods old? (Python writes j as 1j.)",
         ),
         Exercise(
             "disk_size",
@@ -158,7 +173,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="c is a complex number in Python: -T/(4*b) * (1 + 1j/np.tan(theta/2)); abs() of it is the radius.",
+            hint="c is complex: how large is it, and what does the map divide by? (Python writes j as 1j.)",
         ),
         Exercise(
             "controlled_force",
@@ -196,7 +211,7 @@ LAB = Lab(
                 ),
                 Case({"f": 0.8, "credit": -1e-4, "D": 0.0, "T": 1e-3, "alpha_max": 5.0}, 0.8, unit="N"),
             ),
-            hint="first the two cases in which it does nothing (credit >= 0, D = 0); then alpha, then f + alpha D/T.",
+            hint="in which two cases does it do nothing? What bounds alpha in all others?",
         ),
         Exercise(
             "why_it_failed",
@@ -204,17 +219,17 @@ LAB = Lab(
             points=1,
             asks='"a", "b", "c" or "d"',
             options={
-                "a": "the honey is itself not passive",
-                "b": "stirring filled the credit, and the controller waits until the chatter has spent it",
+                "a": "stirring filled the credit, and the controller waits until the chatter has spent it",
+                "b": "the honey's damper, held for a period, generates the energy of the chatter",
                 "c": "alpha_max is too small",
                 "d": "the encoder hides the energy",
             },
             cases=(
                 Case(
                     {},
-                    "b",
+                    "a",
                     slips={
-                        "a": "While it leans the finger is not in the honey; and what honey takes is credit, not debt.",
+                        "b": "b = 0.1 pays for a honey of 0.05; and while it leans the finger is not in the honey.",
                         "c": "The same alpha_max settled the same wall where nobody had stirred: look at the credits.",
                         "d": "The same encoder was there in the first run, which settled: look at the credits.",
                     },

@@ -3,12 +3,12 @@
 from hapticlab.course.exercise import Case, Exercise, Lab
 
 EXPLICIT = "That is forward Euler: here z moves with the new velocity."
+DAMPED_TOO = "The new velocity moves z, and the damper is in the new velocity: it shows in the upper row as well."
 LATE = "The acceleration belongs to the start of the step: first the new velocity, from the old z, then the new z."
 PULL = "The coupler pulls the mass towards the handle: K (x - z), not K (z - x)."
 NO_DAMPER = "The damper is missing: -b u, with the handle at rest."
 FEEDING = "The damper's sign is turned: it acts against u."
-NO_MASS = "A force over a mass is an acceleration: divide by m."
-SWAPPED = "The order is [z, u]."
+SWAPPED = "Rows and columns are exchanged: a row gives one new value, from both old ones."
 DETERMINANT = "That is the determinant: it multiplies the square of the amplitude; take its root."
 UNDAMPED = "That is the growth without the damper: 1 - h b/m stands in the determinant, too."
 TRACE = "That is the trace, the sum of the eigenvalues; a pair's squared magnitude is its product, the determinant."
@@ -34,37 +34,35 @@ LAB = Lab(
     exercises=(
         Exercise("prediction", kind="prediction", asks="error of semi-implicit Euler divided by that of RK4"),
         Exercise(
-            "semi_implicit_step",
+            "step_matrix",
             points=2,
-            asks="the array [z, u] after one step of semi-implicit Euler",
+            asks="the 2x2 array that takes (z - x, u) over one step of semi-implicit Euler",
             cases=(
                 Case(
-                    {"z": 0.0, "u": 0.05, "x": 0.01, "m": 0.05, "K": 200.0, "b": 0.5, "h": 0.01},
-                    [0.00445, 0.445],
+                    {"m": 0.05, "K": 200.0, "b": 0.5, "h": 0.01},
+                    [[0.6, 0.009], [-40.0, 0.9]],
                     slips={
-                        (0.0005, 0.445): EXPLICIT,
-                        (0.0005, 0.425): LATE,
-                        (-0.00355, -0.355): PULL,
-                        (0.0045, 0.45): NO_DAMPER,
-                        (0.00455, 0.455): FEEDING,
-                        (0.0006975, 0.06975): NO_MASS,
-                        (0.445, 0.00445): SWAPPED,
+                        ((1.0, 0.01), (-40.0, 0.9)): EXPLICIT,
+                        ((0.6, 0.01), (-40.0, 0.9)): DAMPED_TOO,
+                        ((0.6, 0.01), (-40.0, 1.0)): NO_DAMPER,
+                        ((0.6, 0.011), (-40.0, 1.1)): FEEDING,
+                        ((1.4, 0.009), (40.0, 0.9)): PULL,
+                        ((0.6, -40.0), (0.009, 0.9)): SWAPPED,
+                        ((1.0, 0.01), (-40.0, 0.5)): LATE,
                     },
                 ),
                 Case(
-                    {"z": 0.002, "u": -0.2, "x": -0.003, "m": 0.1, "K": 300.0, "b": 0.5, "h": 0.01},
-                    [-0.0014, -0.34],
+                    {"m": 0.1, "K": 500.0, "b": 2.0, "h": 0.01},
+                    [[0.5, 0.008], [-50.0, 0.8]],
                     slips={
-                        (0.0, -0.34): EXPLICIT,
-                        (0.0, -0.28): LATE,
-                        (0.0016, -0.04): PULL,
-                        (-0.0015, -0.35): NO_DAMPER,
-                        (-0.0016, -0.36): FEEDING,
-                        (-0.34, -0.0014): SWAPPED,
+                        ((1.0, 0.01), (-50.0, 0.8)): EXPLICIT,
+                        ((0.5, 0.01), (-50.0, 0.8)): DAMPED_TOO,
+                        ((0.5, 0.01), (-50.0, 1.0)): NO_DAMPER,
+                        ((1.5, 0.008), (50.0, 0.8)): PULL,
                     },
                 ),
             ),
-            hint="two lines: the new u from the old z and u, and then the new z with the new u.",
+            hint="where does one step take z - x = 1, u = 0? That is one column of the matrix; and the other?",
         ),
         Exercise(
             "euler_growth",
@@ -93,7 +91,7 @@ LAB = Lab(
                     slips={1.1: DETERMINANT, 2.0: TRACE, 0.04880884817015163: LESS, 1.316227766016838: ALONG},
                 ),
             ),
-            hint="a complex pair multiplies to its squared magnitude, and all eigenvalues to the determinant of A.",
+            hint="what is the product of a complex pair, and what is the product of all eigenvalues of a matrix?",
         ),
         Exercise(
             "longest_step",
@@ -119,7 +117,7 @@ LAB = Lab(
                     slips={0.015811388300841896: NO_B, 0.015936882399006133: OTHER_ROOT, 0.007843441199503066: HALF},
                 ),
             ),
-            hint="trace = 2 - h b/m - h^2 K/m, determinant = 1 - h b/m; 1 + trace + determinant = 0 is quadratic in h.",
+            hint="what are trace and determinant of your matrix? Of two roots, which one can be a step?",
         ),
         Exercise(
             "order_seen",
@@ -154,17 +152,17 @@ LAB = Lab(
             options={
                 "a": "one step a period is too few",
                 "b": "float32 has too few digits",
-                "c": "it solves a problem whose handle stands still during each step, half a period late on average",
-                "d": "the coupler is too stiff",
+                "c": "the coupler is too stiff",
+                "d": "it solves a problem whose handle stands still during each step, half a period late on average",
             },
             cases=(
                 Case(
                     {},
-                    "c",
+                    "d",
                     slips={
                         "a": "Try substeps=4 in the cell below: the error stays what it was.",
                         "b": "Try dtype='float64' in the cell below: the error stays; float32 is good to 1e-7.",
-                        "d": "The same coupler and the same RK4 are wrong by less than 0.1 % with hold='soh'.",
+                        "c": "The same coupler and the same RK4 are wrong by less than 0.1 % with hold='soh'.",
                     },
                 ),
             ),
@@ -193,7 +191,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="a period has hz T cycles, of which load hz T may be used.",
+            hint="how many cycles has a period T, and how many of them may be used?",
         ),
         Exercise("discussion", kind="text", least_words=60, asks="your comparison, at least 60 words"),
     ),

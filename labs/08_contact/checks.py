@@ -3,7 +3,7 @@
 from hapticlab.course.exercise import Case, Exercise, Lab
 
 PULLS = "On the way out the damper asks for a pull, and the contact would stick: N is never below 0."
-FROM_AFAR = "The gap is open there, and its rate alone makes a force: a contact acts where gap < 0 only."
+FROM_AFAR = "The gap is open there, and its rate alone makes a force: a contact acts where it is closed only."
 NEITHER = "Two conditions are missing: no force where the gap is open, and never a pull."
 DAMPER_SIGN = "While the bodies approach, the gap's rate is negative and the damper adds to the force: -k gap - b rate."
 NO_DAMPER = "The damper is missing: -b rate."
@@ -43,7 +43,7 @@ LAB = Lab(
             cases=(
                 Case(
                     {
-                        "gap": [0.001, 0.0, -0.001, -0.002, -0.001, -0.0005, 0.002],
+                        "gap": [0.001, 0.0001, -0.001, -0.002, -0.001, -0.0005, 0.002],
                         "rate": [-0.5, -0.5, -0.4, 0.0, 0.3, 0.6, 0.7],
                         "k": 500.0,
                         "b": 1.0,
@@ -52,8 +52,8 @@ LAB = Lab(
                     unit="N",
                     slips={
                         (0.0, 0.0, 0.9, 1.0, 0.2, -0.35, 0.0): PULLS,
-                        (0.0, 0.5, 0.9, 1.0, 0.2, 0.0, 0.0): FROM_AFAR,
-                        (0.0, 0.5, 0.9, 1.0, 0.2, -0.35, -1.7): NEITHER,
+                        (0.0, 0.45, 0.9, 1.0, 0.2, 0.0, 0.0): FROM_AFAR,
+                        (0.0, 0.45, 0.9, 1.0, 0.2, -0.35, -1.7): NEITHER,
                         (0.0, 0.0, 0.1, 1.0, 0.8, 0.85, 0.0): DAMPER_SIGN,
                         (0.0, 0.0, 0.5, 1.0, 0.5, 0.25, 0.0): NO_DAMPER,
                         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0): "gap is negative inside: the spring's force is -k gap.",
@@ -66,7 +66,7 @@ LAB = Lab(
                     slips={(3.0, 1.0, -4.0): NEITHER},
                 ),
             ),
-            hint="numpy.maximum(0, ...) keeps it from pulling, numpy.where(gap < 0, ..., 0) from acting at a distance.",
+            hint="where may it act at all, and which sign may it never have, whatever the damper asks for?",
         ),
         Exercise(
             "stiffest_penalty",
@@ -92,7 +92,7 @@ LAB = Lab(
                     slips={986960.4401089359: ONE_STEP, 19739.20880217872: BALL_ALONE, 98696.0440108936: TEN_OUTSIDE},
                 ),
             ),
-            hint="solve pi sqrt(mu/k) = 10 h for k.",
+            hint="how long does a contact last, and how long are ten steps?",
         ),
         Exercise(
             "two_springs",
@@ -101,17 +101,17 @@ LAB = Lab(
             asks='"a", "b", "c" or "d"',
             options={
                 "a": "for both at the passivity of the device",
-                "b": "for k_b at the steps that a contact lasts, for K at Eq. (23.10)",
-                "c": "for K at the steps that a contact lasts, for k_b at Eq. (23.10)",
+                "b": "for K at the steps that a contact lasts, for k_b at Eq. (23.10)",
+                "c": "for k_b at the steps that a contact lasts, for K at Eq. (23.10)",
                 "d": "at neither",
             },
             cases=(
                 Case(
                     {},
-                    "b",
+                    "c",
                     slips={
                         "a": "The handle meets the coupler alone; k_b acts between two bodies that the solver moves.",
-                        "c": "It is the other way round: which of the two springs is tied to the sampled handle?",
+                        "b": "It is the other way round: which of the two springs is tied to the sampled handle?",
                         "d": "Springs of steel create none. A sampled one does, and one in too coarse steps as well.",
                     },
                 ),
@@ -150,7 +150,7 @@ LAB = Lab(
                     slips=(({"v": 0.5}, RELATIVE), ({"v": -0.25}, PLASTIC), ({"p": 0.075}, RELATIVE)),
                 ),
             ),
-            hint="three equations: v' = v + p/m, w' = w - p/M, v' - w' = -e (v - w). Put the first two into the third.",
+            hint="three unknowns need three equations: what does p do to each body, and what does restitution say?",
         ),
         Exercise(
             "pulse_time",
@@ -170,7 +170,7 @@ LAB = Lab(
                     slips={0.0025: NO_E, 0.005: TRIANGLE, 0.006795704571147613: INVERSE_E},
                 ),
             ),
-            hint="differentiate s exp(-s/tau): the peak is at s = tau; insert it.",
+            hint="where does the pulse peak, and how large is F(s) there?",
         ),
         Exercise(
             "reaction",
@@ -194,7 +194,7 @@ LAB = Lab(
                 ),
                 Case({"a": -9.81, "m": 0.05, "g": 9.81}, {"N": 0.0, "gap_acceleration": 0.0}),
             ),
-            hint="try N with the gap closed, gap'' = 0; where that would have to pull, N = 0, and the gap opens.",
+            hint="which N would keep the gap closed? And what if that N would have to pull?",
         ),
         Exercise(
             "largest_multiplier",
@@ -213,7 +213,7 @@ LAB = Lab(
                     slips={0.64: PRODUCT, 0.319372372666511: SMALL, -0.319372372666511: REAL_PART},
                 ),
             ),
-            hint="numpy.linalg.eigvals of the matrix, numpy.abs of both, and the largest.",
+            hint="which eigenvalue decides in the long run? They may be complex or negative (numpy.linalg.eigvals).",
         ),
         Exercise("discussion", kind="text", least_words=60, asks="your comparison, at least 60 words"),
     ),

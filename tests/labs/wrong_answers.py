@@ -50,10 +50,6 @@ def by_ten(threshold, levels, right):
     return sum(log10(p if r else 1 - p) for p, r in zip(P, right, strict=True))
 
 
-def explicit(z, u, x, m, K, b, h):
-    return [z + h * u, u + h * (K * (x - z) - b * u) / m]
-
-
 WRONG = {
     "00": [
         ("handle_position", lambda counts, left, right, travel: counts * travel / (right - left)),
@@ -113,8 +109,8 @@ WRONG = {
     "05": [
         ("period_energy", lambda x, D, K, b, T: {"leak": K * (x + D) ** 2 / 2 - K * x**2 / 2, "loss": b * D**2 / T}),
         ("period_energy", lambda x, D, K, b, T: {"leak": K * D**2 / 2, "loss": b * D**2}),
-        ("passive_stiffness", lambda b, B, T: (b - abs(B)) / T),
-        ("passive_stiffness", lambda b, B, T: 2 * (b - abs(B)) / T),
+        ("damper_gives", lambda D, B, T: {"slow": -B * D**2 / T, "alternating": -B * D**2 / T}),
+        ("damper_gives", lambda D, B, T: {"slow": -abs(B) * D**2 / T, "alternating": abs(B) * D**2 / T}),
         ("observed_energy", lambda x, F: np.concatenate([[0], np.cumsum(F[1:] * np.diff(x))])),
         ("damping_asked", lambda taps, theta, T: (
             T / 2 * ((1 - np.exp(-1j * theta)) * np.sum(taps * np.exp(1j * theta * np.arange(len(taps))))).real
@@ -134,7 +130,7 @@ WRONG = {
         ("who_pays", "a"),
     ],
     "07": [
-        ("semi_implicit_step", explicit),
+        ("step_matrix", lambda m, K, b, h: [[1, h], [-h * K / m, 1 - h * b / m]]),
         ("euler_growth", lambda m, K, b, h: 1 - h * b / m + h**2 * K / m),
         ("longest_step", lambda m, K, b: 2 * np.sqrt(m / K)),
         ("order_seen", lambda h, error: np.polyfit(np.log(error), np.log(h), 1)[0]),
