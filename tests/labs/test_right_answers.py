@@ -12,4 +12,4 @@ def test_a_gap_of_exactly_zero_may_count_as_open_or_closed(closed):
     def penalty_force(gap, rate, k, b):
         return np.maximum(0, np.where(closed(gap, 0), -k * gap - b * rate, 0))
 
-    assert checked("08.penalty_force", find_lab("08").lab().exercise("penalty_force"), penalty_force).passed
+    assert checked("08.penalty_force", find_lab("08").exercise("penalty_force"), penalty_force).passed
