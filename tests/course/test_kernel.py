@@ -9,7 +9,7 @@ CELLS = [
     "def handle_position(counts, left, right, travel):\n    sys.exit('over')",
     "found = hl.check('00.handle_position', handle_position)\nfound",
     "hl.check('00.which_way', 'a'); print(found.passed)",
-    "hl.check('00.which_way', 'b').require()",
+    "hl.check('00.which_way', 'c').require()",
     "found.require()",
 ]
 
@@ -28,6 +28,6 @@ def test_a_check_shows_text_alone_and_a_kernel_lives_on(tmp_path, monkeypatch):
     assert "it raises NameError in line 4 of its cell: name 'nothing' is not defined" in text[2]
     assert "it raises SystemExit in line 2 of its cell: over" in text[4]
     assert text[5].endswith("False\n")
-    assert text[6] == "00.which_way: right (1 point)\n  right: b\n"
+    assert text[6] == "00.which_way: right (1 point)\n  right: c\n"
     (error,) = notebook.cells[-1].outputs
     assert error.ename == "AssertionError" and error.evalue.startswith("00.handle_position: not right yet (2 points)")
