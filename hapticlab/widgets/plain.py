@@ -23,6 +23,8 @@ MOVING = 0.4
 STEPS = 200
 #: what leads the hand in a canvas, and here
 DRAG, SLIDE = "Drag the handle, or use the arrow keys: they move", "The slider of the hand moves"
+#: JupyterLab takes keys for its own where a plain widget has the focus
+KEYS = " While a slider or a button here has the focus, JupyterLab takes letters for its own: d d deletes the cell."
 DASHES = ("", "7 3", "2 3")
 
 
@@ -74,7 +76,7 @@ class PlainFront:
         )
         self.hand.observe(lambda change: self._say(session.intend, 1e-3 * change["new"]), names="value")
         hand = [self.hand] if self.about["kind"] == "simulated" else []
-        help_ = widgets.HTML(html.escape(self.about["help"].replace(DRAG, SLIDE)))
+        help_ = widgets.HTML(html.escape(self.about["help"].replace(DRAG, SLIDE) + KEYS))
         self.box = widgets.VBox(
             [widgets.HBox(list(self.buttons.values())), self.image, self.status, *hand, *self.sliders, help_, self.heart]
         )
@@ -103,13 +105,21 @@ class PlainFront:
             self._rows = np.asarray(frame.rows)  # time began anew
         self._rows = self._rows[self._rows[:, 0] > frame.time - SECONDS]
         if frame.status:
-            self.status.value = html.escape(frame.status)
+            self.status.value = f'<span role="status">{html.escape(frame.status)}</span>'
         now = self.session.clock()
         if frame.flags.get("running") and now < self._drawn + 1 / RATE - 2e-3:
             return
         self._drawn = now
         self.image.value = svg(frame, self._rows, self.about)
+        self._switch(frame.flags)
         self._follow(frame.flags.get("values", {}))
+
+    def _switch(self, flags):
+        """Switch off the buttons that would do nothing now; never what stops a motor."""
+        running, recording, recorded = (flags.get(name, False) for name in ("running", "recording", "recorded"))
+        off = {"resume": running, "start": running, "pause": False, "record": recording, "stop": not recording}
+        for name, button in self.buttons.items():
+            button.disabled = bool({**off, "save": not recorded, "replay": not recorded}[name]) and self.session.on_view
 
     def _follow(self, values):
         """Put the sliders where the parameters are, except one that is being moved."""
@@ -172,7 +182,9 @@ def svg(frame, rows, about):
 
     picture = "".join(_item(item, place) for item in frame.picture)
     traces = "".join(_trace(k, trace, rows, frame.time) for k, trace in enumerate(about["traces"]))
-    title = html.escape(f"{about['title']} at {frame.time:.1f} s")
+    now = [f"{trace['label']} = {rows[-1, k + 1] * trace['scale']:.3g} {trace['unit_shown']}" for k, trace in
+           enumerate(about["traces"])] if len(rows) else []  # fmt: skip
+    title = html.escape(", ".join([f"{about['title']} at {frame.time:.1f} s", *now]))
     return (
         f'<svg role="img" aria-label="{title}" viewBox="0 0 {WIDTH} {HEIGHT + 3 * GRAPH}" width="{WIDTH}" '
         f'style="background:#fff;font:12px sans-serif">{picture}{traces}</svg>'

@@ -643,6 +643,10 @@ def test_plain_widgets_show_and_say_the_same():
     stage.session.set(k=500.0)
     stage.go(0.5)
     assert front.sliders[1].value == 500
+    assert [name for name, button in front.buttons.items() if button.disabled] == ["resume", "stop", "save", "replay"]
+    assert "F = " in root.attrib["aria-label"] and 'role="status"' in front.status.value
     front.buttons["pause"].click()
     stage.go(0.1)
     assert not stage.session.motion.running
+    stage.go(0.3)
+    assert not front.buttons["resume"].disabled
