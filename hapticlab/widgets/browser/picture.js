@@ -208,3 +208,8 @@ function niceStep(least) {
 function tidy(value) {
   return String(Number(value.toPrecision(6)))
 }
+
+function shown(value) {
+  const size = Math.abs(value)
+  return value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2).replace(/^-0.00$/, "0.00")
+}

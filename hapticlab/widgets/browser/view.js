@@ -287,11 +287,6 @@ function make(tag, attributes, children = []) {
   return element
 }
 
-function shown(value) {
-  const size = Math.abs(value)
-  return value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2).replace(/^-0.00$/, "0.00")
-}
-
 // Whose force F is, and where the motor pushes the handle: against it.
 function pushes(force, [x, y]) {
   const way = x ** 2 > 0.5 ? (force * x > 0 ? "left" : "right") : force * y > 0 ? "down" : "up"
