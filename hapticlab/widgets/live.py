@@ -27,7 +27,9 @@ DURATIONS = (0.01, 600.0)
 RECORDED, REHEARSED = "recorded in the view", "rehearsal: nobody recorded here"
 
 
-def live(paddle, scene, *, sliders=None, speed=1.0, picture=None, rehearsal=None, duration=4.0, **compile_options):
+def live(
+    paddle, scene, *, sliders=None, speed=1.0, picture=None, show_force=True, rehearsal=None, duration=4.0, **compile_options
+):
     """Show a paddle and a scene in a notebook: it moves, can be pushed, and every parameter has a slider.
 
     On a simulated paddle the pointer, a finger or the arrow keys say where the hand means to be; the hand is the paddle's
@@ -48,6 +50,8 @@ def live(paddle, scene, *, sliders=None, speed=1.0, picture=None, rehearsal=None
         Scene time over the clock's: 0.1 is slow motion. A board's is 1.
     picture : str, shapes or callable, optional
         Instead of the scene's own picture: see :func:`~hapticlab.widgets.picture.moving_picture`.
+    show_force : bool
+        False shows neither force nor energy: for experiments whose answer they would tell.
     rehearsal : callable, optional
         An intent of an array of times [s], in metres, for ``view.log`` where nobody recorded: by default a push from -15 mm
         to 15 mm and back.
@@ -85,7 +89,8 @@ def live(paddle, scene, *, sliders=None, speed=1.0, picture=None, rehearsal=None
     duration = _between("duration", duration, *DURATIONS, " s", "It is that of the rehearsal.")
     _check_rehearsal(rehearsal)
     _check_options(compile_options)
-    session = Session(paddle, scene, sliders=sliders, speed=speed, picture=picture, **compile_options)
+    looks = {"sliders": sliders, "speed": speed, "picture": picture, "show_force": show_force}
+    session = Session(paddle, scene, **looks, **compile_options)
     return LiveView(session, rehearsal, duration, compile_options)
 
 

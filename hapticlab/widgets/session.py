@@ -34,7 +34,7 @@ class Session:
     ----------
     paddle : SimulatedPaddle or SerialPaddle
     scene : Scene
-    sliders, speed, picture
+    sliders, speed, picture, show_force
         As for :func:`hapticlab.live`.
     clock : callable
         Seconds, as time.monotonic gives them.
@@ -45,10 +45,12 @@ class Session:
     """
 
     def __init__(
-        self, paddle, scene, *, sliders=None, speed=1.0, picture=None, clock=time.monotonic, in_thread=True, **options
-    ):
+        self, paddle, scene, *, sliders=None, speed=1.0, picture=None, show_force=True, clock=time.monotonic,
+        in_thread=True, **options,
+    ):  # fmt: skip
         self.clock, self._in_thread = clock, in_thread
-        self.stage = Stage(paddle, scene, clock=clock, sliders=sliders, speed=speed, picture=picture, **options)
+        looks = {"sliders": sliders, "speed": speed, "picture": picture, "show_force": show_force}
+        self.stage = Stage(paddle, scene, clock=clock, **looks, **options)
         self.scene, self.spans, self.picture = self.stage.scene, self.stage.spans, self.stage.picture
         self.source, self.motion, self.description = self.stage.source, self.stage.motion, self.stage.description
         self._lock, self._door, self._closed = threading.RLock(), threading.Lock(), threading.Event()

@@ -1,5 +1,6 @@
 """What a live view shows: a scene that moves, its picture, what is said of it, and what presses and sliders do to it."""
 
+import math
 from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -35,14 +36,14 @@ class Stage:
 
     Parameters
     ----------
-    paddle, scene, sliders, speed, picture, **options
+    paddle, scene, sliders, speed, picture, show_force, **options
         As for :func:`hapticlab.live`.
     clock : callable
         Seconds.
     """
 
-    def __init__(self, paddle, scene, *, clock, sliders=None, speed=1.0, picture=None, **options):
-        self.picture = moving_picture(scene, paddle, picture)
+    def __init__(self, paddle, scene, *, clock, sliders=None, speed=1.0, picture=None, show_force=True, **options):
+        self.picture, self._show_force = moving_picture(scene, paddle, picture), show_force
         self.scene = replace(scene, watch={**scene.watch, **self.picture.channels})
         self.source = source_of(paddle, self.scene, **options)
         self.spans = spans(self.source.program, sliders)
@@ -71,7 +72,7 @@ class Stage:
             "title": self.source.program.name,
             "kind": self.source.kind,
             "parameters": [{**asdict(span), "value": values[span.name]} for span in self.spans],
-            "traces": [dict(trace) for trace in TRACES],
+            "traces": [dict(trace) for trace in (TRACES if self._show_force else TRACES[:1])],
             "x_range": list(self.picture.reach),
             "box": list(box),
             "along": list(self.picture.along),
@@ -280,7 +281,8 @@ class Stage:
     def _drawn(self, wanted):
         """Return the picture; one that cannot be drawn is told, and the scene goes on without it."""
         try:
-            return self.picture.draw(self.motion.values(wanted))
+            hidden = {} if self._show_force else {"F": math.nan}
+            return self.picture.draw({**self.motion.values(wanted), **hidden})
         except Exception as problem:
             self.tell(f"The picture cannot be drawn: {type(problem).__name__}: {problem}")
             return ()

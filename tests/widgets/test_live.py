@@ -650,3 +650,12 @@ def test_plain_widgets_show_and_say_the_same():
     assert not stage.session.motion.running
     stage.go(0.3)
     assert not front.buttons["resume"].disabled
+
+
+def test_a_view_for_an_experiment_tells_no_force():
+    for show, names in ((True, ["x", "F", "E"]), (False, ["x"])):
+        stage = Stage(show_force=show).open()
+        stage.go(0.5, pointer=lambda now: 0.02)
+        assert stage.rows[-1, 2] > 0.5  # N: the wall pushes
+        assert [trace["name"] for trace in stage.session.description()["traces"]] == names
+        assert ("motor" in str(stage.frames[-1].picture)) is show
