@@ -1,7 +1,7 @@
 // The hand that a pointer, a finger or the keys lead: where it means to be, and what that tells the kernel.
 
 const STEP = 0.0005 // [m] of an arrow key
-const SOONEST = 15 // [ms] between two words on where the hand means to be
+const SOONEST = 20 // [ms] between two words on where the hand means to be
 const LED = 500 // [ms] after it was led here: until then the kernel's word on it is older
 
 class Hand {
