@@ -186,7 +186,7 @@ def _raised(problem):
 def _bounded(problem):
     try:
         return " ".join(str.__str__(str(problem)).split())[:300] or "no message"
-    except Exception:
+    except Exception:  # their own __str__ may raise anything
         return "no readable message"
 
 
