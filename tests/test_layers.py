@@ -12,8 +12,8 @@ import hapticlab
 PACKAGE = Path(hapticlab.__file__).parent
 LAYERS = (
     "errors", "records", "drawing", "scene", "library", "compiler", "device", "limits", "rendering", "analysis",
-    "measurement", "identification", "experiments", "course", "widgets", "scenefile", "board_commands", "lab_commands",
-    "demo", "cli",
+    "measurement", "identification", "experiments", "course", "grading", "widgets", "scenefile", "board_commands", "lab_commands",
+    "grade_commands", "assign_commands", "demo", "cli",
 )  # fmt: skip
 # the public names, and `python -m hapticlab`: above every layer; what Jupyter's server loads, which opens nothing else
 OUTSIDE = {"__init__", "__main__", "_jupyter"}
@@ -28,6 +28,8 @@ DOORS = {
     "anywidget": {"widgets.front"},
     "IPython": {"widgets.show"},
     "tqdm": {"device.progress"},
+    "distributed": {"grading.cluster"},
+    "nbgrader": {"grading.gradebook"},
     "pytest": set(),
 }
 # modules that open their dependency at once, because nothing imports them but a function that has opened it already

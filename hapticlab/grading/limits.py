@@ -1,0 +1,53 @@
+"""What a submission may use: time, memory, processes, files and output."""
+
+import math
+from dataclasses import dataclass
+
+from ..errors import CourseError
+
+MIB = 1 << 20
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Bounds on one submission, all enforced from outside its processes.
+
+    Parameters
+    ----------
+    seconds : float
+        Wall clock of one step, which is a cell, or an exercise with all its cases [s].
+    total : float
+        Wall clock of a whole submission [s].
+    memory : int
+        Of all its processes together [bytes].
+    processes : int
+        At one time.
+    scratch : int
+        What it may write to files [bytes].
+    answer : int
+        Of the plain values of one exercise, as JSON [bytes].
+    printed : int
+        Characters kept of what an exercise prints.
+
+    Examples
+    --------
+    >>> Limits(seconds=2.5).total
+    120.0
+    >>> Limits(seconds=0)
+    Traceback (most recent call last):
+        ...
+    hapticlab.errors.CourseError: seconds = 0; a limit needs a finite number > 0
+    """
+
+    seconds: float = 10.0
+    total: float = 120.0
+    memory: int = 1024 * MIB
+    processes: int = 64
+    scratch: int = 64 * MIB
+    answer: int = 32 * MIB
+    printed: int = 4096
+
+    def __post_init__(self):
+        for name, value in vars(self).items():
+            if isinstance(value, bool) or not isinstance(value, int | float) or not (math.isfinite(value) and value > 0):
+                raise CourseError(f"{name} = {value!r}; a limit needs a finite number > 0")

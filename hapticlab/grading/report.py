@@ -1,0 +1,125 @@
+"""What grading one submission found, as plain values: the same bytes for the same submission and seed, no times, no paths."""
+
+import json
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True)
+class Failing:
+    """The first case that is wrong: what was given, what came, and what was expected, in floats, texts, lists and dicts.
+
+    ``public`` tells a case of the lab's own checks, which its students know, from one drawn for this student.
+    ``value`` is None where the answer gave none; ``expected`` is None where it is the answer itself (a value, a choice).
+    """
+
+    given: dict
+    value: object
+    expected: object
+    unit: str
+    public: bool
+
+
+@dataclass(frozen=True)
+class ExerciseReport:
+    """One exercise: its points where every case is right, else none.
+
+    Attributes
+    ----------
+    name, kind, asks : str
+    points, earned : float
+    answered : bool
+    right, cases : int
+        Of its cases, public and hidden.
+    words : str
+        What is wrong with the first wrong case, in a sentence; empty where all are right.
+    slip : str
+        The part of ``words`` that names a known mistake; what a class gets wrong alike is counted by it.
+    hint : str
+        Of the exercise, where it is wrong.
+    ended : str
+        Why its process ended early: "time", "memory", "processes", "exit", "signal 11", "flood", "garbage"; else empty.
+    failing : Failing or None
+    printed : str
+        What its code printed in public cases.
+    text : str
+        Of a prediction or a discussion, which are noted and carry no points: what was written.
+    """
+
+    name: str
+    kind: str
+    asks: str = ""
+    points: float = 0.0
+    earned: float = 0.0
+    answered: bool = False
+    right: int = 0
+    cases: int = 0
+    words: str = ""
+    slip: str = ""
+    hint: str = ""
+    ended: str = ""
+    failing: Failing | None = None
+    printed: str = ""
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Report:
+    """One submission.
+
+    Attributes
+    ----------
+    student : str
+    lab : str
+        Number and title are in ``lab`` and ``title``.
+    title : str
+    submission : str
+        Name of the file or folder, without the way to it.
+    sha256 : str
+        Of what was handed in.
+    problem : str
+        Why nothing could be graded, else empty: no notebook inside, no JSON, too large.
+    cells : tuple of (int, str)
+        Cells that failed, counted from 1 over code cells, and what they raised.
+    exercises : tuple of ExerciseReport
+        All of the lab, in its order, also where ``problem`` is set.
+    """
+
+    student: str
+    lab: str
+    title: str
+    submission: str
+    sha256: str = ""
+    problem: str = ""
+    cells: tuple = ()
+    exercises: tuple = ()
+
+    @property
+    def points(self):
+        """What all exercises are worth together."""
+        return sum(one.points for one in self.exercises)
+
+    @property
+    def earned(self):
+        """What the submission earned."""
+        return sum(one.earned for one in self.exercises)
+
+    def to_json(self):
+        """Return one line of JSON."""
+        return json.dumps(asdict(self), ensure_ascii=True, sort_keys=True)
+
+    @classmethod
+    def from_json(cls, line):
+        """Return the report that a line of JSON holds.
+
+        Examples
+        --------
+        >>> report = Report("ada", "02", "Walls", "wall.ipynb", exercises=(ExerciseReport("k", "value", points=2.0),))
+        >>> Report.from_json(report.to_json()) == report, report.points
+        (True, 2.0)
+        """
+        held = json.loads(line)
+        exercises = tuple(
+            ExerciseReport(**{**one, "failing": Failing(**one["failing"]) if one["failing"] else None})
+            for one in held.pop("exercises")
+        )
+        return cls(**{**held, "exercises": exercises, "cells": tuple((cell, words) for cell, words in held["cells"])})
