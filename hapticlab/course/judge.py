@@ -26,10 +26,14 @@ NEAR = 1e-3
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether one case is right, and the words for it: what differs, and the sentence that teaches."""
+    """Whether one case is right, and the words for it: what differs, and the sentence that teaches.
+
+    ``slip`` is that sentence alone, where a known mistake is recognised; it is a part of ``words``.
+    """
 
     right: bool
     words: str
+    slip: str = ""
 
 
 def judge(exercise, case, value):
@@ -51,9 +55,9 @@ def judge(exercise, case, value):
     >>> from hapticlab.course.exercise import Case, Exercise
     >>> force = Exercise("force")
     >>> judge(force, Case({}, 2.25, unit="N"), 2.25)
-    Verdict(right=True, words='2.25 N')
-    >>> judge(force, Case({}, 2.25, unit="N"), -2.25).words
-    '-2.25 N, expected 2.25 N. The sign is turned.'
+    Verdict(right=True, words='2.25 N', slip='')
+    >>> judge(force, Case({}, 2.25, unit="N"), -2.25)
+    Verdict(right=False, words='-2.25 N, expected 2.25 N. The sign is turned.', slip='The sign is turned.')
     """
     expected, hidden = case.expected, exercise.kind in ("value", "choice")
     if isinstance(expected, str | bool):
@@ -71,7 +75,12 @@ def judge(exercise, case, value):
     if within(exercise, wanted, got):
         return Verdict(True, _value(got, case.unit))
     words = _difference(wanted, got, case.unit, exercise, hidden)
-    return Verdict(False, f"{words}. {_slip(case, exercise, wanted, got)}".strip())
+    return _taught(words, _slip(case, exercise, wanted, got))
+
+
+def _taught(words, slip):
+    """Return the verdict on what is wrong, in words, with the sentence that teaches, if there is one."""
+    return Verdict(False, f"{words}. {slip}".strip(), slip)
 
 
 def verdict(exercise, case, outcome):
@@ -103,7 +112,7 @@ def _judge_word(exercise, case, value):
         return Verdict(False, f"{value[:60]!r}, needs one of {', '.join(map(repr, exercise.options))}")
     told = "not this one" if exercise.kind in ("value", "choice") else f"expected {expected}"
     taught = (sentence for wrong, sentence in case.slips if _word(wrong) == _word(value))
-    return Verdict(False, f"{str(value)[:60]}: {told}. {next(taught, '')}".strip())
+    return _taught(f"{str(value)[:60]}: {told}", next(taught, ""))
 
 
 def _word(value):
@@ -121,7 +130,7 @@ def _judge_parts(exercise, case, value):
         slips = tuple((wrong[name], s) for wrong, s in case.slips if isinstance(wrong, dict) and name in wrong)
         part = judge(exercise, type(case)({}, expected, case.unit, slips), value[name])
         if not part.right:
-            return Verdict(False, f"{name}: {part.words}")
+            return Verdict(False, f"{name}: {part.words}", part.slip)
     return Verdict(True, ", ".join(case.expected))
 
 
