@@ -2,12 +2,17 @@
 
 An instructor's folder of a lab holds ``solution.py``, the answers under the names they have in the notebook, and
 ``hidden.py`` with ``def cases(random): return {"exercise": lambda: [given, ...]}``, whose expected values the solution
-gives. Each exercise draws from a generator of its own, so that a change of one leaves the cases of all others.
+gives. Each exercise draws from a generator of its own, so that a change of one leaves the cases of all others; and so does
+each student. ``hidden.py`` may also have ``def numbers(random): return {"K_OWN": 430.0}``, constants of notebook and solution
+that are other for each student, see :mod:`hapticlab.course.personal`.
 """
 
+import hashlib
+import math
 import runpy
 import zlib
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +21,11 @@ from ..errors import CourseError
 from .evaluate import evaluate
 from .exercise import Case
 from .judge import verdict
+from .notebook import with_constants
 
 SOLUTION, HIDDEN = "solution.py", "hidden.py"
+#: what a student's own numbers are drawn by: no exercise can have this name
+NUMBERS = "numbers()"
 
 
 @dataclass(frozen=True)
@@ -56,20 +64,36 @@ def marks(lab, answers, hidden=None):
     [('force', 2)]
     """
     return tuple(
-        _mark(exercise, answers.get(exercise.name), (*exercise.cases, *(hidden or {}).get(exercise.name, ())))
+        _mark(exercise, answers.get(exercise.name), counted_cases(exercise, hidden))
         for exercise in lab.exercises
         if exercise.judged
     )
 
 
+def counted_cases(exercise, hidden=None):
+    """Return the cases that an exercise is marked by, each with whether it is public.
+
+    Where there are hidden cases of a value or a choice, the public one, whose answer a class can pass on, does not count.
+
+    Examples
+    --------
+    >>> from hapticlab.course.exercise import Exercise
+    >>> k = Exercise("k", "value", 1, cases=[Case({}, 150.0)])
+    >>> [(case.expected, public) for case, public in counted_cases(k, {"k": [Case({}, 143.0)]})]
+    [(143.0, False)]
+    """
+    own = tuple((case, False) for case in (hidden or {}).get(exercise.name, ()))
+    return own if own and exercise.kind in ("value", "choice") else (*((case, True) for case in exercise.cases), *own)
+
+
 def _mark(exercise, answer, cases):
-    verdicts = [verdict(exercise, case, evaluate(exercise.kind, answer, case.given)) for case in cases]
+    verdicts = [verdict(exercise, case, evaluate(exercise.kind, answer, case.given)) for case, _ in cases]
     wrong = [v.words for v in verdicts if not v.right]
     earned = exercise.points if verdicts and not wrong else 0
     return Mark(exercise.name, exercise.points, earned, len(verdicts) - len(wrong), len(verdicts), "".join(wrong[:1]))
 
 
-def hidden_cases(lab, folder, seed=0):
+def hidden_cases(lab, folder, seed=0, student="", personal=False):
     """Return the hidden cases of a lab, exercise to cases, from an instructor's folder.
 
     Parameters
@@ -78,20 +102,54 @@ def hidden_cases(lab, folder, seed=0):
     folder : str or Path
         With solution.py and hidden.py.
     seed : int
-        The same seed gives the same cases.
+        The same seed gives the same cases to the same student.
+    student : str
+        Whose cases: each student has others. Those of "" are for nobody.
+    personal : bool
+        Whether this student was handed numbers of their own, which are then also those of the solution.
     """
     folder = Path(folder)
-    answers, hidden = instructor_names(folder / SOLUTION), instructor_names(folder / HIDDEN)
-    if "cases" not in hidden:
+    cases = _instructor_names(folder / HIDDEN).get("cases")
+    if cases is None:
         raise CourseError(
             f"{folder / HIDDEN} defines no cases; it needs def cases(random): return {{'exercise': lambda: [given, ...]}}"
         )
+    answers = _solution(folder, own_numbers(lab, folder, seed, student) if personal else {})
     try:
-        names = list(hidden["cases"](_generator(seed, lab, "")))
-        found = {name: _drawn(hidden["cases"](_generator(seed, lab, name))[name]) for name in names}
+        names = list(cases(_generator(seed, lab, "", student)))
+        found = {name: _drawn(cases(_generator(seed, lab, name, student))[name]) for name in names}
     except Exception as problem:
         raise CourseError(f"{folder / HIDDEN}: cases failed: {type(problem).__name__}: {problem}") from problem
     return {name: tuple(_case(lab.exercise(name), answers, given) for given in several) for name, several in found.items()}
+
+
+def own_numbers(lab, folder, seed, student):
+    """Return the numbers that are a student's own, by the names of the constants they replace; none where a lab has none.
+
+    Parameters
+    ----------
+    lab : Lab
+    folder : str or Path
+        With hidden.py.
+    seed : int
+    student : str
+
+    Returns
+    -------
+    dict of str to int or float
+    """
+    path = Path(folder) / HIDDEN
+    numbers = _instructor_names(path).get("numbers")
+    if numbers is None:
+        return {}
+    try:
+        drawn = {name: np.asarray(value).item() for name, value in numbers(_generator(seed, lab, NUMBERS, student)).items()}
+    except Exception as problem:
+        raise CourseError(f"{path}: numbers failed: {type(problem).__name__}: {problem}") from problem
+    strange = [name for name, value in drawn.items() if type(value) not in (int, float) or not math.isfinite(value)]
+    if strange:
+        raise CourseError(f"{path}: numbers gives {strange[0]} = {drawn[strange[0]]!r}; it needs a finite number")
+    return drawn
 
 
 def _drawn(several):
@@ -100,9 +158,23 @@ def _drawn(several):
     return several()
 
 
-def _generator(seed, lab, exercise):
-    """Return the generator that an exercise's hidden cases are drawn from."""
-    return np.random.default_rng([seed, int(lab.number), zlib.crc32(exercise.encode())])
+def _generator(seed, lab, exercise, student):
+    """Return the generator that an exercise's hidden cases are drawn from for a student."""
+    whose = hashlib.sha256(student.encode("utf-8", "surrogatepass")).digest() if student else b""
+    return np.random.default_rng([seed, int(lab.number), zlib.crc32(exercise.encode()), *whose])
+
+
+def _solution(folder, numbers):
+    """Return the answers of a solution, with the numbers of a student in place of its own."""
+    path = folder / SOLUTION
+    if not numbers:
+        return _instructor_names(path)
+    source, names = with_constants([_text(path)], numbers, path)[0], {"__name__": "<run_path>", "__file__": str(path)}
+    try:
+        exec(compile(source, str(path), "exec"), names)
+    except (Exception, SystemExit) as problem:
+        raise CourseError(f"{path} with {numbers} failed: {type(problem).__name__}: {problem}") from problem
+    return names
 
 
 def _case(exercise, answers, given):
@@ -116,9 +188,25 @@ def _case(exercise, answers, given):
 
 def instructor_names(path):
     """Return what an instructor's file defines."""
-    if not Path(path).is_file():
-        raise CourseError(f"{path}: no such file; an instructor's folder of a lab holds {SOLUTION} and {HIDDEN}")
+    _text(path)
     try:
         return runpy.run_path(str(path))
     except (Exception, SystemExit) as problem:
         raise CourseError(f"{path} failed: {type(problem).__name__}: {problem}") from problem
+
+
+def _instructor_names(path):
+    """Return the same, run once for a whole class, and again where the file has changed."""
+    return _run_once(path, _text(path))
+
+
+@lru_cache(maxsize=64)
+def _run_once(path, text):  # the text is a part of the key
+    return instructor_names(path)
+
+
+def _text(path):
+    """Return the text of an instructor's file."""
+    if not Path(path).is_file():
+        raise CourseError(f"{path}: no such file; an instructor's folder of a lab holds {SOLUTION} and {HIDDEN}")
+    return Path(path).read_text("utf-8")

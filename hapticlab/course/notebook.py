@@ -109,6 +109,53 @@ def solved(notebook, solution, exercises):
     return {**notebook, "cells": cells}
 
 
+def with_constants(sources, numbers, where):
+    """Return sources with other numbers in the constants ``NAME = number`` at their top level.
+
+    Parameters
+    ----------
+    sources : list of str
+        Cells, or a whole file.
+    numbers : dict of str to int or float
+    where : str or Path
+        What the sources are of, for the error.
+
+    Raises
+    ------
+    CourseError
+        Where no source has such a constant, or one has it twice.
+
+    Examples
+    --------
+    >>> with_constants(["import math\\nK_OWN = 500.0  # [N/m]"], {"K_OWN": 431.5}, "solution.py")
+    ['import math\\nK_OWN = 431.5  # [N/m]']
+    """
+    places = [(number, node) for number, source in enumerate(sources) for node in _constants(source)]
+    lines = [source.encode().split(b"\n") for source in sources]  # columns of an AST count bytes
+    for name, value in numbers.items():
+        here = [(number, node.value) for number, node in places if node.targets[0].id == name]
+        if len(here) != 1:
+            raise CourseError(f"{where} has {len(here)} lines {name} = number at its top level; it needs one, for {value!r}")
+        number, old = here[0]
+        line = lines[number][old.lineno - 1]
+        lines[number][old.lineno - 1] = line[: old.col_offset] + repr(value).encode() + line[old.end_col_offset :]
+    return [b"\n".join(several).decode() for several in lines]
+
+
+def _constants(source):
+    """Return the assignments of a number to a name at the top level of a source."""
+    try:
+        body = ast.parse(source).body
+    except SyntaxError:
+        return []
+    return [node for node in body if isinstance(node, ast.Assign) and _is_constant(node)]
+
+
+def _is_constant(node):
+    value = node.value.operand if isinstance(node.value, ast.UnaryOp) else node.value
+    return isinstance(node.targets[0], ast.Name) and isinstance(value, ast.Constant) and type(value.value) in (int, float)
+
+
 @dataclass(frozen=True)
 class Place:
     """Where a notebook answers an exercise and checks it: the ids of both cells, None where there is none."""
