@@ -1,4 +1,4 @@
-"""A lab as an assignment of nbgrader: who has one course there hands it out, collects it and marks it with nbgrader's own commands.
+"""A lab as an assignment of nbgrader, which hands it out, collects it and marks it by its own commands.
 
 What is released equals the student's notebook: a solution stands after the open answer and is cut out whole, and what
 makes a check raise is a hidden test. An untouched release therefore runs from top to bottom.
