@@ -1,0 +1,122 @@
+"""The page of one student: what each exercise earned, and why."""
+
+from ..course.exercise import NOTED
+from .failing_case import failing_case
+from .page_text import BLOCK, clean
+
+#: why a process ended early -> what a student reads
+ENDED = {
+    "time": "It ran longer than is allowed and was stopped. Does a loop ever end?",
+    "memory": "It used more memory than is allowed and was stopped.",
+    "processes": "It started more processes than are allowed and was stopped.",
+    "exit": "It ended Python itself, so that no answer could be given.",
+    "flood": "It gave or printed more than is kept and was stopped.",
+    "garbage": "What it gave could not be read.",
+}
+STATES = {"right": "&#10003; right", "wrong": "&#10007; wrong", "no answer": "&#9675; no answer", "noted": "&#9998; noted"}
+MOST_CELLS = 40
+
+
+def state(one):
+    """Return how an exercise went: "right", "wrong", "no answer", or "noted" of what carries no points."""
+    if one.kind in NOTED:
+        return "noted" if one.text.strip() else "no answer"
+    if one.cases and one.right == one.cases:
+        return "right"
+    return "wrong" if one.answered or one.ended else "no answer"
+
+
+def ended(reason):
+    """Return in a sentence why a process ended early."""
+    return ENDED.get(reason, f"Its process ended early ({reason}).")
+
+
+def points(earned, of):
+    """Return points in words, "7 of 10 points"."""
+    return f"{earned:g} of {of:g} point{'' if of == 1 else 's'}"
+
+
+def student_body(report):
+    """Return the body of a student's page.
+
+    Parameters
+    ----------
+    report : Report
+    """
+    return "".join(
+        [
+            f"<header><p>Lab {clean(report.lab, 20)}</p><h1>{clean(report.title)}</h1>",
+            f'<p class="who"><bdi>{clean(report.student, 120)}</bdi></p>',
+            f'<p class="mark">{points(report.earned, report.points)}</p></header><main>',
+            *_whole(report),
+            *(_exercise(k, one, whole=not report.problem) for k, one in enumerate(report.exercises, 1)),
+            _cells(report.cells),
+            "</main>",
+            f"<footer><p>Handed in: <bdi><code>{clean(report.submission, 120)}</code></bdi>, SHA-256 "
+            f"<code>{clean(report.sha256[:16], 16)}</code>. An exercise earns its points where every case is right; predictions "
+            "and discussions are noted and carry none.</p></footer>",
+        ]
+    )
+
+
+def _whole(report):
+    """Yield what is to say of the whole submission: why it could not be graded, else a table of the exercises."""
+    if report.problem:
+        yield f'<p class="problem"><strong>This could not be graded:</strong> {clean(report.problem)}</p>'
+        return
+    head = "".join(f'<th scope="col">{word}</th>' for word in ("exercise", "result", "cases right", "points"))
+    rows = "".join(
+        f'<tr><th scope="row"><a href="#e{k}"><code>{clean(one.name, 60)}</code></a></th><td>{badge(one)}</td>'
+        f'<td class="number">{f"{one.right} of {one.cases}" if one.cases else ""}</td>'
+        f'<td class="number">{f"{one.earned:g} of {one.points:g}" if one.points else ""}</td></tr>'
+        for k, one in enumerate(report.exercises, 1)
+    )
+    yield f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+
+
+def badge(one):
+    """Return how an exercise went as a sign and a word."""
+    found = state(one)
+    return f'<span class="badge {found.split()[0]}">{STATES[found]}</span>'
+
+
+def _exercise(number, one, whole):
+    told = [
+        f'<section id="e{number}"><h2><code>{clean(one.name, 60)}</code> {badge(one) if whole else ""}'
+        + (f'<span class="aside">{points(one.earned, one.points)}</span>' if one.points else "")
+        + "</h2>",
+        f'<p class="asks">Asked for: {clean(one.asks)}</p>' if one.asks else "",
+    ]
+    if one.kind in NOTED:
+        told.append(_block(one.text, "written") if one.text.strip() else "")
+    elif whole and state(one) != "right":
+        told += [f"<p>{ended(one.ended)}</p>" if one.ended else "", _words(one)]
+        told.append(f'<p class="hint"><strong>Hint:</strong> {clean(one.hint)}</p>' if one.hint else "")
+        told.append(failing_case(one) if one.failing else "")
+    if one.printed.strip():
+        told.append(f"<h3>What your code printed</h3>{_block(one.printed, 'printed')}")
+    return "".join(told) + "</section>"
+
+
+def _words(one):
+    """Return what is wrong in a sentence, unless it only says that there is no answer."""
+    if not one.words or state(one) == "no answer":
+        return ""
+    return f'<p class="words"><strong>What is wrong:</strong> {clean(one.words)}</p>'
+
+
+def _block(text, kind):
+    return f'<pre class="{kind}" dir="auto">{clean(text.strip(), BLOCK, lines=True)}</pre>'
+
+
+def _cells(cells):
+    """Return a table of the cells that failed."""
+    if not cells:
+        return ""
+    rows = "".join(
+        f'<tr><th scope="row" class="number">{clean(str(cell), 20)}</th><td>{clean(words)}</td></tr>'
+        for cell, words in cells[:MOST_CELLS]
+    )
+    more = f"<p>{len(cells) - MOST_CELLS} cells more failed.</p>" if len(cells) > MOST_CELLS else ""
+    head = '<tr><th scope="col">code cell</th><th scope="col">what it raised</th></tr>'
+    return f"<section><h2>Cells that failed</h2><table><thead>{head}</thead><tbody>{rows}</tbody></table>{more}</section>"
