@@ -102,6 +102,20 @@ def test_what_is_no_port(path):
     assert cause == "missing" and "no serial port" in words and path in words
 
 
+@pytest.mark.parametrize("url", ["socket://127.0.0.1:{}", "SOCKET://127.0.0.1:{}"])
+def test_while_grading_only_simulated_paddles_open(monkeypatch, url):
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        url = url.format(listening.getsockname()[1])
+        open_port(url).close()
+        monkeypatch.setenv("HAPTICLAB_PORTS", "sim")
+        cause, text = refused(url)
+        assert cause == "refused"
+        assert url in text
+        assert "HAPTICLAB_PORTS=sim" in text
+        opened = open_port("sim://hapkit")
+        opened.close()
+
+
 @pytest.mark.parametrize(
     ("url", "words"),
     [
