@@ -27,7 +27,7 @@ def labs(parser, options):
     here = [lab for lab in find_labs(folder) if copied.get(str(Path(lab.name, lab.notebook.name))) in ("new", "as it came")]
     command = _jupyter(folder, *here[:1])
     if options.no_open:
-        print(f"\nto open them: {_words(command)}")
+        print(f"\nto open them: {words_of(command)}")
         return code
     return _open(command) or code
 
@@ -47,7 +47,7 @@ def _tell(folder, copied):
     _tell_files(folder, copied)
     away = [lab.number for lab in came if lab.name not in {path.name for path in folder.iterdir()}]
     if away:
-        print(f"not in this folder; to have them: {_words(['hapticlab', 'labs', str(folder), '--lab', *away])}")
+        print(f"not in this folder; to have them: {words_of(['hapticlab', 'labs', str(folder), '--lab', *away])}")
 
 
 def _tell_files(folder, copied):
@@ -59,7 +59,7 @@ def _tell_files(folder, copied):
     kept = [path for path, state in copied.items() if state == "kept"]
     if kept:
         print(f"left as they are, for they differ from what came with hapticlab and may hold your work:\n  {', '.join(kept)}")
-        print(f"to have these as they came, name another folder: {_words(['hapticlab', 'labs', str(_beside(folder, 'new'))])}")
+        print(f"to have these as they came, name another folder: {words_of(['hapticlab', 'labs', str(_beside(folder, 'new'))])}")
 
 
 def _beside(folder, ending):
@@ -120,7 +120,7 @@ def _jupyter(folder, first=None):
     return command
 
 
-def _words(command):
+def words_of(command):
     """Return a command as it is typed into a shell."""
     return subprocess.list2cmdline(command) if os.name == "nt" else shlex.join(command)
 
@@ -130,9 +130,9 @@ def _open(command):
     if importlib.util.find_spec("jupyterlab") is None:
         raise EngineMissingError(
             "the labs are copied, and JupyterLab, which opens them, is not installed beside hapticlab; do: "
-            f'{_words([sys.executable])} -m pip install "hapticlab[notebook]"; then the same command again'
+            f'{words_of([sys.executable])} -m pip install "hapticlab[notebook]"; then the same command again'
         )
-    print(f"\nJupyterLab opens in your browser. Two Ctrl-C here end it; it runs as: {_words(command)}", flush=True)
+    print(f"\nJupyterLab opens in your browser. Two Ctrl-C here end it; it runs as: {words_of(command)}", flush=True)
     # the kernels of this environment before those of the same name that a user may have elsewhere
     process = subprocess.Popen(command, env={**os.environ, "JUPYTER_PREFER_ENV_PATH": "1"})
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -142,6 +142,6 @@ def _open(command):
         signal.signal(signal.SIGINT, before)
     if code:
         root = getattr(os, "geteuid", lambda: 1)() == 0
-        nevertheless = f"; as root it runs only by: {_words([*command, '--allow-root'])}" if root else ""
+        nevertheless = f"; as root it runs only by: {words_of([*command, '--allow-root'])}" if root else ""
         print(f"hapticlab: JupyterLab ended with code {code}; what it said is above{nevertheless}", file=sys.stderr)
     return 1 if code else 0

@@ -63,8 +63,8 @@ def _push(book, report, assignment):
         grade.auto_score = sum(marks[name].earned for name in names)
         grade.manual_score, grade.needs_manual_grade = None, False
     placed = {name for names in cells.values() for name in names}
-    missing = [name for name in marks if name not in placed]
-    return [f"{report.student}, lab {report.lab}: {there[0]} has no cell for {', '.join(missing)}; not written"] if missing else []
+    lost = ", ".join(name for name in marks if name not in placed)
+    return [f"{report.student}, lab {report.lab}: {there[0]} has no cell for {lost}; not written"] if lost else []
 
 
 def _cells(book, assignment, report):
