@@ -102,7 +102,7 @@ def checked(name, exercise, answer):
     passed = all(v.right for v in verdicts)
     lines = [f"{name}: {'right' if passed else 'not right yet'} ({points_words(exercise.points)})"]
     lines += _printed(outcomes)
-    lines += [_line(case, v) for case, v in zip(exercise.cases, verdicts, strict=True)]
+    lines += [_line(exercise, case, v) for case, v in zip(exercise.cases, verdicts, strict=True)]
     lines += [f"  hint: {exercise.hint}"] if exercise.hint and not passed else []
     return CheckResult(name, passed, True, verdicts, "\n".join(lines))
 
@@ -132,8 +132,10 @@ def _unanswered(name, exercise):
     return f"{name}: not answered yet: {exercise.asks}"
 
 
-def _line(case, found):
-    given = ", ".join(f"{name} = {_brief(value)}" for name, value in case.given.items())
+def _line(exercise, case, found):
+    """Return a case in a line; of an expression the words name the point."""
+    shown = {} if exercise.kind == "expression" else case.given
+    given = ", ".join(f"{name} = {_brief(value)}" for name, value in shown.items())
     return f"  {'right' if found.right else 'wrong'}: {given + ': ' if given else ''}{found.words}"
 
 

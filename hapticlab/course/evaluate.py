@@ -7,7 +7,6 @@ not known here.
 import copy
 import inspect
 import io
-from collections.abc import Mapping
 from contextlib import redirect_stdout
 from dataclasses import dataclass, replace
 
@@ -15,17 +14,17 @@ import numpy as np
 
 from ..errors import HapticlabError
 from ..scene.scene import Scene
+from .curves import curves
+from .expression import unit_remark, values
 from .felt import felt
-
-#: more numbers than any exercise asks for
-MOST_NUMBERS = 1_000_000
+from .plain import NotPlain, a, plain
 
 
 @dataclass(frozen=True)
 class Outcome:
     """What an answer gave for one case: a plain value; or why there is none, in words; or nothing, where unanswered.
 
-    ``printed`` is what its code printed meanwhile.
+    Beside a value ``problem`` is a remark, told where the value is wrong. ``printed`` is what its code printed meanwhile.
     """
 
     value: object = None
@@ -90,17 +89,24 @@ def _evaluated(kind, answer, given):
         if _empty(scene):
             return Outcome()
         return Outcome(plain(felt(scene, **given)))
-    if kind != "function":
-        return Outcome(plain(answer))
-    if not callable(answer):
-        return Outcome(problem=f"it is {_a(answer)}, needs a function of ({', '.join(given)})")
-    mismatch = _mismatch(answer, given)
+    if kind == "expression":
+        remark = unit_remark(answer, given.pop("unit", ""))
+        return Outcome(values(answer, **given), remark)
+    if kind == "function" or (kind == "plot" and callable(answer)):
+        answer = _called(answer, given)
+        if answer is None:
+            return Outcome(problem="it returns None; is its `return` missing?")
+    return Outcome(curves(answer) if kind == "plot" else plain(answer))
+
+
+def _called(function, given):
+    """Return what a function returns, called by the names of the notebook."""
+    if not callable(function):
+        raise NotPlain(f"it is {a(function)}, needs a function of ({', '.join(given)})")
+    mismatch = _mismatch(function, given)
     if mismatch:
-        return Outcome(problem=mismatch)
-    found = answer(**{name: _argument(value) for name, value in given.items()})
-    if found is None:
-        return Outcome(problem="it returns None; is its `return` missing?")
-    return Outcome(plain(found))
+        raise NotPlain(mismatch)
+    return function(**{name: _argument(value) for name, value in given.items()})
 
 
 def _argument(value):
@@ -109,48 +115,6 @@ def _argument(value):
         return value
     array = np.array(value)
     return array.astype(float) if array.dtype.kind == "i" else array
-
-
-def plain(value):
-    """Return a value in floats, bools, texts, lists and dicts of Python itself.
-
-    Examples
-    --------
-    >>> plain(np.array([1, 2])), plain({"F": np.float32(0.5)}), plain(np.True_)
-    ([1.0, 2.0], {'F': 0.5}, True)
-    """
-    if isinstance(value, bool | np.bool_):
-        return bool(value)
-    if isinstance(value, str):
-        return str.__str__(value)
-    if isinstance(value, Mapping):
-        return {str(name): plain(part) for name, part in value.items()}
-    if isinstance(value, np.ndarray | list | tuple):
-        return _array(value)
-    if isinstance(value, complex | np.complexfloating):
-        raise _NotPlain(f"{complex(value):g} is a complex number; needs a real one")
-    try:
-        return float.__float__(float(value))
-    except (TypeError, ValueError, OverflowError):
-        raise _NotPlain(f"{_a(value)} is no number; needs a number, or an array of them{_symbols(value)}") from None
-
-
-class _NotPlain(HapticlabError):
-    """Said to the student as it is."""
-
-
-def _array(value):
-    try:
-        numbers = value.astype(float).filled(np.nan) if isinstance(value, np.ma.MaskedArray) else np.array(value)
-        if numbers.dtype.kind == "O":
-            numbers = numbers.astype(float)
-    except (TypeError, ValueError):
-        raise _NotPlain("its parts are not all numbers, or its rows not equally long; needs an array of numbers") from None
-    if numbers.dtype.kind not in "biuf":
-        raise _NotPlain(f"it is an array of {numbers.dtype.name}; needs an array of real numbers")
-    if numbers.size > MOST_NUMBERS:
-        raise _NotPlain(f"it has {numbers.size} numbers, more than {MOST_NUMBERS}")
-    return numbers.astype(float).tolist()
 
 
 def _empty(answer):
@@ -188,13 +152,3 @@ def _bounded(problem):
         return " ".join(str.__str__(str(problem)).split())[:300] or "no message"
     except Exception:  # their own __str__ may raise anything
         return "no readable message"
-
-
-def _symbols(value):
-    names = sorted(map(str, getattr(value, "free_symbols", ())))
-    return f"; it still holds {', '.join(names)}: put numbers in" if names else ""
-
-
-def _a(value):
-    name = type(value).__name__
-    return f"{'an' if name[:1] in 'aeiou' else 'a'} {name}"

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from ..errors import CourseError
 
 #: what is judged, and what is only noted
-JUDGED, NOTED = ("function", "scene", "value", "choice"), ("prediction", "text")
+JUDGED, NOTED = ("function", "scene", "expression", "plot", "value", "choice"), ("prediction", "text")
 
 
 @dataclass(frozen=True)
@@ -18,8 +18,11 @@ class Case:
     ----------
     given : dict
         The arguments of a function, by name (lists become NumPy arrays); what a scene is run with, see
-        :func:`hapticlab.course.felt.felt`; empty for a value or a choice.
+        :func:`hapticlab.course.felt.felt`; the points of an expression, ``at``, with what an equation is solved for,
+        ``solve_for``, see :func:`hapticlab.course.expression.values`, and optionally its ``unit``; empty for a value or a
+        choice.
     expected : float, bool, str, sequence of float (nested for more axes), or dict of str to these
+        Of an expression a number for each point; of a plot its curves, see :func:`hapticlab.course.curves.curves`.
     unit : str
         Of what is expected.
     slips : dict or sequence of (wrong, sentence)
@@ -51,8 +54,8 @@ class Exercise:
     Parameters
     ----------
     name : str
-    kind : {"function", "scene", "value", "choice", "prediction", "text"}
-        The last two are noted and never judged.
+    kind : {"function", "scene", "expression", "plot", "value", "choice", "prediction", "text"}
+        The last two are noted and never judged. A plot is a matplotlib Figure or Axes, or a function that makes one.
     points : float
         Earned where every case is right, else none.
     asks : str

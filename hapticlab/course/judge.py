@@ -1,27 +1,11 @@
 """Whether a plain value is the one expected, and where it is not, which slip it looks like."""
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-#: what a result is often off by, and what that says
-FACTORS = (
-    (-1.0, "The sign is turned."),
-    (1e3, "It is 1000 times too large: is something in millimetres or milliseconds that belongs in SI?"),
-    (1e-3, "It is 1000 times too small: is something in millimetres or milliseconds that belongs in SI?"),
-    (100.0, "It is 100 times too large: percent where a share of one is asked for, or centimetres?"),
-    (-1e3, "The sign is turned, and it is 1000 times too large: millimetres?"),
-    (-1e-3, "The sign is turned, and it is 1000 times too small: millimetres?"),
-    (180 / math.pi, "It is in degrees; radians are asked for."),
-    (math.pi / 180, "It is too small by pi/180: an angle in radians was taken for degrees."),
-    (2 * math.pi, "It is 2 pi times too large: Hz and rad/s are mixed."),
-    (1 / (2 * math.pi), "It is 2 pi times too small: Hz and rad/s are mixed."),
-    (2.0, "It is twice what is expected."),
-    (0.5, "It is half of what is expected."),
-)
-#: how near a wrong number must come to such a factor, or to a slip of the case
-NEAR = 1e-3
+from .diagnose import slip
+from .match import plot_fault
 
 
 @dataclass(frozen=True)
@@ -60,6 +44,9 @@ def judge(exercise, case, value):
     Verdict(right=False, words='-2.25 N, expected 2.25 N. The sign is turned.', slip='The sign is turned.')
     """
     expected, hidden = case.expected, exercise.kind in ("value", "choice")
+    if exercise.kind == "plot":
+        words, sentence = plot_fault(expected, value, exercise.rtol, exercise.atol)
+        return _taught(words, sentence) if words else Verdict(True, f"{len(value)} curve{'s' * (len(value) > 1)}")
     if isinstance(expected, str | bool):
         return _judge_word(exercise, case, value)
     if isinstance(expected, dict):
@@ -73,24 +60,27 @@ def judge(exercise, case, value):
     if got.shape != wanted.shape:
         return Verdict(False, f"{_shape_words(got.shape)}, needs {_shape_words(wanted.shape)}")
     if within(exercise, wanted, got):
-        return Verdict(True, _value(got, case.unit))
-    words = _difference(wanted, got, case.unit, exercise, hidden)
-    return _taught(words, _slip(case, exercise, wanted, got))
+        return Verdict(True, f"{got.size} points" if exercise.kind == "expression" else _value(got, case.unit))
+    words = _difference(exercise, case, wanted, got, hidden)
+    return _taught(words, slip(exercise, case, wanted, got))
 
 
-def _taught(words, slip):
+def _taught(words, sentence):
     """Return the verdict on what is wrong, in words, with the sentence that teaches, if there is one."""
-    return Verdict(False, f"{words}. {slip}".strip(), slip)
+    return Verdict(False, f"{words}. {sentence}".strip(), sentence)
 
 
 def verdict(exercise, case, outcome):
     """Return the verdict on what an answer gave."""
     if not outcome.answered:
         return Verdict(False, "no answer")
-    if outcome.problem:
+    if outcome.value is None:
         return Verdict(False, outcome.problem)
     with np.errstate(all="ignore"):  # what overflows here is as wrong as any other number
-        return judge(exercise, case, outcome.value)
+        found = judge(exercise, case, outcome.value)
+    if found.right or not outcome.problem:
+        return found
+    return Verdict(False, f"{found.words} {outcome.problem}", found.slip or outcome.problem)
 
 
 def within(exercise, wanted, got):
@@ -128,7 +118,7 @@ def _judge_parts(exercise, case, value):
         return Verdict(False, f"a dict with {', '.join(map(str, value))[:60] or 'nothing'}; {missing[0]} is missing")
     for name, expected in case.expected.items():
         slips = tuple((wrong[name], s) for wrong, s in case.slips if isinstance(wrong, dict) and name in wrong)
-        part = judge(exercise, type(case)({}, expected, case.unit, slips), value[name])
+        part = judge(exercise, replace(case, expected=expected, slips=slips), value[name])
         if not part.right:
             return Verdict(False, f"{name}: {part.words}", part.slip)
     return Verdict(True, ", ".join(case.expected))
@@ -144,8 +134,9 @@ def _numbers(value):
         return None
 
 
-def _difference(wanted, got, unit, exercise, hidden):
+def _difference(exercise, case, wanted, got, hidden):
     """Say what is wrong; what a value should be is not told, it is the answer itself."""
+    unit = case.unit
     if wanted.ndim == 0:
         if hidden:
             return f"{_value(got, unit)}: not yet"
@@ -156,39 +147,16 @@ def _difference(wanted, got, unit, exercise, hidden):
     place = f"[{', '.join(map(str, index))}]"
     digits = 6 if hidden else _digits(got[index], wanted[index])
     expected = "not yet" if hidden else f"expected {_value(wanted[index], unit, digits)}"
+    if exercise.kind == "expression":
+        point = ", ".join(f"{name} = {column[index[0]]:g}" for name, column in case.given["at"].items())
+        shown = f"{_value(got[index], unit, digits)}, {expected}"
+        return f"wrong at {int(wrong.sum())} of {wrong.size} points, first at {point}: {shown}"
     return f"{int(wrong.sum())} of {wrong.size} numbers differ, first {place}: {_value(got[index], unit, digits)}, {expected}"
 
 
 def _digits(one, other):
     """Return how many digits tell two numbers apart, six at least."""
     return next((d for d in range(6, 17) if f"{float(one):.{d}g}" != f"{float(other):.{d}g}"), 17)
-
-
-def _slip(case, exercise, wanted, got):
-    """Return the sentence for what went wrong, or an empty text."""
-    if not np.isfinite(got).all():
-        return "NaN (no number) or infinity comes of 0/0, of the root of a negative number, or of too large a number."
-    for wrong, sentence in case.slips:
-        wrong = np.array(wrong, float)
-        if wrong.shape == got.shape and _close(wrong, got, max(NEAR, exercise.rtol)):
-            return sentence
-    if np.abs(wanted).max(initial=0) <= exercise.atol:
-        return ""
-    for factor, sentence in FACTORS:
-        if _close(factor * wanted, got, min(max(NEAR, exercise.rtol), 0.1)):
-            return sentence
-    if wanted.ndim == 1 and wanted.size > 3 and np.ptp(wanted) > 0:
-        if _close(wanted[:-1], got[1:]):
-            return "It is one sample late."
-        if _close(wanted[1:], got[:-1]):
-            return "It is one sample early."
-    if _close(wanted, got, 1e-2):
-        return "It is within one percent: is a number rounded, or a constant another, such as 9.8 for 9.81 m/s^2?"
-    return ""
-
-
-def _close(wrong, got, near=NEAR):
-    return bool((np.abs(got - wrong) <= near * np.abs(wrong).max(initial=0) + 1e-12).all())
 
 
 def _value(number, unit, digits=6):

@@ -1,0 +1,93 @@
+"""Answers that are plots: the curves of a matplotlib figure, in SI by the units of its axis labels.
+
+What matplotlib makes is asked for its curves and never drawn, so nothing of matplotlib opens here.
+"""
+
+import re
+
+import numpy as np
+
+from ..errors import UnitsError
+from ..scene.units import dimension, quantity, si_name
+from .plain import NotPlain, a, numbers
+
+#: more curves than any exercise asks for: one of very many would fit whatever is expected
+MOST_CURVES = 16
+#: what stands around a unit at the end of a label, "x [mm]", "x (mm)", "x / mm"
+UNIT = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\)|\s/\s*([^\s\[\]()]+))\s*$")
+
+
+def curves(answer):
+    """Return the curves of a figure or of axes, in SI.
+
+    Parameters
+    ----------
+    answer : matplotlib Figure or Axes, or a list of Axes
+
+    Returns
+    -------
+    dict of str to dict
+        "curve 1" to ``x``, ``y`` (lists of float), ``x_unit``, ``y_unit`` (SI; empty where a label has none), ``x_label``,
+        ``y_label`` and ``label``.
+
+    Raises
+    ------
+    NotPlain
+        It is something else, holds no curve or too many, or a unit is not known.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> axes = Figure().subplots()
+    >>> _ = axes.plot([0, 1], [2.0, 5.0]), axes.set(xlabel="position x [mm]", ylabel="force F [N]")
+    >>> found = curves(axes)["curve 1"]
+    >>> found["x"], found["y"], found["x_unit"], found["y_unit"]
+    ([0.0, 0.001], [2.0, 5.0], 'm', 'N')
+    """
+    found = [curve for axes in _axes(answer) for curve in _of_axes(axes)]
+    if not found:
+        raise NotPlain("it holds no curve; draw one with axes.plot(...)")
+    if len(found) > MOST_CURVES:
+        raise NotPlain(f"it holds {len(found)} curves; needs {MOST_CURVES} at most")
+    return {f"curve {number}": curve for number, curve in enumerate(found, start=1)}
+
+
+def _axes(answer):
+    """Return the axes of whatever was answered."""
+    if hasattr(answer, "get_lines"):
+        return [answer]
+    several = getattr(answer, "axes", answer)
+    several = several.flat if isinstance(several, np.ndarray) else several
+    if not isinstance(several, list | tuple | np.flatiter) or not all(hasattr(one, "get_lines") for one in several):
+        raise NotPlain(f"it is {a(answer)}, needs a matplotlib Figure or Axes")
+    return list(several)
+
+
+def _of_axes(axes):
+    """Yield the lines and the scattered points of axes."""
+    drawn = [(line.get_xydata(), line) for line in axes.get_lines() if line.get_transform().contains_branch(axes.transData)]
+    drawn += [(part.get_offsets(), part) for part in axes.collections if np.size(part.get_offsets()) > 2]
+    scales = {side: _unit(getattr(axes, f"get_{side}label")(), side) for side in "xy"} if drawn else {}
+    for points, artist in drawn:
+        x, y = np.ma.filled(np.ma.asarray(points, float), np.nan).T
+        yield {
+            "label": str(artist.get_label())[:60],
+            **{f"{side}_label": str(getattr(axes, f"get_{side}label")())[:60] for side in "xy"},
+            **{f"{side}_unit": scales[side][1] for side in "xy"},
+            "x": numbers(x * scales["x"][0]),
+            "y": numbers(y * scales["y"][0]),
+        }
+
+
+def _unit(label, side):
+    """Return (factor to SI, SI unit) of an axis label; (1, "") where it names no unit."""
+    label = re.sub(r"\\mathrm|[${}]", "", str(label)).replace(r"\mu", "u").replace("µ", "u").replace("μ", "u")
+    found = UNIT.search(label)
+    text = next((part.strip() for part in found.groups() if part is not None), "") if found else ""
+    if text in ("", "-", "1"):
+        return 1.0, "1" if text else ""
+    try:
+        factor, unit = quantity(f"1 {text}", f"the label of its {side} axis")
+        return factor, si_name(dimension(unit))
+    except UnitsError as problem:
+        raise NotPlain(f"the {side} axis is labelled {label[:60]!r}: {str(problem)[:120]}") from None

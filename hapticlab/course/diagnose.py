@@ -1,0 +1,171 @@
+"""Which slip a wrong number looks like, from the numbers alone: what an answer gave, what is expected, where."""
+
+import itertools
+import math
+
+import numpy as np
+
+#: what a result is often off by, and what that says
+FACTORS = (
+    (-1.0, "The sign is turned."),
+    (1e3, "It is 1000 times too large: is something in millimetres or milliseconds that belongs in SI?"),
+    (1e-3, "It is 1000 times too small: is something in millimetres or milliseconds that belongs in SI?"),
+    (100.0, "It is 100 times too large: percent where a share of one is asked for, or centimetres?"),
+    (-1e3, "The sign is turned, and it is 1000 times too large: millimetres?"),
+    (-1e-3, "The sign is turned, and it is 1000 times too small: millimetres?"),
+    (180 / math.pi, "It is in degrees; radians are asked for."),
+    (math.pi / 180, "It is too small by pi/180: an angle in radians was taken for degrees."),
+    (2 * math.pi, "It is 2 pi times too large: Hz and rad/s are mixed."),
+    (1 / (2 * math.pi), "It is 2 pi times too small: Hz and rad/s are mixed."),
+    (2.0, "It is twice what is expected."),
+    (0.5, "It is half of what is expected."),
+)
+#: how near a wrong number must come to such a factor, or to a slip of the case
+NEAR = 1e-3
+PULLS = "The sign is turned: your force pulls. F_e is the force ON the environment, positive into it, Eq. (23.1)."
+
+
+def slip(exercise, case, wanted, got):
+    """Return the sentence for what went wrong, or an empty text.
+
+    Parameters
+    ----------
+    exercise : Exercise
+    case : Case
+        Its own slips come first.
+    wanted, got : ndarray
+        Of the same shape; they differ.
+
+    Examples
+    --------
+    >>> from hapticlab.course.exercise import Case, Exercise
+    >>> slip(Exercise("f"), Case({}, 2.0), np.array(2.0), np.array(2000.0))[:30]
+    'It is 1000 times too large: is'
+    """
+    if not np.isfinite(got).all():
+        return "NaN (no number) or infinity comes of 0/0, of the root of a negative number, or of too large a number."
+    for wrong, sentence in case.slips:
+        wrong = np.array(wrong, float)
+        if wrong.shape == got.shape and _close(wrong, got, max(NEAR, exercise.rtol)):
+            return sentence
+    if np.abs(wanted).max(initial=0) <= exercise.atol:
+        return ""
+    if exercise.kind == "expression" and case.unit == "N" and wanted.min() >= 0 and _close(-wanted, got):
+        return PULLS
+    for factor, sentence in FACTORS:
+        if _close(factor * wanted, got, min(max(NEAR, exercise.rtol), 0.1)):
+            return sentence
+    if exercise.kind == "expression":
+        return over_points(case.given["at"], wanted, got)
+    return _in_time(wanted, got) or _nearly(wanted, got)
+
+
+def _in_time(wanted, got):
+    if wanted.ndim == 1 and wanted.size > 3 and np.ptp(wanted) > 0:
+        if _close(wanted[:-1], got[1:]):
+            return "It is one sample late."
+        if _close(wanted[1:], got[:-1]):
+            return "It is one sample early."
+    return ""
+
+
+def _nearly(wanted, got):
+    if _close(wanted, got, 1e-2):
+        return "It is within one percent: is a number rounded, or a constant another, such as 9.8 for 9.81 m/s^2?"
+    return ""
+
+
+def _close(wrong, got, near=NEAR):
+    return bool((np.abs(got - wrong) <= near * np.abs(wrong).max(initial=0) + 1e-12).all())
+
+
+def over_points(at, wanted, got):
+    """Return the sentence for an expression that is wrong at points, or an empty text.
+
+    What it depends on is seen between points that differ in one symbol alone, so an author's points hold such pairs, see
+    :func:`hapticlab.course.variants.points`.
+
+    Parameters
+    ----------
+    at : dict of str to sequence of float
+        Symbol to its value at each point.
+    wanted, got : ndarray, shape (points,)
+
+    Examples
+    --------
+    >>> at = {"k": [100.0, 100.0, 300.0], "x(n)": [0.01, 0.02, 0.02]}
+    >>> over_points(at, np.array([1.0, 2.0, 6.0]), np.array([0.01, 0.02, 0.02]))
+    'It does not change with k: did you forget k?'
+    """
+    at = {name: np.array(column, float) for name, column in at.items()}
+    return _dependence(at, wanted, got) or _factor(at, wanted, got) or _one_side(wanted, got) or _nearly(wanted, got)
+
+
+def _dependence(at, wanted, got):
+    """Name a symbol that is forgotten, or that should not be there."""
+    pairs = {name: [] for name in at}
+    for i, j in itertools.combinations(range(len(wanted)), 2):
+        differ = [name for name, column in at.items() if column[i] != column[j]]
+        if len(differ) == 1:
+            pairs[differ[0]].append((i, j))
+    for name, several in pairs.items():
+        asked = [(i, j) for i, j in several if not _same(wanted[i], wanted[j])]
+        if asked and all(_same(got[i], got[j]) for i, j in asked):
+            return f"It does not change with {name}: did you forget {name}?"
+        if several and not asked and any(not _same(got[i], got[j]) for i, j in several):
+            return f"It changes with {name}, on which it should not depend."
+    return ""
+
+
+def _same(one, other):
+    return abs(one - other) <= 1e-9 * max(abs(one), abs(other))
+
+
+def _factor(at, wanted, got):
+    """Name a factor too many or too few: a symbol, by its powers, or a number."""
+    there = np.abs(wanted) > 1e-9 * np.abs(wanted).max()
+    if there.sum() < 3 or not _close(0 * wanted[~there], got[~there]) or not np.abs(got[there]).all():
+        return ""
+    ratio = got[there] / wanted[there]
+    if _constant(ratio):
+        return f"It is {ratio.mean():.4g} times what is expected, at every point."
+    for power, name in itertools.product((1, -1, 2, -2), at):
+        column = at[name][there]
+        if not column.all() or _constant(column):
+            continue
+        rest = ratio / column**power
+        if _constant(rest):
+            return f"{_too_often(name, power)}{_beside(rest.mean())}"
+    return ""
+
+
+def _too_often(name, power):
+    symbol = name if abs(power) == 1 else f"{name}^{abs(power)}"
+    if power > 0:
+        return f"It is {symbol} times too large, so its unit is wrong: should it be divided by {symbol}?"
+    return f"It lacks a factor {symbol}, so its unit is wrong: is it divided by {symbol}, or not multiplied?"
+
+
+def _beside(factor):
+    if abs(factor - 1) < NEAR:
+        return ""
+    return " The sign is turned, too." if abs(factor + 1) < NEAR else f" Beside that it is {factor:.4g} times too large."
+
+
+def _constant(ratio):
+    return bool(np.ptp(ratio) <= NEAR * np.abs(ratio).max())
+
+
+def _one_side(wanted, got):
+    """Say which side of a boundary is wrong, where one side of it is zero."""
+    outside = np.abs(wanted) <= 1e-9 * np.abs(wanted).max()
+    if not outside.any() or outside.all():
+        return ""
+    right = np.isclose(got, wanted, rtol=NEAR, atol=1e-9 * np.abs(wanted).max())
+    if right[~outside].all():
+        return "It is right where something acts, and not zero where nothing does: is a condition missing or too wide?"
+    if right[outside].all() and np.abs(got[~outside]).min() == 0:
+        return "It is zero at points where something acts: is its condition too narrow?"
+    if not right[outside].any() and not got[~outside].any():
+        return "It acts where nothing should, and is zero where something should: its condition is turned round."
+    return ""
