@@ -1,0 +1,128 @@
+"""What a class was asked: a lab, the answers to it, and the cases of each student."""
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from .. import __version__
+from ..course.exercise import Lab
+from ..course.instructor import check_tree
+from ..course.labs import CHECKS, LabFolder, find_labs
+from ..course.marks import counted_cases, hidden_cases
+from ..course.notebook import code_of, read
+from ..errors import CourseError
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """A lab as it is graded.
+
+    Parameters
+    ----------
+    lab : Lab
+    folder : LabFolder
+    answers : Path or None
+        The lab's folder in an instructor's tree; None grades by the public cases alone.
+    seed : int
+        Of the hidden cases.
+    personal : bool
+        Whether each student was handed a notebook with numbers of their own.
+    """
+
+    lab: Lab
+    folder: LabFolder
+    answers: Path | None = None
+    seed: int = 0
+    personal: bool = False
+
+    def cases(self, student):
+        """Return the cases of a student: exercise to ``((case, public), ...)``, public ones first.
+
+        See :func:`hapticlab.course.marks.counted_cases`.
+        """
+        hidden = {}
+        if self.answers is not None:
+            hidden = hidden_cases(self.lab, self.answers, self.seed, student, self.personal)
+        return {one.name: counted_cases(one, hidden) for one in self.lab.exercises if one.judged}
+
+    def files(self):
+        """Return what lies beside the notebook while it runs, name to bytes: the lab's data, never what judges it."""
+        paths = files_of(self.folder.path)
+        return {name: path.read_bytes() for name, path in paths.items() if path.suffix != ".ipynb" and path.name != CHECKS}
+
+    @cached_property
+    def untouched(self):
+        """The code cells of the lab's own notebook."""
+        return tuple(code_of(read(self.folder.notebook)))
+
+    @cached_property
+    def digest(self):
+        """SHA-256 of all that a mark depends on beside the submission: lab, answers, seed, hapticlab's version."""
+        found = hashlib.sha256(f"{__version__} {self.seed} {self.personal} {self.folder.name}".encode())
+        for folder in (self.folder.path, *([self.answers] if self.answers else [])):
+            for name, path in files_of(folder).items():
+                content = path.read_bytes()
+                found.update(f"{name} {len(content)} ".encode() + content)
+        return found.hexdigest()
+
+
+def find_assignment(lab, instructor=None, seed=0, personal=False):
+    """Return the assignment of a lab.
+
+    Parameters
+    ----------
+    lab : str or Path
+        Number of a lab that came with hapticlab, or the folder of another.
+    instructor : str or Path, optional
+        Folder of an instructor's answers, which holds NN_name/solution.py and NN_name/hidden.py.
+    seed : int
+        Of the hidden cases.
+    personal : bool
+        Whether each student was handed a notebook with numbers of their own.
+
+    Returns
+    -------
+    Assignment
+
+    Examples
+    --------
+    >>> find_assignment("02").lab.points
+    10
+    >>> find_assignment("77")
+    Traceback (most recent call last):
+        ...
+    hapticlab.errors.CourseError: there is no lab 77; there are ... an own lab is named by its folder
+    """
+    folder = _folder(lab)
+    if instructor is None:
+        if personal:
+            raise CourseError("personal numbers are drawn by an instructor's hidden.py; name the folder of answers as well")
+        return Assignment(folder.lab(), folder, None, seed)
+    check_tree(instructor)
+    answers = Path(instructor).resolve() / folder.name
+    if not answers.is_dir():
+        raise CourseError(f"{instructor} holds no {folder.name}, with its solution.py and hidden.py")
+    assignment = Assignment(folder.lab(), folder, answers, seed, personal)
+    assignment.cases("")  # what is wrong with the answers is said before any submission is read
+    return assignment
+
+
+def _folder(lab):
+    """Return the folder of a lab, by its number or its path."""
+    found = {one.number: one for one in find_labs()}
+    if str(lab) in found:
+        return found[str(lab)]
+    path = Path(lab).resolve()
+    own = LabFolder(path)
+    if own.notebook.is_file() and (path / CHECKS).is_file():
+        return own
+    if path.is_dir():
+        raise CourseError(f"{lab} is no lab; its folder needs {path.name}.ipynb and {CHECKS}")
+    raise CourseError(f"there is no lab {lab}; there are {', '.join(found) or 'none'}; an own lab is named by its folder")
+
+
+def files_of(folder):
+    """Return the files of a folder by their names in it, in order; none that Python or Jupyter made."""
+    paths = ((path.relative_to(folder), path) for path in sorted(Path(folder).rglob("*")) if path.is_file())
+    return {inside.as_posix(): path for inside, path in paths if not any(part[0] in "._" for part in inside.parts)}

@@ -1,0 +1,209 @@
+"""One submission is graded: its answers are asked for in processes of their own, and judged in this one.
+
+First the statements that the answers need run alone, which is quick; an exercise that is right there has earned its points.
+For the others the whole notebook runs, cell by cell, as it did for its student: only then is an answer called wrong.
+"""
+
+import base64
+import time
+from dataclasses import dataclass, field, replace
+
+from .marking import Found, ended_words, exercise_report
+from .replies import Garbage, line_of, outcomes_of
+from .report import Report
+from .starter import SessionEnded
+
+#: of the time that a step has: what it has where only the needed statements run
+QUICK = 0.5
+
+
+@dataclass(frozen=True)
+class Deferred:
+    """A limit of time was met while others were at work beside; it is decided when nobody is."""
+
+    student: str
+
+
+class _Late(Exception):
+    """A limit of time was met, and others are at work."""
+
+
+class _Spent(Exception):
+    """The time of the whole submission is over."""
+
+
+def grade(submission, assignment, starter, limits, *, alone=False):
+    """Grade one submission.
+
+    Parameters
+    ----------
+    submission : Submission
+    assignment : Assignment
+    starter : Starter
+        Of the processes that the student's code runs in.
+    limits : Limits
+    alone : bool
+        Nobody else is at work, so that a limit of time that is met counts.
+
+    Returns
+    -------
+    Report or Deferred
+    """
+    cases = assignment.cases(submission.student)
+    empty = {exercise.name: Found() for exercise in assignment.lab.exercises}
+    if submission.problem:
+        return _report(submission, assignment, cases, empty, (), limits)
+    work = _Work(submission, assignment, starter, limits, alone, cases, time.monotonic() + limits.total)
+    try:
+        work.quick()
+        work.whole()
+    except _Late:
+        return Deferred(submission.student)
+    except _Spent:
+        work.found |= {name: Found(ended="time") for name in work.undecided()}
+    return _report(submission, assignment, cases, empty | work.found, work.problems(), limits)
+
+
+def refused(submission, assignment, problem, limits):
+    """Return the report on a submission that cannot be graded, and why."""
+    cases = assignment.cases(submission.student)
+    empty = {exercise.name: Found() for exercise in assignment.lab.exercises}
+    return _report(replace(submission, problem=problem), assignment, cases, empty, (), limits)
+
+
+def _report(submission, assignment, cases, found, problems, limits):
+    lab = assignment.lab
+    exercises = (exercise_report(one, cases.get(one.name, ()), found[one.name], limits) for one in lab.exercises)
+    return Report(
+        student=line_of(submission.student),
+        lab=lab.number,
+        title=lab.title,
+        submission=line_of(submission.name),
+        sha256=submission.sha256,
+        problem=line_of(submission.problem),
+        cells=problems,
+        exercises=tuple(exercises),
+    )
+
+
+@dataclass
+class _Work:
+    """The way of a submission through its sessions."""
+
+    submission: object
+    assignment: object
+    starter: object
+    limits: object
+    alone: bool
+    cases: dict
+    until: float
+    found: dict = field(default_factory=dict)
+    raised: dict = field(default_factory=dict)
+    left_out: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        self._untouched = tuple(self.submission.cells) == self.assignment.untouched
+
+    def quick(self):
+        """Ask for all answers where only the statements ran that they need."""
+        names = [exercise.name for exercise in self.assignment.lab.exercises]
+        seconds = QUICK * self.limits.seconds
+
+        def prepare(session):
+            self._ask(session, {"do": "plan", "names": names}, seconds)
+            self._ask(session, {"do": "run_pieces"}, seconds)
+
+        self._answers(names, prepare, seconds)
+
+    def whole(self):
+        """Ask for the answers that are not right yet where the whole notebook ran."""
+        pending = self.undecided()
+        if pending:
+            end = self._answers(pending, self._run_cells, self.limits.seconds)
+            self.found |= {name: Found(ended=end) for name in pending if end and name not in self._seen}
+
+    def undecided(self):
+        """Return the exercises that may be found otherwise when the whole notebook runs."""
+        if all(self._decided(one) for one in self.assignment.lab.exercises if one.judged):
+            return []
+        return [one.name for one in self.assignment.lab.exercises if not self._decided(one)]
+
+    def problems(self):
+        """Return the cells that failed and what they raised, counted from 1."""
+        ended = {cell: ended_words(reason, self.limits) for cell, reason in self.left_out.items()}
+        words = {cell: said for cell, said in (self.raised | ended).items() if said}
+        return tuple((cell + 1, words[cell]) for cell in sorted(words))
+
+    def _decided(self, exercise):
+        """Whether it is right, noted, or without an answer in the lab's own notebook."""
+        found = self.found.get(exercise.name, Found(ended="nothing"))
+        report = exercise_report(exercise, self.cases.get(exercise.name, ()), found, self.limits)
+        if not exercise.judged and report.answered:
+            return not report.ended
+        return (exercise.judged and report.right == report.cases) or (self._untouched and not report.answered)
+
+    def _answers(self, names, prepare, seconds):
+        """Ask for answers in sessions that are prepared alike, a new one after each end; return why the last one ended."""
+        self._seen, end = set(), ""
+        while not self._seen.issuperset(names):
+            before = len(self._seen), len(self.left_out)
+            try:
+                with self.starter.session(self.limits) as session:
+                    self._ask(session, self._load(), self.limits.seconds)
+                    prepare(session)
+                    for name in names:
+                        if name not in self._seen:
+                            self._answer(session, name, seconds)
+                return ""
+            except SessionEnded as ended:
+                end = ended.reason
+                if before == (len(self._seen), len(self.left_out)):
+                    return end  # not by an answer, nor by a cell that another session can leave out
+        return ""
+
+    def _answer(self, session, name, seconds):
+        """Ask for one answer; where it ends the session that is what was found."""
+        exercise = self.assignment.lab.exercise(name)
+        kind = exercise.kind if exercise.judged else "value"
+        givens = [dict(case.given) for case, _ in self.cases[name]] if exercise.judged else [{}]
+        try:
+            reply = self._ask(session, {"do": "evaluate", "name": name, "kind": kind, "givens": givens}, seconds)
+            self.found[name] = Found(tuple(outcomes_of(reply, len(givens), self.limits.printed)))
+        except Garbage:
+            self.found[name] = Found(ended="garbage")
+            raise SessionEnded("garbage") from None
+        except SessionEnded as end:
+            self.found[name] = Found(ended=end.reason)
+            raise
+        finally:
+            self._seen.add(name)
+
+    def _run_cells(self, session):
+        """Run the notebook cell by cell, without those that ended a session before."""
+        for number in range(len(self.submission.cells)):
+            if number in self.left_out:
+                continue
+            try:
+                reply = self._ask(session, {"do": "run", "cell": number}, self.limits.seconds)
+                self.raised[number] = line_of(reply.get("problem"))
+            except Garbage:
+                self.left_out[number] = "garbage"
+                raise SessionEnded("garbage") from None
+            except SessionEnded as end:
+                self.left_out[number] = end.reason
+                raise
+
+    def _load(self):
+        files = {name: base64.b64encode(content).decode() for name, content in self.assignment.files().items()}
+        return {"do": "load", "cells": list(self.submission.cells), "files": files}
+
+    def _ask(self, session, request, seconds):
+        left = self.until - time.monotonic()
+        if left <= 0:
+            raise _Spent if self.alone else _Late
+        try:
+            return session.ask(request, min(seconds, left))
+        except SessionEnded as end:
+            if end.reason == "time" and not self.alone:
+                raise _Late from None
+            raise

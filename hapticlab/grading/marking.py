@@ -1,0 +1,117 @@
+"""What an exercise earns for what its answer gave: verdicts are made here, where no student's code runs."""
+
+from dataclasses import dataclass
+
+from ..course.judge import Verdict, verdict
+from .replies import line_of, rounded, text_of
+from .report import ExerciseReport, Failing
+
+#: characters kept of the sentence on a wrong case
+WORDS = 600
+
+
+@dataclass(frozen=True)
+class Found:
+    """What an answer gave: an outcome for each case; or why its process ended before."""
+
+    outcomes: tuple = ()
+    ended: str = ""
+
+
+def ended_words(reason, limits):
+    """Return in words why a process ended."""
+    words = {
+        "time": f"it was not done after {limits.seconds:g} s",
+        "memory": f"it needs more than {limits.memory / 2**20:g} MiB of memory",
+        "processes": f"it starts more than {limits.processes} processes",
+        "exit": "it ends the process it runs in",
+        "flood": "it writes without end",
+        "garbage": "what came back is no value",
+    }
+    return words.get(reason, f"its process was ended by {reason}")
+
+
+def exercise_report(exercise, cases, found, limits):
+    """Return the report on an exercise.
+
+    Parameters
+    ----------
+    exercise : Exercise
+    cases : sequence of (Case, bool)
+        And whether it is public; of an exercise that is only noted, empty.
+    found : Found
+    limits : Limits
+        Of which a word is said where one was met.
+
+    Returns
+    -------
+    ExerciseReport
+
+    Examples
+    --------
+    >>> from hapticlab.course.evaluate import Outcome
+    >>> from hapticlab.course.exercise import Case, Exercise
+    >>> from hapticlab.grading.limits import Limits
+    >>> exercise, case = Exercise("k", "value", points=2), Case({}, 150.0, unit="N/m")
+    >>> report = exercise_report(exercise, [(case, True)], Found((Outcome(-150.0),)), Limits())
+    >>> report.earned, report.words
+    (0.0, '-150 N/m: not yet. The sign is turned.')
+    """
+    about = {"name": exercise.name, "kind": exercise.kind, "asks": exercise.asks, "points": float(exercise.points)}
+    if found.ended:
+        words = ended_words(found.ended, limits)
+        wrong = {"hint": exercise.hint} if exercise.judged else {}
+        return ExerciseReport(**about, answered=True, cases=len(cases), words=words, ended=found.ended, **wrong)
+    if not exercise.judged:
+        return ExerciseReport(**about, **_noted(exercise, found.outcomes))
+    verdicts = [_verdict(exercise, case, outcome) for (case, _), outcome in zip(cases, found.outcomes, strict=False)]
+    right = sum(one.right for one in verdicts)
+    if verdicts and right == len(cases):
+        wrong = {"earned": float(exercise.points)}
+    else:
+        wrong = _wrong(exercise, cases, found.outcomes, verdicts)
+    return ExerciseReport(
+        **about,
+        answered=any(outcome.answered for outcome in found.outcomes),
+        right=right,
+        cases=len(cases),
+        printed=_printed(cases, found.outcomes, limits.printed),
+        **wrong,
+    )
+
+
+def _verdict(exercise, case, outcome):
+    try:
+        return verdict(exercise, case, outcome)
+    except Exception as problem:  # no value, however strange, may stop the grading of a class
+        return Verdict(False, f"it cannot be compared ({type(problem).__name__})")
+
+
+def _wrong(exercise, cases, outcomes, verdicts):
+    """Return what a report says of the first wrong case."""
+    if not any(outcome.answered for outcome in outcomes):
+        return {"words": "no answer", "hint": exercise.hint}
+    first = next(number for number, one in enumerate(verdicts) if not one.right)
+    (case, public), outcome, said = cases[first], outcomes[first], verdicts[first]
+    expected = None if exercise.kind in ("value", "choice") else rounded(case.expected)
+    failing = Failing(rounded(dict(case.given)), rounded(outcome.value), expected, case.unit, public)
+    return {"words": line_of(said.words, WORDS), "slip": line_of(said.slip, WORDS), "hint": exercise.hint, "failing": failing}
+
+
+def _noted(exercise, outcomes):
+    """Return what a report says of what carries no points: the text, and what it lacks."""
+    outcome = next(iter(outcomes), None)
+    if outcome is None or not outcome.answered:
+        return {"words": "no answer"}
+    if outcome.problem:
+        return {"answered": True, "words": outcome.problem}
+    text = outcome.value if isinstance(outcome.value, str) else str(rounded(outcome.value))
+    words = len(text.split())
+    lacking = f"{words} words, needs at least {exercise.least_words}" if words < exercise.least_words else ""
+    return {"answered": True, "text": text_of(text), "words": lacking}
+
+
+def _printed(cases, outcomes, most):
+    """Return what was printed in public cases; in the others it would tell their givens."""
+    shown = (outcome.printed for (_, public), outcome in zip(cases, outcomes, strict=False) if public)
+    return text_of("".join(shown), most)
