@@ -1,0 +1,57 @@
+"""Reports as others read them: a terminal, a spreadsheet, a learning management system, an autograder's platform."""
+
+from ...errors import CourseError
+from . import canvas, class_csv, gradescope, moodle, nbgrader_csv, plain, prairielearn
+
+#: format to what writes it, and whether it needs a roster
+WRITERS = {
+    "text": (plain.text, False),
+    "json": (plain.whole, False),
+    "csv": (class_csv.wide, False),
+    "csv-long": (class_csv.long, False),
+    "nbgrader": (nbgrader_csv.grades, False),
+    "gradescope": (gradescope.results, False),
+    "prairielearn": (prairielearn.results, False),
+    "canvas": (canvas.gradebook, True),
+    "moodle": (moodle.grades, True),
+}
+FORMATS = tuple(WRITERS)
+
+
+def write(name, reports, roster=None, assignment=""):
+    """Return reports in a format.
+
+    Parameters
+    ----------
+    name : str
+        One of ``FORMATS``.
+    reports : sequence of Report
+    roster : Roster, optional
+        Who the students are; ``canvas`` and ``moodle`` need one.
+    assignment : str
+        Name of the column in the system that reads it; by default the lab's number and title.
+
+    Returns
+    -------
+    str
+        To be written as UTF-8.
+
+    Raises
+    ------
+    CourseError
+        Where the format needs a roster, or is of one submission and several are given.
+
+    Examples
+    --------
+    >>> from hapticlab.grading.report import ExerciseReport, Report
+    >>> k = ExerciseReport("k", "value", points=2.0, earned=2.0, answered=True, right=1, cases=1)
+    >>> print(write("text", [Report("ada", "02", "Walls", "wall.ipynb", exercises=(k,))]), end="")
+    ada: 2 of 2 points, lab 02 Walls, wall.ipynb
+      right      k (2)
+    """
+    if name not in WRITERS:
+        raise CourseError(f"format {name!r}: needs one of {', '.join(FORMATS)}")
+    writer, needs_roster = WRITERS[name]
+    if needs_roster and roster is None:
+        raise CourseError(f"{name} knows students by its own ids; name a CSV file that it gave out: --roster FILE.csv")
+    return writer(tuple(reports), roster, assignment)

@@ -1,0 +1,49 @@
+"""A class as a table: a row for each submission, or one for each exercise of each."""
+
+from .table import table
+from .words import judged, points, state
+
+
+def wide(reports, roster=None, assignment=""):
+    """Return a row for each submission, with a column of the points of each exercise, named "02.held_work"."""
+    exercises = {f"{report.lab}.{one.name}": None for report in reports for one in judged(report)}
+    columns = ["student", "lab", "submission", "earned", "points", *exercises, "failed_cells", "problem"]
+    return table(columns, map(_row, reports))
+
+
+def _row(report):
+    return {
+        **_whose(report),
+        "earned": points(report.earned),
+        "points": points(report.points),
+        **{f"{report.lab}.{one.name}": points(one.earned) for one in judged(report)},
+        "failed_cells": len(report.cells),
+        "problem": report.problem,
+    }
+
+
+def _whose(report):
+    return {"student": report.student, "lab": report.lab, "submission": report.submission}
+
+
+def long(reports, roster=None, assignment=""):
+    """Return a row for each exercise of each submission, with what is wrong in words."""
+    columns = ["student", "lab", "submission", "exercise", "kind", "state", "earned", "points", "right", "cases"]
+    rows = (
+        {
+            **_whose(report),
+            "exercise": one.name,
+            "kind": one.kind,
+            "state": state(one),
+            "earned": points(one.earned),
+            "points": points(one.points),
+            "right": one.right,
+            "cases": one.cases,
+            "words": one.words,
+            "slip": one.slip,
+            "ended": one.ended,
+        }
+        for report in reports
+        for one in report.exercises
+    )
+    return table([*columns, "words", "slip", "ended"], rows)

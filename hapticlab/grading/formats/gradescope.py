@@ -1,0 +1,45 @@
+"""results.json of a Gradescope autograder: https://gradescope-autograders.readthedocs.io/en/latest/specs/."""
+
+import json
+
+from .words import clean, failed_cells, for_student, judged, only, points, printed, state
+
+
+def results(reports, roster=None, assignment=""):
+    """Return the result of one submission, a test for each exercise that carries points.
+
+    A student may hand in again, so of a hidden case only its slip is told.
+    """
+    report = only(reports, "Gradescope")
+    told = {
+        "score": points(report.earned),
+        "output": _output(report),
+        "output_format": "text",
+        "test_output_format": "text",
+        "test_name_format": "text",
+        "visibility": "visible",
+        "stdout_visibility": "hidden",
+        "tests": [_test(number, one) for number, one in enumerate(judged(report), start=1)],
+    }
+    return json.dumps(told, indent=1) + "\n"
+
+
+def _output(report):
+    """Return what is said of the whole submission."""
+    if report.problem:
+        return f"Not graded: {clean(report.problem)}"
+    noted = [one for one in report.exercises if not one.points]
+    return "\n".join([*(f"{clean(one.name)}: {state(one)}, a person reads it" for one in noted), *failed_cells(report)])
+
+
+def _test(number, one):
+    out = printed(one)
+    return {
+        "name": clean(one.name),
+        "number": str(number),
+        "score": points(one.earned),
+        "max_score": points(one.points),
+        "status": "passed" if state(one) == "right" else "failed",
+        "output": for_student(one) + (f"\nIt printed:\n{out}" if out else ""),
+        "visibility": "visible",
+    }

@@ -1,0 +1,30 @@
+"""The grades.csv that nbgrader exports."""
+
+from .table import best, table
+from .words import points, title
+
+#: https://github.com/jupyter/nbgrader/blob/main/nbgrader/plugins/export.py
+COLUMNS = (
+    "assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email", "raw_score",
+    "late_submission_penalty", "score", "max_score",
+)  # fmt: skip
+
+
+def grades(reports, roster=None, assignment=""):
+    """Return a row for each student and lab; names and e-mail addresses come from the roster, where there is one."""
+    reports = best(reports)
+    people = roster.rows_of(report.student for report in reports) if roster else {}
+    return table(COLUMNS, (_row(report, people.get(report.student, {}), assignment) for report in reports))
+
+
+def _row(report, person, assignment):
+    earned = points(report.earned)
+    score = {"raw_score": earned, "late_submission_penalty": 0, "score": earned, "max_score": points(report.points)}
+    return {
+        "assignment": assignment or title(report),
+        "student_id": report.student,
+        "last_name": person.get("last_name", ""),
+        "first_name": person.get("first_name", ""),
+        "email": person.get("email", "") or person.get("email_address", ""),
+        **score,
+    }

@@ -1,0 +1,70 @@
+"""CSV that spreadsheets open without running anything in it."""
+
+import csv
+import io
+import re
+
+from .words import clean, points, title
+
+#: Excel takes a file for UTF-8 by it; all systems that read grades leave it out
+BOM = "\ufeff"
+#: what begins a formula, also in full width, at the beginning of a cell, after a quote, and after what another
+#: spreadsheet may take for the end of a cell
+FORMULA = re.compile(r"""(^|[,;|"'])(\s*)(?=[=+\-@\uff1d\uff0b\uff0d\uff20])""")
+
+
+def safe(value):
+    """Return a cell that is no formula: in a text an apostrophe stands before what could begin one.
+
+    Examples
+    --------
+    >>> safe('=HYPERLINK("http://a.b")'), safe("ada;=1+1"), safe("Anna-Maria"), safe(-2.5)
+    ('\\'=HYPERLINK("http://a.b")', "ada;'=1+1", 'Anna-Maria', -2.5)
+    """
+    return FORMULA.sub(r"\1\2'", clean(value)) if isinstance(value, str) else value
+
+
+def table(columns, rows):
+    """Return CSV with a byte order mark.
+
+    Parameters
+    ----------
+    columns : sequence of str
+    rows : iterable of dict
+        A column that a row lacks stays empty.
+    """
+    output = io.StringIO()
+    writer = csv.writer(output, lineterminator="\n")
+    writer.writerow([safe(name) for name in columns])
+    writer.writerows([safe(row.get(name, "")) for name in columns] for row in rows)
+    return BOM + output.getvalue()
+
+
+def best(reports):
+    """Return for each student and lab the report that earned most, of equal ones the first: a gradebook has one place."""
+    found = {}
+    for report in reports:
+        key = (report.student, report.lab)
+        if key not in found or report.earned > found[key].earned:
+            found[key] = report
+    return list(found.values())
+
+
+def by_student(reports, assignment):
+    """Return the names of the columns, one for each lab, and for each student the points by column.
+
+    Returns
+    -------
+    columns : dict of str to float
+        Name to the points that are possible.
+    earned : dict of str to dict
+        Student to column to points.
+    """
+    labs = {report.lab: report for report in sorted(reports, key=lambda one: one.lab)}
+    names = {lab: title(report) for lab, report in labs.items()}
+    if assignment:
+        names = {lab: assignment if len(labs) == 1 else f"{assignment} {lab}" for lab in labs}
+    earned = {}
+    for report in best(reports):
+        earned.setdefault(report.student, {})[names[report.lab]] = points(report.earned)
+    return {names[lab]: points(report.points) for lab, report in labs.items()}, earned

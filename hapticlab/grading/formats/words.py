@@ -1,0 +1,99 @@
+"""Words and points of a report for any reader: bounded, without what a terminal or a database takes for a command."""
+
+from ...errors import CourseError
+
+#: characters kept of a sentence, and of what was printed
+SENTENCE, BLOCK = 600, 4000
+#: joins letters of some scripts; neither turns nor hides anything
+JOINERS = "\u200c\u200d"
+
+
+def clean(text, most=SENTENCE, *, lines=False):
+    """Return text without what is not seen: control characters, turns of the writing direction, halves of characters.
+
+    Parameters
+    ----------
+    text : str
+    most : int
+        Characters kept.
+    lines : bool
+        Whether its lines stay apart.
+
+    Examples
+    --------
+    >>> clean("ada\\x1b[2J\\nlovelace"), clean("12345678", 4)
+    ('ada\ufffd[2J lovelace', '1234 ...')
+    """
+    kept = "".join(_seen(letter, lines) for letter in text[:most])
+    return kept + " ..." * (len(text) > most)
+
+
+def _seen(letter, lines):
+    if letter.isprintable() or letter in JOINERS or (lines and letter == "\n"):
+        return letter
+    return " " if letter.isspace() else "\ufffd"
+
+
+def points(value):
+    """Return points as a number without needless digits, to a hundredth.
+
+    Examples
+    --------
+    >>> points(2.0), points(0.1 + 0.2), points(1 / 3)
+    (2, 0.3, 0.33)
+    """
+    value = round(float(value), 2)
+    return int(value) if value.is_integer() else value
+
+
+def judged(report):
+    """Return the exercises of a report that carry points."""
+    return [one for one in report.exercises if one.points]
+
+
+def state(one):
+    """Return whether an exercise is right, in a word or two."""
+    if not one.points:
+        return "noted" if one.answered else "no answer"
+    if one.earned >= one.points:
+        return "right"
+    return "wrong" if one.answered else "no answer"
+
+
+def for_student(one):
+    """Return what a student is told who may hand in again: of a case that is hidden, that it is wrong, and the slip's sentence.
+
+    Its numbers, and what a program raised with these in its words, would tell the case. A value or a choice has no numbers
+    but the student's own.
+    """
+    if state(one) == "right":
+        return f"Right: {one.cases} of {one.cases} cases."
+    said = clean(one.words)
+    if one.failing is not None and not one.failing.public and one.kind not in ("value", "choice"):
+        said = f"A case that is not shown is wrong. {clean(one.slip)}".strip()
+    hint = f"\nHint: {clean(one.hint)}" if one.hint else ""
+    return f"{said}{hint}"
+
+
+def printed(one):
+    """Return what an exercise printed, bounded."""
+    return clean(one.printed, BLOCK, lines=True)
+
+
+def failed_cells(report, most=20):
+    """Return a line for each cell that failed, the first ones."""
+    more = len(report.cells) - most
+    told = [f"cell {number}: {clean(words)}" for number, words in report.cells[:most]]
+    return told + [f"{more} cells more failed"] * (more > 0)
+
+
+def title(report):
+    """Return the number and title of a report's lab."""
+    return clean(f"Lab {report.lab}: {report.title}")
+
+
+def only(reports, name):
+    """Return the one report of a format that is of one submission."""
+    if len(reports) != 1:
+        raise CourseError(f"{name} reads the result of one submission; {len(reports)} were given. Grade each by itself")
+    return reports[0]
