@@ -1,0 +1,66 @@
+"""Whose a file is, by its name and its folder's, as Moodle, Canvas, Gradescope and people give them."""
+
+import re
+import unicodedata
+from pathlib import PurePosixPath
+
+from .replies import line_of
+
+WORK = (".ipynb", ".py", ".zip")
+MOODLE, GRADESCOPE = re.compile(r"(.+?)_assignsubmission_\w*"), re.compile(r"submission_\d+")
+CANVAS = re.compile(r"([^_]+?)(?:_LATE)?_(\d+)_\d+_.+")
+#: a lab's number, as its folder and its notebook begin
+LAB = re.compile(r"(\d\d)[_\- ]")
+#: what browsers, Jupyter and file managers add to the name of a second copy
+COPY = re.compile(r"\W*(copy)?\W*\d*\W*", re.IGNORECASE)
+
+
+def student_of(name, lab=""):
+    r"""Return the student whose folder or file it is.
+
+    Parameters
+    ----------
+    name : str
+    lab : str
+        Name of the lab, which is no part of a student's.
+
+    Examples
+    --------
+    >>> student_of("Ada Lovelace_4217_assignsubmission_file_"), student_of("02_virtual_wall_ada.ipynb", "02_virtual_wall")
+    ('Ada Lovelace_4217', 'ada')
+    >>> student_of("lovelaceada_LATE_4217_99213_02_virtual_wall-1.ipynb"), student_of("../../bob\u202e"), student_of("")
+    ('lovelaceada_4217', '../../bob', 'unnamed')
+    """
+    system = MOODLE.match(name) or CANVAS.fullmatch(name)
+    if system:
+        name = "_".join(system.groups())
+    elif PurePosixPath(name).suffix.lower() in WORK:
+        name = PurePosixPath(name).stem
+    if len(lab) > 2:
+        name = name.replace(lab, "").strip("_- .") or name
+    return line_of(unicodedata.normalize("NFC", name), 80) or "unnamed"
+
+
+def is_of_system(name):
+    """Return whether a folder or a file was named by a system, after a student."""
+    return bool(MOODLE.match(name) or GRADESCOPE.fullmatch(name) or CANVAS.fullmatch(name))
+
+
+def lab_number(name):
+    """Return the number of the lab that a folder or a file is named after, or an empty text."""
+    found = LAB.match(name)
+    return found.group(1) if found else ""
+
+
+def is_lab(name, lab):
+    """Return whether a file has a lab's own name, or is a second copy of it.
+
+    Examples
+    --------
+    >>> is_lab("02_virtual_wall (1).ipynb", "02_virtual_wall"), is_lab("02_virtual_wall_ada.ipynb", "02_virtual_wall")
+    (True, False)
+    """
+    stem = PurePosixPath(name).stem
+    if len(lab) > 2:
+        return stem.startswith(lab) and COPY.fullmatch(stem.removeprefix(lab)) is not None
+    return bool(lab) and lab_number(stem) == lab

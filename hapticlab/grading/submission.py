@@ -1,0 +1,256 @@
+"""What students handed in: found in folders, zip files and nbgrader's tree, and read as the sources of code cells."""
+
+import hashlib
+import re
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..errors import CourseError
+from .archives import MIB, Entry, folder_entries, read_entry, zip_entries
+from .naming import WORK, is_lab, is_of_system, lab_number, student_of
+from .notebook_text import notebook_cells, script_cells
+from .replies import line_of
+
+#: of a notebook; notebooks of one student that are opened to see which is meant
+MOST_BYTES, MOST_OPENED = 32 * MIB, 20
+#: nbgrader's folder: submitted/STUDENT/LAB/*.ipynb
+TREE = "submitted"
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a submission is: its student, its name, and the files one of which it is."""
+
+    student: str
+    name: str
+    entries: tuple
+    lab: str = ""
+    problem: str = ""
+
+
+@dataclass(frozen=True)
+class Submission:
+    """What a student handed in.
+
+    Attributes
+    ----------
+    student : str
+    name : str
+        Of the file, without the way to it.
+    cells : tuple of str
+        Sources of its code cells; of a script, its statements, each on the lines it has there.
+    sha256 : str
+        Of the file's bytes; where there is no file, of the problem.
+    problem : str
+        Why it cannot be graded; it has no cells then.
+    """
+
+    student: str
+    name: str
+    cells: tuple = ()
+    sha256: str = ""
+    problem: str = ""
+
+
+def find_submissions(paths, lab=None):
+    """Return where the submissions are, one for each student; no notebook is opened.
+
+    A file is one student's. So is a folder or zip file that holds one notebook or script, or the notebook of the lab under its own
+    name, or folders of labs. In any other each notebook, script, zip file or folder is a student's; in a folder
+    ``submitted``, as nbgrader has it, each folder. Names as Moodle, Canvas and Gradescope give them are known.
+
+    Parameters
+    ----------
+    paths : sequence of str or Path
+    lab : str, optional
+        Number or name, "02" or "02_virtual_wall".
+
+    Returns
+    -------
+    list of Source
+        Students are unique: of one who is there twice, each has a problem that names both.
+
+    Raises
+    ------
+    CourseError
+        For a path that is not there, or no zip file.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     for name in ("ada.py", "bob.ipynb"):
+    ...         _ = Path(folder, name).write_text("k = 150")
+    ...     [(source.student, read(source).cells, read(source).problem) for source in find_submissions([folder])]
+    [('ada', ('k = 150',), ''), ('bob', (), 'bob.ipynb is no notebook; it needs the JSON that Jupyter writes')]
+    """
+    found = [source for path in paths for source in _found(Path(path), lab or "")]
+    return [replace(source, lab=lab or "") for source in _told_apart(found)]
+
+
+def lab_of(sources):
+    """Return the number of the lab that the names of all files agree on."""
+    parts = {part for source in sources for entry in source.entries for part in entry.parts}
+    named = sorted({lab_number(part) for part in parts} - {""})
+    if len(named) != 1:
+        told = f"name labs {', '.join(named)}" if named else "name no lab"
+        raise CourseError(f"the files {told}; say which one is graded, such as --lab 02")
+    return named[0]
+
+
+def _found(path, lab):
+    """Return the sources at one path, as it was named on the command line."""
+    if not path.exists():
+        raise CourseError(f"{path}: no such file or folder")
+    path = path.resolve()
+    below = path.parts[path.parts.index(TREE) + 1 :] if TREE in path.parts else ()
+    if path.is_dir():
+        entries, name = folder_entries(path), path.name
+    elif path.suffix.lower() == ".zip":
+        entries, name = zip_entries(Entry(path, (path.name,))), path.stem
+    else:
+        owner = below[0] if len(below) > 1 else path.parent.name if is_lab(path.name, lab) else path.name
+        return [_source(owner, path.name, [Entry(path, (path.name,))], lab)]
+    if below:
+        return [_source(below[0], path.name, entries, lab)]
+    tree = [_lifted(entry) for entry in entries if len(entry.parts) > 2 and entry.parts[0] == TREE]
+    if tree or path.name == TREE:
+        return _each(tree or entries, lab)
+    return _grouped(entries, name, lab, named_by_zip=not path.is_dir())
+
+
+def _lifted(entry):
+    return replace(entry, parts=entry.parts[1:])
+
+
+def _grouped(entries, name, lab, named_by_zip):
+    """Return the sources among the files of a folder or a zip file."""
+    while folder := _only_folder(entries):
+        name = name if named_by_zip or lab_number(folder) else folder
+        entries = list(map(_lifted, entries))
+    folders = {entry.parts[0] for entry in entries if len(entry.parts) > 1}
+    files = [entry for entry in entries if len(entry.parts) == 1 and _is_work(entry)]
+    one_file = len(files) <= 1 and not folders
+    one_student = one_file or any(map(lab_number, folders)) or any(is_lab(entry.name, lab) for entry in files)
+    if one_student and not any(map(is_of_system, [*folders, *(entry.name for entry in files)])):
+        return [_source(name, name, entries, lab)]
+    return _each(entries, lab)
+
+
+def _is_work(entry):
+    return entry.suffix in WORK and entry.name != "checks.py"
+
+
+def _only_folder(entries):
+    """Return the name of the folder that all is in, where no system named it after a student."""
+    first = {entry.parts[0] if len(entry.parts) > 1 else "" for entry in entries}
+    name = first.pop() if len(first) == 1 else ""
+    return "" if is_of_system(name) else name
+
+
+def _each(entries, lab):
+    """Return a source for each folder, and for each file that is a student's work; files of one student go together."""
+    groups = defaultdict(list)
+    for entry in entries:
+        first = entry.parts[0]
+        if len(entry.parts) > 1:
+            groups[first].append(entry)
+        elif _is_work(entry) or is_of_system(first):
+            groups[student_of(first, lab) if is_of_system(first) else first].append(entry)
+    return [_source(owner, several[0].parts[0], several, lab) for owner, several in groups.items()]
+
+
+def _source(owner, name, entries, lab):
+    return Source(student_of(owner, lab), line_of(name, 120), tuple(entries))
+
+
+def _told_apart(sources):
+    """Return sources whose students are unique."""
+    several, taken, found = defaultdict(list), {source.student for source in sources}, []
+    for source in sources:
+        several[source.student].append(source)
+    for source in sources:
+        others, student = several[source.student], source.student
+        if len(others) > 1:
+            ways = " and ".join("/".join(one.entries[0].parts) if one.entries else one.name for one in others[:3])
+            words = f"{len(others)} submissions are {student}'s: {ways}; keep one, or name them apart"
+            number = 1
+            while source is not others[0] and student in taken:
+                number += 1
+                student = f"{source.student} ({number})"
+            taken.add(student)
+            source = replace(source, student=student, problem=line_of(words))
+        found.append(source)
+    return found
+
+
+def read(source):
+    """Return the submission of a source; whatever is wrong with its files is its problem, and nothing is raised.
+
+    Of several notebooks the one is taken that has the lab in its path, that lies highest, and that checks most answers of
+    the lab; where this leaves more than one, it is a problem. Scripts count where there is no notebook.
+
+    Parameters
+    ----------
+    source : Source
+
+    Returns
+    -------
+    Submission
+    """
+    name, digest = source.name, ""
+    try:
+        if source.problem:
+            raise CourseError(source.problem)
+        entry, raw = _chosen(source)
+        name, digest = line_of(entry.name, 120), hashlib.sha256(raw).hexdigest()
+        cells = _cells(entry, raw)
+    except CourseError as problem:
+        words = line_of(str(problem))
+        return Submission(source.student, name, (), digest or hashlib.sha256(words.encode()).hexdigest(), words)
+    return Submission(source.student, name, cells, digest)
+
+
+def _cells(entry, raw):
+    try:
+        return notebook_cells(raw) if entry.suffix == ".ipynb" else script_cells(raw)
+    except CourseError as problem:
+        raise CourseError(f"{entry.name} {problem}") from None
+
+
+def _chosen(source):
+    """Return the file that is graded, and its bytes."""
+    entries = [one for entry in source.entries for one in _unpacked(entry)]
+    work = [entry for entry in entries if entry.suffix == ".ipynb"]
+    work = work or [entry for entry in entries if entry.suffix == ".py" and _is_work(entry)]
+    if not work:
+        there = ", ".join(entry.name for entry in entries[:3]) or "nothing"
+        raise CourseError(f"no notebook is in it; there is {there}{' and more' if len(entries) > 3 else ''}")
+    number = source.lab[:2]
+    work = _narrowed(work, lambda entry: not number or {lab_number(part) for part in entry.parts} <= {number, ""})
+    work = _narrowed(work, lambda entry: not number or number in map(lab_number, entry.parts))
+    highest = min(len(entry.parts) for entry in work)
+    contents = [(entry, read_entry(entry, MOST_BYTES)) for entry in work if len(entry.parts) == highest][:MOST_OPENED]
+    counts = [_checks(raw, number) for _, raw in contents]
+    best = [content for content, count in zip(contents, counts, strict=True) if count == max(counts)]
+    if len({raw for _, raw in best}) > 1:
+        raise CourseError(f"{' and '.join(entry.name for entry, _ in best[:3])} may each be meant; hand in one")
+    return best[0]
+
+
+def _unpacked(entry):
+    """Return a file, or what a zip file holds."""
+    if entry.suffix != ".zip" or len(entry.inside) > 1:
+        return [entry]
+    return [replace(one, parts=(*entry.parts[:-1], *one.parts)) for one in zip_entries(entry)]
+
+
+def _narrowed(several, wanted):
+    """Return those that are wanted; where none is, all."""
+    return [one for one in several if wanted(one)] or several
+
+
+def _checks(raw, number):
+    """Return how many answers of a lab a notebook checks."""
+    return len(set(re.findall(rb"check\(\s*\\?['\"]" + number.encode() + rb"\.?(\w+)", raw)))
