@@ -6,7 +6,7 @@ from statistics import mean, median
 from ..course.exercise import NOTED
 from .page_figures import bars, shares
 from .page_text import clean
-from .student_page import badge, ended, points, state
+from .student_page import STATES, points, state
 
 #: students named under one mistake
 MOST_NAMED = 200
@@ -110,7 +110,7 @@ def _mistakes(graded):
             order += [one.name] if one.name not in order else []
             if state(one) == "wrong" and one.slip:
                 found.setdefault((one.name, one.slip), []).append(link(address, report))
-            elif state(one) == "wrong":
+            elif state(one) == "wrong" and not one.ended:
                 unknown[one.name] += 1
     ranked = sorted(found.items(), key=lambda item: (-len(item[1]), order.index(item[0][0]), item[0][1]))
     rows = [(len(who), f"<code>{clean(name, 60)}</code>", clean(slip), _named(who)) for (name, slip), who in ranked]
@@ -145,7 +145,7 @@ def _ungraded(pages):
 def _stopped(graded):
     """Return whose code was stopped, in which exercise and why."""
     rows = [
-        (link(address, report), f"<code>{clean(one.name, 60)}</code>", clean(ended(one.ended)))
+        (link(address, report), f"<code>{clean(one.name, 60)}</code>", clean(one.words or one.ended))
         for address, report in graded
         for one in report.exercises
         if one.ended
@@ -160,8 +160,14 @@ def _students(pages):
     rows = []
     for address, report in pages:
         went = {one.name: one for one in _judged(report)}
-        marks = [badge(went[name]) if name in went and not report.problem else "" for name in names]
+        marks = [_sign(went[name]) if name in went and not report.problem else "" for name in names]
         earned = "not graded" if report.problem else points(report.earned, report.points)
         rows.append((link(address, report), earned, *marks))
-    head = ("student", "mark", *(f"<code>{clean(name, 60)}</code>" for name in names))
-    return f'<section class="wide"><h2>Students</h2>{table(head, rows)}</section>'
+    head = ("student", "mark", *(f'<code class="upright">{clean(name, 60)}</code>' for name in names))
+    key = ", ".join(f"{STATES[went]} {went}" for went in ("right", "wrong", "no answer"))
+    return f'<section class="students"><h2>Students</h2><p>{key}</p>{table(head, rows)}</section>'
+
+
+def _sign(one):
+    went = state(one)
+    return f'<span class="{went.split()[0]}" role="img" aria-label="{went}">{STATES[went]}</span>'

@@ -14,31 +14,30 @@ from .page_text import clean
 WIDTH, HEIGHT, ABOVE, BELOW = 640, 240, 30, 48
 #: more points than these are thinned; fewer than those get a mark each
 MOST_POINTS, MARKED = 600, 60
-GREY, HUGE, TINY = "#767676", 1e300, 1e-290
+#: labels of axes that count from 0: samples follow one another, points are drawn at random
+SAMPLE, POINT = "sample", "point"
+GREY, HUGE, TINY = "#767676", 1e290, 1e-290
 
 
-def chart(x, lines, labels, alt):
-    """Return one or two lines over x as SVG.
+def chart(lines, labels, alt):
+    """Return one or two lines as SVG.
 
     Parameters
     ----------
-    x : ndarray
-        As long as the longest line, finite.
-    lines : dict of str to ndarray
-        "expected" and "got"; what is no number leaves a gap.
+    lines : dict of str to (ndarray, ndarray)
+        "expected" and "got", each along x and along y; what is no number leaves a gap.
     labels : tuple of str
-        Of the horizontal and the vertical axis.
+        Of the horizontal and the vertical axis; along POINT no line joins the marks.
     alt : str
         What it shows, in words.
 
     Examples
     --------
-    >>> chart(np.arange(3.0), {"expected": np.array([0.0, 1.0, 4.0])}, ("n", "F [N]"), "rises").count("L")
-    2
+    >>> chart({"expected": (np.arange(3.0), np.array([0.0, 1.0, 4.0]))}, ("n", "F [N]"), "rises")[:38]
+    '<svg role="img" aria-label="rises" vie'
     """
-    x = _bounded(x)
-    lines = {name: _bounded(line) for name, line in lines.items()}
-    across, up = _span([x]), _span([*lines.values()])
+    lines = {name: tuple(map(bounded, line)) for name, line in lines.items()}
+    across, up = (_span(several) for several in zip(*lines.values(), strict=True))
     marks = _ticks(*up)
     left = 34 + 7.5 * max((len(text) for _, text in marks), default=1)
 
@@ -47,16 +46,17 @@ def chart(x, lines, labels, alt):
         return begin + (many - low) / (high - low) * (end - begin)
 
     grid = [_up_tick(place(tick, 1), text, left) for tick, text in marks]
-    grid += [_across_tick(place(tick, 0), text) for tick, text in _ticks(*across)]
+    grid += [_across_tick(place(tick, 0), text) for tick, text in _ticks(*across, most=8, whole=labels[0] in (SAMPLE, POINT))]
     grid.append(
         f'<text x="{(left + WIDTH) / 2:.0f}" y="{HEIGHT - 8}" text-anchor="middle">{clean(labels[0], 60)}</text>'
         f'<text x="14" y="{(ABOVE + HEIGHT - BELOW) / 2:.0f}" text-anchor="middle" '
         f'transform="rotate(-90 14 {(ABOVE + HEIGHT - BELOW) / 2:.0f})">{clean(labels[1], 40)}</text>'
     )
-    for k, (name, line) in enumerate(lines.items()):
-        picked = _thinned(line)
-        grid.append(_line(name, place(x[: len(line)][picked], 0), place(line[picked], 1)))
-        grid.append(_key(name, left + 8 + 110 * k))
+    joined = labels[0] != POINT
+    for k, (name, (x, y)) in enumerate(lines.items()):
+        picked = _thinned(y)
+        grid.append(_line(name, place(x[picked], 0), place(y[picked], 1), joined))
+        grid.append(_key(name, left + 8 + 140 * k, joined))
     return picture(WIDTH, HEIGHT, "".join(grid), alt)
 
 
@@ -65,8 +65,8 @@ def picture(width, height, inside, alt):
     return f'<svg role="img" aria-label="{clean(alt, 1000)}" viewBox="0 0 {width} {height}" width="{width}">{inside}</svg>'
 
 
-def _bounded(many):
-    """Return numbers that no sum of two overflows; what is none stays none."""
+def bounded(many):
+    """Return numbers whose sums do not overflow; what is not finite becomes NaN, a gap."""
     return np.where(np.isfinite(many), np.clip(many, -HUGE, HUGE), np.nan)
 
 
@@ -81,9 +81,9 @@ def _span(several):
     return low - room, high + room
 
 
-def _ticks(low, high):
-    """Return places of 1, 2 or 5 times a power of ten with their texts."""
-    rough = (high - low) / 5
+def _ticks(low, high, most=5, whole=False):
+    """Return places of 1, 2 or 5 times a power of ten with their texts; ``whole`` ones count samples."""
+    rough = max((high - low) / most, float(whole))
     tens = 10.0 ** math.floor(math.log10(rough))
     step = next(tens * part for part in (1, 2, 5, 10) if tens * part >= rough * (1 - 1e-9))
     places = [k * step for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
@@ -115,20 +115,20 @@ def _thinned(line):
     return np.unique([0, len(line) - 1, *np.ravel(ends)])
 
 
-def _line(name, across, up):
+def _line(name, across, up, joined):
     """Return a line with gaps where there is no number: expected is whole with rings, got is dashed with crosses."""
     colour, dash = (WARM, ' stroke-dasharray="7 4"') if name == "got" else (COLD, "")
     course, marks, pen = [], [], "M"
     for x, y in zip(across.tolist(), up.tolist(), strict=True):
-        if not math.isfinite(y):
+        if not math.isfinite(x + y):
             pen = "M"
             continue
         course.append(f"{pen}{x:.1f},{y:.1f}{'h0' if pen == 'M' else ''}")
         pen = "L"
-        if len(across) <= MARKED:
+        if len(across) <= MARKED or not joined:
             marks.append(_mark(name, x, y))
     pen = f'fill="none" stroke="{colour}" stroke-width="2" stroke-linecap="round"{dash}'
-    return f'<path d="{"".join(course)}" {pen}/>{"".join(marks)}'
+    return f'<path d="{"".join(course)}" {pen}/>{"".join(marks)}' if joined else "".join(marks)
 
 
 def _mark(name, x, y):
@@ -137,9 +137,9 @@ def _mark(name, x, y):
     return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4.5" fill="#fff" stroke="{COLD}" stroke-width="2"/>'
 
 
-def _key(name, x):
+def _key(name, x, joined):
     ends = np.array([x, x + 34.0])
-    return _line(name, ends, np.array([14.0, 14.0])) + f'<text x="{x + 46:.0f}" y="18">{clean(name, 30)}</text>'
+    return _line(name, ends, np.array([14.0, 14.0]), joined) + f'<text x="{x + 46:.0f}" y="18">{clean(name, 30)}</text>'
 
 
 def bars(counts, label, alt):

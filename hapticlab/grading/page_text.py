@@ -7,7 +7,7 @@ import re
 import unicodedata
 
 #: of a name or a sentence, and of what was printed or written
-SENTENCE, BLOCK = 600, 6000
+SENTENCE, BLOCK = 700, 20_000
 #: joins letters of some scripts; neither turns nor hides anything
 JOINERS = "\u200c\u200d"
 #: a name that every file system takes, and takes for no other: no capitals, no end that looks like a hash
@@ -81,7 +81,7 @@ def shown(value, depth=0):
 def number(value, digits=6):
     """Return a number in so many digits; an integer may be larger than any float."""
     try:
-        return f"{float(value):.{digits}g}"
+        return f"{float(value) + 0.0:.{digits}g}"  # no sign on a zero
     except OverflowError:
         return "a number beyond 1e308"
 
@@ -120,5 +120,6 @@ def file_name(student, copy=0):
     if not copy and SAFE_NAME.fullmatch(student):
         return student
     told = student.encode("utf-8", "surrogatepass") + b"\0%d" % copy
-    slug = re.sub(r"[^a-z0-9]+", "-", student[:40].lower()).strip("-") or "student"
+    plain = unicodedata.normalize("NFKD", student[:40]).encode("ascii", "ignore").decode()
+    slug = re.sub(r"[^a-z0-9]+", "-", plain[:40].lower()).strip("-") or "student"
     return f"{slug}-{hashlib.sha256(told).hexdigest()[:16]}"

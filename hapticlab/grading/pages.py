@@ -53,7 +53,7 @@ def write_pages(reports, folder, *, lab):
     style = STYLE.read_text("utf-8")
     pages = {"class.html": page(f"Lab {lab.number}, the class", class_body(named, lab), style)}
     for address, report in named:
-        pages[address] = page(f"Lab {report.lab}, {report.student}", student_body(report), style)
+        pages[address] = page(f"Lab {report.lab}, {report.student}", student_body(report, lab), style)
     return _written(Path(folder), pages)
 
 

@@ -4,16 +4,8 @@ from ..course.exercise import NOTED
 from .failing_case import failing_case
 from .page_text import BLOCK, clean
 
-#: why a process ended early -> what a student reads
-ENDED = {
-    "time": "It ran longer than is allowed and was stopped. Does a loop ever end?",
-    "memory": "It used more memory than is allowed and was stopped.",
-    "processes": "It started more processes than are allowed and was stopped.",
-    "exit": "It ended Python itself, so that no answer could be given.",
-    "flood": "It gave or printed more than is kept and was stopped.",
-    "garbage": "What it gave could not be read.",
-}
-STATES = {"right": "&#10003; right", "wrong": "&#10007; wrong", "no answer": "&#9675; no answer", "noted": "&#9998; noted"}
+#: how an exercise went -> the sign that is read with the word, or in its place
+STATES = {"right": "&#10003;", "wrong": "&#10007;", "no answer": "&#9675;", "noted": "&#9998;"}
 MOST_CELLS = 40
 
 
@@ -26,22 +18,18 @@ def state(one):
     return "wrong" if one.answered or one.ended else "no answer"
 
 
-def ended(reason):
-    """Return in a sentence why a process ended early."""
-    return ENDED.get(reason, f"Its process ended early ({reason}).")
-
-
 def points(earned, of):
     """Return points in words, "7 of 10 points"."""
     return f"{earned:g} of {of:g} point{'' if of == 1 else 's'}"
 
 
-def student_body(report):
+def student_body(report, lab):
     """Return the body of a student's page.
 
     Parameters
     ----------
     report : Report
+    lab : Lab
     """
     return "".join(
         [
@@ -49,7 +37,7 @@ def student_body(report):
             f'<p class="who"><bdi>{clean(report.student, 120)}</bdi></p>',
             f'<p class="mark">{points(report.earned, report.points)}</p></header><main>',
             *_whole(report),
-            *(_exercise(k, one, whole=not report.problem) for k, one in enumerate(report.exercises, 1)),
+            *(_exercise(k, one, lab, whole=not report.problem) for k, one in enumerate(report.exercises, 1)),
             _cells(report.cells),
             "</main>",
             f"<footer><p>Handed in: <bdi><code>{clean(report.submission, 120)}</code></bdi>, SHA-256 "
@@ -77,10 +65,10 @@ def _whole(report):
 def badge(one):
     """Return how an exercise went as a sign and a word."""
     found = state(one)
-    return f'<span class="badge {found.split()[0]}">{STATES[found]}</span>'
+    return f'<span class="badge {found.split()[0]}">{STATES[found]} {found}</span>'
 
 
-def _exercise(number, one, whole):
+def _exercise(number, one, lab, whole):
     told = [
         f'<section id="e{number}"><h2><code>{clean(one.name, 60)}</code> {badge(one) if whole else ""}'
         + (f'<span class="aside">{points(one.earned, one.points)}</span>' if one.points else "")
@@ -89,10 +77,11 @@ def _exercise(number, one, whole):
     ]
     if one.kind in NOTED:
         told.append(_block(one.text, "written") if one.text.strip() else "")
+        told.append(f"<p>{clean(one.words)}</p>" if one.words and one.answered else "")
     elif whole and state(one) != "right":
-        told += [f"<p>{ended(one.ended)}</p>" if one.ended else "", _words(one)]
+        told.append(_words(one))
         told.append(f'<p class="hint"><strong>Hint:</strong> {clean(one.hint)}</p>' if one.hint else "")
-        told.append(failing_case(one) if one.failing else "")
+        told.append(failing_case(one, lab) if one.failing else "")
     if one.printed.strip():
         told.append(f"<h3>What your code printed</h3>{_block(one.printed, 'printed')}")
     return "".join(told) + "</section>"
