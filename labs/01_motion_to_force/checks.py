@@ -4,6 +4,12 @@ from hapticlab.course.exercise import Case, Exercise, Lab
 
 DAMPER_SIGN = "The damper feeds the hand: its power F v must be positive, so its force points along v, as a spring's along x."
 TURNED = "The sign is turned: F_e is the force ON the environment, Eq. (23.1); the motor applies -F_e."
+RUNS_AWAY = (
+    "The mass runs away from the handle: the coupler must pull it TOWARDS the handle, so m z'' = +F_c with F_c = K (x - z) + ..."
+)
+DAMPER_RELATIVE = "The coupler's damper has the wrong sign: it must resist the relative velocity x' - z'."
+SPRING_ALONE = "That is the spring alone: the coupler has a damper beside it."
+DAMPER_BETWEEN = "The damper lies between handle and mass: it sees x' - z', not z' alone."
 STEPS = {
     "x": [0, 0.002, 0.005, 0.008, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01],
     "T": 5e-3,
@@ -108,9 +114,40 @@ LAB = Lab(
             hint="Which of x(n), x(n-1) and x(n-2) has moved at that sample, and which has not yet?",
         ),
         Exercise(
+            "mass_equation",
+            kind="expression",
+            points=1,
+            asks="Newton's law of the mass on its coupler, sp.Eq(..., ...), with z, z', z'', x(t), v(t), m, K and b_c",
+            cases=(
+                Case(
+                    {
+                        "at": {
+                            "m": [0.1, 0.2, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1],
+                            "K": [160.0, 160.0, 80.0, 160.0, 160.0, 160.0, 160.0, 160.0],
+                            "b_c": [0.2, 0.2, 0.2, 0.5, 0.2, 0.2, 0.2, 0.2],
+                            "x(t)": [0.01, 0.01, 0.01, 0.01, 0.0, 0.01, 0.01, 0.01],
+                            "v(t)": [0.3, 0.3, 0.3, 0.3, 0.3, 0.0, 0.3, 0.3],
+                            "z": [0.004, 0.004, 0.004, 0.004, 0.004, 0.004, 0.012, 0.004],
+                            "z'": [-0.1, -0.1, -0.1, -0.1, -0.1, -0.1, -0.1, 0.3],
+                        },
+                        "solve_for": "z''",
+                    },
+                    [10.4, 5.2, 5.6, 11.6, -5.6, 9.8, -2.4, 9.6],
+                    unit="m/s^2",
+                    slips={
+                        (-10.4, -5.2, -5.6, -11.6, 5.6, -9.8, 2.4, -9.6): RUNS_AWAY,
+                        (8.8, 4.4, 4.0, 7.6, -7.2, 9.4, -4.0, 9.6): DAMPER_RELATIVE,
+                        (9.8, 4.9, 5.0, 10.1, -6.2, 9.8, -3.0, 9.0): DAMPER_BETWEEN,
+                        (9.6, 4.8, 4.8, 9.6, -6.4, 9.6, -3.2, 9.6): SPRING_ALONE,
+                    },
+                ),
+            ),
+            hint="Newton: m z'' is the sum of the forces ON the mass. With the handle to its right, which way is it pulled?",
+        ),
+        Exercise(
             "mass_on_coupler",
             kind="scene",
-            points=3,
+            points=2,
             asks="a scene of a mass m with coordinate z, tied to the handle by K and b_c; force, eom, watch=[z]",
             rtol=1e-5,
             cases=(
@@ -121,17 +158,16 @@ LAB = Lab(
                     unit="N",
                     slips={
                         (0.0, 0.4, 0.94094232, 1.489167668, 1.904716781, 2.040872419, 2.338173781, 2.729270253, 3.234379173,
-                         3.875019361): "The mass runs away from the handle: in its equation the coupler must pull it TOWARDS "
-                        "the handle, so m z'' = +F_c with F_c = K (x - z) + ...",
+                         3.875019361): RUNS_AWAY,
                         (0.0, -0.4, -0.89934168, -1.314201618, -1.47108638, -1.208461989, -0.983042509, -0.724304734,
                          -0.439410422, -0.139920776): TURNED,
                         (0.0, -0.4, -0.94094232, -1.489167668, -1.904716781, -2.040872419, -2.338173781, -2.729270253,
                          -3.234379173, -3.875019361): "Both signs are turned, as with K (z - x): the force on the mass points "
                         "to the handle, and the force on the environment is that same force.",
                         (0.0, 0.24, 0.677321953, 1.131772137, 1.424247649, 1.380335491, 1.197347694, 0.966940288, 0.695476377,
-                         0.393419815): "The coupler's damper has the wrong sign: it must resist the relative velocity x' - z'.",
+                         0.393419815): DAMPER_RELATIVE,
                         (0.0, 0.32, 0.783841097, 1.209456947, 1.421673848, 1.255526064, 1.042697965, 0.793003254, 0.514336953,
-                         0.218041227): "The damper lies between handle and mass: it sees x' - z', not z' alone.",
+                         0.218041227): DAMPER_BETWEEN,
                         (0.0, 0.4, 0.903785333, 1.329011063, 1.500056826, 1.251435499, 1.034390461, 0.77850388, 0.491581859,
                          0.185062796): "The mass does not feel the damper that the hand feels: action and reaction must be "
                         "the same F_c.",

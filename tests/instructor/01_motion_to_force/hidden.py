@@ -2,6 +2,13 @@
 
 import numpy as np
 
+from hapticlab.course.variants import points
+
+RANGES = {
+    "m": (0.02, 0.5), "K": (50, 900), "b_c": (0.05, 2), "x(t)": (-0.02, 0.02), "v(t)": (-0.4, 0.4), "z": (-0.02, 0.02),
+    "z'": (-0.4, 0.4),
+}  # fmt: skip
+
 
 def cases(random):
     """Return givens by exercise, drawn with a NumPy Generator."""
@@ -24,6 +31,7 @@ def cases(random):
             {"m": random.uniform(0.02, 0.3), "metres_per_count": random.uniform(5e-6, 8e-4), "T": random.uniform(5e-4, 4e-3)}
             for _ in range(2)
         ],
+        "mass_equation": lambda: [{"at": points(random, RANGES), "solve_for": "z''"}],
         "mass_on_coupler": lambda: [
             {
                 "x": _motion(random),

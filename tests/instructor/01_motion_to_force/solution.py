@@ -34,9 +34,11 @@ def count_step(m, metres_per_count, T):
     return m * metres_per_count / T**2
 
 
+mass_equation = sp.Eq(m * z.diff(t, 2), K * (x(t) - z) + b_c * (v(t) - z.diff(t)))
+
 mass_on_coupler = hl.Scene(
     force=K * (x(t) - z) + b_c * (v(t) - z.diff(t)),
-    eom=[sp.Eq(m * z.diff(t, 2), K * (x(t) - z) + b_c * (v(t) - z.diff(t)))],
+    eom=[mass_equation],
     watch=[z],
     name="a mass on a coupler",
 )
