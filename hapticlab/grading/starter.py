@@ -3,23 +3,26 @@
 import json
 import os
 import select
-import shutil
 import socket
 import subprocess
 import sys
 import tempfile
 import time
+from contextlib import nullcontext
 from dataclasses import asdict
 from pathlib import Path
 
 import hapticlab
 
+from ..errors import CourseError
 from . import watch
+from .limits import Limits
 
 #: what one look at a session's processes is apart from the next [s]
 PERIOD = 0.03
 #: of a reply, beside its values
 FRAME = 1 << 16
+LEVELS = "namespaces", "user", "none"
 PACKAGE = Path(hapticlab.__file__).resolve().parent
 #: one thread, as a zygote forks; no port but a simulated one; the same order of sets in every run
 ENVIRONMENT = {
@@ -47,12 +50,36 @@ class SessionEnded(Exception):
 
 
 def start(sandbox="auto", hidden=()):
-    """Return a Starter."""
-    return Starter("none", hidden)
+    """Return a Starter of the best level that works here, or of the one named.
+
+    Parameters
+    ----------
+    sandbox : {"auto", "namespaces", "user", "none"}
+    hidden : sequence of path
+        What no student's code may read: answers, submissions, results.
+
+    Raises
+    ------
+    CourseError
+        Where the system refuses that level, or a file of ``hidden`` could be read at level "user".
+    """
+    if sandbox not in ("auto", *LEVELS):
+        raise CourseError(f"sandbox = {sandbox!r}; needs one of auto, {', '.join(LEVELS)}")
+    for level in LEVELS if sandbox == "auto" else (sandbox,):
+        try:
+            return Starter(level, hidden)
+        except _Refused as refusal:
+            if sandbox != "auto":
+                raise CourseError(f"sandbox {level}: {refusal}; try another of auto, {', '.join(LEVELS)}") from None
+    raise AssertionError("level none is never refused")
+
+
+class _Refused(Exception):
+    """This system has not what a level needs."""
 
 
 class Starter:
-    """One zygote, which forks a session for each submission; a context manager.
+    """One zygote, which forks a session for each submission, one at a time; a context manager.
 
     Attributes
     ----------
@@ -61,44 +88,81 @@ class Starter:
     """
 
     def __init__(self, level, hidden=()):
-        self.level, self.hidden, self.now = level, tuple(hidden), None
+        self.level, self.now, self.process = level, None, None
+        self.hidden = [str(Path(path).resolve()) for path in (PACKAGE / "labs", *hidden)]
+        if level == "user" and not _is_root():
+            raise _Refused("only root can run code as another user")
         self._begin()
 
     def _begin(self):
+        """Start the zygote, and see whether the level's walls hold."""
         self.control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.control.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 20)
         arguments = [sys.executable, "-s", "-c", PROGRAM, str(theirs.fileno()), str(PACKAGE.parent)]
         cache = {name: os.environ[name] for name in ("HOME", "XDG_CACHE_HOME") if name in os.environ}
         null, environment = subprocess.DEVNULL, {**cache, **ENVIRONMENT}
         self.process = subprocess.Popen(arguments, env=environment, stdin=null, stdout=null, pass_fds=[theirs.fileno()])
         theirs.close()
-        self.zygote = self._answer()["pid"]
-        self.held = watch.anonymous(self.zygote)
+        self.user = _free_user(self.process.pid) if _is_root() and self.level != "none" else 0
+        self.others = watch.threads_of(os.getuid()) if self.level == "none" else 0
+        try:
+            self._settle()
+        except BaseException:
+            self.close()
+            raise
+        self.held, self.size = watch.anonymous(self.process.pid), watch.address_space(self.process.pid)
 
-    def _answer(self):
-        return json.loads(self.control.recv(1 << 16))
+    def _settle(self):
+        seen = [str(PACKAGE), *(path for path in sys.path if Path(path).name in ("site-packages", "dist-packages"))]
+        with tempfile.TemporaryDirectory(prefix="hapticlab-root-") as new, self._scratch() as scratch:
+            settings = {"new": new, "seen": seen, "hidden": self.hidden, "scratch": scratch}
+            if self.level != "none":
+                found = self.order("probe", **settings, limits=asdict(Limits()))
+                if "problem" in found:
+                    raise _Refused(found["problem"])
+                if found["missing"]:
+                    raise _Refused(f"the user of a session cannot read {found['missing']}, which Python needs")
+                if found["read"]:
+                    raise CourseError(f"a submission could read {found['read']}; chmod -R go= its folder")
+            self.order("ready", **settings)
+
+    def _scratch(self):
+        """Return a folder for a session; in namespaces it has one in a file system of its own."""
+        if self.level == "namespaces":
+            return nullcontext("/tmp/scratch")
+        folder = tempfile.TemporaryDirectory(prefix="hapticlab-", ignore_cleanup_errors=True)
+        if self.user:
+            os.chown(folder.name, self.user, self.user)
+        return folder
+
+    def order(self, do, *descriptors, **settings):
+        """Have the zygote do something, and return what it answers."""
+        base = {"base": self.size} if do == "session" else {"base": watch.address_space(self.process.pid)}
+        request = {"do": do, "level": self.level, "user": self.user, "others": self.others, **base, **settings}
+        socket.send_fds(self.control, [json.dumps(request).encode()], descriptors)
+        answer = self.control.recv(1 << 16)
+        if not answer:
+            raise ConnectionError("the zygote is gone")
+        return json.loads(answer)
 
     def session(self, limits):
         """Return a new Session; one that is still open ends."""
         if self.now:
             self.now.close()
-        if self.process.poll() is not None:
+        if self.process.poll() is not None:  # at level none, student's code can kill it
+            self.control.close()
             self._begin()
         self.now = Session(self, limits)
         return self.now
 
-    def fork(self, request, *descriptors):
-        """Ask the zygote for a session."""
-        socket.send_fds(self.control, [json.dumps(request).encode()], descriptors)
-        return self._answer()["pid"]
-
     def end(self):
         """Kill the session and all it started."""
-        watch.kill_descendants(self.process.pid)
+        if self.level != "namespaces":
+            watch.kill_descendants(self.process.pid)
         try:
-            self.control.send(b'{"do": "end"}')
-            self._answer()
-        except (OSError, ValueError):
-            self.process.wait()  # somebody killed the zygote
+            self.order("end")
+        except OSError:
+            self.process.wait()
 
     def close(self):
         """End the session and the zygote."""
@@ -114,18 +178,27 @@ class Starter:
         self.close()
 
 
+def _is_root():
+    return hasattr(os, "geteuid") and os.geteuid() == 0
+
+
+def _free_user(process):
+    """Return the number of a user that nobody has, another for each zygote; few are mapped in a container without root."""
+    first, _, mapped = map(int, Path("/proc/self/uid_map").read_text().split()[:3])
+    return 10**9 + process if mapped > 2 * 10**9 else first + mapped - 2 - process % (mapped // 4)
+
+
 class Session:
     """A student's session, asked by :meth:`ask`; a context manager, which kills all its processes when it is left."""
 
     def __init__(self, starter, limits):
         self.starter, self.limits, self.number, self.open = starter, limits, 0, True
-        self.scratch = tempfile.mkdtemp(prefix="hapticlab-")
+        self.folder = starter._scratch()
         self.channel, theirs = socket.socketpair()
         self.channel.setblocking(False)
         self.status, status = os.pipe()
-        base = watch.address_space(starter.zygote)
-        request = {"do": "session", "scratch": self.scratch, "limits": asdict(limits), "base": base}
-        starter.fork(request, theirs.fileno(), status)
+        scratch = self.folder.__enter__()
+        starter.order("session", theirs.fileno(), status, scratch=scratch, limits=asdict(limits))
         theirs.close()
         os.close(status)
 
@@ -215,7 +288,7 @@ class Session:
 
     def check(self):
         """Raise where the session has too many processes, or too much memory."""
-        found = watch.descendants(self.starter.zygote)
+        found = watch.descendants(self.starter.process.pid)
         if len(found) > self.limits.processes + 2:
             raise SessionEnded("processes")
         if watch.memory(found, self.starter.held) > self.limits.memory:
@@ -228,7 +301,7 @@ class Session:
             self.starter.end()
             self.channel.close()
             os.close(self.status)
-            shutil.rmtree(self.scratch, ignore_errors=True)
+            self.folder.__exit__(None, None, None)
 
     def __enter__(self):
         return self

@@ -79,3 +79,15 @@ def kill_descendants(root):
                 os.kill(process, signal.SIGKILL)
             except ProcessLookupError:
                 continue
+
+
+def threads_of(user):
+    """Return how many threads a user runs now."""
+    count = 0
+    for entry in filter(str.isdigit, os.listdir(PROC)):
+        try:
+            if (PROC / entry).stat().st_uid == user:
+                count += len(os.listdir(PROC / entry / "task"))
+        except OSError:
+            continue
+    return count

@@ -10,7 +10,7 @@ IMPORTS = "import os, signal, socket, stat, subprocess, sys, time"
 FILE = "aGFsbG8="  # hallo
 
 
-@pytest.fixture(scope="module", params=["none"])
+@pytest.fixture(scope="module", params=["none", "namespaces"])
 def starter(request):
     with start(request.param) as started:
         yield started

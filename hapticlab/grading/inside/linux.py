@@ -1,34 +1,93 @@
-"""System calls that Python 3.11 does not have; numbers and flags as in the man pages named, section 2."""
+"""System calls that Python 3.11 does not have; numbers and flags as in the man pages named, of section 2."""
 
 import ctypes
 import os
+import sys
 
-PR_SET_DUMPABLE, PR_SET_NO_NEW_PRIVS, PR_SET_CHILD_SUBREAPER, PR_SET_PDEATHSIG = 4, 38, 36, 1  # prctl(2)
+# unshare(2)
+NEWNS, NEWUTS, NEWIPC, NEWUSER, NEWPID, NEWNET = 0x20000, 0x4000000, 0x8000000, 0x10000000, 0x20000000, 0x40000000
+# mount(2), umount2(2)
+NOSUID, NODEV, NOEXEC, BIND, RECURSIVE, PRIVATE, DETACH = 2, 4, 8, 4096, 16384, 1 << 18, 2
+# mount_setattr(2)
+MOUNT_SETATTR, AT_FDCWD, AT_RECURSIVE, ATTR_RDONLY, ATTR_NOSUID, ATTR_NODEV = 442, -100, 0x8000, 1, 2, 4
+# prctl(2)
+SET_DUMPABLE, SET_SECCOMP, CAPBSET_DROP, SET_CHILD_SUBREAPER, SET_NO_NEW_PRIVS = 4, 22, 24, 36, 38
+CAPABILITY_VERSION_3 = 0x20080522  # capget(2)
 
-_libc = ctypes.CDLL(None, use_errno=True)
+_libc = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
 
 
 def _call(function, *arguments):
     """Call a function of the C library; raise OSError where it says -1."""
-    converted = [a.encode() if isinstance(a, str) else ctypes.c_ulong(a) if isinstance(a, int) else a for a in arguments]
+    converted = [a.encode() if isinstance(a, str) else ctypes.c_long(a) if isinstance(a, int) else a for a in arguments]
     if getattr(_libc, function)(*converted) == -1:
         code = ctypes.get_errno()
         raise OSError(code, f"{function}: {os.strerror(code)}")
 
 
+def unshare(flags):
+    """Leave the namespaces named for new ones; for NEWPID, the children do."""
+    _call("unshare", flags)
+
+
+def mount(source, target, kind=None, flags=0, options=None):
+    """Mount a file system, or with BIND a folder or file at a second place."""
+    try:
+        _call("mount", source, target, kind, flags, options)
+    except OSError as problem:
+        raise OSError(problem.errno, f"{problem.strerror} ({target})") from None
+
+
+def make_read_only(target, recursive=True):
+    """Make a mount, and all below it, read-only, without devices and without setuid; needs Linux 5.12."""
+    attributes = (ctypes.c_uint64 * 4)(ATTR_RDONLY | ATTR_NOSUID | ATTR_NODEV)
+    how = AT_RECURSIVE if recursive else 0
+    _call("syscall", MOUNT_SETATTR, AT_FDCWD, target, how, ctypes.byref(attributes), ctypes.sizeof(attributes))
+
+
+def move_root(new):
+    """Make a mount the root of all paths, and let go of the old root; pivot_root(2), "pivot_root(".", ".")"."""
+    os.chdir(new)
+    _call("pivot_root", ".", ".")
+    _call("umount2", ".", DETACH)
+    os.chdir("/")
+
+
 def become_subreaper():
     """Let orphans among the descendants become children of this process."""
-    _call("prctl", PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    _call("prctl", SET_CHILD_SUBREAPER, 1, 0, 0, 0)
 
 
 def forbid_dumps():
     """Forbid other processes of the user to trace this one and to read its memory."""
-    _call("prctl", PR_SET_DUMPABLE, 0, 0, 0, 0)
+    _call("prctl", SET_DUMPABLE, 0, 0, 0, 0)
 
 
-def forbid_new_privileges():
-    """Let no program gain privileges, such as by setuid, here and in all children, for ever."""
-    _call("prctl", PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
+def drop_privileges():
+    """Give up every capability, and every way to gain one, here and in all children, for ever."""
+    _call("prctl", SET_NO_NEW_PRIVS, 1, 0, 0, 0)
+    for capability in range(64):
+        try:
+            _call("prctl", CAPBSET_DROP, capability, 0, 0, 0)
+        except OSError:
+            break  # past the last one, or none held to drop it with
+    header = (ctypes.c_uint32 * 2)(CAPABILITY_VERSION_3, 0)
+    _call("capset", ctypes.byref(header), ctypes.byref((ctypes.c_uint32 * 6)()))
+
+
+def filter_calls(program):
+    """Have the kernel ask a BPF program before each system call; needs no_new_privs.
+
+    Parameters
+    ----------
+    program : bytes
+        Of struct sock_filter, 8 bytes an instruction.
+    """
+
+    class Program(ctypes.Structure):  # struct sock_fprog, seccomp(2)
+        _fields_ = [("length", ctypes.c_ushort), ("filter", ctypes.c_char_p)]
+
+    _call("prctl", SET_SECCOMP, 2, ctypes.byref(Program(len(program) // 8, program)), 0, 0)
 
 
 def close_all_but(*kept):

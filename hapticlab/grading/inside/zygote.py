@@ -11,15 +11,12 @@ import signal
 import socket
 import sys
 
-import hapticlab
-
-from ...course.evaluate import evaluate
 from . import linux, sandbox
 from .keeper import keep, prepare
-from .session import Session
 
-#: beside what the package itself loads
-PRELOADED = ("matplotlib.pyplot", "scipy.signal", "scipy.integrate", "scipy.optimize")
+#: beside what the package itself loads; by name, as all of it is needed only where the walls hold
+SESSION = "hapticlab.grading.inside.session"
+PRELOADED = ("matplotlib.pyplot", "scipy.signal", "scipy.integrate", "scipy.optimize", SESSION)
 
 
 def main(control):
@@ -28,59 +25,117 @@ def main(control):
     Parameters
     ----------
     control : int
-        File descriptor of a SOCK_SEQPACKET socket. Requests: ``session`` with two file descriptors, ``end``.
+        File descriptor of a SOCK_SEQPACKET socket. Requests: ``probe``, ``ready``, ``session`` with two file descriptors,
+        ``end``.
     """
     control = socket.socket(fileno=control)
     linux.become_subreaper()
-    preload()
-    control.send(json.dumps({"pid": os.getpid()}).encode())
     keeper = 0
     while True:
-        message, descriptors, *_ = socket.recv_fds(control, 1 << 16, 2)
+        message, descriptors, *_ = socket.recv_fds(control, 1 << 20, 2)
         if not message:
             return
         request = json.loads(message)
-        if request["do"] == "session":
-            keeper = start(control, request, *descriptors)
+        if request["do"] == "probe":
+            answer = probe(request)
+        elif request["do"] == "ready":
+            preload()
+            settle(request)
+            answer = {}
+        elif request["do"] == "session":
+            keeper = start(request, *descriptors)
             for descriptor in descriptors:
                 os.close(descriptor)
+            answer = {}
         else:
-            end(keeper)
-        control.send(json.dumps({"pid": keeper}).encode())
+            end(keeper, request["user"])
+            answer = {}
+        control.send(json.dumps(answer).encode())
+
+
+def settle(request):
+    """Move into the root that all sessions see, where there are namespaces."""
+    if request["level"] == "namespaces":
+        sandbox.move(request["new"], request["seen"], request["hidden"])
+
+
+def probe(request):
+    """Return what a session would find: {"read": a file it must not read, "missing": one it must}; or {"problem": ...}."""
+    outlet, inlet = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            linux.become_subreaper()
+            settle(request)
+            os.waitpid(start(request, inlet, inlet), 0)
+        except OSError as problem:
+            os.write(inlet, json.dumps({"problem": str(problem)}).encode() + b"\n")
+        finally:
+            os._exit(0)
+    os.close(inlet)
+    os.waitpid(child, 0)
+    found = os.read(outlet, 1 << 16)
+    os.close(outlet)
+    return json.loads(found.partition(b"\n")[0]) if found else {"problem": "a session ended at once"}
 
 
 def preload():
     """Load what notebooks use, and run a scene once, which fills caches on the way."""
     for name in PRELOADED:
         importlib.import_module(name)
-    for name in hapticlab.__all__:
+    package = sys.modules["hapticlab"]
+    for name in package.__all__:
         try:
-            getattr(hapticlab, name)
+            getattr(package, name)
         except ImportError:
             continue  # an optional dependency is not installed
-    evaluate("scene", hapticlab.wall()(k=150.0, x_o=0.01), {"x": [0.0, 0.012]})
+    evaluate = sys.modules["hapticlab.course.evaluate"].evaluate
+    evaluate("scene", package.wall()(k=150.0, x_o=0.01), {"x": [0.0, 0.012]})
     gc.collect()
     gc.freeze()
 
 
-def start(control, request, channel, status):
-    """Fork a session and return the process id of its keeper."""
-    keeper = os.fork()
-    if keeper:
-        return keeper
-    try:
-        control.close()
-        prepare()
-        session = os.fork()
-        if session:
-            keep(session, status)
-        run(request, channel)
-    finally:
-        os._exit(1)
+def start(request, channel, status):
+    """Fork a session and return the process id of its keeper, or 0 where the system refused one."""
+    outlet, inlet = os.pipe()
+    between = os.fork()
+    if between == 0:
+        try:
+            become_keeper(request, channel, status, inlet)
+        except OSError as problem:
+            os.write(channel, json.dumps({"problem": str(problem)}).encode() + b"\n")
+        finally:
+            os._exit(1)
+    os.close(inlet)
+    keeper = int(os.read(outlet, 32) or 0)
+    os.close(outlet)
+    if keeper != between:
+        os.waitpid(between, 0)  # then the keeper is a child of this process
+    return keeper
 
 
-def run(request, channel):
-    """Become a student's session: behind the walls, with one file descriptor and nothing else."""
+def become_keeper(request, channel, status, inlet):
+    """Go on as a keeper, in namespaces as process 1 of its own, which takes one more fork."""
+    namespaces = request["level"] == "namespaces"
+    if namespaces:
+        linux.unshare(sandbox.NAMESPACES)
+        keeper = os.fork()
+        if keeper:
+            os.write(inlet, str(keeper).encode())
+            os._exit(0)
+    else:
+        os.write(inlet, str(os.getpid()).encode())
+    prepare()
+    if namespaces:
+        sandbox.furnish(request)
+    session = os.fork()
+    if session:
+        keep(session, status)
+    become_session(request, channel)
+
+
+def become_session(request, channel):
+    """Go on as a student's session: behind the walls, with one file descriptor and nothing else."""
     os.setsid()
     linux.close_all_but(2, channel)
     sandbox.enter(request)
@@ -89,16 +144,22 @@ def run(request, channel):
         os.dup2(null, standard)
     if null > 2:
         os.close(null)
+    if request["do"] == "probe":
+        os.write(channel, json.dumps(sandbox.findings(request)).encode() + b"\n")
+        os._exit(0)
     sys.stdin, sys.stdout, sys.stderr = os.fdopen(0), os.fdopen(1, "w"), os.fdopen(2, "w")
-    Session(channel, request["limits"]).serve()
+    sys.modules[SESSION].Session(channel, request["limits"]).serve()
     os._exit(0)
 
 
-def end(keeper):
-    """Kill a session, and wait for all that came back to this process."""
-    try:
+def end(keeper, user):
+    """Kill a session, and wait until all of it is gone; where it has a user of its own, whatever runs as that one."""
+    if keeper:
         os.kill(keeper, signal.SIGKILL)
+    if user:
+        sandbox.kill_user(user)
+    try:
         while True:
-            os.waitpid(-1, 0 if keeper else os.WNOHANG)
-    except (ChildProcessError, ProcessLookupError):
+            os.waitpid(-1, 0)
+    except ChildProcessError:
         pass

@@ -1,0 +1,95 @@
+"""The root of a session: what Python needs, read-only, and nothing else of the machine."""
+
+import os
+from pathlib import Path
+
+from . import linux
+
+#: what programs and their libraries are read from
+SYSTEM = ("/usr", "/bin", "/lib", "/lib32", "/lib64", "/libx32", "/nix/store", "/etc/alternatives", "/etc/fonts",
+    "/etc/ld.so.cache", "/etc/localtime")  # fmt: skip
+DEVICES = ("null", "zero", "full", "random", "urandom")
+
+
+def move(new, seen, hidden):
+    """Move this process into a root of its own.
+
+    Parameters
+    ----------
+    new : str
+        An empty folder.
+    seen : sequence of str
+        Folders to be seen beside the system's.
+    hidden : sequence of str
+        Paths inside of these that must not be.
+    """
+    linux.mount(None, "/", None, linux.RECURSIVE | linux.PRIVATE)
+    linux.mount("root", new, "tmpfs", linux.NOSUID | linux.NODEV, "mode=755,size=1m")
+    seen = outermost(path for path in (*SYSTEM, *seen) if os.path.exists(path))
+    for path in seen:
+        show(new, path)
+    for path in hidden:
+        mask(new, path, seen)
+    for device in DEVICES:
+        show_at(f"/dev/{device}", f"{new}/dev/{device}")
+    for link, target in {"shm": "/tmp", "fd": "/proc/self/fd"}.items():
+        os.symlink(target, f"{new}/dev/{link}")
+    for folder in ("tmp", "proc"):
+        os.mkdir(f"{new}/{folder}")
+    # a new /proc may only be mounted where a whole one is seen, mount_namespaces(7)
+    linux.mount("/proc", f"{new}/proc", None, linux.BIND | linux.RECURSIVE)
+    linux.move_root(new)
+    linux.make_read_only("/", recursive=False)
+
+
+def outermost(paths):
+    """Return absolute paths and what they resolve to, without those inside of another.
+
+    Examples
+    --------
+    >>> outermost(["/usr/share", "/usr"])
+    ['/usr']
+    """
+    found = []
+    places = {resolve(path) for path in paths for resolve in (os.path.abspath, os.path.realpath)}
+    for path in sorted(places):
+        if not any(inside(path, outer) and not os.path.islink(outer) for outer in found):
+            found.append(path)
+    return found
+
+
+def inside(path, outer):
+    """Whether a path is another, or inside of it."""
+    return Path(path).is_relative_to(outer)
+
+
+def show(new, path):
+    """Show a file or folder, read-only; a link as a link."""
+    if os.path.islink(path):
+        os.makedirs(os.path.dirname(new + path), exist_ok=True)
+        os.symlink(os.readlink(path), new + path)
+        return
+    show_at(path, new + path)
+    linux.make_read_only(new + path)
+
+
+def show_at(path, target):
+    """Bind a file or folder at a place, which is made."""
+    os.makedirs(os.path.dirname(target), exist_ok=True)
+    if os.path.isdir(path):
+        os.mkdir(target)
+    else:
+        Path(target).touch()
+    linux.mount(path, target, None, linux.BIND | linux.RECURSIVE)
+
+
+def mask(new, path, seen):
+    """Lay something empty over a path that would be seen."""
+    for place in {os.path.abspath(path), os.path.realpath(path)}:
+        if not os.path.exists(place) or not any(inside(place, outer) for outer in seen):
+            continue
+        if os.path.isdir(place):
+            linux.mount("hidden", new + place, "tmpfs", linux.NOSUID | linux.NODEV, "mode=000,size=4k")
+            linux.make_read_only(new + place)
+        else:
+            linux.mount("/dev/null", new + place, None, linux.BIND)
