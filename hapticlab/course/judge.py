@@ -45,8 +45,7 @@ def judge(exercise, case, value):
     """
     expected, hidden = case.expected, exercise.kind in ("value", "choice")
     if exercise.kind == "plot":
-        words, sentence = plot_fault(expected, value, exercise.rtol, exercise.atol)
-        return _taught(words, sentence) if words else Verdict(True, f"{len(value)} curve{'s' * (len(value) > 1)}")
+        return _judge_plot(exercise, case, value)
     if isinstance(expected, str | bool):
         return _judge_word(exercise, case, value)
     if isinstance(expected, dict):
@@ -122,6 +121,17 @@ def _judge_parts(exercise, case, value):
         if not part.right:
             return Verdict(False, f"{name}: {part.words}", part.slip)
     return Verdict(True, ", ".join(case.expected))
+
+
+def _judge_plot(exercise, case, value):
+    """Judge the curves of a plot; a slip holds wrong ones, in the same form."""
+    words, mixed_up = plot_fault(case.expected, value, exercise.rtol, exercise.atol)
+    if not words:
+        return Verdict(True, f"{len(value)} curve{'s' * (len(value) > 1)}")
+    for wrong, sentence in case.slips:
+        if not plot_fault(wrong, value, exercise.rtol, exercise.atol)[0]:
+            return _taught(words, sentence)
+    return _taught(words, mixed_up)
 
 
 def _numbers(value):

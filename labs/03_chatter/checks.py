@@ -37,6 +37,9 @@ ENCODER_ALONE = "That is what friction pays for. The damper has to pay for the h
 HOLD_ONLY = "That is what the damper pays for. Friction has to pay for the encoder too: the smaller of the two counts."
 HALF_COUNT = "Friction pays twice that: the work of friction over a count, there and back, is 2 f_c Delta."
 
+DELAYS = {"x": [0.0, 0.5e-3, 1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3], "x_unit": "s", "y_unit": "N/m"}
+WHOLE_PERIOD = DELAYS | {"y": [1100.0, 733.333333, 550.0, 440.0, 366.666667, 314.285714, 275.0]}
+
 LAB = Lab(
     number="03",
     title="Chatter",
@@ -66,8 +69,30 @@ LAB = Lab(
             hint="How late is the force in all? What does a spring that is late do to the damping of the loop?",
         ),
         Exercise(
+            "limit_over_delay",
+            kind="plot",
+            points=1,
+            asks="a function of b [N s/m] and T [s] that returns a figure: the limit in N/m over delays of 0 to 3 ms",
+            rtol=0.02,
+            cases=(
+                Case(
+                    {"b": 1.1, "T": 1e-3},
+                    {"curve 1": DELAYS | {"y": [2200.0, 1100.0, 733.333333, 550.0, 440.0, 366.666667, 314.285714]}},
+                    slips=(
+                        ({"curve 1": WHOLE_PERIOD}, ONE_PERIOD),
+                        ({"curve 1": DELAYS | {"y": [4400.0, 2200.0, 1466.66667, 1100.0, 880.0, 733.3, 628.6]}}, TAKEN_TWICE),
+                    ),
+                ),
+                Case(
+                    {"b": 0.5, "T": 2e-3},
+                    {"curve 1": DELAYS | {"y": [500.0, 333.333333, 250.0, 200.0, 166.666667, 142.857143, 125.0]}},
+                ),
+            ),
+            hint="Is it one line through many points, do both labels end in a unit such as [ms], and are the numbers in that unit?",
+        ),
+        Exercise(
             "growth_per_sample",
-            points=2,
+            points=1,
             asks="the factor on the amplitude in one sample, of m [kg], k [N/m], T [s], without damping",
             cases=(
                 Case(

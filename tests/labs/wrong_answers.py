@@ -5,6 +5,7 @@ from statistics import NormalDist
 
 import numpy as np
 import sympy as sp
+from matplotlib.figure import Figure
 
 import hapticlab as hl
 from hapticlab import n, t, v, x
@@ -18,6 +19,10 @@ def on_coupler(force_sign, mass_sign):
     return hl.Scene(force=force_sign * F_c, eom=[sp.Eq(m * z.diff(t, 2), mass_sign * F_c)], watch=[z])
 
 
+def mass_moves(force):
+    return sp.Eq(m * z.diff(t, 2), force)
+
+
 def pendulum(weight, product):
     """A pendulum with gravity's sign, and the product of the velocities, as given."""
     theta = hl.coordinate("theta", unit="rad", initial=0.3)
@@ -27,6 +32,13 @@ def pendulum(weight, product):
     energy = M * z.diff(t) ** 2 / 2 + m * square / 2 + weight * m * g * l * sp.cos(theta)
     model = hl.lagrange(energy, dissipation=c * theta.diff(t) ** 2 / 2, forces={z: F_c})
     return hl.Scene(force=F_c, eom=[model], watch=[z, theta])
+
+
+def drawn_limit(limit):
+    axes, delay = Figure().subplots(), np.linspace(0, 3, 100)
+    axes.plot(delay, limit(1e-3 * delay))
+    axes.set(xlabel="delay [ms]", ylabel="k [N/m]")
+    return axes
 
 
 def crossings(t, x):
@@ -68,6 +80,9 @@ WRONG = {
         ("spring_damper", hl.Scene(force=k * x(n) - b * v(n))),
         ("spring_and_damper", lambda x, v, F: {"k": np.sum(F * x) / np.sum(x * x), "b": np.sum(F * v) / np.sum(v * v)}),
         ("count_step", lambda m, metres_per_count, T: m * metres_per_count / T),
+        ("mass_equation", mass_moves(K * (z - x(t)) + b_c * (z.diff(t) - v(t)))),
+        ("mass_equation", mass_moves(K * (x(t) - z) + b_c * (z.diff(t) - v(t)))),
+        ("mass_equation", mass_moves(K * (x(t) - z) - b_c * z.diff(t))),
         ("mass_on_coupler", on_coupler(1, -1)),
         ("mass_on_coupler", on_coupler(-1, 1)),
         ("resonance", lambda m, K, b_c: {"f": np.sqrt(K / m), "zeta": b_c / (2 * np.sqrt(K * m))}),
@@ -86,6 +101,8 @@ WRONG = {
     ],
     "03": [
         ("stability_estimate", lambda b, T, delay: b / (T + delay)),
+        ("limit_over_delay", lambda b, T: drawn_limit(lambda delay: b / (T + delay))),
+        ("limit_over_delay", lambda b, T: drawn_limit(lambda delay: 2 * b / (T / 2 + delay))),
         ("growth_per_sample", lambda m, k, T: 1 + k * T**2 / (2 * m)),
         ("growth_per_sample", lambda m, k, T: 1 + k * T**2 / (4 * m)),
         ("late_wall", hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n - 1) - x_o)))),

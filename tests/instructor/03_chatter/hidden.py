@@ -8,6 +8,7 @@ def cases(random):
     draw = lambda low, high: float(random.uniform(low, high))  # noqa: E731
     return {
         "stability_estimate": lambda: [{"b": draw(0.05, 5), "T": draw(2e-4, 2e-3), "delay": draw(0, 3e-3)} for _ in range(3)],
+        "limit_over_delay": lambda: [{"b": draw(0.05, 5), "T": draw(1e-3, 4e-3)} for _ in range(2)],
         "growth_per_sample": lambda: [{"m": draw(0.02, 0.3), "k": draw(50, 5000), "T": draw(2e-4, 2e-3)} for _ in range(3)],
         "late_wall": lambda: [
             {"x": list(random.uniform(-5e-3, 8e-3, 9)), "values": {"k": draw(100, 2000), "x_o": draw(0, 2e-3)}}

@@ -1,6 +1,7 @@
 """Answers of lab 03, by the names they have in the notebook."""
 
 import numpy as np
+from matplotlib.figure import Figure
 
 import hapticlab as hl
 from hapticlab import n, x
@@ -11,6 +12,15 @@ prediction = "about 2200 N/m"  # a text is noted as well
 def stability_estimate(b, T, delay):
     """Largest stable stiffness [N/m], to first order in the delay: b - k (T/2 + delay) = 0."""
     return b / (T / 2 + delay)
+
+
+def limit_over_delay(b, T):
+    """Figure of the limit to first order over delays of 0 to 3 ms."""
+    figure = Figure(layout="constrained")
+    axes, delay = figure.subplots(), np.linspace(0, 3e-3, 200)
+    axes.plot(1e3 * delay, stability_estimate(b, T, delay))
+    axes.set(xlabel="computational delay [ms]", ylabel="stiffness k [N/m]", ylim=(0, None))
+    return figure
 
 
 def growth_per_sample(m, k, T):
