@@ -84,7 +84,7 @@ def unit_remark(answer, unit):
     terms = answer.args if isinstance(answer, sp.Eq) else [answer]
     if not unit or not all(isinstance(term, sp.Expr) for term in terms):
         return ""
-    if not all(hasattr(node, "unit") or hasattr(type(node), "unit") for term in terms for node in _symbols(term)):
+    if not all(hasattr(node, "unit") or hasattr(type(node), "unit") for term in terms for node in symbols(term)):
         return ""
     try:
         found = agree(terms, "its units") if len(terms) > 1 else dimension_of(terms[0], "its units")
@@ -116,19 +116,19 @@ def _residual(equation):
     return _expression(equation)
 
 
-def _symbols(expression):
+def symbols(expression):
     """Yield the symbols, samples, coordinates and rates in an expression."""
     walk = sp.preorder_traversal(expression)
     for node in walk:
-        if _text(node):
+        if spelling(node):
             walk.skip()
             yield node
 
 
-def _text(node):
+def spelling(node):
     """Return how a symbol, a sample, a function of time or its rate is written, or an empty text."""
     if isinstance(node, sp.Derivative) and len(node.variable_count) == 1:
-        name, (_, order) = _text(node.expr), node.variable_count[0]
+        name, (_, order) = spelling(node.expr), node.variable_count[0]
         return name and name + "'" * int(order)
     if isinstance(node, AppliedUndef) or getattr(type(node), "role", "") == "handle":
         clock = ",".join(str(argument).replace(" ", "") for argument in node.args)
@@ -139,7 +139,7 @@ def _text(node):
 
 def _held(expression, allowed):
     """Return what an expression holds, by the names of ``allowed``; refuse what is not among them."""
-    texts = {node: _text(node) for node in _symbols(expression)}
+    texts = {node: spelling(node) for node in symbols(expression)}
     strange = sorted({text for text in texts.values() if text not in allowed})
     if strange:
         raise NotPlain(f"it holds {', '.join(strange)[:200]}; it may hold {', '.join(allowed)}")
