@@ -47,8 +47,9 @@ END
 )
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp -R -P "$root/submission" "$work/$student"
-"$python" -m hapticlab grade "$work/$student" --lab "$root/source/labs/{name}" --instructor "$root/source/answers" \\
+mkdir "$work/submitted"
+cp -R -P "$root/submission" "$work/submitted/$student"
+"$python" -m hapticlab grade "$work/submitted/$student" --lab "$root/source/labs/{name}" --instructor "$root/source/answers" \\
     --seed {seed} --sandbox auto --workers 1 --fresh --format gradescope -o "$results"
 code=$?
 rm -f "$results.journal.jsonl"

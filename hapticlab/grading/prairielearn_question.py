@@ -41,8 +41,9 @@ END
 )
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp -R -P "$root/student" "$work/$variant"
-python3 -m hapticlab grade "$work/$variant" --lab "$root/tests/labs/{name}" --instructor "$root/tests/answers" \\
+mkdir "$work/submitted"
+cp -R -P "$root/student" "$work/submitted/$variant"
+python3 -m hapticlab grade "$work/submitted/$variant" --lab "$root/tests/labs/{name}" --instructor "$root/tests/answers" \\
     --seed {seed} --sandbox auto --workers 1 --fresh --format prairielearn -o "$results"
 rm -f "$results.journal.jsonl"
 # what fails here is no fault of the student, and costs no attempt

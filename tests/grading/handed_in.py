@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from subprocess import PIPE
 
 from hapticlab.course.instructor import solved_notebook
 from hapticlab.course.labs import find_labs
@@ -46,9 +47,15 @@ def earned(lab, wrong=None):
 
 def run(*command, cwd):
     """Run a command that finds this hapticlab, and return what it printed; it must succeed."""
+    with start(*command, cwd=cwd) as process:
+        said = process.communicate()
+    assert process.returncode == 0, f"{' '.join(map(str, command))}\n{said[0][-3000:]}\n{said[1][-3000:]}"
+    return said[0]
+
+
+def start(*command, cwd):
+    """Start a command that finds this hapticlab, its tools and its kernel."""
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-    found = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep)
+    found = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
     env = {**os.environ, "PATH": path, "PYTHONPATH": found, "JUPYTER_PREFER_ENV_PATH": "1"}
-    done = subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True)
-    assert done.returncode == 0, f"{' '.join(map(str, command))}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}"
-    return done.stdout + done.stderr
+    return subprocess.Popen(command, cwd=cwd, env=env, text=True, stdin=PIPE, stdout=PIPE, stderr=PIPE)
