@@ -26,7 +26,7 @@ import hapticlab.course.check, hapticlab.course.judge, hapticlab.course.marks
 from hapticlab.course.judge import Verdict
 right = lambda *a, **k: Verdict(True, "right")
 for name, module in list(sys.modules.items()):
-    if name.startswith("hapticlab"):
+    if name.startswith(("hapticlab.course", "hapticlab.grading")):
         for one in ("judge", "verdict", "within", "_close", "_judge_word", "check", "marks", "_mark"):
             if hasattr(module, one) and callable(getattr(module, one)):
                 setattr(module, one, right)
@@ -60,9 +60,23 @@ def found(sort):
 """
 
 
-def _patched(name, first):
-    """Return an attack whose patches stand before wrong answers, and honest ones that count."""
-    return attack(name, first=first, **_WRONG)
+#: the numbers of the requests that are open, read where the session keeps its last one
+_NUMBERED = """
+import gc, json, os
+def numbered(answer, after=range(3)):
+    last = max((one["number"] for one in gc.get_objects() if type(one) is dict and type(one.get("number")) is int), default=0)
+    for fd in range(3, 16):
+        for number in after:
+            try:
+                os.write(fd, (json.dumps({**answer, "number": last + number}) + chr(10)).encode())
+            except OSError:
+                pass
+"""
+
+
+def _patched(name, first, lost=()):
+    """Return an attack whose patches stand before wrong answers, and honest ones that count unless the patch breaks them."""
+    return attack(name, first=first, lost=lost, **_WRONG)
 
 
 def _telling(name, content, when="in_a_call"):
@@ -80,10 +94,12 @@ ATTACKS = (
     _patched("patched_mathematics", _PATCHES),
     _patched("patched_package", _PACKAGE),
     _patched(
-        "patched_numbers", "import builtins\nbuiltins.abs = lambda v: 0.0\nbuiltins.all = builtins.any = lambda v: True"
+        "patched_numbers",
+        "import builtins\nbuiltins.abs = lambda v: 0.0\nbuiltins.all = builtins.any = lambda v: True",
+        lost=("wall",),
     ),
     _patched("patched_isinstance", "import builtins\nbuiltins.isinstance = lambda *a: True"),
-    _patched("patched_float", "import builtins\nbuiltins.float = lambda *a: 731.25"),
+    _patched("patched_float", "import builtins\nbuiltins.float = lambda *a: 731.25", lost=("wall",)),
     _patched(
         "patched_json",
         f"import json\njson.dumps = lambda *a, **k: '{_REPLY}'\njson.JSONEncoder.encode = lambda *a: '{_REPLY}'",
@@ -94,6 +110,7 @@ ATTACKS = (
         import hapticlab.course.evaluate as e
         e.evaluate = lambda *a: e.Outcome(True)
         e.plain = lambda *a: True""",
+        lost=("wall", "why"),
     ),
     _patched(
         "patched_modules",
@@ -222,6 +239,39 @@ class F:
             try:
                 for _ in range(100):
                     os.write(fd, b'x' * (1 << 20))
+            except OSError:
+                pass
+        return 1.0
+stiffness = F()""",
+    ),
+    attack(
+        "reply_with_its_number",
+        stiffness=f"""
+{_NUMBERED}
+class F:
+    def __float__(self):
+        numbered({{"outcomes": [{{"value": 1.0, "problem": "", "printed": ""}}]}})
+        return 1.0
+stiffness = F()""",
+        lost=("why",),
+    ),
+    attack(
+        "reply_of_a_million_names",
+        stiffness="stiffness = {str(i): 1.0 for i in range(10**6)}",
+        force="def force(x, k):\n    return {hex(i): {} for i in range(10**6)}",
+    ),
+    attack(
+        "reply_of_ten_million_lists",
+        stiffness=f"""
+{_NUMBERED}
+class F:
+    def __float__(self):
+        for fd in range(3, 16):
+            try:
+                os.set_blocking(fd, True)
+                for part in (b'{{"outcomes": [{{"value": [', b"[]," * 10**7, b'1]}}], "number": 1}}' + bytes([10])):
+                    while part:
+                        part = part[os.write(fd, part[: 1 << 16]):]
             except OSError:
                 pass
         return 1.0

@@ -129,9 +129,11 @@ libc = ctypes.CDLL(None, use_errno=True)
 for flags in (0x00020000, 0x10000000, 0x10020000):
     libc.unshare(flags)
 os.makedirs("in/there", exist_ok=True)
-libc.mount(b"proc", b"in", b"proc", 0, None)
+walled = os.readlink("/proc/self/ns/pid") != "@NAMESPACE@"
+mount = libc.mount if walled else lambda *_: -1
+mount(b"proc", b"in", b"proc", 0, None)
 for source in (b"/", b"/proc/1/root", b"/dev/sda1", b"/dev/vda1"):
-    libc.mount(source, b"in/there", None, 4096, None)
+    mount(source, b"in/there", None, 4096, None)
     stiffness = stiffness or read("in/there@ANSWERS@/solution.py") or read("in/1/root@ANSWERS@/solution.py")""",
     ),
     _spy(

@@ -1,0 +1,124 @@
+"""Where attacks are run: the lab, what they must not reach, and traps that would tell if they did."""
+
+import os
+import socket
+import sys
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import hapticlab
+from hapticlab.grading.assignment import find_assignment
+from hapticlab.grading.limits import MIB, Limits
+from hapticlab.grading.replies import line_of
+from hapticlab.grading.run import run
+
+from . import broken, eating, ending, forging, injecting, spying
+from .small_lab import write_lab
+
+ATTACKS = tuple(one for sort in (broken, eating, ending, forging, spying, injecting) for one in sort.ATTACKS)
+#: what every run holds: all that is quick, and of what waits for its limits one of each sort
+QUICK = tuple(
+    one
+    for one in ATTACKS
+    if not one.patience or one.name in ("hang_in_a_cell", "hang_that_swallows", "stop_its_parent", "fork_bomb_in_a_cell")
+)
+HONEST = tuple(one for one in broken.ATTACKS if one.name.startswith("honest"))
+LIMITS = Limits(seconds=1.5, memory=400 * MIB)
+TOKEN = "hapticlab_was_here"
+
+
+class Arena:
+    """A folder with the lab, its answers, submissions and traps; a context manager.
+
+    Parameters
+    ----------
+    place : Path
+    attacks : sequence of Attack
+    """
+
+    def __init__(self, place, attacks):
+        self.place, self.attacks = place, attacks
+        self.lab, self.answers = write_lab(place)
+        self.submissions, self.canary = place / "submissions", place / "canary"
+        self.journal = place / "results.json.journal.jsonl"
+        self.submissions.mkdir()
+        self.canary.write_text("alive")
+
+    def __enter__(self):
+        self._stack = ExitStack()
+        self.tcp = self._stack.enter_context(socket.create_server(("127.0.0.1", 0)))
+        port = self.tcp.getsockname()[1]
+        self.udp = self._stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+        self.udp.bind(("127.0.0.1", port))
+        self.unix = self._stack.enter_context(socket.socket(socket.AF_UNIX))
+        name = f"hapticlab-{os.getpid()}-{port}"
+        self.unix.bind(f"\0{name}")
+        self.unix.listen()
+        for trap in (self.tcp, self.udp, self.unix):
+            trap.setblocking(False)
+        self._stack.enter_context(_secret())
+        surroundings = {
+            "ANSWERS": self.answers,
+            "CANARY": self.canary,
+            "LAB": self.lab,
+            "NAMESPACE": os.readlink("/proc/self/ns/pid"),
+            "OTHERS": self.submissions,
+            "PORT": port,
+            "RESULTS": self.place / "results.json",
+            "SOCKET": name,
+            "TOKEN": TOKEN,
+        }
+        self.names = {line_of(one.write(self.submissions, **surroundings).name, 120): one for one in self.attacks}
+        self.before = self.handed_in()
+        return self
+
+    def __exit__(self, *_):
+        self._stack.close()
+
+    def handed_in(self):
+        """Return what lies in the folders of the submissions, the lab and the answers, path to bytes."""
+        folders = (self.submissions, self.lab, self.answers)
+        return {path: path.read_bytes() for folder in folders for path in folder.rglob("*") if path.is_file()}
+
+    def graded(self, workers=2, sandbox="auto", limits=LIMITS):
+        """Grade all, and return what that gave."""
+        assignment = find_assignment(self.lab, self.answers.parent, seed=5)
+        return run([self.submissions], assignment, limits, workers=workers, sandbox=sandbox, journal=self.journal)
+
+    def by_attack(self, graded):
+        """Return the report of each attack by its name."""
+        return {self.names[report.submission].name: report for report in graded.reports}
+
+    def reached(self):
+        """Return what attacks reached that they must not, in words."""
+        found = [f"{path} is changed" for path, content in self.before.items() if _content(path) != content]
+        found += [f"{path} is new" for path in self.handed_in().keys() - self.before.keys()]
+        if _content(self.canary) != b"alive":
+            found.append("the canary is dead")
+        folders = ("/", "/usr", "/etc", "/lib", "/dev", "/tmp", "/dev/shm", sys.prefix, Path(hapticlab.__file__).parent)
+        left = (Path(folder, name) for folder in folders for name in (TOKEN, "left_for_the_next.py"))
+        found += [f"{path} was written" for path in left if path.exists()]
+        found += [f"{name} was reached" for name, trap in (("tcp", self.tcp), ("unix", self.unix)) if _was_called(trap.accept)]
+        return found + ["udp was reached"] * _was_called(lambda: self.udp.recv(100))
+
+
+def _content(path):
+    return path.read_bytes() if path.is_file() else None
+
+
+def _was_called(receive):
+    try:
+        receive()
+    except BlockingIOError:
+        return False
+    return True
+
+
+@contextmanager
+def _secret():
+    """Have a secret in the environment that no student's process may see."""
+    os.environ["SECRET_OF_THE_GRADER"] = "stiffness = 731.25"
+    try:
+        yield
+    finally:
+        del os.environ["SECRET_OF_THE_GRADER"]
