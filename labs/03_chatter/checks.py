@@ -88,7 +88,7 @@ LAB = Lab(
                     {"curve 1": DELAYS | {"y": [500.0, 333.333333, 250.0, 200.0, 166.666667, 142.857143, 125.0]}},
                 ),
             ),
-            hint="Is it one line through many points, do both labels end in a unit such as [ms], and are the numbers in that unit?",
+            hint="Is it one line through many points? Do both labels end in a unit such as [ms], and are the numbers in it?",
         ),
         Exercise(
             "growth_per_sample",
