@@ -9,7 +9,7 @@ import traceback
 from dataclasses import replace
 from pathlib import Path
 
-from . import __version__, assign_commands, lab_commands
+from . import __version__, assign_commands, grade_commands, lab_commands
 from . import board_commands as board
 from . import demo as demonstration
 from .analysis.plots import plot
@@ -198,7 +198,7 @@ def _parser():
     parser = argparse.ArgumentParser(prog="hapticlab", description="From an equation of motion to a felt virtual wall.")
     parser.add_argument("--version", action="version", version=f"hapticlab {__version__}")
     parser.set_defaults(command=None, parser=parser)
-    commands = parser.add_subparsers(title="commands", metavar="{demo,labs,assign,run,tradeoff,ports,doctor,flash,calibrate}")
+    commands = parser.add_subparsers(title="commands", metavar="{demo,labs,assign,grade,run,tradeoff,ports,doctor,flash,calibrate}")
     shared = argparse.ArgumentParser(add_help=False)
     shared.add_argument("--json", action="store_true", help="print the numbers, named with units, as JSON and nothing else")
     text = "show where the chapter's wall begins to chatter, and run a student's own equation of motion"
@@ -207,6 +207,7 @@ def _parser():
     shown.set_defaults(command=demo, parser=shown)
     _add_labs(commands)
     assign_commands.add(commands, _seed)
+    grade_commands.add(commands)
     text = "run a Python file that defines `scene`, and optionally `paddle` and `duration`"
     ran = commands.add_parser("run", parents=[shared], help=text, description=text)
     ran.add_argument("file", metavar="FILE.py")

@@ -49,10 +49,9 @@ def grade(submission, assignment, starter, limits, *, alone=False):
     -------
     Report or Deferred
     """
-    cases = assignment.cases(submission.student)
-    empty = {exercise.name: Found() for exercise in assignment.lab.exercises}
     if submission.problem:
-        return _report(submission, assignment, cases, empty, (), limits)
+        return refused(submission, assignment, submission.problem, limits)
+    cases = assignment.cases(submission.student)
     work = _Work(submission, assignment, starter, limits, alone, cases, time.monotonic() + limits.total)
     try:
         work.quick()
@@ -61,19 +60,17 @@ def grade(submission, assignment, starter, limits, *, alone=False):
         return Deferred(submission.student)
     except _Spent:
         work.found |= {name: Found(ended="time") for name in work.undecided()}
-    return _report(submission, assignment, cases, empty | work.found, work.problems(), limits)
+    return _report(submission, assignment, cases, work.found, work.problems(), limits)
 
 
 def refused(submission, assignment, problem, limits):
     """Return the report on a submission that cannot be graded, and why."""
-    cases = assignment.cases(submission.student)
-    empty = {exercise.name: Found() for exercise in assignment.lab.exercises}
-    return _report(replace(submission, problem=problem), assignment, cases, empty, (), limits)
+    return _report(replace(submission, problem=problem), assignment, {}, {}, (), limits)
 
 
 def _report(submission, assignment, cases, found, problems, limits):
     lab = assignment.lab
-    exercises = (exercise_report(one, cases.get(one.name, ()), found[one.name], limits) for one in lab.exercises)
+    exercises = (exercise_report(one, cases.get(one.name, ()), found.get(one.name, Found()), limits) for one in lab.exercises)
     return Report(
         student=line_of(submission.student),
         lab=lab.number,
@@ -144,25 +141,26 @@ class _Work:
 
     def _answers(self, names, prepare, seconds):
         """Ask for answers in sessions that are prepared alike, a new one after each end; return why the last one ended."""
-        self._seen, end = set(), ""
-        while not self._seen.issuperset(names):
+        self._seen = set()
+        while left := [name for name in names if name not in self._seen]:
             before = len(self._seen), len(self.left_out)
             try:
                 with self.starter.session(self.limits) as session:
                     self._ask(session, self._load(), self.limits.seconds)
                     prepare(session)
-                    for name in names:
-                        if name not in self._seen:
-                            self._answer(session, name, seconds)
-                return ""
-            except SessionEnded as ended:
-                end = ended.reason
+                    for name in left:
+                        self._answer(session, name, seconds, first=name == left[0])
+            except SessionEnded as end:
                 if before == (len(self._seen), len(self.left_out)):
-                    return end  # not by an answer, nor by a cell that another session can leave out
+                    return end.reason  # not by an answer, nor by a cell, which another session could leave out
         return ""
 
-    def _answer(self, session, name, seconds):
-        """Ask for one answer; where it ends the session that is what was found."""
+    def _answer(self, session, name, seconds, first):
+        """Ask for one answer; where it ends the session that is what was found.
+
+        It is asked again as the ``first`` of another session otherwise: an answer before it may have left behind what
+        ended this one.
+        """
         exercise = self.assignment.lab.exercise(name)
         kind = exercise.kind if exercise.judged else "value"
         givens = [dict(case.given) for case, _ in self.cases[name]] if exercise.judged else [{}]
@@ -171,12 +169,12 @@ class _Work:
             self.found[name] = Found(tuple(outcomes_of(reply, len(givens), self.limits.printed)))
         except Garbage:
             self.found[name] = Found(ended="garbage")
-            raise SessionEnded("garbage") from None
         except SessionEnded as end:
             self.found[name] = Found(ended=end.reason)
-            raise
-        finally:
+        if first or not self.found[name].ended:
             self._seen.add(name)
+        if self.found[name].ended:
+            raise SessionEnded(self.found[name].ended)
 
     def _run_cells(self, session):
         """Run the notebook cell by cell, without those that ended a session before."""

@@ -67,7 +67,7 @@ def _entry(line):
         return None
 
 
-def key_of(submission, assignment, limits, level):
+def key_of(submission, assignment, limits, sandbox):
     """Return what a report is found again by: all that it depends on.
 
     Parameters
@@ -75,8 +75,8 @@ def key_of(submission, assignment, limits, level):
     submission : Submission
     assignment : Assignment
     limits : Limits
-    level : str
-        Of the walls around the student's processes.
+    sandbox : str
+        The walls asked for around the student's processes.
     """
-    held = [submission.student, submission.name, submission.sha256, submission.problem, assignment.digest, asdict(limits), level]
+    held = [submission.student, submission.name, submission.sha256, submission.problem, assignment.digest, asdict(limits), sandbox]
     return hashlib.sha256(json.dumps(held).encode()).hexdigest()

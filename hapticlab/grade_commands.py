@@ -1,0 +1,165 @@
+"""What the command line does with submissions: `hapticlab grade` grades them, and writes what other systems read."""
+
+import argparse
+import os
+import re
+import statistics
+import sys
+from pathlib import Path
+
+from .errors import CourseError
+from .grading import formats
+from .grading.assignment import find_assignment
+from .grading.gradebook import push
+from .grading.limits import MIB, Limits
+from .grading.pages import write_pages
+from .grading.roster import read_roster
+from .grading.run import run
+from .grading.submission import find_submissions, lab_of, read
+
+#: where the cells of a submission say which lab they are of
+CHECKED = re.compile(r"""\bcheck\(\s*['"]([0-9]{2})\.""")
+LEVELS = ("auto", "namespaces", "user", "none")
+WEAK = {
+    "none": "nothing but limits stands around the students' code, which runs with your rights: grade only whom you trust, or in "
+    "a container",
+    "user": "students' code runs as another user, without namespaces: it sees the network and what all users may read",
+}
+
+
+def add(commands):
+    """Add `hapticlab grade`."""
+    text = "grade submissions: run each in processes that know no answer, and judge what they give"
+    made = commands.add_parser("grade", help=text, description=text)
+    words = "notebooks, scripts, archives, folders of these, or nbgrader's submitted tree"
+    made.add_argument("submissions", metavar="SUBMISSION", nargs="+", help=words)
+    made.add_argument("--lab", metavar="NN", help="number of the lab, or an own lab's folder; by default as submissions say")
+    made.add_argument("--instructor", metavar="PATH", help="folder of answers, for hidden cases; else public ones alone count")
+    made.add_argument("--seed", type=_whole(0), default=0, metavar="N", help="of the hidden cases (default: 0)")
+    made.add_argument("--personal", action="store_true", help="each student was handed numbers of their own, by this seed")
+    made.add_argument("--format", choices=formats.FORMATS, default="text", help="of the results (default: text)")
+    made.add_argument("-o", "--output", metavar="FILE", help="write the results there; the same command again goes on")
+    made.add_argument("--pages", metavar="DIR", help="write an HTML page for each student and one of the class")
+    made.add_argument("--roster", metavar="FILE.csv", help="who is in the class, by the names that another system has for them")
+    made.add_argument("--gradebook", metavar="FILE.db", help="push the points into this gradebook of nbgrader")
+    words = "so many processes, or the address of a Dask scheduler (default: one for each processor)"
+    made.add_argument("--workers", type=_workers, default=os.cpu_count() or 1, metavar="N|tcp://...", help=words)
+    words = f"for a cell, and for an exercise (default: {Limits().seconds:g})"
+    made.add_argument("--timeout", type=_amount, default=Limits().seconds, metavar="SECONDS", help=words)
+    words = f"for a submission's processes together (default: {Limits().memory // MIB})"
+    made.add_argument("--memory", type=_whole(64), default=Limits().memory // MIB, metavar="MIB", help=words)
+    made.add_argument("--sandbox", choices=LEVELS, default="auto", help="walls around students' code (default: the best)")
+    made.add_argument("--fresh", action="store_true", help="grade all anew, also what an earlier run wrote down")
+    made.set_defaults(command=grade, parser=made)
+
+
+def grade(parser, options):
+    """Grade submissions; 1 where some could not be."""
+    if options.fresh and not options.output:
+        parser.error("--fresh forgets what is beside the results; it needs -o FILE")
+    if formats.WRITERS[options.format][1] and not options.roster:
+        parser.error(f"{options.format} knows students by its own ids; name a CSV file that it gave out: --roster FILE.csv")
+    if options.gradebook and not Path(options.gradebook).is_file():
+        parser.error(f"{options.gradebook}: no such file; name the gradebook.db of a course of nbgrader")
+    roster = read_roster(options.roster) if options.roster else None
+    assignment = find_assignment(options.lab or lab_asked(options.submissions), options.instructor, options.seed, options.personal)
+    if options.instructor is None:
+        _say("warning: without --instructor only the public cases count, whose answers can be learnt by heart")
+    limits = Limits(seconds=options.timeout, total=max(Limits().total, 4 * options.timeout), memory=options.memory * MIB)
+    output = Path(options.output) if options.output else None
+    journal = output and output.with_name(f"{output.name}.journal.jsonl")
+    try:
+        done = run(
+            options.submissions, assignment, limits, workers=options.workers, sandbox=options.sandbox, journal=journal,
+            fresh=options.fresh, hidden=[path for path in (options.roster, options.gradebook, output) if path], progress=True,
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        again = f"what was graded is in {journal}; the same command again goes on" if journal else "with -o FILE a run can go on"
+        _say(again)
+        raise
+    _write(options, assignment, done.reports, roster, output)
+    _tell(done, roster)
+    return 1 if done.failed else 0
+
+
+def lab_asked(paths):
+    """Return the number of the lab that submissions are of, as the names of their files tell, or else their checks.
+
+    Parameters
+    ----------
+    paths : sequence of str or Path
+
+    Returns
+    -------
+    str
+    """
+    sources = find_submissions(paths)
+    try:
+        return lab_of(sources)
+    except CourseError:
+        found = {number for source in sources for cell in read(source).cells for number in CHECKED.findall(cell)}
+        if len(found) != 1:
+            raise
+        return found.pop()
+
+
+def _write(options, assignment, reports, roster, output):
+    """Write the results in all the ways asked for."""
+    text = formats.write(options.format, reports, roster)
+    if output is None:
+        sys.stdout.write(text)
+    else:
+        part = output.with_name(f"{output.name}.part")
+        output.parent.mkdir(parents=True, exist_ok=True)
+        part.write_text(text, "utf-8", newline="")
+        part.replace(output)  # whole, or as it was
+    if options.pages:
+        write_pages(reports, options.pages, lab=assignment.lab)
+    if options.gradebook:
+        for lost in push(reports, options.gradebook):
+            _say(lost)
+
+
+def _tell(done, roster):
+    """Say what stood around the students' code, what it cost, who could not be graded, and who handed in nothing."""
+    if done.level in WEAK:
+        _say(f"warning: {WEAK[done.level]}")
+    graded = f"{len(done.seconds)} graded, {len(done.reports) - len(done.seconds)} known from before; sandbox: {done.level}"
+    if done.seconds:
+        each = done.processor / len(done.seconds)
+        graded += f"; {statistics.median(done.seconds):.2f} s each (median), {each:.2f} s of a processor (mean, start included)"
+    _say(graded)
+    for report in done.failed:
+        _say(f"not graded: {report.student}, {report.submission}: {report.problem}")
+    if roster:
+        matched = roster.match([report.student for report in done.reports])
+        for words, names in (("not in the roster", matched.unknown), ("no submission of", matched.missing)):
+            if names:
+                _say(f"{words}: {', '.join(names)}")
+
+
+def _say(words):
+    print(f"hapticlab: {words}", file=sys.stderr)
+
+
+def _whole(least):
+    def whole(text):
+        if not text.isdecimal() or int(text) < least:
+            raise argparse.ArgumentTypeError(f"{text!r} given; needs a whole number from {least} on")
+        return int(text)
+
+    return whole
+
+
+def _amount(text):
+    try:
+        amount = float(text)
+    except ValueError:
+        amount = 0.0
+    if not 0 < amount < 1e6:
+        raise argparse.ArgumentTypeError(f"{text!r} given; needs a number of seconds > 0")
+    return amount
+
+
+def _workers(text):
+    return text if "://" in text else _whole(1)(text)

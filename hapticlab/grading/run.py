@@ -1,0 +1,127 @@
+"""A class is graded: many submissions at once, each report kept as soon as it is known."""
+
+import itertools
+from dataclasses import dataclass
+
+from ..device.progress import progress_bar
+from .cluster import ClusterWorkers
+from .grade import refused
+from .journal import Journal, key_of
+from .limits import Limits
+from .submission import find_submissions, read
+from .workers import Task, Workers
+
+
+@dataclass(frozen=True)
+class Graded:
+    """What grading a class gave.
+
+    Attributes
+    ----------
+    reports : tuple of Report
+        By student.
+    level : str
+        Which walls there were around the students' processes.
+    seconds : tuple of float
+        Wall clock of each submission that was graded in this run [s]; those of the journal are not among them.
+    processor : float
+        Processor time of all of this run's workers together, their start included [s].
+    failed : tuple of Report
+        Those that could not be graded.
+    """
+
+    reports: tuple
+    level: str
+    seconds: tuple
+    processor: float
+
+    @property
+    def failed(self):
+        """Reports with a problem."""
+        return tuple(report for report in self.reports if report.problem)
+
+
+def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=None, fresh=False, hidden=(), progress=False):
+    """Grade submissions.
+
+    Parameters
+    ----------
+    paths : sequence of str or Path
+        Notebooks, scripts, archives, folders of these, or nbgrader's tree.
+    assignment : Assignment
+    limits : Limits, optional
+    workers : int or str
+        So many processes, or the address of a Dask scheduler, "tcp://...". The reports do not depend on it.
+    sandbox : {"auto", "namespaces", "user", "none"}
+    journal : str or Path, optional
+        Where reports are written as they are made; those that are there already are taken.
+    fresh : bool
+        Forget what the journal holds.
+    hidden : sequence of str or Path
+        Which a student's code must not see, beside submissions, answers and journal.
+    progress : bool
+        Show a bar on stderr.
+
+    Returns
+    -------
+    Graded
+    """
+    limits = limits or Limits()
+    sources = find_submissions(paths, assignment.folder.name)
+    secrets = tuple(str(path) for path in (*paths, *hidden, *([journal] if journal else [])))
+    if isinstance(workers, str):
+        crew = ClusterWorkers(workers, assignment, limits, sandbox, secrets)
+    else:
+        crew = Workers(min(workers, len(sources)), assignment, limits, sandbox, secrets)
+    with Journal(journal, fresh) as kept, progress_bar(len(sources), progress, unit="submission") as bar:
+        work = _Run(assignment, limits, sandbox, kept, bar)
+        work.all(sources, crew)
+    reports = sorted(work.reports, key=lambda report: (report.student, report.submission, report.sha256))
+    return Graded(tuple(reports), crew.level, tuple(work.seconds), crew.seconds)
+
+
+class _Run:
+    def __init__(self, assignment, limits, sandbox, journal, bar):
+        self.assignment, self.limits, self.sandbox, self.journal, self.bar = assignment, limits, sandbox, journal, bar
+        self.reports, self.seconds = [], []
+
+    def all(self, sources, crew):
+        """Grade all; at the end, one by one, those that a limit of time or the end of a worker left open."""
+        tasks, left = self._tasks(sources), []
+        first = next(tasks, None)
+        if first is None:
+            return  # all is known: no worker needs to begin
+        with crew:
+            for task, reply in crew.graded(itertools.chain([first], tasks), alone=crew.number == 1):
+                if reply.report or reply.problem:
+                    self._take(task, reply)
+                else:
+                    left.append(task)
+            left.sort(key=lambda task: task.key)
+            for task, reply in crew.graded(left, alone=True):
+                self._take(task, reply)
+
+    def _tasks(self, sources):
+        """Yield what can be graded and the journal does not know, read when a worker is free for it."""
+        for source in sources:
+            submission = read(source)
+            key = key_of(submission, self.assignment, self.limits, self.sandbox)
+            if submission.problem:
+                self._keep(refused(submission, self.assignment, submission.problem, self.limits))
+            elif key in self.journal.reports:
+                self._keep(self.journal.reports[key])
+            else:
+                yield Task(submission, key)
+
+    def _take(self, task, reply):
+        self.seconds.append(reply.seconds)
+        if reply.report:
+            self.journal.write(task.key, reply.report)
+            self._keep(reply.report)
+        else:  # not into the journal: another run may have more luck
+            problem = reply.problem or "its code ended the process that grades, twice; it needs --sandbox namespaces or user"
+            self._keep(refused(task.submission, self.assignment, problem, self.limits))
+
+    def _keep(self, report):
+        self.reports.append(report)
+        self.bar.update(1)

@@ -1,0 +1,255 @@
+"""Processes that grade, one submission at a time each; what they say of it comes back as JSON text."""
+
+import json
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+import time
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from multiprocessing.connection import wait
+
+from ..errors import CourseError, HapticlabError
+from .assignment import Assignment
+from .grade import Deferred, grade
+from .limits import Limits
+from .report import Report
+from .starter import start
+from .submission import Submission
+
+#: how long to wait at a time [s]; on Windows Ctrl-C is heard in between only
+LOOK = 0.5
+#: time that a worker has beside its submission's, which is counted again by it [s]
+GRACE = 60.0
+
+
+@dataclass(frozen=True)
+class Task:
+    """A submission to grade, and the key of its report."""
+
+    submission: Submission
+    key: str
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What came of a task: a report; or none, where it is to be decided alone, or the worker ended (``died``)."""
+
+    report: Report | None = None
+    seconds: float = 0.0
+    died: bool = False
+    problem: str = ""
+
+    @classmethod
+    def from_json(cls, text):
+        """Return the reply that a worker wrote."""
+        held = json.loads(text)
+        report = Report.from_json(held["report"]) if held["report"] else None
+        return cls(report, held["seconds"], problem=held["problem"])
+
+
+def as_json(task, alone):
+    """Return what a worker is told of a task."""
+    return json.dumps({**asdict(task.submission), "alone": alone})
+
+
+class Bench:
+    """What a worker grades with: the assignment, and processes for the students' code. A context manager.
+
+    Parameters
+    ----------
+    assignment : Assignment
+    limits : Limits
+    sandbox : {"auto", "namespaces", "user", "none"}
+    hidden : sequence of str
+        Paths that no student's code may see, beside the answers.
+    """
+
+    def __init__(self, assignment: Assignment, limits: Limits, sandbox="auto", hidden=()):
+        self.assignment, self.limits, self.sandbox = assignment, limits, sandbox
+        self.hidden = (*hidden, *([str(assignment.answers)] if assignment.answers else []))
+        self._starter = None
+
+    def __enter__(self):
+        self._starter = start(self.sandbox, hidden=self.hidden)
+        self._starter.__enter__()
+        return self
+
+    def __exit__(self, *_):
+        starter, self._starter = self._starter, None
+        if starter is not None:
+            starter.__exit__(None, None, None)
+
+    @property
+    def level(self):
+        """Which walls there are around a student's processes."""
+        return self._starter.level
+
+    def graded(self, text):
+        """Grade a task of :func:`as_json`, and answer as JSON."""
+        held, began = json.loads(text), time.perf_counter()
+        alone = held.pop("alone")
+        found, problem = self._found(Submission(**{**held, "cells": tuple(held["cells"])}), alone)
+        report = found.to_json() if isinstance(found, Report) else None
+        return json.dumps({"report": report, "problem": problem, "seconds": time.perf_counter() - began})
+
+    def _found(self, submission, alone):
+        """Return report or Deferred; or None, and why there is neither."""
+        for last in (False, True):
+            try:
+                return grade(submission, self.assignment, self._starter, self.limits, alone=alone), ""
+            except HapticlabError as problem:
+                return None, str(problem)
+            except Exception as problem:  # a student's code may end whatever it can reach; the class goes on
+                if last:
+                    return None, f"the grader failed: {type(problem).__name__}: {problem}"
+                self.__exit__()
+                self.__enter__()
+        return Deferred(submission.student), ""
+
+
+def processor_seconds():
+    """Return what this process and those it waited for took of processors [s]."""
+    times = os.times()
+    return times.user + times.system + times.children_user + times.children_system
+
+
+class Workers:
+    """Processes on this computer; a context manager. One that ends is replaced.
+
+    Parameters
+    ----------
+    number : int
+    *bench
+        As :class:`Bench` takes them.
+    """
+
+    def __init__(self, number, *bench):
+        self.number, self._bench, self._all, self.level, self.seconds = number, bench, [], "", 0.0
+
+    def __enter__(self):
+        try:
+            self._all = [_Worker(self._bench) for _ in range(self.number)]
+            for worker in self._all:
+                self.level = worker.level()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        for worker in self._all:
+            worker.end()
+        self.seconds += sum(worker.ended() for worker in self._all)
+        self._all = []
+
+    def graded(self, tasks, alone):
+        """Yield (task, Reply) as each is known; where ``alone``, one after another."""
+        tasks, busy = iter(tasks), {}
+        while True:
+            for worker in self._all[: 1 if alone else None]:
+                if worker not in busy and (task := next(tasks, None)) is not None:
+                    worker.begin(task, alone)
+                    busy[worker] = task
+            if not busy:
+                return
+            for worker in _ready(busy):
+                reply, task = worker.reply(), busy.pop(worker)
+                if reply.died:
+                    self._replace(worker)
+                yield task, reply
+
+    def _replace(self, worker):
+        worker.end()
+        worker.ended()
+        self._all[self._all.index(worker)] = new = _Worker(self._bench)
+        new.level()
+
+
+def _ready(busy):
+    """Return the workers that have something to say, or have taken too long for saying anything."""
+    while True:
+        said = wait([worker.connection for worker in busy], LOOK)
+        ready = [worker for worker in busy if worker.connection in said or time.monotonic() > worker.until]
+        if ready:
+            return ready
+
+
+class _Worker:
+    """A process with a bench, and the connection to it, which carries JSON."""
+
+    def __init__(self, bench):
+        context = multiprocessing.get_context("spawn")
+        self.connection, there = context.Pipe()
+        self._process = context.Process(target=_work, args=(there, bench), name="hapticlab grade")
+        self._process.start()
+        there.close()
+        self._most, self.until = bench[1].total + GRACE, 0.0
+
+    def level(self):
+        """Wait until it is ready; raise what keeps it from being so."""
+        try:
+            said = json.loads(self.connection.recv_bytes())
+        except (EOFError, OSError):
+            raise CourseError("a process that grades ended as it began; is there memory for it?") from None
+        if said["problem"]:
+            raise CourseError(said["problem"])
+        return said["level"]
+
+    def begin(self, task, alone):
+        """Give it a task; whether it still lives is seen when it should reply."""
+        self.until = time.monotonic() + self._most
+        with suppress(OSError):
+            self.connection.send_bytes(as_json(task, alone).encode())
+
+    def reply(self):
+        """Return what came of its task."""
+        if not self.connection.poll():
+            return Reply(died=True)
+        try:
+            return Reply.from_json(self.connection.recv_bytes())
+        except (EOFError, OSError, ValueError, KeyError, TypeError):
+            return Reply(died=True)
+
+    def end(self):
+        """Have it end; whatever it does is stopped."""
+        if self._process.is_alive():
+            self._process.terminate()
+
+    def ended(self):
+        """Wait for its end and return its processor time [s], 0 where it cannot tell."""
+        self._process.join(10)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+        seconds = 0.0
+        with suppress(EOFError, OSError, ValueError, KeyError, TypeError):
+            while self.connection.poll():
+                seconds = json.loads(self.connection.recv_bytes())["processor"]
+        self.connection.close()
+        return seconds
+
+
+def _work(connection, bench):
+    """Grade what comes, until the other end is gone: the whole life of a worker."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that began this one
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit())
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    with suppress(EOFError, OSError):
+        try:
+            with Bench(*bench) as ready:
+                connection.send_bytes(json.dumps({"level": ready.level, "problem": ""}).encode())
+                while True:
+                    connection.send_bytes(ready.graded(connection.recv_bytes()).encode())
+        except HapticlabError as problem:
+            connection.send_bytes(json.dumps({"level": "", "problem": str(problem)}).encode())
+        finally:
+            connection.send_bytes(json.dumps({"processor": processor_seconds()}).encode())
+
+
+def _end_with_parent():
+    """End this process where the one that began it was killed: what it would find nobody reads."""
+    wait([multiprocessing.parent_process().sentinel])
+    os._exit(1)
