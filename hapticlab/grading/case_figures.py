@@ -37,9 +37,13 @@ def figures(one, unit):
     one : ExerciseReport
         With a failing case that tells what is expected.
     unit : callable
-        Name to unit.
+        Name, and a unit where nothing says one, to unit.
     """
-    found = [panel for panel in panels(one.name, one.failing.value, one.failing.expected) if len(panel.expected) >= LEAST_DRAWN]
+    found = [
+        panel
+        for panel in panels(one.name, one.failing.value, one.failing.expected)
+        if len(panel.expected) >= LEAST_DRAWN
+    ]
     return [_figure(one, panel, unit) for panel in found[:MOST_FIGURES]]
 
 
@@ -104,13 +108,15 @@ def numbers(value, axes=None):
 def _figure(one, panel, unit):
     """Return a figure over a curve's own x, the time or the place that was given, else the number of the sample."""
     if panel.units:
-        (scale_x, across), (scale, label) = (axis_label(f"along {side}", u) for side, u in zip("xy", panel.units, strict=True))
+        (scale_x, across), (scale, label) = (
+            axis_label(f"along {side}", u) for side, u in zip("xy", panel.units, strict=True)
+        )
         x, x_got = panel.x * scale_x, panel.x_got
         x_got = None if x_got is None else x_got * scale_x
     else:
         size = max(len(panel.expected), 0 if panel.got is None else len(panel.got))
         x_got, across = _across(one, size, unit)
-        x, (scale, label) = x_got[: len(panel.expected)], axis_label(panel.name, unit(panel.name))
+        x, (scale, label) = x_got[: len(panel.expected)], axis_label(panel.name, unit(panel.name, one.failing.unit))
     across, label = across.removesuffix(" []"), label.removesuffix(" []")
     lines = {"expected": (x, bounded(panel.expected) * scale)}
     if panel.got is not None:
@@ -127,7 +133,7 @@ def _across(one, size, unit):
         if x is not None and x.shape == (size,) and np.isfinite(x).all():
             steps = np.diff(bounded(x))
             if (steps > 0).all() or (steps < 0).all():
-                scale, label = axis_label(name if name == "x" else "time t", unit(name) or otherwise)
+                scale, label = axis_label(name if name == "x" else "time t", unit(name, otherwise))
                 return bounded(x) * scale, label
     return np.arange(float(size)), POINT if one.kind == "expression" else SAMPLE
 
@@ -147,9 +153,15 @@ def _difference(lines, across):
     if not apart.max() > 0:
         return told.strip() or "All numbers are alike."
     k = int(apart.argmax())
-    place = f"{across} {k}" if across in (SAMPLE, POINT) else f"{across.replace(' [', f' = {x[k]:.4g} ').rstrip(']')}"
+    place = f"{across} {k}" if across in (SAMPLE, POINT) else _place(across.removeprefix("along "), x[k])
     came, wanted = pair(float(got[k]), float(expected[k]))
     return f"The largest difference is at {place}: {came} came, {wanted} is expected.{told}"
+
+
+def _place(label, at):
+    """Return the value on an axis with its unit: "x = 3 mm"."""
+    name, _, unit = label.removesuffix("]").partition(" [")
+    return f"{name} = {at:.4g} {unit}".strip()
 
 
 def _course(which, line):

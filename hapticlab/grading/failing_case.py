@@ -29,8 +29,7 @@ def failing_case(one, lab):
     which = "a public case of the lab" if case.public else "a case drawn for this grading"
     parts = [f'<h3>The first case that is wrong <span class="aside">{which}</span></h3>', _given(one, lab)]
     if case.expected is not None:
-        unit = lambda name: unit_of(name, one, lab, case.unit)  # noqa: E731
-        return "".join([*parts, _compared(one, lab), *figures(one, unit)])
+        return "".join([*parts, _compared(one, lab), *figures(one, lambda name, other: unit_of(name, one, lab, other))])
     if case.value is not None:
         parts.append(f"<p>You answered: <strong>{clean(shown(case.value))}</strong></p>")
     return "".join(parts)

@@ -59,7 +59,7 @@ def _whole(report):
         f'<td class="number">{f"{one.earned:g} of {one.points:g}" if one.points else ""}</td></tr>'
         for k, one in enumerate(report.exercises, 1)
     )
-    yield f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+    yield f"<section><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></section>"
 
 
 def badge(one):
@@ -108,4 +108,6 @@ def _cells(cells):
     )
     more = f"<p>{len(cells) - MOST_CELLS} cells more failed.</p>" if len(cells) > MOST_CELLS else ""
     head = '<tr><th scope="col">code cell</th><th scope="col">what it raised</th></tr>'
-    return f"<section><h2>Cells that failed</h2><table><thead>{head}</thead><tbody>{rows}</tbody></table>{more}</section>"
+    return (
+        f"<section><h2>Cells that failed</h2><table><thead>{head}</thead><tbody>{rows}</tbody></table>{more}</section>"
+    )

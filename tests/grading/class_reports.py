@@ -40,7 +40,9 @@ def exercise_report(exercise, answer, hidden):
     told = exercise.kind not in ("value", "choice")
     failing = Failing(dict(case.given), outcome.value, case.expected if told else None, case.unit, public)
     printed = "".join(o.printed for o in outcomes)
-    return replace(blank, words=verdicts[k].words, slip=verdicts[k].slip, hint=exercise.hint, failing=failing, printed=printed)
+    return replace(
+        blank, words=verdicts[k].words, slip=verdicts[k].slip, hint=exercise.hint, failing=failing, printed=printed
+    )
 
 
 def class_of(number, many, seed=1):
@@ -51,7 +53,11 @@ def class_of(number, many, seed=1):
     found = {
         exercise.name: [
             exercise_report(exercise, answer, hidden.get(exercise.name, ()))
-            for answer in (right[exercise.name], None, *(wrong for name, wrong in WRONG[number] if name == exercise.name))
+            for answer in (
+                right[exercise.name],
+                None,
+                *(wrong for name, wrong in WRONG[number] if name == exercise.name),
+            )
         ]
         for exercise in lab.exercises
     }
@@ -63,7 +69,9 @@ def _report(k, lab, name, found, random):
     blank = Report(student, lab.number, lab.title, name, sha256=f"{k:064x}")
     none = tuple(several[1] for several in found.values())
     if k % 23 == 7:
-        return replace(blank, submission="wall.docx", problem="wall.docx is no notebook, script, folder or zip", exercises=none)
+        return replace(
+            blank, submission="wall.docx", problem="wall.docx is no notebook, script, folder or zip", exercises=none
+        )
     skill = random.uniform(0.35, 1.0)
     exercises = []
     for several in found.values():
