@@ -98,7 +98,7 @@ def over_points(at, wanted, got):
     'It does not change with k: did you forget k?'
     """
     at = {name: np.array(column, float) for name, column in at.items()}
-    return _dependence(at, wanted, got) or _factor(at, wanted, got) or _one_side(wanted, got) or _nearly(wanted, got)
+    return _one_side(wanted, got) or _dependence(at, wanted, got) or _factor(at, wanted, got) or _nearly(wanted, got)
 
 
 def _dependence(at, wanted, got):
@@ -159,13 +159,13 @@ def _constant(ratio):
 def _one_side(wanted, got):
     """Say which side of a boundary is wrong, where one side of it is zero."""
     outside = np.abs(wanted) <= 1e-9 * np.abs(wanted).max()
-    if not outside.any() or outside.all():
+    if not outside.any() or not got.any():
         return ""
     right = np.isclose(got, wanted, rtol=NEAR, atol=1e-9 * np.abs(wanted).max())
     if right[~outside].all():
         return "It is right where something acts, and not zero where nothing does: is a condition missing or too wide?"
-    if right[outside].all() and np.abs(got[~outside]).min() == 0:
-        return "It is zero at points where something acts: is its condition too narrow?"
-    if not right[outside].any() and not got[~outside].any():
+    if not got[~outside].any():
         return "It acts where nothing should, and is zero where something should: its condition is turned round."
+    if right[outside].all() and not got[~outside].all():
+        return "It is zero at points where something acts: is its condition too narrow?"
     return ""

@@ -160,7 +160,7 @@ def _difference(exercise, case, wanted, got, hidden):
     if exercise.kind == "expression":
         point = ", ".join(f"{name} = {column[index[0]]:g}" for name, column in case.given["at"].items())
         shown = f"{_value(got[index], unit, digits)}, {expected}"
-        return f"wrong at {int(wrong.sum())} of {wrong.size} points, first at {point}: {shown}"
+        return f"{int(wrong.sum())} of {wrong.size} points differ, first at {point}: {shown}"
     return f"{int(wrong.sum())} of {wrong.size} numbers differ, first {place}: {_value(got[index], unit, digits)}, {expected}"
 
 

@@ -1,0 +1,233 @@
+"""Answers that are expressions and equations: what is the same is right, what is not is named, nothing hangs or raises."""
+
+import numpy as np
+import pytest
+import sympy as sp
+import sympy.physics.mechanics as me
+
+import hapticlab as hl
+from hapticlab import n, t, v, x
+from hapticlab.course.check import checked
+from hapticlab.course.evaluate import evaluate
+from hapticlab.course.exercise import Case, Exercise
+from hapticlab.course.expression import values
+from hapticlab.course.variants import points, slips, solved_case
+
+k, x_o, b, m = hl.parameters("k x_o b m", units="N/m m N*s/m kg")
+z = hl.coordinate("z", unit="m", initial=x(n))
+PLAIN = dict(zip(("k", "x_o", "b"), sp.symbols("k x_o b"), strict=True))
+RANGES = {"k": (50, 500), "b": (0.1, 2), "x(n)": (-0.01, 0.02), "x_o": (0.001, 0.01), "v(n)": (-0.3, 0.3)}
+AT = points(np.random.default_rng(3), RANGES, boundary=("x(n)", "x_o"))
+#: by hand: a wall is a spring beyond its boundary
+FORCES = [max(0.0, stiffness * (at - edge)) for stiffness, at, edge in zip(AT["k"], AT["x(n)"], AT["x_o"], strict=True)]
+WALL = Exercise("wall", "expression", points=1, asks="F_e", cases=[Case({"at": AT, "unit": "N"}, FORCES, unit="N")])
+RIGHT = hl.when(x(n) >= x_o, k * (x(n) - x_o))
+MOTION_AT = {"m": [0.1, 0.2], "b": [0.5, 0.5], "k": [100.0, 150.0], "x(t)": [0.01, 0.02], "z": [0.0, 0.03], "z'": [0.2, -0.1]}
+MOTION = Exercise(
+    "motion", "expression", points=1,
+    cases=[Case({"at": MOTION_AT, "solve_for": "z''"}, [(1.0 - 0.1) / 0.1, (-1.5 + 0.05) / 0.2], unit="m/s^2")],
+)  # fmt: skip
+
+
+def said(exercise, answer):
+    return checked(f"98.{exercise.name}", exercise, answer).text
+
+
+@pytest.mark.parametrize(
+    "same",
+    [
+        RIGHT,
+        k * sp.Max(x(n) - x_o, 0),
+        k * (sp.Abs(x(n) - x_o) + x(n) - x_o) / 2,
+        k * (x(n) - x_o) * (1 + sp.sign(x(n) - x_o)) / 2,
+        k * (x(n) - x_o) * sp.Heaviside(x(n) - x_o),
+        sp.Piecewise((0, x(n) < x_o), (k * x(n) - k * x_o, True)),
+        sp.sqrt(k**2) * sp.Max(x(n), x_o) - k * x_o,
+        PLAIN["k"] * sp.Max(sp.Function("x")(sp.Symbol("n")) - PLAIN["x_o"], 0),
+        sp.Integral(k * sp.Heaviside(x(n) - x_o), (sp.Symbol("s"), x_o, x(n))),
+    ],
+)
+def test_another_way_to_write_the_same_is_right(same):
+    assert checked("98.wall", WALL, same).passed, said(WALL, same)
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (-RIGHT, "your force pulls"),
+        (hl.when(x(n) >= 0, k * x(n)), "It does not change with x_o: did you forget x_o?"),
+        (x(n) * RIGHT, "It is x(n) times too large, so its unit is wrong: should it be divided by x(n)?"),
+        (RIGHT / k, "It does not change with k: did you forget k?"),
+        (RIGHT + b * v(n), "It changes with b, on which it should not depend."),
+        (k * (x(n) - x_o), "not zero where nothing does: is a condition missing"),
+        (hl.when(x(n) <= x_o, k * (x(n) - x_o)), "its condition is turned round"),
+        (hl.when(x(n) >= 2 * x_o, k * (x(n) - x_o)), "is its condition too narrow?"),
+        (RIGHT * 1000, "1000 times too large"),
+        (RIGHT / 2, "It is half of what is expected."),
+        (RIGHT * 2 * sp.pi, "Hz and rad/s are mixed"),
+        (RIGHT * 180 / sp.pi, "in degrees"),
+        (0.7 * RIGHT, "It is 0.7 times what is expected, at every point."),
+        (-RIGHT * k**2, "It is k^2 times too large, so its unit is wrong: should it be divided by k^2? The sign is turned, too."),
+        (k * sp.Max(x(n) - x_o, 0) ** 2, "By the units of its symbols it is in N*m, needs N."),
+        (k * x(n) + b * x(n), "b*x(n) is in N*s but k*x(n) is in N"),
+        (m * RIGHT, "it holds m; it may hold k, b, x(n), x_o, v(n)"),
+        (sp.Symbol("K") * (x(n) - x_o), "it holds K; it may hold"),
+        (hl.delay(RIGHT), "it holds x(n-1); it may hold"),
+        (sp.Function("f")(x(n)), "it holds f(x(n))"),
+        (k * sp.sqrt(x(n) - x_o), "it is a complex number at k = "),
+        (k / (x(n) - x_o), "it has no finite value at k = "),
+        (sp.nan, "no finite value"),
+        (sp.Pow(10, sp.Pow(10, k, evaluate=False), evaluate=False), "no finite value"),
+        (sp.Eq(sp.Symbol("F_e"), RIGHT), "it is an equation; needs an expression alone"),
+        (x(n) > x_o, "needs an expression of symbols"),
+        ("k*(x(n) - x_o)", "it is a str, needs an expression of symbols, without quotes"),
+        (lambda x: x, "it is a function, needs an expression"),
+        (hl.wall(), "it is a Scene, needs an expression"),
+        ([RIGHT], "it is a list, needs an expression"),
+        (sp.Matrix([RIGHT]), "needs an expression"),
+        (True, "it is a bool, needs an expression"),
+        (0.0, "0 N, expected"),
+    ],
+)
+def test_what_is_wrong_is_named_from_the_values(answer, words):
+    result = checked("98.wall", WALL, answer)
+    assert not result.passed and result.answered
+    assert words in result.text
+    assert max(map(len, result.text.splitlines())) < 600
+
+
+def test_a_wrong_point_is_shown_with_its_numbers():
+    case = Case({"at": {"k": [200.0, 200.0], "x(n)": [0.01, 0.02]}}, [2.0, 4.0], unit="N")
+    spring = Exercise("spring", "expression", points=1, cases=[case], hint="Hooke")
+    assert "wrong: 1 of 2 points differ, first at k = 200, x(n) = 0.02: 8 N, expected 4 N." in said(spring, 2e4 * x(n) ** 2)
+    assert said(spring, None) == "98.spring: not answered yet: "
+    assert said(spring, k * x(n)).endswith("right: 2 points")
+
+
+@pytest.mark.parametrize(
+    "same",
+    [
+        sp.Eq(m * z.diff(t, 2), k * (x(t) - z) - b * z.diff(t)),
+        sp.Eq(k * (x(t) - z), m * z.diff(t, 2) + b * z.diff(t)),
+        m * z.diff(t, 2) + b * z.diff(t) - k * (x(t) - z),
+        sp.Eq(z.diff(t, 2) / k, (k * (x(t) - z) - b * z.diff(t)) / m / k),
+        [sp.Eq(m * z.diff(t, 2), k * (x(t) - z) - b * z.diff(t))],
+    ],
+)
+def test_an_equation_of_motion_is_right_however_it_is_written(same):
+    assert checked("98.motion", MOTION, same).passed, said(MOTION, same)
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (k * (x(t) - z) / m, "z'' is not in it; needs an equation of motion"),
+        (sp.Eq(m * z.diff(t, 2) ** 2, k * (x(t) - z)), "it is not linear in z''"),
+        (sp.Eq(sp.Mul(0, 1) * z + m * (z.diff(t, 2) - z.diff(t, 2) * sp.cos(0 * z)), 1), "that is always False"),
+        (sp.Eq(z.diff(t, 2) * (x(t) - x(t) * sp.sign(m)), k), "it cannot be solved for z''"),
+        (sp.Eq(m * z.diff(t, 2), k * (x(n) - z)), "it holds x(n); it may hold m, b, k, x(t), z, z', z''"),
+        (sp.Eq(m * z.diff(t, 3), k * (x(t) - z)), "it holds z'''"),
+        (sp.Eq(z, z), "an equation that is always True"),
+        ([sp.Eq(m * z.diff(t, 2), 0), sp.Eq(z, 0)], "it is 2 equations; needs 1, which are solved for z''"),
+        (hl.wall(), "it is a Scene, needs an expression"),
+        (sp.Eq(m * z.diff(t, 2), -k * (x(t) - z) + b * z.diff(t)), "The sign is turned."),
+    ],
+)
+def test_a_wrong_equation_is_told_why(answer, words):
+    result = checked("98.motion", MOTION, answer)
+    assert not result.passed and words in result.text
+
+
+def test_two_equations_are_solved_together():
+    """A cart with a pendulum, by sympy.physics.mechanics, against its mass matrix worked out by hand."""
+    q, angle = me.dynamicsymbols("q theta")
+    M, l, g = sp.symbols("M l g")
+    time = me.dynamicsymbols._t
+    lagrangian = (
+        (M + m) * q.diff(time) ** 2 / 2 + m * l * q.diff(time) * angle.diff(time) * sp.cos(angle)
+        + m * l**2 * angle.diff(time) ** 2 / 2 + m * g * l * sp.cos(angle)
+    )  # fmt: skip
+    equations = list(me.LagrangesMethod(lagrangian, [q, angle]).form_lagranges_equations())
+    at = {"M": 1.0, "m": 0.2, "l": 0.5, "g": 9.81, "theta": 0.4, "theta'": 2.0, "q": 0.1, "q'": 0.3}
+    found = values(equations, {name: [number] for name, number in at.items()}, solve_for=["q''", "theta''"])
+    mass = np.array([[1.2, 0.1 * np.cos(0.4)], [0.1 * np.cos(0.4), 0.05]])
+    expected = np.linalg.solve(mass, [0.1 * 4 * np.sin(0.4), -0.981 * np.sin(0.4)])
+    np.testing.assert_allclose([found["q''"][0], found["theta''"][0]], expected, rtol=1e-12)
+
+
+def test_values_agree_with_sympy_simplify():
+    """Whether the numbers call two expressions the same is what simplify says of their difference."""
+    a, c, w = sp.symbols("a c w", positive=True)
+    at = points(np.random.default_rng(5), {"a": (0.2, 3), "c": (0.2, 3), "w": (-1, 1)}, count=5)
+    pairs = [
+        (sp.sin(2 * w), 2 * sp.sin(w) * sp.cos(w)), (sp.log(a * c), sp.log(a) + sp.log(c)), (sp.sqrt(a**2), a),
+        ((a**2 - c**2) / (a + c), a - c), (sp.exp(sp.I * w) + sp.exp(-sp.I * w), 2 * sp.cos(w)), (a**c, c**a),
+        (sp.sin(w) ** 2, 1 - sp.cos(w)), (sp.sqrt(a + c), sp.sqrt(a) + sp.sqrt(c)), (sp.atan2(a, c), sp.atan(a / c)),
+    ]  # fmt: skip
+    for one, other in pairs:
+        same = np.allclose(values(one, at), values(other, at), rtol=1e-9)
+        assert same == (sp.simplify((one - other).rewrite(sp.cos)) == 0), (one, other)
+
+
+def test_numbers_of_an_expression_are_those_of_lambdify():
+    expression = sp.exp(-k * x(n)) * sp.cos(b * v(n)) / (1 + x_o**2) + sp.Min(k, 100)
+    names = [k, x(n), b, v(n), x_o]
+    columns = [np.array(AT[name]) for name in ("k", "x(n)", "b", "v(n)", "x_o")]
+    np.testing.assert_allclose(values(expression, AT), sp.lambdify(names, expression)(*columns), rtol=1e-13)
+
+
+def test_points_hold_the_pairs_and_the_boundary():
+    names, rows = list(AT), list(zip(*AT.values(), strict=True))
+    for place, name in enumerate(names):
+        alone = [row for row in rows[1:] if [i for i in range(len(row)) if row[i] != rows[0][i]] == [place]]
+        assert alone, name
+    gaps = [at - edge for at, edge in zip(AT["x(n)"], AT["x_o"], strict=True)][-3:]
+    assert gaps[0] < 0 and gaps[1] == 0 and gaps[2] > 0 and max(gaps) < 1e-4
+
+
+def test_slips_of_a_known_answer_are_found_by_their_numbers():
+    friction = RIGHT + hl.when(x(n) >= x_o, b * v(n))
+    exercise = Exercise("damped", "expression", points=1)
+    case = solved_case(exercise, friction, {"at": AT, "unit": "N"}, unit="N")
+    exercise = Exercise("damped", "expression", points=1, cases=[case])
+    touched = x(n) >= x_o
+    for answer, words in [
+        (friction, "right: 12 points"),
+        (RIGHT, "You forgot b: it is what comes with b = 0."),
+        (RIGHT - hl.when(touched, b * v(n)), "The sign of the term with b, v(n), x(n), x_o is turned."),
+        (k * (x(n) - x_o) + hl.when(touched, b * v(n)), "not zero where nothing does"),
+        (hl.when(touched, k * x(n)) + hl.when(touched, b * v(n)), "The term with x_o is missing."),
+    ]:
+        assert words in said(exercise, answer), said(exercise, answer)
+    pendulum = solved_case(exercise, m * 9.81 * sp.sin(x_o / b), {"at": {"m": [0.1], "x_o": [0.05], "b": [0.1]}})
+    sentences = {sentence: wrong for wrong, sentence in pendulum.slips}
+    assert sentences["An angle in radians was taken for degrees."] == pytest.approx([0.981 * np.sin(np.radians(0.5))])
+    assert sentences["sin and cos are swapped."] == pytest.approx([0.981 * np.cos(0.5)])
+
+
+def test_slips_of_a_scene_are_what_it_does_with_them():
+    given = {"x": [0.0, 0.004, 0.006, 0.006], "T": 1e-3, "values": {"k": 200.0, "b": 0.5}}
+    found = {sentence: wrong for wrong, sentence in slips(
+        Exercise("s", "scene"), hl.Scene(force=k * x(n) + b * v(n)), given)}  # fmt: skip
+    assert found["The sign of the term with b, v(n) is turned."] == pytest.approx([0.0, -1.2, 0.2, 1.2])
+    assert found["x(n-1) stands where x(n) belongs."] == pytest.approx([0.0, 2.0, 1.8, 1.2])
+
+
+def test_units_are_told_only_of_what_is_wrong():
+    outcome = evaluate("expression", 1000 * b * x(n), {"at": {"b": [0.5], "x(n)": [0.002]}, "unit": "N"})
+    assert outcome.value == [1.0] and "N*s" in outcome.problem
+    exercise = Exercise("e", "expression", points=1, cases=[Case({"at": {"b": [0.5], "x(n)": [0.002]}, "unit": "N"}, [1.0])])
+    assert checked("98.e", exercise, 1000 * b * x(n)).passed
+
+
+def test_a_value_with_a_unit_of_pint_comes_in_si():
+    registry = pytest.importorskip("pint").UnitRegistry()
+    assert evaluate("value", registry.Quantity(0.2, "N/mm"), {}).value == pytest.approx(200.0)
+    assert evaluate("function", lambda x: registry.Quantity(x, "mm"), {"x": [1.0, 2.0]}).value == pytest.approx([1e-3, 2e-3])
+    assert evaluate("value", {"f": registry.Quantity(3.0, "kHz")}, {}).value == {"f": 3000.0}
+
+
+@pytest.mark.parametrize("answer", [sp.Symbol("a"), sp.Order(k), sp.IndexedBase("x")[n], sp.oo, sp.zoo, sp.Function("f")(k)])
+def test_what_has_no_number_is_refused_in_words(answer):
+    outcome = evaluate("expression", answer, {"at": {"k": [1.0], "x_o": [1.0], "n": [1.0]}})
+    assert outcome.value is None and outcome.problem
