@@ -18,10 +18,10 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import CourseError
+from .constants import with_constants
 from .evaluate import evaluate
 from .exercise import Case
-from .judge import verdict
-from .notebook import with_constants
+from .judge import judge, verdict
 
 SOLUTION, HIDDEN = "solution.py", "hidden.py"
 #: what a student's own numbers are drawn by: no exercise can have this name
@@ -109,11 +109,7 @@ def hidden_cases(lab, folder, seed=0, student="", personal=False):
         Whether this student was handed numbers of their own, which are then also those of the solution.
     """
     folder = Path(folder)
-    cases = _instructor_names(folder / HIDDEN).get("cases")
-    if cases is None:
-        raise CourseError(
-            f"{folder / HIDDEN} defines no cases; it needs def cases(random): return {{'exercise': lambda: [given, ...]}}"
-        )
+    cases = _cases(folder)
     answers = _solution(folder, own_numbers(lab, folder, seed, student) if personal else {})
     try:
         names = list(cases(_generator(seed, lab, "", student)))
@@ -121,6 +117,31 @@ def hidden_cases(lab, folder, seed=0, student="", personal=False):
     except Exception as problem:
         raise CourseError(f"{folder / HIDDEN}: cases failed: {type(problem).__name__}: {problem}") from problem
     return {name: tuple(_case(lab.exercise(name), answers, given) for given in several) for name, several in found.items()}
+
+
+def _cases(folder):
+    """Return the function that draws the cases."""
+    cases = _instructor_names(folder / HIDDEN).get("cases")
+    if cases is None:
+        raise CourseError(
+            f"{folder / HIDDEN} defines no cases; it needs def cases(random): return {{'exercise': lambda: [given, ...]}}"
+        )
+    return cases
+
+
+def own_exercises(lab, folder):
+    """Return the names of the exercises whose answer is of a student's own numbers: values and choices with hidden cases.
+
+    Parameters
+    ----------
+    lab : Lab
+    folder : str or Path
+        With hidden.py; where it defines no numbers, there are none.
+    """
+    if not own_numbers(lab, folder, 0, ""):
+        return ()
+    hidden = _cases(Path(folder))(_generator(0, lab, "", ""))
+    return tuple(one.name for one in lab.exercises if one.kind in ("value", "choice") and one.name in hidden)
 
 
 def own_numbers(lab, folder, seed, student):
@@ -182,6 +203,9 @@ def _case(exercise, answers, given):
     outcome = evaluate(exercise.kind, answers.get(exercise.name), given)
     if not outcome.answered or outcome.problem:
         raise CourseError(f"{exercise.name}: the solution gives no value for {given}: {outcome.problem or 'it has no answer'}")
+    asked = [case for case in exercise.cases if case.given == given and judge(exercise, case, outcome.value).right]
+    if asked:  # what a lab says of wrong answers to the same question is said here too
+        return asked[0]
     unit = exercise.cases[0].unit if exercise.cases else ""
     return Case(given, outcome.value, unit=unit)
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..errors import CourseError
+from .constants import constants
 
 
 @dataclass(frozen=True)
@@ -35,13 +36,35 @@ def read(path):
 
 def write(path, notebook):
     """Write a notebook to where there is none; return whether it is there as given. A file that differs is left alone."""
-    text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
+    return write_new(path, text_of(notebook).encode()) != "kept"
+
+
+def text_of(notebook):
+    """Return the text of a notebook's file."""
+    return json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
+
+
+def write_new(path, content):
+    """Write a file to where there is none, its folder as well; what is there stays.
+
+    Parameters
+    ----------
+    path : str or Path
+    content : bytes
+
+    Returns
+    -------
+    str
+        "new"; "as it came" where it was there already; or "kept", where what is there differs.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
     try:
-        with Path(path).open("x", encoding="utf-8") as file:
-            file.write(text)
-        return True
+        with path.open("xb") as file:
+            file.write(content)
+        return "new"
     except FileExistsError:
-        return Path(path).is_file() and Path(path).read_text("utf-8") == text
+        return "as it came" if path.is_file() and path.read_bytes() == content else "kept"
 
 
 def code_of(notebook):
@@ -101,59 +124,13 @@ def solved(notebook, solution, exercises):
     lost = [part.name for part in _parts(solution) if part.name in exercises and part.name not in written]
     if lost:
         raise CourseError(f"the notebook has no place for {', '.join(lost)}: no line begins with its def, or with its name =")
-    imports, answers = _answers(solution, written)
+    there = {constant for source in code_of(notebook) for constant in constants(source).values()}
+    imports, answers = _answers(solution, written, there)
     changed = [_answered(cell, answers, exercises) for cell in notebook["cells"]]
     cells = [cell for cell, _ in changed]
     if imports:
         cells.insert(next(place for place, (_, names) in enumerate(changed) if names), _code_cell("solution-imports", imports))
     return {**notebook, "cells": cells}
-
-
-def with_constants(sources, numbers, where):
-    """Return sources with other numbers in the constants ``NAME = number`` at their top level.
-
-    Parameters
-    ----------
-    sources : list of str
-        Cells, or a whole file.
-    numbers : dict of str to int or float
-    where : str or Path
-        What the sources are of, for the error.
-
-    Raises
-    ------
-    CourseError
-        Where no source has such a constant, or one has it twice.
-
-    Examples
-    --------
-    >>> with_constants(["import math\\nK_OWN = 500.0  # [N/m]"], {"K_OWN": 431.5}, "solution.py")
-    ['import math\\nK_OWN = 431.5  # [N/m]']
-    """
-    places = [(number, node) for number, source in enumerate(sources) for node in _constants(source)]
-    lines = [source.encode().split(b"\n") for source in sources]  # columns of an AST count bytes
-    for name, value in numbers.items():
-        here = [(number, node.value) for number, node in places if node.targets[0].id == name]
-        if len(here) != 1:
-            raise CourseError(f"{where} has {len(here)} lines {name} = number at its top level; it needs one, for {value!r}")
-        number, old = here[0]
-        line = lines[number][old.lineno - 1]
-        lines[number][old.lineno - 1] = line[: old.col_offset] + repr(value).encode() + line[old.end_col_offset :]
-    return [b"\n".join(several).decode() for several in lines]
-
-
-def _constants(source):
-    """Return the assignments of a number to a name at the top level of a source."""
-    try:
-        body = ast.parse(source).body
-    except SyntaxError:
-        return []
-    return [node for node in body if isinstance(node, ast.Assign) and _is_constant(node)]
-
-
-def _is_constant(node):
-    value = node.value.operand if isinstance(node.value, ast.UnaryOp) else node.value
-    return isinstance(node.targets[0], ast.Name) and isinstance(value, ast.Constant) and type(value.value) in (int, float)
 
 
 @dataclass(frozen=True)
@@ -244,13 +221,15 @@ def _answered(cell, answers, exercises):
     return {**cell, "source": "\n".join(lines)} if places else cell, [part.name for part in places]
 
 
-def _answers(solution, written):
-    """Return the imports of a solution, and its answers with what stands before each."""
+def _answers(solution, written, there):
+    """Return the imports of a solution, and its answers with what stands before each but is not there."""
     lines, end, imports, waiting, answers = solution.splitlines(), 0, [], [], []
     parts = {part.last: part for part in _parts(solution) if part.name in written}
     for node in ast.parse(solution).body:
         text = "\n".join(lines[end : node.end_lineno]).strip("\n")
         end = node.end_lineno
+        if constants(text).keys() and there >= {*constants(text).values()}:
+            continue
         if isinstance(node, ast.Import | ast.ImportFrom):
             imports.append(text)
         elif end in parts:
