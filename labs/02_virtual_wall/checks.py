@@ -146,7 +146,7 @@ LAB = Lab(
             "damping_that_pays",
             kind="value",
             points=1,
-            asks="the damper b [N s/m] of the device that takes what a held spring of 500 N/m gives at T = 1 ms",
+            asks="the damper b [N s/m] of the device that takes what a held spring of K_OWN gives at T_OWN",
             cases=(
                 Case(
                     {},

@@ -17,7 +17,7 @@ LAB = Lab(
         Exercise("prediction", kind="prediction", asks="how fast the pendulum swings when you let go of the handle [Hz]"),
         Exercise(
             "euler_step",
-            points=2,
+            points=1,
             asks='{"z": [m], "w": [m/s]} after one semi-implicit Euler step',
             cases=(
                 Case(
@@ -126,6 +126,27 @@ LAB = Lab(
                 Case({"K": 300.0, "k": 100.0}, 75.0, unit="N/m"),
             ),
             hint="What do coupler and wall have in common, the force or the deflection? And what adds up?",
+        ),
+        Exercise(
+            "longest_period",
+            kind="value",
+            points=1,
+            asks="the longest period [s] at which a wall of K_WALL may feel like K_FELT, with b = 0.1 and b_c = 0.02 N s/m",
+            cases=(
+                Case(
+                    {},
+                    1.2e-4,
+                    unit="s",
+                    slips={
+                        1.5e-4: "The coupler's own damper is to be paid as well.",
+                        2e-4: "That is for a coupler as stiff as what is felt. It is in series with the wall and must be stiffer.",
+                        8e-5: "That is for a coupler as stiff as the wall, and then half of that is felt.",
+                        6e-5: "The hold costs K T/2, not K T.",
+                    },
+                ),
+            ),
+            rtol=1e-3,
+            hint="Which K in series with the wall feels like that? What T does b pay for, with this K?",
         ),
         Exercise(
             "swing_frequency",

@@ -143,6 +143,7 @@ WRONG = {
         ("pendulum", pendulum(1, 0)),
         ("coupler_stiffness", lambda b, T, b_c: 2 * b / T),
         ("felt_wall", lambda K, k: K + k),
+        ("longest_period", 1.5e-4),
         ("swing_frequency", lambda l, g, M, m, K: np.sqrt(g / l) / (2 * np.pi)),
         ("who_pays", "a"),
     ],

@@ -22,7 +22,13 @@ def cases(random):
             }
             for _ in range(2)
         ],
+        "damping_that_pays": lambda: [{}],
     }
+
+
+def numbers(random):
+    """Return a student's own numbers."""
+    return {"K_OWN": 10.0 * random.integers(20, 90), "T_OWN": random.choice([0.5e-3, 0.8e-3, 1.25e-3, 2e-3])}
 
 
 def _contacts(random):

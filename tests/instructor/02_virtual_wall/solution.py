@@ -32,7 +32,9 @@ def energy_generated(x, k):
 k, x_o = hl.parameters("k x_o", units="N/m m")
 two_walls = hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n) - x_o)) + hl.when(x(n) <= -x_o, k * (x(n) + x_o)))
 
-damping_that_pays = 0.25
+K_OWN = 500.0
+T_OWN = 1e-3
+damping_that_pays = K_OWN * T_OWN / 2
 who_pays = "d"
 discussion = """
 The force computed from x(n) acts while the handle leaves x(n), so pairing it with the way that led there gives

@@ -12,6 +12,7 @@ def cases(random):
             {"b": random.uniform(0.2, 3), "T": random.uniform(2e-4, 4e-3), "b_c": random.uniform(0.01, 0.15)} for _ in range(3)
         ],
         "felt_wall": lambda: [{"K": random.uniform(50, 900), "k": random.uniform(50, 5000)} for _ in range(2)],
+        "longest_period": lambda: [{}],
         "swing_frequency": lambda: [
             {
                 "l": random.uniform(0.05, 0.4),
@@ -23,6 +24,11 @@ def cases(random):
             for _ in range(3)
         ],
     }
+
+
+def numbers(random):
+    """Return a student's own numbers."""
+    return {"K_WALL": 50.0 * random.integers(30, 80), "K_FELT": 10.0 * random.integers(40, 100)}
 
 
 def _state(random):

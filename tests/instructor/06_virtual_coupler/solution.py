@@ -48,6 +48,11 @@ def felt_wall(K, k):
     return K * k / (K + k)
 
 
+K_WALL = 2000.0
+K_FELT = 800.0
+longest_period = 2 * (0.1 - 0.02) * (1 / K_FELT - 1 / K_WALL)
+
+
 def swing_frequency(l, g, M, m, K):
     """Return the root of the smaller w^2 of M l w^4 - ((M + m) g + K l) w^2 + K g = 0, in Hz."""
     half = ((M + m) * g + K * l) / 2
