@@ -1,8 +1,35 @@
-"""Which statements of a notebook the answers need, so that most submissions are graded without running all of it."""
+"""Which statements of a notebook the answers need, so that most submissions are graded without running all of it.
+
+A slice must never make a wrong answer right; that it makes a right one wrong costs a run of the whole notebook. So what
+may change a needed value belongs to it, what may keep a cell from getting as far as a needed statement does, and where a
+statement of a slice fails, the slice gives no answer at all.
+"""
 
 import ast
+from dataclasses import dataclass
 
 from .cells import run_cell, runnable
+from .reads import Reads, reads_of
+from .solid import is_solid
+
+#: more are run as a whole: telling them apart would take longer
+MOST = 1000
+
+
+@dataclass
+class _Statement:
+    """Statements that share lines are one; its names carry how often they were bound anew before, ("k", 0), ("k", 1)."""
+
+    cell: int
+    first: int
+    last: int
+    nodes: list
+    reads: frozenset = frozenset()
+    binds: frozenset = frozenset()
+    touches: frozenset = frozenset()
+    alters: frozenset = frozenset()
+    star: bool = False
+    harmless: bool = False
 
 
 def needed(cells, names):
@@ -20,33 +47,152 @@ def needed(cells, names):
 
     Examples
     --------
-    >>> needed(["import math\\nk = 2 * math.pi"], ["k"])
-    [(0, 1, 1), (0, 2, 2)]
+    >>> needed(["import math\\nimport numpy", "r = 3", "print(r)", "area = math.pi * r**2", "r = 4"], ["area"])
+    [(0, 1, 1), (1, 1, 1), (3, 1, 1)]
     """
-    return [
-        (place, min([node.lineno, *(d.lineno for d in getattr(node, "decorator_list", ()))]), node.end_lineno)
-        for place, source in enumerate(cells)
-        for node in _tree(source).body
-    ]
+    statements = [one for place, source in enumerate(cells) for one in _statements(place, source)]
+    found = [_merged([reads_of(node) for node in one.nodes]) for one in statements[:MOST]]
+    if len(statements) > MOST or any(one.opaque for one in found):
+        return [(one.cell, one.first, one.last) for one in statements]
+    last = _number(statements, found)
+    imports = {name: what for one in found for name, what in one.imports.items()}
+    belongs = _closure(statements, {(name, last.get(name, 0)) for name in names}, _changing(statements, imports))
+    return [(one.cell, one.first, one.last) for place, one in enumerate(statements) if place in belongs]
 
 
-def _tree(source):
+def _statements(place, source):
+    """Return the statements of a cell; of one that is no Python, none."""
     try:
-        return compile(runnable(source), "", "exec", ast.PyCF_ONLY_AST | ast.PyCF_ALLOW_TOP_LEVEL_AWAIT, dont_inherit=True)
+        tree = compile(runnable(source), "", "exec", ast.PyCF_ONLY_AST | ast.PyCF_ALLOW_TOP_LEVEL_AWAIT, dont_inherit=True)
+        compile(runnable(source), "", "exec", ast.PyCF_ALLOW_TOP_LEVEL_AWAIT, dont_inherit=True)
     except (SyntaxError, ValueError, MemoryError, RecursionError):
-        return ast.Module([], [])
+        return []
+    found = []
+    for node in tree.body:
+        first = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", ()))])
+        if found and first <= found[-1].last:
+            found[-1].last = node.end_lineno
+            found[-1].nodes.append(node)
+        else:
+            found.append(_Statement(place, first, node.end_lineno, [node]))
+    return found
+
+
+def _merged(several):
+    """Return what statements on the same lines read and bind together."""
+    if len(several) == 1:
+        return several[0]
+    merged = Reads(star=any(one.star for one in several), opaque=any(one.opaque for one in several))
+    for name in ("now", "later", "binds", "alters", "imports"):  # nothing is bound anew for sure, nothing is only shown
+        for one in several:
+            getattr(merged, name).update(getattr(one, name))
+    return merged
+
+
+def _number(statements, found):
+    """Give names their numbers, from which it follows which binding a statement reads; return the last ones.
+
+    A function reads when it is called, which may be after any later binding.
+    """
+    last = {}
+    for one in found:
+        for name in one.rebinds:
+            last[name] = last.get(name, 0) + 1
+    count = dict.fromkeys(last, 0)
+    for statement, one in zip(statements, found, strict=True):
+        later = {(name, n) for name in one.later for n in range(count.get(name, 0), last.get(name, 0) + 1)}
+        statement.reads = frozenset({(name, count.get(name, 0)) for name in one.now} | later)
+        statement.touches = frozenset(read for read in statement.reads if read[0] not in one.shown)
+        statement.alters = frozenset(read for read in statement.reads if read[0] in one.alters)
+        for name in one.rebinds:
+            count[name] += 1
+        kept = {(name, count.get(name, 0)) for name in one.binds}
+        statement.binds = frozenset(kept | {bound for bound in later if bound[0] in one.binds})
+        statement.star, statement.harmless = one.star, one.harmless
+    return last
+
+
+def _changing(statements, imports):
+    """Return the names whose values may change without being bound anew."""
+    binders = {}
+    for statement in statements:
+        for bound in statement.binds:
+            binders.setdefault(bound, []).append(statement)
+    solid = set(binders)
+    while True:
+        lost = {
+            bound
+            for bound in solid
+            for statement in binders[bound]
+            if not _is_solid(statement, {read for read in statement.reads if read in binders}, solid, imports)
+        }
+        if not lost:
+            return set(binders) - solid
+        solid -= lost
+
+
+def _is_solid(statement, reads, solid, imports):
+    """Return whether what a statement binds can only be bound anew; a function that uses what changes can change that."""
+    parts = [part for node in statement.nodes for part in ast.walk(node)]
+    if any(isinstance(part, ast.FunctionDef | ast.Lambda) for part in parts) and (
+        statement.alters or len(statement.binds) > 1 or not reads <= solid
+    ):
+        return False
+    names = {name for name, _ in reads & solid} - {name for name, _ in reads - solid}
+    return all(is_solid(node, names, imports) for node in statement.nodes)
+
+
+def _closure(statements, wanted, changing):
+    """Return the places of the statements that belong to what is wanted."""
+    wanted, belongs, furthest, grown = wanted | {("<settings>", 0)}, set(), {}, True
+    while grown:
+        grown = False
+        for place, one in reversed(list(enumerate(statements))):
+            stops = place < furthest.get(one.cell, 0) and not one.harmless
+            if place not in belongs and (stops or _belongs(one, wanted, changing)):
+                belongs.add(place)
+                furthest[one.cell] = max(place, furthest.get(one.cell, 0))
+                # under each name that it binds, what changes may be reached: all that happens to those belongs as well
+                wanted |= one.reads | (one.binds if _changes(one.reads | one.binds, changing) else set())
+                grown = True
+    return belongs
+
+
+def _belongs(one, wanted, changing):
+    return one.star or not wanted.isdisjoint(one.binds | one.alters) or _changes(one.touches & wanted, changing)
+
+
+def _changes(names, changing):
+    """Return whether one of these names may change, or stands for a state that has no name."""
+    return any(name in changing or name[0].startswith("<") for name in names)
 
 
 def run_pieces(cells, pieces, names):
-    """Run pieces of cells; return the first problem, or an empty text.
+    """Run pieces of cells; where one fails, the names are emptied, for what is left may be what nobody wrote.
 
-    Where a piece fails, the rest of its cell is left out, as Jupyter does.
+    Parameters
+    ----------
+    cells : sequence of str
+    pieces : sequence of (int, int, int)
+        As :func:`needed` gives them.
+    names : dict
+
+    Returns
+    -------
+    str
+        The first problem; empty where all ran.
+
+    Examples
+    --------
+    >>> names = {}
+    >>> run_pieces(["k = 2\\nprint(k)\\nb = 3 * k"], [(0, 1, 1), (0, 3, 3)], names), names["b"]
+    ('', 6)
     """
-    problems = []
     for place in dict.fromkeys(place for place, _, _ in pieces):
-        lines, kept = runnable(cells[place]).split("\n"), set()
-        for _, first, last in (piece for piece in pieces if piece[0] == place):
-            kept.update(range(first - 1, last))
-        source = "\n".join(line if row in kept else "" for row, line in enumerate(lines))
-        problems.append(run_cell(source, names, place + 1))
-    return next(filter(None, problems), "")
+        kept = {row for cell, first, last in pieces if cell == place for row in range(first - 1, last)}
+        lines = runnable(cells[place]).split("\n")
+        problem = run_cell("\n".join(line if row in kept else "" for row, line in enumerate(lines)), names, place + 1)
+        if problem:
+            names.clear()
+            return problem
+    return ""

@@ -1,0 +1,70 @@
+"""Names whose values nothing but a new binding changes: numbers, texts, functions, expressions and scenes."""
+
+import ast
+
+#: of hapticlab, what gives values that never change; of builtins the same
+FROZEN = frozenset(
+    "Scene when delay parameters coordinate signal wall virtual_coupler virtual_damper lagrange damping_compensation friction "
+    "force_filter predicted_sample backward_velocity filtered_velocity n x v t T".split()
+)
+BUILTINS = frozenset("abs bool complex float int len max min pow range round str sum tuple".split())
+#: of SymPy, what can change
+MATRICES = frozenset("Matrix MutableDenseMatrix SparseMatrix zeros ones eye diag".split())
+
+
+def is_solid(node, solid, imports):
+    """Return whether a statement binds only what nothing changes but a new binding.
+
+    Parameters
+    ----------
+    node : ast.stmt
+    solid : container of str
+        Names that are known to be so.
+    imports : dict of str to str
+        Name to what it is in its module.
+
+    Examples
+    --------
+    >>> [is_solid(ast.parse(text).body[0], {"k"}, {}) for text in ("b = 2 * k", "b = [k]", "b, c = k, 'c'", "b = f(k)")]
+    [True, False, True, False]
+    """
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        return True
+    if isinstance(node, ast.FunctionDef):
+        defaults = [*node.args.defaults, *filter(None, node.args.kw_defaults)]
+        return not node.decorator_list and all(_is_solid(one, solid, imports) for one in defaults)
+    if isinstance(node, ast.Assign | ast.AnnAssign | ast.AugAssign) and node.value is not None:
+        return _is_solid(node.value, solid, imports)
+    return False
+
+
+def _is_solid(node, solid, imports):
+    """Return whether the value of an expression never changes."""
+    if isinstance(node, ast.Name):
+        return node.id in solid
+    if isinstance(node, ast.Call):
+        return _gives_solid(node.func, imports, solid) and all(
+            _is_solid(part, solid, imports) for part in [*node.args, *(keyword.value for keyword in node.keywords)]
+        )
+    if isinstance(node, ast.Attribute):
+        return _is_solid(node.value, solid, imports)
+    if isinstance(node, ast.BinOp | ast.UnaryOp | ast.BoolOp | ast.Compare | ast.IfExp | ast.Tuple | ast.JoinedStr):
+        return all(_is_solid(part, solid, imports) for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr))
+    return isinstance(node, ast.Constant | ast.Lambda | ast.FormattedValue)
+
+
+def _gives_solid(function, imports, solid):
+    """Return whether what a function gives never changes."""
+    if isinstance(function, ast.Name):
+        module, _, name = imports.get(function.id, "").rpartition(".")
+        return (function.id in BUILTINS and not module) or _is_known(module, name)
+    if not isinstance(function, ast.Attribute):
+        return False
+    if isinstance(function.value, ast.Name) and function.value.id in imports:
+        return _is_known(imports[function.value.id], function.attr)
+    return _is_solid(function.value, solid, imports)  # a method of an expression, z.diff(t)
+
+
+def _is_known(module, name):
+    root = module.partition(".")[0]
+    return (root == "hapticlab" and name in FROZEN) or root == "math" or (root == "sympy" and name not in MATRICES)
