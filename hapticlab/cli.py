@@ -1,4 +1,4 @@
-"""The command line: demo, labs, run FILE.py, tradeoff FILE.py, and with a paddle plugged in ports, doctor, flash, calibrate."""
+"""The command line: demo, labs, assign, grade, run FILE.py, tradeoff FILE.py, and of a paddle ports, doctor, flash, calibrate."""
 
 import argparse
 import json
@@ -198,7 +198,8 @@ def _parser():
     parser = argparse.ArgumentParser(prog="hapticlab", description="From an equation of motion to a felt virtual wall.")
     parser.add_argument("--version", action="version", version=f"hapticlab {__version__}")
     parser.set_defaults(command=None, parser=parser)
-    commands = parser.add_subparsers(title="commands", metavar="{demo,labs,assign,grade,run,tradeoff,ports,doctor,flash,calibrate}")
+    named = "{demo,labs,assign,grade,run,tradeoff,ports,doctor,flash,calibrate}"
+    commands = parser.add_subparsers(title="commands", metavar=named)
     shared = argparse.ArgumentParser(add_help=False)
     shared.add_argument("--json", action="store_true", help="print the numbers, named with units, as JSON and nothing else")
     text = "show where the chapter's wall begins to chatter, and run a student's own equation of motion"

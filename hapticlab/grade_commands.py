@@ -41,6 +41,7 @@ def add(commands):
     made.add_argument("-o", "--output", metavar="FILE", help="write the results there; the same command again goes on")
     made.add_argument("--pages", metavar="DIR", help="write an HTML page for each student and one of the class")
     made.add_argument("--roster", metavar="FILE.csv", help="who is in the class, by the names that another system has for them")
+    made.add_argument("--assignment", default="", metavar="NAME", help="of the column in Canvas, Moodle and nbgrader")
     made.add_argument("--gradebook", metavar="FILE.db", help="push the points into this gradebook of nbgrader")
     words = "so many processes, or the address of a Dask scheduler (default: one for each processor)"
     made.add_argument("--workers", type=_workers, default=os.cpu_count() or 1, metavar="N|tcp://...", help=words)
@@ -62,7 +63,8 @@ def grade(parser, options):
     if options.gradebook and not Path(options.gradebook).is_file():
         parser.error(f"{options.gradebook}: no such file; name the gradebook.db of a course of nbgrader")
     roster = read_roster(options.roster) if options.roster else None
-    assignment = find_assignment(options.lab or lab_asked(options.submissions), options.instructor, options.seed, options.personal)
+    lab = options.lab or lab_asked(options.submissions)
+    assignment = find_assignment(lab, options.instructor, options.seed, options.personal)
     if options.instructor is None:
         _say("warning: without --instructor only the public cases count, whose answers can be learnt by heart")
     limits = Limits(seconds=options.timeout, total=max(Limits().total, 4 * options.timeout), memory=options.memory * MIB)
@@ -105,7 +107,7 @@ def lab_asked(paths):
 
 def _write(options, assignment, reports, roster, output):
     """Write the results in all the ways asked for."""
-    text = formats.write(options.format, reports, roster)
+    text = formats.write(options.format, reports, roster, options.assignment)
     if output is None:
         sys.stdout.write(text)
     else:
@@ -116,7 +118,7 @@ def _write(options, assignment, reports, roster, output):
     if options.pages:
         write_pages(reports, options.pages, lab=assignment.lab)
     if options.gradebook:
-        for lost in push(reports, options.gradebook):
+        for lost in push(reports, options.gradebook, options.assignment or None):
             _say(lost)
 
 

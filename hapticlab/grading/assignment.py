@@ -9,8 +9,9 @@ from .. import __version__
 from ..course.exercise import Lab
 from ..course.instructor import check_tree
 from ..course.labs import CHECKS, LabFolder, find_labs
-from ..course.marks import counted_cases, hidden_cases
+from ..course.marks import SOLUTION, counted_cases, hidden_cases, instructor_names
 from ..course.notebook import code_of, read
+from ..course.variants import slips
 from ..errors import CourseError
 
 
@@ -50,6 +51,12 @@ class Assignment:
         """Return what lies beside the notebook while it runs, name to bytes: the lab's data, never what judges it."""
         paths = files_of(self.folder.path)
         return {name: path.read_bytes() for name, path in paths.items() if path.suffix != ".ipynb" and path.name != CHECKS}
+
+    def slips(self, exercise, given):
+        """Return what typical slips give in a hidden case, as far as they can be worked out from the solution."""
+        if self.answers is None or self.personal or exercise.kind not in ("expression", "scene"):
+            return ()
+        return slips(exercise, instructor_names(self.answers / SOLUTION)[exercise.name], given)
 
     @cached_property
     def untouched(self):

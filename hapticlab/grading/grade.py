@@ -70,7 +70,6 @@ def refused(submission, assignment, problem, limits):
 
 def _report(submission, assignment, cases, found, problems, limits):
     lab = assignment.lab
-    exercises = (exercise_report(one, cases.get(one.name, ()), found.get(one.name, Found()), limits) for one in lab.exercises)
     return Report(
         student=line_of(submission.student),
         lab=lab.number,
@@ -79,7 +78,10 @@ def _report(submission, assignment, cases, found, problems, limits):
         sha256=submission.sha256,
         problem=line_of(submission.problem),
         cells=problems,
-        exercises=tuple(exercises),
+        exercises=tuple(
+            exercise_report(one, cases.get(one.name, ()), found.get(one.name, Found()), limits, assignment.slips)
+            for one in lab.exercises
+        ),
     )
 
 

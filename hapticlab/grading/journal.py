@@ -78,5 +78,5 @@ def key_of(submission, assignment, limits, sandbox):
     sandbox : str
         The walls asked for around the student's processes.
     """
-    held = [submission.student, submission.name, submission.sha256, submission.problem, assignment.digest, asdict(limits), sandbox]
+    held = (submission.student, submission.name, submission.sha256, assignment.digest, asdict(limits), sandbox)
     return hashlib.sha256(json.dumps(held).encode()).hexdigest()

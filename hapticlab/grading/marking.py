@@ -1,6 +1,6 @@
 """What an exercise earns for what its answer gave: verdicts are made here, where no student's code runs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..course.judge import Verdict, verdict
 from .replies import line_of, rounded, text_of
@@ -31,7 +31,7 @@ def ended_words(reason, limits):
     return words.get(reason, f"its process was ended by {reason}")
 
 
-def exercise_report(exercise, cases, found, limits):
+def exercise_report(exercise, cases, found, limits, slips=None):
     """Return the report on an exercise.
 
     Parameters
@@ -42,6 +42,8 @@ def exercise_report(exercise, cases, found, limits):
     found : Found
     limits : Limits
         Of which a word is said where one was met.
+    slips : callable, optional
+        Of exercise and given: what typical slips give in a hidden case.
 
     Returns
     -------
@@ -69,7 +71,7 @@ def exercise_report(exercise, cases, found, limits):
     if verdicts and right == len(cases):
         wrong = {"earned": float(exercise.points)}
     else:
-        wrong = _wrong(exercise, cases, found.outcomes, verdicts)
+        wrong = _wrong(exercise, cases, found.outcomes, verdicts, slips)
     return ExerciseReport(
         **about,
         answered=any(outcome.answered for outcome in found.outcomes),
@@ -87,12 +89,14 @@ def _verdict(exercise, case, outcome):
         return Verdict(False, f"it cannot be compared ({type(problem).__name__})")
 
 
-def _wrong(exercise, cases, outcomes, verdicts):
+def _wrong(exercise, cases, outcomes, verdicts, slips):
     """Return what a report says of the first wrong case."""
     if not any(outcome.answered for outcome in outcomes):
         return {"words": "no answer", "hint": exercise.hint}
     first = next(number for number, one in enumerate(verdicts) if not one.right)
     (case, public), outcome, said = cases[first], outcomes[first], verdicts[first]
+    if slips and not (public or said.slip or outcome.value is None):
+        said = _verdict(exercise, replace(case, slips=tuple(slips(exercise, case.given))), outcome)
     expected = None if exercise.kind in ("value", "choice") else rounded(case.expected)
     failing = Failing(rounded(dict(case.given)), rounded(outcome.value), expected, case.unit, public)
     return {"words": line_of(said.words, WORDS), "slip": line_of(said.slip, WORDS), "hint": exercise.hint, "failing": failing}

@@ -8,6 +8,8 @@ from ..course.evaluate import Outcome
 
 #: characters kept of a student's own words in a report, and of why there is no value
 TEXT, PROBLEM = 20_000, 400
+#: what an answer may have of lists and dicts, and of names in one dict, which cost the grader more than their bytes
+LISTS, NAMES = 200_000, 1000
 #: numbers kept of a list in a report, entries of a dict, and how deep both may nest
 NUMBERS, ENTRIES, DEPTH = 2000, 50, 32
 #: what moves a terminal's cursor, turns the reading direction, or cannot be written as UTF-8
@@ -78,26 +80,35 @@ def line_of(text, most=PROBLEM):
     return " ".join(text_of(text, most).split())
 
 
-def _value(value, depth=DEPTH):
+def _value(value, depth=DEPTH, left=None):
     """Return a plain value anew: None, bools, floats, texts, lists of numbers, dicts by text."""
+    left = [LISTS] if left is None else left
     if value is None or isinstance(value, bool):
         return value
     if isinstance(value, str):
         return text_of(value)
-    if isinstance(value, dict) and depth:
-        return {line_of(name): _value(part, depth - 1) for name, part in value.items()}
-    return _numbers(value, depth)
+    if isinstance(value, dict) and depth and len(value) <= NAMES:
+        _count(left)
+        return {line_of(name): _value(part, depth - 1, left) for name, part in value.items()}
+    return _numbers(value, depth, left)
 
 
-def _numbers(value, depth):
+def _numbers(value, depth, left):
     if isinstance(value, list) and depth:
-        return [_numbers(part, depth - 1) for part in value]
+        _count(left)
+        return [_numbers(part, depth - 1, left) for part in value]
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise Garbage("no plain value")
     try:
         return float(value)
     except OverflowError:
         raise Garbage("no number that a float holds") from None
+
+
+def _count(left):
+    left[0] -= 1
+    if left[0] < 0:
+        raise Garbage("more lists than any answer has")
 
 
 def rounded(value, most=NUMBERS):
