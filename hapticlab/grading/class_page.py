@@ -6,7 +6,7 @@ from statistics import mean, median
 from ..course.exercise import NOTED
 from .page_figures import bars, shares
 from .page_text import clean
-from .student_page import STATES, points, state
+from .student_page import STATES, state
 
 #: students named under one mistake
 MOST_NAMED = 200
@@ -168,7 +168,7 @@ def _students(pages):
     for address, report in pages:
         went = {one.name: one for one in _judged(report)}
         marks = [_sign(went[name]) if name in went and not report.problem else "" for name in names]
-        earned = "not graded" if report.problem else points(report.earned, report.points)
+        earned = "not graded" if report.problem else f"{report.earned:g} of {report.points:g}"
         rows.append((link(address, report), earned, *marks))
     head = ("student", "mark", *(f'<code class="upright">{clean(name, 60)}</code>' for name in names))
     key = ", ".join(f"{STATES[went]} {went}" for went in ("right", "wrong", "no answer"))

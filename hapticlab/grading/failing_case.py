@@ -48,10 +48,10 @@ def _told(name, asks):
 
     Examples
     --------
-    >>> _told("D", "the work [J] at x [m], moving by D [m]"), _told("b", '{"k": [N/m], "b": [N s/m]}')
-    ('m', 'N s/m')
+    >>> _told("D", "the work [J] at x [m], moving by D [m]"), _told("p", '{"v": [m/s], "p": impulse [N s]}')
+    ('m', 'N s')
     """
-    found = re.search(rf'(?<!\w){re.escape(name[:60])}"?:? \[([^\]]{{1,20}})\]', asks)
+    found = re.search(rf'(?<!\w){re.escape(name[:60])}(?: |": [^"\[\],]*)\[([^\]]{{1,20}})\]', asks)
     return found[1] if found else ""
 
 

@@ -81,7 +81,7 @@ def _exercise(number, one, lab, whole):
     elif whole and state(one) != "right":
         told.append(_words(one))
         told.append(f'<p class="hint"><strong>Hint:</strong> {clean(one.hint)}</p>' if one.hint else "")
-        told.append(failing_case(one, lab) if one.failing else "")
+        told.append(failing_case(one, lab) if one.failing and state(one) == "wrong" else "")
     if one.printed.strip():
         told.append(f"<h3>What your code printed</h3>{_block(one.printed, 'printed')}")
     return "".join(told) + "</section>"
