@@ -32,6 +32,9 @@ ENVIRONMENT = {
     "PYTHONDONTWRITEBYTECODE": "1",
     "MPLBACKEND": "Agg",
     "HAPTICLAB_PORTS": "sim",
+    # large pages, of which a fork copies fewer: 3 ms instead of 14 where 130 MB are loaded
+    "PYTHONMALLOC": "malloc",
+    "GLIBC_TUNABLES": "glibc.malloc.hugetlb=1",
     **{f"{library}_NUM_THREADS": "1" for library in ("OPENBLAS", "OMP", "MKL", "NUMEXPR", "VECLIB")},
 }
 #: in place of the folder that -c begins sys.path with: the folder of this package
@@ -157,11 +160,9 @@ class Starter:
 
     def end(self):
         """Kill the session and all it started."""
-        if self.level != "namespaces":
-            watch.kill_descendants(self.process.pid)
         try:
             self.order("end")
-        except OSError:
+        except OSError:  # it is gone: at level none, student's code can kill it
             self.process.wait()
 
     def close(self):

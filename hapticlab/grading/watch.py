@@ -2,6 +2,7 @@
 
 import os
 import signal
+from contextlib import suppress
 from pathlib import Path
 
 PROC = Path("/proc")
@@ -22,27 +23,31 @@ def descendants(root):
     >>> child.pid in descendants(os.getpid())
     False
     """
-    children = {}
-    for entry in os.listdir(PROC):
-        if entry.isdigit():
-            state, parent = _state(entry)
-            children.setdefault(parent, []).append((int(entry), state))
-    found, left = [], [root]
+    found, left = [], _children(root)
     while left:
-        for child, state in children.get(left.pop(), ()):
-            left.append(child)
-            if state not in "ZX":
-                found.append(child)
+        process, state, its = _looked_at(left.pop())
+        left += its
+        if state not in "ZX":
+            found.append(process)
     return found
 
 
-def _state(entry):
-    """Return (state, parent) of a process; proc_pid_stat(5): the name before them stands in parentheses."""
+def _looked_at(process):
+    """Return (process, state, children); proc_pid_stat(5): the name before the state stands in parentheses."""
     try:
-        state, parent = (PROC / entry / "stat").read_text("utf-8", "replace").rpartition(")")[2].split()[:2]
-    except (OSError, ValueError):
-        return "X", 0
-    return state, int(parent)
+        state = (PROC / str(process) / "stat").read_text("utf-8", "replace").rpartition(")")[2].split()[0]
+    except OSError:
+        return process, "X", []
+    return process, state, _children(process)
+
+
+def _children(process):
+    """Return the children of a process, proc_tid_children(5); one may be missed while another ends."""
+    try:
+        threads = os.listdir(PROC / str(process) / "task")
+        return [int(c) for t in threads for c in (PROC / str(process) / "task" / t / "children").read_text().split()]
+    except OSError:
+        return []
 
 
 def memory(processes, shared=0):
@@ -72,13 +77,10 @@ def address_space(process):
 
 
 def kill_descendants(root):
-    """Kill all processes below one, also those that are started meanwhile."""
-    while found := descendants(root):
-        for process in found:
-            try:
-                os.kill(process, signal.SIGKILL)
-            except ProcessLookupError:
-                continue
+    """Kill all processes found below one."""
+    for process in descendants(root):
+        with suppress(ProcessLookupError):
+            os.kill(process, signal.SIGKILL)
 
 
 def threads_of(user):

@@ -10,7 +10,9 @@ import os
 import signal
 import socket
 import sys
+from contextlib import suppress
 
+from ..watch import kill_descendants
 from . import linux, sandbox
 from .keeper import keep, prepare
 
@@ -30,12 +32,13 @@ def main(control):
     """
     control = socket.socket(fileno=control)
     linux.become_subreaper()
-    keeper = 0
+    keeper = user = 0
     while True:
         message, descriptors, *_ = socket.recv_fds(control, 1 << 20, 2)
         if not message:
-            return
+            return end(keeper, user)
         request = json.loads(message)
+        user = request["user"]
         if request["do"] == "probe":
             answer = probe(request)
         elif request["do"] == "ready":
@@ -48,8 +51,8 @@ def main(control):
                 os.close(descriptor)
             answer = {}
         else:
-            end(keeper, request["user"])
-            answer = {}
+            end(keeper, user)
+            keeper, answer = 0, {}
         control.send(json.dumps(answer).encode())
 
 
@@ -89,8 +92,9 @@ def preload():
             getattr(package, name)
         except ImportError:
             continue  # an optional dependency is not installed
-    evaluate = sys.modules["hapticlab.course.evaluate"].evaluate
-    evaluate("scene", package.wall()(k=150.0, x_o=0.01), {"x": [0.0, 0.012]})
+    package.parameters("k", units="N/m")
+    package.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(package.wall()(k=150.0, x_o=0.01), duration=0.01)
+    sys.modules["hapticlab.course.felt"].felt(package.wall()(k=150.0, x_o=0.01), x=[0.0, 0.012])
     gc.collect()
     gc.freeze()
 
@@ -153,13 +157,16 @@ def become_session(request, channel):
 
 
 def end(keeper, user):
-    """Kill a session, and wait until all of it is gone; where it has a user of its own, whatever runs as that one."""
+    """Kill a session, and wait until all of it is gone.
+
+    In namespaces the keeper's end is the end of all. Elsewhere orphans become children of this process.
+    """
     if keeper:
         os.kill(keeper, signal.SIGKILL)
+        os.waitpid(keeper, 0)
     if user:
         sandbox.kill_user(user)
-    try:
+    with suppress(ChildProcessError):
         while True:
-            os.waitpid(-1, 0)
-    except ChildProcessError:
-        pass
+            if os.waitpid(-1, os.WNOHANG)[0] == 0:
+                kill_descendants(os.getpid())
