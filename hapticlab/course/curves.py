@@ -57,8 +57,8 @@ def _axes(answer):
     if hasattr(answer, "get_lines"):
         return [answer]
     several = getattr(answer, "axes", answer)
-    several = several.flat if isinstance(several, np.ndarray) else several
-    if not isinstance(several, list | tuple | np.flatiter) or not all(hasattr(one, "get_lines") for one in several):
+    several = list(several.flat) if isinstance(several, np.ndarray) else several
+    if not isinstance(several, list | tuple) or not all(hasattr(one, "get_lines") for one in several):
         raise NotPlain(f"it is {a(answer)}, needs a matplotlib Figure or Axes")
     return list(several)
 
@@ -67,21 +67,29 @@ def _of_axes(axes):
     """Yield the lines and the scattered points of axes."""
     drawn = [(line.get_xydata(), line) for line in axes.get_lines() if line.get_transform().contains_branch(axes.transData)]
     drawn += [(part.get_offsets(), part) for part in axes.collections if np.size(part.get_offsets()) > 2]
-    scales = {side: _unit(getattr(axes, f"get_{side}label")(), side) for side in "xy"} if drawn else {}
+    labels = {side: _label(axes, side) for side in "xy"}
+    scales = {side: _unit(labels[side], side) for side in "xy"} if drawn else {}
     for points, artist in drawn:
         x, y = np.ma.filled(np.ma.asarray(points, float), np.nan).T
         yield {
             "label": str(artist.get_label())[:60],
-            **{f"{side}_label": str(getattr(axes, f"get_{side}label")())[:60] for side in "xy"},
+            **{f"{side}_label": labels[side][:60] for side in "xy"},
             **{f"{side}_unit": scales[side][1] for side in "xy"},
             "x": numbers(x * scales["x"][0]),
             "y": numbers(y * scales["y"][0]),
         }
 
 
+def _label(axes, side):
+    """Return an axis's label; panels that share the axis, or a whole figure, may have it in one place."""
+    sharing = [axes, *getattr(axes, f"get_shared_{side}_axes")().get_siblings(axes)]
+    several = [getattr(one, f"get_{side}label")() for one in sharing]
+    return str(next((label for label in several if label), getattr(axes.figure, f"get_sup{side}label")()))
+
+
 def _unit(label, side):
     """Return (factor to SI, SI unit) of an axis label; (1, "") where it names no unit."""
-    label = re.sub(r"\\mathrm|[${}]", "", str(label)).replace(r"\mu", "u").replace("µ", "u").replace("μ", "u")
+    label = re.sub(r"\\mu\s*|[µμ]", "u", re.sub(r"\\mathrm|[${}]", "", label))
     found = UNIT.search(label)
     text = next((part.strip() for part in found.groups() if part is not None), "") if found else ""
     if text in ("", "-", "1"):

@@ -127,5 +127,5 @@ def _difference(name, wanted, curves, needed, slip):
         ends = [f"from {c['x'].min():.6g} to {c['x'].max():.6g}{x_unit}" for c in (curve, wanted)]
         return f"{name} goes {ends[0]}, needs {ends[1]}"
     got = _at(wanted["x"], curve)
-    worst = int(np.nanargmax(np.abs(got - wanted["y"]))) if np.isfinite(got).any() else 0
+    worst = int(np.argmax(np.nan_to_num(np.abs(got - wanted["y"]), nan=np.inf)))
     return f"at {wanted['x'][worst]:.6g}{x_unit} it is {got[worst]:.6g}{y_unit}, expected {wanted['y'][worst]:.6g}{y_unit}"

@@ -1,0 +1,157 @@
+"""Answers that are plots: curves are read in SI by their labels, compared by their numbers, and what is mixed up is named."""
+
+import json
+
+import numpy as np
+import pytest
+from matplotlib import pyplot
+from matplotlib.figure import Figure
+
+import hapticlab as hl
+from hapticlab.course.check import checked
+from hapticlab.course.curves import curves
+from hapticlab.course.exercise import Case, Exercise
+from hapticlab.course.match import plot_fault
+from hapticlab.course.plain import NotPlain
+
+TIME = np.linspace(0, 0.2, 21)
+#: by hand: half a period of 2.5 Hz, sampled at every tenth of it and not where an answer samples it
+SWING = {"x": [0.0, 0.1, 0.2], "y": [0.0, 0.005, 0.0], "x_unit": "s", "y_unit": "m"}
+PLOT = Exercise("swing", "plot", points=1, asks="x(t)", rtol=0.02, cases=[Case({}, {"curve 1": SWING})])
+#: a loop turns back along x: it is compared point by point
+LOOP = {"x": [0.0, 0.01, 0.0, -0.01], "y": [0.5, 0.0, -0.5, 0.0], "x_unit": "m", "y_unit": "m/s"}
+PHASE = Exercise("phase", "plot", points=1, rtol=1e-3, cases=[Case({"A": 0.01}, {"curve 1": LOOP})])
+
+
+def swing(x=TIME, y=None, xlabel="time t [s]", ylabel="position x [m]", draw="plot", axes=None):
+    axes = Figure().subplots() if axes is None else axes
+    getattr(axes, draw)(x, 0.005 * np.sin(5 * np.pi * TIME) if y is None else y)
+    axes.set(xlabel=xlabel, ylabel=ylabel)
+    return axes
+
+
+Y = 0.005 * np.sin(5 * np.pi * TIME)
+
+
+@pytest.mark.parametrize(
+    "drawn",
+    [
+        swing(),
+        swing().figure,
+        swing(1e3 * TIME, 1e3 * Y, "$t$ (ms)", "$x$ / mm"),
+        swing(TIME, 1e6 * Y, r"t [s]", r"x [$\mathrm{\mu m}$]"),
+        swing(TIME[::-1], Y[::-1]),
+        swing(draw="scatter"),
+        swing(np.append(TIME, 0.3), np.append(Y, 9.0)),
+        swing(np.linspace(0, 0.2, 999), 0.005 * np.sin(np.linspace(0, np.pi, 999))),
+        lambda: swing(),
+    ],
+)
+def test_the_same_curve_drawn_another_way_is_right(drawn):
+    assert checked("98.swing", PLOT, drawn).passed
+
+
+def test_lines_to_guide_the_eye_and_other_panels_do_no_harm():
+    figure = Figure()
+    left, right = figure.subplots(1, 2)
+    swing(axes=right)
+    right.axhline(0.001), right.axvspan(0.1, 0.2), right.fill_between(TIME, Y)
+    left.plot([0, 1], [0, 1])
+    assert checked("98.swing", PLOT, figure).passed
+    assert [curve["x_unit"] for curve in curves(figure).values()] == ["", "s"]
+    assert checked("98.swing", PLOT, np.array([left, right])).passed
+
+
+@pytest.mark.parametrize(
+    ("drawn", "words"),
+    [
+        (swing(Y, TIME, "position [m]", "time [s]"), "The axes are swapped: s belongs along x."),
+        (swing(1e3 * TIME), "Along x: It is 1000 times too large"),
+        (swing(y=1e3 * Y), "Along y: It is 1000 times too large"),
+        (swing(y=1e3 * Y), "Is the unit in its label that of its numbers?"),
+        (swing(y=-Y), "Along y: The sign is turned."),
+        (swing(y=2 * Y), "Along y: It is twice what is expected."),
+        (swing(xlabel="time"), "The x axis has no unit: end its label with one, such as [s]."),
+        (swing(ylabel=""), "The y axis has no unit: end its label with one, such as [m]."),
+        (swing(ylabel="force F [N]"), "The y axis is in N; it should be a quantity in m"),
+        (swing(ylabel="share [-]"), "The y axis is in a number without unit"),
+        (swing(ylabel="x [parsnip]"), "the y axis is labelled 'x [parsnip]'"),
+        (swing(TIME[:11], Y[:11]), "curve 1 goes from 0 to 0.1 s, needs from 0 to 0.2 s"),
+        (swing(y=Y + 0.001), "expected"),
+        (swing(y=np.where(TIME > 0.15, np.nan, Y)), "at 0.2 s it is nan m, expected 0 m"),
+        (swing(TIME[:1], Y[:1]), "curve 1"),
+        (Figure(), "it holds no curve"),
+        (Figure().subplots(), "it holds no curve"),
+        (swing().get_lines()[0], "needs a matplotlib Figure or Axes"),
+        ([1.0, 2.0], "it is a list, needs a matplotlib Figure or Axes"),
+        (pyplot, "it is a module, needs a matplotlib Figure or Axes"),
+        ("figure", "it is a str, needs"),
+        (lambda t: swing(), "it takes (t), and is called with no argument"),
+        (lambda: None, "is its `return` missing?"),
+        (lambda: 1 / 0, "ZeroDivisionError"),
+    ],
+)
+def test_what_is_wrong_with_a_plot_is_named(drawn, words):
+    result = checked("98.swing", PLOT, drawn)
+    assert not result.passed and result.answered
+    assert words in result.text
+
+
+def test_curves_of_very_many_are_refused():
+    axes = swing()
+    for height in range(16):
+        axes.plot(TIME, Y + height)
+    with pytest.raises(NotPlain, match="it holds 17 curves; needs 16 at most"):
+        curves(axes)
+
+
+def phase(x, y):
+    return lambda A: swing(1e3 * np.array(x), y, "x [mm]", "v [m/s]")
+
+
+@pytest.mark.parametrize(
+    ("drawn", "words"),
+    [
+        (phase(LOOP["x"], LOOP["y"]), "right: A = 0.01: 1 curve"),
+        (phase(LOOP["x"], -np.array(LOOP["y"])), "Along y: The sign is turned."),
+        (phase(LOOP["x"][:3], LOOP["y"][:3]), "it has 3 points, needs 4"),
+        (phase(np.array(LOOP["x"]) * 1e-3, LOOP["y"]), "Along x: It is 1000 times too small"),
+        (phase(LOOP["x"], np.array(LOOP["y"]) + 0.1), "curve 1 is not there"),
+    ],
+)
+def test_a_loop_is_compared_point_by_point(drawn, words):
+    result = checked("98.phase", PHASE, drawn)
+    assert words in result.text and result.passed == words.startswith("right")
+
+
+def test_each_of_several_curves_is_looked_for():
+    other = SWING | {"y": [0.0, 0.1, 0.4]}
+    both = Exercise("both", "plot", points=1, rtol=0.02, cases=[Case({}, {"x": SWING, "square": other})])
+    axes = swing()
+    assert "1 curve, needs 2" in checked("98.both", both, axes).text
+    axes.plot(TIME, 5 * TIME**2 + 1)
+    assert "at 0 s it is 0 m" not in checked("98.both", both, axes).text
+    axes.plot(TIME, 10 * TIME**2)
+    assert checked("98.both", both, axes).passed
+
+
+def test_slips_of_a_plot_are_curves_too():
+    late = SWING | {"y": [0.0, 0.0025, 0.005]}
+    case = Case({}, {"curve 1": SWING}, slips=[({"curve 1": late}, "It is a straight line.")])
+    result = checked("98.s", Exercise("s", "plot", points=1, rtol=0.02, cases=[case]), swing(y=0.025 * TIME))
+    assert result.text.endswith("It is a straight line.") and result.verdicts[0].slip == "It is a straight line."
+
+
+def test_what_the_package_plots_itself_is_read():
+    log = hl.Telemetry(t=TIME, x=Y, v=0 * Y, F=200 * Y, T=1e-2)
+    found = list(curves(hl.plot(log, "x", "F")).values())
+    assert [(curve["x_unit"], curve["y_unit"]) for curve in found] == [("s", "m"), ("s", "N")]
+    np.testing.assert_allclose(found[0]["y"], Y, atol=1e-15)
+    np.testing.assert_allclose(found[1]["x"], TIME, atol=1e-15)
+    assert json.loads(json.dumps(found)) == found
+
+
+@pytest.mark.parametrize("found", [None, 1.0, {}, {"c": 1.0}, {"c": {"x": "a"}}, {"c": {"x": [], "y": []}},
+                                   {"c": {"x": [[1]], "y": [1], "x_unit": "s", "y_unit": "m"}}])  # fmt: skip
+def test_no_forged_reply_is_a_curve(found):
+    assert plot_fault({"curve 1": SWING}, found, 1.0, 1.0) == ("no curves; needs a matplotlib Figure or Axes with them", "")
