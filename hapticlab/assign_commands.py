@@ -1,5 +1,6 @@
 """What the command line hands out: labs as nbgrader, otter, Gradescope or PrairieLearn take them, and a student's own numbers."""
 
+import os
 import shutil
 from pathlib import Path
 
@@ -7,13 +8,17 @@ from . import __version__
 from .course.instructor import check_tree
 from .course.labs import find_labs
 from .course.notebook import write
+from .course.personal import personal_labs
 from .errors import CourseError
 from .grading.gradescope_zip import gradescope_files, write_zip
 from .grading.nbgrader_source import config, nbgrader_notebook
 from .grading.otter_source import otter_assign
 from .grading.prairielearn_question import dockerfile, prairielearn_files
+from .grading.roster import read_roster
 from .lab_commands import words_of
 
+#: columns of a roster by which submissions are usually named
+NAMES = ("student", "student_id", "login", "sis_login_id", "username", "id_number", "email", "email_address")
 SYSTEMS = ("nbgrader", "otter", "gradescope", "prairielearn")
 
 
@@ -23,11 +28,12 @@ def add(commands, seed):
     made = commands.add_parser("assign", help=text, description=text)
     made.add_argument("target", metavar="DIR", help="folder to write into; of gradescope a FILE.zip")
     made.add_argument("--for", dest="system", choices=SYSTEMS, help="what grades or collects")
-    made.add_argument("--personal", action="store_true", help="a folder of labs for each student of --roster")
+    made.add_argument("--personal", action="store_true", help="numbers of their own for the students of --roster")
     made.add_argument("--lab", nargs="+", default=[], metavar="NN", help="these labs (default: all)")
     made.add_argument("--instructor", required=True, metavar="PATH", help="folder of answers, which holds NN_name/solution.py")
     made.add_argument("--seed", type=seed, metavar="N", help="of hidden cases and of students' own numbers (default: 0)")
     made.add_argument("--roster", metavar="FILE.csv", help="the class, for --personal")
+    made.add_argument("--column", metavar="NAME", help="of the roster, by which submissions will be named")
     made.add_argument("--wheel", metavar="FILE.whl", help="hapticlab as a file, where it is not to come from an index")
     made.add_argument("--image", metavar="NAME", help="of PrairieLearn's grader (default: hapticlab-grader:VERSION)")
     made.set_defaults(command=assign, parser=made)
@@ -37,21 +43,25 @@ def assign(parser, options):
     """Write labs as another system takes them, or each student's own; say what was written and what to do next."""
     _check(parser, options)
     check_tree(options.instructor)
-    labs = _labs(options)
-    if options.personal:
-        return _personal(labs, options)
+    if not options.system:
+        return _personal(options)
     write_for = {"nbgrader": _nbgrader, "otter": _otter, "gradescope": _gradescope, "prairielearn": _prairielearn}
+    labs = _labs(options)
     return write_for[options.system](labs, Path(options.target), options)
 
 
 def _check(parser, options):
     """Refuse options that do not go together."""
-    if options.personal == bool(options.system):
+    if not (options.personal or options.system):
         parser.error(f"name what the labs are written for, --for {{{','.join(SYSTEMS)}}}, or --personal with a roster")
-    if options.personal and not options.roster:
-        parser.error("--personal needs --roster FILE.csv, the students' names")
-    if options.roster and not options.personal:
-        parser.error("--roster is of --personal")
+    if options.personal and options.system not in (None, "gradescope"):
+        parser.error(f"{options.system} cannot tell whose numbers a notebook has; --personal is of gradescope, or of folders")
+    if options.personal and not options.system and not options.roster:
+        parser.error("--personal needs --roster FILE.csv, the class")
+    if options.roster and (options.system or not options.personal):
+        parser.error("--roster is of --personal, for folders")
+    if options.column and not options.roster:
+        parser.error("--column is of --roster")
     if options.seed is not None and options.system in ("nbgrader", "otter"):
         parser.error(f"--seed is of hidden cases, which {options.system} does not get; give it to hapticlab grade")
     if options.wheel and options.system not in ("gradescope", "prairielearn"):
@@ -132,7 +142,7 @@ def _otter(labs, target, options):
 
 def _gradescope(labs, target, options):
     lab, wheel = labs[0], Path(options.wheel) if options.wheel else None
-    files = gradescope_files(lab, _answers(lab, options), _package(), options.seed or 0, wheel)
+    files = gradescope_files(lab, _answers(lab, options), _package(), options.seed or 0, wheel, options.personal)
     if target.exists():
         raise CourseError(f"{target} is there already; name another file, or delete it first")
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -170,8 +180,37 @@ def _prairielearn(labs, target, options):
     )
 
 
-def _personal(labs, options):
-    raise CourseError("not yet")
+def _personal(options):
+    """Write each student's folder of labs."""
+    roster, target, seed = read_roster(options.roster), Path(options.target), options.seed or 0
+    column = _column(roster, options.column)
+    students = [row[column].strip() for row in roster.rows]
+    if not all(students):
+        raise CourseError(f"{roster.path}: row {students.index('') + 2} has no {roster.columns[column]}; name another --column")
+    states = personal_labs(students, target, options.instructor, seed, options.lab)
+    kept = sorted(path for path, state in states.items() if state == "kept")
+    print(f"written: {target}, labs of {len(students)} students by {roster.columns[column]!r}, numbers of seed {seed}")
+    if kept:
+        print(f"left as they are, for they differ and may hold work:\n  {', '.join(kept)}")
+    graded = ["--lab", *(options.lab[:1] or ["NN"]), "--instructor", options.instructor, "--personal", "--seed", str(seed)]
+    return _next(
+        f"give each student the folder {target}{os.sep}{students[0] if students else 'STUDENT'}, or the one named so",
+        "what they hand in, named by the same names, is graded by the same seed:",
+        words_of(["hapticlab", "grade", "SUBMISSIONS", *graded]),
+    )
+
+
+def _column(roster, asked):
+    """Return the column that names students."""
+    if asked:
+        named = {name: column for column, name in roster.columns.items()}
+        if asked not in named:
+            raise CourseError(f"{roster.path} has no column {asked!r}; it has {roster.told()}")
+        return named[asked]
+    known = [column for column in NAMES if column in roster.columns]
+    if not known:
+        raise CourseError(f"{roster.path}: which of {roster.told()} names a student's folder and submission? Say it by --column")
+    return known[0]
 
 
 def _package():

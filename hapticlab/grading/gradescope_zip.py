@@ -74,7 +74,7 @@ def bundle(folder, answers):
     return {**_files(folder.path, f"labs/{folder.name}"), **_files(answers, f"answers/{folder.name}")}
 
 
-def gradescope_files(folder, answers, package, seed=0, wheel=None):
+def gradescope_files(folder, answers, package, seed=0, wheel=None, personal=False):
     """Return the files of the autograder, path to bytes.
 
     Parameters
@@ -88,9 +88,12 @@ def gradescope_files(folder, answers, package, seed=0, wheel=None):
         Of the hidden cases.
     wheel : Path, optional
         Of hapticlab, to go into the zip and to be installed from there.
+    personal : bool
+        Whether students have numbers of their own, drawn by the e-mail that Gradescope knows them by.
     """
     installed = f'"./{wheel.name}"' if wheel else f'"{package}"'
-    scripts = {"setup.sh": SETUP.format(package=installed), "run_autograder": RUN.format(name=folder.name, seed=seed)}
+    run = RUN.format(name=folder.name, seed=f"{seed} --personal" if personal else seed)
+    scripts = {"setup.sh": SETUP.format(package=installed), "run_autograder": run}
     files = {name: text.encode() for name, text in scripts.items()}
     return {**files, **({wheel.name: wheel.read_bytes()} if wheel else {}), **bundle(folder, answers)}
 

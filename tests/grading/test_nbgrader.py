@@ -44,7 +44,7 @@ def released(course, lab):
 
 @pytest.fixture(scope="module")
 def course(tmp_path_factory):
-    """A course with two labs released, handed in and marked: lab 02 all right, partly wrong and untouched, lab 01 partly wrong."""
+    """A course with two labs released, handed in and marked: lab 02 right, partly wrong and untouched, lab 01 partly wrong."""
     course = tmp_path_factory.mktemp("nbgrader") / "haptics"
     assert cli.main(["assign", str(course), "--for", "nbgrader", "--lab", *TWO, "--instructor", str(INSTRUCTOR)]) == 0
     first, second = LABS["01"], LABS["02"]
