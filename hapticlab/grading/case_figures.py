@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..course.curves import UNIT
 from ..drawing import axis_label
 from .page_figures import POINT, SAMPLE, bounded, chart
 from .page_text import clean, pair
@@ -18,7 +19,7 @@ class Panel:
     """What one figure shows.
 
     ``got`` is None where nothing came that can be drawn; ``x`` and ``x_got`` are there where curves have abscissae of their
-    own, and ``units`` with them, along x and y.
+    own, and ``axes`` with them, each a name and a unit.
     """
 
     name: str
@@ -26,7 +27,7 @@ class Panel:
     got: np.ndarray | None
     x: np.ndarray | None = None
     x_got: np.ndarray | None = None
-    units: tuple = ()
+    axes: tuple = ()
 
 
 def figures(one, unit):
@@ -50,7 +51,7 @@ def figures(one, unit):
 def panels(name, got, expected, depth=0):
     """Yield a panel for each list of numbers in what is expected, for each column of a long table, for each curve."""
     if isinstance(expected, dict):
-        if numbers(expected.get("x"), 1) is not None and numbers(expected.get("y"), 1) is not None:
+        if is_curve(expected):
             yield from _curve(name, got, expected)
             return
         for key, part in expected.items():
@@ -66,32 +67,36 @@ def panels(name, got, expected, depth=0):
             yield Panel(f"{name}[:, {k}]", wanted[:, k], came[:, k] if alike else None)
 
 
+def is_curve(value):
+    """Whether a value is a curve, as :func:`hapticlab.course.curves.curves` gives it."""
+    if not isinstance(value, dict):
+        return False
+    x, y = numbers(value.get("x"), 1), numbers(value.get("y"), 1)
+    return x is not None and y is not None and x.shape == y.shape
+
+
 def _part(got, key, expected):
     """Return what came under a name; of several curves, whose names are free, the one nearest to what is expected."""
     if not isinstance(got, dict):
         return None
-    if not (isinstance(expected, dict) and "y" in expected):
+    curves = [curve for curve in got.values() if is_curve(curve) and _units(curve) == _units(expected)]
+    if not (is_curve(expected) and curves):
         return got.get(key)
-    wanted, best, least = numbers(expected["y"], 1), got.get(key), np.inf
-    for curve in got.values():
-        y = numbers(curve.get("y"), 1) if isinstance(curve, dict) else None
-        if wanted is None or y is None or not len(y):
-            continue
-        apart = abs(np.nan_to_num(y / 2).mean() - np.nan_to_num(wanted / 2).mean())
-        if apart < least:
-            best, least = curve, apart
-    return best
+    middle = lambda curve: np.nan_to_num(bounded(numbers(curve["y"]))).mean()  # noqa: E731
+    return min(curves, key=lambda curve: abs(middle(curve) - middle(expected)))
+
+
+def _units(curve):
+    return [str(curve.get(f"{side}_unit", "")) for side in "xy"] if isinstance(curve, dict) else []
 
 
 def _curve(name, got, expected):
-    """Yield the panel of a curve with abscissae of its own."""
-    (x, y), (x_got, y_got) = (
-        [numbers(curve.get(side), 1) for side in "xy"] for curve in (expected, got if isinstance(got, dict) else {})
-    )
-    if x.shape == y.shape:
-        drawn = x_got is not None and y_got is not None and x_got.shape == y_got.shape
-        units = tuple(str(expected.get(f"{side}_unit", "")) for side in "xy")
-        yield Panel(name, y, y_got if drawn else None, x, x_got, units)
+    """Yield the panel of a curve with abscissae of its own; one in other units cannot be drawn beside it."""
+    drawn = is_curve(got) and _units(got) == _units(expected)
+    names = [UNIT.sub("", str(got.get(f"{side}_label", ""))).strip() if drawn else "" for side in "xy"]
+    axes = tuple(zip((name or f"along {side}" for name, side in zip(names, "xy", strict=True)), _units(expected), strict=True))
+    (x_got, y_got), (x, y) = ([numbers(curve[side]) if curve else None for side in "xy"] for curve in (drawn and got, expected))
+    yield Panel(name, y, y_got, x, x_got, axes)
 
 
 def numbers(value, axes=None):
@@ -107,12 +112,9 @@ def numbers(value, axes=None):
 
 def _figure(one, panel, unit):
     """Return a figure over a curve's own x, the time or the place that was given, else the number of the sample."""
-    if panel.units:
-        (scale_x, across), (scale, label) = (
-            axis_label(f"along {side}", u) for side, u in zip("xy", panel.units, strict=True)
-        )
-        x, x_got = panel.x * scale_x, panel.x_got
-        x_got = None if x_got is None else x_got * scale_x
+    if panel.axes:
+        (scale_x, across), (scale, label) = (axis_label(*axis) for axis in panel.axes)
+        x, x_got = panel.x * scale_x, None if panel.x_got is None else panel.x_got * scale_x
     else:
         size = max(len(panel.expected), 0 if panel.got is None else len(panel.got))
         x_got, across = _across(one, size, unit)
@@ -122,7 +124,7 @@ def _figure(one, panel, unit):
     if panel.got is not None:
         lines["got"] = x_got[: len(panel.got)], bounded(panel.got) * scale
     alt = f"{panel.name[:60]}: {label} over {across}. " + " ".join(_course(name, y) for name, (_, y) in lines.items())
-    told = f"<figcaption>{clean(_difference(lines, across))}</figcaption>"
+    told = f"<figcaption>{clean(_difference(lines, across, bool(panel.axes)))}</figcaption>"
     return f"<figure>{chart(lines, (across, label), alt)}{told}</figure>"
 
 
@@ -138,17 +140,17 @@ def _across(one, size, unit):
     return np.arange(float(size)), POINT if one.kind == "expression" else SAMPLE
 
 
-def _difference(lines, across):
-    """Say in a sentence where two lines differ most."""
+def _difference(lines, across, own):
+    """Say in a sentence where two lines differ most; those with abscissae of their own are compared where one is expected."""
     if "got" not in lines:
         return "Nothing came that can be drawn beside what is expected."
     (x, expected), (x_got, got) = lines["expected"], lines["got"]
     odd = int((~np.isfinite(got)).sum())
     told = f" {odd} of {len(got)} numbers that came are NaN or infinite; NaN leaves a gap." if odd else ""
+    if own and x_got.size and (np.diff(x_got) > 0).all():
+        got = np.interp(x, x_got, got)
     if len(got) != len(expected):
         return f"{len(got)} numbers came, {len(expected)} are expected.{told}"
-    if not np.array_equal(x, x_got, equal_nan=True):
-        return told.strip()
     apart = np.nan_to_num(np.abs(got / 2 - expected / 2))
     if not apart.max() > 0:
         return told.strip() or "All numbers are alike."

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from .case_figures import figures, numbers
+from .case_figures import figures, is_curve, numbers
 from .page_text import clean, pair, shown
 
 #: lists of more numbers are told by their first ones, tables of more too; a figure shows all
@@ -95,6 +95,11 @@ def _tolerance(one, lab):
 
 def _rows(name, got, expected, tolerance, depth=0):
     """Yield name, what came, what was expected, and whether these are near enough; in single values where they are few."""
+    if is_curve(expected):  # its numbers are in the figure
+        for key in ("x_unit", "y_unit"):
+            pair_of = (got.get(key) if isinstance(got, dict) else None), expected.get(key)
+            yield f"{name}, {key.replace('_', ' ')}", *pair_of, pair_of[0] == pair_of[1]
+        return
     if isinstance(expected, dict) and depth < 2:
         for key, part in expected.items():
             yield from _rows(str(key), got.get(key) if isinstance(got, dict) else None, part, tolerance, depth + 1)

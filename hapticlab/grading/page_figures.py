@@ -92,7 +92,7 @@ def _ticks(low, high, most=5, whole=False):
     step = next(tens * part for part in (1, 2, 5, 10) if tens * part >= rough * (1 - 1e-9))
     places = [k * step for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
     digits = 1 + math.ceil(math.log10(max(abs(low), abs(high)) / step))
-    return [(tick, f"{tick:.{max(digits, 3)}g}") for tick in places]
+    return [(tick, f"{tick:.{max(digits, 5)}g}") for tick in places]
 
 
 def _up_tick(y, text, left):
@@ -142,8 +142,8 @@ def _mark(name, x, y):
 
 
 def _key(name, x, joined):
-    ends = np.array([x, x + 34.0])
-    return _line(name, ends, np.array([14.0, 14.0]), joined) + f'<text x="{x + 46:.0f}" y="18">{clean(name, 30)}</text>'
+    ends = np.array([x, x + 34.0] if joined else [x + 32.0])
+    return _line(name, ends, np.full(len(ends), 14.0), joined) + f'<text x="{x + 46:.0f}" y="18">{clean(name, 30)}</text>'
 
 
 def bars(counts, label, alt):

@@ -267,6 +267,10 @@ def test_a_long_line_keeps_its_peaks():
     assert np.isclose(seen.max(), 5.0, atol=0.02) and np.isclose(seen.min(), -2.0, atol=0.02)
 
 
+CURVE = {
+    "x": [0.0, 0.005, 0.01, 0.02], "y": [0.0, 1.0, 2.0, 3.0], "x_unit": "m", "y_unit": "N", "x_label": "way [cm]",
+    "y_label": "F_e [mN]",
+}  # fmt: skip
 LAB = Lab("02", "Walls", 90, (
     Exercise("wall", points=2, asks="F [N] at k [N/m]", cases=(Case({}, 1.0),)), Exercise("n", points=2, asks="of b [N s/m]"),
 ))  # fmt: skip
@@ -292,9 +296,9 @@ LAB = Lab("02", "Walls", 90, (
             "time t [ms]", "wall [N]", "2 numbers came, 3 are expected.",
         ),
         (
-            Failing({}, {"curve 1": {"x": [9.0], "y": [90.0]}, "curve 2": {"x": [0.0, 0.01, 0.02], "y": [0.0, 2.0, 3.0]}},
+            Failing({}, {"curve 1": {"x": [0.0, 0.02], "y": [90.0, 90.0], "x_unit": "m", "y_unit": "N"}, "curve 2": CURVE},
                     {"curve 1": {"x": [0.0, 0.01, 0.02], "y": [0.0, 2.0, 4.0], "x_unit": "m", "y_unit": "N"}}, "", False),
-            "along x [mm]", "along y [N]", "The largest difference is at x = 20 mm: 3 came, 4 is expected.",
+            "way [mm]", "F_e [N]", "The largest difference is at way = 20 mm: 3 came, 4 is expected.",
         ),
     ],
 )  # fmt: skip
