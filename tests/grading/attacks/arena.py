@@ -9,7 +9,7 @@ from pathlib import Path
 import hapticlab
 from hapticlab.grading.assignment import find_assignment
 from hapticlab.grading.limits import MIB, Limits
-from hapticlab.grading.replies import line_of
+from hapticlab.grading.naming import student_of
 from hapticlab.grading.run import run
 
 from . import broken, eating, ending, forging, injecting, spying
@@ -68,7 +68,7 @@ class Arena:
             "SOCKET": name,
             "TOKEN": TOKEN,
         }
-        self.names = {line_of(one.write(self.submissions, **surroundings).name, 120): one for one in self.attacks}
+        self.names = {student_of(one.write(self.submissions, **surroundings).name): one for one in self.attacks}
         self.before = self.handed_in()
         return self
 
@@ -87,7 +87,7 @@ class Arena:
 
     def by_attack(self, graded):
         """Return the report of each attack by its name."""
-        return {self.names[report.submission].name: report for report in graded.reports}
+        return {self.names[report.student].name: report for report in graded.reports}
 
     def reached(self):
         """Return what attacks reached that they must not, in words."""

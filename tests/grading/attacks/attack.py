@@ -89,9 +89,9 @@ def attack(name, *, first="", last="", beside=None, ended=None, patience=False, 
     return Attack(name, files, wrong, ended or {}, patience=patience)
 
 
-def file(name, path, content, *, lost=EVERYTHING, unreadable=True):
-    """Return an attack that is a file of its own making."""
-    return Attack(name, {path: content}, lost, unreadable=unreadable)
+def file(name, path, content):
+    """Return an attack that is a file nobody can grade."""
+    return Attack(name, {path: content}, EVERYTHING, unreadable=True)
 
 
 def _in(folder, files):

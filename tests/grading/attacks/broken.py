@@ -50,7 +50,7 @@ ATTACKS = (
     attack("honest_keyboard", first="name = input('Your name? ')", last="input()"),
     # nothing, or little
     Attack("untouched", {"untouched.ipynb": notebook(OPEN.values())}, EVERYTHING),
-    Attack("no_cells", {"no_cells.ipynb": notebook([])}, EVERYTHING),
+    file("no_cells", "no_cells.ipynb", notebook([])),
     file("empty_file", "empty_file.ipynb", b""),
     file("cut_json", "cut_json.ipynb", notebook(HONEST.values())[:-40]),
     file("json_but_no_notebook", "json_but_no_notebook.ipynb", b'{"cells": 5}'),
@@ -59,17 +59,15 @@ ATTACKS = (
         "cells_of_numbers",
         "cells_of_numbers.ipynb",
         b'{"cells": [1, null, "a", {"cell_type": "code"}]}',
-        unreadable=False,
     ),
     file(
         "huge_number",
         "huge_number.ipynb",
         b'{"cells": [{"cell_type": "code", "source": ' + b"9" * 20_000 + b"}]}",
-        unreadable=False,
     ),
     file("a_picture", "a_picture.ipynb", b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 20),
     Attack("bom", {"bom.ipynb": b"\xef\xbb\xbf" + notebook(HONEST.values())}),
-    Attack("latin_1", {"latin_1.py": b"# caf\xe9\n" + "\n".join(HONEST.values()).encode()}, EVERYTHING),
+    Attack("latin_1", {"latin_1.py": b"# caf\xe9\n" + "\n".join(HONEST.values()).encode()}),
     Attack(
         "sources_as_lines",
         {

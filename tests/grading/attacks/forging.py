@@ -60,17 +60,16 @@ def found(sort):
 """
 
 
-#: the numbers of the requests that are open, read where the session keeps its last one
+#: replies with the number of the request that is open, as the session holds it
 _NUMBERED = """
 import gc, json, os
-def numbered(answer, after=range(3)):
+def numbered(answer):
     last = max((one["number"] for one in gc.get_objects() if type(one) is dict and type(one.get("number")) is int), default=0)
     for fd in range(3, 16):
-        for number in after:
-            try:
-                os.write(fd, (json.dumps({**answer, "number": last + number}) + chr(10)).encode())
-            except OSError:
-                pass
+        try:
+            os.write(fd, 2 * (json.dumps({**answer, "number": last}) + chr(10)).encode())
+        except OSError:
+            pass
 """
 
 
@@ -253,7 +252,6 @@ class F:
         numbered({{"outcomes": [{{"value": 1.0, "problem": "", "printed": ""}}]}})
         return 1.0
 stiffness = F()""",
-        lost=("why",),
     ),
     attack(
         "reply_of_a_million_names",

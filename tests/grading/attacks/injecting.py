@@ -26,7 +26,7 @@ def _link(name, target):
 
 
 _NOTEBOOK = notebook(HONEST.values())
-_BOMB = b"#" + b" " * (300 << 20)
+_BOMB = b"#" + b" " * (40 << 20)
 ATTACKS = (
     attack("html_in_a_problem", force=f"def force(x, k):\n    raise ValueError({_SCRIPT!r})"),
     attack("html_in_print", force=f"def force(x, k):\n    print({_SCRIPT!r})\n    return 1.0"),
@@ -58,12 +58,12 @@ ATTACKS = (
     attack(
         "bidirectional",
         force="def force(x, k):\n    print('\\u202e\\u2066\\u200b')\n    raise ValueError('\\u202eevil')",
-        why="why = '\\u202eb'",
+        why="why = '\\u202ea'",
     ),
     attack(
         "nul_and_surrogates",
         force="def force(x, k):\n    print('\\0\\ud800\\udfff')\n    raise ValueError('\\0\\udc80')",
-        why="why = 'b\\0\\ud800'",
+        why="why = 'a\\0\\ud800'",
     ),
     attack(
         "lines_in_texts",
@@ -99,7 +99,6 @@ ATTACKS = (
     attack('a\nb,"c"'),
     attack("\x1b[31mred"),
     attack("\u202etxt.exe"),
-    attack("..name.."),
     attack("a'b\"c&d"),
     attack(" spaces "),
     attack("-o"),
