@@ -43,6 +43,8 @@ class Reads:
         Names that it may bind or delete, and those of them that it binds anew whenever it runs to its end.
     alters : set of str
         Names with an attribute or item that it sets.
+    sets : set of str
+        Names that its functions bind, by ``global``.
     imports : dict of str to str
         Name to what it is in its module, ``{"np": "numpy", "x": "hapticlab.x"}``.
     star : bool
@@ -57,6 +59,7 @@ class Reads:
     binds: set = field(default_factory=set)
     rebinds: set = field(default_factory=set)
     alters: set = field(default_factory=set)
+    sets: set = field(default_factory=set)
     imports: dict = field(default_factory=dict)
     star: bool = False
     harmless: bool = False
@@ -80,13 +83,16 @@ def reads_of(node):
     """
     found = Reads(harmless=_is_harmless(node), rebinds=_rebound(node))
     _read_code(_compiled(node), found, later=False)
-    for part in ast.walk(node):
+    parts = list(ast.walk(node))
+    for part in parts:
         _read_part(part, found)
+    found.opaque |= not OPAQUE_NAMES.isdisjoint(found.now | found.later)
+    found.now |= {STATE[name] for name in found.now | found.later if name in STATE}
     found.rebinds -= found.now
     found.alters &= found.now | found.later
-    if _only_shows(node):
+    if isinstance(node, ast.Expr) and _only_shows(node, parts):
         found.shown = set(found.now)
-    elif any(map(_is_check, ast.walk(node))):
+    elif any(map(_is_check, parts)):
         unchecked = Reads()
         _read_code(_compiled(_Unchecked().visit(copy.deepcopy(node))), unchecked, later=False)
         found.shown = found.now - unchecked.now
@@ -109,7 +115,8 @@ class _Unchecked(ast.NodeTransformer):
 
 
 def _is_check(node):
-    return isinstance(node, ast.Call) and ast.unparse(node.func) == "hl.check"
+    name = node.func if isinstance(node, ast.Call) else None
+    return isinstance(name, ast.Attribute) and name.attr == "check" and isinstance(name.value, ast.Name) and name.value.id == "hl"
 
 
 def _read_code(code, found, later):
@@ -121,7 +128,9 @@ def _read_code(code, found, later):
             reads.add(step.argval)
         elif kind in ("STORE", "DELETE") and (target == "GLOBAL" or (target == "NAME" and code.co_name == "<module>")):
             found.binds.add(step.argval)
-            found.later.update({step.argval} if later else ())
+            if later:
+                found.later.add(step.argval)
+                found.sets.add(step.argval)
     for inner in filter(lambda constant: hasattr(constant, "co_code"), code.co_consts):
         at_once = inner.co_name in ("<listcomp>", "<setcomp>", "<dictcomp>") or not inner.co_flags & 2  # CO_NEWLOCALS: no class
         _read_code(inner, found, later or not at_once)
@@ -131,14 +140,14 @@ def _read_part(part, found):
     """Read what the names in code do not tell."""
     if isinstance(part, ast.Attribute | ast.Subscript) and not isinstance(part.ctx, ast.Load):
         found.alters.add(_root(part))
-    if isinstance(part, ast.Import | ast.ImportFrom):
+    if isinstance(part, ast.Attribute):
+        found.opaque |= part.attr in OPAQUE_ATTRIBUTES
+        found.now.update({STATE[part.attr]} if part.attr in STATE else ())
+    elif isinstance(part, ast.Import | ast.ImportFrom):
         base = f"{part.module or ''}." if isinstance(part, ast.ImportFrom) else ""
         found.star |= any(one.name == "*" for one in part.names) or base == "__future__."
         found.imports |= {one.asname or one.name.partition(".")[0]: base + one.name for one in part.names}
-    words = {getattr(part, "id", None)} | set(part.name.split(".") if isinstance(part, ast.alias) else ())
-    attributes = {getattr(part, "attr", None)}
-    found.opaque |= not (OPAQUE_NAMES.isdisjoint(words) and OPAQUE_ATTRIBUTES.isdisjoint(attributes))
-    found.now |= {STATE[word] for word in words | attributes if word in STATE}
+        found.opaque |= any(not OPAQUE_NAMES.isdisjoint((base + one.name).split(".")) for one in part.names)
 
 
 def _root(node):
@@ -171,11 +180,8 @@ def _stores_inside(node):
     return any(not isinstance(target, ast.Name) for target in getattr(node, "targets", ()))
 
 
-def _only_shows(node):
-    """Whether it only prints what is there, and does nothing else for it."""
-    acting = (ast.Call, ast.Await, ast.NamedExpr, ast.Yield, ast.Subscript)
-    acts = [part for part in ast.walk(node) if isinstance(part, acting)]
-    if not isinstance(node, ast.Expr) or not acts:
-        return isinstance(node, ast.Expr)
+def _only_shows(node, parts):
+    """Whether an expression only prints what is there, and does nothing else for it."""
+    acts = [part for part in parts if isinstance(part, ast.Call | ast.Await | ast.NamedExpr | ast.Yield | ast.Subscript)]
     shows = isinstance(node.value, ast.Call) and isinstance(node.value.func, ast.Name) and node.value.func.id in SHOWING
-    return shows and acts == [node.value]
+    return not acts or (shows and acts == [node.value])

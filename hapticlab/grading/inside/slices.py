@@ -28,6 +28,8 @@ class _Statement:
     binds: frozenset = frozenset()
     touches: frozenset = frozenset()
     alters: frozenset = frozenset()
+    later: frozenset = frozenset()
+    sets: frozenset = frozenset()
     star: bool = False
     harmless: bool = False
 
@@ -62,9 +64,10 @@ def needed(cells, names):
 
 def _statements(place, source):
     """Return the statements of a cell; of one that is no Python, none."""
+    flags = ast.PyCF_ALLOW_TOP_LEVEL_AWAIT
     try:
-        tree = compile(runnable(source), "", "exec", ast.PyCF_ONLY_AST | ast.PyCF_ALLOW_TOP_LEVEL_AWAIT, dont_inherit=True)
-        compile(runnable(source), "", "exec", ast.PyCF_ALLOW_TOP_LEVEL_AWAIT, dont_inherit=True)
+        tree = compile(runnable(source), "", "exec", ast.PyCF_ONLY_AST | flags, dont_inherit=True)
+        compile(tree, "", "exec", flags, dont_inherit=True)
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         return []
     found = []
@@ -83,7 +86,7 @@ def _merged(several):
     if len(several) == 1:
         return several[0]
     merged = Reads(star=any(one.star for one in several), opaque=any(one.opaque for one in several))
-    for name in ("now", "later", "binds", "alters", "imports"):  # nothing is bound anew for sure, nothing is only shown
+    for name in ("now", "later", "binds", "alters", "sets", "imports"):  # nothing is bound anew for sure, nothing is only shown
         for one in several:
             getattr(merged, name).update(getattr(one, name))
     return merged
@@ -106,9 +109,9 @@ def _number(statements, found):
         statement.alters = frozenset(read for read in statement.reads if read[0] in one.alters)
         for name in one.rebinds:
             count[name] += 1
-        kept = {(name, count.get(name, 0)) for name in one.binds}
-        statement.binds = frozenset(kept | {bound for bound in later if bound[0] in one.binds})
-        statement.star, statement.harmless = one.star, one.harmless
+        statement.sets = frozenset(bound for bound in later if bound[0] in one.sets)
+        statement.binds = frozenset((name, count.get(name, 0)) for name in one.binds) | statement.sets
+        statement.later, statement.star, statement.harmless = frozenset(later), one.star, one.harmless
     return last
 
 
@@ -118,7 +121,7 @@ def _changing(statements, imports):
     for statement in statements:
         for bound in statement.binds:
             binders.setdefault(bound, []).append(statement)
-    solid = set(binders)
+    solid = set(binders).difference(*(statement.sets for statement in statements))
     while True:
         lost = {
             bound
@@ -133,10 +136,7 @@ def _changing(statements, imports):
 
 def _is_solid(statement, reads, solid, imports):
     """Return whether what a statement binds can only be bound anew; a function that uses what changes can change that."""
-    parts = [part for node in statement.nodes for part in ast.walk(node)]
-    if any(isinstance(part, ast.FunctionDef | ast.Lambda) for part in parts) and (
-        statement.alters or len(statement.binds) > 1 or not reads <= solid
-    ):
+    if statement.later & (reads - solid | statement.alters):
         return False
     names = {name for name, _ in reads & solid} - {name for name, _ in reads - solid}
     return all(is_solid(node, names, imports) for node in statement.nodes)

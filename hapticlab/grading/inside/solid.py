@@ -43,14 +43,21 @@ def _is_solid(node, solid, imports):
     if isinstance(node, ast.Name):
         return node.id in solid
     if isinstance(node, ast.Call):
-        return _gives_solid(node.func, imports, solid) and all(
-            _is_solid(part, solid, imports) for part in [*node.args, *(keyword.value for keyword in node.keywords)]
-        )
+        given = [*node.args, *(keyword.value for keyword in node.keywords)]
+        return _gives_solid(node.func, imports, solid) and all(_is_kept(part, solid, imports) for part in given)
     if isinstance(node, ast.Attribute):
         return _is_solid(node.value, solid, imports)
     if isinstance(node, ast.BinOp | ast.UnaryOp | ast.BoolOp | ast.Compare | ast.IfExp | ast.Tuple | ast.JoinedStr):
         return all(_is_solid(part, solid, imports) for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr))
     return isinstance(node, ast.Constant | ast.Lambda | ast.FormattedValue)
+
+
+def _is_kept(node, solid, imports):
+    """Return whether what is given to a function never changes; a list that is written there is in nobody else's hands."""
+    parts = [node]
+    if isinstance(node, ast.List | ast.Dict):
+        parts = [part for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr)]
+    return all(_is_solid(part, solid, imports) for part in parts)
 
 
 def _gives_solid(function, imports, solid):
