@@ -1,13 +1,22 @@
 """Attackers beside honest students in one run: each earns what is honest of it, and nobody feels the others."""
 
+import csv
+import io
 import json
+import re
 import sys
+from html.parser import HTMLParser
 
 import pytest
+
+from hapticlab.course.labs import load_lab
+from hapticlab.grading import formats
+from hapticlab.grading.pages import write_pages
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="namespaces are Linux'; elsewhere there are only limits")
 
 if sys.platform == "linux":
+    from attacks import injecting
     from attacks.arena import ATTACKS, HONEST, QUICK, Arena
     from attacks.small_lab import POINTS
 
@@ -33,9 +42,9 @@ def reports(arena, graded):
 
 def test_the_corpus_is_what_it_says():
     assert len({one.name for one in ATTACKS}) == len(ATTACKS) >= 200
+    assert len({one.name for one in QUICK}) == len(QUICK) >= 100
     assert len(HONEST) > 10 and all(one.earned == 10 == sum(POINTS.values()) for one in HONEST)
-    assert sum(one.earned == 0 for one in QUICK) >= 10
-    assert len({one.lost for one in QUICK}) > 10
+    assert sum(one.earned == 0 for one in QUICK) >= 3 and len({one.lost for one in QUICK}) > 10
 
 
 def test_there_are_walls(graded):
@@ -66,9 +75,11 @@ def test_nothing_outside_was_reached(graded, arena):
 
 
 def test_honest_reports_are_the_same_without_attackers(reports, tmp_path):
-    with Arena(tmp_path, HONEST) as arena:
+    honest = [one for one in QUICK if one in HONEST]
+    with Arena(tmp_path, honest) as arena:
         alone = arena.by_attack(arena.graded(workers=1))
-    assert {name: report.to_json() for name, report in alone.items()} == {one.name: reports[one.name].to_json() for one in HONEST}
+    assert len(honest) > 3
+    assert {name: report.to_json() for name, report in alone.items()} == {one.name: reports[one.name].to_json() for one in honest}
 
 
 def test_reports_are_plain_text(graded):
@@ -79,6 +90,51 @@ def test_reports_are_plain_text(graded):
         for text in texts:
             text.encode()
             assert not set(text) & HARMFUL, (report.student, text)
+
+
+@pytest.mark.parametrize("name", ["csv", "csv-long", "nbgrader"])
+def test_no_spreadsheet_runs_what_they_wrote(graded, name):
+    cells = [cell for row in csv.reader(io.StringIO(formats.write(name, graded.reports))) for cell in row]
+    assert "force" in "".join(cells) or name == "nbgrader"
+    assert not [cell for cell in cells if cell[:1] in ("=", "+", "-", "@", "\t", "\r")]
+
+
+def test_a_terminal_shows_what_they_wrote(graded):
+    text = formats.write("text", graded.reports)
+    assert text.count("\n") > len(QUICK) and not set(text) & HARMFUL
+
+
+@pytest.mark.parametrize("name", ["gradescope", "prairielearn"])
+def test_other_systems_get_json(graded, name):
+    for report in graded.reports:
+        json.loads(formats.write(name, [report]), parse_constant=pytest.fail)
+
+
+class Page(HTMLParser):
+    """Collects what a page would do beside showing text."""
+
+    def __init__(self):
+        super().__init__()
+        self.active = []
+
+    def handle_starttag(self, tag, attributes):
+        if tag in ("script", "iframe", "object", "embed", "form", "base", "link"):
+            self.active.append(tag)
+        for name, value in attributes:
+            elsewhere = not name.startswith("xmlns") and re.match(r"\s*(javascript|data|https?):", value or "")
+            if name.startswith("on") or elsewhere:
+                self.active.append(f"{tag} {name}={value}")
+
+
+def test_no_page_runs_what_they_wrote(reports, arena, tmp_path):
+    shown = [report for name, report in reports.items() if name in {one.name for one in injecting.ATTACKS}]
+    write_pages(shown, tmp_path / "pages", lab=load_lab(arena.lab / "checks.py"))
+    written = sorted(path for path in tmp_path.rglob("*") if path.is_file())
+    assert len(written) > len(shown) and all(path.is_relative_to(tmp_path / "pages") for path in written)
+    for path in written:
+        page = Page()
+        page.feed(path.read_text("utf-8"))
+        assert not page.active, path.name
 
 
 @pytest.mark.slow
