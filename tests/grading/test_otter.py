@@ -65,7 +65,7 @@ def test_the_zip_installs_this_hapticlab_and_has_a_test_for_each_exercise(made):
         assert f"hapticlab=={cli.__version__}" in installed
 
 
-@pytest.mark.parametrize("number, wrong", [("01", WRONG["01"]), ("02", WRONG["02"]), ("02", {})])
+@pytest.mark.parametrize("number, wrong", [("01", {}), ("02", WRONG["02"])])
 def test_otter_gives_what_was_right(made, number, wrong, tmp_path):
     lab = LABS[number]
     write(tmp_path / lab.notebook.name, handed_in(students_notebook(made, lab), lab, wrong))
