@@ -56,9 +56,9 @@ class Submission:
 def find_submissions(paths, lab=None):
     """Return where the submissions are, one for each student; no notebook is opened.
 
-    A file is one student's. So is a folder or zip file that holds one notebook or script, or the notebook of the lab under its own
-    name, or folders of labs. In any other each notebook, script, zip file or folder is a student's; in a folder
-    ``submitted``, as nbgrader has it, each folder. Names as Moodle, Canvas and Gradescope give them are known.
+    A file is one student's. So is a folder or zip file that holds one notebook or script, or the notebook of the lab
+    under its own name, or folders of labs. In any other each notebook, script, zip file or folder is a student's; in a
+    folder ``submitted``, as nbgrader has it, each folder. Names as Moodle, Canvas and Gradescope give them are known.
 
     Parameters
     ----------

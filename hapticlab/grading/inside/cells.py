@@ -18,7 +18,7 @@ CELL_MAGIC = re.compile(r"(?:[ \t]*(?:#[^\n]*)?\n)*%%(\w+)[^\n]*")
 #: cell magics whose cell is Python that runs
 KEPT = {"time", "timeit", "capture", "prun", "memit"}
 TIMED = re.compile(r"([ \t]*(?:[\w., \t]+=)?)[ \t]*%time[ \t]+(?=\S)")
-PROMPT = re.compile(r"^(?:>>>|\.\.\.)(?: |$)|^In \[\d*\]: ?", re.MULTILINE)
+PROMPT = re.compile(r"^(?:>>>|\.\.\.)(?: |$)", re.MULTILINE)
 MOST_CHARACTERS = 300
 
 
@@ -72,7 +72,7 @@ def runnable(source):
     if magic:
         before = "\n" * magic.group().count("\n")
         return before + runnable(source[magic.end() :]) if magic.group(1) in KEPT else ""
-    first = re.match(r"(?:[ \t]*\n)*([ \t]*)(>>> |In \[)?", source)
+    first = re.match(r"(?:[ \t]*\n)*([ \t]*)(>>> )?", source)
     if first.group(2):
         source = PROMPT.sub("", source)
     if first.group(1):  # Jupyter runs a cell that is indented as a whole

@@ -30,7 +30,7 @@ class _Statement:
     alters: frozenset = frozenset()
     later: frozenset = frozenset()
     sets: frozenset = frozenset()
-    star: bool = False
+    always: bool = False
     harmless: bool = False
 
 
@@ -58,6 +58,10 @@ def needed(cells, names):
         return [(one.cell, one.first, one.last) for one in statements]
     last = _number(statements, found)
     imports = {name: what for one in found for name, what in one.imports.items()}
+    for one in statements:
+        one.always |= any(
+            name in imports for name, _ in one.alters
+        )  # who sets a part of a module sets it for everybody
     belongs = _closure(statements, {(name, last.get(name, 0)) for name in names}, _changing(statements, imports))
     return [(one.cell, one.first, one.last) for place, one in enumerate(statements) if place in belongs]
 
@@ -86,7 +90,14 @@ def _merged(several):
     if len(several) == 1:
         return several[0]
     merged = Reads(star=any(one.star for one in several), opaque=any(one.opaque for one in several))
-    for name in ("now", "later", "binds", "alters", "sets", "imports"):  # nothing is bound anew for sure, nothing is only shown
+    for name in (
+        "now",
+        "later",
+        "binds",
+        "alters",
+        "sets",
+        "imports",
+    ):  # nothing is bound anew for sure, nothing is only shown
         for one in several:
             getattr(merged, name).update(getattr(one, name))
     return merged
@@ -111,7 +122,7 @@ def _number(statements, found):
             count[name] += 1
         statement.sets = frozenset(bound for bound in later if bound[0] in one.sets)
         statement.binds = frozenset((name, count.get(name, 0)) for name in one.binds) | statement.sets
-        statement.later, statement.star, statement.harmless = frozenset(later), one.star, one.harmless
+        statement.later, statement.always, statement.harmless = frozenset(later), one.star, one.harmless
     return last
 
 
@@ -159,7 +170,7 @@ def _closure(statements, wanted, changing):
 
 
 def _belongs(one, wanted, changing):
-    return one.star or not wanted.isdisjoint(one.binds | one.alters) or _changes(one.touches & wanted, changing)
+    return one.always or not wanted.isdisjoint(one.binds | one.alters) or _changes(one.touches & wanted, changing)
 
 
 def _changes(names, changing):
