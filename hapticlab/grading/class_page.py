@@ -3,10 +3,10 @@
 from collections import Counter
 from statistics import mean, median
 
-from ..course.exercise import NOTED
+from .formats.words import judged, state
 from .page_figures import bars, shares
 from .page_text import clean
-from .student_page import STATES, state
+from .student_page import STATES
 
 #: students named under one mistake
 MOST_NAMED = 200
@@ -73,15 +73,11 @@ def _marks(graded):
     )
 
 
-def _judged(report):
-    return [one for one in report.exercises if one.kind not in NOTED]
-
-
 def _exercises(graded):
     """Return how each exercise went, the hardest one first in words."""
     rows = {}
     for _, report in graded:
-        for one in _judged(report):
+        for one in judged(report):
             rows.setdefault(one.name, dict.fromkeys(("right", "wrong", "no answer"), 0))[state(one)] += 1
     if not rows:
         return ""
@@ -111,7 +107,7 @@ def _mistakes(graded):
     """Return what students get wrong alike, the most common first, and how many are wrong in ways of their own."""
     found, unknown, order = {}, Counter(), []
     for address, report in graded:
-        for one in _judged(report):
+        for one in judged(report):
             order += [one.name] if one.name not in order else []
             if state(one) == "wrong" and one.slip:
                 found.setdefault((one.name, one.slip), []).append(link(address, report))
@@ -163,10 +159,10 @@ def _stopped(graded):
 
 def _students(pages):
     """Return everybody's mark and the way each exercise went."""
-    names = list(dict.fromkeys(one.name for _, report in pages for one in _judged(report)))
+    names = list(dict.fromkeys(one.name for _, report in pages for one in judged(report)))
     rows = []
     for address, report in pages:
-        went = {one.name: one for one in _judged(report)}
+        went = {one.name: one for one in judged(report)}
         marks = [_sign(went[name]) if name in went and not report.problem else "" for name in names]
         earned = "not graded" if report.problem else f"{report.earned:g} of {report.points:g}"
         rows.append((link(address, report), earned, *marks))

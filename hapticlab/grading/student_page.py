@@ -2,20 +2,12 @@
 
 from ..course.exercise import NOTED
 from .failing_case import failing_case
+from .formats.words import state
 from .page_text import BLOCK, clean
 
 #: how an exercise went -> the sign that is read with the word, or in its place
 STATES = {"right": "&#10003;", "wrong": "&#10007;", "no answer": "&#9675;", "noted": "&#9998;"}
 MOST_CELLS = 40
-
-
-def state(one):
-    """Return how an exercise went: "right", "wrong", "no answer", or "noted" of what carries no points."""
-    if one.kind in NOTED:
-        return "noted" if one.text.strip() else "no answer"
-    if one.cases and one.right == one.cases:
-        return "right"
-    return "wrong" if one.answered or one.ended else "no answer"
 
 
 def points(earned, of):

@@ -81,6 +81,6 @@ def _report(k, lab, name, found, random):
             several[0] if draw < skill else several[1] if draw > 0.9 else wrong[int(random.integers(len(wrong)))]
         )
     if k % 11 == 3:
-        exercises[1] = replace(none[1], ended="time", words="it ran out of time", printed="step 1\nstep 2\n")
+        exercises[1] = replace(none[1], answered=True, ended="time", words="it ran out of time", printed="step 1\nstep 2\n")
     cells = ((4, "NameError in line 3: name 'k_wall' is not defined"),) if k % 5 == 2 else ()
     return replace(blank, exercises=tuple(exercises), cells=cells)

@@ -14,11 +14,11 @@ from class_reports import class_of
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 from hapticlab.errors import CourseError
+from hapticlab.grading.formats.words import state
 from hapticlab.grading.page_figures import bounded, chart
 from hapticlab.grading.page_text import clean, file_name
 from hapticlab.grading.pages import write_pages
 from hapticlab.grading.report import ExerciseReport, Failing, Report
-from hapticlab.grading.student_page import state
 
 VOID = {"meta", "path", "rect", "circle", "br"}
 #: all that a page is made of: nothing here loads or runs anything
