@@ -22,6 +22,7 @@ VERSIONS = {
         "def forces(x, k):\n    return [k * one for one in x]",
         "def forces(x, k):\n    print('k =', k)\n    return np.multiply(k, x)",
     ),
+    "wall": ("wall = hl.wall()",),
     "stiffness": ("stiffness = 1462.5 / 2", "stiffness = np.float64(731.25)"),
     "why": ("why = 'B'", "why = 'b'"),
 }
@@ -30,7 +31,7 @@ WRONG = {
     "force": ("def force(x, k):\n    return k * x", "def force(x, k):\n    return -k * (x - 0.01)", "force = None"),
     "energy": ("def energy(x, k):\n    return k * x[-1]**2 / 2", "def energy(x, k):\n    return nothing"),
     "forces": ("def forces(x, k):\n    return -k * x", "def forces(x, k):\n    return 1000 * k * x", "def forces(x, k):"),
-    "wall": ("wall = hl.wall()", "wall = 3"),
+    "wall": ('k, x_o = hl.parameters("k x_o", units="N/m m")\nwall = hl.Scene(force=-k * (x(n) - x_o))', "wall = 3"),
     "stiffness": ("stiffness = 0.73125", "stiffness = '731'"),
     "why": ("why = 'a'", "why = 'why not'"),
 }
