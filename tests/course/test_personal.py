@@ -1,0 +1,107 @@
+"""Labs with own numbers: handed out, answered, checked and marked."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+import hapticlab as hl
+from hapticlab.course.labs import find_labs
+from hapticlab.course.marks import hidden_cases, marks, own_numbers
+from hapticlab.course.notebook import code_of, read, solved
+from hapticlab.course.personal import personal_labs, personal_notebook
+from hapticlab.errors import CourseError
+
+ANSWERS = Path(__file__).parents[1] / "instructor"
+WALL, COUPLER = (next(lab for lab in find_labs() if lab.number == number) for number in ("02", "06"))
+#: the formulas of the book: Eq. (23.10) with the hold alone, and with a coupler in series with a wall
+FORMULAS = {
+    "damping_that_pays": (WALL, lambda K_OWN, T_OWN: K_OWN * T_OWN / 2),
+    "longest_period": (COUPLER, lambda K_WALL, K_FELT: 2 * (0.1 - 0.02) / (K_FELT * K_WALL / (K_WALL - K_FELT))),
+}
+
+
+@pytest.mark.parametrize("name", FORMULAS)
+def test_each_student_earns_by_own_numbers_and_by_no_others(name):
+    folder, formula = FORMULAS[name]
+    lab, answers = folder.lab(), ANSWERS / folder.name
+    values = {f"s{number}": formula(**own_numbers(lab, answers, 7, f"s{number}")) for number in range(40)}
+    assert len({f"{value:.6g}" for value in values.values()}) > 25
+    for student in ("s1", "s2"):
+        hidden = hidden_cases(lab, answers, 7, student, personal=True)
+        tried = [value for value in values.values() if abs(value / values[student] - 1) > 2e-3]
+        earned = [
+            mark.earned
+            for value in (values[student], *tried)
+            for mark in marks(lab, {name: value}, hidden)
+            if mark.exercise == name
+        ]
+        assert earned == [1] + [0] * len(tried)
+
+
+@pytest.mark.parametrize("folder", [WALL, COUPLER], ids=lambda folder: folder.number)
+def test_a_personal_notebook_differs_in_its_numbers_alone(folder):
+    numbers = own_numbers(folder.lab(), ANSWERS / folder.name, 7, "ada")
+    plain, own = read(folder.notebook), personal_notebook(folder, ANSWERS / folder.name, 7, "ada")
+    changed = [(old, new) for old, new in zip(plain["cells"], own["cells"], strict=True) if old != new]
+    assert len(changed) == 1
+    old, new = ("".join(cell["source"]).splitlines() for cell in changed[0])
+    lines = {line.partition(" = ")[0]: line for line in new}
+    assert [lines[name].partition("  #")[0] for name in numbers] == [f"{name} = {number!r}" for name, number in numbers.items()]
+    assert [line for line in old if line not in new] and len(old) == len(new)
+    assert personal_notebook(folder, ANSWERS / folder.name, 8, "ada") != own, "the seed is part of it"
+
+
+def test_what_is_handed_out_is_checked_without_the_numbers_that_came_with_the_lab(tmp_path, monkeypatch, capsys):
+    states = personal_labs(["ada", "bob"], tmp_path, ANSWERS, seed=7, only=["02", "08"])
+    assert set(states.values()) == {"new"} and len(states) == 8
+    assert {path.name for path in (tmp_path / "ada").iterdir()} == {"02_virtual_wall", "08_contact"}
+    monkeypatch.chdir(tmp_path / "ada" / "02_virtual_wall")
+    names = {}
+    cell = next(cell for cell in code_of(read("02_virtual_wall.ipynb")) if "damping_that_pays = None" in cell)
+    exec(cell, names)
+    assert {name: names[name] for name in ("K_OWN", "T_OWN")} == own_numbers(WALL.lab(), ANSWERS / WALL.name, 7, "ada")
+    assert hl.check("02.damping_that_pays", names["K_OWN"] * names["T_OWN"] / 2).passed
+    assert not hl.check("02.damping_that_pays", None).passed
+    assert not hl.check("02.who_pays", "a").passed
+    said = capsys.readouterr().out.splitlines()
+    assert said[0] == "02.damping_that_pays: noted; it is judged when handed in"
+    assert said[2] == "02.who_pays: not right yet (1 point)"
+    other = tmp_path / "ada" / "08_contact"
+    for path in other.iterdir():  # without own numbers, as it came
+        assert path.read_bytes() == (WALL.path.parent / other.name / path.name).read_bytes()
+
+
+def test_what_a_student_wrote_stays(tmp_path):
+    personal_labs(["ada"], tmp_path, ANSWERS, only=["02"])
+    path = tmp_path / "ada" / WALL.name / "02_virtual_wall.ipynb"
+    notebook = json.loads(path.read_text("utf-8"))
+    path.write_text(json.dumps({**notebook, "cells": []}), "utf-8")
+    states = personal_labs(["ada"], tmp_path, ANSWERS, only=["02"])
+    assert sorted(states.values()) == ["as it came", "kept"]
+    assert json.loads(path.read_text("utf-8"))["cells"] == []
+
+
+def test_a_solution_goes_into_a_personal_notebook_without_its_own_numbers():
+    own = personal_notebook(WALL, ANSWERS / WALL.name, 7, "ada")
+    plain = solved(read(WALL.notebook), (ANSWERS / WALL.name / "solution.py").read_text("utf-8"), ["damping_that_pays"])
+    cells = [[cell for cell in code_of(one) if "damping_that_pays =" in cell] for one in (plain, own)]
+    assert cells[0][0].count("K_OWN =") == cells[1][0].count("K_OWN =") == 1
+    assert "damping_that_pays = K_OWN * T_OWN / 2" in cells[0][0]
+
+
+@pytest.mark.parametrize(
+    "student", ["", ".", "..", "a/b", "a\\b", " ada", "ada.", "nul", "COM1.txt", "a:b", "a\nb", "a\x00b", "ada\n"]
+)
+def test_a_name_that_can_be_no_folder_is_refused(student, tmp_path):
+    with pytest.raises(CourseError, match="can name no folder"):
+        personal_labs(["bob", student], tmp_path, ANSWERS)
+    assert list(tmp_path.iterdir()) == [], "and nothing was written"
+
+
+@pytest.mark.parametrize(("others", "words"), [({"only": ["77"]}, "no answers of a lab 77"), ({"tree": "."}, "holds no NN_name")])
+def test_labs_that_cannot_be_handed_out_are_refused(others, words, tmp_path):
+    with pytest.raises(CourseError, match=words):
+        personal_labs(["ada"], tmp_path, **{"tree": ANSWERS, **others})
+    with pytest.raises(CourseError, match="differ in capitals alone"):
+        personal_labs(["ada", "ADA"], tmp_path, ANSWERS)
