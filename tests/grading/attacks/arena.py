@@ -73,7 +73,8 @@ class Arena:
             "SOCKET": name,
             "TOKEN": TOKEN,
         }
-        self.names = {student_of(one.write(self.submissions, **surroundings).name): one for one in self.attacks}
+        written = [(one.write(self.submissions, **surroundings).name, one) for one in self.attacks]
+        self.names = {student_of(name, self.lab.name): one for name, one in written}
         self.before = self.handed_in()
         return self
 
