@@ -2,6 +2,7 @@
 
 import json
 import os
+import secrets
 import select
 import socket
 import subprocess
@@ -23,6 +24,8 @@ PERIOD = 0.03
 #: of a reply, beside its values
 FRAME = 1 << 16
 LEVELS = "namespaces", "user", "none"
+#: lists, dicts and quotes of a reply: what each costs to read is far more than its bytes
+MOST_PARTS = 2_000_000
 PACKAGE = Path(hapticlab.__file__).resolve().parent
 #: one thread, as a zygote forks; no port but a simulated one; the same order of sets in every run
 ENVIRONMENT = {
@@ -103,8 +106,16 @@ class Starter:
         self.control.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 20)
         arguments = [sys.executable, "-s", "-c", PROGRAM, str(theirs.fileno()), str(PACKAGE.parent)]
         cache = {name: os.environ[name] for name in ("HOME", "XDG_CACHE_HOME") if name in os.environ}
-        null, environment = subprocess.DEVNULL, {**cache, **ENVIRONMENT}
-        self.process = subprocess.Popen(arguments, env=environment, stdin=null, stdout=null, pass_fds=[theirs.fileno()])
+        self.mark = secrets.token_hex(16)
+        # a session of its own: an interrupt at the keyboard is for the grader, which then ends it in order
+        self.process = subprocess.Popen(
+            arguments,
+            env={**cache, **ENVIRONMENT, watch.MARK: self.mark},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            pass_fds=[theirs.fileno()],
+            start_new_session=True,
+        )
         theirs.close()
         self.user = _free_user(self.process.pid) if _is_root() and self.level != "none" else 0
         self.others = watch.threads_of(os.getuid()) if self.level == "none" else 0
@@ -164,6 +175,7 @@ class Starter:
             self.order("end")
         except OSError:  # it is gone: at level none, student's code can kill it
             self.process.wait()
+            watch.kill_marked(self.mark)
 
     def close(self):
         """End the session and the zygote."""
@@ -281,6 +293,8 @@ class Session:
     def parsed(self, line):
         """Return the reply to the last request, or None for one before it."""
         try:
+            if sum(map(line.count, (b"[", b"{", b'"'))) > MOST_PARTS:
+                raise SessionEnded("garbage")
             reply = json.loads(line)
             number = reply.pop("number")
         except (ValueError, RecursionError, KeyError, AttributeError, TypeError):
@@ -294,6 +308,8 @@ class Session:
             raise SessionEnded("processes")
         if watch.memory(found, self.starter.held) > self.limits.memory:
             raise SessionEnded("memory")
+        if self.starter.level != "namespaces" and watch.size(self.folder.name) > self.limits.scratch:
+            raise SessionEnded("flood")
 
     def close(self):
         """Kill all processes of the session and delete what it wrote."""

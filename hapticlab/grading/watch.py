@@ -8,6 +8,9 @@ from pathlib import Path
 PROC = Path("/proc")
 PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 
+#: in the environment of a zygote and of all it forks; proc_pid_environ(5) tells it also where a program deleted its own
+MARK = "HAPTICLAB_SESSIONS"
+
 
 def descendants(root):
     """Return the process ids below a process that still run; zombies left aside.
@@ -81,6 +84,24 @@ def kill_descendants(root):
     for process in descendants(root):
         with suppress(ProcessLookupError):
             os.kill(process, signal.SIGKILL)
+
+
+def kill_marked(mark):
+    """Kill all processes that began, or whose parents began, with a mark in their environment."""
+    for entry in filter(str.isdigit, os.listdir(PROC)):
+        with suppress(OSError):
+            if f"{MARK}={mark}".encode() in (PROC / entry / "environ").read_bytes():
+                os.kill(int(entry), signal.SIGKILL)
+
+
+def size(folder):
+    """Return what a folder holds on the disk [bytes]."""
+    total = 0
+    for where, _, names in os.walk(folder):
+        for name in names:
+            with suppress(OSError):
+                total += os.lstat(os.path.join(where, name)).st_blocks * 512
+    return total
 
 
 def threads_of(user):

@@ -2,11 +2,23 @@
 
 import pytest
 
+from hapticlab.errors import CourseError
 from hapticlab.grading.limits import MIB, Limits
 from hapticlab.grading.starter import SessionEnded, start
+from hapticlab.grading.watch import descendants
 
 LIMITS = Limits(seconds=1.0, memory=300 * MIB, processes=16, scratch=4 * MIB, answer=MIB)
-IMPORTS = "import os, signal, socket, stat, subprocess, sys, time"
+IMPORTS = """
+import ctypes, os, signal, stat, time
+def fork():
+    try:
+        return os.fork()
+    except OSError:
+        return -1
+def hold(size):
+    kept = os.urandom(size)
+    time.sleep(600)
+"""
 FILE = "aGFsbG8="  # hallo
 
 
@@ -25,9 +37,15 @@ def loaded(starter, *cells):
     return session
 
 
+def value(session, name):
+    """Return what is under a name."""
+    (outcome,) = session.ask({"do": "evaluate", "name": name, "kind": "value", "givens": [{}]}, 10)["outcomes"]
+    return outcome["value"]
+
+
 def ended(starter, body, seconds=10.0):
     """Return why a session ended whose answer has this body."""
-    with loaded(starter, f"{IMPORTS}\ndef f(x):\n    {body}") as session, pytest.raises(SessionEnded) as caught:
+    with loaded(starter, f"{IMPORTS}def f(x):\n    {body}") as session, pytest.raises(SessionEnded) as caught:
         session.ask({"do": "evaluate", "name": "f", "kind": "function", "givens": [{"x": 1.0}]}, seconds)
     return caught.value.reason
 
@@ -40,18 +58,66 @@ def test_a_function_answers_each_given(starter):
     assert second["value"] is None and "keep the names" in second["problem"]
 
 
-@pytest.mark.parametrize(
-    "body, reason",
-    [
-        ("os._exit(0)", "exit"),
-        ("os.abort()", "signal 6"),
-        ("os.kill(os.getpid(), signal.SIGKILL)", "signal 9"),
-        ("[os.write(k, b'{[\\n') for k in range(64) if stat.S_ISSOCK(os.fstat(k).st_mode)]", "garbage"),
-    ],
-)
-def test_how_it_ended(starter, body, reason):
-    assert ended(starter, body) == reason
+SOCKET = "next(k for k in range(64) if stat.S_ISSOCK(os.fstat(k).st_mode))"
+ENDS = {
+    "os._exit(0)": "exit",
+    "os.abort()": "signal 6",
+    "os.kill(os.getpid(), signal.SIGKILL)": "signal 9",
+    "ctypes.string_at(0)": "signal 11",
+    f"os.write({SOCKET}, b'{{[\\n')": "garbage",
+    f"os.write({SOCKET}, b'[' * 100_000 + b'\\n')": "garbage",
+    f"os.write({SOCKET}, b'1' * 5000 + b'\\n')": "garbage",
+    f"[os.write({SOCKET}, bytes(1 << 16)) for _ in iter(int, 1)]": "flood",
+    "[fork() for _ in iter(int, 1)]": "processes",
+    "[fork() or hold(1 << 26) for _ in range(8)] and time.sleep(60)": "memory",
+    "os.closerange(3, 64) or time.sleep(60)": "time",
+    "time.sleep(60)": "time",
+}
 
 
-def test_a_hang_ends_at_its_deadline(starter):
-    assert ended(starter, "time.sleep(1e9)", seconds=0.3) == "time"
+@pytest.mark.parametrize("body", ENDS)
+def test_how_it_ended(starter, body):
+    assert ended(starter, body, 1.0 if ENDS[body] == "time" else 20.0) == ENDS[body]
+    with loaded(starter, "k = 2.5") as session:
+        assert value(session, "k") == 2.5
+
+
+def test_nothing_outlives_a_session(starter):
+    orphan = "if fork() == 0:\n    os.setsid()\n    if fork() == 0:\n        time.sleep(600)\n    os._exit(0)\nos.wait()"
+    with loaded(starter, IMPORTS + orphan):
+        assert len(descendants(starter.process.pid)) == 3  # keeper, session, orphan
+    assert descendants(starter.process.pid) == []
+
+
+def test_a_reply_sent_twice_is_no_reply_to_the_next_request(starter):
+    twice = f"os.write({SOCKET}, b'{{\"number\": 3, \"outcomes\": [{{\"value\": 7}}]}}\\n' * 2)"
+    with loaded(starter, f"{IMPORTS}def f(x):\n    {twice}\n    return x\nk = 2.5") as session:
+        assert session.ask({"do": "evaluate", "name": "f", "kind": "function", "givens": [{"x": 1.0}]}, 10) == {
+            "outcomes": [{"value": 7}]
+        }
+        assert value(session, "k") == 2.5
+
+
+def test_files_are_bounded(starter):
+    write = "for k in range(100):\n    open(str(k), 'wb').write(bytes(1 << 20))\nwhile True: pass"
+    with starter.session(LIMITS) as session:
+        session.ask({"do": "load", "cells": [write], "files": {}}, 10)
+        if starter.level == "namespaces":
+            assert "No space left" in session.ask({"do": "run", "cell": 0}, 10)["problem"]
+        else:
+            with pytest.raises(SessionEnded, match="flood"):
+                session.ask({"do": "run", "cell": 0}, 10)
+
+
+def test_a_zygote_that_was_killed_is_started_anew():
+    with start("none") as starter:
+        kill = f"{IMPORTS}def f(x):\n    if fork(): os.kill({starter.process.pid}, signal.SIGKILL)\n    time.sleep(600)"
+        with loaded(starter, kill) as session, pytest.raises(SessionEnded):
+            session.ask({"do": "evaluate", "name": "f", "kind": "function", "givens": [{"x": 1.0}]}, 0.5)
+        with loaded(starter, "k = 2.5") as session:
+            assert value(session, "k") == 2.5
+
+
+def test_a_level_that_is_none_is_named():
+    with pytest.raises(CourseError, match="needs one of auto, namespaces, user, none"):
+        start("docker")

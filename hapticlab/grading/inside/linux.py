@@ -11,7 +11,7 @@ NOSUID, NODEV, NOEXEC, BIND, RECURSIVE, PRIVATE, DETACH = 2, 4, 8, 4096, 16384, 
 # mount_setattr(2)
 MOUNT_SETATTR, AT_FDCWD, AT_RECURSIVE, ATTR_RDONLY, ATTR_NOSUID, ATTR_NODEV = 442, -100, 0x8000, 1, 2, 4
 # prctl(2)
-SET_DUMPABLE, SET_SECCOMP, CAPBSET_DROP, SET_CHILD_SUBREAPER, SET_NO_NEW_PRIVS = 4, 22, 24, 36, 38
+SET_PDEATHSIG, SET_DUMPABLE, SET_SECCOMP, CAPBSET_DROP, SET_CHILD_SUBREAPER, SET_NO_NEW_PRIVS = 1, 4, 22, 24, 36, 38
 CAPABILITY_VERSION_3 = 0x20080522  # capget(2)
 
 _libc = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
@@ -61,6 +61,11 @@ def become_subreaper():
 def forbid_dumps():
     """Forbid other processes of the user to trace this one and to read its memory."""
     _call("prctl", SET_DUMPABLE, 0, 0, 0, 0)
+
+
+def die_with_parent():
+    """Be killed where the parent ends; a change of the user forgets it."""
+    _call("prctl", SET_PDEATHSIG, 9, 0, 0, 0)
 
 
 def drop_privileges():

@@ -19,6 +19,7 @@ import hapticlab
 
 from ...course import check as checks
 from ...course.evaluate import evaluate
+from . import linux
 from .cells import fresh_names, run_cell
 from .protocol import reply, requests
 from .slices import needed, run_pieces
@@ -84,6 +85,7 @@ class Session:
             return self.evaluated(request)
         child = os.fork()
         if child == 0:
+            linux.die_with_parent()
             reply(self.output, request["number"], self.evaluated(request))
             os._exit(DONE)
         status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])

@@ -12,7 +12,7 @@ import socket
 import sys
 from contextlib import suppress
 
-from ..watch import kill_descendants
+from ..watch import MARK, kill_descendants
 from . import linux, sandbox
 from .keeper import keep, prepare
 
@@ -32,6 +32,7 @@ def main(control):
     """
     control = socket.socket(fileno=control)
     linux.become_subreaper()
+    del os.environ[MARK]
     keeper = user = 0
     while True:
         message, descriptors, *_ = socket.recv_fds(control, 1 << 20, 2)
@@ -92,6 +93,7 @@ def preload():
             getattr(package, name)
         except ImportError:
             continue  # an optional dependency is not installed
+    importlib.import_module("tqdm").tqdm.monitor_interval = 0  # else its first bar starts a thread
     package.parameters("k", units="N/m")
     package.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(package.wall()(k=150.0, x_o=0.01), duration=0.01)
     sys.modules["hapticlab.course.felt"].felt(package.wall()(k=150.0, x_o=0.01), x=[0.0, 0.012])
@@ -143,6 +145,7 @@ def become_session(request, channel):
     os.setsid()
     linux.close_all_but(2, channel)
     sandbox.enter(request)
+    linux.die_with_parent()
     null = os.open(os.devnull, os.O_RDWR)
     for standard in (0, 1, 2):
         os.dup2(null, standard)
