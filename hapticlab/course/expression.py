@@ -17,7 +17,7 @@ from sympy.core.function import AppliedUndef
 
 from ..errors import UnitsError
 from ..scene.symbols import delay, n
-from ..scene.units import agree, dimension, dimension_of, si_name
+from ..scene.units import agree, dimension, si_name
 from .plain import NotPlain, a
 
 #: how far an equation may be from a straight line in what it is solved for, of its largest term
@@ -71,8 +71,8 @@ def values(answer, at, solve_for=()):
     return solved[0] if isinstance(solve_for, str) else dict(zip(names, solved, strict=True))
 
 
-def unit_remark(answer, unit):
-    """Return what is wrong with the units of an expression whose symbols all carry one, or an empty text.
+def unit_remark(answer, unit=""):
+    """Return what is wrong with the units of an expression or an equation whose symbols all carry one, or an empty text.
 
     Examples
     --------
@@ -80,19 +80,24 @@ def unit_remark(answer, unit):
     >>> k, b = hl.parameters("k b", units="N/m N*s/m")
     >>> unit_remark(k * hl.x(hl.n) ** 2, "N")
     'By the units of its symbols it is in N*m, needs N.'
+    >>> unit_remark(b * hl.x(hl.n) + k * hl.x(hl.n))[:65]
+    'By the units of its symbols: b*x(n) is in N*s but k*x(n) is in N.'
     """
     terms = answer.args if isinstance(answer, sp.Eq) else [answer]
-    if not unit or not all(isinstance(term, sp.Expr) for term in terms):
-        return ""
-    if not all(hasattr(node, "unit") or hasattr(type(node), "unit") for term in terms for node in symbols(term)):
+    if not all(isinstance(term, sp.Expr) and all(map(_has_unit, symbols(term))) for term in terms):
         return ""
     try:
-        found = agree(terms, "its units") if len(terms) > 1 else dimension_of(terms[0], "its units")
+        found = agree(terms, "By the units of its symbols")
     except UnitsError as problem:
-        return f"{problem}"
-    if found is None or len(terms) > 1 or found == dimension(unit):
+        return str(problem)
+    if not unit or isinstance(answer, sp.Eq) or found in (None, dimension(unit)):
         return ""
     return f"By the units of its symbols it is in {si_name(found)}, needs {unit}."
+
+
+def _has_unit(node):
+    node = node.expr if isinstance(node, sp.Derivative) else node
+    return hasattr(node, "unit") or hasattr(type(node), "unit")
 
 
 def _expression(answer):

@@ -131,6 +131,7 @@ def test_an_equation_of_motion_is_right_however_it_is_written(same):
         ([sp.Eq(m * z.diff(t, 2), 0), sp.Eq(z, 0)], "it is 2 equations; needs 1, which are solved for z''"),
         (hl.wall(), "it is a Scene, needs an expression"),
         (sp.Eq(m * z.diff(t, 2), -k * (x(t) - z) + b * z.diff(t)), "The sign is turned."),
+        (sp.Eq(z.diff(t, 2), k * (x(t) - z) - b * z.diff(t)), "Derivative(z(t), (t, 2)) is in m/s^2 but "),
     ],
 )
 def test_a_wrong_equation_is_told_why(answer, words):

@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 import pytest
+import sympy as sp
 
 from hapticlab.course.check import checked
 from hapticlab.course.exercise import JUDGED, Exercise
@@ -137,6 +138,17 @@ def wrong_answers(exercise, right):
     elif exercise.kind == "scene":
         scene = right if hasattr(right, "force") else right()
         yield type(scene)(force=-scene.force, eom=scene.eom, watch=scene.watch, values=scene.values)
+    elif exercise.kind == "expression":
+        yield sp.Eq(right.lhs, -right.rhs) if isinstance(right, sp.Eq) else -right
+    elif exercise.kind == "plot":
+        yield lambda **given: _relabelled(right(**given), "x [m]")
+        yield lambda **given: _relabelled(right(**given), "x")
+
+
+def _relabelled(figure, label):
+    for axes in figure.axes:
+        axes.set(xlabel=label, ylabel=label)
+    return figure
 
 
 def _scaled(value, factor):
