@@ -74,7 +74,7 @@ def find_submissions(paths, lab=None):
     Raises
     ------
     CourseError
-        For a path that is not there, or no zip file.
+        For a path that is not there.
 
     Examples
     --------
@@ -108,12 +108,15 @@ def _found(path, lab):
     if path.is_dir():
         entries, name = folder_entries(path), path.name
     elif path.suffix.lower() == ".zip":
-        entries, name = zip_entries(Entry(path, (path.name,))), path.stem
+        try:
+            entries, name = zip_entries(Entry(path, (path.name,))), path.stem
+        except CourseError as problem:  # of a class or of one student: the others are graded
+            return [replace(_source(path.name, path.name, [], lab), problem=str(problem))]
     else:
         owner = below[0] if len(below) > 1 else path.parent.name if is_lab(path.name, lab) else path.name
         return [_source(owner, path.name, [Entry(path, (path.name,))], lab)]
-    if below:
-        return [_source(below[0], path.name, entries, lab)]
+    if below or is_of_system(path.name):
+        return [_source(below[0] if below else path.name, path.name, entries, lab)]
     tree = [_lifted(entry) for entry in entries if len(entry.parts) > 2 and entry.parts[0] == TREE]
     if tree or path.name == TREE:
         return _each(tree or entries, lab)

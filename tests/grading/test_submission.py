@@ -1,0 +1,359 @@
+"""Submissions as classes hand them in, and as nobody should: real files, links, fifos and zip files."""
+
+import hashlib
+import io
+import json
+import os
+import stat
+import struct
+import sys
+import zipfile
+
+import pytest
+
+from hapticlab.course.labs import find_labs
+from hapticlab.course.notebook import code_of
+from hapticlab.course.notebook import read as read_notebook
+from hapticlab.errors import CourseError
+from hapticlab.grading import archives
+from hapticlab.grading.inside.cells import run_cell
+from hapticlab.grading.submission import find_submissions, lab_of, read
+
+LAB = "02_virtual_wall"
+
+
+def notebook(*sources):
+    cells = [{"cell_type": "code", "source": source, "metadata": {}, "outputs": []} for source in sources]
+    return json.dumps({"cells": [{"cell_type": "markdown", "source": "# Walls"}, *cells], "nbformat": 4}).encode()
+
+
+def fill(folder, files):
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return folder
+
+
+def zipped(files, path=None):
+    held = io.BytesIO()
+    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    if path is None:
+        return held.getvalue()
+    path.write_bytes(held.getvalue())
+    return path
+
+
+def handed(*paths, lab=LAB):
+    """Return student to (cells, problem)."""
+    sources = find_submissions(paths, lab)
+    found = {source.student: read(source) for source in sources}
+    assert len(found) == len(sources)
+    assert all(one.cells or one.problem for one in found.values())
+    assert all(len(one.sha256) == 64 for one in found.values())
+    return {student: (one.cells, one.problem) for student, one in found.items()}
+
+
+def whose(*paths, lab=LAB):
+    """Return student to the first cell, which says whose it is."""
+    found = handed(*paths, lab=lab)
+    assert not any(problem for _, problem in found.values()), found
+    return {student: cells[0] for student, (cells, _) in found.items()}
+
+
+ADA, BOB = notebook("ada"), notebook("bob")
+
+
+@pytest.mark.parametrize("packed", [False, True], ids=["folder", "zip"])
+@pytest.mark.parametrize(
+    ("files", "expected"),
+    [
+        ({"ada.ipynb": ADA, "bob.ipynb": BOB, "roster.csv": "x"}, {"ada": "ada", "bob": "bob"}),
+        ({"ada.ipynb": ADA, "bob.py": "bob"}, {"ada": "ada", "bob": "bob"}),
+        ({"ada/x.ipynb": ADA, "bob/y.ipynb": BOB, "bob/data.csv": "1"}, {"ada": "ada", "bob": "bob"}),
+        ({"ada/x.ipynb": ADA, "bob.ipynb": BOB}, {"ada": "ada", "bob": "bob"}),
+        ({f"{LAB}_ada.ipynb": ADA, f"bob-{LAB}.ipynb": BOB}, {"ada": "ada", "bob": "bob"}),
+        ({f"ada/{LAB}/{LAB}.ipynb": ADA, f"bob/{LAB}/{LAB}.ipynb": BOB}, {"ada": "ada", "bob": "bob"}),
+        ({f"submitted/ada/{LAB}/w.ipynb": ADA, f"submitted/bob/{LAB}/w.ipynb": BOB}, {"ada": "ada", "bob": "bob"}),
+        (
+            {f"submitted/ada/{LAB}/{LAB}.ipynb": ADA, f"source/{LAB}/{LAB}.ipynb": BOB, "gradebook.db": "x"},
+            {"ada": "ada"},
+        ),
+        (
+            {"Ada L_12_assignsubmission_file_/x.ipynb": ADA, "Bob_13_assignsubmission_file_/sub/y.ipynb": BOB},
+            {"Ada L_12": "ada", "Bob_13": "bob"},
+        ),
+        ({"Ada L_12_assignsubmission_file_/x.ipynb": ADA}, {"Ada L_12": "ada"}),
+        (
+            {"lovelaceada_12_345_x-1.ipynb": ADA, "lovelaceada_12_346_data.csv": "", "bobb_LATE_9_8_y.py": "bob"},
+            {"lovelaceada_12": "ada", "bobb_9": "bob"},
+        ),
+        ({"export/submission_77/x.ipynb": ADA, "export/submission_metadata.yml": "x"}, {"submission_77": "ada"}),
+        ({"ada.zip": zipped({"x.ipynb": ADA}), "bob.zip": zipped({"deep/er/y.py": "bob"})}, {"ada": "ada", "bob": "bob"}),
+        ({"ada/w.zip": zipped({f"{LAB}.ipynb": ADA, "x.png": "1"}), "bob/y.py": "bob"}, {"ada": "ada", "bob": "bob"}),
+        ({"ada/x.ipynb": ADA, "ada/.ipynb_checkpoints/x-checkpoint.ipynb": BOB, "bob/b.py": "bob"}, {"ada": "ada", "bob": "bob"}),
+        ({"ada/x.ipynb": ADA, "__MACOSX/ada/._x.ipynb": BOB, "bob/b.py": "bob", "bob/checks.py": "1"}, {"ada": "ada", "bob": "bob"}),
+        ({"ada/x.ipynb.txt": ADA, "bob/y.IPYNB": BOB}, {"ada": "ada", "bob": "bob"}),
+        ({"ada/01_motion_to_force.ipynb": BOB, f"ada/{LAB}.ipynb": ADA, "bob/b.py": "bob"}, {"ada": "ada", "bob": "bob"}),
+        ({f"ada/{LAB}.ipynb": ADA, f"ada/old/{LAB}.ipynb": BOB, "bob/b.py": "bob"}, {"ada": "ada", "bob": "bob"}),
+        (
+            {"ada/a.ipynb": notebook("ada", "hl.check('02.k', k)"), "ada/b.ipynb": notebook("x", "hl.check('01.k', k)"), "bob/b.py": "bob"},
+            {"ada": "ada", "bob": "bob"},
+        ),
+        ({"ada/a.ipynb": ADA, "ada/b.ipynb": ADA, "bob/b.py": "bob"}, {"ada": "ada", "bob": "bob"}),
+    ],
+)  # fmt: skip
+def test_a_class_is_found(tmp_path, files, expected, packed):
+    path = zipped(files, tmp_path / "class.zip") if packed else fill(tmp_path / "class", files)
+    assert whose(path) == expected
+
+
+@pytest.mark.parametrize(
+    ("files", "named"),
+    [
+        ({"x.ipynb": ADA}, "ada"),
+        ({"x.py": "ada"}, "ada"),
+        ({f"{LAB}.ipynb": ADA, "scratch.ipynb": BOB, "helper.py": "b"}, "ada"),
+        ({f"{LAB} (1).ipynb": ADA, "helper.py": "b"}, "ada"),
+        ({f"{LAB}/{LAB}.ipynb": ADA, f"{LAB}/checks.py": "x"}, "ada"),
+        ({"01_motion_to_force/01_motion_to_force.ipynb": BOB, f"{LAB}/{LAB}.ipynb": ADA}, "ada"),
+    ],
+)
+def test_the_folder_of_one_student_is_named_after_it(tmp_path, files, named):
+    assert whose(fill(tmp_path / "grace", files)) == {"grace": named}
+    assert whose(zipped(files, tmp_path / "grace.zip")) == {"grace": named}
+
+
+def test_paths_in_nbgraders_tree_name_the_student(tmp_path):
+    place = fill(tmp_path, {f"course/submitted/ada/{LAB}/x.ipynb": ADA}) / "course"
+    for path in (place, place / "submitted", place / "submitted/ada", place / f"submitted/ada/{LAB}/x.ipynb"):
+        assert whose(path) == {"ada": "ada"}
+
+
+def test_a_file_is_named_by_itself_or_where_it_is_the_labs_by_its_folder(tmp_path):
+    fill(tmp_path, {f"ada/{LAB}.ipynb": ADA, "all/bob.ipynb": BOB})
+    assert whose(tmp_path / f"ada/{LAB}.ipynb", tmp_path / "all/bob.ipynb") == {"ada": "ada", "bob": "bob"}
+
+
+def test_the_number_of_a_lab_does_as_well(tmp_path):
+    fill(tmp_path, {f"ada/{LAB}.ipynb": ADA, "ada/01_motion_to_force.ipynb": BOB, "bob/b.py": "bob"})
+    assert whose(tmp_path, lab="02") == {"ada": "ada", "bob": "bob"}
+
+
+def test_a_student_who_is_there_twice_is_named_and_each_gets_a_problem(tmp_path):
+    fill(tmp_path, {"a/bob.ipynb": BOB, "b/bob.ipynb": ADA, "b/ada.ipynb": ADA})
+    found = handed(tmp_path / "a/bob.ipynb", tmp_path / "b/bob.ipynb", tmp_path / "b/ada.ipynb")
+    assert set(found) == {"bob", "bob (2)", "ada"}
+    assert found["bob"][1] == found["bob (2)"][1] == (
+        "2 submissions are bob's: bob.ipynb and bob.ipynb; keep one, or name them apart"
+    )
+    assert found["ada"] == (("ada",), "")
+
+
+def test_undecidable_notebooks_are_named(tmp_path):
+    fill(tmp_path, {"ada/a.ipynb": ADA, "ada/b.ipynb": BOB, "bob/b.pdf": "x", "bob/c.txt": "x"})
+    found = handed(tmp_path)
+    assert found["ada"] == ((), "a.ipynb and b.ipynb may each be meant; hand in one")
+    assert found["bob"] == ((), "no notebook is in it; there is b.pdf, c.txt")
+
+
+def test_which_lab_the_names_agree_on(tmp_path):
+    fill(tmp_path, {f"one/ada/{LAB}/x.ipynb": ADA, f"one/{LAB}_bob.ipynb": BOB, "two/ada/01_x.ipynb": ADA, "three/x.ipynb": ADA})
+    assert lab_of(find_submissions([tmp_path / "one"])) == "02"
+    with pytest.raises(CourseError, match=r"name labs 01, 02; say which one is graded, such as --lab 02"):
+        lab_of(find_submissions([tmp_path / "one", tmp_path / "two"]))
+    with pytest.raises(CourseError, match="name no lab"):
+        lab_of(find_submissions([tmp_path / "three"]))
+
+
+def test_a_missing_path_is_an_error(tmp_path):
+    with pytest.raises(CourseError, match="no such file"):
+        find_submissions([tmp_path / "nobody.ipynb"])
+
+
+@pytest.mark.parametrize("folder", find_labs(), ids=lambda folder: folder.name)
+def test_the_cells_of_a_lab_are_those_that_it_has(folder):
+    (source,) = find_submissions([folder.notebook], folder.name)
+    found = read(source)
+    assert (source.student, found.name) == (folder.name, folder.notebook.name)
+    assert list(found.cells) == code_of(read_notebook(folder.notebook))
+    assert found.sha256 == hashlib.sha256(folder.notebook.read_bytes()).hexdigest()
+
+
+TEXT = "name = 'Zoë'"
+NOTEBOOKS = {
+    "utf-8 with a mark": b"\xef\xbb\xbf" + notebook(TEXT),
+    "utf-8 as it is": json.dumps(json.loads(notebook(TEXT)), ensure_ascii=False).encode(),
+    "latin-1": json.dumps(json.loads(notebook(TEXT)), ensure_ascii=False).encode("latin-1"),
+    "utf-16": json.dumps(json.loads(notebook(TEXT)), ensure_ascii=False).encode("utf-16"),
+    "utf-16 without a mark": json.dumps(json.loads(notebook(TEXT)), ensure_ascii=False).encode("utf-16-le"),
+    "lines": notebook(["name = ", "'Zoë'"]),
+    "version 3": json.dumps(
+        {"worksheets": [{"cells": [{"cell_type": "code", "language": "python", "input": [TEXT], "prompt_number": 1}]}]}
+    ).encode(),
+    "cells that are none": json.dumps(
+        {"cells": [3, None, {}, {"cell_type": "code", "source": TEXT}, {"cell_type": ["code"], "source": 3}]}
+    ).encode(),
+    "numbers of any size": notebook(TEXT)[:-1] + b', "a": ' + b"9" * 10000 + b', "b": NaN, "c": 1e999999, "d": -Infinity}',
+    "names twice": b'{"cells": 3, ' + notebook(TEXT)[1:],
+}
+
+
+@pytest.mark.parametrize("kind", NOTEBOOKS)
+def test_a_notebook_is_read_however_it_was_saved(tmp_path, kind):
+    fill(tmp_path, {"ada.ipynb": NOTEBOOKS[kind]})
+    assert [cell for cell in handed(tmp_path)[tmp_path.name][0] if cell] == [TEXT]
+
+
+def test_cells_without_source_stay_in_their_places(tmp_path):
+    raw = json.dumps({"cells": [{"cell_type": "code"}, {"cell_type": "code", "source": ["k", 3, "=2"]}]})
+    assert handed(fill(tmp_path, {"ada.ipynb": raw}))[tmp_path.name][0] == ("", "k=2")
+
+
+NO_NOTEBOOKS = {
+    "nothing": b"",
+    "no JSON": b"\x89PNG\r\n\x1a\n" + bytes(range(256)),
+    "cut off": notebook("k = 2")[:-9],
+    "another JSON": b"[1, 2]",
+    "no cells": b'{"cells": null}',
+    "a number": b"3",
+    "deep": b"[" * 100_000,
+    "deep and whole": b'{"cells": ' + b"[" * 100_000 + b"]" * 100_000 + b"}",
+    "too many lists": b'{"cells": [' + b"[]," * 600_000 + b"1]}",
+    "too many cells": notebook(*["k"] * 3000),
+    "too much code": notebook("#" * 6_000_000),
+    "nothing in its cells": notebook("", " \n"),
+    "worksheets that are none": b'{"worksheets": [3]}',
+}
+
+
+@pytest.mark.parametrize("kind", NO_NOTEBOOKS)
+def test_what_is_no_notebook_is_a_problem_in_words(tmp_path, kind):
+    cells, problem = handed(fill(tmp_path, {"ada.ipynb": NO_NOTEBOOKS[kind]}))[tmp_path.name]
+    assert cells == ()
+    assert problem.startswith("ada.ipynb ")
+    assert "\n" not in problem
+
+
+def test_a_script_is_cells_that_keep_their_lines(tmp_path):
+    script = "import math\r\n\r\n# %%\r\nk = (1 +\r\n  nothing)\r\nb = 3\r\ndef f(:\r\n    pass\r\ndef c():\r\n    return 4\r\n"
+    cells, _ = handed(fill(tmp_path, {"ada.py": script}))[tmp_path.name]
+    names = {"__name__": "__main__"}
+    problems = [run_cell(cell, names, number) for number, cell in enumerate(cells, start=1)]
+    assert [problem.split(":")[0] for problem in problems if problem] == ["NameError in line 5", "SyntaxError in line 7"]
+    assert (names["b"], names["c"]()) == (3, 4)
+
+
+def test_a_script_in_latin_1_and_one_with_more_statements_than_any(tmp_path):
+    fill(tmp_path, {"ada.py": TEXT.encode("latin-1"), "bob.py": "k = 2\n" * 5000})
+    found = handed(tmp_path)
+    assert found["ada"][0] == (TEXT,)
+    assert found["bob"] == (("k = 2\n" * 5000,), "")
+
+
+def test_links_and_what_is_no_file_are_never_read(tmp_path):
+    if not hasattr(os, "mkfifo"):
+        pytest.skip("this system has no fifos")
+    fill(tmp_path, {"secret/solution.ipynb": notebook("secret"), "class/bob/b.py": "bob", "class/eve/.x": ""})
+    (tmp_path / "class/ada").symlink_to(tmp_path / "secret")
+    (tmp_path / "class/eve/x.ipynb").symlink_to(tmp_path / "secret/solution.ipynb")
+    (tmp_path / "class/mallory").mkdir()
+    os.mkfifo(tmp_path / "class/mallory/x.ipynb")
+    found = handed(tmp_path / "class")
+    assert found == {
+        "bob": (("bob",), ""),
+        "eve": ((), "x.ipynb: it is a link; hand in the file itself"),
+        "mallory": ((), "x.ipynb: it is no plain file"),
+    }
+
+
+def test_a_file_larger_than_any_notebook_is_not_read(tmp_path):
+    fill(tmp_path, {"bob.ipynb": BOB, "ada.ipynb": b""})
+    with (tmp_path / "ada.ipynb").open("wb") as file:
+        file.truncate(1 << 30)  # takes no room on the disk
+    found = handed(tmp_path)
+    assert found["ada"][1].startswith("ada.ipynb: it is larger than 32 MiB")
+    assert found["bob"][0] == ("bob",)
+
+
+def hostile_link():
+    held = io.BytesIO()
+    with zipfile.ZipFile(held, "w") as archive:
+        info = zipfile.ZipInfo("x.ipynb")
+        info.external_attr = (stat.S_IFLNK | 0o777) << 16
+        archive.writestr(info, "/etc/passwd")
+    return held.getvalue()
+
+
+def with_size(content):
+    """A zip file whose table of contents says it has 1 GiB."""
+    end = content.rfind(b"PK\5\6")
+    return content[: end + 12] + struct.pack("<L", 1 << 30) + content[end + 16 :]
+
+
+def encrypted(content):
+    central = content.rfind(b"PK\1\2")
+    changed = bytearray(content)
+    changed[6] |= 1
+    changed[central + 8] |= 1
+    return bytes(changed)
+
+
+HOSTILE = {
+    "no zip": (b"PK\3\4 and nothing more", "is no zip file, or was cut off"),
+    "cut off": (zipped({"x.ipynb": ADA})[:-30], "is no zip file, or was cut off"),
+    "a bomb": (zipped({"x.ipynb": b"0" * (40 << 20)}), "larger than 32 MiB"),
+    "a bomb in a zip": (zipped({"x.zip": zipped({"x.ipynb": b"0" * (40 << 20)})}), "no notebook is in it; there is x.zip"),
+    "a link": (hostile_link(), "no notebook is in it; there is nothing"),
+    "a large table": (with_size(zipped({"x.ipynb": ADA})), "its table of contents has 1073741824 bytes"),
+    "a password": (encrypted(zipped({"x.ipynb": ADA})), "cannot be read: RuntimeError"),
+    "turned bytes": (zipped({"x.ipynb": ADA}).replace(b"PK\3\4", b"PK\3\5"), "cannot be read: BadZipFile"),
+    "empty": (zipped({}), "no notebook is in it; there is nothing"),
+}
+
+
+@pytest.mark.parametrize("kind", HOSTILE)
+def test_a_hostile_zip_file_is_a_problem_of_its_student_alone(tmp_path, kind):
+    content, words = HOSTILE[kind]
+    found = handed(fill(tmp_path, {"class/ada.zip": content, "class/bob.ipynb": BOB}) / "class")
+    assert found["bob"] == (("bob",), "")
+    assert words in found["ada"][1]
+    alone = handed(tmp_path / "class/ada.zip")
+    assert words in alone["ada"][1] or kind == "a bomb in a zip"
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["ada.zip", "bob.ipynb", "class"]
+
+
+def test_a_zip_file_that_names_places_elsewhere_writes_nothing_and_is_read(tmp_path):
+    fill(tmp_path, {"in/bob.ipynb": BOB})
+    zipped({"../../ada/x.ipynb": ADA, "/etc/eve/x.ipynb": BOB, "C:\\windows\\x.py": "w"}, tmp_path / "in/class.zip")
+    assert whose(tmp_path / "in/class.zip") == {"ada": "ada", "etc": "bob", "C:": "w"}
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["bob.ipynb", "class.zip", "in"]
+
+
+def test_names_hold_nothing_that_turns_or_controls(tmp_path):
+    names = ["<script>alert(1)<", "=cmd|' !A0", "a\u202etxt.b", "b\x1b[31mred", "n\nl", "x" * 300, " "]
+    zipped({f"{name}/x.ipynb": ADA for name in names}, tmp_path / "class.zip")
+    students = list(handed(tmp_path / "class.zip"))
+    assert len(students) == 7
+    assert {"<script>alert(1)<", "=cmd|' !A0", "atxt.b", "b[31mred", "n l", "unnamed"} <= {*students}
+    assert max(map(len, students)) <= 84
+
+
+def test_a_folder_of_more_files_than_any_class_has_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(archives, "MOST_FILES", 3)
+    fill(tmp_path, {f"{name}.ipynb": ADA for name in "abcd"})
+    with pytest.raises(CourseError, match="more than 3 files; name the folder of the submissions"):
+        find_submissions([tmp_path])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="its names cannot be other than Unicode")
+def test_a_name_in_another_encoding(tmp_path):
+    raw = os.fsencode(tmp_path) + b"/Zo\xeb.ipynb"
+    with open(raw, "wb") as file:
+        file.write(ADA)
+    fill(tmp_path, {"bob.ipynb": BOB})
+    found = whose(tmp_path)
+    assert sorted(found.values()) == ["ada", "bob"]
+    assert all(student.encode() for student in found)
