@@ -94,12 +94,16 @@ ADA, BOB = notebook("ada"), notebook("bob")
         ({"ada.zip": zipped({"x.ipynb": ADA}), "bob.zip": zipped({"deep/er/y.py": "bob"})}, {"ada": "ada", "bob": "bob"}),
         ({"ada/w.zip": zipped({f"{LAB}.ipynb": ADA, "x.png": "1"}), "bob/y.py": "bob"}, {"ada": "ada", "bob": "bob"}),
         ({"ada/x.ipynb": ADA, "ada/.ipynb_checkpoints/x-checkpoint.ipynb": BOB, "bob/b.py": "bob"}, {"ada": "ada", "bob": "bob"}),
-        ({"ada/x.ipynb": ADA, "__MACOSX/ada/._x.ipynb": BOB, "bob/b.py": "bob", "bob/checks.py": "1"}, {"ada": "ada", "bob": "bob"}),
+        (
+            {"ada/x.ipynb": ADA, "__MACOSX/ada/._x.ipynb": BOB, "bob/b.py": "bob", "bob/checks.py": "1"},
+            {"ada": "ada", "bob": "bob"},
+        ),
         ({"ada/x.ipynb.txt": ADA, "bob/y.IPYNB": BOB}, {"ada": "ada", "bob": "bob"}),
         ({"ada/01_motion_to_force.ipynb": BOB, f"ada/{LAB}.ipynb": ADA, "bob/b.py": "bob"}, {"ada": "ada", "bob": "bob"}),
         ({f"ada/{LAB}.ipynb": ADA, f"ada/old/{LAB}.ipynb": BOB, "bob/b.py": "bob"}, {"ada": "ada", "bob": "bob"}),
         (
-            {"ada/a.ipynb": notebook("ada", "hl.check('02.k', k)"), "ada/b.ipynb": notebook("x", "hl.check('01.k', k)"), "bob/b.py": "bob"},
+            {"ada/a.ipynb": notebook("ada", "hl.check('02.k', k)"), "ada/b.ipynb": notebook("x", "hl.check('01.k', k)"),
+             "bob.py": "bob"},
             {"ada": "ada", "bob": "bob"},
         ),
         ({"ada/a.ipynb": ADA, "ada/b.ipynb": ADA, "bob/b.py": "bob"}, {"ada": "ada", "bob": "bob"}),
