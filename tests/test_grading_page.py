@@ -56,7 +56,7 @@ def test_the_code_of_a_folder_of_answers_draws(tmp_path):
     random = np.random.default_rng(5)
     drawn = {name: draw() for name, draw in names["cases"](random).items()}
     assert all(0.02 <= given["m"] <= 0.3 for given in drawn["count_step"])
-    assert set(drawn["mass_equation"][0]["at"]) == {"m", "K", "z"}
+    assert set(drawn["mass_equation"][0]["at"]) == {"m", "K", "b_c", "x(t)", "z"}
     assert names["numbers"](random)["K_OWN"] in (300, 400, 600)
 
 
@@ -76,4 +76,4 @@ def test_formats_levels_and_limits_are_those_of_the_package():
 
 
 def test_lines_fit_a_page():
-    assert [line for line in PAGE.splitlines() if len(line) > 165 and line[:1] != "|"] == []
+    assert [line for line in PAGE.splitlines() if len(line) > 125 and line[:1] != "|"] == []
