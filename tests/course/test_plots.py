@@ -105,6 +105,15 @@ def test_curves_of_very_many_are_refused():
         curves(axes)
 
 
+def test_one_of_many_guesses_is_no_answer():
+    axes = swing()
+    for factor in (2, 3):
+        axes.plot(TIME, factor * Y)
+    assert checked("98.swing", PLOT, axes).passed
+    axes.plot(TIME, 4 * Y)
+    assert "4 curves where 1 would do" in checked("98.swing", PLOT, axes).text
+
+
 def phase(x, y):
     return lambda A: swing(1e3 * np.array(x), y, "x [mm]", "v [m/s]")
 
