@@ -1,11 +1,10 @@
 """hapticlab's marks in a gradebook of nbgrader: they stand over what nbgrader's own tests gave."""
 
 import importlib.util
-from collections import defaultdict
 from pathlib import Path
 
 from ..errors import CourseError, EngineMissingError
-from .nbgrader_source import test_id
+from .nbgrader_source import exercises_of
 
 
 def push(reports, path, assignment=None):
@@ -57,7 +56,8 @@ def _push(book, report, assignment):
     book.update_or_create_student(report.student)
     with book.db.no_autoflush:  # a new submission is known to its notebooks before it is to the session
         book.update_or_create_submission(there[0], report.student)
-    marks, cells = {one.name: one for one in report.exercises if one.points}, _cells(book, there[0], report)
+    marks = {one.name: one for one in report.exercises if one.points}
+    cells = _cells(book, there[0], marks)
     for cell, names in cells.items():
         grade = book.find_grade(cell.name, cell.notebook.name, there[0], report.student)
         grade.auto_score = sum(marks[name].earned for name in names)
@@ -67,10 +67,8 @@ def _push(book, report, assignment):
     return [f"{report.student}, lab {report.lab}: {there[0]} has no cell for {lost}; not written"] if lost else []
 
 
-def _cells(book, assignment, report):
+def _cells(book, assignment, marks):
     """Return each test cell of an assignment to the exercises whose points it holds."""
-    found = defaultdict(list)
-    for notebook in book.find_assignment(assignment).notebooks:
-        for cell in notebook.grade_cells:
-            found[cell] += [one.name for one in report.exercises if one.points and cell.name == test_id(one.name)]
+    cells = [cell for notebook in book.find_assignment(assignment).notebooks for cell in notebook.grade_cells]
+    found = {cell: [name for name in exercises_of(cell.name) if name in marks] for cell in cells}
     return {cell: names for cell, names in found.items() if names}

@@ -99,12 +99,21 @@ def gradescope_files(folder, answers, package, seed=0, wheel=None, personal=Fals
 
 
 def write_zip(path, files):
-    """Write files into a zip, the same bytes each time; what stands at its root without ending or as .sh is executable.
+    """Write files into a zip, the same bytes each time; the scripts that Gradescope runs are executable.
 
     Parameters
     ----------
-    path : str or Path
+    path : str, Path or binary file
     files : dict of str to bytes
+
+    Examples
+    --------
+    >>> import io
+    >>> first, again = io.BytesIO(), io.BytesIO()
+    >>> write_zip(first, {"setup.sh": b""}), write_zip(again, {"setup.sh": b""})
+    (None, None)
+    >>> first.getvalue() == again.getvalue(), zipfile.ZipFile(first).infolist()[0].external_attr >> 16 == 0o100755
+    (True, True)
     """
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():

@@ -44,23 +44,21 @@ def nbgrader_notebook(folder, answers):
     return {**found.notebook, "cells": [_cell(cell, found) for cell in found.notebook["cells"]]}
 
 
-def test_id(name):
-    """Return the grade_id of the cell that checks an exercise.
+def check_id(*names):
+    """Return the grade_id of the cell that checks exercises.
 
     Examples
     --------
-    >>> test_id("wall_force")
-    'check-wall_force'
+    >>> check_id("wall_force", "k"), exercises_of(check_id("wall_force", "k"))
+    ('check-wall_force--k', ('wall_force', 'k'))
     """
-    return f"check-{name}"
+    return f"check-{'--'.join(names)}"
 
 
-def graded_cells(lab_places):
-    """Return grade_id of each test cell to the names of the exercises whose points it holds."""
-    cells = {}
-    for place in lab_places:
-        cells.setdefault(place.check, []).append(place.exercise)
-    return {test_id(names[0]): tuple(names) for names in cells.values()}
+def exercises_of(grade_id):
+    """Return the names of the exercises whose points a test cell holds; of another cell, none."""
+    start, _, names = grade_id.partition("-")
+    return tuple(names.split("--")) if start == "check" and names else ()
 
 
 def _cell(cell, found):
@@ -84,7 +82,7 @@ def _test(cell, judged, lab):
     required = [f'hl.check("{lab.number}.{one.name}", {one.name}).require()' for one in judged]
     region = ["### BEGIN HIDDEN TESTS", *required, "### END HIDDEN TESTS"]
     marked = {"grade": True, "solution": False, "locked": True, "points": sum(one.points for one in judged)}
-    return _with(cell, test_id(judged[0].name), [source_of(cell), *region], marked)
+    return _with(cell, check_id(*(one.name for one in judged)), [source_of(cell), *region], marked)
 
 
 def _with(cell, name, lines, marked):

@@ -81,7 +81,15 @@ def prairielearn_files(folder, answers, image, seed=0):
 
 
 def dockerfile(image, package, wheel=None):
-    """Return the Dockerfile of the image that grades; a wheel lies beside it."""
+    """Return the Dockerfile of the image that grades; a wheel lies beside it.
+
+    Examples
+    --------
+    >>> print(dockerfile("grader", "hapticlab==1.0"))
+    # The image in which PrairieLearn grades: docker build -t grader . && docker push grader
+    FROM python:3.12-slim
+    RUN pip install --no-cache-dir "hapticlab==1.0"
+    """
     copy = f"COPY {wheel.name} /\n" if wheel else ""
     return DOCKERFILE.format(image=image, copy=copy, package=f'"/{wheel.name}"' if wheel else f'"{package}"')
 

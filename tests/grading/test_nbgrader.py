@@ -131,6 +131,14 @@ def test_marks_go_over_those_of_nbgrader(course):
     assert exported(course) == {**everybody, **before, **changed}
 
 
+def test_grade_puts_its_marks_into_the_gradebook(course):
+    push([marked("ada", "02"), marked("eve", "02", two_walls=2.0)], course / "gradebook.db")  # not what they earned
+    asked = ["--lab", "02", "--instructor", str(INSTRUCTOR), "--gradebook", "gradebook.db", "--workers", "1"]
+    run(sys.executable, "-m", "hapticlab", "grade", "submitted", *asked, cwd=course)
+    found = scores(course)
+    assert [found["02", student] for student in ("ada", "bob", "eve")] == [10.0, earned(LABS["02"], WRONG["02"]), 0.0]
+
+
 def test_an_exercise_without_a_cell_is_told(course):
     extra = ExerciseReport("new_one", "value", points=1.0, earned=1.0)
     report = Report("bob", "01", "", "", exercises=(*marked("bob", "01", thousand=1.0).exercises, extra))
