@@ -121,10 +121,11 @@ def _was_called(receive):
 
 
 @contextmanager
-def _secret():
+def _secret(name="SECRET_OF_THE_GRADER"):
     """Have a secret in the environment that no student's process may see."""
-    os.environ["SECRET_OF_THE_GRADER"] = "stiffness = 731.25"
+    before, os.environ[name] = os.environ.get(name), "stiffness = 731.25"
     try:
         yield
     finally:
-        del os.environ["SECRET_OF_THE_GRADER"]
+        os.environ.pop(name)
+        os.environ.update({name: before} if before else {})

@@ -109,6 +109,7 @@ ATTACKS = (
         import hapticlab.course.evaluate as e
         e.evaluate = lambda *a: e.Outcome(True)
         e.plain = lambda *a: True""",
+        lost=("wall", "why"),
     ),
     _patched(
         "patched_modules",

@@ -1,0 +1,117 @@
+"""Seconds per submission of three graders on one lab: `python tests/benchmarks/grading.py`.
+
+`hapticlab grade`, `nbgrader autograde` and `otter run` grade the same answers to lab 02, handed in as their own notebooks: all
+right, partly wrong, untouched, in turn. nbgrader and hapticlab take them in one command, otter in one each, as they are meant
+to. Then a class of 1 000 mixed submissions of the tests' small lab, attackers among them, is graded by two workers. `--quick`
+takes few submissions.
+"""
+
+import argparse
+import json
+import os
+import platform
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "grading")]
+from attacks.arena import Arena  # noqa: E402
+from attacks.mixed import mixed  # noqa: E402
+from handed_in import INSTRUCTOR, LABS, WRONG, handed_in  # noqa: E402
+
+from hapticlab.course.notebook import read, write  # noqa: E402
+
+NUMBER = "02"
+LAB = LABS[NUMBER]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="3 and 12 submissions, and 100 mixed ones")
+    parser.add_argument("--json", metavar="FILE")
+    options = parser.parse_args()
+    few, many, mix = (3, 12, 100) if options.quick else (9, 90, 1000)
+    print(f"{platform.machine()}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, Python {platform.python_version()}")
+    with tempfile.TemporaryDirectory() as place:
+        rows = {**_peers(Path(place), few), **_ours(Path(place), many), **_mixed(Path(place), mix)}
+    peers = [rows[name]["seconds"] for name in rows if not name.startswith("hapticlab")]
+    print(f"\n{'':44} {'submissions':>11} {'s each':>8} {'processor s each':>17} {'times faster':>13}")
+    for name, row in rows.items():
+        faster = min(peers) / row["seconds"]  # than the faster of the two
+        print(f"{name:44} {row['number']:11} {row['seconds']:8.3f} {row['processor']:17.3f} {faster:13.1f}")
+    if options.json:
+        Path(options.json).write_text(json.dumps(rows, indent=1), "utf-8")
+
+
+def _measured(number, *commands, cwd, codes=(0,)):
+    """Run commands one after another; return wall clock and processor time for each of so many submissions."""
+    used, begun = _processor(), time.perf_counter()
+    for command in commands:
+        done = subprocess.run([sys.executable, *command], cwd=cwd, capture_output=True, text=True)
+        if done.returncode not in codes:
+            raise RuntimeError(f"{' '.join(command)}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
+    wall = time.perf_counter() - begun
+    return {"number": number, "seconds": wall / number, "processor": (_processor() - used) / number}
+
+
+def _processor():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def _answered(notebook, number):
+    """Return the notebook as the student of that number hands it in."""
+    return (handed_in(notebook, LAB), handed_in(notebook, LAB, WRONG[NUMBER]), notebook)[number % 3]
+
+
+def _peers(place, number):
+    for system in ("nbgrader", "otter"):
+        assign = ["-m", "hapticlab", "assign", str(place / system), "--for", system, "--lab", NUMBER]
+        _measured(1, [*assign, "--instructor", str(INSTRUCTOR)], cwd=ROOT)
+    course = place / "nbgrader"
+    _measured(1, ["-m", "nbgrader", "generate_assignment", LAB.name, "--create"], cwd=course)
+    released = read(course / "release" / LAB.name / LAB.notebook.name)
+    for student in range(number):
+        folder = course / "submitted" / f"s{student}" / LAB.name
+        folder.mkdir(parents=True)
+        write(folder / LAB.notebook.name, _answered(released, student))
+    rows = {"nbgrader autograde": _measured(number, ["-m", "nbgrader", "autograde", LAB.name, "--create"], cwd=course)}
+    made = place / "otter" / LAB.name
+    (archive,) = (made / "autograder").glob("*.zip")
+    commands = []
+    for student in range(number):
+        folder = place / "otter" / f"s{student}"
+        folder.mkdir()
+        write(folder / LAB.notebook.name, _answered(read(made / "student" / LAB.notebook.name), student))
+        commands.append(["-m", "otter", "run", str(folder / LAB.notebook.name), "-a", str(archive), "-o", str(folder)])
+    return {**rows, "otter run": _measured(number, *commands, cwd=place)}
+
+
+def _ours(place, number):
+    submissions = place / "submissions"
+    submissions.mkdir()
+    for student in range(number):
+        write(submissions / f"s{student}.ipynb", _answered(read(LAB.notebook), student))
+    rows = {}
+    for workers in (1, 2):
+        command = ["-m", "hapticlab", "grade", str(submissions), "--lab", NUMBER, "--instructor", str(INSTRUCTOR)]
+        output = ["--format", "json", "-o", str(place / f"{workers}.json"), "--workers", str(workers)]
+        rows[f"hapticlab grade, {workers} worker{'s' * (workers > 1)}"] = _measured(number, [*command, *output], cwd=ROOT)
+    return rows
+
+
+def _mixed(place, number):
+    """Grade a class with attackers, of whom some wait for their limits."""
+    with Arena(place / "arena", mixed(number)) as arena:
+        command = ["-m", "hapticlab", "grade", str(arena.submissions), "--lab", str(arena.lab), "--timeout", "2"]
+        output = ["--format", "json", "-o", str(place / "mixed.json"), "--workers", "2"]
+        row = _measured(number, [*command, "--instructor", str(arena.answers.parent), *output], cwd=ROOT, codes=(0, 1))
+    return {"hapticlab grade, 2 workers, mixed class": row}
+
+
+if __name__ == "__main__":
+    main()
