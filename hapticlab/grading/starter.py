@@ -3,12 +3,10 @@
 import json
 import os
 import secrets
-import select
 import socket
 import subprocess
 import sys
 import tempfile
-import time
 from contextlib import nullcontext
 from dataclasses import asdict
 from pathlib import Path
@@ -17,15 +15,11 @@ import hapticlab
 
 from ..errors import CourseError
 from . import watch
+from .asking import Session
+from .asking import SessionEnded as SessionEnded
 from .limits import Limits
 
-#: what one look at a session's processes is apart from the next [s]
-PERIOD = 0.03
-#: of a reply, beside its values
-FRAME = 1 << 16
 LEVELS = "namespaces", "user", "none"
-#: lists, dicts and quotes of a reply: what each costs to read is far more than its bytes
-MOST_PARTS = 2_000_000
 PACKAGE = Path(hapticlab.__file__).resolve().parent
 #: one thread, as a zygote forks; no port but a simulated one; the same order of sets in every run
 ENVIRONMENT = {
@@ -42,17 +36,6 @@ ENVIRONMENT = {
 }
 #: in place of the folder that -c begins sys.path with: the folder of this package
 PROGRAM = "import sys; sys.path[0] = sys.argv[2]; from hapticlab.grading.inside.zygote import main; main(int(sys.argv[1]))"
-
-
-class SessionEnded(Exception):
-    """A session is over before it replied.
-
-    ``reason`` is "time", "memory", "processes", "exit", "signal N", "flood" or "garbage".
-    """
-
-    def __init__(self, reason):
-        super().__init__(f"the session ended: {reason}")
-        self.reason = reason
 
 
 def start(sandbox="auto", hidden=()):
@@ -199,129 +182,3 @@ def _free_user(process):
     """Return the number of a user that nobody has, another for each zygote; few are mapped in a container without root."""
     first, _, mapped = map(int, Path("/proc/self/uid_map").read_text().split()[:3])
     return 10**9 + process if mapped > 2 * 10**9 else first + mapped - 2 - process % (mapped // 4)
-
-
-class Session:
-    """A student's session, asked by :meth:`ask`; a context manager, which kills all its processes when it is left."""
-
-    def __init__(self, starter, limits):
-        self.starter, self.limits, self.number, self.open = starter, limits, 0, True
-        self.folder = starter._scratch()
-        self.channel, theirs = socket.socketpair()
-        self.channel.setblocking(False)
-        self.status, status = os.pipe()
-        scratch = self.folder.__enter__()
-        starter.order("session", theirs.fileno(), status, scratch=scratch, limits=asdict(limits))
-        theirs.close()
-        os.close(status)
-
-    def ask(self, request, seconds):
-        """Return the reply to a request.
-
-        Parameters
-        ----------
-        request : dict
-        seconds : float
-            Wall clock [s].
-
-        Raises
-        ------
-        SessionEnded
-        """
-        if not self.open:
-            raise SessionEnded("exit")
-        self.number += 1
-        try:
-            return self._reply(json.dumps({**request, "number": self.number}).encode() + b"\n", time.monotonic() + seconds)
-        except SessionEnded:
-            self.close()
-            raise
-
-    def _reply(self, line, deadline):
-        """Send a line and wait for the reply, watching meanwhile; the end of the socket is no news, as anybody may hold it."""
-        left, held, taken, look = memoryview(line), b"", 0, time.monotonic() + PERIOD
-        poller = select.poll()
-        poller.register(self.status, select.POLLIN)
-        poller.register(self.channel, select.POLLIN | select.POLLOUT)
-        while True:
-            now = time.monotonic()
-            if now >= deadline:
-                raise SessionEnded("time")
-            if now >= look:
-                self.check()
-                look = time.monotonic() + PERIOD
-            events = dict(poller.poll(1e3 * max(0.001, min(look, deadline) - now)))
-            about = events.get(self.channel.fileno(), 0)
-            if about & select.POLLIN:
-                block = self.received()
-                taken += len(block)
-                if taken > self.limits.answer + FRAME:
-                    raise SessionEnded("flood")
-                *lines, held = (held + block).split(b"\n")
-                for reply in map(self.parsed, lines):
-                    if reply is not None:
-                        return reply
-                if block:
-                    continue
-                poller.unregister(self.channel)
-            elif about & select.POLLOUT:
-                left = left[self.sent(left) :]
-                if not left:
-                    poller.modify(self.channel, select.POLLIN)
-            elif about:
-                poller.unregister(self.channel)
-            if self.status in events and not about & select.POLLIN:
-                code = os.read(self.status, 1)
-                raise SessionEnded(f"signal {code[0]}" if code and code[0] else "exit")
-
-    def received(self):
-        """Return what has come; nothing at the end of the socket."""
-        try:
-            return self.channel.recv(1 << 20)
-        except OSError:
-            return b""
-
-    def sent(self, line):
-        """Return how much could be sent; where the other end is gone, the keeper will say how it ended."""
-        try:
-            return self.channel.send(line)
-        except BlockingIOError:
-            return 0
-        except OSError:
-            return len(line)
-
-    def parsed(self, line):
-        """Return the reply to the last request, or None for one before it."""
-        try:
-            if sum(map(line.count, (b"[", b"{", b'"'))) > MOST_PARTS:
-                raise SessionEnded("garbage")
-            reply = json.loads(line)
-            number = reply.pop("number")
-        except (ValueError, RecursionError, KeyError, AttributeError, TypeError):
-            raise SessionEnded("garbage") from None
-        return reply if number == self.number else None
-
-    def check(self):
-        """Raise where the session has too many processes, or too much memory."""
-        found = watch.descendants(self.starter.process.pid)
-        if len(found) > self.limits.processes + 2:
-            raise SessionEnded("processes")
-        if watch.memory(found, self.starter.held) > self.limits.memory:
-            raise SessionEnded("memory")
-        if self.starter.level != "namespaces" and watch.size(self.folder.name) > self.limits.scratch:
-            raise SessionEnded("flood")
-
-    def close(self):
-        """Kill all processes of the session and delete what it wrote."""
-        if self.open:
-            self.open = False
-            self.starter.end()
-            self.channel.close()
-            os.close(self.status)
-            self.folder.__exit__(None, None, None)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.close()

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -77,6 +78,56 @@ def anonymous(process):
 def address_space(process):
     """Return the size of a process' address space [bytes]."""
     return int((PROC / str(process) / "statm").read_text().split()[0]) * PAGE
+
+
+class Meter:
+    """What a step of a session is charged: not what it waited for a processor that others had.
+
+    Parameters
+    ----------
+    zygote : int
+        The session is below its only child, the keeper.
+    """
+
+    def __init__(self, zygote):
+        self.zygote, self.began = zygote, time.monotonic()
+        self.waited, self.wait_before, self.work_before = 0.0, self._waits(), self._work()
+
+    @property
+    def wall(self):
+        """Wall clock since the step began [s]."""
+        return time.monotonic() - self.began
+
+    def charged(self):
+        """Return the greater of its processes' processor time, and the wall clock less what its main thread waited [s]."""
+        # a fork that has ended tells no more, so what was seen of it is kept
+        waits = sum(wait - self.wait_before.get(process, 0.0) for process, wait in self._waits().items())
+        self.waited = max(self.waited, waits)
+        return max(self._work() - self.work_before, self.wall - self.waited)
+
+    def _waits(self):
+        """Return what the session's main thread waited, and that of the fork which evaluates for it [s]; proc(5), schedstat."""
+        session = [child for keeper in _children(self.zygote) for child in _children(keeper)[:1]]
+        return {process: _waited(process) for process in session + [fork for one in session for fork in _children(one)[-1:]]}
+
+    def _work(self):
+        return sum(map(_worked, descendants(self.zygote)))
+
+
+def _waited(process):
+    try:
+        return int((PROC / str(process) / "schedstat").read_text().split()[1]) / 1e9
+    except (OSError, IndexError):  # a kernel without it: all of the wall clock is charged
+        return 0.0
+
+
+def _worked(process):
+    """Return the processor time of a process and of its children that ended [s]; proc_pid_stat(5), utime to cstime."""
+    try:
+        fields = (PROC / str(process) / "stat").read_text("utf-8", "replace").rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
 
 
 def kill_descendants(root):

@@ -89,13 +89,15 @@ def test_nothing_outlives_a_session(starter):
     assert descendants(starter.process.pid) == []
 
 
-def test_a_reply_sent_twice_is_no_reply_to_the_next_request(starter):
-    twice = f"os.write({SOCKET}, b'{{\"number\": 3, \"outcomes\": [{{\"value\": 7}}]}}\\n' * 2)"
-    with loaded(starter, f"{IMPORTS}def f(x):\n    {twice}\n    return x\nk = 2.5") as session:
-        assert session.ask({"do": "evaluate", "name": "f", "kind": "function", "givens": [{"x": 1.0}]}, 10) == {
-            "outcomes": [{"value": 7}]
-        }
+def test_a_reply_written_before_its_request_is_none(starter):
+    ahead = f"[os.write({SOCKET}, b'{{\"number\": %d, \"outcomes\": [7]}}\\n' % k) for k in range(9)]"
+    with loaded(starter, f"{IMPORTS}{ahead}\nk = 2.5") as session:
         assert value(session, "k") == 2.5
+
+
+def test_sleep_and_work_are_charged(starter):
+    with loaded(starter, "import time\ntime.sleep(0.4)", "while time.process_time() < 0.3: pass") as session:
+        assert session.charged > 0.4
 
 
 def test_files_are_bounded(starter):
