@@ -4,7 +4,6 @@ It works where the right answer is known: while a lab is written, and in the gra
 a lab hands out holds numbers and sentences alone.
 """
 
-from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -15,7 +14,6 @@ from ..scene.symbols import n
 from .evaluate import evaluate
 from .exercise import Case
 from .expression import spelling, symbols
-from .judge import verdict
 
 ROUND = {sp.Gt: sp.Lt, sp.Ge: sp.Le, sp.Lt: sp.Gt, sp.Le: sp.Ge}
 #: changes tried of one answer: a scene takes tens of milliseconds for each
@@ -107,37 +105,6 @@ def slips(exercise, solution, given):
         known.append(wrong)
         found.append((wrong, sentence))
     return tuple(found)
-
-
-def taught(exercise, case, outcome, solution):
-    """Return the verdict on a case, with slips that are worked out from the right answer where the case names none.
-
-    Parameters
-    ----------
-    exercise : Exercise
-    case : Case
-    outcome : Outcome
-        What the answer gave.
-    solution : object
-        A right answer.
-
-    Returns
-    -------
-    Verdict
-
-    Examples
-    --------
-    >>> from hapticlab.course.evaluate import evaluate
-    >>> from hapticlab.course.exercise import Exercise
-    >>> k, x_o, x = sp.symbols("k x_o x")
-    >>> wall, case = Exercise("wall", "expression"), Case({"at": {"k": [200.0], "x_o": [0.01], "x": [0.012]}}, [0.4])
-    >>> taught(wall, case, evaluate("expression", k * x, case.given), k * (x - x_o)).slip
-    'You forgot x_o: it is what comes with x_o = 0.'
-    """
-    found = verdict(exercise, case, outcome)
-    if found.right or found.slip or outcome.value is None:
-        return found
-    return verdict(exercise, replace(case, slips=(*case.slips, *slips(exercise, solution, case.given))), outcome)
 
 
 def _numbers(value):
