@@ -1,32 +1,23 @@
 """Numbers that stand under a name of their own in a source, ``K_OWN = 500.0``, and other numbers in their place."""
 
 import ast
-from dataclasses import dataclass
 
 from ..errors import CourseError
 
 
-@dataclass(frozen=True)
-class Constant:
-    """A line ``NAME = number`` at the top level: the name, and the number as it is written."""
-
-    name: str
-    written: str
-
-
 def constants(source):
-    """Return the constants of a source: the node of each assignment to its Constant; of what is no Python, none.
+    """Return the lines ``NAME = number`` at the top level of a source: node to (name, number as written).
 
     Examples
     --------
     >>> [*constants("T_OWN = 1e-3  # [s]\\nk = None\\nb, c = 1, 2").values()]
-    [Constant(name='T_OWN', written='0.001')]
+    [('T_OWN', '0.001')]
     """
     try:
         body = ast.parse(source).body
-    except SyntaxError:
+    except SyntaxError:  # a magic, or a student's
         return {}
-    return {node: Constant(node.targets[0].id, ast.unparse(node.value)) for node in body if _is_constant(node)}
+    return {node: (node.targets[0].id, ast.unparse(node.value)) for node in body if _is_constant(node)}
 
 
 def _is_constant(node):
@@ -60,7 +51,7 @@ def with_constants(sources, numbers, where):
     places = [(number, *pair) for number, source in enumerate(sources) for pair in constants(source).items()]
     lines = [source.encode().split(b"\n") for source in sources]  # columns of an AST count bytes
     for name, value in numbers.items():
-        here = [(number, node.value) for number, node, constant in places if constant.name == name]
+        here = [(number, node.value) for number, node, (its_name, _) in places if its_name == name]
         if len(here) != 1:
             raise CourseError(f"{where} has {len(here)} lines {name} = number at its top level; it needs one, for {value!r}")
         number, old = here[0]

@@ -97,7 +97,7 @@ def solved(notebook, solution, exercises):
     Replaced are, at the top level of a cell, definitions ``def name`` and assignments ``name = ...`` of what the
     solution has under the same name: of an exercise, or of what the notebook leaves open by ``None``, ``""`` or
     ``raise NotImplementedError``. What else the solution has goes with the answer that follows it, and its imports go
-    into a cell of their own before the first.
+    into a cell of their own before the first. A constant ``NAME = number`` that the notebook has too is left out.
 
     Parameters
     ----------
@@ -222,13 +222,13 @@ def _answered(cell, answers, exercises):
 
 
 def _answers(solution, written, there):
-    """Return the imports of a solution, and its answers with what stands before each but is not there."""
+    """Return the imports of a solution, and its answers with what stands before each, without the constants that are there."""
     lines, end, imports, waiting, answers = solution.splitlines(), 0, [], [], []
     parts = {part.last: part for part in _parts(solution) if part.name in written}
     for node in ast.parse(solution).body:
         text = "\n".join(lines[end : node.end_lineno]).strip("\n")
         end = node.end_lineno
-        if constants(text).keys() and there >= {*constants(text).values()}:
+        if there.intersection(constants(text).values()):
             continue
         if isinstance(node, ast.Import | ast.ImportFrom):
             imports.append(text)

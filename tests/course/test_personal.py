@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import hapticlab as hl
+from hapticlab.course.constants import with_constants
 from hapticlab.course.labs import find_labs
 from hapticlab.course.marks import hidden_cases, marks, own_numbers
 from hapticlab.course.notebook import code_of, read, solved
@@ -82,12 +83,16 @@ def test_what_a_student_wrote_stays(tmp_path):
     assert json.loads(path.read_text("utf-8"))["cells"] == []
 
 
-def test_a_solution_goes_into_a_personal_notebook_without_its_own_numbers():
-    own = personal_notebook(WALL, ANSWERS / WALL.name, 7, "ada")
-    plain = solved(read(WALL.notebook), (ANSWERS / WALL.name / "solution.py").read_text("utf-8"), ["damping_that_pays"])
-    cells = [[cell for cell in code_of(one) if "damping_that_pays =" in cell] for one in (plain, own)]
-    assert cells[0][0].count("K_OWN =") == cells[1][0].count("K_OWN =") == 1
-    assert "damping_that_pays = K_OWN * T_OWN / 2" in cells[0][0]
+@pytest.mark.parametrize("folder", [WALL, COUPLER], ids=lambda folder: folder.number)
+def test_a_solution_with_the_same_numbers_adds_none(folder):
+    own, answers = personal_notebook(folder, ANSWERS / folder.name, 7, "ada"), ANSWERS / folder.name
+    numbers = own_numbers(folder.lab(), answers, 7, "ada")
+    name = next(name for name in FORMULAS if FORMULAS[name][0] == folder)
+    (solution,) = with_constants([(answers / "solution.py").read_text("utf-8")], numbers, "solution.py")
+    (cell,) = (cell for cell in code_of(solved(own, solution, [name])) if f"{name} =" in cell)
+    names = {}
+    exec(cell, names)
+    assert cell.count("\n") == len(numbers) and names[name] == pytest.approx(FORMULAS[name][1](**numbers), rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,7 @@ def cases(random):
 
 def numbers(random):
     """Return a student's own numbers."""
-    return {"K_WALL": 50.0 * random.integers(30, 80), "K_FELT": 10.0 * random.integers(40, 100)}
+    return {"K_WALL": 25.0 + 50.0 * random.integers(30, 80), "K_FELT": 10.0 * random.integers(40, 100)}
 
 
 def _state(random):
