@@ -26,13 +26,12 @@ def failing_case(one, lab):
         Whose words tell units, and whose exercises how near is right.
     """
     case = one.failing
+    if case.expected is None:  # of a value or a choice: the answer itself is not told
+        return "" if case.value is None else f"<p>You answered: <strong>{clean(shown(case.value))}</strong></p>"
     which = "a public case of the lab" if case.public else "a case drawn for this grading"
-    parts = [f'<h3>The first case that is wrong <span class="aside">{which}</span></h3>', _given(one, lab)]
-    if case.expected is not None:
-        return "".join([*parts, _compared(one, lab), *figures(one, lambda name, other: unit_of(name, one, lab, other))])
-    if case.value is not None:
-        parts.append(f"<p>You answered: <strong>{clean(shown(case.value))}</strong></p>")
-    return "".join(parts)
+    head = f'<h3>The first case that is wrong <span class="aside">{which}</span></h3>'
+    drawn = figures(one, lambda name, other: unit_of(name, one, lab, other))
+    return "".join([head, _given(one, lab), _compared(one, lab), *drawn])
 
 
 def unit_of(name, one, lab, otherwise=""):
