@@ -155,6 +155,33 @@ TRAPS = {
         ["import numpy as np", "np.random.seed(1)", "np.random.rand(2)", "k = int(1e6 * np.random.rand())"],
         114,
     ),
+    "random numbers under another name": (
+        [
+            "import random as r",
+            "r.seed(1)",
+            "r.random()",
+            "r.seed(2)\nr.random()",
+            "k = r.randint(1, 10**6)",
+        ],
+        993870,
+    ),
+    "a function of its own with a builtin's name": (
+        ["rows = []\ndef max(*given):\n    return rows", "k = max(1, 2)", "c = k\nc.append(3)"],
+        [3],
+    ),
+    "a module's name for something else": (
+        ["import math", "class math:\n    floor = staticmethod(lambda x: [x])", "k = math.floor(2)", "c = k\nc.append(3)"],
+        [2, 3],
+    ),
+    "pyplot under another name": (
+        [
+            "import matplotlib\nmatplotlib.use('agg')\nimport matplotlib.pyplot as p",
+            "p.close('all')\np.plot([1, 2])",
+            "figure = p.gcf()\ndef k(x):\n    return len(figure.axes[0].lines)",
+            "p.plot([3, 4])",
+        ],
+        2,
+    ),
     "files": (
         [
             "from pathlib import Path\nPath('slice.txt').write_text('4')",

@@ -9,8 +9,8 @@ import ast
 from dataclasses import dataclass
 
 from .cells import run_cell, runnable
-from .reads import Reads, reads_of
-from .solid import is_solid
+from .reads import STATE, Reads, reads_of
+from .solid import BUILTINS, is_solid
 
 #: more are run as a whole: telling them apart would take longer
 MOST = 1000
@@ -56,8 +56,12 @@ def needed(cells, names):
     found = [_merged([reads_of(node) for node in one.nodes]) for one in statements[:MOST]]
     if len(statements) > MOST or any(one.opaque for one in found):
         return [(one.cell, one.first, one.last) for one in statements]
+    others = {name for one in found for name in one.binds - set(one.imports)}
+    imports = {name: what for one in found for name, what in one.imports.items() if name not in others}
+    for one in found:
+        words = (word for name in one.now | one.later for word in imports.get(name, "").split("."))
+        one.now |= {STATE[word] for word in words if word in STATE}
     last = _number(statements, found)
-    imports = {name: what for one in found for name, what in one.imports.items()}
     for one in statements:
         one.always |= any(
             name in imports for name, _ in one.alters
@@ -150,6 +154,8 @@ def _is_solid(statement, reads, solid, imports):
     if statement.later & (reads - solid | statement.alters):
         return False
     names = {name for name, _ in reads & solid} - {name for name, _ in reads - solid}
+    if not BUILTINS.isdisjoint(name for name, _ in reads):  # the notebook has one of its own
+        return False
     return all(is_solid(node, names, imports) for node in statement.nodes)
 
 

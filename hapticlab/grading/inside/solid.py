@@ -1,6 +1,7 @@
 """Names whose values nothing but a new binding changes: numbers, texts, functions, expressions and scenes."""
 
 import ast
+import sys
 
 #: of hapticlab, what gives values that never change; of builtins the same
 FROZEN = frozenset(
@@ -8,6 +9,9 @@ FROZEN = frozenset(
     "force_filter predicted_sample backward_velocity filtered_velocity n x v t T".split()
 )
 BUILTINS = frozenset("abs bool complex float int len max min pow range round str sum tuple".split())
+#: attributes of modules that are numbers, and packages whose names are functions, types and numbers
+NUMBERS = frozenset("pi e tau inf nan".split())
+PACKAGES = sys.stdlib_module_names | {"hapticlab", "matplotlib", "numpy", "scipy", "sympy"}
 #: of SymPy, what can change
 MATRICES = frozenset("Matrix MutableDenseMatrix SparseMatrix zeros ones eye diag".split())
 
@@ -29,7 +33,7 @@ def is_solid(node, solid, imports):
     [True, False, True, False]
     """
     if isinstance(node, ast.Import | ast.ImportFrom):
-        return True
+        return isinstance(node, ast.Import) or (node.module or "").partition(".")[0] in PACKAGES
     if isinstance(node, ast.FunctionDef):
         defaults = [*node.args.defaults, *filter(None, node.args.kw_defaults)]
         return not node.decorator_list and all(_is_solid(one, solid, imports) for one in defaults)
@@ -46,7 +50,9 @@ def _is_solid(node, solid, imports):
         given = [*node.args, *(keyword.value for keyword in node.keywords)]
         return _gives_solid(node.func, imports, solid) and all(_is_kept(part, solid, imports) for part in given)
     if isinstance(node, ast.Attribute):
-        return _is_solid(node.value, solid, imports)
+        module = imports.get(node.value.id) if isinstance(node.value, ast.Name) else None
+        known = module is None or node.attr in NUMBERS or _is_known(module, node.attr)
+        return known and _is_solid(node.value, solid, imports)
     if isinstance(node, ast.BinOp | ast.UnaryOp | ast.BoolOp | ast.Compare | ast.IfExp | ast.Tuple | ast.JoinedStr):
         return all(_is_solid(part, solid, imports) for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr))
     return isinstance(node, ast.Constant | ast.Lambda | ast.FormattedValue)
