@@ -10,6 +10,7 @@ from pathlib import Path
 from .errors import CourseError
 from .grading import formats
 from .grading.assignment import find_assignment
+from .grading.formats.words import clean
 from .grading.gradebook import push
 from .grading.limits import MIB, Limits
 from .grading.pages import write_pages
@@ -141,7 +142,7 @@ def _tell(done, roster):
 
 
 def _say(words):
-    print(f"hapticlab: {words}", file=sys.stderr)
+    print(f"hapticlab: {clean(words, 2000)}", file=sys.stderr)
 
 
 def _whole(least):

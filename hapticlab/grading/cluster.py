@@ -20,6 +20,8 @@ from .workers import Bench, Reply, as_json, processor_seconds
 
 #: how many submissions a thread of the cluster may have waiting
 AHEAD = 2
+#: how long a scheduler has to answer at first [s]
+PATIENCE = 10
 #: of a worker's process: benches nobody works at, by what they were made of
 _idle, _lock = {}, threading.Lock()
 
@@ -48,7 +50,7 @@ class ClusterWorkers:
             self.number = sum(self._client.nthreads().values())
             if not self.number:
                 raise CourseError(f"{self.address} has no workers; start some: dask worker {self.address}")
-            self._before = self._client.run(processor_seconds)
+            self._before = self._client.run(processor_seconds, on_error="ignore")
             said = json.loads(self._client.submit(_ready, self._setup, pure=False).result())
             if said["digest"] != self._digest:
                 raise CourseError("the cluster's workers have another version of hapticlab; install the same one there")
@@ -72,7 +74,7 @@ class ClusterWorkers:
                 busy[self._client.submit(_graded, self._setup, as_json(task, alone), pure=False)] = task
             if not busy:
                 return
-            for future in _done(busy):
+            for future in _done(self._client, busy):
                 yield busy.pop(future), _reply(future)
 
 
@@ -82,15 +84,16 @@ def _client(address):
     except ImportError:
         raise EngineMissingError(f"{address} is a Dask cluster; to reach one do: pip install distributed") from None
     try:
-        return Client(address, set_as_default=False, timeout=10)
+        return Client(address, set_as_default=False, timeout=PATIENCE)
     except (OSError, ValueError) as problem:
         raise CourseError(f"{address}: no Dask scheduler answers there ({problem}); start one: dask scheduler") from None
 
 
-def _done(futures):
+def _done(client, futures):
     from distributed import wait
 
-    return wait(list(futures), return_when="FIRST_COMPLETED").done
+    with client.as_current():
+        return wait(list(futures), return_when="FIRST_COMPLETED").done
 
 
 def _reply(future):

@@ -6,6 +6,7 @@ For the others the whole notebook runs, cell by cell, as it did for its student:
 
 import base64
 import time
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 from .marking import Found, ended_words, exercise_report
@@ -13,8 +14,8 @@ from .replies import Garbage, line_of, outcomes_of
 from .report import Report
 from .starter import SessionEnded
 
-#: of the time that a step has: what it has where only the needed statements run
-QUICK = 0.5
+#: what a session is charged for its start [s], and how much wall clock a submission has, in what it may be charged
+START, MOST_WALL = 0.05, 10
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ def grade(submission, assignment, starter, limits, *, alone=False):
     if submission.problem:
         return refused(submission, assignment, submission.problem, limits)
     cases = assignment.cases(submission.student)
-    work = _Work(submission, assignment, starter, limits, alone, cases, time.monotonic() + limits.total)
+    work = _Work(submission, assignment, starter, limits, alone, cases, time.monotonic() + MOST_WALL * limits.total)
     try:
         work.quick()
         work.whole()
@@ -96,6 +97,7 @@ class _Work:
     alone: bool
     cases: dict
     until: float
+    spent: float = 0.0
     found: dict = field(default_factory=dict)
     raised: dict = field(default_factory=dict)
     left_out: dict = field(default_factory=dict)
@@ -106,19 +108,18 @@ class _Work:
     def quick(self):
         """Ask for all answers where only the statements ran that they need."""
         names = [exercise.name for exercise in self.assignment.lab.exercises]
-        seconds = QUICK * self.limits.seconds
 
         def prepare(session):
-            self._ask(session, {"do": "plan", "names": names}, seconds)
-            self._ask(session, {"do": "run_pieces"}, seconds)
+            self._ask(session, {"do": "plan", "names": names})
+            self._ask(session, {"do": "run_pieces"})
 
-        self._answers(names, prepare, seconds)
+        self._answers(names, prepare)
 
     def whole(self):
         """Ask for the answers that are not right yet where the whole notebook ran."""
         pending = self.undecided()
         if pending:
-            end = self._answers(pending, self._run_cells, self.limits.seconds)
+            end = self._answers(pending, self._run_cells)
             self.found |= {name: Found(ended=end) for name in pending if end and name not in self._seen}
 
     def undecided(self):
@@ -141,23 +142,23 @@ class _Work:
             return not report.ended
         return (exercise.judged and report.right == report.cases) or (self._untouched and not report.answered)
 
-    def _answers(self, names, prepare, seconds):
+    def _answers(self, names, prepare):
         """Ask for answers in sessions that are prepared alike, a new one after each end; return why the last one ended."""
         self._seen = set()
         while left := [name for name in names if name not in self._seen]:
             before = len(self._seen), len(self.left_out)
             try:
-                with self.starter.session(self.limits) as session:
-                    self._ask(session, self._load(), self.limits.seconds)
+                with self._session() as session:
+                    self._ask(session, self._load())
                     prepare(session)
                     for name in left:
-                        self._answer(session, name, seconds, first=name == left[0])
+                        self._answer(session, name, first=name == left[0])
             except SessionEnded as end:
                 if before == (len(self._seen), len(self.left_out)):
                     return end.reason  # not by an answer, nor by a cell, which another session could leave out
         return ""
 
-    def _answer(self, session, name, seconds, first):
+    def _answer(self, session, name, first):
         """Ask for one answer; where it ends the session that is what was found.
 
         It is asked again as the ``first`` of another session otherwise: an answer before it may have left behind what
@@ -167,7 +168,7 @@ class _Work:
         kind = exercise.kind if exercise.judged else "value"
         givens = [dict(case.given) for case, _ in self.cases[name]] if exercise.judged else [{}]
         try:
-            reply = self._ask(session, {"do": "evaluate", "name": name, "kind": kind, "givens": givens}, seconds)
+            reply = self._ask(session, {"do": "evaluate", "name": name, "kind": kind, "givens": givens})
             self.found[name] = Found(tuple(outcomes_of(reply, len(givens), self.limits.printed)))
         except Garbage:
             self.found[name] = Found(ended="garbage")
@@ -184,7 +185,7 @@ class _Work:
             if number in self.left_out:
                 continue
             try:
-                reply = self._ask(session, {"do": "run", "cell": number}, self.limits.seconds)
+                reply = self._ask(session, {"do": "run", "cell": number})
                 self.raised[number] = line_of(reply.get("problem"))
             except Garbage:
                 self.left_out[number] = "garbage"
@@ -197,12 +198,20 @@ class _Work:
         files = {name: base64.b64encode(content).decode() for name, content in self.assignment.files().items()}
         return {"do": "load", "cells": list(self.submission.cells), "files": files}
 
-    def _ask(self, session, request, seconds):
-        left = self.until - time.monotonic()
-        if left <= 0:
+    @contextmanager
+    def _session(self):
+        with self.starter.session(self.limits) as session:
+            try:
+                yield session
+            finally:
+                self.spent += START + session.charged
+
+    def _ask(self, session, request):
+        left = self.limits.total - self.spent - session.charged
+        if left <= 0 or time.monotonic() > self.until:
             raise _Spent if self.alone else _Late
         try:
-            return session.ask(request, min(seconds, left))
+            return session.ask(request, min(self.limits.seconds, left))
         except SessionEnded as end:
             if end.reason == "time" and not self.alone:
                 raise _Late from None

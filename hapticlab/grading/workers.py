@@ -13,7 +13,7 @@ from multiprocessing.connection import wait
 
 from ..errors import CourseError, HapticlabError
 from .assignment import Assignment
-from .grade import Deferred, grade
+from .grade import MOST_WALL, Deferred, grade
 from .limits import Limits
 from .report import Report
 from .starter import start
@@ -21,7 +21,7 @@ from .submission import Submission
 
 #: how long to wait at a time [s]; on Windows Ctrl-C is heard in between only
 LOOK = 0.5
-#: time that a worker has beside its submission's, which is counted again by it [s]
+#: time that a worker has beside its submission's, which it counts itself [s]
 GRACE = 60.0
 
 
@@ -149,23 +149,28 @@ class Workers:
         """Yield (task, Reply) as each is known; where ``alone``, one after another."""
         tasks, busy = iter(tasks), {}
         while True:
-            for worker in self._all[: 1 if alone else None]:
-                if worker not in busy and (task := next(tasks, None)) is not None:
-                    worker.begin(task, alone)
-                    busy[worker] = task
+            while len(busy) < (1 if alone else self.number) and (task := next(tasks, None)) is not None:
+                worker = self._free(busy)
+                worker.begin(task, alone)
+                busy[worker] = task
             if not busy:
                 return
             for worker in _ready(busy):
                 reply, task = worker.reply(), busy.pop(worker)
                 if reply.died:
-                    self._replace(worker)
+                    self._all.remove(worker)
+                    worker.end()
+                    worker.ended()
                 yield task, reply
 
-    def _replace(self, worker):
-        worker.end()
-        worker.ended()
-        self._all[self._all.index(worker)] = new = _Worker(self._bench)
-        new.level()
+    def _free(self, busy):
+        """Return a worker that has nothing to do, a new one where too many have died."""
+        for worker in self._all:
+            if worker not in busy:
+                return worker
+        self._all.append(_Worker(self._bench))
+        self._all[-1].level()
+        return self._all[-1]
 
 
 def _ready(busy):
@@ -186,7 +191,7 @@ class _Worker:
         self._process = context.Process(target=_work, args=(there, bench), name="hapticlab grade")
         self._process.start()
         there.close()
-        self._most, self.until = bench[1].total + GRACE, 0.0
+        self._most, self.until = MOST_WALL * bench[1].total + GRACE, 0.0
 
     def level(self):
         """Wait until it is ready; raise what keeps it from being so."""

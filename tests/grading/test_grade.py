@@ -1,0 +1,172 @@
+"""A submission earns what its honest part earns, and the report says of the rest what was wrong."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from attacks.small_lab import HONEST, OPEN, write_lab
+
+from hapticlab.course.evaluate import Outcome
+from hapticlab.errors import CourseError
+from hapticlab.grading.assignment import find_assignment
+from hapticlab.grading.grade import Deferred, grade
+from hapticlab.grading.limits import Limits
+from hapticlab.grading.marking import Found, exercise_report
+from hapticlab.grading.replies import Garbage, outcomes_of, rounded, text_of
+from hapticlab.grading.starter import start
+from hapticlab.grading.submission import Submission
+
+LIMITS = Limits(seconds=4.0)
+ENDED = {"energy": "import os\ndef energy(x, k):\n    os._exit(0)"}
+WRONG = {"force": "def force(x, k):\n    print('at', x)\n    return k * x"}
+
+
+@pytest.fixture(scope="module")
+def assignment(tmp_path_factory):
+    lab, answers = write_lab(tmp_path_factory.mktemp("course"))
+    return find_assignment(lab, answers.parent, seed=7)
+
+
+@pytest.fixture(scope="module")
+def starter():
+    with start("auto") as started:
+        yield started
+
+
+def submission(*more, **changed):
+    return Submission("ada", "42_ada.ipynb", (*(HONEST | changed).values(), *more), "c0ffee")
+
+
+def by_name(report):
+    return {one.name: one for one in report.exercises}
+
+
+def test_honest_work_earns_all_though_another_cell_never_ends(assignment, starter):
+    report = grade(submission("while True: pass"), assignment, starter, LIMITS)
+    assert (report.earned, report.points) == (10.0, 10.0)
+    found = by_name(report)
+    assert all(one.right == one.cases > 0 for one in report.exercises if one.points)
+    assert found["guess"].text == "1000 N/m" and found["discussion"].text.startswith("The held force")
+    assert found["force"].cases == 4 and not found["force"].words
+
+
+def test_an_answer_that_only_the_whole_notebook_has_is_found(assignment, starter):
+    report = grade(submission("exec('stiff' + 'ness = 731.25')", stiffness="stiffness = 1.0"), assignment, starter, LIMITS)
+    assert report.earned == 10.0
+
+
+def test_what_is_wrong_is_told_with_its_first_case(assignment, starter):
+    report = grade(submission("1 / 0", stiffness="stiffness = 73.0", **WRONG), assignment, starter, LIMITS)
+    assert report.earned == 7.0
+    force, stiffness = by_name(report)["force"], by_name(report)["stiffness"]
+    assert force.slip == "You forgot x_o." and force.words == "2.4 N, expected 0.4 N. You forgot x_o." and force.hint
+    assert (force.failing.given, force.failing.value, force.failing.expected) == ({"x": 0.012, "k": 200.0}, 2.4, 0.4)
+    assert force.failing.public
+    assert stiffness.failing.value == 73.0 and stiffness.failing.expected is None, "the answer itself is not told"
+    assert [(cell, words.split(":")[0].split()[0]) for cell, words in report.cells] == [(len(HONEST) + 1, "ZeroDivisionError")]
+    assert force.printed.split() == ["at", "0.012", "at", "0.008"], "givens of hidden cases are not told"
+    assert str(Path.cwd()) not in report.to_json() and "/tmp" not in report.to_json()
+
+
+def test_the_same_submission_gives_the_same_bytes(assignment, starter):
+    handed_in = submission("import os\nos._exit(3)", **WRONG, **ENDED)
+    first, second = (grade(handed_in, assignment, starter, LIMITS, alone=True).to_json() for _ in range(2))
+    assert first == second
+
+
+def test_an_exercise_or_a_cell_that_ends_its_process_costs_that_alone(assignment, starter):
+    report = grade(submission("import os\nos._exit(3)", why="why = 'a'", **ENDED), assignment, starter, LIMITS)
+    assert report.earned == 7.0
+    assert by_name(report)["energy"].ended == "exit" and "ends the process" in by_name(report)["energy"].words
+    assert report.cells == ((len(HONEST) + 1, "it ends the process it runs in"),)
+
+
+def test_who_ends_the_process_of_the_next_is_no_trouble_to_it(assignment, starter):
+    killer = "import os, signal\ndef force(x, k):\n    os.kill(os.getppid(), signal.SIGKILL)\n    return 1.0"
+    report = grade(submission(force=killer), assignment, starter, LIMITS)
+    assert report.earned == 8.0
+
+
+def test_a_limit_of_time_counts_only_alone(assignment, starter):
+    slow, limits = submission(forces="def forces(x, k):\n    while True: pass"), Limits(seconds=0.6)
+    report = grade(slow, assignment, starter, limits, alone=True)
+    assert by_name(report)["forces"].ended == "time" and "0.6 s" in by_name(report)["forces"].words
+    assert grade(slow, assignment, starter, limits) == Deferred("ada")
+
+
+def test_when_the_time_of_all_is_over_what_is_left_is_wrong(assignment, starter):
+    cells = (*OPEN.values(), *["import time\ntime.sleep(60)"] * 40)
+    report = grade(Submission("bob", "b.ipynb", cells), assignment, starter, Limits(seconds=0.3, total=1.5), alone=True)
+    assert report.earned == 0 and {one.ended for one in report.exercises if one.points} == {"time"}
+
+
+def test_the_notebook_as_it_came_runs_in_no_whole(assignment, starter):
+    report = grade(Submission("cy", "c.ipynb", tuple(OPEN.values())), assignment, starter, LIMITS)
+    assert report.earned == 0 and report.cells == ()
+    assert {one.words for one in report.exercises} == {"no answer"} and not any(one.answered for one in report.exercises)
+
+
+def test_what_cannot_be_read_is_a_report_too(assignment, starter):
+    report = grade(Submission("dan", "d.ipynb", problem="d.ipynb is no notebook"), assignment, starter, LIMITS)
+    assert (report.earned, report.points, report.problem) == (0.0, 10.0, "d.ipynb is no notebook")
+
+
+@pytest.mark.parametrize(
+    "value",
+    [[[1.0, "2"]], 10**400, {"F": [None]}, [True], {str(n): 0.0 for n in range(1001)}, [[]] * 200_001],
+    ids=["text in a list", "huge", "none in a list", "bool in a list", "names", "lists"],
+)
+def test_a_reply_that_holds_no_plain_value_is_garbage(value):
+    with pytest.raises(Garbage):
+        outcomes_of({"outcomes": [{"value": value, "problem": "", "printed": ""}]}, 1, 100)
+
+
+@pytest.mark.parametrize("reply", [{}, {"outcomes": []}, {"outcomes": [7]}, {"outcomes": [{"value": 1.0, "right": True}]}])
+def test_a_forged_reply_is_garbage(reply):
+    with pytest.raises(Garbage):
+        outcomes_of(reply, 1, 100)
+
+
+def test_a_nest_that_is_too_deep_is_garbage():
+    nest = json.loads("[" * 400 + "]" * 400)
+    with pytest.raises(Garbage):
+        outcomes_of({"outcomes": [{"value": nest, "problem": "", "printed": ""}]}, 1, 100)
+
+
+def test_texts_lose_what_moves_a_cursor_and_numbers_what_no_file_holds():
+    assert text_of("a\x1b[2J\u202eb\ud800\nc\x00") == "a[2Jb\nc"
+    assert rounded([1 / 3, float("nan"), 1e300]) == [0.333333333333, "nan", 1e300]
+    assert len(rounded(list(range(5000)))) == 2000 and sum(map(len, rounded([[0.0] * 90] * 90))) <= 2000
+
+
+def test_a_value_that_cannot_be_compared_is_wrong_and_stops_nothing(assignment):
+    exercise = assignment.lab.exercise("forces")
+    report = exercise_report(exercise, [(exercise.cases[0], True)], Found((Outcome([[[1.0]], 2.0]),)), LIMITS)
+    assert (report.earned, report.right) == (0.0, 0) and report.words
+
+
+def test_cases_are_a_students_own_and_keyed_by_all_they_depend_on(assignment, tmp_path):
+    ada, bob = (assignment.cases(student)["energy"] for student in ("ada", "bob"))
+    assert ada == assignment.cases("ada")["energy"] and ada[1:] != bob[1:] and ada[:1] == bob[:1]
+    assert [public for _, public in ada] == [True, False, False]
+    assert replace(assignment, seed=8).digest != assignment.digest == replace(assignment, seed=7).digest
+    assert replace(assignment, answers=None).digest != assignment.digest
+    assert set(assignment.files()) == set(), "neither checks.py nor the notebook"
+    lab, answers = write_lab(tmp_path)
+    assert find_assignment(lab, answers.parent, seed=7).digest == assignment.digest, "wherever it lies"
+    (lab / "data.csv").write_text("1,2")
+    changed = find_assignment(lab, answers.parent, seed=7)
+    assert changed.digest != assignment.digest and changed.files() == {"data.csv": b"1,2"}
+
+
+def test_an_assignment_without_answers_is_refused_before_anything_is_graded(assignment, tmp_path):
+    lab, answers = write_lab(tmp_path)
+    with pytest.raises(CourseError, match="holds no NN_name/solution.py"):
+        find_assignment(lab, tmp_path)
+    (answers / "hidden.py").write_text("cases = None")
+    with pytest.raises(CourseError, match="defines no cases"):
+        find_assignment(lab, answers.parent)
+    (lab / "checks.py").unlink()
+    with pytest.raises(CourseError, match=r"needs 42_small_wall\.ipynb and checks\.py"):
+        find_assignment(lab)

@@ -1,0 +1,97 @@
+"""A class is graded: the same reports with any number of workers, whoever ends them, and however often it begins anew."""
+
+import os
+import signal
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from attacks.small_lab import HONEST, OPEN, notebook, write_lab
+
+from hapticlab.errors import CourseError
+from hapticlab.grading.assignment import find_assignment
+from hapticlab.grading.limits import Limits
+from hapticlab.grading.run import run
+
+LIMITS = Limits(seconds=1.5)
+#: ends the process that grades, which is above the one that this one was forked from
+KILLER = """
+import os, signal
+def parent(pid):
+    return int(open(f"/proc/{pid}/stat").read().rpartition(")")[2].split()[1])
+def force(x, k):
+    pid = os.getpid()
+    while b"spawn_main" not in open(f"/proc/{pid}/cmdline", "rb").read():
+        pid = parent(pid)
+    os.kill(pid, signal.SIGKILL)
+"""
+CLASS = {
+    "ada": HONEST,
+    "bob": HONEST | {"why": 'why = "a"'},
+    "cy": OPEN,
+    "dan": HONEST | {"force": "def force(x, k):\n    while True: pass"},
+    "eve": HONEST | {"energy": "import os\ndef energy(x, k):\n    os._exit(1)"},
+}
+EARNED = {"ada": 10.0, "bad": 0.0, "bob": 9.0, "cy": 0.0, "dan": 8.0, "eve": 8.0}
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory):
+    place = tmp_path_factory.mktemp("course")
+    lab, answers = write_lab(place)
+    (place / "class").mkdir()
+    for student, cells in CLASS.items():
+        (place / "class" / f"{student}.ipynb").write_bytes(notebook(cells.values()))
+    (place / "class" / "bad.ipynb").write_text("nothing")
+    return place / "class", find_assignment(lab, answers.parent, seed=3), place
+
+
+@pytest.fixture(scope="module")
+def one(course):
+    return run(course[:1], course[1], LIMITS, workers=1)
+
+
+def test_each_earns_what_is_right(one):
+    assert {report.student: report.earned for report in one.reports} == EARNED
+    assert [report.student for report in one.reports] == sorted(EARNED)
+    assert [report.student for report in one.failed] == ["bad"] and one.failed[0].problem.startswith("bad.ipynb is no notebook")
+    assert len(one.seconds) == len(CLASS) and one.processor > 0
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux's /proc to find the grader")
+def test_two_workers_one_of_which_is_killed_give_the_same_bytes(one, course, tmp_path):
+    (tmp_path / "zed.ipynb").write_bytes(notebook((HONEST | {"force": KILLER}).values()))
+    paths, given = [course[0], tmp_path / "zed.ipynb"], {"workers": 2, "journal": tmp_path / "j", "sandbox": "none"}
+    *others, zed = run(paths, course[1], LIMITS, **given).reports
+    assert [report.to_json() for report in others] == [report.to_json() for report in one.reports]
+    assert (zed.student, zed.earned) == ("zed", 0.0) and "ended the process that grades, twice" in zed.problem
+    again = run([course[0]], course[1], LIMITS, **given)
+    assert again.seconds == () and again.reports == tuple(others) and again.level == "", "all is known: no process began"
+
+
+def test_what_keeps_a_worker_from_beginning_is_said(course):
+    with pytest.raises(CourseError, match="sandbox"):
+        run([course[0] / "ada.ipynb"], course[1], LIMITS, sandbox="iron")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there is no SIGINT to send to one process")
+def test_ctrl_c_ends_cleanly_and_says_how_to_go_on(one, course):
+    folder, assignment, place = course
+    output = place / "results.json"
+    journal = place / "results.json.journal.jsonl"
+    command = [sys.executable, "-m", "hapticlab", "grade", str(folder), "--lab", str(assignment.folder.path)]
+    command += ["--instructor", str(assignment.answers.parent), "--seed", "3", "--timeout", "1.5", "--workers", "1"]
+    command += ["--format", "json", "-o", str(output)]
+    env = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    with subprocess.Popen(command, env=env, stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
+        while not (journal.is_file() and journal.read_bytes().count(b"\n")):
+            with suppress(subprocess.TimeoutExpired):
+                pytest.fail(f"it ended by itself: {process.wait(0.05)}")
+        os.killpg(process.pid, signal.SIGINT)
+        told = process.stderr.read()
+    assert process.returncode == 130 and "the same command again goes on" in told and "Traceback" not in told
+    assert not output.exists()
+    again = run([folder], assignment, LIMITS, journal=journal)
+    assert 0 < len(again.seconds) < len(CLASS) and again.reports == one.reports
