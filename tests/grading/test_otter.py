@@ -46,7 +46,8 @@ def test_students_get_the_lab_with_otters_checks_and_no_solution(made, number):
     added = [source for source in given if source not in came]
     assert [source for source in given if source in came] == came
     assert [source for source in added if source.startswith("grader.check(")] == [f'grader.check("{name}")' for name in names]
-    solved = {text(cell).rstrip() for cell in solved_notebook(lab, INSTRUCTOR / lab.name)["cells"]} - set(came)
+    answered = [cell for cell in solved_notebook(lab, INSTRUCTOR / lab.name)["cells"] if cell["id"] != "solution-imports"]
+    solved = {text(cell).rstrip() for cell in answered} - set(came)
     assert len(solved) > len(names) and not [answer for answer in solved for source in given if answer in source]
     assert (made / lab.name / "student" / "checks.py").read_bytes() == (lab.path / "checks.py").read_bytes()
     _, problems = notebooks.run([source for source in code_of(students_notebook(made, lab)) if "grader" not in source], lab.path)
