@@ -127,9 +127,10 @@ def _tell(done, roster):
     """Say what stood around the students' code, what it cost, who could not be graded, and who handed in nothing."""
     if done.level in WEAK:
         _say(f"warning: {WEAK[done.level]}")
-    graded = f"{len(done.seconds)} graded, {len(done.reports) - len(done.seconds)} known from before; sandbox: {done.level}"
+    graded = f"{len(done.seconds)} graded, {done.known} known from before"
     if done.seconds:
         each = done.processor / len(done.seconds)
+        graded += f"; sandbox: {done.level}"
         graded += f"; {statistics.median(done.seconds):.2f} s each (median), {each:.2f} s of a processor (mean, start included)"
     _say(graded)
     for report in done.failed:

@@ -24,6 +24,8 @@ class Graded:
         Which walls there were around the students' processes.
     seconds : tuple of float
         Wall clock of each submission that was graded in this run [s]; those of the journal are not among them.
+    known : int
+        How many reports the journal had already.
     processor : float
         Processor time of all of this run's workers together, their start included [s].
     failed : tuple of Report
@@ -33,6 +35,7 @@ class Graded:
     reports: tuple
     level: str
     seconds: tuple
+    known: int
     processor: float
 
     @property
@@ -77,13 +80,13 @@ def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=No
         work = _Run(assignment, limits, sandbox, kept, bar)
         work.all(sources, crew)
     reports = sorted(work.reports, key=lambda report: (report.student, report.submission, report.sha256))
-    return Graded(tuple(reports), crew.level, tuple(work.seconds), crew.seconds)
+    return Graded(tuple(reports), crew.level, tuple(work.seconds), work.known, crew.seconds)
 
 
 class _Run:
     def __init__(self, assignment, limits, sandbox, journal, bar):
         self.assignment, self.limits, self.sandbox, self.journal, self.bar = assignment, limits, sandbox, journal, bar
-        self.reports, self.seconds = [], []
+        self.reports, self.seconds, self.known = [], [], 0
 
     def all(self, sources, crew):
         """Grade all; at the end, one by one, those that a limit of time or the end of a worker left open."""
@@ -110,6 +113,7 @@ class _Run:
                 self._keep(refused(submission, self.assignment, submission.problem, self.limits))
             elif key in self.journal.reports:
                 self._keep(self.journal.reports[key])
+                self.known += 1
             else:
                 yield Task(submission, key)
 

@@ -1,0 +1,89 @@
+"""`hapticlab grade` as it is typed: what it refuses, what it prints where, and the code it ends with."""
+
+import json
+from pathlib import Path
+
+import pytest
+from attacks.small_lab import HONEST, notebook, write_lab
+
+from hapticlab.cli import main
+from hapticlab.course.instructor import solved_notebook
+from hapticlab.course.labs import find_labs
+from hapticlab.errors import CourseError
+from hapticlab.grade_commands import lab_asked
+
+INSTRUCTOR = Path(__file__).parents[1] / "instructor"
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory):
+    place = tmp_path_factory.mktemp("course")
+    lab, answers = write_lab(place)
+    (place / "class").mkdir()
+    for student, why in (("ada", "b"), ("bob", "c")):
+        (place / "class" / f"{student}.ipynb").write_bytes(notebook((HONEST | {"why": f'why = "{why}"'}).values()))
+    (place / "class" / "cy.ipynb").write_text("{}")
+    return place, ["grade", str(place / "class"), "--lab", str(lab), "--instructor", str(answers.parent), "--workers", "1"]
+
+
+def test_a_class_is_graded_into_a_table_pages_and_a_code(course, tmp_path, capsys):
+    _, command = course
+    (tmp_path / "class.csv").write_text("id,name\nada,Ada\nbob,Bob\ndora,Dora\n")
+    extra = ["--format", "json", "-o", str(tmp_path / "r.json"), "--pages", str(tmp_path / "pages")]
+    assert main([*command, *extra, "--roster", str(tmp_path / "class.csv")]) == 1
+    told = capsys.readouterr()
+    found = {one["student"]: one for one in json.loads((tmp_path / "r.json").read_text())["reports"]}
+    assert {student: one["earned"] for student, one in found.items()} == {"ada": 10.0, "bob": 9.0, "cy": 0.0}
+    assert "cy.ipynb" in found["cy"]["problem"] and found["ada"]["problem"] == ""
+    assert sorted(path.name for path in (tmp_path / "pages").rglob("*.html")) == ["ada.html", "bob.html", "class.html", "cy.html"]
+    assert told.out == "" and "2 graded, 0 known from before" in told.err and "s of a processor" in told.err
+    assert "not graded: cy, cy.ipynb" in told.err and "no submission of: dora" in told.err and "not in the roster: cy" in told.err
+    assert "warning: without --instructor" not in told.err
+    whole = (tmp_path / "r.json").read_bytes()
+    assert main([*command, *extra]) == 1 and (tmp_path / "r.json").read_bytes() == whole
+    assert "0 graded, 2 known from before" in capsys.readouterr().err
+
+
+def test_a_solved_lab_earns_all_by_public_cases_with_a_warning(tmp_path, capsys):
+    lab = next(one for one in find_labs() if one.number == "02")
+    path = tmp_path / "ada.ipynb"
+    path.write_text(json.dumps(solved_notebook(lab, INSTRUCTOR / lab.name)), "utf-8")
+    assert main(["grade", str(path), "--workers", "1", "--sandbox", "none"]) == 0
+    told = capsys.readouterr()
+    assert told.out.startswith("ada: 10 of 10 points, lab 02")
+    assert "learnt by heart" in told.err and "nothing but limits stands around" in told.err
+
+
+def test_the_lab_is_named_by_the_files_or_by_what_their_cells_check(tmp_path):
+    (tmp_path / "ada").mkdir()
+    cells = tmp_path / "ada" / "mine.ipynb"
+    cells.write_bytes(notebook(['hl.check("07.energy", energy)']))
+    assert lab_asked([cells]) == "07"
+    assert lab_asked([cells.rename(tmp_path / "ada" / "03_chatter.ipynb")]) == "03"
+    cells.write_bytes(notebook(['hl.check("07.energy", 1)\nhl.check("08.k", 2)']))
+    with pytest.raises(CourseError, match="--lab 02"):
+        lab_asked([cells])
+
+
+@pytest.mark.parametrize(
+    ("extra", "words"),
+    [
+        (["--fresh"], "--fresh forgets what is beside the results; it needs -o FILE"),
+        (["--format", "canvas"], "--roster FILE.csv"),
+        (["--gradebook", "nowhere.db"], "nowhere.db: no such file"),
+        (["--workers", "0"], "needs a whole number from 1 on"),
+        (["--timeout", "nan"], "needs a number of seconds > 0"),
+        (["--memory", "12"], "needs a whole number from 64 on"),
+    ],
+)
+def test_a_wrong_command_is_refused_before_anything_runs(course, extra, words, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([*course[1], *extra])
+    assert ended.value.code == 2 and words in capsys.readouterr().err
+
+
+def test_what_is_not_there_is_said(course, capsys):
+    assert main(["grade", str(course[0] / "nobody.ipynb"), "--lab", "02"]) == 1
+    assert "no such file or folder" in capsys.readouterr().err
+    assert main([*course[1], "--lab", "77"]) == 1
+    assert "there is no lab 77" in capsys.readouterr().err
