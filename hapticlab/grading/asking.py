@@ -30,6 +30,24 @@ class SessionEnded(Exception):
         self.reason = reason
 
 
+def parsed(line, number):
+    """Return the reply to the request of that number, or None for another line.
+
+    Examples
+    --------
+    >>> parsed(b'{"number": "a7", "cells": 3}', "a7"), parsed(b'{"number": "a6"}', "a7")
+    ({'cells': 3}, None)
+    """
+    try:
+        if sum(map(line.count, (b"[", b"{", b'"'))) > MOST_PARTS:
+            raise SessionEnded("garbage")
+        reply = json.loads(line)
+        found = reply.pop("number")
+    except (ValueError, RecursionError, KeyError, AttributeError, TypeError):
+        raise SessionEnded("garbage") from None
+    return reply if found == number else None
+
+
 class Session:
     """A student's session, asked by :meth:`ask`; a context manager, which kills all its processes when it is left.
 
@@ -93,7 +111,7 @@ class Session:
                 if taken > self.limits.answer + FRAME:
                     raise SessionEnded("flood")
                 *lines, held = (held + block).split(b"\n")
-                for reply in map(self.parsed, lines):
+                for reply in (parsed(line, self.number) for line in lines):
                     if reply is not None:
                         return reply
             elif about & select.POLLOUT and not about & select.POLLIN:
@@ -126,17 +144,6 @@ class Session:
             return 0
         except OSError:
             return len(line)
-
-    def parsed(self, line):
-        """Return the reply to the last request, or None for one before it."""
-        try:
-            if sum(map(line.count, (b"[", b"{", b'"'))) > MOST_PARTS:
-                raise SessionEnded("garbage")
-            reply = json.loads(line)
-            number = reply.pop("number")
-        except (ValueError, RecursionError, KeyError, AttributeError, TypeError):
-            raise SessionEnded("garbage") from None
-        return reply if number == self.number else None
 
     def check(self):
         """Raise where the session has too many processes, or too much memory."""

@@ -18,6 +18,7 @@ from . import watch
 from .asking import Session
 from .asking import SessionEnded as SessionEnded
 from .limits import Limits
+from .spawned import SpawnedStarter
 
 LEVELS = "namespaces", "user", "none"
 PACKAGE = Path(hapticlab.__file__).resolve().parent
@@ -54,6 +55,10 @@ def start(sandbox="auto", hidden=()):
     """
     if sandbox not in ("auto", *LEVELS):
         raise CourseError(f"sandbox = {sandbox!r}; needs one of auto, {', '.join(LEVELS)}")
+    if sys.platform != "linux":
+        if sandbox in ("auto", "none"):
+            return SpawnedStarter(PACKAGE, ENVIRONMENT)
+        raise CourseError(f"sandbox = {sandbox!r}; only Linux has it; on this system use auto or none")
     for level in LEVELS if sandbox == "auto" else (sandbox,):
         try:
             return Starter(level, hidden)
