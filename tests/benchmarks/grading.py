@@ -11,7 +11,6 @@ import json
 import os
 import platform
 import resource
-import subprocess
 import sys
 import tempfile
 import time
@@ -21,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "grading")]
 from attacks.arena import Arena  # noqa: E402
 from attacks.mixed import mixed  # noqa: E402
-from handed_in import INSTRUCTOR, LABS, WRONG, handed_in  # noqa: E402
+from handed_in import INSTRUCTOR, LABS, WRONG, handed_in, start  # noqa: E402
 
 from hapticlab.course.notebook import read, write  # noqa: E402
 
@@ -51,9 +50,10 @@ def _measured(number, *commands, cwd, codes=(0,)):
     """Run commands one after another; return wall clock and processor time for each of so many submissions."""
     used, begun = _processor(), time.perf_counter()
     for command in commands:
-        done = subprocess.run([sys.executable, *command], cwd=cwd, capture_output=True, text=True)
-        if done.returncode not in codes:
-            raise RuntimeError(f"{' '.join(command)}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
+        with start(sys.executable, *command, cwd=cwd) as process:
+            said = process.communicate()
+        if process.returncode not in codes:
+            raise RuntimeError(f"{' '.join(command)}\n{said[0][-2000:]}\n{said[1][-2000:]}")
     wall = time.perf_counter() - begun
     return {"number": number, "seconds": wall / number, "processor": (_processor() - used) / number}
 
