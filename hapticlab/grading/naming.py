@@ -12,7 +12,7 @@ CANVAS = re.compile(r"([^_]+?)(?:_LATE)?_(\d+)_\d+_.+")
 #: a lab's number, as its folder and its notebook begin
 LAB = re.compile(r"(\d\d)[_\- ]")
 #: what browsers, Jupyter and file managers add to the name of a second copy
-COPY = re.compile(r"\W*(copy)?\W*\d*\W*", re.IGNORECASE)
+COPY = re.compile(r"[\W_]*(copy)?[\W_]{0,4}\d{0,4}[\W_]?", re.IGNORECASE)
 
 
 def student_of(name, lab=""):

@@ -8,6 +8,8 @@ from .inside.lines import statements
 
 #: lists and dicts take more memory than they have bytes
 MOST_CONTAINERS, MOST_CODE, MOST_CELLS = 500_000, 4_000_000, 2000
+#: of a script, which is taken apart line by line
+MOST_SCRIPT = 500_000
 #: of the blank lines that keep the statements of a script on the lines they have in it
 MOST_BLANK = 1_000_000
 MARKS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
@@ -48,6 +50,8 @@ def script_cells(raw):
     ('import math\n', '\n\n# %%\nk = (1 +\n  2)\n')
     """
     text = decoded(raw).replace("\r\n", "\n").replace("\r", "\n")
+    if len(text) > MOST_SCRIPT:
+        raise CourseError(f"has more code than any lab: at most {MOST_SCRIPT} characters")
     parts, cells, line = statements(text), [], 0
     if len(parts) > MOST_CELLS or len(parts) * text.count("\n") > MOST_BLANK:
         return _bounded([text])

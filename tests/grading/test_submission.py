@@ -17,6 +17,8 @@ from hapticlab.course.notebook import read as read_notebook
 from hapticlab.errors import CourseError
 from hapticlab.grading import archives
 from hapticlab.grading.inside.cells import run_cell
+from hapticlab.grading.inside.lines import statements
+from hapticlab.grading.naming import is_lab
 from hapticlab.grading.submission import find_submissions, lab_of, read
 
 LAB = "02_virtual_wall"
@@ -251,10 +253,37 @@ def test_a_script_is_cells_that_keep_their_lines(tmp_path):
 
 
 def test_a_script_in_latin_1_and_one_with_more_statements_than_any(tmp_path):
-    fill(tmp_path, {"ada.py": TEXT.encode("latin-1"), "bob.py": "k = 2\n" * 5000})
+    fill(tmp_path, {"ada.py": TEXT.encode("latin-1"), "bob.py": "k = 2\n" * 5000, "eve.py": "k = 2\n" * 100_000})
     found = handed(tmp_path)
     assert found["ada"][0] == (TEXT,)
     assert found["bob"] == (("k = 2\n" * 5000,), "")
+    assert found["eve"] == ((), "eve.py has more code than any lab: at most 500000 characters")
+
+
+SLOW = {
+    "blanks": " " * 499_000,
+    "blank lines": "\n" * 499_000,
+    "names": "a" * 499_000,
+    "an expression": "a, " * 166_000,
+    "open brackets": "(" * 499_000,
+    "lines in a bracket": "(" + "\n@a" * 160_000,
+    "open texts": "'" * 499_000,
+    "texts of many lines": "\"\"\"" * 166_333,
+    "lines that go on": "if a:\n" + " a\n" * 160_000,
+    "backslashes": "\\\n" * 160_000,
+    "decorators": "@a\n" * 160_000,
+    "questions": "a" * 400_000 + "?" * 90_000 + "!",
+}
+
+
+@pytest.mark.parametrize("kind", SLOW)
+def test_a_long_script_is_taken_apart(kind):
+    """In seconds; where the time grows with the square of the length, it takes hours."""
+    assert "".join(statements(SLOW[kind])) in (SLOW[kind], "")
+
+
+def test_a_name_of_many_dashes_is_no_lab():
+    assert not is_lab(LAB + "-" * 60_000 + "a.ipynb", LAB)
 
 
 def test_links_and_what_is_no_file_are_never_read(tmp_path):

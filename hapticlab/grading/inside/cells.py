@@ -17,7 +17,7 @@ from .lines import ASSIGNED_MAGIC, MAGIC, logical_lines
 CELL_MAGIC = re.compile(r"(?:[ \t]*(?:#[^\n]*)?\n)*%%(\w+)[^\n]*")
 #: cell magics whose cell is Python that runs
 KEPT = {"time", "timeit", "capture", "prun", "memit"}
-TIMED = re.compile(r"([ \t]*(?:[\w., \t]+=)?)[ \t]*%time[ \t]+(?=\S)")
+TIMED = re.compile(r"((?:[\w., \t]+=)?[ \t]*)%time[ \t]+(?=\S)")
 PROMPT = re.compile(r"^(?:>>>|\.\.\.)(?: |$)", re.MULTILINE)
 MOST_CHARACTERS = 300
 

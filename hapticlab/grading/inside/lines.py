@@ -11,7 +11,7 @@ PARTS = re.compile(
 MAGIC = re.compile(
     r"[ \t]*(?:[%!?]|(?:pip|conda)[ \t]+[a-z])(?:\\\n|[^\n])*\n?|[ \t]*[\w.*\[\]'\"]+\?\??[ \t]*(?:\n|\Z)"
 )
-ASSIGNED_MAGIC = re.compile(r"[ \t]*[\w., \t]+=[ \t]*[%!](?:\\\n|[^\n])*\n?")
+ASSIGNED_MAGIC = re.compile(r"[\w., \t]+=[ \t]*[%!](?:\\\n|[^\n])*\n?")
 #: never the continuation of a bracket: whoever left one open above loses no more than that statement
 NEW = re.compile(r"(?:async[ \t]+def|def|class|import|while|with|try|return)\b|@\w+[^\n]*\n(?:async|def|class|@)")
 CONTINUES = re.compile(r"[ \t]+\S|(?:else|elif|except|finally)\b")
@@ -58,14 +58,16 @@ def statements(source):
     >>> statements("import math\n\n@twice\ndef f(x):\n    return x\nif 1:\n    k = 2\nelse:\n    k = 3\n")
     ['import math\n', '\n@twice\ndef f(x):\n    return x\n', 'if 1:\n    k = 2\nelse:\n    k = 3\n']
     """
-    found, waiting, decorated = [], "", False
+    found, waiting, decorated = [], [], False
     for line in logical_lines(source):
+        waiting.append(line)
         if EMPTY.fullmatch(line):
-            waiting += line
             continue
         if found and (decorated or CONTINUES.match(line)):
-            found[-1] += waiting + line
+            found[-1] += waiting
         else:
-            found.append(waiting + line)
-        waiting, decorated = "", line.startswith("@")
-    return [*found[:-1], found[-1] + waiting] if found else []
+            found.append(waiting)
+        waiting, decorated = [], line.startswith("@")
+    if found:
+        found[-1] += waiting
+    return ["".join(lines) for lines in found]
