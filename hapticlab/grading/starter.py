@@ -11,8 +11,6 @@ from contextlib import nullcontext
 from dataclasses import asdict
 from pathlib import Path
 
-import hapticlab
-
 from ..errors import CourseError
 from . import watch
 from .asking import Session
@@ -21,7 +19,7 @@ from .limits import Limits
 from .spawned import SpawnedStarter
 
 LEVELS = "namespaces", "user", "none"
-PACKAGE = Path(hapticlab.__file__).resolve().parent
+PACKAGE = Path(__file__).resolve().parents[1]
 #: one thread, as a zygote forks; no port but a simulated one; the same order of sets in every run
 ENVIRONMENT = {
     "PATH": "/usr/local/bin:/usr/bin:/bin",

@@ -10,12 +10,11 @@ import os
 import random
 import re
 import signal
+import sys
 from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
-
-import hapticlab
 
 from ...course import check as checks
 from ...course.evaluate import evaluate
@@ -121,7 +120,7 @@ class Session:
 def quiet_names():
     """Return the names a notebook starts with; nothing that runs is judged, shown or asked."""
     passed = checks.CheckResult("", True, True, (), "")
-    hapticlab.check = checks.check = lambda *_, **__: passed
+    sys.modules["hapticlab"].check = checks.check = lambda *_, **__: passed
     random.seed(0)
     np.random.seed(0)  # noqa: NPY002 what students call without a generator of their own
     builtins.input = no_input
