@@ -218,6 +218,15 @@ TRAPS = {
     "annotations of the future": (["from __future__ import annotations", "def k(x: nothing):\n    return x"], 3),
     "a string that names it": (["k = 2", "vars()['k'] = 4"], 4),
     "an unpacked call": (["rows = [1, 2]\nk = rows", "def turn(a):\n    a.reverse()", "turn(*[rows])"], [2, 1]),
+    "a print of its own": (["rows = [1]\nk = rows", "def print(what):\n    what.append(2)", "print(rows)"], [1, 2]),
+    "a check of its own": (
+        [
+            "import types\nhl = types.SimpleNamespace()\nrows = [1]\nk = rows",
+            "hl.check = lambda name, what: what.append(2)",
+            "hl.check('01.k', rows)",
+        ],
+        [1, 2],
+    ),
     "shown first": (["rows = [3]\nk = rows\nprint(rows)", "print(rows, rows.append(1))"], [3, 1]),
 }
 

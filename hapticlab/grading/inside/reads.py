@@ -90,6 +90,7 @@ def reads_of(node):
     found.now |= {STATE[name] for name in found.now | found.later if name in STATE}
     found.rebinds -= found.now
     found.alters &= found.now | found.later
+    found.opaque |= not SHOWING.isdisjoint(found.binds) or "hl" in found.alters  # what shows, or checks, does something else
     if isinstance(node, ast.Expr) and _only_shows(node, parts):
         found.shown = set(found.now)
     elif any(map(_is_check, parts)):
