@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hapticlab.errors import CourseError
 from hapticlab.grading.inside import linux, root
 from hapticlab.grading.limits import MIB, Limits
 from hapticlab.grading.starter import PACKAGE, start
@@ -105,6 +106,13 @@ if __name__ == "__main__":
         os.setresuid(user, user, user)
     os.environ.update(SECRET="seen", HOME="/tmp")
     paths = hidden(Path(tempfile.mkdtemp()))
+    refused = {}
+    if level == "user":
+        paths[0].parent.chmod(0o755)
+        try:
+            start(level, hidden=paths[:1]).close()
+        except CourseError as refusal:
+            refused = {"refused": str(refusal)}
     paths[0].chmod(0o600)
     with start(level, hidden=paths[:1] if level == "user" else paths) as starter:
-        print(json.dumps(tried(starter, paths, sys.argv[3:])))
+        print(json.dumps(refused | tried(starter, paths, sys.argv[3:])))
