@@ -8,11 +8,11 @@ import re
 from pathlib import Path
 
 from ..errors import CourseError
-from .constants import with_constants
+from .constants import constants, with_constants
 from .instructor import check_tree
 from .labs import CHECKS, find_labs
 from .marks import own_exercises, own_numbers
-from .notebook import read, text_of, write_new
+from .notebook import code_of, read, text_of, write_new
 
 #: what no folder can be called on some system: a slash or a sign with a meaning, an end that is cut off, a device's name
 NO_FOLDER = re.compile(r'.*[\\/:*?"<>|].*|[\s.].*|.*[\s.]|(con|prn|aux|nul|com\d|lpt\d)(\..*)?|', re.I | re.S)
@@ -110,6 +110,68 @@ def personal_labs(students, folder, tree, seed=0, only=(), labs=None):
             for path, content in _files(lab, Path(tree) / lab.name, seed, student).items():
                 states[str(Path(student, lab.name, path))] = write_new(target / student / lab.name / path, content)
     return states
+
+
+def foreign_numbers(cells, folder, answers, seed, student, personal=True):
+    """Tell in a sentence which numbers in a submission are not those that it is graded by.
+
+    Then the student was handed another's notebook, one of another seed, or is graded under another name, and right work
+    earns nothing. The cells are looked through as text.
+
+    Parameters
+    ----------
+    cells : iterable of str
+        As they were handed in.
+    folder : LabFolder
+    answers : str or Path or None
+        The lab's folder in an instructor's tree; None where there are no answers, and nothing to tell.
+    seed : int
+        Of the course.
+    student : str
+        By the name that the submission is graded under.
+    personal : bool
+        Whether each student was handed numbers of their own; else these are those of the lab.
+
+    Returns
+    -------
+    str
+        Empty where each number stands there as it should, or stands nowhere.
+
+    Examples
+    --------
+    >>> from hapticlab.course.labs import LabFolder
+    >>> foreign_numbers(["K_OWN = 430.0"], LabFolder(Path("labs/02_virtual_wall")), None, 0, "ada")
+    ''
+    """
+    if answers is None:
+        return ""
+    own = own_numbers(folder.lab(), answers, seed, student)
+    lines = [pair for cell in code_of(read(folder.notebook)) for pair in constants(cell).values()]
+    came = {name: float(value) for name, value in lines if name in own}
+    needed, who = (own, f"seed {seed} gave {student!r}") if personal else (came, "the lab has")
+    written = {name: _written(name, cells) for name in needed}
+    foreign = [name for name, values in written.items() if values and needed[name] not in values]
+    if not foreign:
+        return ""
+    name = foreign[0]
+    found = f"{name} = {written[name][0]:.15g} in the notebook, and {who} {needed[name]:.15g}"
+    if not personal:
+        return f"{found}: it was handed out with numbers of its student's own? then grade it by --personal and the same --seed"
+    if written[name][0] == came.get(name):
+        return f"{found}: it is the notebook that came with the lab, not the one handed out to this student"
+    return f"{found}: it was handed out by another seed, or to another name"
+
+
+def _written(name, cells):
+    """Return the numbers that cells give to a name, in lines such as ``K_OWN = 430.0  # N/m``."""
+    line = re.compile(rf"^{re.escape(name)}[ \t]*=[ \t]*([-+\w.]{{1,40}})[ \t]*(?:[#;\r].*)?$", re.M | re.A)
+    values = []
+    for text in (text for cell in cells for text in line.findall(cell)):
+        try:
+            values.append(float(text))
+        except ValueError:  # a formula, or another name
+            continue
+    return values
 
 
 def _chosen(labs, tree, only):

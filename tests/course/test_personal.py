@@ -10,7 +10,7 @@ from hapticlab.course.constants import with_constants
 from hapticlab.course.labs import find_labs
 from hapticlab.course.marks import hidden_cases, marks, own_numbers
 from hapticlab.course.notebook import code_of, read, solved
-from hapticlab.course.personal import personal_labs, personal_notebook
+from hapticlab.course.personal import foreign_numbers, personal_labs, personal_notebook
 from hapticlab.errors import CourseError
 
 ANSWERS = Path(__file__).parents[1] / "instructor"
@@ -110,3 +110,32 @@ def test_labs_that_cannot_be_handed_out_are_refused(others, words, tmp_path):
         personal_labs(["ada"], tmp_path, **{"tree": ANSWERS, **others})
     with pytest.raises(CourseError, match="differ in capitals alone"):
         personal_labs(["ada", "ADA"], tmp_path, ANSWERS)
+
+
+def told(cells, student, seed=7, personal=True):
+    return foreign_numbers(cells, WALL, ANSWERS / WALL.name, seed, student, personal)
+
+
+def test_numbers_of_another_seed_or_name_are_told():
+    came = code_of(read(WALL.notebook))
+    ada = code_of(personal_notebook(WALL, ANSWERS / WALL.name, 7, "ada"))
+    own, bobs = (own_numbers(WALL.lab(), ANSWERS / WALL.name, 7, name) for name in ("ada", "bob"))
+    assert own["K_OWN"] != bobs["K_OWN"] != 500.0
+    assert told(ada, "ada") == told(came, "ada", personal=False) == ""
+    pair = f"K_OWN = {own['K_OWN']:g} in the notebook, and seed 7 gave 'bob' {bobs['K_OWN']:g}"
+    assert told(ada, "bob") == f"{pair}: it was handed out by another seed, or to another name"
+    assert "another seed" in told(ada, "ada", seed=8)
+    assert "the notebook that came with the lab" in told(came, "ada")
+    assert "and the lab has 500: it was handed out with numbers" in told(ada, "ada", personal=False)
+
+
+def test_numbers_are_looked_for_as_text_and_what_is_no_number_is_let_be():
+    own = own_numbers(WALL.lab(), ANSWERS / WALL.name, 7, "ada")
+    right = f"K_OWN={own['K_OWN']:.3e} ;T_OWN = 2\nT_OWN\t= {own['T_OWN']!r}  # [s]"
+    assert told([right, "K_OWN = 600.0"], "ada") == "", "another try further down"
+    for strange in ("", "(" * 5000, "K_OWN = k", "K_OWN = 1 + 1", "  K_OWN = 1.0", "K_OWNER = 1.0", "K_OWN == 1.0", "K_OWN = 1.0e"):
+        assert told([strange], "ada") == ""
+    assert "K_OWN = 100 in" in told(["%magic (\nK_OWN = 1e2\r\n"], "ada") and "gave 'a{d}a'" in told(["K_OWN = 1"], "a{d}a")
+    assert foreign_numbers(["K_OWN = 1.0"], WALL, None, 7, "ada") == "", "without answers there is nothing to tell"
+    plain = next(lab for lab in find_labs() if lab.number == "08")
+    assert foreign_numbers(["K_OWN = 1.0"], plain, ANSWERS / plain.name, 7, "ada") == "", "a lab without own numbers"
