@@ -139,7 +139,7 @@ LAB = Lab(
                     unit="s",
                     slips={
                         1.5e-4: "The coupler's own damper is to be paid as well.",
-                        2e-4: "That is for a coupler as stiff as what is felt. It is in series with the wall and must be stiffer.",
+                        2e-4: "That is for a coupler as stiff as what is felt. In series with the wall it must be stiffer.",
                         8e-5: "That is for a coupler as stiff as the wall, and then half of that is felt.",
                         6e-5: "The hold costs K T/2, not K T.",
                     },
