@@ -10,6 +10,8 @@ from .student_page import STATES
 
 #: students named under one mistake
 MOST_NAMED = 200
+#: how an exercise went -> the word beside its sign, in the order of tables and bars
+WORDS = {"right": "right", "wrong": "wrong", "no answer": "no answer", "cell failed": "no answer, and a cell failed"}
 
 
 def class_body(pages, lab):
@@ -78,7 +80,7 @@ def _exercises(graded):
     rows = {}
     for _, report in graded:
         for one in judged(report):
-            rows.setdefault(one.name, dict.fromkeys(("right", "wrong", "no answer"), 0))[state(one)] += 1
+            rows.setdefault(one.name, dict.fromkeys(WORDS, 0))[went(one, report)] += 1
     if not rows:
         return ""
     part = {name: counts["right"] / sum(counts.values()) for name, counts in rows.items()}
@@ -87,7 +89,7 @@ def _exercises(graded):
     told += ", ".join(f"<strong><code>{clean(name, 60)}</code></strong>" for name in hardest)
     told += f", right in {rows[hardest[0]]['right']} of {sum(rows[hardest[0]].values())} submissions."
     alt = "; ".join(
-        f"{name}: {', '.join(f'{n} {word}' for word, n in counts.items())}" for name, counts in rows.items()
+        f"{name}: {', '.join(f'{n} {WORDS[word]}' for word, n in counts.items())}" for name, counts in rows.items()
     )
     lines = [
         (f"<code>{clean(name, 60)}</code>", *(_share(count, sum(counts.values())) for count in counts.values()))
@@ -95,8 +97,17 @@ def _exercises(graded):
     ]
     return (
         f"<section><h2>Exercises</h2><p>{told}</p><figure>{shares(rows, alt)}</figure>"
-        f"{table(('exercise', 'right', 'wrong', 'no answer'), lines, 'Submissions by exercise')}</section>"
+        f"{table(('exercise', *WORDS.values()), lines, 'Submissions by exercise')}</section>"
     )
+
+
+def went(one, report):
+    """Return how an exercise went: :func:`state`, or "cell failed" where there is no answer and a cell of the notebook failed.
+
+    Which exercise that cell is of, nobody can tell of one that is no Python.
+    """
+    found = state(one)
+    return "cell failed" if found == "no answer" and report.cells else found
 
 
 def _share(count, whole):
@@ -162,15 +173,14 @@ def _students(pages):
     names = list(dict.fromkeys(one.name for _, report in pages for one in judged(report)))
     rows = []
     for address, report in pages:
-        went = {one.name: one for one in judged(report)}
-        marks = [_sign(went[name]) if name in went and not report.problem else "" for name in names]
+        found = {one.name: went(one, report) for one in judged(report)}
+        marks = [_sign(found[name]) if name in found and not report.problem else "" for name in names]
         earned = "not graded" if report.problem else f"{report.earned:g} of {report.points:g}"
         rows.append((link(address, report), earned, *marks))
     head = ("student", "mark", *(f'<code class="upright">{clean(name, 60)}</code>' for name in names))
-    key = ", ".join(f"{STATES[went]} {went}" for went in ("right", "wrong", "no answer"))
+    key = "; ".join(f"{STATES[found]} {words}" for found, words in WORDS.items())
     return f'<section class="students"><h2>Students</h2><p>{key}</p>{table(head, rows)}</section>'
 
 
-def _sign(one):
-    went = state(one)
-    return f'<span class="{went.split()[0]}" role="img" aria-label="{went}">{STATES[went]}</span>'
+def _sign(found):
+    return f'<span class="{found.split()[0]}" role="img" aria-label="{WORDS[found]}">{STATES[found]}</span>'

@@ -172,15 +172,16 @@ def bars(counts, label, alt):
 
 
 #: part of a bar -> how it is filled; the stripes of "wrong" are told from the rest in grey print too
-FILLS = {"right": COLD, "wrong": "url(#stripes)", "no answer": "#fff"}
-STRIPES = (
-    '<defs><pattern id="stripes" width="8" height="8" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">'
-    f'<rect width="8" height="8" fill="#fff"/><rect width="4" height="8" fill="{WARM}"/></pattern></defs>'
+FILLS = {"right": COLD, "wrong": "url(#stripes)", "no answer": "#fff", "cell failed": "url(#bars)"}
+STRIPES = "".join(
+    f'<pattern id="{name}" width="8" height="8" patternUnits="userSpaceOnUse" patternTransform="rotate({turned})">'
+    f'<rect width="8" height="8" fill="#fff"/><rect width="{wide}" height="8" fill="{colour}"/></pattern>'
+    for name, turned, wide, colour in (("stripes", 45, 4, WARM), ("bars", 90, 2, GREY))
 )
 
 
 def shares(rows, alt):
-    """Return bars as SVG, each divided into right, wrong and no answer.
+    """Return bars as SVG, each divided into the parts of FILLS.
 
     Parameters
     ----------
@@ -189,7 +190,7 @@ def shares(rows, alt):
     alt : str
     """
     left, row = 20 + 8.2 * max(len(name[:30]) for name in rows), 30
-    inside = [STRIPES]
+    inside = [f"<defs>{STRIPES}</defs>"]
     for k, part in enumerate(FILLS):
         inside.append(
             f'<rect x="{left + 110 * k:.0f}" y="4" width="22" height="14" fill="{FILLS[part]}" stroke="{GREY}"/>'

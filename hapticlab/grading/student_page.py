@@ -6,7 +6,7 @@ from .formats.words import state
 from .page_text import BLOCK, clean
 
 #: how an exercise went -> the sign that is read with the word, or in its place
-STATES = {"right": "&#10003;", "wrong": "&#10007;", "no answer": "&#9675;", "noted": "&#9998;"}
+STATES = {"right": "&#10003;", "wrong": "&#10007;", "no answer": "&#9675;", "cell failed": "&#9651;", "noted": "&#9998;"}
 MOST_CELLS = 40
 
 
@@ -29,7 +29,7 @@ def student_body(report, lab):
             f'<p class="who"><bdi>{clean(report.student, 120)}</bdi></p>',
             f'<p class="mark">{points(report.earned, report.points)}</p></header><main>',
             *_whole(report),
-            *(_exercise(k, one, lab, whole=not report.problem) for k, one in enumerate(report.exercises, 1)),
+            *(_exercise(k, one, lab, report) for k, one in enumerate(report.exercises, 1)),
             _cells(report.cells),
             "</main>",
             f"<footer><p>Handed in: <bdi><code>{clean(report.submission, 120)}</code></bdi>, SHA-256 "
@@ -60,7 +60,8 @@ def badge(one):
     return f'<span class="badge {found.split()[0]}">{STATES[found]} {found}</span>'
 
 
-def _exercise(number, one, lab, whole):
+def _exercise(number, one, lab, report):
+    whole = not report.problem
     told = [
         f'<section id="e{number}"><h2><code>{clean(one.name, 60)}</code> {badge(one) if whole else ""}'
         + (f'<span class="aside">{points(one.earned, one.points)}</span>' if one.points else "")
@@ -71,7 +72,7 @@ def _exercise(number, one, lab, whole):
         told.append(_block(one.text, "written") if one.text.strip() else "")
         told.append(f"<p>{clean(one.words)}</p>" if one.words and one.answered else "")
     elif whole and state(one) != "right":
-        told.append(_words(one))
+        told.append(_words(one, report.cells))
         told.append(f'<p class="hint"><strong>Hint:</strong> {clean(one.hint)}</p>' if one.hint else "")
         told.append(failing_case(one, lab) if one.failing and state(one) == "wrong" else "")
     if one.printed.strip():
@@ -79,9 +80,12 @@ def _exercise(number, one, lab, whole):
     return "".join(told) + "</section>"
 
 
-def _words(one):
-    """Return what is wrong in a sentence, unless it only says that there is no answer."""
-    if not one.words or state(one) == "no answer":
+def _words(one, cells):
+    """Return what is wrong in a sentence; where there is no answer, whether a cell that failed may be why."""
+    if state(one) == "no answer":
+        why = '<a href="#errors">Cells failed</a>, and there is no answer: if it is in one of them, that is why.'
+        return f'<p class="words">{why}</p>' if cells else ""
+    if not one.words:
         return ""
     return f'<p class="words"><strong>What is wrong:</strong> {clean(one.words)}</p>'
 
@@ -101,5 +105,5 @@ def _cells(cells):
     more = f"<p>{len(cells) - MOST_CELLS} cells more failed.</p>" if len(cells) > MOST_CELLS else ""
     head = '<tr><th scope="col">code cell</th><th scope="col">what it raised</th></tr>'
     return (
-        f"<section><h2>Cells that failed</h2><table><thead>{head}</thead><tbody>{rows}</tbody></table>{more}</section>"
+        f'<section id="errors"><h2>Cells that failed</h2><table><thead>{head}</thead><tbody>{rows}</tbody></table>{more}</section>'
     )

@@ -336,6 +336,23 @@ def test_of_a_value_the_answer_itself_is_not_told(tmp_path):
     assert "You answered: 0.5" in page.words and "expected" not in page.words
 
 
+def test_an_answer_in_a_cell_that_failed_is_told_from_none(tmp_path):
+    none = (ExerciseReport("wall", "function", points=2.0, cases=1, words="no answer"),)
+    failed = ((3, "SyntaxError in line 2: invalid syntax"),)
+    reports = [Report("ada", "02", "Walls", "w", exercises=none), Report("ned", "02", "Walls", "w", "", "", failed, none)]
+    of_class, ada, ned = map(Page, write_pages(reports, tmp_path, lab=LAB))
+    words = "no answer, and a cell failed"
+    assert f"right wrong no answer {words} wall 0 (0 %) 0 (0 %) 1 (50 %) 1 (50 %)" in of_class.words
+    assert of_class.words.endswith(f"○ no answer; △ {words} student mark wall ada 0 of 2 ○ ned 0 of 2 △ {FOOT}")
+    assert [value for name, value in of_class.attributes if name == "aria-label"][-2:] == ["no answer", words]
+    assert "Cells failed , and there is no answer: if it is in one of them, that is why." in ned.words
+    assert ned.links == ["#e1", "#errors"] and ("id", "errors") in ned.attributes
+    assert "failed" not in ada.words
+
+
+FOOT = "An exercise earns its points where every case is right. Shares are of those graded."
+
+
 def test_a_class_of_which_nothing_could_be_graded_has_a_page(tmp_path):
     report = Report("ada", "02", "Walls", "w.docx", problem="w.docx is no notebook")
     page = Page(write_pages([report], tmp_path, lab=LAB)[0])
