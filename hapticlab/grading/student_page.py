@@ -104,6 +104,5 @@ def _cells(cells):
     )
     more = f"<p>{len(cells) - MOST_CELLS} cells more failed.</p>" if len(cells) > MOST_CELLS else ""
     head = '<tr><th scope="col">code cell</th><th scope="col">what it raised</th></tr>'
-    return (
-        f'<section id="errors"><h2>Cells that failed</h2><table><thead>{head}</thead><tbody>{rows}</tbody></table>{more}</section>'
-    )
+    body = f"<table><thead>{head}</thead><tbody>{rows}</tbody></table>{more}"
+    return f'<section id="errors"><h2>Cells that failed</h2>{body}</section>'
