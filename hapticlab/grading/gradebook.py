@@ -11,7 +11,7 @@ def push(reports, path, assignment=None):
     """Write marks into a gradebook.db, exercise by exercise.
 
     Students who are not in the gradebook are added. Marks of cells that a person grades stay as they are, and so does
-    what nothing in the report is about.
+    what nothing in the report is about, and all of a student whose submission could not be graded.
 
     Parameters
     ----------
@@ -49,6 +49,8 @@ def push(reports, path, assignment=None):
 
 def _push(book, report, assignment):
     """Write one report and return what found no place."""
+    if report.problem:
+        return [f"{report.student}, lab {report.lab}: could not be graded; the gradebook keeps what it has"]
     there = [one.name for one in book.assignments if one.name == assignment or (not assignment and one.name[:2] == report.lab)]
     if len(there) != 1:
         said = f"has {' and '.join(there)}" if there else f"has no {assignment or 'assignment of that lab'}"

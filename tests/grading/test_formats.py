@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import jsonschema
@@ -220,6 +221,23 @@ def test_of_several_submissions_the_best_counts(tmp_path):
     assert [row["score"] for row in records(write("nbgrader", several))] == ["3.5"]
 
 
+def test_what_could_not_be_graded_is_no_zero(tmp_path):
+    path = tmp_path / "gradebook.csv"
+    path.write_text("Student,ID,SIS Login ID,Section,Email address\nAda,1,ada,G,a@b.c\nBob,2,bob,G,b@b.c\n", "utf-8")
+    nothing = report(earned=(0.0, 0.0))
+    lost, roster = replace(nothing, problem="the grader failed: OSError: disc"), read_roster(path)
+    both = [lost, report("bob", (0.0, 0.0))]
+    assert canvas(write("canvas", both, roster, "Lab"))[0] == {"2": {"Lab": "0"}}
+    assert rows(write("moodle", both, roster, "Lab")) == [["Email address", "Lab"], ["b@b.c", "0"]]
+    scores = [(row["raw_score"], row["score"], row["max_score"]) for row in records(write("nbgrader", both))]
+    assert scores == [("", "", "3.5"), ("0", "0", "3.5")]
+    for twice in ([lost, nothing], [nothing, lost]):  # of two submissions the one that was graded counts
+        assert canvas(write("canvas", twice, roster, "Lab"))[0] == {"1": {"Lab": "0"}}
+    assert canvas(write("canvas", [lost], roster, "Lab"))[0] == {}
+    two_labs = canvas(write("canvas", [lost, report(lab="03")], roster))[0]
+    assert two_labs == {"1": {"Lab 02: The virtual wall": "", "Lab 03: The virtual wall": "2"}}
+
+
 def test_moodle_maps_by_address_or_id_number(tmp_path):
     path = tmp_path / "participants.csv"
     path.write_text("First name;Surname;ID number;Email address\nAda;Lovelace;17;Ada@Uni.edu\nBob;B;18;\n", "utf-8")
@@ -246,6 +264,8 @@ def test_nbgrader_is_what_nbgrader_exports(tmp_path):
         "email": "ada@uni.edu", "raw_score": "2", "late_submission_penalty": "0", "score": "2", "max_score": "3.5",
     }  # fmt: skip
     assert records(write("nbgrader", [report()]))[0]["assignment"] == "Lab 02: The virtual wall"
+    called = {"nbgrader": "02_wall", "csv-long": None}  # nbgrader alone knows an assignment by its folder
+    assert {name: records(write(name, [report()], folder="02_wall"))[0].get("assignment") for name in called} == called
 
 
 def test_gradescope_reads_every_field():
@@ -260,6 +280,8 @@ def test_gradescope_reads_every_field():
     lost = json.loads(write("gradescope", [report(earned=(0.0, 0.0), problem="no JSON")]))
     jsonschema.validate(lost, GRADESCOPE)
     assert (lost["score"], lost["output"]) == (0, "Not graded: no JSON")
+    with pytest.raises(CourseError, match="no result for Gradescope.*OSError: disc"):
+        write("gradescope", [report(earned=(0.0, 0.0), problem="the grader failed: OSError: disc")])
 
 
 def test_prairielearn_reads_every_field():

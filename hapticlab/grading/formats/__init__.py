@@ -18,7 +18,7 @@ WRITERS = {
 FORMATS = tuple(WRITERS)
 
 
-def write(name, reports, roster=None, assignment=""):
+def write(name, reports, roster=None, assignment="", folder=""):
     """Return reports in a format.
 
     Parameters
@@ -30,6 +30,8 @@ def write(name, reports, roster=None, assignment=""):
         Who the students are; ``canvas`` and ``moodle`` need one.
     assignment : str
         Name of the column in the system that reads it; by default the lab's number and title.
+    folder : str
+        Name of the lab's folder, by which nbgrader knows an assignment where ``assignment`` is empty.
 
     Returns
     -------
@@ -54,4 +56,4 @@ def write(name, reports, roster=None, assignment=""):
     writer, needs_roster = WRITERS[name]
     if needs_roster and roster is None:
         raise CourseError(f"{name} knows students by its own ids; name a CSV file that it gave out: --roster FILE.csv")
-    return writer(tuple(reports), roster, assignment)
+    return writer(tuple(reports), roster, assignment or (folder if name == "nbgrader" else ""))

@@ -14,7 +14,7 @@ def gradebook(reports, roster, assignment=""):
     """Return the points of each student who is in the roster, in a column of the assignment's name.
 
     Canvas takes a column of the name of an assignment of its own, "Lab 02 (12345)" or "Lab 02", for that assignment, and
-    offers to make one for any other name.
+    offers to make one for any other name. Who could not be graded has no row, and keeps what Canvas has.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def gradebook(reports, roster, assignment=""):
         info = [name for name in info if name != "SIS User ID"]
     people = roster.rows_of(earned)
     worth = {"Student": "    Points Possible", **columns}
-    rows = ({**_info(person), **earned[student]} for student, person in people.items())
+    rows = ({**_info(person), **earned[student]} for student, person in people.items() if earned[student])
     return table([*info, *columns], [worth, *rows])
 
 

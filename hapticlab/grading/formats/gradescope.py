@@ -2,15 +2,22 @@
 
 import json
 
+from ...errors import CourseError
 from .words import clean, failed_cells, for_student, judged, only, points, printed, state
+
+#: how a problem begins that is no fault of the student
+GRADER_FAILED = "the grader failed"
 
 
 def results(reports, roster=None, assignment=""):
     """Return the result of one submission, a test for each exercise that carries points.
 
-    A student may hand in again, so of a hidden case only its slip is told.
+    A student may hand in again, so of a hidden case only its slip is told. There is none where the grader failed, so that
+    Gradescope tells of that, and writes no 0 points down.
     """
     report = only(reports, "Gradescope")
+    if report.problem.startswith(GRADER_FAILED):
+        raise CourseError(f"no result for Gradescope, which would take it for 0 points: {report.problem}")
     told = {
         "score": points(report.earned),
         "output": _output(report),

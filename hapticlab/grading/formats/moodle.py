@@ -12,6 +12,7 @@ def grades(reports, roster, assignment=""):
 
     At the import, "Map from" is the first column; "Map to" is its name without spaces, as in "Email address" (useremail) or
     "ID number" (useridnumber). There is no column of feedback: with one, Moodle deletes the grades of what has no mapping.
+    Who could not be graded has no row, and keeps the grade that Moodle has.
 
     Parameters
     ----------
@@ -28,5 +29,5 @@ def grades(reports, roster, assignment=""):
         raise CourseError(
             f"the roster has no column Email address, ID number or Username that is filled in for all; it has {roster.told()}"
         )
-    rows = ({KEYS[key]: person[key], **earned[student]} for student, person in people.items())
+    rows = ({KEYS[key]: person[key], **earned[student]} for student, person in people.items() if earned[student])
     return table([KEYS[key], *columns], rows)

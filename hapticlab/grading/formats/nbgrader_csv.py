@@ -11,14 +11,17 @@ COLUMNS = (
 
 
 def grades(reports, roster=None, assignment=""):
-    """Return a row for each student and lab; names and e-mail addresses come from the roster, where there is one."""
+    """Return a row for each student and lab; names and e-mail addresses come from the roster, where there is one.
+
+    Who could not be graded has no score.
+    """
     reports = best(reports)
     people = roster.rows_of(report.student for report in reports) if roster else {}
     return table(COLUMNS, (_row(report, people.get(report.student, {}), assignment) for report in reports))
 
 
 def _row(report, person, assignment):
-    earned = points(report.earned)
+    earned = "" if report.problem else points(report.earned)
     score = {"raw_score": earned, "late_submission_penalty": 0, "score": earned, "max_score": points(report.points)}
     return {
         "assignment": assignment or title(report),

@@ -41,13 +41,20 @@ def table(columns, rows):
 
 
 def best(reports):
-    """Return for each student and lab the report that earned most, of equal ones the first: a gradebook has one place."""
+    """Return for each student and lab the report that earned most, of equal ones the first: a gradebook has one place.
+
+    One that could not be graded has earned nothing, not even 0 points.
+    """
     found = {}
     for report in reports:
         key = (report.student, report.lab)
-        if key not in found or report.earned > found[key].earned:
+        if key not in found or _worth(report) > _worth(found[key]):
             found[key] = report
     return list(found.values())
+
+
+def _worth(report):
+    return not report.problem, report.earned
 
 
 def by_student(reports, assignment):
@@ -58,7 +65,7 @@ def by_student(reports, assignment):
     columns : dict of str to float
         Name to the points that are possible.
     earned : dict of str to dict
-        Student to column to points.
+        Student to column to points; without a column where nothing could be graded.
     """
     labs = {report.lab: report for report in sorted(reports, key=lambda one: one.lab)}
     names = {lab: title(report) for lab, report in labs.items()}
@@ -66,5 +73,6 @@ def by_student(reports, assignment):
         names = {lab: assignment if len(labs) == 1 else f"{assignment} {lab}" for lab in labs}
     earned = {}
     for report in best(reports):
-        earned.setdefault(report.student, {})[names[report.lab]] = points(report.earned)
+        graded = {} if report.problem else {names[report.lab]: points(report.earned)}
+        earned.setdefault(report.student, {}).update(graded)
     return {names[lab]: points(report.points) for lab, report in labs.items()}, earned
