@@ -129,7 +129,7 @@ class Starter:
     def _scratch(self):
         """Return a folder for a session; in namespaces it has one in a file system of its own."""
         if self.level == "namespaces":
-            return nullcontext("/tmp/scratch")
+            return nullcontext("/tmp/hapticlab-scratch")
         folder = tempfile.TemporaryDirectory(prefix="hapticlab-", ignore_cleanup_errors=True)
         if self.user:
             os.chown(folder.name, self.user, self.user)

@@ -1,7 +1,7 @@
 """Attacks on the walls of a session, each an expression of text: what it came to, or the error it met.
 
-``python walls.py LEVEL USER [LEFT_OUT...]`` tries them in a root where any user can read Python, as root or as another user,
-and prints what each came to as JSON.
+``python walls.py LEVEL [USER [LEFT_OUT...]]`` tries them and prints what each came to as JSON; with a USER, as that one in a root
+where anybody can read Python.
 """
 
 import json
@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from hapticlab.errors import CourseError
-from hapticlab.grading.inside import linux, root
+from hapticlab.grading.inside import linux, root, sandbox
 from hapticlab.grading.limits import MIB, Limits
 from hapticlab.grading.starter import PACKAGE, start
 
@@ -44,13 +44,14 @@ ATTACKS = {
     "answers": ("open(ANSWERS).read()", "FileNotFoundError"),
     "masked_file": ("open(MASKED).read() or 'empty'", "empty"),
     "masked_folder": ("os.listdir(MASKED_FOLDER)", "PermissionError"),
+    "labs": ("os.path.exists(LABS + '/02_virtual_wall')", "False"),
     "other_processes": ("len([p for p in os.listdir('/proc') if p.isdigit()]) < 5", "True"),
     "parents_memory": ("open('/proc/1/mem', 'rb')", "PermissionError"),
     "parents_environment": ("open('/proc/1/environ').read()", "PermissionError"),
     "grader": ("os.kill(GRADER, signal.SIGKILL)", "ProcessLookupError"),
     "descriptors": ("[n for n in range(3, 300) if os.path.exists(f'/proc/self/fd/{n}')].__len__()", "1"),
     "secret": ("os.environ.get('SECRET')", "None"),
-    "ptrace": ("called(101 if sys.maxsize and os.uname().machine == 'x86_64' else 117, 0, 0, 0, 0)", "Operation not permitted"),
+    "ptrace": ("called(101 if os.uname().machine == 'x86_64' else 117, 0, 0, 0, 0)", "Operation not permitted"),
     "unshare": ("subprocess.run(['unshare', '-r', 'true'], stderr=subprocess.DEVNULL).returncode", "1"),
     "memory_file": ("os.memfd_create('m')", "PermissionError"),
     "site_packages": ("open(f'{os.path.dirname(np.__file__)}/new.py', 'w')", "OSError"),
@@ -78,7 +79,7 @@ def tried(starter, paths, left_out=()):
     name = f"hapticlab-{os.getpid()}"
     neighbour.bind("\0" + name)
     neighbour.listen()
-    given = {"PORT": listener.getsockname()[1], "NAME": name, "GRADER": os.getpid()}
+    given = {"PORT": listener.getsockname()[1], "NAME": name, "GRADER": os.getpid(), "LABS": str(PACKAGE / "labs")}
     given |= dict(zip(("ANSWERS", "MASKED", "MASKED_FOLDER"), map(str, paths), strict=True))
     cell = BEFORE + "".join(f"{key} = {value!r}\n" for key, value in given.items())
     cell += "".join(f"{key} = attempt(lambda: {attack})\n" for key, attack in attacks.items())
@@ -95,11 +96,12 @@ def value(session, name):
 
 
 if __name__ == "__main__":
-    level, user = sys.argv[1], int(sys.argv[2])
-    linux.unshare(linux.NEWNS)
-    with tempfile.TemporaryDirectory() as new:
-        root.move(new, (sys.prefix, sys.base_prefix, str(PACKAGE), str(Path(__file__).parent)), ())
-    linux.mount("tmp", "/tmp", "tmpfs", 0, "mode=1777")
+    level, user, left_out = sys.argv[1], int([*sys.argv, 0][2]), sys.argv[3:]
+    if len(sys.argv) > 2:
+        linux.unshare(linux.NEWNS)
+        with tempfile.TemporaryDirectory() as new:
+            root.move(new, (sys.prefix, sys.base_prefix, str(PACKAGE), str(Path(__file__).parent)), ())
+        sandbox.clear_tmp(64 * MIB)
     if user:
         os.setgroups([])
         os.setresgid(user, user, user)
@@ -115,4 +117,4 @@ if __name__ == "__main__":
             refused = {"refused": str(refusal)}
     paths[0].chmod(0o600)
     with start(level, hidden=paths[:1] if level == "user" else paths) as starter:
-        print(json.dumps(refused | tried(starter, paths, sys.argv[3:])))
+        print(json.dumps(refused | tried(starter, paths, left_out)))

@@ -1,6 +1,7 @@
 """The root of a session: what Python needs, read-only, and nothing else of the machine."""
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from . import linux
@@ -27,15 +28,16 @@ def move(new, seen, hidden):
     linux.mount("root", new, "tmpfs", linux.NOSUID | linux.NODEV, "mode=755,size=1m")
     seen = outermost(path for path in (*SYSTEM, *seen) if os.path.exists(path))
     for path in seen:
-        show(new, path)
+        show(path, new + path)
     for path in hidden:
         mask(new, path, seen)
     for device in DEVICES:
         show_at(f"/dev/{device}", f"{new}/dev/{device}")
     for link, target in {"shm": "/tmp", "fd": "/proc/self/fd"}.items():
-        os.symlink(target, f"{new}/dev/{link}")
+        with suppress(FileExistsError):  # what is seen lies in /dev/shm
+            os.symlink(target, f"{new}/dev/{link}")
     for folder in ("tmp", "proc"):
-        os.mkdir(f"{new}/{folder}")
+        os.makedirs(f"{new}/{folder}", exist_ok=True)  # what is seen may lie in /tmp
     # a new /proc may only be mounted where a whole one is seen, mount_namespaces(7)
     linux.mount("/proc", f"{new}/proc", None, linux.BIND | linux.RECURSIVE)
     linux.move_root(new)
@@ -63,14 +65,14 @@ def inside(path, outer):
     return Path(path).is_relative_to(outer)
 
 
-def show(new, path):
-    """Show a file or folder, read-only; a link as a link."""
+def show(path, target):
+    """Show a file or folder at a place, read-only; a link as a link."""
     if os.path.islink(path):
-        os.makedirs(os.path.dirname(new + path), exist_ok=True)
-        os.symlink(os.readlink(path), new + path)
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        os.symlink(os.readlink(path), target)
         return
-    show_at(path, new + path)
-    linux.make_read_only(new + path)
+    show_at(path, target)
+    linux.make_read_only(target)
 
 
 def show_at(path, target):

@@ -9,7 +9,7 @@ from . import callfilter, linux, root
 
 NAMESPACES = linux.NEWNS | linux.NEWPID | linux.NEWNET | linux.NEWIPC | linux.NEWUTS
 #: in namespaces each session has a file system of its own here
-TMP, SCRATCH = "/tmp", "/tmp/scratch"
+TMP, SCRATCH = "/tmp", "/tmp/hapticlab-scratch"
 #: of a session beside the student's processes: its zygote, the one between, its keeper
 OWN = 3
 
@@ -33,16 +33,25 @@ def move(new, seen, hidden):
 
 
 def furnish(request):
-    """Give a session's namespaces, from inside, a /proc and a /tmp of their own."""
+    """Give a session's namespaces, from inside, a /tmp and a /proc of their own."""
+    clear_tmp(int(request["limits"]["scratch"]))
+    os.mkdir(SCRATCH)
+    if request["user"]:
+        os.chown(SCRATCH, request["user"], request["user"])
     try:
         linux.mount("proc", "/proc", "proc", linux.NOSUID | linux.NODEV | linux.NOEXEC)
     except OSError:  # a container that hides parts of its own
         linux.mount("proc", "/proc", "tmpfs", linux.NOSUID | linux.NODEV, "mode=555,size=4k")
-    size = int(request["limits"]["scratch"])
+
+
+def clear_tmp(size):
+    """Lay an empty /tmp over the one there is; what is seen of that, a Python or this package, is seen again."""
+    held = os.open(TMP, os.O_PATH | os.O_DIRECTORY)
     linux.mount("tmp", TMP, "tmpfs", linux.NOSUID | linux.NODEV, f"mode=1777,size={size},nr_inodes=10000")
-    os.mkdir(SCRATCH)
-    if request["user"]:
-        os.chown(SCRATCH, request["user"], request["user"])
+    before = f"/proc/self/fd/{held}"
+    for name in os.listdir(before):
+        root.show(f"{before}/{name}", f"{TMP}/{name}")
+    os.close(held)
 
 
 def enter(request):
