@@ -1,5 +1,7 @@
 """A session answers with plain values; whatever it does, the grader knows how it ended, and goes on."""
 
+import os
+
 import pytest
 
 from hapticlab.errors import CourseError
@@ -111,13 +113,19 @@ def test_files_are_bounded(starter):
                 session.ask({"do": "run", "cell": 0}, 10)
 
 
-def test_a_zygote_that_was_killed_is_started_anew():
+def test_a_zygote_that_was_killed_is_started_anew_and_ends_all_when_its_grader_is_gone():
     with start("none") as starter:
         kill = f"{IMPORTS}def f(x):\n    if fork(): os.kill({starter.process.pid}, signal.SIGKILL)\n    time.sleep(600)"
         with loaded(starter, kill) as session, pytest.raises(SessionEnded):
             session.ask({"do": "evaluate", "name": "f", "kind": "function", "givens": [{"x": 1.0}]}, 0.5)
         with loaded(starter, "k = 2.5") as session:
             assert value(session, "k") == 2.5
+            before = descendants(starter.process.pid)
+            # as Ctrl-C does it: an order is being carried out, and nobody waits for the answer
+            starter.control.send(b'{"do": "ready", "level": "none", "user": 0}')
+            starter.control.close()
+            assert starter.process.wait() == 0
+            assert len(before) == 2 and not any(os.path.exists(f"/proc/{process}") for process in before)
 
 
 def test_a_level_that_is_none_is_named():
