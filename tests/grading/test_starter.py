@@ -125,7 +125,7 @@ def test_a_zygote_that_was_killed_is_started_anew_and_ends_all_when_its_grader_i
             starter.control.send(b'{"do": "ready", "level": "none", "user": 0}')
             starter.control.close()
             assert starter.process.wait() == 0
-            assert len(before) == 2 and not any(os.path.exists(f"/proc/{process}") for process in before)
+            assert len(before) >= 2 and not any(os.path.exists(f"/proc/{process}") for process in before)
 
 
 def test_a_level_that_is_none_is_named():
