@@ -98,7 +98,9 @@ def over_points(at, wanted, got):
     'It does not change with k: did you forget k?'
     """
     at = {name: np.array(column, float) for name, column in at.items()}
-    return _one_side(wanted, got) or _dependence(at, wanted, got) or _factor(at, wanted, got) or _nearly(wanted, got)
+    if not got.any():
+        return "It is zero at every point."
+    return _one_side(wanted, got) or _dependence(at, wanted, got) or _nearly(wanted, got) or _factor(at, wanted, got)
 
 
 def _dependence(at, wanted, got):
@@ -112,7 +114,8 @@ def _dependence(at, wanted, got):
         asked = [(i, j) for i, j in several if not _same(wanted[i], wanted[j])]
         if asked and all(_same(got[i], got[j]) for i, j in asked):
             return f"It does not change with {name}: did you forget {name}?"
-        if several and not asked and any(not _same(got[i], got[j]) for i, j in several):
+        acting = [(i, j) for i, j in several if abs(wanted[i]) > 1e-9 * np.abs(wanted).max()]  # zero depends on nothing
+        if acting and not asked and any(not _same(got[i], got[j]) for i, j in acting):
             return f"It changes with {name}, on which it should not depend."
     return ""
 
@@ -162,7 +165,7 @@ def _one_side(wanted, got):
     if not outside.any() or not got.any():
         return ""
     right = np.isclose(got, wanted, rtol=NEAR, atol=1e-9 * np.abs(wanted).max())
-    if right[~outside].all():
+    if right[~outside].all() and not right[outside].all():
         return "It is right where something acts, and not zero where nothing does: is a condition missing or too wide?"
     if not got[~outside].any():
         return "It acts where nothing should, and is zero where something should: its condition is turned round."

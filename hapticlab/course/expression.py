@@ -62,7 +62,7 @@ def values(answer, at, solve_for=()):
     equations = list(answer) if isinstance(answer, list | tuple) else [answer]
     if len(equations) != len(names):
         raise NotPlain(f"it is {len(equations)} equations; needs {len(names)}, which are solved for {', '.join(names)}")
-    residuals = [_residual(equation) for equation in equations]
+    residuals = [_cleared(_residual(equation), names) for equation in equations]
     held = [_held(residual, [*at, *names]) for residual in residuals]
     missing = [name for name in names if not any(name in one.values() for one in held)]
     if missing:
@@ -84,7 +84,7 @@ def unit_remark(answer, unit=""):
     'By the units of its symbols: b*x(n) is in N*s but k*x(n) is in N.'
     """
     terms = answer.args if isinstance(answer, sp.Eq) else [answer]
-    if not all(isinstance(term, sp.Expr) and all(map(_has_unit, symbols(term))) for term in terms):
+    if not all(isinstance(one, sp.Expr) and all(map(_has_unit, symbols(one))) and not _holds_a_constant(one) for one in terms):
         return ""
     try:
         found = agree(terms, "By the units of its symbols")
@@ -93,6 +93,11 @@ def unit_remark(answer, unit=""):
     if not unit or isinstance(answer, sp.Eq) or found in (None, dimension(unit)):
         return ""
     return f"By the units of its symbols it is in {si_name(found)}, needs {unit}."
+
+
+def _holds_a_constant(term):
+    """Whether a term holds a number such as 9.81, which may have a unit; a half or a 2 has none."""
+    return not all(one.is_finite and abs(one) <= 4 and abs(12 * one - round(12 * one)) < 1e-9 for one in term.atoms(sp.Number))
 
 
 def _has_unit(node):
@@ -109,7 +114,8 @@ def _expression(answer):
     if not isinstance(answer, sp.Expr):
         quotes = ", without quotes" if isinstance(answer, str) else ""
         raise NotPlain(f"it is {a(answer)}, needs an expression of symbols{quotes}")
-    return answer.replace(delay, lambda delayed: delayed.subs(n, n - 1))
+    worked_out = answer.replace(sp.Derivative, lambda inner, *by: sp.diff(inner, *by))  # m z' over t, unevaluated
+    return worked_out.replace(delay, lambda delayed: delayed.subs(n, n - 1))
 
 
 def _residual(equation):
@@ -118,7 +124,17 @@ def _residual(equation):
         return _expression(equation.lhs) - _expression(equation.rhs)
     if equation in (True, False):
         raise NotPlain(f"it is an equation that is always {bool(equation)}: both sides hold the same, or numbers alone")
+    if not isinstance(equation, sp.Expr):
+        raise NotPlain(f"it is {a(equation)}, needs an equation, sp.Eq(..., ...)")
     return _expression(equation)
+
+
+def _cleared(residual, names):
+    """Return an equation multiplied by what it is divided by, where what it is solved for stands there: m = F/z''."""
+    below = [power.base for power in residual.atoms(sp.Pow) if power.exp.could_extract_minus_sign()]
+    if any(spelling(node) in names for base in below for node in symbols(base)):
+        return sp.fraction(sp.together(residual))[0]
+    return residual
 
 
 def symbols(expression):

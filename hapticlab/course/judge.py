@@ -12,7 +12,8 @@ from .match import plot_fault
 class Verdict:
     """Whether one case is right, and the words for it: what differs, and the sentence that teaches.
 
-    ``slip`` is that sentence alone, where a known mistake is recognised; it is a part of ``words``.
+    ``slip`` is that sentence alone, where a known mistake is recognised; it is a part of ``words``. It is always one of the
+    package's or of a case: no word of it comes from where the answer was evaluated.
     """
 
     right: bool
@@ -70,7 +71,10 @@ def _taught(words, sentence):
 
 
 def verdict(exercise, case, outcome):
-    """Return the verdict on what an answer gave."""
+    """Return the verdict on what an answer gave.
+
+    Its ``problem`` is told in the words and is no slip: in a grader it comes from the process of the student's code.
+    """
     if not outcome.answered:
         return Verdict(False, "no answer")
     if outcome.value is None:
@@ -79,7 +83,7 @@ def verdict(exercise, case, outcome):
         found = judge(exercise, case, outcome.value)
     if found.right or not outcome.problem:
         return found
-    return Verdict(False, f"{found.words} {outcome.problem}", found.slip or outcome.problem)
+    return Verdict(False, f"{found.words} {outcome.problem}", found.slip)
 
 
 def within(exercise, wanted, got):
@@ -105,7 +109,8 @@ def _judge_word(exercise, case, value):
 
 
 def _word(value):
-    return value.strip().casefold() if isinstance(value, str) else value
+    """Return a text for comparison: the key of a choice may be written "(c)" or "c)", as options are printed."""
+    return value.strip().strip("().").strip().casefold() if isinstance(value, str) else value
 
 
 def _judge_parts(exercise, case, value):

@@ -33,6 +33,7 @@ def points(random, ranges, count=4, boundary=()):
         Points at random.
     boundary : (str, str), optional
         Two symbols that meet there, such as ``("x(n)", "x_o")``: the first is put just below, on and just above the second.
+        The point from which one symbol alone differs has the first above the second, where a wall acts.
 
     Returns
     -------
@@ -49,9 +50,12 @@ def points(random, ranges, count=4, boundary=()):
         return {name: float(random.uniform(*given)) for name, given in ranges.items()}
 
     found = [drawn() for _ in range(count)]
+    if boundary:
+        moved, fixed = boundary
+        found[0][moved] = float(random.uniform(found[0][fixed], ranges[moved][1]))
     found += [{**found[0], name: drawn()[name]} for name in ranges]
     if boundary:
-        (moved, fixed), point = boundary, drawn()
+        point = drawn()
         near = 1e-3 * (ranges[moved][1] - ranges[moved][0])
         found += [{**point, moved: point[fixed] + step} for step in (-near, 0.0, near)]
     return {name: [point[name] for point in found] for name in ranges}

@@ -10,7 +10,7 @@ from hapticlab import n, t, v, x
 from hapticlab.course.check import checked
 from hapticlab.course.evaluate import evaluate
 from hapticlab.course.exercise import Case, Exercise
-from hapticlab.course.expression import values
+from hapticlab.course.expression import unit_remark, values
 from hapticlab.course.variants import points, slips, solved_case
 
 k, x_o, b, m = hl.parameters("k x_o b m", units="N/m m N*s/m kg")
@@ -86,7 +86,9 @@ def test_another_way_to_write_the_same_is_right(same):
         ([RIGHT], "it is a list, needs an expression"),
         (sp.Matrix([RIGHT]), "needs an expression"),
         (True, "it is a bool, needs an expression"),
-        (0.0, "0 N, expected"),
+        (0.0, "It is zero at every point."),
+        (k * x(n), "It does not change with x_o: did you forget x_o?"),
+        (0.999 * RIGHT, "is a number rounded, or a constant another, such as 9.8 for 9.81 m/s^2?"),
     ],
 )
 def test_what_is_wrong_is_named_from_the_values(answer, words):
@@ -94,6 +96,14 @@ def test_what_is_wrong_is_named_from_the_values(answer, words):
     assert not result.passed and result.answered
     assert words in result.text
     assert max(map(len, result.text.splitlines())) < 600
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_nothing_is_said_of_a_symbol_where_what_is_expected_is_zero_anyway(seed):
+    given = {"at": points(np.random.default_rng(seed), RANGES, boundary=("x(n)", "x_o")), "unit": "N"}
+    wall = Exercise("wall", "expression", points=1, cases=[Case(given, evaluate("expression", RIGHT, given).value, unit="N")])
+    assert "did you forget x_o?" in said(wall, k * x(n))
+    assert "should not depend" not in said(wall, hl.when(x(n) >= 0, k * x(n)))
 
 
 def test_a_wrong_point_is_shown_with_its_numbers():
@@ -112,6 +122,10 @@ def test_a_wrong_point_is_shown_with_its_numbers():
         m * z.diff(t, 2) + b * z.diff(t) - k * (x(t) - z),
         sp.Eq(z.diff(t, 2) / k, (k * (x(t) - z) - b * z.diff(t)) / m / k),
         [sp.Eq(m * z.diff(t, 2), k * (x(t) - z) - b * z.diff(t))],
+        sp.Eq(sp.Derivative(m * z.diff(t), t), k * (x(t) - z) - b * sp.Derivative(z + 2, t)),
+        sp.Eq(m, (k * (x(t) - z) - b * z.diff(t)) / z.diff(t, 2)),
+        sp.Eq(z.diff(t, 2) / (k * (x(t) - z) - b * z.diff(t)), 1 / m),
+        1 / (m * z.diff(t, 2)) - 1 / (k * (x(t) - z) - b * z.diff(t)),
     ],
 )
 def test_an_equation_of_motion_is_right_however_it_is_written(same):
@@ -129,7 +143,9 @@ def test_an_equation_of_motion_is_right_however_it_is_written(same):
         (sp.Eq(m * z.diff(t, 3), k * (x(t) - z)), "it holds z'''"),
         (sp.Eq(z, z), "an equation that is always True"),
         ([sp.Eq(m * z.diff(t, 2), 0), sp.Eq(z, 0)], "it is 2 equations; needs 1, which are solved for z''"),
-        (hl.wall(), "it is a Scene, needs an expression"),
+        (hl.wall(), "it is a Scene, needs an equation, sp.Eq(..., ...)"),
+        (hl.lagrange(m * z.diff(t) ** 2 / 2), "it is a Mechanics, needs an equation, sp.Eq(..., ...)"),
+        (sp.Eq(m * z.diff(t, 2), m / z.diff(t, 2)), "it is not linear in z''"),
         (sp.Eq(m * z.diff(t, 2), -k * (x(t) - z) + b * z.diff(t)), "The sign is turned."),
         (sp.Eq(z.diff(t, 2), k * (x(t) - z) - b * z.diff(t)), "Derivative(z(t), (t, 2)) is in m/s^2 but "),
     ],
@@ -215,10 +231,18 @@ def test_slips_of_a_scene_are_what_it_does_with_them():
 
 
 def test_units_are_told_only_of_what_is_wrong():
-    outcome = evaluate("expression", 1000 * b * x(n), {"at": {"b": [0.5], "x(n)": [0.002]}, "unit": "N"})
-    assert outcome.value == [1.0] and "N*s" in outcome.problem
-    exercise = Exercise("e", "expression", points=1, cases=[Case({"at": {"b": [0.5], "x(n)": [0.002]}, "unit": "N"}, [1.0])])
-    assert checked("98.e", exercise, 1000 * b * x(n)).passed
+    given = {"at": {"b": [0.5], "x(n)": [0.002]}, "unit": "N"}
+    outcome = evaluate("expression", b * x(n), given)
+    assert outcome.value == [0.001] and "N*s" in outcome.problem
+    assert checked("98.e", Exercise("e", "expression", points=1, cases=[Case(given, [0.001])]), b * x(n)).passed
+    (told,) = checked("98.e", Exercise("e", "expression", points=1, cases=[Case(given, [0.7])]), b * x(n)).verdicts
+    assert "N*s" in told.words and told.slip == "", "it comes from the student's process"
+
+
+@pytest.mark.parametrize("weight", [9.81 * m, sp.Integer(10) * m, sp.Float("nan") * m])
+def test_a_number_that_may_have_a_unit_is_not_blamed_for_the_units(weight):
+    assert not unit_remark(sp.Eq(m * z.diff(t, 2), k * (x(t) - z) - weight))
+    assert unit_remark(sp.Eq(m * z.diff(t, 2), k * (x(t) - z) / 2 - 1.5 * m))
 
 
 def test_a_value_with_a_unit_of_pint_comes_in_si():
