@@ -8,6 +8,8 @@ RUNS_AWAY = (
     "The mass runs away from the handle: the coupler must pull it TOWARDS the handle, so m z'' = +F_c with F_c = K (x - z) + ..."
 )
 DAMPER_RELATIVE = "The coupler's damper has the wrong sign: it must resist the relative velocity x' - z'."
+SPRING_AWAY = "The spring has the wrong sign: its force on the mass is K (x - z), towards the handle."
+DIFFERENCES = "A spring feels how far apart its ends are, x - z, and a damper how fast they part, v - z': differences, not sums."
 SPRING_ALONE = "That is the spring alone: the coupler has a damper beside it."
 DAMPER_BETWEEN = "The damper lies between handle and mass: it sees x' - z', not z' alone."
 STEPS = {
@@ -15,6 +17,7 @@ STEPS = {
     "T": 5e-3,
     "values": {"m": 0.1, "K": 160.0, "b_c": 0.2},
 }
+LED_FROM_THERE = {**STEPS, "x": [0.01, 0.012, 0.015, 0.018, 0.02, 0.02], "channels": ["z"]}
 
 LAB = Lab(
     number="01",
@@ -29,7 +32,8 @@ LAB = Lab(
             cases=(
                 Case(
                     {"x": 0.012, "v": -0.1, "k": 200.0, "b": 1.5}, 2.25, unit="N",
-                    slips={-2.25: TURNED, 2.55: DAMPER_SIGN, 2.4: "That is the spring alone.", -0.15: "The spring is missing."},
+                    slips={-2.25: TURNED, 2.55: DAMPER_SIGN, 2.4: "That is the spring alone.", -0.15: "The spring is missing.",
+                           2399.85: "The spring's force is 1000 times too large: x is in metres already, and k in N/m."},
                 ),
                 Case(
                     {"x": 0.0, "v": 0.2, "k": 200.0, "b": 1.5}, 0.3, unit="N",
@@ -89,6 +93,7 @@ LAB = Lab(
                          "Fit both at once."),
                         ({"b": -2.757294430}, "That is a damper fitted alone: it takes some of the spring's force for its own. "
                          "Fit both at once."),
+                        ({"k": 1.480876092}, "k and b are swapped: what the column of x is multiplied by is k."),
                         ({"k": 199.676498}, "There is no constant force in this model: two columns, x and v."),
                     ),
                 ),
@@ -139,6 +144,16 @@ LAB = Lab(
                         (8.8, 4.4, 4.0, 7.6, -7.2, 9.4, -4.0, 9.6): DAMPER_RELATIVE,
                         (9.8, 4.9, 5.0, 10.1, -6.2, 9.8, -3.0, 9.0): DAMPER_BETWEEN,
                         (9.6, 4.8, 4.8, 9.6, -6.4, 9.6, -3.2, 9.6): SPRING_ALONE,
+                        (-8.8, -4.4, -4.0, -7.6, 7.2, -9.4, 4.0, -9.6): SPRING_AWAY,
+                        (22.8, 11.4, 11.6, 23.4, 6.8, 22.2, 35.6, 23.6): DIFFERENCES,
+                        (23.2, 11.6, 12.0, 24.4, 7.2, 22.6, 36.0, 22.4): DIFFERENCES,
+                        (11.2, 5.6, 6.4, 13.6, -4.8, 10.0, -1.6, 9.6): "The damper counts twice.",
+                        (-6.2, -3.1, -3.0, -5.9, -6.2, -6.2, -19.0, -7.0): "The other end of the coupler is the handle, which "
+                        "moves: x(t) and v(t) belong in its force.",
+                        (640.012, 320.006, 320.012, 640.03, 639.992, 160.012, 639.996, 0.012): "K and b_c are swapped: K goes "
+                        "with the positions, b_c with the velocities.",
+                        (0.59, -4.61, -4.21, 1.79, -15.41, -0.01, -12.21, -0.21): "There is no weight in this model: the "
+                        "coupler's force alone acts on the mass.",
                     },
                 ),
             ),
@@ -179,6 +194,17 @@ LAB = Lab(
                         "the same F_c.",
                     },
                 ),
+                Case(
+                    LED_FROM_THERE,
+                    {
+                        "F": [0.0, 0.4, 0.89934168, 1.314201618, 1.47108638, 1.208461989],
+                        "z": [0.01, 0.01, 0.010081234, 0.010412236, 0.011088086, 0.012139622],
+                    },
+                    slips=(
+                        ({"F": (1.6, 1.952398934, 2.343034014, 2.593001917, 2.535909069, 2.019197785)}, "The mass begins at 0, "
+                         "far from the handle, and the coupler jerks it there: hl.coordinate with initial=x(n)."),
+                    ),
+                ),
             ),
             hint="What does the hand feel, and what the mass? How often does F_c appear, then, and which way does it pull?",
         ),
@@ -197,7 +223,13 @@ LAB = Lab(
                         ({"zeta": 0.1}, "That is a decay rate, b_c/(2m) in 1/s; divide it by the natural frequency in rad/s."),
                     ),
                 ),
-                Case({"m": 0.05, "K": 300.0, "b_c": 1.5}, {"f": 12.328088881, "zeta": 0.193649167}),
+                Case(
+                    {"m": 0.05, "K": 300.0, "b_c": 1.5},
+                    {"f": 12.328088881, "zeta": 0.193649167},
+                    slips=(
+                        ({"f": 12.094728558}, "That is the frequency with the damper; the natural one is without."),
+                    ),
+                ),
             ),
             hint="What does Newton's law of the mass become with x = 0? And how does a first course write the same equation?",
         ),

@@ -129,6 +129,10 @@ LAB = Lab(
                             "Each spring begins at its own wall, not at x = 0: beyond x_o it is pressed by x - x_o.",
                         ),
                         (
+                            (-2.5, -1.0, 0.0, 0.0, 1.0),
+                            "The left spring begins at x = 0: beyond -x_o it is pressed by x + x_o.",
+                        ),
+                        (
                             (-3.5, -2.0, 0.0, 0.0, 1.0),
                             "The left wall is at -x_o, so the handle is beyond it by x - (-x_o) "
                             "= x + x_o, which is < 0.",

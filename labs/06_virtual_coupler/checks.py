@@ -8,6 +8,7 @@ LED = {
     "T": 0.02,
     "values": {"M": 0.05, "m": 0.05, "l": 0.15, "g": 9.81, "c": 1e-3, "K": 100.0, "b_c": 0.3},
 }
+LED_FROM_THERE = {**LED, "x": [0.01, 0.01, 0.012, 0.015, 0.018, 0.02], "channels": ["theta"]}
 
 LAB = Lab(
     number="06",
@@ -88,6 +89,17 @@ LAB = Lab(
                          -1.616538211, -2.643536863, -3.370423332, -3.596984852): "Nothing moves the carriage: what the hand "
                         "feels must also act on it, forces={z: F_c}.",
                     },
+                ),
+                Case(
+                    LED_FROM_THERE,
+                    {
+                        "F": [0.0, -0.057807162, 0.072953372, 0.151111025, -0.000989807, -0.323498769],
+                        "theta": [0.3, 0.293299743, 0.275994145, 0.24520215, 0.194507145, 0.134064576],
+                    },
+                    slips=(
+                        ({"F": (1.0, 0.518908738, -0.098038761, -0.549047431, -0.662341309, -0.466537137)}, "The carriage begins "
+                         "at 0, far from the handle, and the coupler jerks it there: hl.coordinate with initial=x(n)."),
+                    ),
                 ),
             ),
             hint="How fast is the bob along the rail, and how fast up? What is each mass's kinetic energy? How high is the bob?",

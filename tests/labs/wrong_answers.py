@@ -14,7 +14,7 @@ k, b, x_o, m, K, b_c = hl.parameters("k b x_o m K b_c", units="N/m N*s/m m kg N/
 z = hl.coordinate("z", unit="m", initial=x(n))
 
 
-def on_coupler(force_sign, mass_sign):
+def on_coupler(force_sign, mass_sign, z=z):
     F_c = K * (x(t) - z) + b_c * (v(t) - z.diff(t))
     return hl.Scene(force=force_sign * F_c, eom=[sp.Eq(m * z.diff(t, 2), mass_sign * F_c)], watch=[z])
 
@@ -23,7 +23,7 @@ def mass_moves(force):
     return sp.Eq(m * z.diff(t, 2), force)
 
 
-def pendulum(weight, product):
+def pendulum(weight, product, z=z):
     """A pendulum with gravity's sign, and the product of the velocities, as given."""
     theta = hl.coordinate("theta", unit="rad", initial=0.3)
     M, l, g, c = hl.parameters("M l g c", units="kg m m/s^2 N*m*s/rad", values=(0.05, 0.15, 9.81, 1e-4))
@@ -77,15 +77,24 @@ WRONG = {
     "01": [
         ("spring_damper_force", lambda x, v, k, b: -k * x - b * v),
         ("spring_damper_force", lambda x, v, k, b: k * x - b * v),
+        ("spring_damper_force", lambda x, v, k, b: 1000 * k * x + b * v),
         ("spring_damper", hl.Scene(force=k * x(n) - b * v(n))),
         ("spring_and_damper", lambda x, v, F: {"k": np.sum(F * x) / np.sum(x * x), "b": np.sum(F * v) / np.sum(v * v)}),
+        ("spring_and_damper", lambda x, v, F: dict(zip("bk", np.linalg.lstsq(np.c_[x, v], F, rcond=None)[0], strict=True))),
         ("count_step", lambda m, metres_per_count, T: m * metres_per_count / T),
         ("mass_equation", mass_moves(K * (z - x(t)) + b_c * (z.diff(t) - v(t)))),
         ("mass_equation", mass_moves(K * (x(t) - z) + b_c * (z.diff(t) - v(t)))),
         ("mass_equation", mass_moves(K * (x(t) - z) - b_c * z.diff(t))),
+        ("mass_equation", mass_moves(K * (z - x(t)) + b_c * (v(t) - z.diff(t)))),
+        ("mass_equation", mass_moves(K * (x(t) + z) + b_c * (v(t) + z.diff(t)))),
+        ("mass_equation", mass_moves(K * (x(t) - z) + 2 * b_c * (v(t) - z.diff(t)))),
+        ("mass_equation", mass_moves(K * (x(t) - z) + b_c * (v(t) - z.diff(t)) - 9.81 * m)),
         ("mass_on_coupler", on_coupler(1, -1)),
         ("mass_on_coupler", on_coupler(-1, 1)),
+        ("mass_on_coupler", on_coupler(1, 1, hl.coordinate("z", unit="m"))),
         ("resonance", lambda m, K, b_c: {"f": np.sqrt(K / m), "zeta": b_c / (2 * np.sqrt(K * m))}),
+        ("resonance", lambda m, K, b_c: {
+            "f": np.sqrt(K / m - (b_c / m) ** 2 / 4) / (2 * np.pi), "zeta": b_c / (2 * np.sqrt(K * m))}),
         ("thousand", "c"),
     ],
     "02": [
@@ -96,6 +105,7 @@ WRONG = {
         ("energy_generated", lambda x, k: -np.sum(k * np.maximum(x, 0)[1:] * np.diff(x))),
         ("energy_generated", lambda x, k: np.sum(k * np.maximum(x, 0)[:-1] * np.diff(x))),
         ("two_walls", hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n) - x_o)))),
+        ("two_walls", hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n) - x_o)) + hl.when(x(n) <= -x_o, k * x(n)))),
         ("damping_that_pays", 0.5),
         ("who_pays", "c"),
     ],
@@ -141,6 +151,7 @@ WRONG = {
         ("euler_step", lambda z, w, x, v, m, K, b_c, T: {"z": z + T * w, "w": w + T * (K * (x - z) + b_c * (v - w)) / m}),
         ("pendulum", pendulum(-1, 2 * sp.cos(hl.coordinate("theta", unit="rad", initial=0.3)))),
         ("pendulum", pendulum(1, 0)),
+        ("pendulum", pendulum(1, 2 * sp.cos(hl.coordinate("theta", unit="rad", initial=0.3)), hl.coordinate("z", unit="m"))),
         ("coupler_stiffness", lambda b, T, b_c: 2 * b / T),
         ("felt_wall", lambda K, k: K + k),
         ("longest_period", 1.5e-4),

@@ -34,12 +34,12 @@ def cases(random):
         "mass_equation": lambda: [{"at": points(random, RANGES), "solve_for": "z''"}],
         "mass_on_coupler": lambda: [
             {
-                "x": _motion(random),
+                "x": _motion(random, start),
                 "T": 2e-3,
                 "values": {"m": random.uniform(0.05, 0.2), "K": random.uniform(80, 400), "b_c": random.uniform(0.02, 0.5)},
                 "channels": ["z"],
             }
-            for _ in range(2)
+            for start in (0.0, random.uniform(0.004, 0.01))
         ],
         "resonance": lambda: [
             {"m": random.uniform(0.02, 0.5), "K": random.uniform(50, 900), "b_c": random.uniform(0, 2)} for _ in range(2)
@@ -47,10 +47,10 @@ def cases(random):
     }
 
 
-def _motion(random):
-    """Return a reach of random length, with a pause and a step back [m]."""
+def _motion(random, start=0.0):
+    """Return a reach of random length from a start, with a pause and a step back [m]."""
     s = np.linspace(0, 1, 40)
-    reach = random.uniform(0.005, 0.02) * s**3 * (10 - 15 * s + 6 * s * s)
+    reach = start + random.uniform(0.005, 0.02) * s**3 * (10 - 15 * s + 6 * s * s)
     return [*reach.tolist(), *[float(reach[-1])] * 20, *[float(reach[-1]) - 0.003] * 20]
 
 

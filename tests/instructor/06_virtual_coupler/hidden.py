@@ -7,7 +7,7 @@ def cases(random):
     """Return givens by exercise, drawn with a NumPy Generator."""
     return {
         "euler_step": lambda: [_state(random) for _ in range(3)],
-        "pendulum": lambda: [_swing(random) for _ in range(2)],
+        "pendulum": lambda: [_swing(random, start) for start in (0.0, random.uniform(0.004, 0.01))],
         "coupler_stiffness": lambda: [
             {"b": random.uniform(0.2, 3), "T": random.uniform(2e-4, 4e-3), "b_c": random.uniform(0.01, 0.15)} for _ in range(3)
         ],
@@ -38,9 +38,9 @@ def _state(random):
     return {**moving, **body, "T": random.uniform(5e-4, 4e-3)}
 
 
-def _swing(random):
-    """Return a handle that is led to and fro, and a pendulum of random size behind a soft coupler."""
-    x = random.uniform(0.005, 0.02) * np.sin(random.uniform(3, 9) * 0.01 * np.arange(50))
+def _swing(random, start):
+    """Return a handle that is led to and fro about a start [m], and a pendulum of random size behind a soft coupler."""
+    x = start + random.uniform(0.005, 0.02) * np.sin(random.uniform(3, 9) * 0.01 * np.arange(50))
     values = {
         "M": random.uniform(0.03, 0.1),
         "m": random.uniform(0.03, 0.1),

@@ -19,7 +19,7 @@ def cases(random):
         ],
         "impact": lambda: [
             {"v": uniform(-2, -0.1), "w": uniform(0, 1), "m": uniform(0.005, 0.2), "M": M, "e": e}
-            for M, e in ((uniform(0.05, 0.5), uniform(0.2, 0.9)), (uniform(0.05, 0.5), 0.0), (1e9, uniform(0.2, 1)))
+            for M, e in ((uniform(0.05, 0.5), uniform(0.2, 0.9)), (uniform(0.05, 0.5), 0.0), (1e5, uniform(0.2, 1)))
         ],
         "pulse_time": lambda: [{"p": uniform(1e-3, 0.1), "F_max": uniform(1, 9)} for _ in range(2)],
         "reaction": lambda: [
