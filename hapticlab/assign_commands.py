@@ -10,6 +10,7 @@ from .course.labs import find_labs
 from .course.notebook import write
 from .course.personal import personal_labs
 from .errors import CourseError
+from .grading.assignment import find_assignment
 from .grading.gradescope_zip import gradescope_files, write_zip
 from .grading.nbgrader_source import config, nbgrader_notebook
 from .grading.otter_source import otter_assign
@@ -29,7 +30,8 @@ def add(commands, seed):
     made.add_argument("target", metavar="DIR", help="folder to write into; of gradescope a FILE.zip")
     made.add_argument("--for", dest="system", choices=SYSTEMS, help="what grades or collects")
     made.add_argument("--personal", action="store_true", help="numbers of their own for the students of --roster")
-    made.add_argument("--lab", nargs="+", default=[], metavar="NN", help="these labs (default: all)")
+    words = "these labs, by number, or own ones by folder (default: all that came with hapticlab)"
+    made.add_argument("--lab", nargs="+", default=[], metavar="NN", help=words)
     made.add_argument("--instructor", required=True, metavar="PATH", help="folder of answers, which holds NN_name/solution.py")
     made.add_argument("--seed", type=seed, metavar="N", help="of hidden cases and of students' own numbers (default: 0)")
     made.add_argument("--roster", metavar="FILE.csv", help="the class, for --personal")
@@ -74,11 +76,12 @@ def _check(parser, options):
 
 def _labs(options):
     """Return the labs that were asked for."""
-    found = {lab.number: lab for lab in find_labs()}
-    strange = [number for number in options.lab if number not in found]
-    if strange:
-        raise CourseError(f"there is no lab {strange[0]}; there are {', '.join(found)}")
-    return [found[number] for number in options.lab] or list(found.values())
+    return [*dict.fromkeys(find_assignment(lab).folder for lab in options.lab)] or find_labs()
+
+
+def _called(lab):
+    """Return what `hapticlab grade` finds a lab by: the number of one that came with hapticlab, or the folder."""
+    return lab.number if lab in find_labs() else str(lab.path)
 
 
 def _answers(lab, options):
@@ -98,7 +101,7 @@ def _nbgrader(labs, target, options):
         write(folders[lab] / lab.notebook.name, notebook)
         print(f"written: {folders[lab]}")
     first, tree = labs[0].name, str(Path(options.instructor).resolve())
-    graded = ["hapticlab", "grade", "submitted", "--lab", labs[0].number, "--instructor", tree, "--gradebook", "gradebook.db"]
+    graded = ["hapticlab", "grade", "submitted", "--lab", _called(labs[0]), "--instructor", tree, "--gradebook", "gradebook.db"]
     return _next(
         f"cd {words_of([str(target)])}",
         f"nbgrader generate_assignment {first} --create",
@@ -136,7 +139,7 @@ def _otter(labs, target, options):
         "give students the folder student. Mark what comes back, without Docker one at a time:",
         words_of(["otter", "run", f"SUBMISSIONS/ada/{name}", "-a", str(made), "-o", "results"]),
         "otter trusts what students write. A mark that stands:",
-        words_of(["hapticlab", "grade", "SUBMISSIONS", "--lab", labs[-1].number, "--instructor", options.instructor]),
+        words_of(["hapticlab", "grade", "SUBMISSIONS", "--lab", _called(labs[-1]), "--instructor", options.instructor]),
     )
 
 
@@ -183,16 +186,18 @@ def _prairielearn(labs, target, options):
 def _personal(options):
     """Write each student's folder of labs."""
     roster, target, seed = read_roster(options.roster), Path(options.target), options.seed or 0
+    labs = _labs(options)
+    only = [lab.number for lab in labs] if options.lab else []
     column = _column(roster, options.column)
     students = [row[column].strip() for row in roster.rows]
     if not all(students):
         raise CourseError(f"{roster.path}: row {students.index('') + 2} has no {roster.columns[column]}; name another --column")
-    states = personal_labs(students, target, options.instructor, seed, options.lab)
+    states = personal_labs(students, target, options.instructor, seed, only, labs)
     kept = sorted(path for path, state in states.items() if state == "kept")
     print(f"written: {target}, labs of {len(students)} students by {roster.columns[column]!r}, numbers of seed {seed}")
     if kept:
         print(f"left as they are, for they differ and may hold work:\n  {', '.join(kept)}")
-    graded = ["--lab", *(options.lab[:1] or ["NN"]), "--instructor", options.instructor, "--personal", "--seed", str(seed)]
+    graded = ["--lab", _called(labs[0]) if only else "NN", "--instructor", options.instructor, "--personal", "--seed", str(seed)]
     return _next(
         f"give each student the folder {target}{os.sep}{students[0] if students else 'STUDENT'}, or the one named so",
         "what they hand in, named by the same names, is graded by the same seed:",

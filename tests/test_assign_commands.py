@@ -1,6 +1,7 @@
 """`hapticlab assign`: what it refuses, what it never overwrites, what it says to do next, and each student's own labs."""
 
 import json
+import shutil
 import zipfile
 from pathlib import Path
 
@@ -94,14 +95,48 @@ def test_a_wheel_goes_into_the_autograder(tmp_path):
 
 
 @pytest.fixture
+def own(tmp_path):
+    """A lab of an instructor's own, 77_walls, and its answers: lab 02 under another number."""
+    folder = tmp_path / "own" / "77_walls"
+    folder.mkdir(parents=True)
+    names = {LAB.notebook: "77_walls.ipynb", LAB.path / "checks.py": "checks.py"}
+    for path, name in names.items():
+        text = path.read_text("utf-8").replace('number="02"', 'number="77"')
+        (folder / name).write_text(text.replace('check(\\"02.', 'check(\\"77.'), "utf-8")
+    shutil.copytree(Path(INSTRUCTOR, LAB.name), tmp_path / "answers" / folder.name)
+    return folder
+
+
+def test_an_own_lab_is_handed_out_as_those_of_the_package_are(tmp_path, own, roster, capsys):
+    asked = ["--lab", own, "--instructor", tmp_path / "answers"]
+
+    def said(target, *more):
+        assert cli.main(["assign", str(tmp_path / target), *map(str, (*more, *asked))]) == 0
+        return capsys.readouterr().out
+
+    assert f"--lab {own.resolve()} --instructor" in said("course", "--for", "nbgrader")
+    notebook = read(tmp_path / "course" / "source" / own.name / "77_walls.ipynb")
+    checks = [cell["source"] for cell in notebook["cells"] if "HIDDEN TESTS" in cell["source"]]
+    assert len(checks) == 7 and all('hl.check("77.' in source for source in checks)
+    said("wall.zip", "--for", "gradescope")
+    with zipfile.ZipFile(tmp_path / "wall.zip") as archive:
+        assert {"labs/77_walls/checks.py", "answers/77_walls/solution.py"} <= set(archive.namelist())
+    said("questions", "--for", "prairielearn")
+    assert 'labs/77_walls"' in (tmp_path / "questions" / own.name / "tests" / "run.sh").read_text("utf-8")
+    assert f"--lab {own.resolve()} --instructor" in said("class", "--personal", "--roster", roster)
+    own_numbers = [own_lines(tmp_path / "class" / name, own.name) for name in ("al", "bm")]
+    assert len(own_numbers[0]) == 2 and own_numbers[0] != own_numbers[1]
+
+
+@pytest.fixture
 def roster(tmp_path):
     path = tmp_path / "class.csv"
     path.write_text("Name;Email;Login\nAda L;ada@x.edu;al\nBob M;bob@x.edu;bm\n", "utf-8")
     return path
 
 
-def own_lines(folder):
-    code = "\n".join(code_of(read(folder / LAB.name / LAB.notebook.name)))
+def own_lines(folder, name=LAB.name):
+    code = "\n".join(code_of(read(folder / name / f"{name}.ipynb")))
     return [line for line in code.splitlines() if line.startswith(("K_OWN =", "T_OWN ="))]
 
 
