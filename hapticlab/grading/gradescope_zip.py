@@ -23,6 +23,11 @@ export UV_PYTHON_INSTALL_DIR=/opt/hapticlab-python
 python3 -m uv venv --python ">=3.11" /opt/hapticlab
 python3 -m uv pip install --python /opt/hapticlab/bin/python {package}
 """
+#: Gradescope ends what takes 600 s, and PrairieLearn what info.json says, without a word of why: this says it before
+GUARD = """\
+# A busy computer may stretch what a submission may use beyond what the system allows for all.
+guard=$(command -v timeout) && guard="$guard --signal=INT --kill-after=15 ${GRADE_SECONDS:-570}"
+"""
 RUN = """\
 #!/usr/bin/env bash
 # Gradescope runs this for each submission; it writes results/results.json.
@@ -49,12 +54,14 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/submitted"
 cp -R -P "$root/submission" "$work/submitted/$student"
-"$python" -m hapticlab grade "$work/submitted/$student" --lab "$root/source/labs/{name}" --instructor "$root/source/answers" \\
+{guard}$guard "$python" -m hapticlab grade "$work/submitted/$student" \\
+    --lab "$root/source/labs/{name}" --instructor "$root/source/answers" \\
     --seed {seed} --sandbox auto --workers 1 --fresh --format gradescope -o "$results"
 code=$?
 rm -f "$results.journal.jsonl"
 # 1 says that the submission could not be graded; why stands in the results, which a student reads
 [ -s "$results" ] && exit 0
+[ "$code" -ne 124 ] || echo "Grading took too long, and was ended. No points were written down." >&2
 exit "$code"
 """
 
@@ -92,7 +99,7 @@ def gradescope_files(folder, answers, package, seed=0, wheel=None, personal=Fals
         Whether students have numbers of their own, drawn by the e-mail that Gradescope knows them by.
     """
     installed = f'"./{wheel.name}"' if wheel else f'"{package}"'
-    run = RUN.format(name=folder.name, seed=f"{seed} --personal" if personal else seed)
+    run = RUN.format(guard=GUARD, name=folder.name, seed=f"{seed} --personal" if personal else seed)
     scripts = {"setup.sh": SETUP.format(package=installed), "run_autograder": run}
     files = {name: text.encode() for name, text in scripts.items()}
     return {**files, **({wheel.name: wheel.read_bytes()} if wheel else {}), **bundle(folder, answers)}

@@ -5,10 +5,10 @@ import html
 import json
 import uuid
 
-from .gradescope_zip import bundle
+from .gradescope_zip import GUARD, bundle
 
-#: of one grading job; 600 is the most that PrairieLearn allows
-SECONDS = 300
+#: of one grading job; it is the most that PrairieLearn allows
+SECONDS = 600
 QUESTION = """\
 <pl-question-panel>
   <p>{title}. Do the lab in this notebook, then upload it; all of it runs when it is graded.</p>
@@ -43,11 +43,13 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/submitted"
 cp -R -P "$root/student" "$work/submitted/$variant"
-python3 -m hapticlab grade "$work/submitted/$variant" --lab "$root/tests/labs/{name}" --instructor "$root/tests/answers" \\
+{guard}$guard python3 -m hapticlab grade "$work/submitted/$variant" \\
+    --lab "$root/tests/labs/{name}" --instructor "$root/tests/answers" \\
     --seed {seed} --sandbox auto --workers 1 --fresh --format prairielearn -o "$results"
 rm -f "$results.journal.jsonl"
 # what fails here is no fault of the student, and costs no attempt
-[ -s "$results" ] || echo '{{"gradable": false, "format_errors": ["The grader failed. Tell your instructor."]}}' >"$results"
+failed='{{"gradable": false, "format_errors": ["The grader failed, or took too long. Tell your instructor."]}}'
+[ -s "$results" ] || echo "$failed" >"$results"
 """
 DOCKERFILE = """\
 # The image in which PrairieLearn grades: docker build -t {image} . && docker push {image}
@@ -73,7 +75,7 @@ def prairielearn_files(folder, answers, image, seed=0):
     texts = {
         "info.json": json.dumps(_info(lab, name, image), indent=4) + "\n",
         "question.html": QUESTION.format(title=html.escape(f"Lab {lab.number}: {lab.title}"), notebook=folder.notebook.name),
-        "tests/run.sh": RUN.format(name=name, seed=seed),
+        "tests/run.sh": RUN.format(guard=GUARD, name=name, seed=seed),
     }
     files = {f"tests/{path}": content for path, content in bundle(folder, answers).items()}
     handed_out = {f"clientFilesQuestion/{folder.notebook.name}": folder.notebook.read_bytes()}

@@ -32,12 +32,18 @@ def hand_in(folder, wrong):
 
 
 def run_script(script, **variables):
-    """Run a script where its python is this one."""
+    """Run a script, which must succeed."""
+    code, said = done_by(script, **variables)
+    assert code == 0, said
+
+
+def done_by(script, **variables):
+    """Run a script where its python is this one; return its code and what it said."""
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-    env = {**os.environ, "PATH": path, "PYTHONPATH": str(ROOT), **{name: str(value) for name, value in variables.items()}}
+    own = {"PATH": path, "PYTHONPATH": str(ROOT), "HAPTICLAB_PYTHON": sys.executable}
+    env = {**os.environ, **own, **{name: str(value) for name, value in variables.items()}}
     done = subprocess.run([str(script)], env=env, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout + done.stderr
+    return done.returncode, done.stdout + done.stderr
 
 
 def of_nobody_else(path):
@@ -79,7 +85,7 @@ def test_run_autograder_writes_what_a_submission_earned(autograder):
     hand_in(autograder / "submission", {"period_leak": WRONG["02"]["period_leak"], "damping_that_pays": own})
     users = {"users": [{"email": "ada@x.edu", "id": 12, "name": "Ada"}], "previous_submissions": []}
     (autograder / "submission_metadata.json").write_text(json.dumps(users), "utf-8")
-    run_script(autograder / "source" / "run_autograder", AUTOGRADER_ROOT=autograder, HAPTICLAB_PYTHON=sys.executable)
+    run_script(autograder / "source" / "run_autograder", AUTOGRADER_ROOT=autograder)
     results = json.loads((autograder / "results" / "results.json").read_text("utf-8"))
     scores = {one["name"]: one["score"] for one in results["tests"]}
     judged = {one.name: one.points for one in LAB.lab().exercises if one.judged}
@@ -129,7 +135,7 @@ def test_the_question_has_the_fields_of_prairielearn(course):
     assert f'"hapticlab=={cli.__version__}"' in (course / "grader-image" / "Dockerfile").read_text("utf-8")
 
 
-def graded_there(course, root, wrong):
+def graded_there(course, root, wrong, **variables):
     """Return the results of a submission in PrairieLearn's folder /grade."""
     shutil.copytree(course / LAB.name / "tests", root / "tests")
     if wrong is not None:
@@ -139,7 +145,7 @@ def graded_there(course, root, wrong):
         (root / "student" / LAB.notebook.name).write_text("{broken", "utf-8")
     (root / "data").mkdir()
     (root / "data" / "data.json").write_text(json.dumps({"variant_seed": "1kx9", "submitted_answers": {}}), "utf-8")
-    run_script(root / "tests" / "run.sh", GRADE_ROOT=root)
+    run_script(root / "tests" / "run.sh", GRADE_ROOT=root, **variables)
     assert all(map(of_nobody_else, (root / "tests" / "answers").rglob("*")))
     return json.loads((root / "results" / "results.json").read_text("utf-8"))
 
@@ -157,3 +163,15 @@ def test_the_entrypoint_writes_what_a_submission_earned(course, tmp_path):
 def test_a_broken_upload_costs_no_attempt(course, tmp_path):
     results = graded_there(course, tmp_path, None)
     assert results["gradable"] is False and "no notebook" in str(results["format_errors"])
+
+
+@needs_bash
+@pytest.mark.skipif(shutil.which("timeout") is None, reason="timeout, by which the scripts end what takes too long")
+def test_what_takes_too_long_is_told_before_the_system_ends_it(autograder, course, tmp_path):
+    results = graded_there(course, tmp_path / "grade", {}, GRADE_SECONDS=0.1)
+    assert results == {"gradable": False, "format_errors": ["The grader failed, or took too long. Tell your instructor."]}
+    (tmp_path / "submission").mkdir()
+    shutil.copytree(autograder / "source", tmp_path / "source")
+    code, said = done_by(tmp_path / "source" / "run_autograder", AUTOGRADER_ROOT=tmp_path, GRADE_SECONDS=0.1)
+    assert code == 124 and "Grading took too long" in said
+    assert list((tmp_path / "results").iterdir()) == [], "no points are written down"
