@@ -113,9 +113,8 @@ class Starter:
         self.held, self.size = watch.anonymous(self.process.pid), watch.address_space(self.process.pid)
 
     def _settle(self):
-        seen = [str(PACKAGE), *(path for path in sys.path if Path(path).name in ("site-packages", "dist-packages"))]
         with tempfile.TemporaryDirectory(prefix="hapticlab-root-") as new, self._scratch() as scratch:
-            settings = {"new": new, "seen": seen, "hidden": self.hidden, "scratch": scratch}
+            settings = {"new": new, "seen": seen(), "hidden": self.hidden, "scratch": scratch}
             if self.level != "none":
                 found = self.order("probe", **settings, limits=asdict(Limits()))
                 if "problem" in found:
@@ -175,6 +174,11 @@ class Starter:
 
     def __exit__(self, *_):
         self.close()
+
+
+def seen():
+    """Return the folders that sessions see beside Python's own: this package, and others'."""
+    return [str(PACKAGE), *(path for path in sys.path if Path(path).name in ("site-packages", "dist-packages"))]
 
 
 def _is_root():

@@ -16,7 +16,7 @@ import numpy as np
 from hapticlab.errors import CourseError
 from hapticlab.grading.inside import linux, root, sandbox
 from hapticlab.grading.limits import MIB, Limits
-from hapticlab.grading.starter import PACKAGE, start
+from hapticlab.grading.starter import PACKAGE, seen, start
 
 LIMITS = Limits(memory=300 * MIB, processes=16, scratch=4 * MIB)
 BEFORE = """
@@ -100,7 +100,7 @@ if __name__ == "__main__":
     if len(sys.argv) > 2:
         linux.unshare(linux.NEWNS)
         with tempfile.TemporaryDirectory() as new:
-            root.move(new, (sys.prefix, sys.base_prefix, str(PACKAGE), str(Path(__file__).parent)), ())
+            root.move(new, (sys.prefix, sys.base_prefix, *seen(), str(Path(__file__).parent)), ())
         sandbox.clear_tmp(64 * MIB)
     if user:
         os.setgroups([])
