@@ -15,6 +15,9 @@ from .plain import NotPlain, a, numbers
 MOST_CURVES = 16
 #: what stands around a unit at the end of a label, "x [mm]", "x (mm)", "x / mm"
 UNIT = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\)|\s/\s*([^\s\[\]()]+))\s*$")
+#: where a unit is looked for in turn: a bracket that stands alone, "k [N/m], log scale" (that of "x[n] (mm)" does not); the end
+PLACES = re.compile(r"(?:^|\s)\[([^\[\]]*)\]"), UNIT, re.compile(r"\[([^\[\]]*)\]")
+RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺−", "0123456789-+-")
 
 
 def curves(answer):
@@ -22,7 +25,7 @@ def curves(answer):
 
     Parameters
     ----------
-    answer : matplotlib Figure or Axes, or a list of Axes
+    answer : matplotlib Figure or Axes, or a list of Axes; of a tuple such as (figure, axes) the figure
 
     Returns
     -------
@@ -54,6 +57,8 @@ def curves(answer):
 
 def _axes(answer):
     """Return the axes of whatever was answered."""
+    if isinstance(answer, list | tuple):
+        answer = next((one for one in answer if isinstance(getattr(one, "axes", None), list)), answer)
     if hasattr(answer, "get_lines"):
         return [answer]
     several = getattr(answer, "axes", answer)
@@ -90,12 +95,17 @@ def _label(axes, side):
 def _unit(label, side):
     """Return (factor to SI, SI unit) of an axis label; (1, "") where it names no unit."""
     label = re.sub(r"\\mu\s*|[µμ]", "u", re.sub(r"\\mathrm|[${}]", "", label))
-    found = UNIT.search(label)
-    text = next((part.strip() for part in found.groups() if part is not None), "") if found else ""
-    if text in ("", "-", "1"):
-        return 1.0, "1" if text else ""
-    try:
-        factor, unit = quantity(f"1 {text}", f"the label of its {side} axis")
-        return factor, si_name(dimension(unit))
-    except UnitsError as problem:
-        raise NotPlain(f"the {side} axis is labelled {label[:60]!r}: {str(problem)[:120]}") from None
+    label = re.sub("[⁻⁺]?[⁰¹²³⁴-⁹]+", lambda raised: f"^{raised.group()}", label).translate(RAISED)
+    found = [match for place in PLACES if (match := place.search(label))]
+    problems = []
+    for text in (next(part.strip() for part in match.groups() if part is not None) for match in found):
+        if text in ("", "-", "1"):
+            return 1.0, "1" if text else ""
+        try:
+            factor, unit = quantity(f"1 {text}", f"the label of its {side} axis")
+            return factor, si_name(dimension(unit))
+        except UnitsError as problem:
+            problems.append(problem)
+    if problems:
+        raise NotPlain(f"the {side} axis is labelled {label[:60]!r}: {problems[0]}")
+    return 1.0, ""

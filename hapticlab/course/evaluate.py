@@ -7,7 +7,8 @@ not known here.
 import copy
 import inspect
 import io
-from contextlib import redirect_stdout
+import sys
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -92,11 +93,36 @@ def _evaluated(kind, answer, given):
     if kind == "expression":
         remark = unit_remark(answer, given.pop("unit", ""))
         return Outcome(values(answer, **given), remark)
-    if kind == "function" or (kind == "plot" and callable(answer)):
-        answer = _called(answer, given)
-        if answer is None:
-            return Outcome(problem="it returns None; is its `return` missing?")
-    return Outcome(curves(answer) if kind == "plot" else plain(answer))
+    if kind == "plot":
+        with _own_figure():
+            return _returned(answer, given, curves) if callable(answer) else Outcome(curves(answer))
+    return _returned(answer, given, plain) if kind == "function" else Outcome(plain(answer))
+
+
+def _returned(function, given, convert):
+    """Return the outcome of what a function returns."""
+    returned = _called(function, given)
+    if returned is None:
+        return Outcome(problem="it returns None; is its `return` missing?")
+    return Outcome(convert(returned))
+
+
+@contextmanager
+def _own_figure():
+    """Let ``plt.plot`` draw into a figure of its own and not over that of the case before; figures open before stay open."""
+    before = _pyplot_figures()
+    if before:
+        sys.modules["matplotlib.pyplot"].figure()
+    try:
+        yield
+    finally:
+        for number in set(_pyplot_figures()).difference(before):
+            sys.modules["matplotlib.pyplot"].close(number)
+
+
+def _pyplot_figures():
+    pyplot = sys.modules.get("matplotlib.pyplot")
+    return pyplot.get_fignums() if pyplot else []
 
 
 def _called(function, given):

@@ -4,15 +4,19 @@ import numpy as np
 
 from .diagnose import FACTORS
 
-#: curves beyond those expected, lines of two points to guide the eye aside: one of many guesses is no answer
-MORE = 2
+#: how far apart points may be, of the range, where they lie on the curve and the lines between them do not
+WIDEST = 1 / 6
+#: how much of the range may be missing at an end, if it is no more than a step: np.arange leaves its end out
+END = 0.02
 
 
 def plot_fault(expected, found, rtol, atol):
     """Return what is wrong with the curves of a plot.
 
-    A curve whose abscissae rise is compared by interpolation at those expected, so it may be sampled otherwise; any
-    other point by point. Labels are free, units are not; a few curves beyond those expected do no harm.
+    A curve whose abscissae rise is compared by interpolation at those expected, or else at its own, where they are fewer
+    and close enough to show it, so it may be sampled otherwise; any other point by point. Labels are free, units are not. Points
+    that are not finite are left out. Lines to guide the eye, copies and curves in other units do no harm. A curve that
+    could be the answer and is none does: whoever draws several guesses would be right with one of them.
 
     Parameters
     ----------
@@ -34,28 +38,28 @@ def plot_fault(expected, found, rtol, atol):
     """
     curves = [curve for curve in map(_arrays, found.values() if isinstance(found, dict) else ()) if curve]
     if not curves:
-        return "no curves; needs a matplotlib Figure or Axes with them", ""
-    long = sum(len(curve["x"]) > 2 for curve in curves)
-    if long > len(expected) + MORE:
-        return f"{long} curves where {len(expected)} would do: leave the others out", ""
-    for name, wanted in expected.items():
-        wanted = _arrays(wanted)
+        return "no curve of finite numbers; needs a matplotlib Figure or Axes with one", ""
+    asked = {name: _arrays(wanted) for name, wanted in expected.items()}
+    for name, wanted in asked.items():
         if not any(_fits(wanted, curve, rtol, atol) for curve in curves):
             slip = next((said for curve in curves if (said := _mixed_up(wanted, curve, rtol, atol))), "")
-            return _difference(name, wanted, curves, len(expected), slip), slip
-    return "", ""
+            return _difference(name, wanted, curves, len(expected), slip, _band(wanted, rtol, atol)), slip
+    guesses = sum(_is_guess(list(asked.values()), curve, rtol, atol) for curve in curves)
+    many = f"{guesses} curve{'s' * (guesses > 1)} too many: leave out what is not asked for, and make a new figure in each call"
+    return many if guesses else "", ""
 
 
 def _arrays(curve):
-    """Return a curve with its numbers as arrays, abscissae rising; None of what is no curve."""
+    """Return a curve with its finite points as arrays, and how many others it has; None of what is no curve."""
     try:
         x, y = np.array(curve["x"], float), np.array(curve["y"], float)
         units = {side: str(curve[side]) for side in ("x_unit", "y_unit")}
     except (TypeError, ValueError, KeyError):
         return None
-    if x.ndim != 1 or x.shape != y.shape or not len(x):
+    if x.ndim != 1 or x.shape != y.shape:
         return None
-    return {"x": x, "y": y, **units}
+    finite = np.isfinite(x) & np.isfinite(y)
+    return {"x": x[finite], "y": y[finite], "left out": int((~finite).sum()), **units} if finite.any() else None
 
 
 def _rising(x):
@@ -66,15 +70,46 @@ def _rising(x):
     return slice(None, None, -1) if (steps < 0).all() else None
 
 
-def _fits(wanted, curve, rtol, atol):
+def _is_guess(asked, curve, rtol, atol):
+    """Whether a curve could be an answer and is none; a straight line beside bent ones guides the eye."""
+    if any(_fits(wanted, curve, rtol, atol) for wanted in asked):
+        return False
+    if _straight(curve, rtol, atol):
+        asked = [wanted for wanted in asked if _straight(wanted, rtol, atol)]
+    return any(_comparable(wanted, curve) for wanted in asked)
+
+
+def _straight(curve, rtol, atol):
+    ends = [curve["x"].argmin(), curve["x"].argmax()]
+    return _near(np.interp(curve["x"], curve["x"][ends], curve["y"][ends]), curve["y"], _band(curve, rtol, atol))
+
+
+def _by_interpolation(wanted, curve):
+    return len(wanted["x"]) > 1 and _rising(wanted["x"]) is not None and _rising(curve["x"]) is not None
+
+
+def _comparable(wanted, curve):
+    """Whether a curve has the units, and the range or the number of points, of what is expected."""
     if any(wanted[side] != curve[side] for side in ("x_unit", "y_unit")):
         return False
-    asked, order = _rising(wanted["x"]), _rising(curve["x"])
-    if len(wanted["x"]) > 1 and asked is not None and order is not None:
-        return not _missing(wanted, curve) and _near(wanted["y"], _at(wanted["x"], curve), rtol, atol)
-    if len(wanted["x"]) != len(curve["x"]):
+    return not _missing(wanted, curve) if _by_interpolation(wanted, curve) else len(wanted["x"]) == len(curve["x"])
+
+
+def _fits(wanted, curve, rtol, atol):
+    if not _comparable(wanted, curve):
         return False
-    return _near(wanted["x"], curve["x"], rtol, 0.0) and _near(wanted["y"], curve["y"], rtol, atol)
+    band = _band(wanted, rtol, atol)
+    if not _by_interpolation(wanted, curve):
+        return _near(wanted["x"], curve["x"], rtol * np.abs(wanted["x"]).max()) and _near(wanted["y"], curve["y"], band)
+    if _near(*_where_asked(wanted, curve)[1:], band):
+        return True
+    close = _is_coarse(wanted, curve) and _widest(wanted, curve) <= 1.001 * WIDEST * np.ptp(wanted["x"])
+    return close and _near(*_where_drawn(wanted, curve)[1:], band)
+
+
+def _is_coarse(wanted, curve):
+    """Whether the lines between the points of a curve may be farther off than its points."""
+    return len(curve["x"]) < len(wanted["x"])
 
 
 def _at(x, curve):
@@ -82,16 +117,39 @@ def _at(x, curve):
     return np.interp(x, curve["x"][order], curve["y"][order])
 
 
+def _where_asked(wanted, curve):
+    """Return abscissae of what is expected, and both curves there."""
+    x = np.clip(wanted["x"], curve["x"].min(), curve["x"].max())
+    return x, _at(x, wanted), _at(x, curve)
+
+
+def _where_drawn(wanted, curve):
+    """Return abscissae of a curve within the range, and both curves there."""
+    inside = (curve["x"] >= wanted["x"].min()) & (curve["x"] <= wanted["x"].max())
+    return curve["x"][inside], _at(curve["x"][inside], wanted), curve["y"][inside]
+
+
+def _widest(wanted, curve):
+    """Return how far apart the points of a curve are, within the range, at most."""
+    return np.abs(np.diff(np.clip(curve["x"], wanted["x"].min(), wanted["x"].max()))).max(initial=0)
+
+
 def _missing(wanted, curve):
-    """Whether a curve ends before what is expected does, by more than a thousandth of that."""
-    low, high = wanted["x"].min(), wanted["x"].max()
-    slack = 1e-3 * (high - low)
-    return not (curve["x"].min() <= low + slack and curve["x"].max() >= high - slack)
+    """Whether a curve ends before what is expected does."""
+    low, high, x = wanted["x"].min(), wanted["x"].max(), curve["x"][_rising(curve["x"])]
+    if len(x) < 2:
+        return True
+    first, last = (np.clip(step, 1e-3 * (high - low), END * (high - low)) for step in (x[1] - x[0], x[-1] - x[-2]))
+    return bool(x[0] > low + 1.001 * first or x[-1] < high - 1.001 * last)
 
 
-def _near(wanted, got, rtol, atol):
+def _band(wanted, rtol, atol):
+    return atol + rtol * np.abs(wanted["y"]).max()
+
+
+def _near(wanted, got, band):
     with np.errstate(all="ignore"):
-        return bool((np.abs(got - wanted) <= atol + rtol * np.abs(wanted).max()).all())
+        return bool((np.abs(got - wanted) <= band).all())
 
 
 def _mixed_up(wanted, curve, rtol, atol):
@@ -118,20 +176,30 @@ def _unit(name):
     return "a number without unit" if name == "1" else name
 
 
-def _difference(name, wanted, curves, needed, slip):
+def _difference(name, wanted, curves, needed, slip, band):
     """Say how far the first curve is from one that is expected."""
     if len(curves) < needed:
         return f"{len(curves)} curve{'s' * (len(curves) > 1)}, needs {needed}"
     curve = next((c for c in curves if c["x_unit"] == wanted["x_unit"] and c["y_unit"] == wanted["y_unit"]), None)
     if curve is None or slip:
         return f"{name} is not there"
-    x_unit, y_unit = ("" if unit == "1" else f" {unit}" for unit in (wanted["x_unit"], wanted["y_unit"]))
-    if _rising(wanted["x"]) is None or _rising(curve["x"]) is None:
+    left_out = f" ({curve['left out']} of its points are nan or inf)" if curve["left out"] else ""
+    if not _by_interpolation(wanted, curve):
         counts = f" (it has {len(curve['x'])} points, needs {len(wanted['x'])})" if len(curve["x"]) != len(wanted["x"]) else ""
-        return f"{name} is not there{counts}"
+        return f"{name} is not there{counts}{left_out}"
+    return f"{_distance(name, wanted, curve, band)}{left_out}"
+
+
+def _distance(name, wanted, curve, band):
+    """Say where a curve is not what is expected, most of all."""
+    x_unit, y_unit = ("" if unit == "1" else f" {unit}" for unit in (wanted["x_unit"], wanted["y_unit"]))
     if _missing(wanted, curve):
         ends = [f"from {c['x'].min():.6g} to {c['x'].max():.6g}{x_unit}" for c in (curve, wanted)]
         return f"{name} goes {ends[0]}, needs {ends[1]}"
-    got = _at(wanted["x"], curve)
-    worst = int(np.argmax(np.nan_to_num(np.abs(got - wanted["y"]), nan=np.inf)))
-    return f"at {wanted['x'][worst]:.6g}{x_unit} it is {got[worst]:.6g}{y_unit}, expected {wanted['y'][worst]:.6g}{y_unit}"
+    coarse = _is_coarse(wanted, curve)
+    x, expected, got = (_where_drawn if coarse else _where_asked)(wanted, curve)
+    if coarse and _near(expected, got, band):
+        apart, most = _widest(wanted, curve), WIDEST * np.ptp(wanted["x"])
+        return f"{name} has points up to {apart:.3g}{x_unit} apart, needs more of them, {most:.3g}{x_unit} apart at most"
+    worst = int(np.argmax(np.abs(got - expected)))
+    return f"at {x[worst]:.6g}{x_unit} it is {got[worst]:.6g}{y_unit}, expected {expected[worst]:.6g}{y_unit}"

@@ -44,6 +44,12 @@ Y = 0.005 * np.sin(5 * np.pi * TIME)
         swing(draw="scatter"),
         swing(np.append(TIME, 0.3), np.append(Y, 9.0)),
         swing(np.linspace(0, 0.2, 999), 0.005 * np.sin(np.linspace(0, np.pi, 999))),
+        (swing().figure, "axes"),
+        swing(xlabel="[s] time t, of one swing", ylabel="x[n] (m)"),
+        swing(ylabel="position [m] (of the handle)"),
+        swing(1e3 * TIME, Y, "time [s⁻¹ ms s]", "x [m² m⁻¹]"),
+        swing(np.linspace(0, 0.2, 100)[1:-1], 0.005 * np.sin(np.linspace(0, np.pi, 100)[1:-1])),  # a step short at both ends
+        swing(np.append(TIME[:5], np.append(np.inf, TIME[5:])), np.append(Y[:5], np.append(np.nan, Y[5:]))),
         lambda: swing(),
     ],
 )
@@ -78,8 +84,12 @@ def test_lines_to_guide_the_eye_and_other_panels_do_no_harm():
         (swing(ylabel="x [parsnip]"), "the y axis is labelled 'x [parsnip]'"),
         (swing(TIME[:11], Y[:11]), "curve 1 goes from 0 to 0.1 s, needs from 0 to 0.2 s"),
         (swing(y=Y + 0.001), "expected"),
-        (swing(y=np.where(TIME > 0.15, np.nan, Y)), "at 0.2 s it is nan m, expected 0 m"),
+        (swing(y=np.where(TIME > 0.155, np.nan, Y)), "from 0 to 0.15 s, needs from 0 to 0.2 s (5 of its points are nan or inf)"),
         (swing(TIME[:1], Y[:1]), "curve 1"),
+        (swing(y=np.nan * Y), "no curve of finite numbers"),
+        (swing(TIME[:-1], Y[:-1]), "curve 1 goes from 0 to 0.19 s"),  # a step is 5 % of the range
+        (swing(xlabel="t [parsnip], for long"), "'parsnip' is not defined in the unit registry"),
+        (swing(np.linspace(0, 0.2, 3), [0, 1.0, 0]).get_lines(), "it is a silent_list, needs a matplotlib Figure or Axes"),
         (Figure(), "it holds no curve"),
         (Figure().subplots(), "it holds no curve"),
         (swing().get_lines()[0], "needs a matplotlib Figure or Axes"),
@@ -105,13 +115,84 @@ def test_curves_of_very_many_are_refused():
         curves(axes)
 
 
-def test_one_of_many_guesses_is_no_answer():
+@pytest.mark.parametrize("guesses", [[2 * Y, 3 * Y], [Y + 0.001], [-Y, 0.9 * Y, Y**2]])
+def test_one_of_several_guesses_is_no_answer(guesses):
     axes = swing()
-    for factor in (2, 3):
-        axes.plot(TIME, factor * Y)
-    assert checked("98.swing", PLOT, axes).passed
-    axes.plot(TIME, 4 * Y)
-    assert "4 curves where 1 would do" in checked("98.swing", PLOT, axes).text
+    for guess in guesses:
+        axes.plot(TIME, guess)
+    words = f"{len(guesses)} curve{'s' * (len(guesses) > 1)} too many: leave out what is not asked for"
+    assert words in checked("98.swing", PLOT, axes).text
+
+
+def test_what_cannot_be_meant_as_the_answer_is_no_guess():
+    axes = swing()
+    axes.plot(TIME, 0 * TIME + 0.001), axes.plot([0, 0.2], [0, 0.005]), axes.plot(TIME, 0.01 * TIME)
+    axes.plot(TIME, Y, "o"), axes.plot(TIME[:11], 2 * Y[:11]), axes.plot(0.1, 0.004, "x")
+    beside = axes.twinx()
+    beside.plot(TIME, 200 * Y), beside.set_ylabel("force [N]")
+    assert checked("98.swing", PLOT, axes.figure).passed
+
+
+def test_of_straight_lines_each_may_be_a_guess():
+    ramp = Exercise("ramp", "plot", points=1, rtol=0.02, cases=[Case({}, {"curve 1": SWING | {"y": [0.0, 1.0, 2.0]}})])
+    axes = swing([0, 0.2], [0, 2.0])
+    assert checked("98.ramp", ramp, axes).passed
+    axes.plot([0, 0.2], [0, 1.0]), axes.plot(TIME, 0 * TIME)
+    assert "2 curves too many" in checked("98.ramp", ramp, axes).text
+
+
+def hyperbola(points):
+    """The limit b/(T/2 + d) of lab 03 over the delay, at points of a student's."""
+    d = np.asarray(points)
+    return swing(1e3 * d, 1.1 / (5e-4 + d), "delay [ms]", "stiffness [N/m]")
+
+
+@pytest.mark.parametrize(
+    ("points", "words"),
+    [
+        (np.linspace(0, 3e-3, 7), "right"),
+        (np.linspace(0, 3e-3, 10), "right"),
+        (np.linspace(0, 3e-3, 15), "right"),
+        (np.arange(0, 3e-3, 5e-5), "right"),
+        (np.geomspace(1e-6, 3e-3, 50), "right"),
+        (np.linspace(0, 3e-3, 6), "curve 1 has points up to 0.0006 s apart, needs more of them, 0.0005 s apart at most"),
+        (np.array([0, 3e-3]), "up to 0.003 s apart"),
+        (np.append(np.linspace(0, 1e-3, 40), 3e-3), "up to 0.002 s apart"),
+    ],
+)
+def test_points_that_lie_on_a_finely_sampled_curve_are_right(points, words):
+    fine = curves(hyperbola(np.linspace(0, 3e-3, 200)))
+    exercise = Exercise("limit", "plot", points=1, rtol=0.02, cases=[Case({}, fine)])
+    result = checked("98.limit", exercise, hyperbola(points))
+    assert words in result.text and result.passed == (words == "right")
+
+
+def test_few_points_off_the_curve_are_told_where_they_are():
+    fine = curves(hyperbola(np.linspace(0, 3e-3, 200)))
+    exercise = Exercise("limit", "plot", points=1, rtol=0.02, cases=[Case({}, fine)])
+    d = np.linspace(0, 3e-3, 10)
+    drawn = swing(1e3 * d, np.where(d == d[3], 1000.0, 1.1 / (5e-4 + d)), "delay [ms]", "stiffness [N/m]")
+    assert "at 0.001 s it is 1000 N/m, expected 733." in checked("98.limit", exercise, drawn).text
+
+
+def by_pyplot(A):
+    pyplot.plot(TIME, A * np.sin(5 * np.pi * TIME))
+    pyplot.xlabel("t [s]"), pyplot.ylabel("x [m]")
+    return pyplot.gcf()
+
+
+def test_the_figure_that_pyplot_holds_is_a_new_one_in_each_case():
+    swings = [Case({"A": A}, {"curve 1": SWING | {"y": [0.0, A, 0.0]}}) for A in (0.005, 0.01, 0.02, 0.03)]
+    exercise = Exercise("swing", "plot", points=1, rtol=0.02, cases=swings)
+    own = pyplot.figure()
+    try:
+        assert checked("98.swing", exercise, by_pyplot).text.count("1 curve") == 4
+        assert checked("98.swing", exercise, lambda A: by_pyplot(A).axes[0]).passed
+        assert pyplot.get_fignums() == [own.number] and pyplot.gcf() is own and not own.axes
+    finally:
+        pyplot.close(own)
+    assert checked("98.swing", exercise, by_pyplot).passed
+    assert not pyplot.get_fignums()
 
 
 def phase(x, y):
@@ -138,10 +219,12 @@ def test_each_of_several_curves_is_looked_for():
     both = Exercise("both", "plot", points=1, rtol=0.02, cases=[Case({}, {"x": SWING, "square": other})])
     axes = swing()
     assert "1 curve, needs 2" in checked("98.both", both, axes).text
-    axes.plot(TIME, 5 * TIME**2 + 1)
+    (line,) = axes.plot(TIME, 5 * TIME**2 + 1)
     assert "at 0 s it is 0 m" not in checked("98.both", both, axes).text
-    axes.plot(TIME, 10 * TIME**2)
+    line.set_ydata(10 * TIME**2)
     assert checked("98.both", both, axes).passed
+    axes.plot(TIME, 5 * TIME**2)
+    assert "1 curve too many" in checked("98.both", both, axes).text
 
 
 def test_slips_of_a_plot_are_curves_too():
@@ -163,4 +246,7 @@ def test_what_the_package_plots_itself_is_read():
 @pytest.mark.parametrize("found", [None, 1.0, {}, {"c": 1.0}, {"c": {"x": "a"}}, {"c": {"x": [], "y": []}},
                                    {"c": {"x": [[1]], "y": [1], "x_unit": "s", "y_unit": "m"}}])  # fmt: skip
 def test_no_forged_reply_is_a_curve(found):
-    assert plot_fault({"curve 1": SWING}, found, 1.0, 1.0) == ("no curves; needs a matplotlib Figure or Axes with them", "")
+    assert plot_fault({"curve 1": SWING}, found, 1.0, 1.0) == (
+        "no curve of finite numbers; needs a matplotlib Figure or Axes with one",
+        "",
+    )

@@ -110,6 +110,20 @@ def test_what_follows_a_problem_in_its_cell_does_not_run_and_what_is_before_it_s
     assert {"a", "b", "c", "d"} & set(names) == {"a", "d"}
 
 
+def test_the_figures_of_pyplot_are_closed_after_each_cell_as_in_jupyter():
+    names = {}
+    draw = "from matplotlib import pyplot as plt\nplt.plot([0, 1], [2, 3])\nfirst = plt.gcf()"
+    assert run_cell(draw, names, 1) == "" == run_cell("plt.plot([0, 1], [4, 5])\nlines = plt.gca().get_lines()", names, 2)
+    assert len(names["lines"]) == 1 == len(names["first"].axes)
+    assert run_cell("plt.figure()\n1/0", names, 3).startswith("ZeroDivisionError") and not names["plt"].get_fignums()
+    spoil = "import sys\nclass Spoilt:\n  def close(self, what): sys.exit()\nsys.modules['matplotlib.pyplot'] = Spoilt()"
+    kept = sys.modules["matplotlib.pyplot"]
+    try:
+        assert run_cell(spoil, names, 4) == ""
+    finally:
+        sys.modules["matplotlib.pyplot"] = kept
+
+
 def test_the_source_of_a_function_is_found():
     names = {"__name__": "__main__"}
     run_cell("%pwd\ndef force(x):\n    return 2 * x  # N\n", names, 5)

@@ -11,6 +11,7 @@ import linecache
 import re
 import sys
 import types
+from contextlib import suppress
 
 from .lines import ASSIGNED_MAGIC, MAGIC, logical_lines
 
@@ -145,7 +146,17 @@ def _run(code, names, number):
             return _said(problem, _where(problem, number))
         except BaseException:  # even reading it may raise
             return "an error that cannot be read"
+    finally:
+        _close_figures()
     return ""
+
+
+def _close_figures():
+    """Close the figures of pyplot, as Jupyter does after each cell: the next draws into one of its own."""
+    with suppress(BaseException):
+        pyplot = sys.modules.get("matplotlib.pyplot")
+        if pyplot:
+            pyplot.close("all")
 
 
 def _flags(names):
