@@ -26,11 +26,12 @@ def course(tmp_path_factory):
     return place, ["grade", str(place / "class"), "--lab", str(lab), "--instructor", str(answers.parent), "--workers", "1"]
 
 
-def test_a_class_is_graded_into_a_table_pages_and_a_code(course, tmp_path, capsys):
+def test_a_class_is_graded_into_a_table_pages_and_a_code(course, here, tmp_path, capsys):
     _, command = course
     (tmp_path / "class.csv").write_text("id,name\nada,Ada\nbob,Bob\ndora,Dora\n")
     extra = ["--format", "json", "-o", str(tmp_path / "r.json"), "--pages", str(tmp_path / "pages")]
-    assert main([*command, *extra, "--roster", str(tmp_path / "class.csv")]) == 1
+    with here():
+        assert main([*command, *extra, "--roster", str(tmp_path / "class.csv")]) == 1
     told = capsys.readouterr()
     found = {one["student"]: one for one in json.loads((tmp_path / "r.json").read_text())["reports"]}
     assert {student: one["earned"] for student, one in found.items()} == {"ada": 10.0, "bob": 9.0, "cy": 0.0}
@@ -44,11 +45,12 @@ def test_a_class_is_graded_into_a_table_pages_and_a_code(course, tmp_path, capsy
     assert "0 graded, 2 known from before" in capsys.readouterr().err
 
 
-def test_a_solved_lab_earns_all_by_public_cases_with_a_warning(tmp_path, capsys):
+def test_a_solved_lab_earns_all_by_public_cases_with_a_warning(here, tmp_path, capsys):
     lab = next(one for one in find_labs() if one.number == "02")
     path = tmp_path / "ada.ipynb"
     path.write_text(json.dumps(solved_notebook(lab, INSTRUCTOR / lab.name)), "utf-8")
-    assert main(["grade", str(path), "--workers", "1", "--sandbox", "none"]) == 0
+    with here():
+        assert main(["grade", str(path), "--workers", "1", "--sandbox", "none"]) == 0
     told = capsys.readouterr()
     assert told.out.startswith("ada: 10 of 10 points, lab 02")
     assert "learnt by heart" in told.err and "nothing but limits stands around" in told.err
