@@ -6,7 +6,7 @@ from statistics import mean, median
 from .formats.words import judged, state
 from .page_figures import bars, shares
 from .page_text import clean
-from .student_page import STATES
+from .student_page import STATES, broken
 
 #: students named under one mistake
 MOST_NAMED = 200
@@ -107,7 +107,7 @@ def went(one, report):
     Which exercise that cell is of, nobody can tell of one that is no Python.
     """
     found = state(one)
-    return "cell failed" if found == "no answer" and report.cells else found
+    return "cell failed" if found == "no answer" and broken(report) else found
 
 
 def _share(count, whole):

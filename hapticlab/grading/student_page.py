@@ -1,5 +1,7 @@
 """The page of one student: what each exercise earned, and why."""
 
+import re
+
 from ..course.exercise import NOTED
 from .failing_case import failing_case
 from .formats.words import state
@@ -8,6 +10,13 @@ from .page_text import BLOCK, clean
 #: how an exercise went -> the sign that is read with the word, or in its place
 STATES = {"right": "&#10003;", "wrong": "&#10007;", "no answer": "&#9675;", "cell failed": "&#9651;", "noted": "&#9998;"}
 MOST_CELLS = 40
+#: what a cell raises that uses an answer as the notebook came: a function's body, or None
+OPEN = re.compile("^NotImplementedError|'NoneType'")
+
+
+def broken(report):
+    """Return whether a cell failed by more than the use of an answer that is still open, as the notebook came."""
+    return any(not OPEN.search(words) for _, words in report.cells)
 
 
 def points(earned, of):
@@ -72,7 +81,7 @@ def _exercise(number, one, lab, report):
         told.append(_block(one.text, "written") if one.text.strip() else "")
         told.append(f"<p>{clean(one.words)}</p>" if one.words and one.answered else "")
     elif whole and state(one) != "right":
-        told.append(_words(one, report.cells))
+        told.append(_words(one, broken(report)))
         told.append(f'<p class="hint"><strong>Hint:</strong> {clean(one.hint)}</p>' if one.hint else "")
         told.append(failing_case(one, lab) if one.failing and state(one) == "wrong" else "")
     if one.printed.strip():
@@ -80,11 +89,11 @@ def _exercise(number, one, lab, report):
     return "".join(told) + "</section>"
 
 
-def _words(one, cells):
+def _words(one, may_be_lost):
     """Return what is wrong in a sentence; where there is no answer, whether a cell that failed may be why."""
     if state(one) == "no answer":
         why = '<a href="#errors">Cells failed</a>, and there is no answer: if it is in one of them, that is why.'
-        return f'<p class="words">{why}</p>' if cells else ""
+        return f'<p class="words">{why}</p>' if may_be_lost else ""
     if not one.words:
         return ""
     return f'<p class="words"><strong>What is wrong:</strong> {clean(one.words)}</p>'
