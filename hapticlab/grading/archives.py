@@ -1,7 +1,9 @@
 """Files of a folder or of a zip file, listed and read within bounds: what strangers packed is never unpacked to a disk."""
 
 import io
+import itertools
 import os
+import re
 import stat
 import struct
 import zipfile
@@ -10,10 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from ..errors import CourseError
+from .naming import TREE, WORK
 
 MIB = 1 << 20
-#: of a class; of one zip file in another, which is read as a whole; of a zip file's table of contents
-MOST_FILES, MOST_ZIP, MOST_CONTENTS = 100_000, 64 * MIB, 8 * MIB
+#: of a class; of one student; of one zip file in another, which is read as a whole; of a zip file's table of contents
+MOST_FILES, MOST_OF_ONE, MOST_ZIP, MOST_CONTENTS = 100_000, 20_000, 64 * MIB, 8 * MIB
 #: LZMA allocates what a stranger's header says
 METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 
@@ -30,11 +33,14 @@ class Entry:
         Names of its folders and its own, below what was handed in; never used as a path.
     inside : tuple of int
         Which member it is of the zip file at ``file``, and of the zip file which that member is.
+    problem : str
+        Why it and what lies beside it cannot be graded.
     """
 
     file: Path
     parts: tuple
     inside: tuple = ()
+    problem: str = ""
 
     @property
     def name(self):
@@ -49,15 +55,34 @@ class Entry:
 
 
 def folder_entries(folder):
-    """Return the files of a folder, in order; no link is followed."""
+    """Return the files of a folder, in order; no link is followed.
+
+    Of a folder in it that holds too many files there is one entry, with a problem: the others' are as they are.
+    """
     found = []
-    for place, folders, names in os.walk(folder):
-        folders[:] = sorted(name for name in folders if not _is_junk(name))
-        inside = Path(place).relative_to(folder).parts
-        found += [Entry(Path(place, name), (*inside, name)) for name in sorted(names) if not _is_junk(name)]
+    for owner, entries in itertools.groupby(_files_below(folder), key=_owner):
+        most = MOST_OF_ONE if owner else MOST_FILES
+        several = list(itertools.islice(entries, most + 1))
+        if owner and len(several) > most:
+            words = f"{owner[-1]} holds more than {most} files; hand in the notebook alone"
+            several = [Entry(several[0].file, (*owner, several[0].name), problem=words)]
+        found += several
         if len(found) > MOST_FILES:
             raise CourseError(f"{folder} holds more than {MOST_FILES} files; name the folder of the submissions")
     return found
+
+
+def _files_below(folder):
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not _is_junk(name))
+        inside = Path(place).relative_to(folder).parts
+        yield from (Entry(Path(place, name), (*inside, name)) for name in sorted(names) if not _is_junk_file(name))
+
+
+def _owner(entry):
+    """Return the folder that is a student's, if one is: the first, and in nbgrader's tree the one below."""
+    folders = entry.parts[:-1]
+    return folders[: folders.index(TREE) + 2] if TREE in folders[:2] else folders[:1]
 
 
 def zip_entries(entry):
@@ -78,8 +103,9 @@ def zip_entries(entry):
         found = []
         for number, info in enumerate(infos):
             parts = tuple(part for part in info.filename.replace("\\", "/").split("/") if part not in ("", ".", ".."))
-            if parts and not info.is_dir() and not _is_link(info) and not any(map(_is_junk, parts)):
-                found.append(Entry(entry.file, parts, (*entry.inside, number)))
+            if not parts or info.is_dir() or _is_link(info) or any(map(_is_junk, parts[:-1])) or _is_junk_file(parts[-1]):
+                continue
+            found.append(Entry(entry.file, parts, (*entry.inside, number)))
     return sorted(found, key=lambda one: one.parts)
 
 
@@ -168,3 +194,9 @@ def _is_link(info):
 def _is_junk(name):
     """Whether Jupyter, Python or a file manager made it."""
     return name.startswith((".", "__"))
+
+
+def _is_junk_file(name):
+    """Whether it is junk; a notebook that somebody's dot hides is none, so that it can be named."""
+    hidden = re.match(r"\.[^._~]", name) and PurePosixPath(name).suffix.lower() in WORK
+    return _is_junk(name) and not hidden

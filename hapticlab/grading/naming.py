@@ -7,6 +7,8 @@ from pathlib import PurePosixPath
 from .replies import line_of
 
 WORK = (".ipynb", ".py", ".zip")
+#: nbgrader's folder: submitted/STUDENT/LAB/*.ipynb
+TREE = "submitted"
 MOODLE, GRADESCOPE = re.compile(r"(.+?)_assignsubmission_\w*"), re.compile(r"submission_\d+")
 CANVAS = re.compile(r"([^_]+?)(?:_LATE)?_(\d+)_\d+_.+")
 #: a lab's number, as its folder and its notebook begin
@@ -36,7 +38,7 @@ def student_of(name, lab=""):
         name = "_".join(system.groups())
     elif PurePosixPath(name).suffix.lower() in WORK:
         name = PurePosixPath(name).stem
-    if len(lab) > 2:
+    if len(lab) > 2 and not is_lab(name, lab):
         name = name.replace(lab, "").strip("_- .") or name
     return line_of(unicodedata.normalize("NFC", name), 80) or "unnamed"
 

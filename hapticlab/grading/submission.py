@@ -1,21 +1,16 @@
 """What students handed in: found in folders, zip files and nbgrader's tree, and read as the sources of code cells."""
 
 import hashlib
-import re
 from collections import defaultdict
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ..course.labs import find_labs
 from ..errors import CourseError
-from .archives import MIB, Entry, folder_entries, read_entry, zip_entries
-from .naming import WORK, is_lab, is_of_system, lab_number, student_of
-from .notebook_text import notebook_cells, script_cells
+from .archives import Entry, folder_entries, zip_entries
+from .choosing import cells_of, chosen, is_handed, is_work
+from .naming import TREE, is_lab, is_of_system, lab_number, student_of
 from .replies import line_of
-
-#: of a notebook; notebooks of one student that are opened to see which is meant
-MOST_BYTES, MOST_OPENED = 32 * MIB, 20
-#: nbgrader's folder: submitted/STUDENT/LAB/*.ipynb
-TREE = "submitted"
 
 
 @dataclass(frozen=True)
@@ -56,9 +51,10 @@ class Submission:
 def find_submissions(paths, lab=None):
     """Return where the submissions are, one for each student; no notebook is opened.
 
-    A file is one student's. So is a folder or zip file that holds one notebook or script, or the notebook of the lab
-    under its own name, or folders of labs. In any other each notebook, script, zip file or folder is a student's; in a
-    folder ``submitted``, as nbgrader has it, each folder. Names as Moodle, Canvas and Gradescope give them are known.
+    A file is one student's. So is a folder or zip file that holds one notebook or script, or nothing but notebooks and
+    folders of labs under their own names. In any other each notebook, script, zip file or folder is a student's, and one
+    under the lab's own name has a problem; in a folder ``submitted``, as nbgrader has it, each folder. Names as Moodle,
+    Canvas and Gradescope give them are known.
 
     Parameters
     ----------
@@ -86,7 +82,7 @@ def find_submissions(paths, lab=None):
     [('ada', ('k = 150',), ''), ('bob', (), 'bob.ipynb is no notebook; it needs the JSON that Jupyter writes')]
     """
     found = [source for path in paths for source in _found(Path(path), lab or "")]
-    return [replace(source, lab=lab or "") for source in _told_apart(found)]
+    return [replace(source, lab=lab or "") for source in _told_apart(_with_work(found))]
 
 
 def lab_of(sources):
@@ -119,7 +115,7 @@ def _found(path, lab):
         return [_source(below[0] if below else path.name, path.name, entries, lab)]
     tree = [_lifted(entry) for entry in entries if len(entry.parts) > 2 and entry.parts[0] == TREE]
     if tree or path.name == TREE:
-        return _each(tree or entries, lab)
+        return _each(tree or entries, lab, name)
     return _grouped(entries, name, lab, named_by_zip=not path.is_dir())
 
 
@@ -133,16 +129,16 @@ def _grouped(entries, name, lab, named_by_zip):
         name = name if named_by_zip or lab_number(folder) else folder
         entries = list(map(_lifted, entries))
     folders = {entry.parts[0] for entry in entries if len(entry.parts) > 1}
-    files = [entry for entry in entries if len(entry.parts) == 1 and _is_work(entry)]
-    one_file = len(files) <= 1 and not folders
-    one_student = one_file or any(map(lab_number, folders)) or any(is_lab(entry.name, lab) for entry in files)
-    if one_student and not any(map(is_of_system, [*folders, *(entry.name for entry in files)])):
+    files = [entry for entry in entries if len(entry.parts) == 1 and is_handed(entry)]
+    if any(map(is_of_system, [*folders, *(entry.name for entry in files)])):
+        return _each(entries, lab, name)
+    labs = {lab, *(one.name for one in find_labs())}
+    work = {entry.parts[0] for entry in entries if is_handed(entry)}
+    # one file under the lab's name among others is no sign: it would take the marks of a whole class
+    of_labs = work and all(any(is_lab(name, one) for one in labs) for name in work)
+    if of_labs or (len(files) <= 1 and not folders):
         return [_source(name, name, entries, lab)]
-    return _each(entries, lab)
-
-
-def _is_work(entry):
-    return entry.suffix in WORK and entry.name != "checks.py"
+    return _each(entries, lab, name)
 
 
 def _only_folder(entries):
@@ -152,20 +148,34 @@ def _only_folder(entries):
     return "" if is_of_system(name) else name
 
 
-def _each(entries, lab):
+def _each(entries, lab, name):
     """Return a source for each folder, and for each file that is a student's work; files of one student go together."""
     groups = defaultdict(list)
     for entry in entries:
         first = entry.parts[0]
-        if len(entry.parts) > 1:
-            groups[first].append(entry)
-        elif _is_work(entry) or is_of_system(first):
-            groups[student_of(first, lab) if is_of_system(first) else first].append(entry)
-    return [_source(owner, several[0].parts[0], several, lab) for owner, several in groups.items()]
+        by_system = is_of_system(first)
+        if len(entry.parts) > 1 or is_handed(entry) or by_system:
+            groups[by_system, student_of(first, lab) if by_system else first].append(entry)
+    found = [_source(owner, several[0].parts[0], several, lab) for (_, owner), several in groups.items()]
+    words = line_of(
+        f"it has the lab's own name, beside other work in {name}: name it after its student, or where all that is one "
+        f"student's, put {name} into a folder {TREE}"
+    )
+    return [replace(one, problem=one.problem or words) if is_lab(one.name, lab) else one for one in found]
 
 
 def _source(owner, name, entries, lab):
-    return Source(student_of(owner, lab), line_of(name, 120), tuple(entries))
+    problem = next((entry.problem for entry in entries if entry.problem), "")
+    return Source(student_of(owner, lab), line_of(name, 120), tuple(entries), problem=problem)
+
+
+def _with_work(sources):
+    """Return sources without those that a system made beside a student's work, as Moodle does for a text."""
+    worked = {source.student for source in sources if any(map(is_work, source.entries))}
+    return [
+        source for source in sources
+        if not is_of_system(source.name) or source.student not in worked or any(map(is_work, source.entries))
+    ]  # fmt: skip
 
 
 def _told_apart(sources):
@@ -183,20 +193,23 @@ def _told_apart(sources):
                 number += 1
                 student = f"{source.student} ({number})"
             taken.add(student)
-            source = replace(source, student=student, problem=line_of(words))
+            source = replace(source, student=student, problem=source.problem or line_of(words))
         found.append(source)
     return found
 
 
-def read(source):
+def read(source, own=()):
     """Return the submission of a source; whatever is wrong with its files is its problem, and nothing is raised.
 
-    Of several notebooks the one is taken that has the lab in its path, that lies highest, and that checks most answers of
-    the lab; where this leaves more than one, it is a problem. Scripts count where there is no notebook.
+    Of several notebooks the one is taken that has the lab in its path, that is no copy of the lab as it came, that lies
+    highest, and that checks most answers of the lab; where this leaves more than one, it is a problem, and so is a notebook
+    that checks answers of another lab and none of this one. Scripts count where there is no notebook.
 
     Parameters
     ----------
     source : Source
+    own : sequence of str
+        Code cells of the lab as it was handed out.
 
     Returns
     -------
@@ -206,54 +219,10 @@ def read(source):
     try:
         if source.problem:
             raise CourseError(source.problem)
-        entry, raw = _chosen(source)
+        entry, raw = chosen(source.entries, source.lab, own)
         name, digest = line_of(entry.name, 120), hashlib.sha256(raw).hexdigest()
-        cells = _cells(entry, raw)
+        cells = cells_of(entry, raw)
     except CourseError as problem:
         words = line_of(str(problem))
         return Submission(source.student, name, (), digest or hashlib.sha256(words.encode()).hexdigest(), words)
     return Submission(source.student, name, cells, digest)
-
-
-def _cells(entry, raw):
-    try:
-        return notebook_cells(raw) if entry.suffix == ".ipynb" else script_cells(raw)
-    except CourseError as problem:
-        raise CourseError(f"{entry.name} {problem}") from None
-
-
-def _chosen(source):
-    """Return the file that is graded, and its bytes."""
-    entries = [one for entry in source.entries for one in _unpacked(entry)]
-    work = [entry for entry in entries if entry.suffix == ".ipynb"]
-    work = work or [entry for entry in entries if entry.suffix == ".py" and _is_work(entry)]
-    if not work:
-        there = ", ".join(entry.name for entry in entries[:3]) or "nothing"
-        raise CourseError(f"no notebook is in it; there is {there}{' and more' if len(entries) > 3 else ''}")
-    number = source.lab[:2]
-    work = _narrowed(work, lambda entry: not number or {lab_number(part) for part in entry.parts} <= {number, ""})
-    work = _narrowed(work, lambda entry: not number or number in map(lab_number, entry.parts))
-    highest = min(len(entry.parts) for entry in work)
-    contents = [(entry, read_entry(entry, MOST_BYTES)) for entry in work if len(entry.parts) == highest][:MOST_OPENED]
-    counts = [_checks(raw, number) for _, raw in contents]
-    best = [content for content, count in zip(contents, counts, strict=True) if count == max(counts)]
-    if len({raw for _, raw in best}) > 1:
-        raise CourseError(f"{' and '.join(entry.name for entry, _ in best[:3])} may each be meant; hand in one")
-    return best[0]
-
-
-def _unpacked(entry):
-    """Return a file, or what a zip file holds."""
-    if entry.suffix != ".zip" or len(entry.inside) > 1:
-        return [entry]
-    return [replace(one, parts=(*entry.parts[:-1], *one.parts)) for one in zip_entries(entry)]
-
-
-def _narrowed(several, wanted):
-    """Return those that are wanted; where none is, all."""
-    return [one for one in several if wanted(one)] or several
-
-
-def _checks(raw, number):
-    """Return how many answers of a lab a notebook checks."""
-    return len(set(re.findall(rb"check\(\s*\\?['\"]" + number.encode() + rb"\.?(\w+)", raw)))

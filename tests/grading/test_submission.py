@@ -84,9 +84,11 @@ ADA, BOB = notebook("ada"), notebook("bob")
             {"ada": "ada"},
         ),
         (
-            {"Ada L_12_assignsubmission_file_/x.ipynb": ADA, "Bob_13_assignsubmission_file_/sub/y.ipynb": BOB},
+            {"Ada L_12_assignsubmission_file_/x.ipynb": ADA, "Bob_13_assignsubmission_file_/sub/y.ipynb": BOB,
+             "Ada L_12_assignsubmission_onlinetext_/onlinetext.html": "<p>hello"},
             {"Ada L_12": "ada", "Bob_13": "bob"},
         ),
+        ({"01_ada/x.ipynb": ADA, "02_bob/x.ipynb": BOB}, {"01_ada": "ada", "02_bob": "bob"}),
         ({"Ada L_12_assignsubmission_file_/x.ipynb": ADA}, {"Ada L_12": "ada"}),
         (
             {"lovelaceada_12_345_x-1.ipynb": ADA, "lovelaceada_12_346_data.csv": "", "bobb_LATE_9_8_y.py": "bob"},
@@ -121,8 +123,8 @@ def test_a_class_is_found(tmp_path, files, expected, packed):
     [
         ({"x.ipynb": ADA}, "ada"),
         ({"x.py": "ada"}, "ada"),
-        ({f"{LAB}.ipynb": ADA, "scratch.ipynb": BOB, "helper.py": "b"}, "ada"),
-        ({f"{LAB} (1).ipynb": ADA, "helper.py": "b"}, "ada"),
+        ({f"{LAB}.ipynb": ADA, "figures/a.png": "b", "checks.py": "x"}, "ada"),
+        ({f"{LAB} (1).ipynb": ADA, "01_motion_to_force.ipynb": BOB}, "ada"),
         ({f"{LAB}/{LAB}.ipynb": ADA, f"{LAB}/checks.py": "x"}, "ada"),
         ({"01_motion_to_force/01_motion_to_force.ipynb": BOB, f"{LAB}/{LAB}.ipynb": ADA}, "ada"),
     ],
@@ -130,6 +132,70 @@ def test_a_class_is_found(tmp_path, files, expected, packed):
 def test_the_folder_of_one_student_is_named_after_it(tmp_path, files, named):
     assert whose(fill(tmp_path / "grace", files)) == {"grace": named}
     assert whose(zipped(files, tmp_path / "grace.zip")) == {"grace": named}
+
+
+@pytest.mark.parametrize("packed", [False, True], ids=["folder", "zip"])
+@pytest.mark.parametrize("name", [f"{LAB}.ipynb", f"{LAB} (1).ipynb", f"{LAB}/x.ipynb", f"{LAB}.zip"])
+def test_work_under_the_labs_own_name_takes_no_marks_of_others(tmp_path, name, packed):
+    eve = zipped({"x.ipynb": ADA}) if name.endswith("zip") else ADA
+    files = {"ada.py": "ada", "bob/x.ipynb": BOB, "carl_1_2_x.py": "carl", name: eve}
+    for others in (files, {key: content for key, content in files.items() if key[0] != "c"}):
+        folder = tmp_path / f"class{len(others)}"
+        found = handed(zipped(others, folder.with_suffix(".zip")) if packed else fill(folder, others))
+        cells, problem = found.pop(name.partition("/")[0].partition(".")[0])
+        assert cells == ()
+        assert f"it has the lab's own name, beside other work in {folder.name}: name it after its student" in problem
+        assert list(found.values()) == [((student.partition("_")[0],), "") for student in found]
+        assert len(found) == len(others) - 1
+
+
+def test_what_moodle_makes_beside_the_files_is_no_other_submission(tmp_path):
+    files = {"Cleo Ng_8_assignsubmission_onlinetext_/onlinetext.html": "x", "Cleo Ng_8_assignsubmission_file_/mine.ipynb": ADA,
+             "Dan_9_assignsubmission_onlinetext_/onlinetext.html": "x"}  # fmt: skip
+    expected = {"Cleo Ng_8": (("ada",), ""), "Dan_9": ((), "no notebook is in it; there is onlinetext.html")}
+    assert handed(zipped(files, tmp_path / "class.zip")) == expected
+    folder = fill(tmp_path / "class", files)
+    assert handed(folder) == handed(*folder.iterdir()) == expected
+
+
+def test_a_notebook_of_another_lab_is_a_problem(tmp_path):
+    def checked(lab, *names):
+        return notebook(*(f"hl.check('{lab}.{name}', 1)" for name in names))
+
+    fill(tmp_path, {
+        "ada/01_motion_to_force.ipynb": checked("01", "k"), "bob/x.ipynb": checked("01", "k", "b", "m"),
+        "cleo/01_motion_to_force.ipynb": checked("02", "k"), "dan/x.ipynb": checked("01", "k", "b"),
+        "eve/x.ipynb": checked("01", "k", "b", "m"), "eve/y.ipynb": checked("02", "k"), "finn/01_x.ipynb": ADA,
+        "gus/01_x.ipynb": checked("01", "k"), "gus/03_x.ipynb": checked("03", "k"),
+    })  # fmt: skip
+    found = handed(tmp_path)
+    assert {student: problem for student, (_, problem) in found.items() if problem} == {
+        "ada": "01_motion_to_force.ipynb is of lab 01, not of lab 02",
+        "bob": "x.ipynb is of lab 01, not of lab 02",
+        "gus": "01_x.ipynb is of lab 01, not of lab 02",
+    }
+    assert found["eve"][0] == ("hl.check('02.k', 1)",)
+
+
+def test_a_copy_of_the_lab_as_it_came_is_set_aside(tmp_path):
+    own, done = ["k = ...", "hl.check('02.k', k)"], notebook("k = 2")
+    blank = notebook("k = ...\n", "", "hl.check('02.k', k)")
+    fill(tmp_path, {
+        f"ada/{LAB}.ipynb": done, f"ada/{LAB}-Copy1.ipynb": blank, f"bob/{LAB}.ipynb": blank, f"bob/done/{LAB}.ipynb": done,
+        f"cleo/{LAB}.ipynb": blank, f"dan/{LAB}.ipynb": blank, f"dan/{LAB}-Copy1.ipynb": blank, f"eve/{LAB}.ipynb": blank,
+        f"eve/{LAB}-Copy1.ipynb": b"cut off",
+    })  # fmt: skip
+    found = {source.student: read(source, own) for source in find_submissions([tmp_path], LAB)}
+    assert [len(found[student].cells) for student in ("ada", "bob", "cleo", "dan")] == [1, 1, 3, 3]
+    assert found["eve"].problem == f"{LAB}-Copy1.ipynb is no notebook; it needs the JSON that Jupyter writes"
+
+
+def test_a_notebook_that_a_dot_hides_is_named(tmp_path):
+    files = {"ada/.x.ipynb": ADA, ".bob.ipynb": BOB, "cleo/.x.ipynb": BOB, "cleo/x.ipynb": ADA, "._dan.ipynb": "x",
+             "cleo/.ipynb_checkpoints/.x.ipynb": BOB}  # fmt: skip
+    words = "no notebook is in it; there is {}; a file is hidden by the dot before its name"
+    expected = {"ada": ((), words.format(".x.ipynb")), "bob": ((), words.format(".bob.ipynb")), "cleo": (("ada",), "")}
+    assert handed(fill(tmp_path / "class", files)) == handed(zipped(files, tmp_path / "class.zip")) == expected
 
 
 def test_paths_in_nbgraders_tree_name_the_student(tmp_path):
@@ -379,6 +445,18 @@ def test_a_folder_of_more_files_than_any_class_has_is_refused(tmp_path, monkeypa
     fill(tmp_path, {f"{name}.ipynb": ADA for name in "abcd"})
     with pytest.raises(CourseError, match="more than 3 files; name the folder of the submissions"):
         find_submissions([tmp_path])
+
+
+@pytest.mark.parametrize("tree", ["", "submitted/"])
+def test_too_many_files_of_one_student_are_a_problem_of_that_one_alone(tmp_path, monkeypatch, tree):
+    monkeypatch.setattr(archives, "MOST_OF_ONE", 3)
+    many = {f"{tree}eve/{number}/{number}.ipynb": ADA for number in range(4)}
+    fill(tmp_path / "class", {f"{tree}ada/x.ipynb": ADA, f"{tree}bob/x.ipynb": BOB, **many})
+    assert handed(tmp_path / "class") == {
+        "ada": (("ada",), ""),
+        "bob": (("bob",), ""),
+        "eve": ((), "eve holds more than 3 files; hand in the notebook alone"),
+    }
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names elsewhere cannot be other than Unicode")
