@@ -3,14 +3,22 @@
 import csv
 import io
 import re
+from collections import defaultdict
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 
 from ..errors import CourseError
+from .naming import is_of_system
 
 #: rows of Canvas' gradebook that are of no student
 NO_STUDENT = re.compile(r"\s*(points possible.*|muted|manual posting.*)?\s*", re.I)
+TEST_STUDENT = re.compile(r"\s*(student, ?test|test student)\s*", re.I)
+#: what Canvas and Moodle name a submission by, as naming.student_of returns it: lovelaceada_4242, Ada Lovelace_123456
+OF_SYSTEM = re.compile(r"(.+)_(\d+)", re.DOTALL)
+#: Canvas' ID, and Moodle's Identifier in any language
+NUMBER = re.compile(r"(?:[^\d\s]\D*\s)?(\d+)")
+#: columns of a student's name
+NAMES = ("student", "full_name", "name")
 
 
 @dataclass(frozen=True)
@@ -26,7 +34,7 @@ class Matched:
     unknown : tuple of str
         Students without a row.
     missing : tuple of str
-        What the column says of rows without a submission.
+        Names of the people without a submission, and what the column says of them.
     """
 
     column: str
@@ -56,7 +64,9 @@ class Roster:
         """Match the students of submissions to rows.
 
         Taken is the column in which most of them are found, of equal ones the first. A cell is a student's where it is the
-        student's id, or begins with the id and an @, without regard to capitals and to spaces around.
+        student's id, or begins with the id and an @, without regard to capitals and to spaces around. Where no column holds
+        any, submissions are taken to be named by Canvas or Moodle: "lovelaceada_4242" is the row of ID 4242, "Ada
+        Lovelace_123456" that of "Participant 123456", or else the only Ada Lovelace, in one column or two.
 
         Parameters
         ----------
@@ -79,7 +89,7 @@ class Roster:
         ('name', ('bo',), ('Bob',))
         """
         students = list(dict.fromkeys(students))
-        found = {column: self._found(column, students) for column in self.columns}
+        found = self._found(students)
         column = max(found, key=lambda name: len(found[name]), default=None)
         if column is None or (students and not found[column]):
             some = ", ".join(map(repr, students[:3]))
@@ -96,7 +106,7 @@ class Roster:
         alike = [one for one, several in found[column].items() if taken[several[0]] != one]
         if alike:
             raise CourseError(f"{alike[0]!r} and {taken[found[column][alike[0]][0]]!r} are one row of {self.path}; rename one")
-        missing = tuple(row[column] for number, row in enumerate(self.rows) if number not in taken)
+        missing = tuple(_told(row, column) for number, row in enumerate(self.rows) if number not in taken)
         return Matched(column, rows, tuple(one for one in students if one not in rows), missing)
 
     def rows_of(self, students):
@@ -107,22 +117,54 @@ class Roster:
         """Return the names of the columns, as they are in the file."""
         return ", ".join(map(repr, self.columns.values()))
 
-    def _found(self, column, students):
-        """Return student to the numbers of the rows whose cell in a column is that student's."""
-        cells = self._cells[column]
-        return {student: cells[_key(student)] for student in students if _key(student) in cells}
+    def _found(self, students):
+        """Return, for each column, student to the numbers of the rows whose cell is that student's."""
+        found = _looked_up(self._cells(_keys), {student: _key(student) for student in students})
+        if any(found.values()):
+            return found
+        parts = {one: OF_SYSTEM.fullmatch(one) for one in students if not is_of_system(one)}
+        numbers = _looked_up(self._cells(_numbers), {one: part[2].lstrip("0") for one, part in parts.items() if part})
+        names = _looked_up(self._cells(_names), {one: _key(part[1]) for one, part in parts.items() if part})
+        only = {column: {one: rows for one, rows in held.items() if len(rows) == 1} for column, held in names.items()}
+        return max(numbers, only, key=lambda several: max(map(len, several.values()), default=0))
 
-    @cached_property
-    def _cells(self):
-        """For each column: what a cell may be called to the numbers of its rows."""
-        held = {column: {} for column in self.columns}
+    def _cells(self, called):
+        """Return, for each column, what a cell may be called to the numbers of its rows."""
+        held = {column: defaultdict(list) for column in self.columns}
         for number, row in enumerate(self.rows):
-            for column in self.columns:
-                whole = _key(row[column])
-                for key in dict.fromkeys((whole, whole.partition("@")[0])):
+            cells = [row[column] for column in self.columns]
+            for place, column in enumerate(self.columns):
+                for key in dict.fromkeys(called(cells, place)):
                     if key:
-                        held[column].setdefault(key, []).append(number)
+                        held[column][key].append(number)
         return held
+
+
+def _looked_up(held, keys):
+    return {column: {one: cells[key] for one, key in keys.items() if key in cells} for column, cells in held.items()}
+
+
+def _keys(cells, place):
+    whole = _key(cells[place])
+    return whole, whole.partition("@")[0]
+
+
+def _numbers(cells, place):
+    found = NUMBER.fullmatch(cells[place].strip())
+    return [found[1].lstrip("0")] if found else []
+
+
+def _names(cells, place):
+    """Return a name in a column, and a first and a last name in two beside each other."""
+    first, *last = map(_key, cells[place : place + 2])
+    return [first, *(name for one in last if first and one for name in (f"{first} {one}", f"{one} {first}"))]
+
+
+def _told(row, column):
+    """Return whose row it is, by name and by the column that submissions are named by."""
+    parts = [row[key].strip() for key in ("first_name", "last_name", "surname") if key in row]
+    name = next((row[key].strip() for key in NAMES if row.get(key)), " ".join(parts))
+    return f"{name} ({row[column]})" if name and column not in NAMES else name or row[column]
 
 
 def _key(text):
@@ -157,4 +199,5 @@ def read_roster(path):
     if len(columns) != len(head) or "" in columns:
         raise CourseError(f"{path}: the first row is {head}; it needs a name for each column, no two alike")
     people = [[*row, *[""] * len(head)] for row in rows if not all(NO_STUDENT.fullmatch(cell) for cell in row[:5])]
-    return Roster(str(path), columns, tuple(dict(zip(columns, row, strict=False)) for row in people))
+    found = (dict(zip(columns, row, strict=False)) for row in people)
+    return Roster(str(path), columns, tuple(row for row in found if not TEST_STUDENT.fullmatch(row.get("student", ""))))

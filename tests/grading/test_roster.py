@@ -26,7 +26,64 @@ def test_the_column_that_holds_most_students_counts(tmp_path):
     found = roster(tmp_path, "Name,Login,Number\nada,al1, 17\nbob,BB2,18\nal1,zz9,19\n").match(["al1", "bb2", "17", "nobody"])
     assert (found.column, found.rows["bb2"]["name"]) == ("login", "bob")
     assert found.unknown == ("17", "nobody")
-    assert found.missing == ("zz9",)
+    assert found.missing == ("al1 (zz9)",)
+
+
+CANVAS = """Student,ID,SIS User ID,SIS Login ID,Section,Lab 02 (5511)
+    Points Possible,,,,,10
+"Lovelace, Ada",4242,s1,alovelace,A,4243
+"de Vries, Bob",4243,s2,bvries,A,
+"Ng, Cleo",4244,s3,cng,A,3
+"Student, Test",4245,,abcdef,A,
+"""
+MOODLE = """Kennung,"Full name","Email address",Grade
+Teilnehmer/in 123456,Ada Lovelace,ada@x.org,
+Teilnehmer/in 123457,Bob de Vries,bob@x.org,123456
+Teilnehmer/in 123499,Zed Absent,zed@x.org,
+"""
+PEOPLE = """Nachname,Vorname,Email address
+Lovelace,Ada,ada@x.org
+de Vries,Bob,bob@x.org
+Ng,Cleo,cleo@x.org
+Ng,Cleo,cleo2@x.org
+"""
+
+
+def test_canvas_own_names_are_found_by_its_own_ids(tmp_path):
+    found = roster(tmp_path, CANVAS).match(["lovelaceada_4242", "devriesbob_4243", "studenttest_4245"])
+    assert {student: row["sis_login_id"] for student, row in found.rows.items()} == {
+        "lovelaceada_4242": "alovelace",
+        "devriesbob_4243": "bvries",
+    }
+    assert (found.unknown, found.missing) == (("studenttest_4245",), ("Ng, Cleo (4244)",))
+
+
+def test_who_is_missing_is_told_by_name(tmp_path):
+    found = roster(tmp_path, CANVAS).match(["alovelace"])
+    assert found.missing == ("de Vries, Bob (bvries)", "Ng, Cleo (cng)")
+    assert roster(tmp_path, MOODLE).match(["ada"]).missing == ("Bob de Vries (bob@x.org)", "Zed Absent (zed@x.org)")
+    assert roster(tmp_path, MOODLE).match(["ada lovelace"]).missing == ("Bob de Vries", "Zed Absent")
+    people = "First name,Surname,Login\nAda,Lovelace,al\nCleo,Ng,cn\n"
+    assert roster(tmp_path, people).match(["al"]).missing == ("Cleo Ng (cn)",)
+
+
+def test_moodles_own_names_are_found_by_participant_or_by_name(tmp_path):
+    students = ["Ada Lovelace_123456", "Bob de Vries_123457"]
+    for text in (MOODLE, PEOPLE):
+        rows = roster(tmp_path, text).match(students).rows
+        assert [rows[student]["email_address"] for student in students] == ["ada@x.org", "bob@x.org"]
+
+
+def test_a_name_that_two_have_is_nobodys(tmp_path):
+    found = roster(tmp_path, PEOPLE).match(["Ada Lovelace_1", "Cleo Ng_2"])
+    assert (list(found.rows), found.unknown) == (["Ada Lovelace_1"], ("Cleo Ng_2",))
+
+
+def test_numbers_of_submissions_are_nobodys(tmp_path):
+    for students in (["submission_4242"], ["4242_x"], ["ada_42"]):
+        with pytest.raises(CourseError, match="none of its columns"):
+            roster(tmp_path, CANVAS).match(students)
+    assert roster(tmp_path, CANVAS).match(["cng", "x_4242"]).unknown == ("x_4242",)
 
 
 def test_an_address_is_found_by_what_stands_before_its_at(tmp_path):
