@@ -2,6 +2,9 @@
 
 First the statements that the answers need run alone, which is quick; an exercise that is right there has earned its points.
 For the others the whole notebook runs, cell by cell, as it did for its student: only then is an answer called wrong.
+
+What a student may be told comes from sessions that have not heard of a hidden case yet: all that is shown is asked for
+before all that is hidden, and what the quick way gave is told to nobody.
 """
 
 import base64
@@ -9,13 +12,13 @@ import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
-from .marking import Found, ended_words, exercise_report
+from .marking import SHOWN, Found, ended_words, exercise_report
 from .replies import Garbage, line_of, outcomes_of
 from .report import Report
 from .starter import SessionEnded
 
 #: what a session is charged for its start [s], and how much wall clock a submission has, in what it may be charged
-START, MOST_WALL = 0.05, 10
+START, MOST_WALL = 0.05, 3
 
 
 @dataclass(frozen=True)
@@ -86,6 +89,15 @@ def _report(submission, assignment, cases, found, problems, limits):
     )
 
 
+@dataclass(frozen=True, eq=False)
+class _Ask:
+    """Cases of an exercise that are asked for at once."""
+
+    name: str
+    kind: str
+    givens: list
+
+
 @dataclass
 class _Work:
     """The way of a submission through its sessions."""
@@ -104,23 +116,30 @@ class _Work:
 
     def __post_init__(self):
         self._untouched = tuple(self.submission.cells) == self.assignment.untouched
+        self._told = False
 
     def quick(self):
         """Ask for all answers where only the statements ran that they need."""
-        names = [exercise.name for exercise in self.assignment.lab.exercises]
+        exercises = self.assignment.lab.exercises
+        names = [exercise.name for exercise in exercises]
 
         def prepare(session):
             self._ask(session, {"do": "plan", "names": names})
             self._ask(session, {"do": "run_pieces"})
 
-        self._answers(names, prepare)
+        # a text that is only noted is told, so it comes before all hidden cases
+        first = sorted(exercises, key=lambda one: one.judged)
+        self._answers([_Ask(one.name, *self._asked(one, (True, False))) for one in first], prepare)
 
     def whole(self):
-        """Ask for the answers that are not right yet where the whole notebook ran."""
-        pending = self.undecided()
+        """Ask for the answers that are not right yet where the whole notebook ran: what is shown, then what is hidden."""
+        pending = [self.assignment.lab.exercise(name) for name in self.undecided()]
         if pending:
-            end = self._answers(pending, self._run_cells)
-            self.found |= {name: Found(ended=end) for name in pending if end and name not in self._seen}
+            self._told = True
+            self.found = {name: found for name, found in self.found.items() if self.assignment.lab.exercise(name) not in pending}
+            asks = [_Ask(one.name, *self._asked(one, (shown,))) for shown in (True, False) for one in pending]
+            end = self._answers([one for one in asks if one.givens], self._run_cells)
+            self.found |= {one.name: Found(ended=end) for one in self._left}
 
     def undecided(self):
         """Return the exercises that may be found otherwise when the whole notebook runs."""
@@ -142,42 +161,49 @@ class _Work:
             return not report.ended
         return (exercise.judged and report.right == report.cases) or (self._untouched and not report.answered)
 
-    def _answers(self, names, prepare):
+    def _asked(self, exercise, shown):
+        """Return the kind, and the givens of the cases that are shown, or hidden, or both."""
+        if not exercise.judged:
+            return "value", [{}] * (True in shown)
+        cases = self.cases[exercise.name]
+        return exercise.kind, [dict(case.given) for case, public in cases if (public or exercise.kind in SHOWN) in shown]
+
+    def _answers(self, asks, prepare):
         """Ask for answers in sessions that are prepared alike, a new one after each end; return why the last one ended."""
-        self._seen = set()
-        while left := [name for name in names if name not in self._seen]:
-            before = len(self._seen), len(self.left_out)
+        self._left = asks
+        while left := self._left:
+            before = len(left), len(self.left_out)
             try:
                 with self._session() as session:
                     self._ask(session, self._load())
                     prepare(session)
-                    for name in left:
-                        self._answer(session, name, first=name == left[0])
+                    for ask in left:
+                        if ask in self._left:
+                            self._answer(session, ask, first=ask is left[0])
             except SessionEnded as end:
-                if before == (len(self._seen), len(self.left_out)):
+                if before == (len(self._left), len(self.left_out)):
                     return end.reason  # not by an answer, nor by a cell, which another session could leave out
         return ""
 
-    def _answer(self, session, name, first):
-        """Ask for one answer; where it ends the session that is what was found.
+    def _answer(self, session, ask, first):
+        """Ask for some cases of an answer; where it ends the session that is what was found, and no more of it is asked.
 
-        It is asked again as the ``first`` of another session otherwise: an answer before it may have left behind what
+        They are asked again as the ``first`` of another session otherwise: an answer before them may have left behind what
         ended this one.
         """
-        exercise = self.assignment.lab.exercise(name)
-        kind = exercise.kind if exercise.judged else "value"
-        givens = [dict(case.given) for case, _ in self.cases[name]] if exercise.judged else [{}]
+        known = self.found.get(ask.name, Found()).outcomes
         try:
-            reply = self._ask(session, {"do": "evaluate", "name": name, "kind": kind, "givens": givens})
-            self.found[name] = Found(tuple(outcomes_of(reply, len(givens), self.limits.printed)))
+            reply = self._ask(session, {"do": "evaluate", "name": ask.name, "kind": ask.kind, "givens": ask.givens})
+            found = Found((*known, *outcomes_of(reply, len(ask.givens), self.limits.printed)), told=self._told)
         except Garbage:
-            self.found[name] = Found(ended="garbage")
+            found = Found(ended="garbage")
         except SessionEnded as end:
-            self.found[name] = Found(ended=end.reason)
-        if first or not self.found[name].ended:
-            self._seen.add(name)
-        if self.found[name].ended:
-            raise SessionEnded(self.found[name].ended)
+            found = Found(ended=end.reason)
+        if first or not found.ended:
+            self.found[ask.name] = found
+            self._left = [one for one in self._left if one is not ask and not (found.ended and one.name == ask.name)]
+        if found.ended:
+            raise SessionEnded(found.ended)
 
     def _run_cells(self, session):
         """Run the notebook cell by cell, without those that ended a session before."""
@@ -186,7 +212,7 @@ class _Work:
                 continue
             try:
                 reply = self._ask(session, {"do": "run", "cell": number})
-                self.raised[number] = line_of(reply.get("problem"))
+                self.raised.setdefault(number, line_of(reply.get("problem")))
             except Garbage:
                 self.left_out[number] = "garbage"
                 raise SessionEnded("garbage") from None

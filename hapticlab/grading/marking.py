@@ -8,14 +8,20 @@ from .report import ExerciseReport, Failing
 
 #: characters kept of the sentence on a wrong case
 WORDS = 600
+#: kinds whose cases have no givens that could be told
+SHOWN = ("value", "choice")
 
 
 @dataclass(frozen=True)
 class Found:
-    """What an answer gave: an outcome for each case; or why its process ended before."""
+    """What an answer gave: an outcome for each case; or why its process ended before.
+
+    What was printed is ``told`` where none of its processes knew of a hidden case.
+    """
 
     outcomes: tuple = ()
     ended: str = ""
+    told: bool = True
 
 
 def ended_words(reason, limits):
@@ -77,7 +83,7 @@ def exercise_report(exercise, cases, found, limits, slips=None):
         answered=any(outcome.answered for outcome in found.outcomes),
         right=right,
         cases=len(cases),
-        printed=_printed(cases, found.outcomes, limits.printed),
+        printed=_printed(cases, found.outcomes, limits.printed) if found.told else "",
         **wrong,
     )
 
@@ -97,7 +103,7 @@ def _wrong(exercise, cases, outcomes, verdicts, slips):
     (case, public), outcome, said = cases[first], outcomes[first], verdicts[first]
     if slips and not (public or said.slip or outcome.value is None):
         said = _verdict(exercise, replace(case, slips=tuple(slips(exercise, case.given))), outcome)
-    expected = None if exercise.kind in ("value", "choice") else rounded(case.expected)
+    expected = None if exercise.kind in SHOWN else rounded(case.expected)
     failing = Failing(rounded(dict(case.given)), rounded(outcome.value), expected, case.unit, public)
     return {"words": line_of(said.words, WORDS), "slip": line_of(said.slip, WORDS), "hint": exercise.hint, "failing": failing}
 

@@ -10,6 +10,7 @@ from attacks.small_lab import HONEST, OPEN, write_lab
 from hapticlab.course.evaluate import Outcome
 from hapticlab.errors import CourseError
 from hapticlab.grading.assignment import find_assignment
+from hapticlab.grading.formats import write
 from hapticlab.grading.grade import Deferred, grade
 from hapticlab.grading.limits import Limits
 from hapticlab.grading.marking import Found, exercise_report
@@ -19,6 +20,25 @@ from hapticlab.grading.submission import Submission
 
 LIMITS = Limits(seconds=4.0)
 ENDED = {"energy": "import os\ndef energy(x, k):\n    os._exit(0)"}
+#: looks for givens in the frames above, keeps them in a file for the next, and tells all in words, prints, values and cells
+SPY = """
+import pathlib, sys, hapticlab.grading.inside.session as session
+from hapticlab.course.evaluate import Outcome, evaluate as honest
+kept = pathlib.Path("givens")
+def spied(kind, answer, given):
+    frame = sys._getframe()
+    while "request" not in frame.f_locals:
+        frame = frame.f_back
+    with kept.open("a") as file:
+        print(frame.f_locals["request"]["givens"], file=file)
+    told = kept.read_text()
+    if kind == "function" and given["k"] in (200.0, 1000.0, 8.0):
+        found = honest(kind, answer, given)
+        return Outcome(found.value, told, told)
+    return Outcome(told if kind == "choice" else 1.5, told, told)
+session.evaluate = spied
+raise ValueError(kept.read_text() if kept.exists() else "nothing yet")
+"""
 WRONG = {"force": "def force(x, k):\n    print('at', x)\n    return k * x"}
 
 
@@ -67,6 +87,16 @@ def test_what_is_wrong_is_told_with_its_first_case(assignment, starter):
     assert [(cell, words.split(":")[0].split()[0]) for cell, words in report.cells] == [(len(HONEST) + 1, "ZeroDivisionError")]
     assert force.printed.split() == ["at", "0.012", "at", "0.008"], "givens of hidden cases are not told"
     assert str(Path.cwd()) not in report.to_json() and "/tmp" not in report.to_json()
+
+
+def test_no_given_of_a_hidden_case_comes_back_to_who_may_hand_in_again(assignment, starter):
+    report = grade(submission(SPY), assignment, starter, LIMITS)
+    told, cases = write("gradescope", [report]), assignment.cases("ada")
+    drawn = [case.given for several in cases.values() for case, public in several if not public]
+    hidden = [given.get("k", given.get("values")) for given in drawn]
+    assert len(hidden) == 7 and not any(str(number) in told for number in hidden)
+    assert told.count("A case that is not shown is wrong.") == 3 and "'k': 200.0" in told and "nothing yet" in told
+    assert not any(str(number) in json.dumps(one.slip) for one in report.exercises for number in hidden)
 
 
 def test_the_same_submission_gives_the_same_bytes(assignment, starter):
