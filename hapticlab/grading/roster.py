@@ -34,7 +34,7 @@ class Matched:
     unknown : tuple of str
         Students without a row.
     missing : tuple of str
-        Names of the people without a submission, and what the column says of them.
+        What the column says of people without a submission, and their names.
     """
 
     column: str
@@ -161,10 +161,10 @@ def _names(cells, place):
 
 
 def _told(row, column):
-    """Return whose row it is, by name and by the column that submissions are named by."""
+    """Return whose row it is, by the column that submissions are named by, and by name."""
     parts = [row[key].strip() for key in ("first_name", "last_name", "surname") if key in row]
     name = next((row[key].strip() for key in NAMES if row.get(key)), " ".join(parts))
-    return f"{name} ({row[column]})" if name and column not in NAMES else name or row[column]
+    return f"{row[column]} ({name})" if name and column not in NAMES else name or row[column]
 
 
 def _key(text):

@@ -26,7 +26,7 @@ def test_the_column_that_holds_most_students_counts(tmp_path):
     found = roster(tmp_path, "Name,Login,Number\nada,al1, 17\nbob,BB2,18\nal1,zz9,19\n").match(["al1", "bb2", "17", "nobody"])
     assert (found.column, found.rows["bb2"]["name"]) == ("login", "bob")
     assert found.unknown == ("17", "nobody")
-    assert found.missing == ("al1 (zz9)",)
+    assert found.missing == ("zz9 (al1)",)
 
 
 CANVAS = """Student,ID,SIS User ID,SIS Login ID,Section,Lab 02 (5511)
@@ -55,16 +55,16 @@ def test_canvas_own_names_are_found_by_its_own_ids(tmp_path):
         "lovelaceada_4242": "alovelace",
         "devriesbob_4243": "bvries",
     }
-    assert (found.unknown, found.missing) == (("studenttest_4245",), ("Ng, Cleo (4244)",))
+    assert (found.unknown, found.missing) == (("studenttest_4245",), ("4244 (Ng, Cleo)",))
 
 
 def test_who_is_missing_is_told_by_name(tmp_path):
     found = roster(tmp_path, CANVAS).match(["alovelace"])
-    assert found.missing == ("de Vries, Bob (bvries)", "Ng, Cleo (cng)")
-    assert roster(tmp_path, MOODLE).match(["ada"]).missing == ("Bob de Vries (bob@x.org)", "Zed Absent (zed@x.org)")
+    assert found.missing == ("bvries (de Vries, Bob)", "cng (Ng, Cleo)")
+    assert roster(tmp_path, MOODLE).match(["ada"]).missing == ("bob@x.org (Bob de Vries)", "zed@x.org (Zed Absent)")
     assert roster(tmp_path, MOODLE).match(["ada lovelace"]).missing == ("Bob de Vries", "Zed Absent")
     people = "First name,Surname,Login\nAda,Lovelace,al\nCleo,Ng,cn\n"
-    assert roster(tmp_path, people).match(["al"]).missing == ("Cleo Ng (cn)",)
+    assert roster(tmp_path, people).match(["al"]).missing == ("cn (Cleo Ng)",)
 
 
 def test_moodles_own_names_are_found_by_participant_or_by_name(tmp_path):
