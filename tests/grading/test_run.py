@@ -1,6 +1,8 @@
 """A class is graded: the same reports with any number of workers, whoever ends them, and however often it begins anew."""
 
+import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -10,12 +12,14 @@ from pathlib import Path
 import pytest
 from attacks.small_lab import HONEST, OPEN, notebook, write_lab
 
+from hapticlab.cli import main
 from hapticlab.errors import CourseError
+from hapticlab.grading import formats
 from hapticlab.grading.assignment import find_assignment
 from hapticlab.grading.limits import Limits
 from hapticlab.grading.run import run
 
-LIMITS = Limits(seconds=1.5)
+LIMITS = Limits(seconds=2.0)
 #: ends the process that grades, which is above the one that this one was forked from
 KILLER = """
 import os, signal
@@ -31,9 +35,11 @@ CLASS = {
     "ada": HONEST,
     "bob": HONEST | {"why": 'why = "a"'},
     "cy": OPEN,
-    "dan": HONEST | {"force": "def force(x, k):\n    while True: pass"},
+    "dan": HONEST | {"force": "import time\ndef force(x, k):\n    time.sleep(1e6)"},
     "eve": HONEST | {"energy": "import os\ndef energy(x, k):\n    os._exit(1)"},
 }
+#: of whose submissions a report is kept before dan's
+BEFORE_DAN = 3
 EARNED = {"ada": 10.0, "bad": 0.0, "bob": 9.0, "cy": 0.0, "dan": 8.0, "eve": 8.0}
 
 
@@ -49,8 +55,9 @@ def course(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def one(course):
-    return run(course[:1], course[1], LIMITS, workers=1)
+def one(course, here):
+    with here():
+        return run(course[:1], course[1], LIMITS, workers=1)
 
 
 def test_each_earns_what_is_right(one):
@@ -77,21 +84,28 @@ def test_what_keeps_a_worker_from_beginning_is_said(course):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there is no SIGINT to send to one process")
-def test_ctrl_c_ends_cleanly_and_says_how_to_go_on(one, course):
-    folder, assignment, place = course
-    output = place / "results.json"
-    journal = place / "results.json.journal.jsonl"
-    command = [sys.executable, "-m", "hapticlab", "grade", str(folder), "--lab", str(assignment.folder.path)]
-    command += ["--instructor", str(assignment.answers.parent), "--seed", "3", "--timeout", "1.5", "--workers", "1"]
-    command += ["--format", "json", "-o", str(output)]
+def test_ctrl_c_ends_cleanly_and_the_same_command_goes_on(one, course, here, tmp_path, capsys):
+    folder, assignment, _ = course
+    shutil.copytree(folder, tmp_path / "class")
+    output, journal = tmp_path / "results.json", tmp_path / "results.json.journal.jsonl"
+    # dan's answer outlasts this test
+    arguments = ["grade", str(tmp_path / "class"), "--lab", str(assignment.folder.path), "--timeout", "600", "--workers", "1"]
+    arguments += ["--instructor", str(assignment.answers.parent), "--seed", "3", "--format", "json", "-o", str(output)]
     env = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    command = [sys.executable, "-m", "hapticlab", *arguments]
     with subprocess.Popen(command, env=env, stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
-        while not (journal.is_file() and journal.read_bytes().count(b"\n")):
+        while not (journal.is_file() and journal.read_bytes().count(b"\n") == BEFORE_DAN):
             with suppress(subprocess.TimeoutExpired):
                 pytest.fail(f"it ended by itself: {process.wait(0.05)}")
         os.killpg(process.pid, signal.SIGINT)
         told = process.stderr.read()
     assert process.returncode == 130 and "the same command again goes on" in told and "Traceback" not in told
     assert not output.exists()
-    again = run([folder], assignment, LIMITS, journal=journal)
-    assert 0 < len(again.seconds) < len(CLASS) and again.reports == one.reports
+    (tmp_path / "class" / "dan.ipynb").write_bytes(notebook(HONEST.values()))
+    with here():
+        assert main(arguments) == 1
+    assert f"2 graded, {BEFORE_DAN} known from before" in capsys.readouterr().err
+    found = {held["student"]: held for held in json.loads(output.read_text())["reports"]}
+    assert found.pop("dan")["earned"] == 10.0
+    known = json.loads(formats.write("json", one.reports))["reports"]
+    assert found == {held["student"]: held for held in known if held["student"] != "dan"}

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import select
 import subprocess
 import sys
@@ -9,48 +10,51 @@ from pathlib import Path
 
 import pytest
 
+from hapticlab.cli import main
+
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the attackers among them need namespaces, which are Linux'")
 
 if sys.platform == "linux":
     from attacks.arena import Arena
-    from attacks.mixed import mixed
+    from attacks.mixed import SECONDS, mixed
 
 ROOT = Path(__file__).parents[2]
-SECONDS = 2
-#: grades as the command does, and is killed, as `kill -9` does, once it has written so many reports; tells whom it leaves behind
+#: grades as the command does, and is killed, as `kill -9` does, once it has written so many reports, or, where that is 0, while
+#: it grades one submission alone; tells whom it leaves behind
 KILLED = """
 import os, signal, sys
 from pathlib import Path
 from hapticlab.cli import main
-from hapticlab.grading import journal, watch
+from hapticlab.grading import journal, watch, workers
+
+def end():
+    Path(sys.argv[2]).write_text(" ".join(map(str, watch.descendants(os.getpid()))))
+    os.kill(os.getpid(), signal.SIGKILL)
 
 if __name__ == "__main__":
-    most, left = int(sys.argv[1]), Path(sys.argv[2])
-    write, written = journal.Journal.write, []
+    most = int(sys.argv[1])
+    write, begin, written = journal.Journal.write, workers._Worker.begin, []
 
     def written_down(self, *report):
         write(self, *report)
         written.append(report)
         if len(written) == most:
-            left.write_text(" ".join(map(str, watch.descendants(os.getpid()))))
-            os.kill(os.getpid(), signal.SIGKILL)
+            end()
 
-    journal.Journal.write = written_down
+    def begun(self, task, alone):
+        begin(self, task, alone)
+        if alone and not most:
+            end()
+
+    journal.Journal.write, workers._Worker.begin = written_down, begun
     main(sys.argv[3:])
 """
 
 
 def command(arena, output, workers):
     lab = ["--lab", str(arena.lab), "--instructor", str(arena.answers.parent), "--seed", "3", "--timeout", str(SECONDS)]
-    return ["grade", str(arena.submissions), *lab, "--format", "json", "-o", str(output), "--workers", str(workers)]
-
-
-def graded(arguments):
-    """Run the command and return what it said."""
-    python = [sys.executable, "-m", "hapticlab", *arguments]
-    done = subprocess.run(python, cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode in (0, 1), done.stderr
-    return done.stderr
+    output = ["--format", "json", "-o", str(output), "--workers", str(workers), "--sandbox", "namespaces"]
+    return ["grade", str(arena.submissions), *lab, *output]
 
 
 def killed(arguments, most, place):
@@ -76,15 +80,18 @@ def _ends(pid, seconds=20):
         os.close(descriptor)
 
 
-def same_bytes(place, number):
+def same_bytes(place, number, capsys, *ends):
     class_ = mixed(number, seed=number)
     with Arena(place, class_) as arena:
         once, again = place / "once.json", place / "again.json"
-        graded(command(arena, once, workers=1))
-        assert not killed(command(arena, again, workers=2), number // 2, place)
-        assert not again.exists()
-        said = graded(command(arena, again, workers=2))
-        assert f"{number // 2} known from before" in said
+        assert main(command(arena, once, workers=1)) in (0, 1)
+        for most in ends:
+            assert not killed(command(arena, again, workers=2), most, place)
+            assert not again.exists()
+        capsys.readouterr()
+        assert main(command(arena, again, workers=2)) in (0, 1)
+        left = int(re.search("([0-9]+) graded, [0-9]+ known from before", capsys.readouterr().err)[1])
+        assert 0 < left < number / 2, "what waited for a limit, alone"
         assert once.read_bytes() == again.read_bytes()
         earned = {one["student"]: one for one in json.loads(once.read_text())["reports"]}
         assert len(earned) == number
@@ -94,10 +101,11 @@ def same_bytes(place, number):
         assert not arena.reached()
 
 
-def test_a_few_graded_twice_and_once_killed(tmp_path):
-    same_bytes(tmp_path, 10)
+def test_a_few_graded_twice_and_once_killed(tmp_path, here, capsys):
+    with here():  # but for the run that is killed, which has two workers
+        same_bytes(tmp_path, 10, capsys, 0)
 
 
 @pytest.mark.slow
-def test_a_thousand_graded_twice_and_once_killed(tmp_path):
-    same_bytes(tmp_path, 1000)
+def test_a_thousand_graded_twice_and_killed_half_way_and_near_the_end(tmp_path, capsys):
+    same_bytes(tmp_path, 1000, capsys, 500, 0)

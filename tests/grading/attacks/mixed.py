@@ -1,9 +1,9 @@
-"""A class of any size: honest work in many versions, wrong work, and attackers among them."""
+"""A class of any size: honest work in many versions, wrong work, attackers, and who is near or beyond a limit of time."""
 
 import random
 from dataclasses import replace
 
-from . import broken, ending, forging, spying
+from . import broken, eating, ending, forging, spying
 from .attack import Attack, attack
 from .small_lab import POINTS
 
@@ -35,21 +35,31 @@ WRONG = {
     "stiffness": ("stiffness = 0.73125", "stiffness = '731'"),
     "why": ("why = 'a'", "why = 'why not'"),
 }
+#: honest, and three quarters of the limit of time
+SECONDS, SLEEP = 2.0, "import time\ntime.sleep(1.5)\n"
+WAITING = tuple(one for one in eating.ATTACKS if one.name in ("sleep", "hang_in_a_call", "stops_itself"))
 ATTACKERS = tuple(one for sort in (broken, ending, forging, spying) for one in sort.ATTACKS if not one.patience)
 
 
 def mixed(number, seed=0):
-    """Return so many submissions: of ten four honest, three wrong somewhere, three of the corpus."""
+    """Return so many submissions for a limit of SECONDS: of ten four honest, three wrong somewhere, three of the corpus.
+
+    Of a hundred one waits for the limit, and one is near it.
+    """
     drawn = random.Random(seed)
     return tuple(_one(f"s{student:04d}", drawn, student) for student in range(number))
 
 
 def _one(name, drawn, student):
+    if student % 100 == 9:
+        return _renamed(drawn.choice(WAITING), name)
     if student % 10 >= 7:
         return _renamed(drawn.choice(ATTACKERS), name)
     answers = {exercise: drawn.choice(several) for exercise, several in VERSIONS.items()}
     wrong = drawn.sample(sorted(POINTS), drawn.randint(1, 3)) if student % 10 >= 4 else ()
     answers |= {exercise: drawn.choice(WRONG[exercise]) for exercise in wrong}
+    if student % 100 == 0:
+        answers["force"] = SLEEP + answers["force"]
     return replace(attack(name, first=f"# {name}", lost=None, **answers), lost=tuple(wrong))
 
 
