@@ -118,9 +118,10 @@ def _at(x, curve):
 
 
 def _where_asked(wanted, curve):
-    """Return abscissae of what is expected, and both curves there."""
-    x = np.clip(wanted["x"], curve["x"].min(), curve["x"].max())
-    return x, _at(x, wanted), _at(x, curve)
+    """Return abscissae of what is expected, and both curves there; one that ends a step before goes on straight."""
+    order = _rising(curve["x"])
+    x, y = (np.pad(curve[side][order], 1, "reflect", reflect_type="odd") for side in "xy")
+    return wanted["x"], wanted["y"], np.interp(wanted["x"], x, y)
 
 
 def _where_drawn(wanted, curve):

@@ -39,6 +39,9 @@ HALF_COUNT = "Friction pays twice that: the work of friction over a count, there
 
 DELAYS = {"x": [0.0, 0.5e-3, 1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3], "x_unit": "s", "y_unit": "N/m"}
 WHOLE_PERIOD = DELAYS | {"y": [1100.0, 733.333333, 550.0, 440.0, 366.666667, 314.285714, 275.0]}
+SLOW_PERIOD = DELAYS | {"y": [250.0, 200.0, 166.666667, 142.857143, 125.0, 111.111111, 100.0]}
+#: from half a millisecond on, for without the hold there is no limit at delay 0
+LATER = {"x": DELAYS["x"][1:], "x_unit": "s", "y_unit": "N/m"}
 
 LAB = Lab(
     number="03",
@@ -81,11 +84,19 @@ LAB = Lab(
                     slips=(
                         ({"curve 1": WHOLE_PERIOD}, ONE_PERIOD),
                         ({"curve 1": DELAYS | {"y": [4400.0, 2200.0, 1466.66667, 1100.0, 880.0, 733.3, 628.6]}}, TAKEN_TWICE),
+                        ({"curve 1": DELAYS | {"y": [2200.0] * 7}}, HOLD_ALONE),
+                        ({"curve 1": LATER | {"y": [2200.0, 1100.0, 733.333333, 550.0, 440.0, 366.666667]}}, NO_HOLD),
                     ),
                 ),
                 Case(
                     {"b": 0.5, "T": 2e-3},
                     {"curve 1": DELAYS | {"y": [500.0, 333.333333, 250.0, 200.0, 166.666667, 142.857143, 125.0]}},
+                    slips=(
+                        ({"curve 1": SLOW_PERIOD}, ONE_PERIOD),
+                        ({"curve 1": DELAYS | {"y": [1000.0, 666.666667, 500.0, 400.0, 333.333, 285.714, 250.0]}}, TAKEN_TWICE),
+                        ({"curve 1": DELAYS | {"y": [500.0] * 7}}, HOLD_ALONE),
+                        ({"curve 1": LATER | {"y": [1000.0, 500.0, 333.333333, 250.0, 200.0, 166.666667]}}, NO_HOLD),
+                    ),
                 ),
             ),
             hint="Is it one line through many points? Do both labels end in a unit such as [ms], and are the numbers in it?",

@@ -171,6 +171,8 @@ def test_few_points_off_the_curve_are_told_where_they_are():
     fine = curves(hyperbola(np.linspace(0, 3e-3, 200)))
     exercise = Exercise("limit", "plot", points=1, rtol=0.02, cases=[Case({}, fine)])
     d = np.linspace(0, 3e-3, 10)
+    coarse = Exercise("limit", "plot", points=1, rtol=0.02, cases=[Case({}, curves(hyperbola(np.linspace(0, 3e-3, 7))))])
+    assert checked("98.limit", coarse, hyperbola(np.linspace(4e-5, 3e-3, 75))).passed
     drawn = swing(1e3 * d, np.where(d == d[3], 1000.0, 1.1 / (5e-4 + d)), "delay [ms]", "stiffness [N/m]")
     assert "at 0.001 s it is 1000 N/m, expected 733." in checked("98.limit", exercise, drawn).text
 
