@@ -1,4 +1,7 @@
-"""Sessions on a system without Linux' fork and /proc: each a new interpreter, and each exercise in a session of its own.
+"""Sessions on a system without Linux' fork and /proc: each a new interpreter.
+
+Where the whole notebook ran, each request for answers has an interpreter of its own, as it has a fork elsewhere. Where only
+the statements ran that answers need, they share one: nothing is called wrong there, at worst it is asked for once more.
 
 There is a deadline, and the bounds on what is answered; nothing bounds memory and processes, and nothing is hidden.
 """
@@ -22,6 +25,8 @@ from .asking import FRAME, SessionEnded, parsed
 PROGRAM = "import sys; sys.path[0] = sys.argv[1]; from hapticlab.grading.inside.alone import main; main()"
 #: without these no interpreter starts on Windows
 KEPT = ("SYSTEMROOT", "WINDIR", "TEMP", "PATH")
+#: how long an interpreter may take to start [s], and a request that was answered before, in what its kind may
+START, MOST_AGAIN = 120.0, 3
 
 
 class SpawnedStarter:
@@ -48,11 +53,14 @@ class SpawnedStarter:
 
 
 class SpawnedSession:
-    """As :class:`hapticlab.grading.asking.Session`; what it was asked before is asked anew for each further exercise."""
+    """As :class:`hapticlab.grading.asking.Session`; what it was asked before is asked anew in each further interpreter.
+
+    ``charged`` is wall clock, without the start of interpreters and what is asked anew there.
+    """
 
     def __init__(self, starter, limits):
         self.starter, self.limits, self.charged = starter, limits, 0.0
-        self.asked, self.evaluated, self.open = [], False, True
+        self.asked, self.evaluated, self.shared, self.open = [], False, False, True
         self._start()
 
     def _start(self):
@@ -70,29 +78,39 @@ class SpawnedSession:
         )
         self.blocks = queue.Queue()
         threading.Thread(target=_read, args=(self.process.stdout, self.blocks), daemon=True).start()
+        try:
+            self._reply({"do": "ready"}, START)
+        except SessionEnded as end:
+            self.close()
+            raise RuntimeError(f"an interpreter did not start: {end}") from None
 
     def ask(self, request, seconds):
         """Return the reply to a request, or raise SessionEnded; ``seconds`` of wall clock."""
         if not self.open:
             raise SessionEnded("exit")
-        began = time.monotonic()
         try:
             if request["do"] == "evaluate" and self.evaluated:
-                self._kill()
-                self._start()
-                for before in self.asked:
-                    self._reply(before, seconds)
-            reply = self._reply(request, seconds)
+                self._begin_anew()
+            began = time.monotonic()
+            try:
+                reply = self._reply(request, seconds)
+            finally:
+                self.charged += time.monotonic() - began
         except SessionEnded:
             self.close()
             raise
-        finally:
-            self.charged += time.monotonic() - began
         if request["do"] == "evaluate":
-            self.evaluated = True
+            self.evaluated = not self.shared
         else:
             self.asked.append(request)
+            self.shared = request["do"] == "run_pieces"
         return reply
+
+    def _begin_anew(self):
+        self._kill()
+        self._start()
+        for request in self.asked:
+            self._reply(request, MOST_AGAIN * self.limits.seconds)
 
     def _reply(self, request, seconds):
         number, deadline = secrets.token_hex(8), time.monotonic() + seconds
