@@ -19,7 +19,7 @@ from .keeper import keep, prepare
 
 #: beside what the package itself loads; by name, as all of it is needed only where the walls hold
 SESSION = "hapticlab.grading.inside.session"
-PRELOADED = ("matplotlib.pyplot", "scipy.signal", "scipy.integrate", "scipy.optimize", SESSION)
+PRELOADED = ("matplotlib.pyplot", "scipy.integrate", SESSION)
 
 
 def main(control):
