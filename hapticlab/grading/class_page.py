@@ -111,7 +111,7 @@ def went(one, report):
 
 
 def _share(count, whole):
-    return f"{count} ({100 * count / whole:.0f} %)"
+    return f'<span class="share">{count} ({100 * count / whole:.0f} %)</span>'
 
 
 def _mistakes(graded):
