@@ -2,11 +2,12 @@
 
 import importlib.util
 import json
+import shutil
 import sys
 import zipfile
 
 import pytest
-from handed_in import INSTRUCTOR, LABS, WRONG, earned, handed_in, run, text
+from handed_in import INSTRUCTOR, LABS, WRONG, earned, handed_in, start, text
 
 from hapticlab import cli
 from hapticlab.course import notebook as notebooks
@@ -17,14 +18,43 @@ from hapticlab.grading.otter_source import otter_assign, otter_notebook
 
 pytest.importorskip("otter")
 TWO = ("01", "02")
+#: otter needs five seconds to load: its commands are carried out by one process
+COMMANDS = """
+import json, sys
+from otter.cli import cli
+for line in sys.stdin:
+    cli(json.loads(line), standalone_mode=False)
+    print("\\ncarried out", flush=True)
+"""
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """What the command wrote for both labs, and what it said."""
-    target = tmp_path_factory.mktemp("otter") / "labs"
-    asked = ["--for", "otter", "--lab", *TWO, "--instructor", str(INSTRUCTOR)]
-    run(sys.executable, "-m", "hapticlab", "assign", str(target), *asked, cwd=target.parent)
+def otter(tmp_path_factory):
+    """Carry out a command of otter, given as its words."""
+    with start(sys.executable, "-c", COMMANDS, cwd=tmp_path_factory.mktemp("otter")) as process:
+
+        def carry_out(*words):
+            print(json.dumps([*map(str, words)]), file=process.stdin, flush=True)
+            said = []
+            for line in process.stdout:
+                said.append(line)
+                if line == "carried out\n":
+                    return
+            pytest.fail("".join(said) + process.stderr.read()[-3000:])
+
+        yield carry_out
+        process.stdin.close()
+
+
+@pytest.fixture(scope="module")
+def made(otter, tmp_path_factory):
+    """Folders of both labs: of one as our command has it made, of the other by otter, which need not run that solution."""
+    target, scratch = tmp_path_factory.mktemp("made") / "labs", tmp_path_factory.mktemp("master")
+    assert cli.main(["assign", str(target), "--for", "otter", "--lab", "02", "--instructor", str(INSTRUCTOR)]) == 0
+    lab, package = LABS["01"], f"hapticlab=={cli.__version__}"
+    shutil.copy(lab.path / "checks.py", scratch)
+    write(scratch / lab.notebook.name, otter_notebook(lab, INSTRUCTOR / lab.name, ["checks.py"], package))
+    otter("assign", "--no-pdfs", "--no-run-tests", scratch / lab.notebook.name, target / lab.name)
     return target
 
 
@@ -67,10 +97,10 @@ def test_the_zip_installs_this_hapticlab_and_has_a_test_for_each_exercise(made):
 
 
 @pytest.mark.parametrize("number, wrong", [("01", {}), ("02", WRONG["02"])])
-def test_otter_gives_what_was_right(made, number, wrong, tmp_path):
+def test_otter_gives_what_was_right(otter, made, number, wrong, tmp_path):
     lab = LABS[number]
     write(tmp_path / lab.notebook.name, handed_in(students_notebook(made, lab), lab, wrong))
-    run(sys.executable, "-m", "otter", "run", lab.notebook.name, "-a", str(archive(made, lab)), "-o", ".", cwd=tmp_path)
+    otter("run", tmp_path / lab.notebook.name, "-a", archive(made, lab), "-o", tmp_path)
     results = {one["name"]: one for one in json.loads((tmp_path / "results.json").read_text("utf-8"))["tests"]}
     judged = {one.name: one.points for one in lab.lab().exercises if one.judged}
     assert {name: results[name]["score"] for name in judged} == {name: 0 if name in wrong else judged[name] for name in judged}
