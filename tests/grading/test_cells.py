@@ -116,6 +116,8 @@ def test_the_figures_of_pyplot_are_closed_after_each_cell_as_in_jupyter():
     assert run_cell(draw, names, 1) == "" == run_cell("plt.plot([0, 1], [4, 5])\nlines = plt.gca().get_lines()", names, 2)
     assert len(names["lines"]) == 1 == len(names["first"].axes)
     assert run_cell("plt.figure()\n1/0", names, 3).startswith("ZeroDivisionError") and not names["plt"].get_fignums()
+    assert run_cell("\nplt.plot([0, 1], [2, 3])", names, 2) == "" == run_cell("\n\nlines = plt.gca().get_lines()", names, 3)
+    assert len(names["lines"]) == 1  # statements of a script draw into the same one
     spoil = "import sys\nclass Spoilt:\n  def close(self, what): sys.exit()\nsys.modules['matplotlib.pyplot'] = Spoilt()"
     kept = sys.modules["matplotlib.pyplot"]
     try:

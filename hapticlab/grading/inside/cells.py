@@ -105,6 +105,9 @@ def _without_magic(line):
 def run_cell(source, names, number):
     """Run a cell in a namespace; it never raises.
 
+    Figures of pyplot are closed after it, as in Jupyter. A statement of a script, which comes after as many blank lines as
+    it has lines before it, closes none.
+
     Parameters
     ----------
     source : str
@@ -124,7 +127,7 @@ def run_cell(source, names, number):
     >>> run_cell("k = 150\\nforce = k*y", names, 3), names["k"]
     ("NameError in line 2: name 'y' is not defined", 150)
     """
-    file = f"<cell {number}>"
+    file, in_script = f"<cell {number}>", source.startswith("\n")
     try:
         source = runnable(source)
         linecache.cache[file] = len(source), None, source.splitlines(keepends=True), file  # for inspect.getsource
@@ -132,7 +135,10 @@ def run_cell(source, names, number):
     except BaseException as problem:
         line = problem.lineno if isinstance(problem, SyntaxError) else None
         return _said(problem, f" in line {line}" if isinstance(line, int) else "")
-    return _run(code, names, number)
+    problem = _run(code, names, number)
+    if not in_script:
+        _close_figures()
+    return problem
 
 
 def _run(code, names, number):
@@ -146,13 +152,11 @@ def _run(code, names, number):
             return _said(problem, _where(problem, number))
         except BaseException:  # even reading it may raise
             return "an error that cannot be read"
-    finally:
-        _close_figures()
     return ""
 
 
 def _close_figures():
-    """Close the figures of pyplot, as Jupyter does after each cell: the next draws into one of its own."""
+    """Close the figures of pyplot: the next cell draws into one of its own."""
     with suppress(BaseException):
         pyplot = sys.modules.get("matplotlib.pyplot")
         if pyplot:
