@@ -176,9 +176,8 @@ TRAPS = {
     "pyplot under another name": (
         [
             "import matplotlib\nmatplotlib.use('agg')\nimport matplotlib.pyplot as p",
-            "p.close('all')\np.plot([1, 2])",
-            "figure = p.gcf()\ndef k(x):\n    return len(figure.axes[0].lines)",
-            "p.plot([3, 4])",
+            "p.plot([5, 6])",
+            "p.plot([1, 2])\nfigure = p.gcf()\ndef k(x):\n    return len(figure.axes[0].lines)\np.plot([3, 4])",
         ],
         2,
     ),
