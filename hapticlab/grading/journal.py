@@ -2,16 +2,27 @@
 
 import hashlib
 import json
+import sys
 from dataclasses import asdict
 from pathlib import Path
 
+from ..errors import CourseError
 from .report import Report
+
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+
+#: the byte that Windows locks: far behind all that is written
+LOCKED = 1 << 40
 
 
 class Journal:
     """Reports by their keys, in a file of one line of JSON for each; a context manager.
 
-    A line that was cut, because the run was killed while it wrote, is as none. The file may be read while it grows.
+    A line that was cut, because the run was killed while it wrote, is as none. The file may be read while it grows; one run
+    writes it at a time.
 
     Parameters
     ----------
@@ -29,16 +40,33 @@ class Journal:
     """
 
     def __init__(self, path, fresh=False):
-        self.path = None if path is None else Path(path)
-        if fresh and self.path is not None:
-            self.path.unlink(missing_ok=True)
-        self.reports = self._read()
+        self.path, self._fresh = None if path is None else Path(path), fresh
+        self.reports = {} if fresh else self._read()
 
     def __enter__(self):
         self._file = None if self.path is None else self.path.open("ab")
-        if self._file and self._file.tell():
-            self._file.write(b"\n")  # what was cut stays a line of its own
+        if self._file:
+            self._lock()
+            if self._fresh:
+                self._file.truncate(0)
+            elif self._file.tell():
+                self._file.write(b"\n")  # what was cut stays a line of its own
         return self
+
+    def _lock(self):
+        """Keep other runs from writing, until the file is closed or this process ends, however."""
+        try:
+            if sys.platform == "win32":
+                self._file.seek(LOCKED)
+                msvcrt.locking(self._file.fileno(), msvcrt.LK_NBLCK, 1)
+                self._file.seek(0, 2)
+            else:
+                fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except (BlockingIOError, PermissionError):
+            self._file.close()
+            raise CourseError(f"another run writes {self.path}; wait for its end, or write the results elsewhere") from None
+        except OSError:  # some file systems of a network have no locks
+            pass
 
     def __exit__(self, *_):
         if self._file:

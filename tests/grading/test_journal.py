@@ -3,6 +3,9 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import pytest
+
+from hapticlab.errors import CourseError
 from hapticlab.grading.journal import Journal, key_of
 from hapticlab.grading.limits import Limits
 from hapticlab.grading.report import ExerciseReport, Failing, Report
@@ -40,6 +43,18 @@ def test_lines_of_something_else_are_as_none_and_fresh_forgets(tmp_path):
     with Journal(path, fresh=True) as journal:
         assert journal.reports == {}
     assert path.read_bytes() == b""
+
+
+def test_one_run_writes_a_journal_at_a_time(tmp_path):
+    path = tmp_path / "r.json.journal.jsonl"
+    with Journal(path) as journal:
+        journal.write("1", ADA)
+        for fresh in (False, True):
+            with pytest.raises(CourseError, match=r"another run writes .*journal\.jsonl"), Journal(path, fresh):
+                pass
+        journal.write("2", BOB)
+    with Journal(path) as journal:
+        assert journal.reports == {"1": ADA, "2": BOB}
 
 
 def test_a_key_is_of_all_that_a_report_depends_on():
