@@ -53,10 +53,22 @@ class Assignment:
         return {name: path.read_bytes() for name, path in paths.items() if path.suffix != ".ipynb" and path.name != CHECKS}
 
     def slips(self, exercise, given):
-        """Return what typical slips give in a hidden case, as far as they can be worked out from the solution."""
+        """Return what typical slips give in a case, as far as they can be worked out from the solution."""
         if self.answers is None or self.personal or exercise.kind not in ("expression", "scene"):
             return ()
-        return slips(exercise, instructor_names(self.answers / SOLUTION)[exercise.name], given)
+        public = [case.given for case in exercise.cases]
+        key = (exercise.name, public.index(given)) if given in public else None
+        if key not in self._public_slips:
+            found = slips(exercise, instructor_names(self.answers / SOLUTION)[exercise.name], given)
+            if key is None:
+                return found
+            self._public_slips[key] = found
+        return self._public_slips[key]
+
+    @cached_property
+    def _public_slips(self):
+        """Slips of public cases, which are those of a whole class."""
+        return {}
 
     @cached_property
     def untouched(self):

@@ -49,7 +49,7 @@ def exercise_report(exercise, cases, found, limits, slips=None):
     limits : Limits
         Of which a word is said where one was met.
     slips : callable, optional
-        Of exercise and given: what typical slips give in a hidden case.
+        Of exercise and given: what typical slips give in a case whose own slips are none of them.
 
     Returns
     -------
@@ -101,7 +101,7 @@ def _wrong(exercise, cases, outcomes, verdicts, slips):
         return {"words": "no answer", "hint": exercise.hint}
     first = next(number for number, one in enumerate(verdicts) if not one.right)
     (case, public), outcome, said = cases[first], outcomes[first], verdicts[first]
-    if slips and not (public or said.slip or outcome.value is None):
+    if slips and not (said.slip or outcome.value is None):
         said = _verdict(exercise, replace(case, slips=tuple(slips(exercise, case.given))), outcome)
     expected = None if exercise.kind in SHOWN else rounded(case.expected)
     failing = Failing(rounded(dict(case.given)), rounded(outcome.value), expected, case.unit, public)

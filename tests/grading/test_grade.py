@@ -99,6 +99,13 @@ def test_no_given_of_a_hidden_case_comes_back_to_who_may_hand_in_again(assignmen
     assert not any(str(number) in json.dumps(one.slip) for one in report.exercises for number in hidden)
 
 
+def test_a_public_case_is_taught_by_slips_of_the_solution_too(assignment, starter):
+    report = grade(submission(wall=HONEST["wall"].replace("x(n) - x_o", "x(n)")), assignment, starter, LIMITS)
+    wall = by_name(report)["wall"]
+    assert wall.failing.public and "x_o" in wall.slip and wall.slip in wall.words
+    assert list(assignment._public_slips) == [("wall", 0)], "worked out once for a class"
+
+
 def test_the_same_submission_gives_the_same_bytes(assignment, starter):
     handed_in = submission("import os\nos._exit(3)", **WRONG, **ENDED)
     first, second = (grade(handed_in, assignment, starter, LIMITS, alone=True).to_json() for _ in range(2))
