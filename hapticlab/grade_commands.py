@@ -10,6 +10,7 @@ from pathlib import Path
 from .errors import CourseError
 from .grading import formats
 from .grading.assignment import find_assignment
+from .grading.formats.gradescope import GRADER_FAILED
 from .grading.formats.words import clean
 from .grading.gradebook import push
 from .grading.limits import MIB, Limits
@@ -20,6 +21,8 @@ from .grading.submission import find_submissions, lab_of, read
 
 #: where the cells of a submission say which lab they are of
 CHECKED = re.compile(r"""\bcheck\(\s*['"]([0-9]{2})\.""")
+#: how often a submission may take the time of a step, beside once for each exercise
+MORE_STEPS = 4
 LEVELS = ("auto", "namespaces", "user", "none")
 WEAK = {
     "none": "nothing but limits stands around the students' code, which runs with your rights: grade only whom you trust, or in "
@@ -68,13 +71,16 @@ def grade(parser, options):
     assignment = find_assignment(lab, options.instructor, options.seed, options.personal)
     if options.instructor is None:
         _say("warning: without --instructor only the public cases count, whose answers can be learnt by heart")
-    limits = Limits(seconds=options.timeout, total=max(Limits().total, 4 * options.timeout), memory=options.memory * MIB)
+    if roster:  # a roster that fits nobody is told before a class is graded
+        roster.match([source.student for source in find_submissions(options.submissions, assignment.folder.name)])
+    limits = limits_of(assignment.lab, options.timeout, options.memory * MIB)
     output = Path(options.output) if options.output else None
+    hidden = (options.roster, options.gradebook, options.pages, options.instructor, output)
     journal = output and output.with_name(f"{output.name}.journal.jsonl")
     try:
         done = run(
             options.submissions, assignment, limits, workers=options.workers, sandbox=options.sandbox, journal=journal,
-            fresh=options.fresh, hidden=[path for path in (options.roster, options.gradebook, output) if path], progress=True,
+            fresh=options.fresh, hidden=[path for path in hidden if path], progress=True,
         )  # fmt: skip
     except KeyboardInterrupt:
         again = f"what was graded is in {journal}; the same command again goes on" if journal else "with -o FILE a run can go on"
@@ -83,6 +89,27 @@ def grade(parser, options):
     _write(options, assignment, done.reports, roster, output)
     _tell(done, roster)
     return 1 if done.failed else 0
+
+
+def limits_of(lab, seconds, memory):
+    """Return the limits of a lab's submissions, with time in all for every exercise and for some cells that take all theirs.
+
+    Parameters
+    ----------
+    lab : Lab
+    seconds : float
+        Of a step.
+    memory : int
+        Of all processes [bytes].
+
+    Examples
+    --------
+    >>> lab = find_assignment("03").lab
+    >>> sum(one.judged for one in lab.exercises), limits_of(lab, 10.0, 2**30).total, limits_of(lab, 20.0, 2**30).total
+    (8, 120.0, 240.0)
+    """
+    steps = MORE_STEPS + sum(one.judged for one in lab.exercises)
+    return Limits(seconds=seconds, total=max(Limits().total, steps * seconds), memory=memory)
 
 
 def lab_asked(paths):
@@ -108,7 +135,7 @@ def lab_asked(paths):
 
 def _write(options, assignment, reports, roster, output):
     """Write the results in all the ways asked for."""
-    text = formats.write(options.format, reports, roster, options.assignment)
+    text = formats.write(options.format, reports, roster, options.assignment, assignment.folder.name)
     if output is None:
         sys.stdout.write(text)
     else:
@@ -119,8 +146,8 @@ def _write(options, assignment, reports, roster, output):
     if options.pages:
         write_pages(reports, options.pages, lab=assignment.lab)
     if options.gradebook:
-        for lost in push(reports, options.gradebook, options.assignment or None):
-            _say(lost)
+        for said in push(reports, options.gradebook, options.assignment or None):
+            _say(said)
 
 
 def _tell(done, roster):
@@ -134,7 +161,10 @@ def _tell(done, roster):
         graded += f"; {statistics.median(done.seconds):.2f} s each (median), {each:.2f} s of a processor (mean, start included)"
     _say(graded)
     for report in done.failed:
-        _say(f"not graded: {report.student}, {report.submission}: {report.problem}")
+        again = "; the same command tries it again" if report.problem.startswith(GRADER_FAILED) else ""
+        _say(f"not graded: {report.student}, {report.submission}: {report.problem}{again}")
+    for words in done.foreign:
+        _say(f"warning: {words}")
     if roster:
         matched = roster.match([report.student for report in done.reports])
         for words, names in (("not in the roster", matched.unknown), ("no submission of", matched.missing)):

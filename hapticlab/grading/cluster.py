@@ -16,7 +16,7 @@ from pathlib import Path
 from ..errors import CourseError, EngineMissingError
 from .assignment import files_of, find_assignment
 from .limits import Limits
-from .workers import Bench, Reply, as_json, processor_seconds
+from .workers import Bench, Reply, as_json, processor_seconds, weakest
 
 #: how many submissions a thread of the cluster may have waiting
 AHEAD = 2
@@ -37,12 +37,12 @@ class ClusterWorkers:
     limits : Limits
     sandbox : {"auto", "namespaces", "user", "none"}
     hidden : sequence of str
-        Paths of this computer, which the others need not hide.
+        Paths of this computer, which the others may see too.
     """
 
     def __init__(self, address, assignment, limits, sandbox="auto", hidden=()):
         self.address, self.number, self.level, self.seconds = address, 0, "", 0.0
-        self._setup, self._digest = _packed(assignment, limits, sandbox), assignment.digest
+        self._setup, self._digest = _packed(assignment, limits, sandbox, hidden), assignment.digest
 
     def __enter__(self):
         self._client = _client(self.address)
@@ -51,13 +51,13 @@ class ClusterWorkers:
             if not self.number:
                 raise CourseError(f"{self.address} has no workers; start some: dask worker {self.address}")
             self._before = self._client.run(processor_seconds, on_error="ignore")
-            said = json.loads(self._client.submit(_ready, self._setup, pure=False).result())
-            if said["digest"] != self._digest:
+            said = [json.loads(text) for text in self._client.run(_ready, self._setup).values()]
+            if any(one["digest"] != self._digest for one in said):
                 raise CourseError("the cluster's workers have another version of hapticlab; install the same one there")
         except BaseException:
             self._client.close()
             raise
-        self.level = said["level"]
+        self.level = weakest([one["level"] for one in said])
         return self
 
     def __exit__(self, *_):
@@ -101,8 +101,9 @@ def _reply(future):
     return Reply(died=True) if future.exception() is not None else Reply.from_json(future.result())
 
 
-def _packed(assignment, limits, sandbox):
+def _packed(assignment, limits, sandbox, hidden):
     """Return as text all that a worker elsewhere needs."""
+    hidden = [*hidden, *([str(assignment.answers)] if assignment.answers else [])]
     folders = {"labs": assignment.folder.path, **({"answers": assignment.answers} if assignment.answers else {})}
     files = {
         f"{place}/{assignment.folder.name}/{name}": base64.b64encode(path.read_bytes()).decode()
@@ -110,8 +111,8 @@ def _packed(assignment, limits, sandbox):
         for name, path in files_of(folder).items()
     }
     given = {"seed": assignment.seed, "personal": assignment.personal}
-    held = {"files": files, "name": assignment.folder.name, "given": given, "limits": asdict(limits), "sandbox": sandbox}
-    return json.dumps(held)
+    held = {"files": files, "name": assignment.folder.name, "given": given, "limits": asdict(limits)}
+    return json.dumps({**held, "sandbox": sandbox, "hidden": hidden})
 
 
 def _bench(setup):
@@ -124,7 +125,7 @@ def _bench(setup):
             path.write_bytes(base64.b64decode(content))
         answers = folder / "answers"
         assignment = find_assignment(folder / "labs" / held["name"], answers if answers.is_dir() else None, **held["given"])
-        bench = Bench(assignment, Limits(**held["limits"]), held["sandbox"], (str(folder),))
+        bench = Bench(assignment, Limits(**held["limits"]), held["sandbox"], (str(folder), *held["hidden"]))
         return bench.__enter__(), folder
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)

@@ -2,7 +2,9 @@
 
 import itertools
 from dataclasses import dataclass
+from pathlib import Path
 
+from ..course.personal import foreign_numbers
 from ..device.progress import progress_bar
 from .cluster import ClusterWorkers
 from .grade import refused
@@ -28,6 +30,8 @@ class Graded:
         How many reports the journal had already.
     processor : float
         Processor time of all of this run's workers together, their start included [s].
+    foreign : tuple of str
+        Whose submission has other numbers than it is graded by, in a sentence each.
     failed : tuple of Report
         Those that could not be graded.
     """
@@ -37,6 +41,7 @@ class Graded:
     seconds: tuple
     known: int
     processor: float
+    foreign: tuple = ()
 
     @property
     def failed(self):
@@ -71,7 +76,7 @@ def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=No
     """
     limits = limits or Limits()
     sources = find_submissions(paths, assignment.folder.name)
-    secrets = tuple(str(path) for path in (*paths, *hidden, *([journal] if journal else [])))
+    secrets = tuple(str(Path(path).resolve()) for path in (*paths, *hidden, *([journal] if journal else [])))
     if isinstance(workers, str):
         crew = ClusterWorkers(workers, assignment, limits, sandbox, secrets)
     else:
@@ -80,13 +85,13 @@ def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=No
         work = _Run(assignment, limits, sandbox, kept, bar)
         work.all(sources, crew)
     reports = sorted(work.reports, key=lambda report: (report.student, report.submission, report.sha256))
-    return Graded(tuple(reports), crew.level, tuple(work.seconds), work.known, crew.seconds)
+    return Graded(tuple(reports), crew.level, tuple(work.seconds), work.known, crew.seconds, tuple(work.foreign))
 
 
 class _Run:
     def __init__(self, assignment, limits, sandbox, journal, bar):
         self.assignment, self.limits, self.sandbox, self.journal, self.bar = assignment, limits, sandbox, journal, bar
-        self.reports, self.seconds, self.known = [], [], 0
+        self.reports, self.seconds, self.known, self.foreign = [], [], 0, []
 
     def all(self, sources, crew):
         """Grade all; at the end, one by one, those that a limit of time or the end of a worker left open."""
@@ -107,15 +112,22 @@ class _Run:
     def _tasks(self, sources):
         """Yield what can be graded and the journal does not know, read when a worker is free for it."""
         for source in sources:
-            submission = read(source)
+            submission = read(source, self.assignment.untouched)
+            self._look_at_numbers(submission)
             key = key_of(submission, self.assignment, self.limits, self.sandbox)
             if submission.problem:
-                self._keep(refused(submission, self.assignment, submission.problem, self.limits))
+                self._know(refused(submission, self.assignment, submission.problem, self.limits))
             elif key in self.journal.reports:
-                self._keep(self.journal.reports[key])
+                self._know(self.journal.reports[key])
                 self.known += 1
             else:
                 yield Task(submission, key)
+
+    def _look_at_numbers(self, submission):
+        own = self.assignment
+        said = foreign_numbers(submission.cells, own.folder, own.answers, own.seed, submission.student, own.personal)
+        if said:
+            self.foreign.append(f"{submission.student}, {submission.name}: {said}")
 
     def _take(self, task, reply):
         self.seconds.append(reply.seconds)
@@ -125,6 +137,11 @@ class _Run:
         else:  # not into the journal: another run may have more luck
             problem = reply.problem or "its code ended the process that grades, twice; it needs --sandbox namespaces or user"
             self._keep(refused(task.submission, self.assignment, problem, self.limits))
+
+    def _know(self, report):
+        """Keep a report that takes no time, which would make the time left of the bar too short."""
+        self.reports.append(report)
+        self.bar.total -= 1
 
     def _keep(self, report):
         self.reports.append(report)

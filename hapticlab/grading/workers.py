@@ -10,13 +10,16 @@ import time
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from multiprocessing.connection import wait
+from pathlib import Path
 
 from ..errors import CourseError, HapticlabError
+from . import asking
 from .assignment import Assignment
+from .formats.gradescope import GRADER_FAILED
 from .grade import MOST_WALL, Deferred, grade
 from .limits import Limits
 from .report import Report
-from .starter import start
+from .starter import LEVELS, start
 from .submission import Submission
 
 #: how long to wait at a time [s]; on Windows Ctrl-C is heard in between only
@@ -69,7 +72,9 @@ class Bench:
 
     def __init__(self, assignment: Assignment, limits: Limits, sandbox="auto", hidden=()):
         self.assignment, self.limits, self.sandbox = assignment, limits, sandbox
-        self.hidden = (*hidden, *([str(assignment.answers)] if assignment.answers else []))
+        paths = {Path(path) for path in (*hidden, *([assignment.answers] if assignment.answers else []))}
+        # what lies in another one is hidden with that
+        self.hidden = sorted(str(path) for path in paths if paths.isdisjoint(path.parents))
         self._starter = None
 
     def __enter__(self):
@@ -101,10 +106,10 @@ class Bench:
             try:
                 return grade(submission, self.assignment, self._starter, self.limits, alone=alone), ""
             except HapticlabError as problem:
-                return None, str(problem)
+                return None, f"{GRADER_FAILED}: {problem}"
             except Exception as problem:  # a student's code may end whatever it can reach; the class goes on
                 if last:
-                    return None, f"the grader failed: {type(problem).__name__}: {problem}"
+                    return None, f"{GRADER_FAILED}: {type(problem).__name__}: {problem}"
                 self.__exit__()
                 self.__enter__()
         return Deferred(submission.student), ""
@@ -114,6 +119,17 @@ def processor_seconds():
     """Return what this process and those it waited for took of processors [s]."""
     times = os.times()
     return times.user + times.system + times.children_user + times.children_system
+
+
+def weakest(levels):
+    """Return the level that keeps students' code in least.
+
+    Examples
+    --------
+    >>> weakest(["namespaces", "none", "user"])
+    'none'
+    """
+    return max(levels, key=LEVELS.index, default="")
 
 
 class Workers:
@@ -132,8 +148,7 @@ class Workers:
     def __enter__(self):
         try:
             self._all = [_Worker(self._bench) for _ in range(self.number)]
-            for worker in self._all:
-                self.level = worker.level()
+            self.level = weakest([worker.level() for worker in self._all])
         except BaseException:
             self.__exit__()
             raise
@@ -169,7 +184,7 @@ class Workers:
             if worker not in busy:
                 return worker
         self._all.append(_Worker(self._bench))
-        self._all[-1].level()
+        self.level = weakest([self.level, self._all[-1].level()])
         return self._all[-1]
 
 
@@ -191,7 +206,7 @@ class _Worker:
         self._process = context.Process(target=_work, args=(there, bench), name="hapticlab grade")
         self._process.start()
         there.close()
-        self._most, self.until = MOST_WALL * bench[1].total + GRACE, 0.0
+        self._most, self.until = MOST_WALL * bench[1].total + asking.MOST_WALL * bench[1].seconds + GRACE, 0.0
 
     def level(self):
         """Wait until it is ready; raise what keeps it from being so."""
