@@ -5,6 +5,7 @@ import importlib.util
 import json
 import re
 import sys
+from dataclasses import replace
 
 import pytest
 from handed_in import INSTRUCTOR, LABS, WRONG, earned, handed_in, run, start, text
@@ -18,6 +19,7 @@ from hapticlab.grading.nbgrader_source import nbgrader_notebook
 from hapticlab.grading.report import ExerciseReport, Report
 
 nbgrader_api = pytest.importorskip("nbgrader.api")
+CsvExportPlugin = pytest.importorskip("nbgrader.plugins.export").CsvExportPlugin
 TWO = ("01", "02")
 #: nbgrader needs four seconds to load: what one process can do is done in one, by the calls behind its commands
 CALLS = """
@@ -44,7 +46,7 @@ def released(course, lab):
 
 @pytest.fixture(scope="module")
 def course(tmp_path_factory):
-    """A course with two labs released, handed in and marked: lab 02 right, partly wrong and untouched, lab 01 partly wrong."""
+    """A course with two labs released, handed in by bob, who is partly wrong, and marked."""
     course = tmp_path_factory.mktemp("nbgrader") / "haptics"
     assert cli.main(["assign", str(course), "--for", "nbgrader", "--lab", *TWO, "--instructor", str(INSTRUCTOR)]) == 0
     first, second = LABS["01"], LABS["02"]
@@ -59,10 +61,8 @@ def course(tmp_path_factory):
             assert found["success"], found["log"]
 
         call("generate_assignment", second.name)
-        came = released(course, second)
-        submit(course, second, ada=handed_in(came, second), bob=handed_in(came, second, WRONG["02"]), eve=came)
-        for student in ("ada", "bob", "eve"):
-            call("autograde", second.name, student)
+        submit(course, second, bob=handed_in(released(course, second), second, WRONG["02"]))
+        call("autograde", second.name, "bob")
         call("generate_feedback", second.name, "bob")
         calls.stdin.close()
     return course
@@ -77,7 +77,8 @@ def scores(course):
 
 def exported(course):
     """Return what nbgrader exports: (lab, student) to score."""
-    run("nbgrader", "export", "--to", "grades.csv", cwd=course)
+    with nbgrader_api.Gradebook(f"sqlite:///{course / 'gradebook.db'}") as book:
+        CsvExportPlugin(to=str(course / "grades.csv")).export(book)
     with (course / "grades.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert {float(row["max_score"]) for row in rows} == {10.0}
@@ -97,7 +98,16 @@ def test_what_is_released_is_the_students_notebook(course, number):
 def test_marks_equal_what_was_right(course):
     bob = {(number, "bob"): earned(LABS[number], WRONG[number]) for number in TWO}
     assert all(0 < points < 10 for points in bob.values())
-    assert scores(course) == {**bob, ("02", "ada"): 10.0, ("02", "eve"): 0.0}
+    assert scores(course) == bob
+
+
+def test_a_solution_passes_every_hidden_test_and_an_open_answer_none():
+    lab = LABS["02"]
+    source = nbgrader_notebook(lab, INSTRUCTOR / lab.name)
+    assert notebooks.run(code_of(source), lab.path)[1] == []
+    tests = [number for number, cell in enumerate(code_of(source)) if "### BEGIN HIDDEN TESTS" in cell]
+    opened = [re.sub(r"### BEGIN SOLUTION.*### END SOLUTION", "", cell, flags=re.S) for cell in code_of(source)]
+    assert [problem.cell for problem in notebooks.run(opened, lab.path)[1]] == [number + 1 for number in tests]
 
 
 def test_feedback_says_what_is_wrong(course):
@@ -118,25 +128,35 @@ def test_marks_go_over_those_of_nbgrader(course):
     before = scores(course)
     lost = push(
         [
-            marked("ada", "02", held_work=1.0, two_walls=2.0),  # nbgrader gave all
-            marked("eve", "02", bounce_gain=2.0),  # nbgrader gave nothing
+            marked("bob", "02", held_work=1.0, period_leak=2.0),  # nbgrader gave all the others
+            marked("eve", "02", bounce_gain=2.0),
             marked("zoe", "01", thousand=1.0),  # never seen here
             marked("zoe", "05"),
         ],
         course / "gradebook.db",
     )
     assert lost == ["zoe, lab 05: the gradebook has no assignment of that lab; not written"]
-    changed = {("02", "ada"): 3.0, ("02", "eve"): 2.0, ("01", "zoe"): 1.0}
-    everybody = {(number, student): 0.0 for number in TWO for student in ("ada", "bob", "eve", "zoe")}
+    changed = {("02", "bob"): 3.0, ("02", "eve"): 2.0, ("01", "zoe"): 1.0}
+    everybody = {(number, student): 0.0 for number in TWO for student in ("bob", "eve", "zoe")}
     assert exported(course) == {**everybody, **before, **changed}
 
 
-def test_grade_puts_its_marks_into_the_gradebook(course):
-    push([marked("ada", "02"), marked("eve", "02", two_walls=2.0)], course / "gradebook.db")  # not what they earned
+def test_what_could_not_be_graded_changes_no_mark(course):
+    push([marked("ada", "02", bounce_gain=2.0)], course / "gradebook.db")
+    before = scores(course)
+    lost = [replace(marked(student, "02"), problem="no JSON") for student in ("ada", "nobody")]
+    assert push(lost, course / "gradebook.db") == [
+        f"{student}, lab 02: could not be graded; the gradebook keeps what it has" for student in ("ada", "nobody")
+    ]
+    assert scores(course) == before and before["02", "ada"] == 2.0
+
+
+def test_grade_puts_its_marks_into_the_gradebook(course, monkeypatch):
+    push([marked("bob", "02", two_walls=2.0)], course / "gradebook.db")  # not what bob earned
+    monkeypatch.chdir(course)
     asked = ["--lab", "02", "--instructor", str(INSTRUCTOR), "--gradebook", "gradebook.db", "--workers", "1"]
-    run(sys.executable, "-m", "hapticlab", "grade", "submitted", *asked, cwd=course)
-    found = scores(course)
-    assert [found["02", student] for student in ("ada", "bob", "eve")] == [10.0, earned(LABS["02"], WRONG["02"]), 0.0]
+    assert cli.main(["grade", "submitted", *asked]) == 0
+    assert scores(course)["02", "bob"] == earned(LABS["02"], WRONG["02"])
 
 
 def test_an_exercise_without_a_cell_is_told(course):
