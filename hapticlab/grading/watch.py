@@ -67,12 +67,13 @@ def memory(processes, shared=0):
 
 
 def anonymous(process):
-    """Return a process' resident memory that is no file's [bytes]; proc_pid_statm(5)."""
+    """Return a process' resident memory that is no file's, shared or not [bytes]; proc_pid_status(5)."""
     try:
-        resident, files = (PROC / str(process) / "statm").read_text().split()[1:3]
-    except (OSError, ValueError):
+        lines = (PROC / str(process) / "status").read_text("utf-8", "replace").split("\n")
+    except OSError:
         return 0
-    return (int(resident) - int(files)) * PAGE
+    # a name of several lines would be escaped, so no program feigns one of these
+    return sum(int(line.split()[1]) << 10 for line in lines if line.startswith(("RssAnon:", "RssShmem:")))
 
 
 def address_space(process):

@@ -27,9 +27,12 @@ REFUSED = {
 CLONE3 = 435
 CLONE = (56, 220)
 NEW_NAMESPACES = 0x7E020000
+#: shared memory without a file is still there when a process has let go of its pages, and no count of them finds it
+MMAP = (9, 222)
+SHARED, ANONYMOUS = 1, 0x20
 AUDIT_ARCH = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}
 X32 = 0x40000000
-NUMBER, ARCHITECTURE, FIRST_ARGUMENT = 0, 4, 16
+NUMBER, ARCHITECTURE, FIRST_ARGUMENT, FOURTH_ARGUMENT = 0, 4, 16, 40
 LOAD, EQUAL, AT_LEAST, ANY_BIT, RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
 ALLOW, ERRNO = 0x7FFF0000, 0x00050000
 
@@ -53,5 +56,7 @@ def program(machine=None):
         code += [(EQUAL, 0, 1, numbers[column]), (RETURN, 0, 0, ERRNO | errno.EPERM)]
     code += [(EQUAL, 0, 3, CLONE[column]), (LOAD, 0, 0, FIRST_ARGUMENT), (ANY_BIT, 0, 1, NEW_NAMESPACES)]
     code += [(RETURN, 0, 0, ERRNO | errno.EPERM)]
+    code += [(LOAD, 0, 0, NUMBER), (EQUAL, 0, 4, MMAP[column]), (LOAD, 0, 0, FOURTH_ARGUMENT)]
+    code += [(ANY_BIT, 0, 2, ANONYMOUS), (ANY_BIT, 0, 1, SHARED), (RETURN, 0, 0, ERRNO | errno.EPERM)]
     code += [(RETURN, 0, 0, ALLOW)]
     return b"".join(struct.pack("=HBBI", *instruction) for instruction in code)

@@ -9,7 +9,8 @@ from . import linux
 #: what programs and their libraries are read from
 SYSTEM = ("/usr", "/bin", "/lib", "/lib32", "/lib64", "/libx32", "/nix/store", "/etc/alternatives", "/etc/fonts",
     "/etc/ld.so.cache", "/etc/localtime")  # fmt: skip
-DEVICES = ("null", "zero", "full", "random", "urandom")
+#: not zero, of which a shared mapping is memory that no file and no process seems to hold
+DEVICES = ("null", "full", "random", "urandom")
 
 
 def move(new, seen, hidden):
