@@ -8,6 +8,7 @@ import socket
 from dataclasses import asdict
 
 from . import watch
+from .inside.protocol import MOST_NUMBERS
 
 #: what one look at a session's processes is apart from the next [s]
 PERIOD = 0.05
@@ -39,7 +40,7 @@ def parsed(line, number):
     ({'cells': 3}, None)
     """
     try:
-        if sum(map(line.count, (b"[", b"{", b'"'))) > MOST_PARTS:
+        if sum(map(line.count, (b"[", b"{", b'"'))) > MOST_PARTS or line.count(b",") > MOST_NUMBERS + FRAME:
             raise SessionEnded("garbage")
         reply = json.loads(line)
         found = reply.pop("number")

@@ -8,6 +8,8 @@ import json
 import os
 
 BLOCK = 1 << 16
+#: in a reply; each costs the grader far more than its bytes
+MOST_NUMBERS = 2_000_000
 
 
 def requests(channel):
