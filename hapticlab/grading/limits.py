@@ -15,11 +15,12 @@ class Limits:
     Parameters
     ----------
     seconds : float
-        Wall clock of one step, which is a cell, or an exercise with all its cases [s].
+        Of one step, which is a cell, or an exercise's cases: its processor time, or the wall clock without what it waited for
+        a processor that others had, whichever is more [s]. On macOS and Windows it is the wall clock.
     total : float
-        Wall clock of a whole submission [s].
+        Of a whole submission, counted alike [s].
     memory : int
-        Of all its processes together [bytes].
+        Of all its processes together, looked at 20 times a second; on Linux also what a process may reserve at all [bytes].
     processes : int
         At one time.
     scratch : int

@@ -35,6 +35,7 @@ class SpawnedStarter:
     level = "none"
 
     def __init__(self, package, environment):
+        self.refused = dict.fromkeys(("namespaces", "user"), "only Linux has it")
         self.package = str(Path(package).parent)
         self.environment = {**{name: os.environ[name] for name in KEPT if name in os.environ}, **environment}
 

@@ -57,13 +57,15 @@ def start(sandbox="auto", hidden=()):
         if sandbox in ("auto", "none"):
             return SpawnedStarter(PACKAGE, ENVIRONMENT)
         raise CourseError(f"sandbox = {sandbox!r}; only Linux has it; on this system use auto or none")
+    refused = {}
     for level in LEVELS if sandbox == "auto" else (sandbox,):
         try:
-            return Starter(level, hidden)
+            starter = Starter(level, hidden)
+            starter.refused = refused
+            return starter
         except _Refused as refusal:
-            if sandbox != "auto":
-                raise CourseError(f"sandbox {level}: {refusal}; try another of auto, {', '.join(LEVELS)}") from None
-    raise AssertionError("level none is never refused")
+            refused[level] = str(refusal)
+    raise CourseError(f"sandbox {sandbox}: {refused[sandbox]}; try another of auto, {', '.join(LEVELS)}")
 
 
 class _Refused(Exception):
@@ -77,10 +79,12 @@ class Starter:
     ----------
     level : str
         "namespaces", "user" or "none".
+    refused : dict
+        Why better levels do not work here: level to words.
     """
 
     def __init__(self, level, hidden=()):
-        self.level, self.now, self.process = level, None, None
+        self.level, self.now, self.process, self.refused = level, None, None, {}
         self.hidden = [str(Path(path).resolve()) for path in (PACKAGE / "labs", *hidden)]
         if level == "user" and not _is_root():
             raise _Refused("only root can run code as another user")

@@ -5,6 +5,7 @@ import os
 import pytest
 
 from hapticlab.errors import CourseError
+from hapticlab.grading.asking import parsed
 from hapticlab.grading.limits import MIB, Limits
 from hapticlab.grading.starter import SessionEnded, start
 from hapticlab.grading.watch import descendants
@@ -95,6 +96,11 @@ def test_a_reply_written_before_its_request_is_none(starter):
     ahead = f"[os.write({SOCKET}, b'{{\"number\": %d, \"outcomes\": [7]}}\\n' % k) for k in range(9)]"
     with loaded(starter, f"{IMPORTS}{ahead}\nk = 2.5") as session:
         assert value(session, "k") == 2.5
+
+
+def test_a_reply_of_too_many_numbers_is_not_read():
+    with pytest.raises(SessionEnded, match="garbage"):
+        parsed(b'{"number": 0, "a": [' + b"0," * 3_000_000 + b"0]}", "another")
 
 
 def test_sleep_and_work_are_charged(starter):

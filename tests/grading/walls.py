@@ -1,7 +1,7 @@
 """Attacks on the walls of a session, each an expression of text: what it came to, or the error it met.
 
 ``python walls.py LEVEL [USER [LEFT_OUT...]]`` tries them and prints what each came to as JSON; with a USER, as that one in a root
-where anybody can read Python.
+where anybody can read Python. At level auto there are no namespaces.
 """
 
 import json
@@ -14,13 +14,13 @@ from pathlib import Path
 import numpy as np
 
 from hapticlab.errors import CourseError
-from hapticlab.grading.inside import linux, root, sandbox
+from hapticlab.grading.inside import callfilter, linux, root, sandbox
 from hapticlab.grading.limits import MIB, Limits
 from hapticlab.grading.starter import PACKAGE, seen, start
 
 LIMITS = Limits(memory=300 * MIB, processes=16, scratch=4 * MIB)
 BEFORE = """
-import ctypes, os, pathlib, signal, socket, stat, subprocess, sys
+import ctypes, mmap, os, pathlib, signal, socket, stat, subprocess, sys
 import numpy as np
 libc = ctypes.CDLL(None, use_errno=True)
 def called(number, *arguments):
@@ -53,6 +53,8 @@ ATTACKS = {
     "secret": ("os.environ.get('SECRET')", "None"),
     "ptrace": ("called(101 if os.uname().machine == 'x86_64' else 117, 0, 0, 0, 0)", "Operation not permitted"),
     "unshare": ("subprocess.run(['unshare', '-r', 'true'], stderr=subprocess.DEVNULL).returncode", "1"),
+    "shared_memory": ("mmap.mmap(-1, 4096)", "PermissionError"),
+    "zeros": ("open('/dev/zero')", "FileNotFoundError"),
     "memory_file": ("os.memfd_create('m')", "PermissionError"),
     "site_packages": ("open(f'{os.path.dirname(np.__file__)}/new.py', 'w')", "OSError"),
     "system": ("open('/usr/bin/new', 'w')", "OSError"),
@@ -109,12 +111,14 @@ if __name__ == "__main__":
     os.environ.update(SECRET="seen", HOME="/tmp")
     paths = hidden(Path(tempfile.mkdtemp()))
     refused = {}
-    if level == "user":
+    if level == "auto":  # as a container without privileges does it
+        callfilter.REFUSED = {"unshare": callfilter.REFUSED["unshare"]}
+        linux.filter_calls(callfilter.program())
         paths[0].parent.chmod(0o755)
         try:
             start(level, hidden=paths[:1]).close()
         except CourseError as refusal:
             refused = {"refused": str(refusal)}
     paths[0].chmod(0o600)
-    with start(level, hidden=paths[:1] if level == "user" else paths) as starter:
-        print(json.dumps(refused | tried(starter, paths, left_out)))
+    with start(level, hidden=paths[:1] if level == "auto" else paths) as starter:
+        print(json.dumps(refused | starter.refused | tried(starter, paths, left_out)))
