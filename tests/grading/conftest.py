@@ -58,7 +58,7 @@ class _Here:
     """A crew of one bench in this process; used as :class:`hapticlab.grading.workers.Workers`."""
 
     def __init__(self, number, *bench):
-        self.number, self._bench, self.level, self.seconds = 1, Bench(*bench), "", 0.0
+        self.number, self._bench, self.level, self.seconds, self.refused = 1, Bench(*bench), "", 0.0, {}
 
     def __enter__(self):
         self._began = processor_seconds()
