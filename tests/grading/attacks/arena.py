@@ -12,23 +12,24 @@ from hapticlab.grading.limits import MIB, Limits
 from hapticlab.grading.naming import student_of
 from hapticlab.grading.run import run
 
-from . import broken, eating, ending, forging, injecting, spying
+from . import broken, eating, ending, forging, injecting, leaking, spying
 from .small_lab import write_lab
 
-ATTACKS = tuple(one for sort in (broken, eating, ending, forging, spying, injecting) for one in sort.ATTACKS)
+ATTACKS = tuple(one for sort in (broken, eating, ending, forging, spying, injecting, leaking) for one in sort.ATTACKS)
 HONEST = tuple(one for one in broken.ATTACKS if one.name.startswith("honest"))
+#: the plainest one, and holes there were
+ALWAYS = ("fork_bomb", "memory_that_is_shared", "reply_with_its_number")
 #: what waits for its limits, one of each sort
 WAITING = ("hang_in_a_cell", "hang_that_swallows", "stop_its_parent")
-#: what every run of the tests holds: some of each sort, and whoever spies
-QUICK = (
-    *(one for one in ATTACKS if one.name in WAITING),
-    *(
-        one
-        for sort, step in ((broken, 3), (eating, 3), (ending, 2), (forging, 2), (spying, 1), (injecting, 3))
-        for one in [one for one in sort.ATTACKS if not one.patience][::step]
-    ),
+PATIENT = tuple(one for one in ATTACKS if one.name in WAITING)
+#: what every run of the tests holds beside these: some of each sort
+QUICK = tuple(
+    one
+    for sort, step in ((broken, 6), (eating, 4), (ending, 4), (forging, 4), (spying, 1), (injecting, 5), (leaking, 1))
+    for number, one in enumerate(one for one in sort.ATTACKS if not one.patience)
+    if number % step == 0 or one.name in ALWAYS
 )
-LIMITS = Limits(seconds=1.5, memory=400 * MIB)
+LIMITS = Limits(seconds=4.0, memory=400 * MIB)
 TOKEN = "hapticlab_was_here"
 
 
@@ -44,6 +45,7 @@ class Arena:
     def __init__(self, place, attacks):
         self.place, self.attacks = place, attacks
         self.lab, self.answers = write_lab(place)
+        self.assignment = find_assignment(self.lab, self.answers.parent, seed=5)
         self.submissions, self.canary = place / "submissions", place / "canary"
         self.journal = place / "results.json.journal.jsonl"
         self.submissions.mkdir()
@@ -86,10 +88,9 @@ class Arena:
         folders = (self.submissions, self.lab, self.answers)
         return {path: path.read_bytes() for folder in folders for path in folder.rglob("*") if path.is_file()}
 
-    def graded(self, workers=2, sandbox="auto", limits=LIMITS):
-        """Grade all, and return what that gave."""
-        assignment = find_assignment(self.lab, self.answers.parent, seed=5)
-        return run([self.submissions], assignment, limits, workers=workers, sandbox=sandbox, journal=self.journal)
+    def graded(self, workers=2, limits=LIMITS):
+        """Grade all, in namespaces or not at all, and return what that gave."""
+        return run([self.submissions], self.assignment, limits, workers=workers, sandbox="namespaces", journal=self.journal)
 
     def by_attack(self, graded):
         """Return the report of each attack by its name."""

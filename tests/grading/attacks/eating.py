@@ -109,6 +109,25 @@ ATTACKS = (
             time.sleep(1e6)""",
     ),
     attack(
+        "memory_that_is_shared",
+        energy="""
+        import mmap, os, time
+        def energy(x, k):
+            for _ in range(8):
+                if not os.fork():
+                    try:
+                        held = mmap.mmap(-1, 80 << 20)
+                        for place in range(0, len(held), 4096):
+                            held[place] = 1
+                        time.sleep(1e6)
+                    finally:
+                        os._exit(0)
+            for _ in range(8):
+                os.wait()
+            return 1.0""",
+        ended={"energy": ""},  # there is none, so nobody waits for it
+    ),
+    attack(
         "leak_without_collection",
         energy="""
         import gc

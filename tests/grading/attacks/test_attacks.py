@@ -5,6 +5,7 @@ import io
 import json
 import re
 import sys
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
@@ -16,8 +17,8 @@ from hapticlab.grading.pages import write_pages
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="namespaces are Linux'; elsewhere there are only limits")
 
 if sys.platform == "linux":
-    from attacks import injecting
-    from attacks.arena import ATTACKS, HONEST, QUICK, Arena
+    from attacks import injecting, leaking
+    from attacks.arena import ATTACKS, HONEST, LIMITS, PATIENT, QUICK, Arena
     from attacks.small_lab import POINTS
 
 #: what moves a cursor or turns the reading direction
@@ -42,9 +43,10 @@ def reports(arena, graded):
 
 def test_the_corpus_is_what_it_says():
     assert len({one.name for one in ATTACKS}) == len(ATTACKS) >= 200
-    assert len({one.name for one in QUICK}) == len(QUICK) >= 100
+    assert len({one.name for one in QUICK}) == len(QUICK) >= 70
+    assert len(PATIENT) == 3 and not any(one.patience for one in QUICK)
     assert len(HONEST) > 10 and all(one.earned == 10 == sum(POINTS.values()) for one in HONEST)
-    assert sum(one.earned == 0 for one in QUICK) >= 3 and len({one.lost for one in QUICK}) > 10
+    assert sum(one.earned == 0 for one in QUICK) >= 2 and len({one.lost for one in QUICK}) > 10
 
 
 def test_there_are_walls(graded):
@@ -74,11 +76,18 @@ def test_nothing_outside_was_reached(graded, arena):
     assert not arena.reached()
 
 
-def test_honest_reports_are_the_same_without_attackers(reports, tmp_path):
+def test_who_waits_for_a_limit_of_time_loses_that_alone(here, tmp_path):
+    with Arena(tmp_path, PATIENT) as arena, here():
+        found = arena.by_attack(arena.graded(workers=1, limits=replace(LIMITS, seconds=1.0)))
+    for one in PATIENT:
+        check(one, found[one.name])
+
+
+def test_honest_reports_are_the_same_without_attackers(reports, here, tmp_path):
     honest = [one for one in QUICK if one in HONEST]
-    with Arena(tmp_path, honest) as arena:
+    with Arena(tmp_path, honest) as arena, here():
         alone = arena.by_attack(arena.graded(workers=1))
-    assert len(honest) > 3
+    assert len(honest) >= 3
     assert {name: report.to_json() for name, report in alone.items()} == {one.name: reports[one.name].to_json() for one in honest}
 
 
@@ -108,6 +117,19 @@ def test_a_terminal_shows_what_they_wrote(graded):
 def test_other_systems_get_json(graded, name):
     for report in graded.reports:
         json.loads(formats.write(name, [report]), parse_constant=pytest.fail)
+
+
+@pytest.mark.parametrize("name", ["gradescope", "prairielearn"])
+def test_who_hands_in_again_learns_no_hidden_given(arena, reports, name):
+    for report in (reports[one.name] for one in leaking.ATTACKS):
+        cases = arena.assignment.cases(report.student)["force"]
+        public, *hidden = (case.given["k"] for case, told in sorted(cases, key=lambda one: not one[1]))
+        hidden = [k for k in hidden if k != public]
+        text = formats.write(name, [report])
+        assert len(hidden) == 2 and not [k for k in hidden if repr(k)[:7] in text], report.student
+        assert not [one.slip for one in report.exercises if "givens" in one.slip]
+    told = [one.printed for one in reports["hidden_givens_printed"].exercises if one.name == "force"]
+    assert "'k': 200.0" in told[0], "the attack works: a public case tells its own givens"
 
 
 class Page(HTMLParser):
