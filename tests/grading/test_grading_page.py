@@ -90,13 +90,16 @@ def test_the_lab_of_the_page_is_graded(own_lab, here, tmp_path, capsys):
     assert (force["cases"], way["cases"], way["earned"]) == (5, 1, 1.0) and why["text"].startswith("A spring that is let go")
 
 
-def test_the_lab_of_the_page_checks_itself_and_gives_own_numbers(own_lab, tmp_path):
+def test_the_lab_of_the_page_checks_itself_gives_own_numbers_and_can_be_assigned(own_lab, tmp_path, capsys):
     answers = tmp_path / "answers" / "20_spring"
     cells = code_of(solved_notebook(own_lab, answers))
-    names, problems = run([*cells, "judged = [" + cells[-1].replace("\n", ", ") + "]"], own_lab.path)
-    assert problems == [] and [one.passed for one in names["judged"]] == [True] * 4
+    checks = [cell for cell in cells if cell.startswith("hl.check")]
+    names, problems = run([*cells, f"judged = [{', '.join(checks)}]"], own_lab.path)
+    assert problems == [] and [one.passed for one in names["judged"]] == [True] * 5
     lines = ["".join(cell["source"]) for cell in personal_notebook(own_lab, answers, 3, "ada")["cells"]]
     assert re.search(r"^K_OWN = (300|400|750)\.0", "\n".join(lines), re.M)
+    assert main(["assign", "course", "--for", "nbgrader", "--lab", "mine/20_spring", "--instructor", "answers"]) == 0
+    assert f"written: {Path('course', 'source', '20_spring')}" in capsys.readouterr().out
 
 
 def first_column(head):
