@@ -19,6 +19,8 @@ from .limits import Limits
 from .spawned import SpawnedStarter
 
 LEVELS = "namespaces", "user", "none"
+#: more process ids no Linux has; pid_max in proc(5)
+PROCESSES = 1 << 22
 PACKAGE = Path(__file__).resolve().parents[1]
 #: one thread, as a zygote forks; no port but a simulated one; the same order of sets in every run
 ENVIRONMENT = {
@@ -84,7 +86,7 @@ class Starter:
     """
 
     def __init__(self, level, hidden=()):
-        self.level, self.now, self.process, self.refused = level, None, None, {}
+        self.level, self.now, self.process, self.refused, self.sessions = level, None, None, {}, 0
         self.hidden = [str(Path(path).resolve()) for path in (PACKAGE / "labs", *hidden)]
         if level == "user" and not _is_root():
             raise _Refused("only root can run code as another user")
@@ -155,6 +157,9 @@ class Starter:
         if self.process.poll() is not None:  # at level none, student's code can kill it
             self.control.close()
             self._begin()
+        self.sessions += 1
+        if self.level == "user":  # what one leaves in the system's folders, the next one may not read
+            self.user = _free_user(self.process.pid, self.sessions)
         self.now = Session(self, limits)
         return self.now
 
@@ -189,7 +194,9 @@ def _is_root():
     return hasattr(os, "geteuid") and os.geteuid() == 0
 
 
-def _free_user(process):
-    """Return the number of a user that nobody has, another for each zygote; few are mapped in a container without root."""
+def _free_user(process, session=0):
+    """Return the number of a user that nobody has, another for each zygote and session; few in a container without root."""
     first, _, mapped = map(int, Path("/proc/self/uid_map").read_text().split()[:3])
-    return 10**9 + process if mapped > 2 * 10**9 else first + mapped - 2 - process % (mapped // 4)
+    if mapped < 4 * 10**9:
+        return first + mapped - 2 - process % (mapped // 4)
+    return 10**9 + process + session % 700 * PROCESSES

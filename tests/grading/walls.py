@@ -44,6 +44,7 @@ ATTACKS = {
     "answers": ("open(ANSWERS).read()", "FileNotFoundError"),
     "masked_file": ("open(MASKED).read() or 'empty'", "empty"),
     "masked_folder": ("os.listdir(MASKED_FOLDER)", "PermissionError"),
+    "left_by_another": ("open(LEFT).read()", "FileNotFoundError"),
     "labs": ("os.path.exists(LABS + '/02_virtual_wall')", "False"),
     "other_processes": ("len([p for p in os.listdir('/proc') if p.isdigit()]) < 5", "True"),
     "parents_memory": ("open('/proc/1/mem', 'rb')", "PermissionError"),
@@ -81,10 +82,14 @@ def tried(starter, paths, left_out=()):
     name = f"hapticlab-{os.getpid()}"
     neighbour.bind("\0" + name)
     neighbour.listen()
-    given = {"PORT": listener.getsockname()[1], "NAME": name, "GRADER": os.getpid(), "LABS": str(PACKAGE / "labs")}
+    given = {"PORT": listener.getsockname()[1], "NAME": name, "GRADER": os.getpid()}
+    given |= {"LABS": str(PACKAGE / "labs"), "LEFT": f"/tmp/{name}"}
     given |= dict(zip(("ANSWERS", "MASKED", "MASKED_FOLDER"), map(str, paths), strict=True))
     cell = BEFORE + "".join(f"{key} = {value!r}\n" for key, value in given.items())
     cell += "".join(f"{key} = attempt(lambda: {attack})\n" for key, attack in attacks.items())
+    with starter.session(LIMITS) as session:
+        session.ask({"do": "load", "cells": [f"open('/tmp/{name}', 'w').write('4')"], "files": {}}, 20)
+        assert session.ask({"do": "run", "cell": 0}, 20) == {"problem": ""}
     with listener, neighbour, starter.session(LIMITS) as session:
         session.ask({"do": "load", "cells": [cell], "files": {}}, 20)
         problem = session.ask({"do": "run", "cell": 0}, 20)["problem"]

@@ -57,6 +57,7 @@ def clear_tmp(size):
 def enter(request):
     """Go behind the walls, for ever."""
     os.chdir(request["scratch"])
+    os.umask(0o077)
     os.environ.pop("XDG_CACHE_HOME", None)
     os.environ.update(HOME=request["scratch"], TMPDIR=request["scratch"])
     limit(request)
