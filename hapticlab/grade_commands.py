@@ -154,6 +154,8 @@ def _tell(done, roster):
     """Say what stood around the students' code, what it cost, who could not be graded, and who handed in nothing."""
     if done.level in WEAK:
         _say(f"warning: {WEAK[done.level]}")
+    for level, reason in done.refused.items():
+        _say(f"no {level} here: {reason}")
     graded = f"{len(done.seconds)} graded, {done.known} known from before"
     if done.seconds:
         each = done.processor / len(done.seconds)

@@ -41,7 +41,7 @@ class ClusterWorkers:
     """
 
     def __init__(self, address, assignment, limits, sandbox="auto", hidden=()):
-        self.address, self.number, self.level, self.seconds = address, 0, "", 0.0
+        self.address, self.number, self.level, self.refused, self.seconds = address, 0, "", {}, 0.0
         self._setup, self._digest = _packed(assignment, limits, sandbox, hidden), assignment.digest
 
     def __enter__(self):
@@ -57,7 +57,7 @@ class ClusterWorkers:
         except BaseException:
             self._client.close()
             raise
-        self.level = weakest([one["level"] for one in said])
+        self.level, self.refused = weakest([(one["level"], one["refused"]) for one in said])
         return self
 
     def __exit__(self, *_):
@@ -146,7 +146,10 @@ def _with_bench(setup, work):
 
 
 def _ready(setup):
-    return _with_bench(setup, lambda bench: json.dumps({"level": bench.level, "digest": bench.assignment.digest}))
+    return _with_bench(
+        setup,
+        lambda bench: json.dumps({"level": bench.level, "refused": bench.refused, "digest": bench.assignment.digest}),
+    )
 
 
 def _graded(setup, text):

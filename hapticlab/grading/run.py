@@ -1,7 +1,7 @@
 """A class is graded: many submissions at once, each report kept as soon as it is known."""
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..course.personal import foreign_numbers
@@ -32,6 +32,8 @@ class Graded:
         Processor time of all of this run's workers together, their start included [s].
     foreign : tuple of str
         Whose submission has other numbers than it is graded by, in a sentence each.
+    refused : dict
+        Why there were no better walls, level to words.
     failed : tuple of Report
         Those that could not be graded.
     """
@@ -42,6 +44,7 @@ class Graded:
     known: int
     processor: float
     foreign: tuple = ()
+    refused: dict = field(default_factory=dict)
 
     @property
     def failed(self):
@@ -85,7 +88,8 @@ def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=No
         work = _Run(assignment, limits, sandbox, kept, bar)
         work.all(sources, crew)
     reports = sorted(work.reports, key=lambda report: (report.student, report.submission, report.sha256))
-    return Graded(tuple(reports), crew.level, tuple(work.seconds), work.known, crew.seconds, tuple(work.foreign))
+    seconds, foreign = tuple(work.seconds), tuple(work.foreign)
+    return Graded(tuple(reports), crew.level, seconds, work.known, crew.seconds, foreign, crew.refused)
 
 
 class _Run:

@@ -92,6 +92,11 @@ class Bench:
         """Which walls there are around a student's processes."""
         return self._starter.level
 
+    @property
+    def refused(self):
+        """Why there are no better ones, level to words."""
+        return self._starter.refused
+
     def graded(self, text):
         """Grade a task of :func:`as_json`, and answer as JSON."""
         held, began = json.loads(text), time.perf_counter()
@@ -121,15 +126,20 @@ def processor_seconds():
     return times.user + times.system + times.children_user + times.children_system
 
 
-def weakest(levels):
-    """Return the level that keeps students' code in least.
+def weakest(several):
+    """Return the level that keeps students' code in least, and why there is no better one.
+
+    Parameters
+    ----------
+    several : iterable of (str, dict)
+        Of workers: level, and level to why it was refused.
 
     Examples
     --------
-    >>> weakest(["namespaces", "none", "user"])
-    'none'
+    >>> weakest([("namespaces", {}), ("none", {"namespaces": "forbidden", "user": "not root"}), ("user", {})])
+    ('none', {'namespaces': 'forbidden', 'user': 'not root'})
     """
-    return max(levels, key=LEVELS.index, default="")
+    return max(several, key=lambda one: LEVELS.index(one[0]))
 
 
 class Workers:
@@ -143,12 +153,13 @@ class Workers:
     """
 
     def __init__(self, number, *bench):
-        self.number, self._bench, self._all, self.level, self.seconds = number, bench, [], "", 0.0
+        self.number, self._bench, self._all, self.seconds = number, bench, [], 0.0
+        self.level, self.refused = "", {}
 
     def __enter__(self):
         try:
             self._all = [_Worker(self._bench) for _ in range(self.number)]
-            self.level = weakest([worker.level() for worker in self._all])
+            self.level, self.refused = weakest([worker.level() for worker in self._all])
         except BaseException:
             self.__exit__()
             raise
@@ -184,7 +195,7 @@ class Workers:
             if worker not in busy:
                 return worker
         self._all.append(_Worker(self._bench))
-        self.level = weakest([self.level, self._all[-1].level()])
+        self.level, self.refused = weakest([(self.level, self.refused), self._all[-1].level()])
         return self._all[-1]
 
 
@@ -209,14 +220,14 @@ class _Worker:
         self._most, self.until = MOST_WALL * bench[1].total + asking.MOST_WALL * bench[1].seconds + GRACE, 0.0
 
     def level(self):
-        """Wait until it is ready; raise what keeps it from being so."""
+        """Wait until it is ready, and return its level and why it has no better one; raise what keeps it from being so."""
         try:
             said = json.loads(self.connection.recv_bytes())
         except (EOFError, OSError):
             raise CourseError("a process that grades ended as it began; is there memory for it?") from None
         if said["problem"]:
             raise CourseError(said["problem"])
-        return said["level"]
+        return said["level"], said["refused"]
 
     def begin(self, task, alone):
         """Give it a task; whether it still lives is seen when it should reply."""
@@ -260,7 +271,7 @@ def _work(connection, bench):
     with suppress(EOFError, OSError):
         try:
             with Bench(*bench) as ready:
-                connection.send_bytes(json.dumps({"level": ready.level, "problem": ""}).encode())
+                connection.send_bytes(json.dumps({"level": ready.level, "refused": ready.refused, "problem": ""}).encode())
                 while True:
                     connection.send_bytes(ready.graded(connection.recv_bytes()).encode())
         except HapticlabError as problem:

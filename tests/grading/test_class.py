@@ -9,12 +9,13 @@ from attacks.small_lab import OPEN, notebook, write_lab
 
 from hapticlab.cli import main
 from hapticlab.device.progress import progress_bar
+from hapticlab.grade_commands import _tell
 from hapticlab.grading.assignment import find_assignment
 from hapticlab.grading.cluster import ClusterWorkers
 from hapticlab.grading.grade import refused
 from hapticlab.grading.journal import Journal, key_of
 from hapticlab.grading.limits import Limits
-from hapticlab.grading.run import _Run
+from hapticlab.grading.run import Graded, _Run
 from hapticlab.grading.submission import Submission, find_submissions, read
 from hapticlab.grading.workers import Bench, Reply, Task, as_json
 
@@ -91,3 +92,9 @@ def test_a_worker_hides_what_this_computer_hides(course, tmp_path):
     assert set(Bench(course, Limits(), "none", (*hidden, str(inside))).hidden) == hidden, "the answers lie in one of them"
     crew = ClusterWorkers("tcp://127.0.0.1:1", course, Limits(), "none", tuple(hidden))
     assert set(json.loads(crew._setup)["hidden"]) == {*hidden, str(course.answers)}
+
+
+def test_why_there_are_no_better_walls_is_told(capsys):
+    _tell(Graded((), "none", (), 3, 0.0, refused={"namespaces": "unshare: Operation not permitted"}), None)
+    told = capsys.readouterr().err
+    assert "which runs with your rights" in told and "no namespaces here: unshare: Operation not permitted" in told
