@@ -8,8 +8,10 @@ from ..course.evaluate import Outcome
 
 #: characters kept of a student's own words in a report, and of why there is no value
 TEXT, PROBLEM = 20_000, 400
-#: what an answer may have of lists and dicts, and of names in one dict, which cost the grader more than their bytes
+#: what a value may have of lists and dicts, and of names in one dict, which cost the grader more than their bytes
 LISTS, NAMES = 200_000, 1000
+#: numbers of a whole reply
+MOST_NUMBERS = 1_000_000
 #: numbers kept of a list in a report, entries of a dict, and how deep both may nest
 NUMBERS, ENTRIES, DEPTH = 2000, 50, 32
 #: what moves a terminal's cursor, turns the reading direction, or cannot be written as UTF-8
@@ -52,13 +54,15 @@ def outcomes_of(reply, count, printed):
     several = reply.get("outcomes")
     if not isinstance(several, list) or len(several) != count:
         raise Garbage("not one outcome for each case")
-    return [_outcome(one, printed) for one in several]
+    left = [0, MOST_NUMBERS]
+    return [_outcome(one, printed, left) for one in several]
 
 
-def _outcome(one, printed):
+def _outcome(one, printed, left):
     if not isinstance(one, dict) or set(one) != {"value", "problem", "printed"}:
         raise Garbage("no outcome")
-    return Outcome(_value(one["value"]), line_of(one["problem"], PROBLEM), text_of(one["printed"], printed))
+    left[0] = LISTS
+    return Outcome(_value(one["value"], left), line_of(one["problem"], PROBLEM), text_of(one["printed"], printed))
 
 
 def text_of(text, most=TEXT):
@@ -80,23 +84,25 @@ def line_of(text, most=PROBLEM):
     return " ".join(text_of(text, most).split())
 
 
-def _value(value, depth=DEPTH, left=None):
-    """Return a plain value anew: None, bools, floats, texts, lists of numbers, dicts by text."""
-    left = [LISTS] if left is None else left
+def _value(value, left, depth=DEPTH):
+    """Return a plain value anew: None, bools, floats, texts, lists of numbers, dicts by text.
+
+    ``left`` are the lists and dicts that it may still have, and the numbers in lists that the whole reply may.
+    """
     if value is None or isinstance(value, bool):
         return value
     if isinstance(value, str):
         return text_of(value)
     if isinstance(value, dict) and depth and len(value) <= NAMES:
-        _count(left)
-        return {line_of(name): _value(part, depth - 1, left) for name, part in value.items()}
-    return _numbers(value, depth, left)
+        _count(left, 0)
+        return {line_of(name): _value(part, left, depth - 1) for name, part in value.items()}
+    return _numbers(value, left, depth)
 
 
-def _numbers(value, depth, left):
+def _numbers(value, left, depth):
     if isinstance(value, list) and depth:
-        _count(left)
-        return [_numbers(part, depth - 1, left) for part in value]
+        _count(left, len(value))
+        return [_numbers(part, left, depth - 1) for part in value]
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise Garbage("no plain value")
     try:
@@ -105,10 +111,11 @@ def _numbers(value, depth, left):
         raise Garbage("no number that a float holds") from None
 
 
-def _count(left):
+def _count(left, numbers):
     left[0] -= 1
-    if left[0] < 0:
-        raise Garbage("more lists than any answer has")
+    left[1] -= numbers
+    if min(left) < 0:
+        raise Garbage("more lists or numbers than any answer has")
 
 
 def rounded(value, most=NUMBERS):

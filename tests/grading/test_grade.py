@@ -151,8 +151,8 @@ def test_what_cannot_be_read_is_a_report_too(assignment, starter):
 
 @pytest.mark.parametrize(
     "value",
-    [[[1.0, "2"]], 10**400, {"F": [None]}, [True], {str(n): 0.0 for n in range(1001)}, [[]] * 200_001],
-    ids=["text in a list", "huge", "none in a list", "bool in a list", "names", "lists"],
+    [[[1.0, "2"]], 10**400, {"F": [None]}, [True], {str(n): 0.0 for n in range(1001)}, [[]] * 200_001, [0] * 1_000_001],
+    ids=["text in a list", "huge", "none in a list", "bool in a list", "names", "lists", "numbers"],
 )
 def test_a_reply_that_holds_no_plain_value_is_garbage(value):
     with pytest.raises(Garbage):
