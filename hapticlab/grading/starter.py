@@ -3,11 +3,12 @@
 import json
 import os
 import secrets
+import shutil
 import socket
 import subprocess
 import sys
 import tempfile
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import asdict
 from pathlib import Path
 
@@ -158,7 +159,7 @@ class Starter:
             self.control.close()
             self._begin()
         self.sessions += 1
-        if self.level == "user":  # what one leaves in the system's folders, the next one may not read
+        if self.level == "user":
             self.user = _free_user(self.process.pid, self.sessions)
         self.now = Session(self, limits)
         return self.now
@@ -170,6 +171,8 @@ class Starter:
         except OSError:  # it is gone: at level none, student's code can kill it
             self.process.wait()
             watch.kill_marked(self.mark)
+        if self.level == "user":
+            _delete_files_of(self.user)
 
     def close(self):
         """End the session and the zygote."""
@@ -183,6 +186,18 @@ class Starter:
 
     def __exit__(self, *_):
         self.close()
+
+
+def _delete_files_of(user):
+    """Delete what a user left where anybody may write: no session reads what another knew."""
+    for folder in {tempfile.gettempdir(), "/tmp", "/var/tmp", "/dev/shm"}:
+        with suppress(OSError):
+            for entry in list(os.scandir(folder)):
+                if entry.stat(follow_symlinks=False).st_uid == user:
+                    if entry.is_dir(follow_symlinks=False):
+                        shutil.rmtree(entry, ignore_errors=True)
+                    else:
+                        os.unlink(entry)
 
 
 def seen():

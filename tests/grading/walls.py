@@ -87,8 +87,9 @@ def tried(starter, paths, left_out=()):
     given |= dict(zip(("ANSWERS", "MASKED", "MASKED_FOLDER"), map(str, paths), strict=True))
     cell = BEFORE + "".join(f"{key} = {value!r}\n" for key, value in given.items())
     cell += "".join(f"{key} = attempt(lambda: {attack})\n" for key, attack in attacks.items())
+    leave = f"import os\nopen('/tmp/{name}', 'w').write('4')\nos.chmod('/tmp/{name}', 0o666)"
     with starter.session(LIMITS) as session:
-        session.ask({"do": "load", "cells": [f"open('/tmp/{name}', 'w').write('4')"], "files": {}}, 20)
+        session.ask({"do": "load", "cells": [leave], "files": {}}, 20)
         assert session.ask({"do": "run", "cell": 0}, 20) == {"problem": ""}
     with listener, neighbour, starter.session(LIMITS) as session:
         session.ask({"do": "load", "cells": [cell], "files": {}}, 20)
