@@ -146,8 +146,11 @@ def _write(options, assignment, reports, roster, output):
     if options.pages:
         write_pages(reports, options.pages, lab=assignment.lab)
     if options.gradebook:
-        for said in push(reports, options.gradebook, options.assignment or None):
+        lost = push(reports, options.gradebook, options.assignment or None)
+        for said in lost:
             _say(said)
+        students = len({report.student for report in reports if not report.problem})
+        _say(f"pushed marks of {students} student{'s' * (students != 1)} into {options.gradebook}{', but for what is said above' * bool(lost)}")
 
 
 def _tell(done, roster):
