@@ -150,7 +150,8 @@ def _write(options, assignment, reports, roster, output):
         for said in lost:
             _say(said)
         students = len({report.student for report in reports if not report.problem})
-        _say(f"pushed marks of {students} student{'s' * (students != 1)} into {options.gradebook}{', but for what is said above' * bool(lost)}")
+        whose = f"{students} student{'s' * (students != 1)}"
+        _say(f"pushed marks of {whose} into {options.gradebook}{', but for what is said above' * bool(lost)}")
 
 
 def _tell(done, roster):
