@@ -91,7 +91,7 @@ except hl.CourseError:
         "walks_the_disk",
         """
 from itertools import islice
-for top in ("/tmp", "/var/tmp", "/home", "/root", "/work", "/mnt", "/srv", "/dev/shm", "..", "/proc/1/root/tmp"):
+for top in ("/tmp", "/var/tmp", "/home", "/root", "/mnt", "/srv", "/dev/shm", "..", "/proc/1/root/tmp"):
     for folder, _, names in islice(os.walk(top), 200):
         for name in names:
             if name.endswith((".py", ".ipynb", ".json", ".jsonl")):
