@@ -2,7 +2,7 @@
 
 import pytest
 from class_reports import class_of
-from lab import FLAGS, chromium, missing, picture
+from lab import picture
 
 from hapticlab.grading.page_text import file_name
 from hapticlab.grading.pages import write_pages
@@ -47,14 +47,9 @@ BROKEN = """() => [...document.querySelectorAll("thead th")].filter((head) => {
 
 
 @pytest.fixture(scope="module")
-def browser():
-    playwright = pytest.importorskip("playwright.sync_api")
-    if not chromium():
-        pytest.skip(missing())
-    with playwright.sync_playwright() as running:
-        opened = running.chromium.launch(executable_path=chromium(), args=FLAGS)
-        yield opened
-        opened.close()
+def browser(lab):
+    """The one that all tests of this folder share: playwright runs once in a process."""
+    return lab.browser
 
 
 @pytest.fixture(scope="module")

@@ -166,6 +166,7 @@ def test_a_broken_upload_costs_no_attempt(course, tmp_path):
 
 
 @needs_bash
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("timeout") is None, reason="timeout, by which the scripts end what takes too long")
 def test_what_takes_too_long_is_told_before_the_system_ends_it(autograder, course, tmp_path):
     results = graded_there(course, tmp_path / "grade", {}, GRADE_SECONDS=0.1)

@@ -96,7 +96,7 @@ def test_the_zip_installs_this_hapticlab_and_has_a_test_for_each_exercise(made):
         assert f"hapticlab=={cli.__version__}" in installed
 
 
-@pytest.mark.parametrize("number, wrong", [("01", {}), ("02", WRONG["02"])])
+@pytest.mark.parametrize("number, wrong", [pytest.param("01", {}, marks=pytest.mark.slow), ("02", WRONG["02"])])
 def test_otter_gives_what_was_right(otter, made, number, wrong, tmp_path):
     lab = LABS[number]
     write(tmp_path / lab.notebook.name, handed_in(students_notebook(made, lab), lab, wrong))

@@ -67,6 +67,7 @@ def test_each_earns_what_is_right(one):
     assert len(one.seconds) == len(CLASS) and one.processor > 0
 
 
+@pytest.mark.slow  # test_scale has two workers, and one that is killed
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux's /proc to find the grader")
 def test_two_workers_one_of_which_is_killed_give_the_same_bytes(one, course, tmp_path):
     (tmp_path / "zed.ipynb").write_bytes(notebook((HONEST | {"force": KILLER}).values()))

@@ -27,6 +27,7 @@ def elsewhere(*arguments, package=PACKAGE):
     return json.loads(done.stdout)
 
 
+@pytest.mark.slow  # .ci/run has everything below /tmp
 def test_namespaces_hold_where_the_package_lies_below_tmp():
     with tempfile.TemporaryDirectory(dir="/tmp") as folder:
         package = Path(shutil.copytree(PACKAGE, f"{folder}/hapticlab"))

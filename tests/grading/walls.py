@@ -25,6 +25,11 @@ import numpy as np
 libc = ctypes.CDLL(None, use_errno=True)
 def called(number, *arguments):
     return "done" if libc.syscall(number, *arguments) != -1 else os.strerror(ctypes.get_errno())
+def contents(file):  # a masked file is the null device, which opens only where devices do
+    try:
+        return open(file).read() or "nothing"
+    except PermissionError:
+        return "nothing"
 def grow(folder):
     for k in range(100):
         with open(f"{folder}/{k}", "wb") as file:
@@ -42,7 +47,7 @@ ATTACKS = {
     "name_service": ("socket.gethostbyname('example.org')", "gaierror"),
     "abstract_socket": ("socket.socket(socket.AF_UNIX).connect('\\0' + NAME)", "PermissionError"),
     "answers": ("open(ANSWERS).read()", "FileNotFoundError"),
-    "masked_file": ("open(MASKED).read() or 'empty'", "empty"),
+    "masked_file": ("contents(MASKED)", "nothing"),
     "masked_folder": ("os.listdir(MASKED_FOLDER)", "PermissionError"),
     "left_by_another": ("open(LEFT).read()", "FileNotFoundError"),
     "labs": ("os.path.exists(LABS + '/02_virtual_wall')", "False"),

@@ -18,14 +18,14 @@ from .small_lab import write_lab
 ATTACKS = tuple(one for sort in (broken, eating, ending, forging, spying, injecting, leaking) for one in sort.ATTACKS)
 HONEST = tuple(one for one in broken.ATTACKS if one.name.startswith("honest"))
 #: the plainest one, and holes there were
-ALWAYS = ("fork_bomb", "memory_that_is_shared", "reply_with_its_number")
+ALWAYS = ("fork_bomb", "memory_that_is_shared", "reply_with_its_number", "honest_split_cells", "honest_magics")
 #: what waits for its limits, one of each sort
 WAITING = ("hang_in_a_cell", "hang_that_swallows", "stop_its_parent")
 PATIENT = tuple(one for one in ATTACKS if one.name in WAITING)
 #: what every run of the tests holds beside these: some of each sort
 QUICK = tuple(
     one
-    for sort, step in ((broken, 6), (eating, 4), (ending, 4), (forging, 4), (spying, 1), (injecting, 5), (leaking, 1))
+    for sort, step in ((broken, 7), (eating, 4), (ending, 4), (forging, 5), (spying, 2), (injecting, 6), (leaking, 1))
     for number, one in enumerate(one for one in sort.ATTACKS if not one.patience)
     if number % step == 0 or one.name in ALWAYS
 )
