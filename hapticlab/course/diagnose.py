@@ -5,11 +5,14 @@ import math
 
 import numpy as np
 
+SQUARED = "Was a value in millimetres or milliseconds squared? Convert it to SI units first."
 #: what a result is often off by, and what that says
 FACTORS = (
     (-1.0, "The sign is turned."),
     (1e3, "It is 1000 times too large: is something in millimetres or milliseconds that belongs in SI?"),
     (1e-3, "It is 1000 times too small: is something in millimetres or milliseconds that belongs in SI?"),
+    (1e6, f"It is 1000000 times too large. {SQUARED}"),
+    (1e-6, f"It is 1000000 times too small. {SQUARED}"),
     (100.0, "It is 100 times too large: percent where a share of one is asked for, or centimetres?"),
     (-1e3, "The sign is turned, and it is 1000 times too large: millimetres?"),
     (-1e-3, "The sign is turned, and it is 1000 times too small: millimetres?"),
@@ -53,8 +56,9 @@ def slip(exercise, case, wanted, got):
     if exercise.kind == "expression" and case.unit == "N" and wanted.min() >= 0 and _close(-wanted, got):
         return PULLS
     for factor, sentence in FACTORS:
-        if _close(factor * wanted, got, min(max(NEAR, exercise.rtol), 0.1)):
-            return sentence
+        # without an absolute part: beside 1e-6 of a small number, zero and rounding look alike
+        if _close(factor * wanted, got, min(max(NEAR, exercise.rtol), 0.1), least=0):
+            return sentence + _given_by_chance(case.given, factor)
     if exercise.kind == "expression":
         return over_points(case.given["at"], wanted, got)
     return _in_time(wanted, got) or _nearly(wanted, got)
@@ -75,8 +79,19 @@ def _nearly(wanted, got):
     return ""
 
 
-def _close(wrong, got, near=NEAR):
-    return bool((np.abs(got - wrong) <= near * np.abs(wrong).max(initial=0) + 1e-12).all())
+def _close(wrong, got, near=NEAR, least=1e-12):
+    return bool((np.abs(got - wrong) <= near * np.abs(wrong).max(initial=0) + least).all())
+
+
+def _given_by_chance(given, factor):
+    """Return a second guess where a given number explains the factor as well, such as T = 1 ms; or an empty text."""
+    numbers = {name: one for name, one in given.items() if isinstance(one, int | float) and one > 0}
+    for (name, one), power in itertools.product(numbers.items(), (1, -1, 2, -2)):
+        if math.isclose(one**power, abs(factor), rel_tol=NEAR) and abs(factor) != 1:
+            symbol = name if abs(power) == 1 else f"{name}^2"
+            number = f"{one ** abs(power):g}"
+            return f" In this case {symbol} = {number}, so a factor {symbol} may also be missing or not belong there."
+    return ""
 
 
 def over_points(at, wanted, got):

@@ -33,7 +33,12 @@ SECOND = (
 WHOLE = "That is twice too much: the handle is inside for half a period of its oscillation, pi/w, not for a whole one."
 NO_HALF = "Half of what is expected: the energy that came in is m v0^2/2, and the mean of cos^2 is 1/2."
 NO_MASS = "The share depends on w = sqrt(k/m), the square root."
+SWAPPED = "k and m are swapped in w = sqrt(k/m): a stiffer spring throws the handle out sooner, a heavier handle later."
 PERCENT = "That is in percent. Asked for is the share itself: half of it would be 0.5."
+GATES = (
+    "Both conditions are the wrong way round: each wall pulls while the handle is outside it, and exerts no force on a "
+    "handle inside it."
+)
 
 LAB = Lab(
     number="02",
@@ -75,6 +80,7 @@ LAB = Lab(
                         0.2198059214550434: SECOND,
                         25.132741228718345: NO_MASS,
                         19.869176531592203: PERCENT,
+                        1.2418235332245126e-05: SWAPPED,
                     },
                 ),
                 Case({"k": 1200.0, "m": 0.03, "T": 5e-4}, 0.15707963267948966, slips={0.17008878749642195: SECOND}),
@@ -136,6 +142,11 @@ LAB = Lab(
                             (-3.5, -2.0, 0.0, 0.0, 1.0),
                             "The left wall is at -x_o, so the handle is beyond it by x - (-x_o) "
                             "= x + x_o, which is < 0.",
+                        ),
+                        ((-3.5, -2.0, 0.0, 1.0, 3.0), GATES),
+                        (
+                            (-3.5, -2.0, 0.0, 0.0, 3.0),
+                            "Each spring has the boundary of the other wall: beyond x_o it is pressed by x - x_o.",
                         ),
                         (
                             (1.5, 0.0, 0.0, 0.0, -1.0),

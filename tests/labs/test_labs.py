@@ -23,7 +23,8 @@ from hapticlab.course.marks import SOLUTION, hidden_cases, instructor_names, mar
 from hapticlab.course.notebook import code_of, read
 
 ROOT = Path(__file__).parents[2]
-WRONG = runpy.run_path(str(Path(__file__).with_name("wrong_answers.py")))["WRONG"]
+_ROWS = runpy.run_path(str(Path(__file__).with_name("wrong_answers.py")))
+WRONG, ANYWHERE = _ROWS["WRONG"], _ROWS["ANYWHERE"]
 LABS, INSTRUCTOR = find_labs(ROOT / "labs"), ROOT / "tests" / "instructor"
 LAST = """
 import json as _json
@@ -124,6 +125,13 @@ def test_what_students_write_is_taught(folder):
         assert any(sentence in text for sentence in sentences), text
         assert {m.earned for m in marks(lab, {name: answer}, hidden)} == {0}
     assert {name for name, _ in tried} == {e.name for e in lab.exercises if e.judged}
+
+
+def test_what_goes_wrong_in_any_lab_is_taught_as_well(folder):
+    lab, hidden = folder.lab(), hidden_cases(folder.lab(), INSTRUCTOR / folder.name)
+    for name, answer, sentence in ANYWHERE.get(folder.number, []):
+        assert sentence in checked(f"{lab.number}.{name}", lab.exercise(name), answer).text
+        assert {m.earned for m in marks(lab, {name: answer}, hidden)} == {0}
 
 
 def wrong_answers(exercise, right):
