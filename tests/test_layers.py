@@ -181,8 +181,27 @@ def test_a_long_function_is_found():
     assert lengths("scene.long", "a = 1\n" * (MODULE_LINES + 1))
 
 
-def test_import_opens_nothing_heavy():
-    heavy = (*DOORS, "numba")
-    code = f"import sys, hapticlab; print([m for m in {heavy!r} if m in sys.modules])"
+HEAVY = (*DOORS, "numba")
+FIRST_CELL = """
+import hapticlab as hl
+from hapticlab import n, x
+k, x_o = hl.parameters("k x_o", units="N/m m")
+wall = hl.Scene(force=hl.when(x(n) >= x_o, k*(x(n) - x_o)))
+bound = wall(k="2 N/mm", x_o="10 mm")
+"""
+
+
+def opened(code, modules):
+    """Return which of these modules a new Python has imported after running the code."""
+    code += f"\nimport sys; print([name for name in {modules!r} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=PACKAGE.parent, check=True)
-    assert done.stdout.strip() == "[]"
+    return ast.literal_eval(done.stdout.splitlines()[-1])
+
+
+def test_import_opens_nothing_heavy():
+    assert opened("import hapticlab", (*HEAVY, "sympy", "numpy")) == []
+
+
+def test_the_first_scene_waits_for_sympy_alone():
+    assert opened(FIRST_CELL, (*HEAVY, "sympy", "numpy")) == ["sympy"]
+    assert "pint" in opened(FIRST_CELL + "wall(x_o='1 inch')", HEAVY)  # so that the line above can fail

@@ -1,4 +1,4 @@
-"""Units of what a student writes: parsed by pint, carried as exponents of the SI base, checked term by term."""
+"""Units of what a student writes: read here or by pint, carried as exponents of the SI base, checked term by term."""
 
 import re
 from collections import Counter
@@ -9,6 +9,7 @@ import sympy as sp
 from sympy.logic.boolalg import BooleanAtom, BooleanFunction
 
 from ..errors import ParameterError, UnitsError
+from .metric import metric
 
 #: names for dimensions that have one, so that an error reads N and not kg*m/s^2
 _NAMES = ("1", "m", "s", "kg", "N", "N/m", "N*s/m", "m/s", "m/s^2", "N*m", "N*s", "1/s", "kg*m^2", "W", "A", "V", "1/m")
@@ -54,16 +55,23 @@ def dimension(unit):
 
 @lru_cache(maxsize=1024)
 def _dimension(unit):
-    if unit == "1":
-        return ()
     try:
-        quantity = _parsed(1.0, unit)
+        size, exponents = _read(unit)
     except ValueError as problem:
         raise UnitsError(f"unit {unit!r} is not known ({problem}); write it like N*s/m, m/s^2, kg or 1") from None
-    if quantity.to_base_units().magnitude != 1.0:
-        si = si_name(_exponents(quantity))
+    if size != 1.0:
+        si = si_name(exponents)
         raise UnitsError(f"unit {unit!r} is not SI; declare {si} and bind a value with its unit, as in '10 {unit}'")
-    return _exponents(quantity)
+    return exponents
+
+
+def _read(unit):
+    """Return (value in SI, SI exponents) of one of a unit; metric units without pint, the others by pint."""
+    known = metric(unit)
+    if known is not None:
+        return known
+    one = _parsed(1.0, unit)
+    return one.to_base_units().magnitude, _exponents(one)
 
 
 def _exponents(quantity):
@@ -102,6 +110,9 @@ def _converted(text, unit, name):
     if not written:
         raise UnitsError(f"{cure} (it does not begin with a number)")
     number, own = written.groups()
+    given, wanted = metric(own or "1"), metric(unit)
+    if given and wanted and given[1] == wanted[1]:
+        return float(number) * (given[0] / wanted[0])
     try:
         quantity = _parsed(float(number), own or "dimensionless")
         return float(quantity.to(unit if unit != "1" else "dimensionless").magnitude)
@@ -116,12 +127,14 @@ def quantity(text, name):
     if not own:
         raise UnitsError(f"{name} = {text!r}; needs a number and its unit, such as '2 N/m'")
     try:
-        given, one = _parsed(float(number), own), _parsed(1.0, own).to_base_units()
+        size, exponents = _read(own)
+        if size == 1.0:
+            return float(number), own
+        # by pint itself, as degC begins elsewhere than K: twice the number need not be twice the quantity
+        value = float(number) * size if metric(own) else float(_parsed(float(number), own).to_base_units().magnitude)
     except (AttributeError, TypeError, ValueError, OverflowError) as problem:
         raise UnitsError(f"{name} = {text!r}; needs a quantity ({problem})") from None
-    if one.magnitude == 1.0:
-        return float(number), own
-    return float(given.to_base_units().magnitude), si_name(_exponents(one))
+    return value, si_name(exponents)
 
 
 def kind_of(unit):
