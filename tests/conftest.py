@@ -1,15 +1,63 @@
-"""In CI a skipped test is a failure, unless its reason holds the word in HAPTICLAB_ALLOWED_SKIP."""
+"""What holds for every test: a limit, no event loop left behind, in CI no skip; and where the seconds went."""
 
+import asyncio
+import faulthandler
+import json
 import os
+import sys
+from collections import Counter
+from pathlib import Path, PurePosixPath
 
 import pytest
 
 IN_CI = os.environ.get("CI", "").lower() in ("1", "true", "yes")
 ALLOWED = os.environ.get("HAPTICLAB_ALLOWED_SKIP", "")
+#: for a test marked slow that says no other [s]; the limit of the others is in pyproject.toml
+LONGEST = 3600
+STDERR = pytest.StashKey()
 
 
 def pytest_addoption(parser):
     parser.addoption("--port", help="run the contract of a paddle on a real board at this port, with a person beside it")
+    parser.addoption("--areas", type=Path, metavar="FILE", help="add the seconds of every folder to FILE, and print them")
+
+
+def pytest_configure(config):
+    config.stash[STDERR] = os.dup(sys.__stderr__.fileno())  # what a test says goes elsewhere while it runs
+
+
+def pytest_collection_modifyitems(items):
+    for item in items:
+        if item.get_closest_marker("slow") and not item.get_closest_marker("timeout"):
+            item.add_marker(pytest.mark.timeout(LONGEST))
+
+
+@pytest.hookimpl(wrapper=True, trylast=True)
+def pytest_runtest_protocol(item):
+    """End the whole run after twice a test's limit: a clean-up that waits or a call into C outlives the limit itself."""
+    own = item.get_closest_marker("timeout")
+    seconds = own.args[0] if own else float(item.config.getoption("timeout") or item.config.getini("timeout") or 0)
+    if seconds:
+        faulthandler.dump_traceback_later(2 * seconds, exit=True, file=item.config.stash[STDERR])
+    try:
+        return (yield)
+    finally:
+        faulthandler.cancel_dump_traceback_later()
+
+
+def pytest_enter_pdb():
+    faulthandler.cancel_dump_traceback_later()  # who debugs may take longer
+
+
+@pytest.fixture(scope="module", autouse=True)
+def no_loop_is_left():
+    """Fail after a module whose event loop still runs in this thread: whoever comes next can start none."""
+    yield
+    try:
+        left = asyncio.get_running_loop()
+    except RuntimeError:
+        return
+    pytest.fail(f"{left} still runs after this module; end what started it, as Playwright, in a fixture of the module")
 
 
 @pytest.hookimpl(wrapper=True)
@@ -25,6 +73,7 @@ def pytest_make_collect_report(collector):
 
 
 def _refuse_skip(report):
+    """In CI a skipped test is a failure, unless its reason holds the word in HAPTICLAB_ALLOWED_SKIP."""
     if not IN_CI or not report.skipped or hasattr(report, "wasxfail"):
         return report
     reason = str(report.longrepr[2] if isinstance(report.longrepr, tuple) else report.longrepr).removeprefix("Skipped: ")
@@ -32,3 +81,16 @@ def _refuse_skip(report):
         report.outcome = "failed"
         report.longrepr = f"skipped in CI, where every test must run: {reason}"
     return report
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    file = config.getoption("--areas")
+    if not file:
+        return
+    seconds = Counter(json.loads(file.read_text("utf-8")) if file.exists() else {})
+    for report in (one for same in terminalreporter.stats.values() for one in same if hasattr(one, "duration")):
+        seconds["/".join(PurePosixPath(report.nodeid.partition("::")[0]).parts[:2])] += report.duration
+    file.write_text(json.dumps(seconds), encoding="utf-8")
+    terminalreporter.section(f"seconds by folder, in all of {file.name}")
+    for folder, spent in [*seconds.most_common(), ("all", seconds.total())]:
+        terminalreporter.write_line(f"{spent:8.1f}  {folder}")

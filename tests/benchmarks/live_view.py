@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "browser"))
-from lab import Lab
+from lab import Lab, browsing
 
 from hapticlab.widgets.picture import HAND
 
@@ -153,7 +153,7 @@ def main():
     given = parser.parse_args()
     found = {}
     for name, (prompt, first) in list(ROUTES.items())[: given.routes]:
-        with tempfile.TemporaryDirectory() as folder, Lab(folder, prompt=prompt) as lab:
+        with tempfile.TemporaryDirectory() as folder, browsing() as browser, Lab(folder, browser, prompt=prompt) as lab:
             row = found[name] = measure(lab, first, given.seconds)
         if len(found) == 1:
             print("| route | " + " | ".join(row) + " |\n" + "| --- " * (len(row) + 1) + "|")

@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "browser"))
-from lab import Lab
+from lab import Lab, browsing
 
 SCENE = """
 import os, sys
@@ -85,7 +85,7 @@ def main():
     print(f"plain widgets; asked are {ASKED} frames a second without the server extension")
     print(f"{'extension':<10} {'frames/s':>9} {'paint p50 [ms]':>15} {'paint p95 [ms]':>15} {'kernel':>8}")
     for prompt in (True, False):
-        with tempfile.TemporaryDirectory() as folder, Lab(folder, prompt=prompt) as lab:
+        with tempfile.TemporaryDirectory() as folder, browsing() as browser, Lab(folder, browser, prompt=prompt) as lab:
             frames, median, late, share = measure(lab, given.seconds)
         print(f"{'with' if prompt else 'without':<10} {frames:>9.1f} {median:>15.0f} {late:>15.0f} {share:>8.0%}")
 

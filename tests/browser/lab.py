@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 REPOSITORY = Path(__file__).parents[2]
@@ -34,25 +35,33 @@ def missing():
     return f"a browser test needs {', '.join(lacks)}" if lacks else ""
 
 
-class Lab:
-    """A server, a browser, and the folder ``notebooks`` they share; ``prompt`` is whether hapticlab's extension is on."""
+@contextmanager
+def browsing():
+    """Start a headless Chromium; until the end an event loop of Playwright's runs in this thread, where no other may run."""
+    from playwright.sync_api import sync_playwright
 
-    def __init__(self, folder, *, prompt=True):
-        self.folder, self.prompt = Path(folder), prompt
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium(), args=FLAGS)
+        yield browser
+        browser.close()
+
+
+class Lab:
+    """A server, a browser for it, and the folder ``notebooks`` of both.
+
+    ``prompt`` is whether hapticlab's extension is on. The browser may be given later and replaced.
+    """
+
+    def __init__(self, folder, browser=None, *, prompt=True):
+        self.folder, self.browser, self.prompt = Path(folder), browser, prompt
         self.notebooks = self.folder / "notebooks"
         self.notebooks.mkdir(parents=True)
 
     def __enter__(self):
-        from playwright.sync_api import sync_playwright
-
         self._server = self._serve()
-        self._playwright = sync_playwright().start()
-        self.browser = self._playwright.chromium.launch(executable_path=chromium(), args=FLAGS)
         return self
 
     def __exit__(self, *_):
-        self.browser.close()
-        self._playwright.stop()
         self._server.terminate()
         self._server.wait(30)
         self._reader.join()

@@ -47,12 +47,6 @@ BROKEN = """() => [...document.querySelectorAll("thead th")].filter((head) => {
 
 
 @pytest.fixture(scope="module")
-def browser(lab):
-    """The one that all tests of this folder share: playwright runs once in a process."""
-    return lab.browser
-
-
-@pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """Pages of a class; one student's name and text attack them."""
     reports, lab = class_of("01", 24)

@@ -10,10 +10,10 @@ PARTS = ("Playback", "Bins", "Scale", "between", "decode", "niceStep", "onDark",
 
 
 @pytest.fixture(scope="module")
-def page(lab):
+def page(browser):
     scripts = (FOLDER / name for name in ("playback.js", "picture.js", "traces.js", "sliders.js", "hand.js", "view.js"))
     source = "\n".join(script.read_text("utf-8") for script in scripts).replace("export default { render }", "")
-    page = lab.browser.new_page()
+    page = browser.new_page()
     page.add_script_tag(content=f"(() => {{ {source}\n window.parts = {{ {', '.join(PARTS)} }} }})()")
     yield page
     page.close()

@@ -28,10 +28,10 @@ OPEN = """(about) => {
 
 
 @pytest.fixture
-def page(lab):
+def page(browser):
     folder = REPOSITORY / "hapticlab" / "widgets" / "browser"
     source = "\n".join((folder / script).read_text("utf-8") for script in SCRIPTS).replace("export default { render }", "")
-    page = lab.browser.new_page()
+    page = browser.new_page()
     page.clock.install(time=0)
     page.add_script_tag(content=f"(() => {{ {source}\n window.parts = {{ View, Playback }} }})()")
     page.evaluate(OPEN, ABOUT)

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
@@ -149,6 +150,16 @@ def test_jupyterlab_that_fails_is_reported(monkeypatch, capfd):
     assert "JupyterLab ended with code 5" in capfd.readouterr().err
 
 
+@contextmanager
+def all_ended(group):
+    """End a group of processes, whatever happens: JupyterLab's stand-in would stay for ever."""
+    try:
+        yield
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(group, signal.SIGKILL)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="no process groups here")
 def test_ctrl_c_is_answered_by_jupyterlab_alone(place):
     code = "import sys; from hapticlab.course import labs; from hapticlab.cli import main; from pathlib import Path\n"
@@ -157,7 +168,7 @@ def test_ctrl_c_is_answered_by_jupyterlab_alone(place):
         [sys.executable, "-c", code], env={**os.environ, "STAY": "1"}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         text=True, start_new_session=True,
     )  # fmt: skip
-    with process:
+    with process, all_ended(process.pid):
         for words in ("serving\n", "sure?\n"):
             assert words in iter(process.stdout.readline, "")
             os.killpg(process.pid, signal.SIGINT)
