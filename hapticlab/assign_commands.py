@@ -17,28 +17,10 @@ from .grading.otter_source import otter_assign
 from .grading.prairielearn_question import dockerfile, prairielearn_files
 from .grading.roster import read_roster
 from .lab_commands import words_of
+from .options import SYSTEMS
 
 #: columns of a roster by which submissions are usually named
 NAMES = ("student", "student_id", "login", "sis_login_id", "username", "id_number", "email", "email_address")
-SYSTEMS = ("nbgrader", "otter", "gradescope", "prairielearn")
-
-
-def add(commands, seed):
-    """Add the command to the parsers of the command line; ``seed`` reads a whole number."""
-    text = "hand out labs: as nbgrader, otter, Gradescope or PrairieLearn take them, or with each student's own numbers"
-    made = commands.add_parser("assign", help=text, description=text)
-    made.add_argument("target", metavar="DIR", help="folder to write into; of gradescope a FILE.zip")
-    made.add_argument("--for", dest="system", choices=SYSTEMS, help="what grades or collects")
-    made.add_argument("--personal", action="store_true", help="numbers of their own for the students of --roster")
-    words = "these labs, by number, or own ones by folder (default: all that came with hapticlab)"
-    made.add_argument("--lab", nargs="+", default=[], metavar="NN", help=words)
-    made.add_argument("--instructor", required=True, metavar="PATH", help="folder of answers, which holds NN_name/solution.py")
-    made.add_argument("--seed", type=seed, metavar="N", help="of hidden cases and of students' own numbers (default: 0)")
-    made.add_argument("--roster", metavar="FILE.csv", help="the class, for --personal")
-    made.add_argument("--column", metavar="NAME", help="of the roster, by which submissions will be named")
-    made.add_argument("--wheel", metavar="FILE.whl", help="hapticlab as a file, where it is not to come from an index")
-    made.add_argument("--image", metavar="NAME", help="of PrairieLearn's grader (default: hapticlab-grader:VERSION)")
-    made.set_defaults(command=assign, parser=made)
 
 
 def assign(parser, options):

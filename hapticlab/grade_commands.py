@@ -1,7 +1,5 @@
 """What the command line does with submissions: `hapticlab grade` grades them, and writes what other systems read."""
 
-import argparse
-import os
 import re
 import statistics
 import sys
@@ -23,39 +21,11 @@ from .grading.submission import find_submissions, lab_of, read
 CHECKED = re.compile(r"""\bcheck\(\s*['"]([0-9]{2})\.""")
 #: how often a submission may take the time of a step, beside once for each exercise
 MORE_STEPS = 4
-LEVELS = ("auto", "namespaces", "user", "none")
 WEAK = {
     "none": "nothing but limits stands around the students' code, which runs with your rights: grade only whom you trust, or in "
     "a container",
     "user": "students' code runs as another user, without namespaces: it sees the network and what all users may read",
 }
-
-
-def add(commands):
-    """Add `hapticlab grade`."""
-    text = "grade submissions: run each in processes that know no answer, and judge what they give"
-    made = commands.add_parser("grade", help=text, description=text)
-    words = "notebooks, scripts, archives, folders of these, or nbgrader's submitted tree"
-    made.add_argument("submissions", metavar="SUBMISSION", nargs="+", help=words)
-    made.add_argument("--lab", metavar="NN", help="number of the lab, or an own lab's folder; by default as submissions say")
-    made.add_argument("--instructor", metavar="PATH", help="folder of answers, for hidden cases; else public ones alone count")
-    made.add_argument("--seed", type=_whole(0), default=0, metavar="N", help="of the hidden cases (default: 0)")
-    made.add_argument("--personal", action="store_true", help="each student was handed numbers of their own, by this seed")
-    made.add_argument("--format", choices=formats.FORMATS, default="text", help="of the results (default: text)")
-    made.add_argument("-o", "--output", metavar="FILE", help="write the results there; the same command again goes on")
-    made.add_argument("--pages", metavar="DIR", help="write an HTML page for each student and one of the class")
-    made.add_argument("--roster", metavar="FILE.csv", help="who is in the class, by the names that another system has for them")
-    made.add_argument("--assignment", default="", metavar="NAME", help="of the column in Canvas, Moodle and nbgrader")
-    made.add_argument("--gradebook", metavar="FILE.db", help="push the points into this gradebook of nbgrader")
-    words = "so many processes, or the address of a Dask scheduler (default: one for each processor)"
-    made.add_argument("--workers", type=_workers, default=os.cpu_count() or 1, metavar="N|tcp://...", help=words)
-    words = f"for a cell, and for an exercise (default: {Limits().seconds:g})"
-    made.add_argument("--timeout", type=_amount, default=Limits().seconds, metavar="SECONDS", help=words)
-    words = f"for a submission's processes together (default: {Limits().memory // MIB})"
-    made.add_argument("--memory", type=_whole(64), default=Limits().memory // MIB, metavar="MIB", help=words)
-    made.add_argument("--sandbox", choices=LEVELS, default="auto", help="walls around students' code (default: the best)")
-    made.add_argument("--fresh", action="store_true", help="grade all anew, also what an earlier run wrote down")
-    made.set_defaults(command=grade, parser=made)
 
 
 def grade(parser, options):
@@ -180,26 +150,3 @@ def _tell(done, roster):
 
 def _say(words):
     print(f"hapticlab: {clean(words, 2000)}", file=sys.stderr)
-
-
-def _whole(least):
-    def whole(text):
-        if not text.isdecimal() or int(text) < least:
-            raise argparse.ArgumentTypeError(f"{text!r} given; needs a whole number from {least} on")
-        return int(text)
-
-    return whole
-
-
-def _amount(text):
-    try:
-        amount = float(text)
-    except ValueError:
-        amount = 0.0
-    if not 0 < amount < 1e6:
-        raise argparse.ArgumentTypeError(f"{text!r} given; needs a number of seconds > 0")
-    return amount
-
-
-def _workers(text):
-    return text if "://" in text else _whole(1)(text)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from hapticlab import cli
+from hapticlab import cli, exits
 from hapticlab.course.labs import find_labs
 from hapticlab.course.notebook import code_of, read
 
@@ -38,17 +38,17 @@ def assign(*asked):
 def test_what_does_not_go_together_is_refused(asked, words, capsys):
     with pytest.raises(SystemExit) as ended:
         assign(*asked)
-    assert ended.value.code == cli.USAGE
+    assert ended.value.code == exits.USAGE
     assert words in capsys.readouterr().err
 
 
 def test_a_strange_lab_and_missing_answers_are_told(tmp_path, capsys):
-    assert assign(tmp_path / "course", "--for", "nbgrader", "--lab", "77") == cli.FAILED
+    assert assign(tmp_path / "course", "--for", "nbgrader", "--lab", "77") == exits.FAILED
     assert "there is no lab 77; there are 00, 01, 02" in capsys.readouterr().err
     (tmp_path / "01_motion_to_force").mkdir()
     (tmp_path / "01_motion_to_force" / "solution.py").write_text("k = 1\n")
     asked = ["assign", str(tmp_path / "course"), "--for", "nbgrader", "--lab", "02", "--instructor", str(tmp_path)]
-    assert cli.main(asked) == cli.FAILED
+    assert cli.main(asked) == exits.FAILED
     assert "holds no 02_virtual_wall" in capsys.readouterr().err
     assert not (tmp_path / "course").exists()
 
@@ -65,7 +65,7 @@ def test_nothing_is_overwritten_and_the_next_command_is_said(system, tmp_path, c
     }
     assert f"written: {target}" in said and told[system] in said.partition("next:")[2]
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
-    assert assign(target, "--for", system, "--lab", "02") == cli.FAILED
+    assert assign(target, "--for", system, "--lab", "02") == exits.FAILED
     assert "is there already" in capsys.readouterr().err
     assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
 
@@ -158,9 +158,9 @@ def test_each_student_has_a_folder_with_own_numbers(tmp_path, roster, capsys):
 
 
 def test_a_column_that_is_not_there_is_told(tmp_path, roster, capsys):
-    assert assign(tmp_path / "class", "--personal", "--roster", roster, "--column", "Matr") == cli.FAILED
+    assert assign(tmp_path / "class", "--personal", "--roster", roster, "--column", "Matr") == exits.FAILED
     assert "has no column 'Matr'; it has 'Name', 'Email', 'Login'" in capsys.readouterr().err
     roster.write_text("Who\nAda\n")
-    assert assign(tmp_path / "class", "--personal", "--roster", roster) == cli.FAILED
+    assert assign(tmp_path / "class", "--personal", "--roster", roster) == exits.FAILED
     assert "Say it by --column" in capsys.readouterr().err
     assert not (tmp_path / "class").exists()

@@ -14,7 +14,12 @@ import workbench
 from commands import run_command
 
 import hapticlab as hl
-from hapticlab import board_commands, cli
+from hapticlab import board_commands, cli, options, scene_commands
+from hapticlab.analysis.tradeoff import PC
+from hapticlab.compiler.advance import Taylor
+from hapticlab.compiler.exact import EXACT
+from hapticlab.compiler.methods import METHODS
+from hapticlab.device.calibrate import STEPS
 from hapticlab.device.serial import Port
 from hapticlab.device.settings import nominal
 from hapticlab.scenefile import load_scene
@@ -289,7 +294,7 @@ def test_a_wrong_command_is_told_and_ends_with_2(tmp_path, arguments, words):
 @pytest.mark.parametrize("arguments", [("demo", "--quick"), ("run", str(EXAMPLE))])
 def test_a_folder_that_cannot_be_is_told_before_anything_is_computed(tmp_path, monkeypatch, capsys, arguments):
     (tmp_path / "taken").write_text("a file")
-    for owner, name in ((cli.demonstration, "study"), (cli, "run_scene")):
+    for owner, name in ((scene_commands.demonstration, "study"), (scene_commands, "run_scene")):
         monkeypatch.setattr(owner, name, lambda *_, **__: pytest.fail("computed"))
     assert cli.main([*arguments, "--out", str(tmp_path / "taken")]) == 1
     told = capsys.readouterr().err
@@ -308,7 +313,7 @@ def test_an_error_without_a_file_names_none(tmp_path, monkeypatch, capsys):
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(cli, "run_scene", full)
+    monkeypatch.setattr(scene_commands, "run_scene", full)
     assert cli.main(["run", str(EXAMPLE), "--out", str(tmp_path)]) == 1
     assert capsys.readouterr().err == "hapticlab: No space left on device\n"
 
@@ -416,7 +421,7 @@ def test_a_number_of_ticks_is_whole(capsys):
     for text in ("0", "-2", "1.5", "all"):
         with pytest.raises(SystemExit):
             cli.main(["run", str(EXAMPLE), "--port", "sim://hapkit", f"--every={text}"])
-        assert f"{text!r} is no number of ticks" in capsys.readouterr().err
+        assert f"{text!r} is not a number of ticks" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -560,7 +565,7 @@ paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3, counts_per_metre=1e5)
 def test_tradeoff_wants_parts(given, capsys):
     with pytest.raises(SystemExit):
         cli.main(["tradeoff", "spring.py", *given])
-    assert f"{given[1]!r} is no part; needs a number > 0" in capsys.readouterr().err
+    assert f"{given[1]!r} is not a fraction; give a number greater than 0" in capsys.readouterr().err
 
 
 def test_tradeoff_prints_what_it_chose_and_draws_it(tmp_path):
@@ -585,3 +590,19 @@ def test_tradeoff_says_as_json_what_to_relax(tmp_path, capsys):
     assert "b >= 0.45 N s/m, this one has 0.3 N s/m" in answer["relax"][0]  # k T/2
     assert cli.main(["tradeoff", str(path), "--any-hand", *there]) == 0
     assert json.loads(capsys.readouterr().out)["chosen"]["uno"]["options"]["T"] == 1e-3
+
+
+# ---------------------------------------------------------------- what the parser names without opening it
+
+
+def test_the_names_that_options_offer_are_those_that_the_modules_define():
+    assert options.METHODS == (*sorted(METHODS), Taylor.name, EXACT)
+    assert options.TARGETS[0] == PC
+    assert options.STEPS == STEPS
+
+
+def test_every_command_is_a_function_that_is_there():
+    commands = next(action for action in options.parser()._actions if action.dest == "==SUPPRESS==" and action.choices)
+    assert {name: callable(cli._command(one.get_default("command"))) for name, one in commands.choices.items()} == dict.fromkeys(
+        ["demo", "labs", "assign", "grade", "run", "tradeoff", "ports", "doctor", "flash", "calibrate"], True
+    )

@@ -12,8 +12,8 @@ import hapticlab
 PACKAGE = Path(hapticlab.__file__).parent
 LAYERS = (
     "errors", "records", "drawing", "scene", "library", "compiler", "device", "limits", "rendering", "analysis",
-    "measurement", "identification", "experiments", "course", "grading", "widgets", "scenefile", "board_commands", "lab_commands",
-    "grade_commands", "assign_commands", "demo", "cli",
+    "measurement", "identification", "experiments", "course", "grading", "widgets", "exits", "options", "scenefile",
+    "board_commands", "lab_commands", "grade_commands", "assign_commands", "demo", "scene_commands", "cli",
 )  # fmt: skip
 # the public names, and `python -m hapticlab`: above every layer; what Jupyter's server loads, which opens nothing else
 OUTSIDE = {"__init__", "__main__", "_jupyter"}
@@ -182,6 +182,7 @@ def test_a_long_function_is_found():
 
 
 HEAVY = (*DOORS, "numba")
+COMMANDS = ("demo", "labs", "assign", "grade", "run", "tradeoff", "ports", "doctor", "flash", "calibrate")
 FIRST_CELL = """
 import hapticlab as hl
 from hapticlab import n, x
@@ -200,6 +201,12 @@ def opened(code, modules):
 
 def test_import_opens_nothing_heavy():
     assert opened("import hapticlab", (*HEAVY, "sympy", "numpy")) == []
+
+
+@pytest.mark.parametrize("arguments", [["-h"], ["--version"], *([name, "-h"] for name in COMMANDS)], ids=" ".join)
+def test_help_waits_for_nothing(arguments):
+    code = f"import contextlib\nfrom hapticlab import cli\nwith contextlib.suppress(SystemExit):\n    cli.main({arguments!r})"
+    assert opened(code, (*HEAVY, "sympy", "numpy", "importlib.metadata")) == []
 
 
 def test_the_first_scene_waits_for_sympy_alone():

@@ -73,9 +73,9 @@ def test_the_lab_is_named_by_the_files_or_by_what_their_cells_check(tmp_path):
         (["--fresh"], "--fresh forgets what is beside the results; it needs -o FILE"),
         (["--format", "canvas"], "--roster FILE.csv"),
         (["--gradebook", "nowhere.db"], "nowhere.db: no such file"),
-        (["--workers", "0"], "needs a whole number from 1 on"),
-        (["--timeout", "nan"], "needs a number of seconds > 0"),
-        (["--memory", "12"], "needs a whole number from 64 on"),
+        (["--workers", "0"], "give a whole number, 1 or greater"),
+        (["--timeout", "nan"], "give a number of seconds greater than 0"),
+        (["--memory", "12"], "give a whole number, 64 or greater"),
     ],
 )
 def test_a_wrong_command_is_refused_before_anything_runs(course, extra, words, capsys):

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from handed_in import INSTRUCTOR, LABS, ROOT, WRONG, earned, handed_in
 
-from hapticlab import cli
+from hapticlab import __version__, cli
 from hapticlab.course.marks import own_numbers
 from hapticlab.course.notebook import read, write
 
@@ -67,7 +67,7 @@ def test_the_zip_is_what_gradescope_asks_for(autograder, tmp_path):
     for script in scripts:
         assert script.read_bytes().startswith(b"#!/usr/bin/env bash\n") and b"\r" not in script.read_bytes()
     assert all(os.access(script, os.X_OK) for script in scripts)
-    assert f'"hapticlab=={cli.__version__}"' in scripts[0].read_text("utf-8")
+    assert f'"hapticlab=={__version__}"' in scripts[0].read_text("utf-8")
     inside = {path.relative_to(autograder / "source").as_posix() for path in (autograder / "source").rglob("*") if path.is_file()}
     lab, answers = f"labs/{LAB.name}", f"answers/{LAB.name}"
     assert inside == {"setup.sh", "run_autograder", f"{lab}/{LAB.notebook.name}", f"{lab}/checks.py"} | {
@@ -132,7 +132,7 @@ def test_the_question_has_the_fields_of_prairielearn(course):
     assert f'<pl-file-upload file-names="{LAB.notebook.name}">' in page and "<pl-external-grader-results>" in page
     assert (folder / "clientFilesQuestion" / LAB.notebook.name).read_bytes() == LAB.notebook.read_bytes()
     assert not [path for path in folder.rglob("solution.py") if "tests" not in path.relative_to(folder).parts]
-    assert f'"hapticlab=={cli.__version__}"' in (course / "grader-image" / "Dockerfile").read_text("utf-8")
+    assert f'"hapticlab=={__version__}"' in (course / "grader-image" / "Dockerfile").read_text("utf-8")
 
 
 def graded_there(course, root, wrong, **variables):

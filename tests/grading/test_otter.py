@@ -9,7 +9,7 @@ import zipfile
 import pytest
 from handed_in import INSTRUCTOR, LABS, WRONG, earned, handed_in, start, text
 
-from hapticlab import cli
+from hapticlab import __version__, cli
 from hapticlab.course import notebook as notebooks
 from hapticlab.course.instructor import solved_notebook
 from hapticlab.course.notebook import code_of, read, write
@@ -51,7 +51,7 @@ def made(otter, tmp_path_factory):
     """Folders of both labs: of one as our command has it made, of the other by otter, which need not run that solution."""
     target, scratch = tmp_path_factory.mktemp("made") / "labs", tmp_path_factory.mktemp("master")
     assert cli.main(["assign", str(target), "--for", "otter", "--lab", "02", "--instructor", str(INSTRUCTOR)]) == 0
-    lab, package = LABS["01"], f"hapticlab=={cli.__version__}"
+    lab, package = LABS["01"], f"hapticlab=={__version__}"
     shutil.copy(lab.path / "checks.py", scratch)
     write(scratch / lab.notebook.name, otter_notebook(lab, INSTRUCTOR / lab.name, ["checks.py"], package))
     otter("assign", "--no-pdfs", "--no-run-tests", scratch / lab.notebook.name, target / lab.name)
@@ -93,7 +93,7 @@ def test_the_zip_installs_this_hapticlab_and_has_a_test_for_each_exercise(made):
             tests = {name.removeprefix("tests/").removesuffix(".py") for name in names if name.startswith("tests/")}
             installed = found.read("environment.yml").decode()
         assert tests == {one.name for one in lab.lab().exercises if one.judged}
-        assert f"hapticlab=={cli.__version__}" in installed
+        assert f"hapticlab=={__version__}" in installed
 
 
 @pytest.mark.parametrize("number, wrong", [pytest.param("01", {}, marks=pytest.mark.slow), ("02", WRONG["02"])])

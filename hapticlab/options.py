@@ -1,0 +1,215 @@
+"""The commands of the command line and their options.
+
+Nothing here opens SymPy or NumPy, so that `hapticlab -h` answers at once: each command is named as "module.function", which
+`cli.main` imports when the command runs.
+"""
+
+import argparse
+import os
+
+from . import __version__
+from .compiler.boards import BOARDS
+from .grading.formats import FORMATS
+from .grading.limits import MIB, Limits
+
+#: `hapticlab run --method`, `hapticlab tradeoff --targets`, `hapticlab calibrate --only`, `hapticlab grade --sandbox`: names that
+#: modules define which take long to import; a test compares them
+METHODS = (
+    "adams_bashforth2", "adams_bashforth3", "euler", "heun", "midpoint", "nystrom4", "rk4", "semi_implicit_euler",
+    "semi_implicit_euler_damped", "ssprk3", "verlet", "taylor", "exact",
+)  # fmt: skip
+TARGETS = ("pc", *(name for name, given in BOARDS.items() if given.hz))
+STEPS = ("stops", "sign", "force")
+SYSTEMS = ("nbgrader", "otter", "gradescope", "prairielearn")
+LEVELS = ("auto", "namespaces", "user", "none")
+
+
+def parser():
+    """Return the parser of all commands; its options have ``command``, as "module.function", and that command's ``parser``."""
+    made = argparse.ArgumentParser(prog="hapticlab", description="From an equation of motion to a felt virtual wall.")
+    made.add_argument("--version", action="version", version=f"hapticlab {__version__}")
+    made.set_defaults(command=None, parser=made)
+    named = "{demo,labs,assign,grade,run,tradeoff,ports,doctor,flash,calibrate}"
+    commands = made.add_subparsers(title="commands", metavar=named)
+    shared = argparse.ArgumentParser(add_help=False)
+    shared.add_argument("--json", action="store_true", help="print the numbers, named with units, as JSON and nothing else")
+    _add_demo(commands, shared)
+    _add_labs(commands)
+    _add_assign(commands)
+    _add_grade(commands)
+    for one in (_add_run(commands, shared), _add_tradeoff(commands, shared)):
+        one.add_argument("--set", type=_setting, action="append", metavar="NAME=VALUE", help="bind a parameter, SI or with unit")
+    _add_board_commands(commands, shared)
+    return made
+
+
+def _add_command(commands, function, text, parents=()):
+    """Return the parser of one command, which `cli.main` runs by calling ``function``, "module.name"."""
+    made = commands.add_parser(function.split(".")[1], parents=parents, help=text, description=text)
+    made.set_defaults(command=function, parser=made)
+    return made
+
+
+def _add_out(made, folder):
+    made.add_argument("--out", metavar="DIR", default=folder, help="where figure and telemetry go (default: %(default)s)")
+
+
+def _add_demo(commands, shared):
+    text = "show where the chapter's wall begins to chatter, and run a student's own equation of motion"
+    made = _add_command(commands, "scene_commands.demo", text, [shared])
+    made.add_argument("--quick", action="store_true", help="fewer stiffnesses, shorter runs")
+    _add_out(made, "hapticlab-demo")
+
+
+def _add_run(commands, shared):
+    text = "run a Python file that defines `scene`, and optionally `paddle` and `duration`"
+    made = _add_command(commands, "scene_commands.run", text, [shared])
+    made.add_argument("file", metavar="FILE.py")
+    words = "run on the board at this port; a sim:// port simulates the paddle that the file defines"
+    made.add_argument("--port", metavar="URL", help=words)
+    made.add_argument("--yes", action="store_true", help="do not ask before the motor moves")
+    made.add_argument("--every", type=_ticks, metavar="N", help="have the board send one sample in N ticks")
+    made.add_argument("--duration", type=float, metavar="SECONDS", help="how long to run [s]")
+    made.add_argument("--T", type=float, metavar="SECONDS", help="sampling period [s]")
+    made.add_argument("--method", choices=METHODS, help="integrator of the equations of motion (default: rk4)")
+    _add_out(made, "hapticlab-run")
+    return made
+
+
+def _add_tradeoff(commands, shared):
+    text = "measure speed against accuracy of a scene file, and choose what is good enough at the least load"
+    made = _add_command(commands, "scene_commands.tradeoff", text, [shared])
+    made.add_argument("file", metavar="FILE.py")
+    made.add_argument("--tolerance", type=_part, default=1e-2, metavar="PART", help="of the greatest force (default: 0.01)")
+    made.add_argument("--load", type=_part, default=0.5, metavar="PART", help="of the period at most (default: 0.5)")
+    made.add_argument("--any-hand", action="store_true", help="do not ask for passivity in every hand")
+    made.add_argument("--methods", nargs="+", metavar="NAME", help="integrators (default: all but forward Euler)")
+    made.add_argument("--T", dest="periods", type=float, nargs="+", metavar="SECONDS", help="sampling periods [s]")
+    made.add_argument("--targets", nargs="+", choices=TARGETS, help="this computer and boards (default: all)")
+    made.add_argument("--live", nargs="+", default=(), metavar="NAME", help="parameters that stay settable (default: none)")
+    made.add_argument("--every", type=_ticks, default=10, metavar="N", help="one sample of telemetry in N ticks (default: 10)")
+    made.set_defaults(T=None, duration=None)
+    _add_out(made, "hapticlab-tradeoff")
+    return made
+
+
+def _add_labs(commands):
+    text = "copy the labs into a folder without overwriting files that you have changed, and open them in JupyterLab"
+    made = _add_command(commands, "lab_commands.labs", text)
+    made.add_argument("folder", metavar="DIR", nargs="?", default="hapticlab-labs", help="(default: %(default)s)")
+    made.add_argument("--no-open", action="store_true", help="only copy, and say how to open them")
+    words = "copy these labs; by default all, or those that are in the folder already"
+    made.add_argument("--lab", nargs="+", default=[], metavar="NN", help=words)
+    words = "folder of answers: write solved notebooks into DIR-solved, and mark these and the labs as they came with hapticlab"
+    made.add_argument("--instructor", metavar="PATH", help=words)
+    made.add_argument("--seed", type=_seed, metavar="N", help="of an instructor's hidden cases (default: 0)")
+
+
+def _add_assign(commands):
+    text = "hand out labs: as nbgrader, otter, Gradescope or PrairieLearn take them, or with each student's own numbers"
+    made = _add_command(commands, "assign_commands.assign", text)
+    made.add_argument("target", metavar="DIR", help="folder to write into; of gradescope a FILE.zip")
+    made.add_argument("--for", dest="system", choices=SYSTEMS, help="what grades or collects")
+    made.add_argument("--personal", action="store_true", help="numbers of their own for the students of --roster")
+    words = "these labs, by number, or own ones by folder (default: all that came with hapticlab)"
+    made.add_argument("--lab", nargs="+", default=[], metavar="NN", help=words)
+    made.add_argument("--instructor", required=True, metavar="PATH", help="folder of answers, which holds NN_name/solution.py")
+    made.add_argument("--seed", type=_seed, metavar="N", help="of hidden cases and of students' own numbers (default: 0)")
+    made.add_argument("--roster", metavar="FILE.csv", help="the class, for --personal")
+    made.add_argument("--column", metavar="NAME", help="of the roster, by which submissions will be named")
+    made.add_argument("--wheel", metavar="FILE.whl", help="hapticlab as a file, where it is not to come from an index")
+    made.add_argument("--image", metavar="NAME", help="of PrairieLearn's grader (default: hapticlab-grader:VERSION)")
+
+
+def _add_grade(commands):
+    text = "grade submissions: run each in processes that know no answer, and judge what they give"
+    made = _add_command(commands, "grade_commands.grade", text)
+    words = "notebooks, scripts, archives, folders of these, or nbgrader's submitted tree"
+    made.add_argument("submissions", metavar="SUBMISSION", nargs="+", help=words)
+    words = "lab number, or folder of a lab of your own (default: detected from the submissions)"
+    made.add_argument("--lab", metavar="NN", help=words)
+    made.add_argument("--instructor", metavar="PATH", help="folder of answers, for hidden cases; else public ones alone count")
+    made.add_argument("--seed", type=_seed, default=0, metavar="N", help="of the hidden cases (default: 0)")
+    made.add_argument("--personal", action="store_true", help="each student was handed numbers of their own, by this seed")
+    made.add_argument("--format", choices=FORMATS, default="text", help="of the results (default: text)")
+    words = "write the results to this file; run the same command again to resume"
+    made.add_argument("-o", "--output", metavar="FILE", help=words)
+    made.add_argument("--pages", metavar="DIR", help="write an HTML page for each student and one of the class")
+    made.add_argument("--roster", metavar="FILE.csv", help="who is in the class, by the names that another system has for them")
+    made.add_argument("--assignment", default="", metavar="NAME", help="of the column in Canvas, Moodle and nbgrader")
+    made.add_argument("--gradebook", metavar="FILE.db", help="push the points into this gradebook of nbgrader")
+    words = "so many processes, or the address of a Dask scheduler (default: one for each processor)"
+    made.add_argument("--workers", type=_workers, default=os.cpu_count() or 1, metavar="N|tcp://...", help=words)
+    words = f"for a cell, and for an exercise (default: {Limits().seconds:g})"
+    made.add_argument("--timeout", type=_amount, default=Limits().seconds, metavar="SECONDS", help=words)
+    words = f"for a submission's processes together (default: {Limits().memory // MIB})"
+    made.add_argument("--memory", type=_whole(64, "a number of MiB"), default=Limits().memory // MIB, metavar="MIB", help=words)
+    made.add_argument("--sandbox", choices=LEVELS, default="auto", help="walls around students' code (default: the best)")
+    made.add_argument("--fresh", action="store_true", help="grade all anew, also what an earlier run wrote down")
+
+
+def _add_board_commands(commands, shared):
+    """Add what needs a board; each has its words, and the port where it has one."""
+    words = {
+        "ports": "list the serial ports, and which of them connect() asks",
+        "doctor": "walk from the cable to the motor and say what is wrong",
+        "flash": "write the firmware into an Arduino Uno over its bootloader",
+        "calibrate": "measure stops, motor sign and force constant, and store them on the board",
+    }
+    made = {}
+    for name, text in words.items():
+        made[name] = _add_command(commands, f"board_commands.{name}", text, [shared] if name in ("ports", "doctor") else [])
+        if name != "ports":
+            made[name].add_argument("--port", metavar="URL", help="by default the one known board that is plugged in")
+    made["doctor"].add_argument("--no-person", action="store_true", help="skip what needs somebody at the handle")
+    made["flash"].add_argument("--image", metavar="FILE.hex", help="by default the one that came with hapticlab")
+    made["calibrate"].add_argument("--only", choices=STEPS, help="this step alone")
+    made["calibrate"].add_argument("--yes", action="store_true", help="do not ask before the motor moves")
+
+
+def _whole(least, what):
+    """Return what reads a whole number; ``what`` says in an error what it is."""
+
+    def whole(text):
+        if not text.isdecimal() or int(text) < least:
+            raise argparse.ArgumentTypeError(f"{text!r} is not {what}; give a whole number, {least} or greater")
+        return int(text)
+
+    return whole
+
+
+_seed, _ticks = _whole(0, "a seed"), _whole(1, "a number of ticks")
+
+
+def _workers(text):
+    return text if "://" in text else _whole(1, "a number of processes")(text)
+
+
+def _amount(text):
+    try:
+        amount = float(text)
+    except ValueError:
+        amount = 0.0
+    if not 0 < amount < 1e6:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a duration; give a number of seconds greater than 0")
+    return amount
+
+
+def _part(text):
+    try:
+        part = float(text)
+    except ValueError:
+        part = 0.0
+    if not part > 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a fraction; give a number greater than 0, such as 0.01")
+    return part
+
+
+def _setting(text):
+    name, equals, value = text.partition("=")
+    if not (name and equals and value):
+        raise argparse.ArgumentTypeError(f"{text!r} sets nothing; write NAME=VALUE, such as k=300 or x_o='10 mm'")
+    try:
+        return name.strip(), float(value)
+    except ValueError:
+        return name.strip(), value

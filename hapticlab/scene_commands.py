@@ -1,0 +1,120 @@
+"""What the command line does with scenes: the demonstration, and a scene file run, or measured for speed against accuracy."""
+
+import json
+import tempfile
+import traceback
+from dataclasses import replace
+from pathlib import Path
+
+from . import __version__
+from . import board_commands as board
+from . import demo as demonstration
+from .analysis.plots import plot
+from .analysis.tradeoff import tradeoff as measure_tradeoff
+from .errors import HapticlabError, SceneError
+from .exits import INTERRUPTED, complain
+from .scenefile import describe, load_scene, report_of, run_scene
+
+
+def demo(parser, options):
+    """Show where the chapter's wall chatters, and run a student's own scene."""
+    folder = _folder(options)
+    found = demonstration.study(quick=options.quick)
+    facts = demonstration.report(found)
+    files = demonstration.write(found, folder)
+    return _tell(options, facts, files, demonstration.words(facts))
+
+
+def run(parser, options):
+    """Run a scene file, on its own paddle or on a board."""
+    if options.port is None and (options.yes or options.every):
+        parser.error(f"{'--yes' if options.yes else '--every'} is for a board; name its port with --port")
+    file, path = _opened(parser, options), Path(options.file)
+    folder = _folder(options)
+    compiling = {"method": options.method} if options.method else {}
+    if options.port is None:
+        program, log = run_scene(file, **compiling)
+        facts, loop = report_of(program, log), None
+    else:
+        try:
+            program, log, loop = board.run_on_board(file, options, **compiling)
+        except KeyboardInterrupt:
+            complain("interrupted; the motor is off. No samples are kept: a run is written at its end, after --duration")
+            return INTERRUPTED
+        facts = report_of(program, log) | {"loop": board.timing_facts(loop)}
+    figure, names = folder / f"{path.stem}.png", [name for name in file.scene.watch if name in log.channels]
+    plot(log, "x", *names, "F").savefig(figure)
+    files = {"figure": figure, "telemetry": log.to_csv(folder / f"{path.stem}.csv")}
+    _tell(options, facts, files, f"{log.paddle}\n{describe(facts)}" + (f"\nloop     {loop}" if loop else ""))
+    return complain(f"the run failed: {log.fault}") if log.fault else 0
+
+
+def tradeoff(parser, options):
+    """Measure speed against accuracy of a scene file, for its own paddle and the targets asked for."""
+    file, path = _opened(parser, options), Path(options.file)
+    folder = _folder(options)
+    given = {"methods": options.methods, "T": options.periods, "targets": options.targets}
+    given = {name: several for name, several in given.items() if several} | {"live": options.live, "every": options.every}
+    found = measure_tradeoff(file.scene, file.paddle, tolerance=options.tolerance, **given)
+    asked = {"load": options.load, "passive": not options.any_hand}
+    figure = folder / f"{path.stem}-tradeoff.png"
+    found.plot(**asked).savefig(figure)
+    files = {"figure": figure, "table": found.table.to_csv(folder / f"{path.stem}-tradeoff.csv")}
+    chosen = {target: found.choose(target=target, **asked).facts() for target in found.targets}
+    facts = {"scene": found.name, "paddle": str(file.paddle), "rows": len(found.table), "chosen": chosen}
+    return _tell(options, facts, files, found.summary(**asked))
+
+
+def _opened(parser, options):
+    """Return the scene file that was named, with what the command line sets."""
+    path = Path(options.file)
+    if path.is_dir():
+        parser.error(f"{path} is a folder, needs a file; give a Python file that defines scene = hl.Scene(...)")
+    if not path.is_file():
+        parser.error(f"{path}: no such file; give a Python file that defines scene = hl.Scene(...)")
+    try:
+        file = load_scene(path)
+    except Exception as problem:  # whatever the student's own code raises is theirs to read
+        raise SceneError(_in_their_words(problem, path)) from None
+    try:
+        return _changed(file, options)
+    except HapticlabError as problem:
+        parser.error(str(problem))
+
+
+def _folder(options):
+    """Return the folder for the results, ready to be written to: asked for before anything is computed."""
+    folder = Path(options.out)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError as problem:
+        raise OSError(problem.errno, f"{problem.strerror}; choose another folder with --out", str(folder)) from None
+
+
+def _tell(options, facts, files, text):
+    if options.json:
+        print(json.dumps({"hapticlab": __version__, **facts, "files": {k: str(p.resolve()) for k, p in files.items()}}, indent=1))
+    else:
+        print(text, "", *(f"{name.replace('_', ' ')}: {path.resolve()}" for name, path in files.items()), sep="\n")
+    return 0
+
+
+def _changed(file, options):
+    """Return the scene file with what the command line sets."""
+    paddle = file.paddle if options.T is None else replace(file.paddle, T=options.T)
+    duration = file.duration if options.duration is None else options.duration
+    paddle.ticks(duration)
+    return replace(file, scene=file.scene(**dict(options.set or [])), paddle=paddle, duration=duration)
+
+
+def _in_their_words(problem, path):
+    """Return an error of a scene file: ours in one line, any other with the frames of that file and those beside it."""
+    told = traceback.TracebackException.from_exception(problem)
+    folder = path.resolve().parent
+    frames = [frame for frame in told.stack if folder == Path(frame.filename).resolve().parent and frame.filename[0] != "<"]
+    if isinstance(problem, HapticlabError):
+        return f"{frames[-1].filename}, line {frames[-1].lineno}: {problem}" if frames else problem
+    where = "".join(traceback.StackSummary.from_list(frames).format())
+    return f"{path} failed\n{where}{''.join(told.format_exception_only())}".rstrip()
