@@ -1,22 +1,26 @@
-"""Files of a folder or of a zip file, listed and read within bounds: what strangers packed is never unpacked to a disk."""
+"""Files of a zip file, and of a folder, read within bounds: what strangers packed is never unpacked to a disk."""
 
 import io
-import itertools
 import os
-import re
 import stat
 import struct
 import zipfile
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 
 from ..errors import CourseError
-from .naming import TREE, WORK
+from .naming import TREE, WORK, is_junk
 
 MIB = 1 << 20
-#: of a class; of one student; of one zip file in another, which is read as a whole; of a zip file's table of contents
-MOST_FILES, MOST_OF_ONE, MOST_ZIP, MOST_CONTENTS = 100_000, 20_000, 64 * MIB, 8 * MIB
+#: of one zip file in another, which is read as a whole; of a zip file's table of contents
+MOST_ZIP, MOST_CONTENTS = 64 * MIB, 8 * MIB
+#: folders in one another
+DEEPEST = 40
+#: what stands for a file's name where a folder holds none, and where a link leads elsewhere
+NOTHING, LINK = "nothing", "a link"
+#: bits of a member's flags
+ENCRYPTED, UTF8 = 0x1, 0x800
 #: LZMA allocates what a stranger's header says
 METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 
@@ -54,35 +58,28 @@ class Entry:
         return PurePosixPath(name if name.endswith(".ipynb") else self.name.lower()).suffix
 
 
-def folder_entries(folder):
-    """Return the files of a folder, in order; no link is followed.
-
-    Of a folder in it that holds too many files there is one entry, with a problem: the others' are as they are.
-    """
-    found = []
-    for owner, entries in itertools.groupby(_files_below(folder), key=_owner):
-        most = MOST_OF_ONE if owner else MOST_FILES
-        several = list(itertools.islice(entries, most + 1))
-        if owner and len(several) > most:
-            words = f"{owner[-1]} holds more than {most} files; hand in the notebook alone"
-            several = [Entry(several[0].file, (*owner, several[0].name), problem=words)]
-        found += several
-        if len(found) > MOST_FILES:
-            raise CourseError(f"{folder} holds more than {MOST_FILES} files; name the folder of the submissions")
-    return found
-
-
-def _files_below(folder):
-    for place, folders, names in os.walk(folder):
-        folders[:] = sorted(name for name in folders if not _is_junk(name))
-        inside = Path(place).relative_to(folder).parts
-        yield from (Entry(Path(place, name), (*inside, name)) for name in sorted(names) if not _is_junk_file(name))
-
-
-def _owner(entry):
+def owner_of(folders):
     """Return the folder that is a student's, if one is: the first, and in nbgrader's tree the one below."""
-    folders = entry.parts[:-1]
     return folders[: folders.index(TREE) + 2] if TREE in folders[:2] else folders[:1]
+
+
+def check_depth(folders):
+    """Refuse folders that nest deeper than any work."""
+    if len(folders) > DEEPEST:
+        raise CourseError(f"{owner_of(folders)[-1]} holds folders nested more than {DEEPEST} deep; hand in the notebook alone")
+
+
+def is_kept(parts):
+    """Return whether a file is listed: what lies in a hidden folder only where it may be somebody's work.
+
+    Parameters
+    ----------
+    parts : tuple of str
+        Names of its folders and its own.
+    """
+    *folders, name = parts
+    hidden = name.startswith(".") or any(folder.startswith(".") for folder in folders)
+    return not any(map(is_junk, parts)) and (not hidden or name.lower().endswith(WORK))
 
 
 def zip_entries(entry):
@@ -98,15 +95,36 @@ def zip_entries(entry):
     CourseError
         Where it is none, or holds too much.
     """
+    found, folders = [], {}
     with _opened(entry) as file, _zip(file) as archive:
-        infos = archive.infolist()
-        found = []
-        for number, info in enumerate(infos):
-            parts = tuple(part for part in info.filename.replace("\\", "/").split("/") if part not in ("", ".", ".."))
-            if not parts or info.is_dir() or _is_link(info) or any(map(_is_junk, parts[:-1])) or _is_junk_file(parts[-1]):
-                continue
-            found.append(Entry(entry.file, parts, (*entry.inside, number)))
+        for number, info in enumerate(archive.infolist()):
+            parts = tuple(part for part in _name(info).replace("\\", "/").split("/") if part not in ("", ".", ".."))
+            if info.is_dir():
+                parts = (*parts, NOTHING)
+            elif stat.S_ISLNK(info.external_attr >> 16):
+                parts = (*parts, LINK)
+            one = _within_depth(Entry(entry.file, parts, (*entry.inside, number)))
+            if parts and is_kept(one.parts):
+                (folders.setdefault(owner_of(parts[:-1]), one) if info.is_dir() else found.append(one))
+    owners = {owner_of(one.parts[:-1]) for one in found}
+    found += [one for owner, one in folders.items() if owner and owner not in owners]
     return sorted(found, key=lambda one: one.parts)
+
+
+def _name(info):
+    """Return a member's name; macOS writes UTF-8 without saying so, which zipfile takes for cp437."""
+    try:
+        return info.filename if info.flag_bits & UTF8 else info.filename.encode("cp437").decode("utf-8")
+    except UnicodeError:
+        return info.filename
+
+
+def _within_depth(entry):
+    try:
+        check_depth(entry.parts[:-1])
+        return entry
+    except CourseError as problem:
+        return replace(entry, parts=(*owner_of(entry.parts[:-1]), NOTHING), problem=str(problem))
 
 
 def read_entry(entry, most):
@@ -124,7 +142,12 @@ def _opened(entry):
     except CourseError as problem:
         raise CourseError(f"{entry.name}: {problem}") from None
     except Exception as problem:  # bytes of a stranger raise a dozen kinds in zipfile and zlib
-        raise CourseError(f"{entry.name} cannot be read: {type(problem).__name__}: {problem}") from None
+        raise CourseError(f"{entry.name} cannot be read: {_reason(problem)}; hand it in again") from None
+
+
+def _reason(problem):
+    """Return what went wrong, without the path, which tells a student about the grader's computer."""
+    return problem.strerror if isinstance(problem, OSError) and problem.strerror else f"{type(problem).__name__}: {problem}"
 
 
 @contextmanager
@@ -146,6 +169,8 @@ def _member(file, inside):
         return
     with _zip(file) as archive:
         info = archive.infolist()[inside[0]]
+        if info.flag_bits & ENCRYPTED:
+            raise CourseError("it is locked by a password; hand it in without one")
         if info.compress_type not in METHODS:
             raise CourseError("it is compressed in an unusual way; make the zip file anew")
         with archive.open(info) as member:
@@ -185,18 +210,3 @@ def _contents_size(file):
     if tail[max(0, end - 20) : end].startswith(b"PK\x06\x07") and end >= 76:
         return struct.unpack_from("<Q", tail, end - 36)[0]
     return struct.unpack_from("<L", tail, end + 12)[0]
-
-
-def _is_link(info):
-    return stat.S_ISLNK(info.external_attr >> 16)
-
-
-def _is_junk(name):
-    """Whether Jupyter, Python or a file manager made it."""
-    return name.startswith((".", "__"))
-
-
-def _is_junk_file(name):
-    """Whether it is junk; a notebook that somebody's dot hides is none, so that it can be named."""
-    hidden = re.match(r"\.[^._~]", name) and PurePosixPath(name).suffix.lower() in WORK
-    return _is_junk(name) and not hidden

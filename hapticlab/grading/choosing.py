@@ -7,12 +7,14 @@ from itertools import islice
 
 from ..course.labs import CHECKS
 from ..errors import CourseError
-from .archives import MIB, read_entry, zip_entries
-from .naming import WORK, lab_number
+from .archives import MIB, NOTHING, read_entry, zip_entries
+from .naming import PACKED, WORK, lab_number
 from .notebook_text import notebook_cells, script_cells
 
 #: of a notebook; notebooks of one student that are opened to see which is meant
 MOST_BYTES, MOST_OPENED = 32 * MIB, 20
+#: of all of these together
+MOST_TOGETHER = 4 * MOST_BYTES
 #: so many answers of another lab, and none of this one, tell a notebook of that lab whatever it is called
 MANY = 3
 CHECK = re.compile(rb"""check\(\s*\\?['"](\w\w)\.?(\w+)""")
@@ -24,8 +26,8 @@ def is_handed(entry):
 
 
 def is_work(entry):
-    """Return whether a file may be graded: one that the dot before its name hides is not."""
-    return is_handed(entry) and not entry.name.startswith(".")
+    """Return whether a file may be graded: one that a dot before its name or a folder's hides is not."""
+    return is_handed(entry) and not any(part.startswith(".") for part in entry.parts)
 
 
 def cells_of(entry, raw):
@@ -67,11 +69,17 @@ def chosen(entries, lab, own=()):
 
 def _work(entries):
     """Return the notebooks; where there are none, the scripts."""
+    if refused := next((entry for entry in entries if entry.problem), None):
+        raise CourseError(refused.problem)
     work = [entry for entry in entries if is_work(entry)]
-    work = [entry for entry in work if entry.suffix == ".ipynb"] or [entry for entry in work if entry.suffix == ".py"]
+    found = [entry for entry in work if entry.suffix == ".ipynb"] or [entry for entry in work if entry.suffix == ".py"]
+    if found:
+        return found
     if work:
-        return work
-    there = ", ".join(entry.name for entry in entries[:3]) or "nothing"
+        raise CourseError(f"{work[0].name} is a zip file inside a zip file; hand in the notebook itself")
+    if packed := [entry for entry in entries if entry.suffix in PACKED]:
+        raise CourseError(f"{packed[0].name} cannot be unpacked here; hand in the notebook itself, or a zip file")
+    there = ", ".join(entry.name for entry in entries[:3]) or NOTHING
     hidden = "; a file is hidden by the dot before its name" if any(map(is_handed, entries)) else ""
     raise CourseError(f"no notebook is in it; there is {there}{' and more' if len(entries) > 3 else ''}{hidden}")
 
@@ -85,11 +93,15 @@ def _unpacked(entry):
 
 def _highest(work, own):
     """Return the files that lie highest, with their bytes; copies of the lab as it came only where nothing else is."""
-    plain, opened = [], 0
+    plain, opened, size = [], 0, 0
     for depth in sorted({len(entry.parts) for entry in work}):
         here = islice((entry for entry in work if len(entry.parts) == depth), max(0, MOST_OPENED - opened))
-        contents = [(entry, read_entry(entry, MOST_BYTES)) for entry in here]
-        opened += len(contents)
+        contents = []
+        for entry in here:
+            contents.append((entry, read_entry(entry, MOST_BYTES)))
+            opened, size = opened + 1, size + len(contents[-1][1])
+            if size > MOST_TOGETHER:
+                raise CourseError(f"its notebooks hold more than {MOST_TOGETHER // MIB} MiB together; hand in one")
         meant = [content for content in contents if len(work) == 1 or not _is_plain(*content, own)]
         if meant:
             return meant

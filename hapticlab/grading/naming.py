@@ -7,8 +7,18 @@ from pathlib import PurePosixPath
 from .replies import line_of
 
 WORK = (".ipynb", ".py", ".zip")
+#: what people hand in by mistake in place of these: archives that are not read, and documents
+PACKED = (".7z", ".rar", ".tar", ".tgz", ".gz", ".bz2", ".xz")
+MISTAKEN = (*PACKED, ".pdf", ".html", ".htm", ".doc", ".docx", ".odt", ".rtf")
+#: what systems, editors and Python leave beside people's work, in small letters
+JUNK = {
+    "__init__.py", "__macosx", "__pycache__", ".cache", ".conda", ".ds_store", ".git", ".ipynb_checkpoints", ".local", ".venv",
+    "desktop.ini", "thumbs.db",
+}  # fmt: skip
 #: nbgrader's folder: submitted/STUDENT/LAB/*.ipynb
 TREE = "submitted"
+#: how a file ends that somebody handed in; a browser may add to the name of a notebook
+OFFERED = re.compile(rf"(?<=.)(\.ipynb\.(txt|json)|\.tar\.\w+|{'|'.join(map(re.escape, (*WORK, *MISTAKEN)))})$", re.IGNORECASE)
 MOODLE, GRADESCOPE = re.compile(r"(.+?)_assignsubmission_\w*"), re.compile(r"submission_\d+")
 CANVAS = re.compile(r"([^_]+?)(?:_LATE)?_(\d+)_\d+_.+")
 #: a lab's number, as its folder and its notebook begin
@@ -36,8 +46,8 @@ def student_of(name, lab=""):
     system = MOODLE.match(name) or CANVAS.fullmatch(name)
     if system:
         name = "_".join(system.groups())
-    elif PurePosixPath(name).suffix.lower() in WORK:
-        name = PurePosixPath(name).stem
+    else:
+        name = OFFERED.sub("", name)
     if len(lab) > 2 and not is_lab(name, lab):
         name = name.replace(lab, "").strip("_- .") or name
     return line_of(unicodedata.normalize("NFC", name), 80) or "unnamed"
@@ -46,6 +56,11 @@ def student_of(name, lab=""):
 def is_of_system(name):
     """Return whether a folder or a file was named by a system, after a student."""
     return bool(MOODLE.match(name) or GRADESCOPE.fullmatch(name) or CANVAS.fullmatch(name))
+
+
+def is_junk(name):
+    """Return whether a file or a folder was made by a system, an editor or Python."""
+    return name.lower() in JUNK or name.startswith(("._", ".~", "~$"))
 
 
 def lab_number(name):

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from ..course.labs import find_labs
 from ..errors import CourseError
-from .archives import Entry, folder_entries, zip_entries
+from .archives import LINK, Entry, zip_entries
 from .choosing import cells_of, chosen, is_handed, is_work
-from .naming import TREE, is_lab, is_of_system, lab_number, student_of
+from .folders import folder_entries
+from .naming import MISTAKEN, TREE, is_lab, is_of_system, lab_number, student_of
 from .replies import line_of
 
 
@@ -81,8 +82,31 @@ def find_submissions(paths, lab=None):
     ...     [(source.student, read(source).cells, read(source).problem) for source in find_submissions([folder])]
     [('ada', ('k = 150',), ''), ('bob', (), 'bob.ipynb is no notebook; it needs the JSON that Jupyter writes')]
     """
-    found = [source for path in paths for source in _found(Path(path), lab or "")]
-    return [replace(source, lab=lab or "") for source in _told_apart(_with_work(found))]
+    return [replace(source, lab=lab or "") for source in _told_apart(_with_work(_all_found(paths, lab or "")))]
+
+
+def left_aside(paths, lab=None):
+    """Return what lies beside the submissions and is in none: files that are no work, texts and PDFs beside somebody's work.
+
+    Parameters
+    ----------
+    paths, lab
+        As of :func:`find_submissions`.
+
+    Returns
+    -------
+    list of str
+    """
+    held = {(entry.file, entry.inside) for source in find_submissions(paths, lab) for entry in source.entries}
+    found = []
+    for path in [path.resolve() for path in map(Path, paths) if _is_container(path)]:
+        try:
+            listed = _entries(path)
+        except CourseError:  # it is a submission, with a problem
+            continue
+        if not any(entry.parts[0] == TREE for entry in listed):  # beside that lies the rest of a course
+            found += [line_of("/".join(one.parts), 100) for one in listed if (one.file, one.inside) not in held]
+    return found
 
 
 def lab_of(sources):
@@ -95,38 +119,55 @@ def lab_of(sources):
     return named[0]
 
 
-def _found(path, lab):
-    """Return the sources at one path, as it was named on the command line."""
-    if not path.exists():
-        raise CourseError(f"{path}: no such file or folder")
-    path = path.resolve()
+def _all_found(paths, lab):
+    return [source for path in paths for source in _found(Path(path), lab, len(paths) > 1)]
+
+
+def _found(path, lab, several):
+    """Return the sources at one path, as it was named on the command line, alone or as one of several."""
+    try:
+        if several and path.is_symlink():  # a shell named it with all others: a student may have made it
+            return [_source(path.name, path.name, [Entry(path.absolute(), (path.name, LINK))], lab)]
+        path = path.resolve(strict=True)
+    except FileNotFoundError:
+        raise CourseError(f"{path}: no such file or folder") from None
+    except (OSError, RuntimeError) as problem:
+        raise CourseError(f"{path}: {getattr(problem, 'strerror', problem)}") from None
     below = path.parts[path.parts.index(TREE) + 1 :] if TREE in path.parts else ()
-    if path.is_dir():
-        entries, name = folder_entries(path), path.name
-    elif path.suffix.lower() == ".zip":
-        try:
-            entries, name = zip_entries(Entry(path, (path.name,))), path.stem
-        except CourseError as problem:  # of a class or of one student: the others are graded
-            return [replace(_source(path.name, path.name, [], lab), problem=str(problem))]
-    else:
+    if not _is_container(path):
         owner = below[0] if len(below) > 1 else path.parent.name if is_lab(path.name, lab) else path.name
         return [_source(owner, path.name, [Entry(path, (path.name,))], lab)]
+    name = path.name if path.is_dir() else path.stem
+    try:
+        entries = _entries(path)
+    except CourseError as problem:
+        if not several and path.is_dir():
+            raise
+        return [replace(_source(path.name, path.name, [], lab), problem=str(problem))]  # the others are graded
     if below or is_of_system(path.name):
         return [_source(below[0] if below else path.name, path.name, entries, lab)]
     tree = [_lifted(entry) for entry in entries if len(entry.parts) > 2 and entry.parts[0] == TREE]
     if tree or path.name == TREE:
         return _each(tree or entries, lab, name)
-    return _grouped(entries, name, lab, named_by_zip=not path.is_dir())
+    return _grouped(entries, name, lab, named_by_zip=not path.is_dir(), of_one=several or not path.is_dir())
+
+
+def _is_container(path):
+    return path.is_dir() or (path.suffix.lower() == ".zip" and path.is_file())
+
+
+def _entries(path):
+    return folder_entries(path) if path.is_dir() else zip_entries(Entry(path, (path.name,)))
 
 
 def _lifted(entry):
     return replace(entry, parts=entry.parts[1:])
 
 
-def _grouped(entries, name, lab, named_by_zip):
-    """Return the sources among the files of a folder or a zip file."""
+def _grouped(entries, name, lab, named_by_zip, of_one):
+    """Return the sources among the files of a folder or a zip file; ``of_one``: a file alone in it is named after it."""
     while folder := _only_folder(entries):
-        name = name if named_by_zip or lab_number(folder) else folder
+        name, of_one = name if named_by_zip or lab_number(folder) else folder, True
         entries = list(map(_lifted, entries))
     folders = {entry.parts[0] for entry in entries if len(entry.parts) > 1}
     files = [entry for entry in entries if len(entry.parts) == 1 and is_handed(entry)]
@@ -136,7 +177,7 @@ def _grouped(entries, name, lab, named_by_zip):
     work = {entry.parts[0] for entry in entries if is_handed(entry)}
     # one file under the lab's name among others is no sign: it would take the marks of a whole class
     of_labs = work and all(any(is_lab(name, one) for one in labs) for name in work)
-    if of_labs or (len(files) <= 1 and not folders):
+    if of_labs or not (files or folders) or (of_one and len(files) <= 1 and not folders):
         return [_source(name, name, entries, lab)]
     return _each(entries, lab, name)
 
@@ -154,7 +195,7 @@ def _each(entries, lab, name):
     for entry in entries:
         first = entry.parts[0]
         by_system = is_of_system(first)
-        if len(entry.parts) > 1 or is_handed(entry) or by_system:
+        if len(entry.parts) > 1 or is_handed(entry) or by_system or entry.suffix in MISTAKEN:
             groups[by_system, student_of(first, lab) if by_system else first].append(entry)
     found = [_source(owner, several[0].parts[0], several, lab) for (_, owner), several in groups.items()]
     words = line_of(
@@ -170,12 +211,10 @@ def _source(owner, name, entries, lab):
 
 
 def _with_work(sources):
-    """Return sources without those that a system made beside a student's work, as Moodle does for a text."""
-    worked = {source.student for source in sources if any(map(is_work, source.entries))}
-    return [
-        source for source in sources
-        if not is_of_system(source.name) or source.student not in worked or any(map(is_work, source.entries))
-    ]  # fmt: skip
+    """Return sources without those in which no work is, where the same student has work: a text of Moodle's, a PDF."""
+    found = [(source, any(map(is_work, source.entries))) for source in sources]
+    worked = {source.student for source, works in found if works}
+    return [source for source, works in found if works or source.problem or source.student not in worked]
 
 
 def _told_apart(sources):

@@ -10,62 +10,17 @@ import sys
 import zipfile
 
 import pytest
+from submitted_files import ADA, BOB, LAB, fill, handed, notebook, whose, zipped
 
 from hapticlab.course.labs import find_labs
 from hapticlab.course.notebook import code_of
 from hapticlab.course.notebook import read as read_notebook
 from hapticlab.errors import CourseError
-from hapticlab.grading import archives
+from hapticlab.grading import folders
 from hapticlab.grading.inside.cells import run_cell
 from hapticlab.grading.inside.lines import statements
 from hapticlab.grading.naming import is_lab
 from hapticlab.grading.submission import find_submissions, lab_of, read
-
-LAB = "02_virtual_wall"
-
-
-def notebook(*sources):
-    cells = [{"cell_type": "code", "source": source, "metadata": {}, "outputs": []} for source in sources]
-    return json.dumps({"cells": [{"cell_type": "markdown", "source": "# Walls"}, *cells], "nbformat": 4}).encode()
-
-
-def fill(folder, files):
-    for name, content in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-    return folder
-
-
-def zipped(files, path=None):
-    held = io.BytesIO()
-    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in files.items():
-            archive.writestr(name, content)
-    if path is None:
-        return held.getvalue()
-    path.write_bytes(held.getvalue())
-    return path
-
-
-def handed(*paths, lab=LAB):
-    """Return student to (cells, problem)."""
-    sources = find_submissions(paths, lab)
-    found = {source.student: read(source) for source in sources}
-    assert len(found) == len(sources)
-    assert all(one.cells or one.problem for one in found.values())
-    assert all(len(one.sha256) == 64 for one in found.values())
-    return {student: (one.cells, one.problem) for student, one in found.items()}
-
-
-def whose(*paths, lab=LAB):
-    """Return student to the first cell, which says whose it is."""
-    found = handed(*paths, lab=lab)
-    assert not any(problem for _, problem in found.values()), found
-    return {student: cells[0] for student, (cells, _) in found.items()}
-
-
-ADA, BOB = notebook("ada"), notebook("bob")
 
 
 @pytest.mark.parametrize("packed", [False, True], ids=["folder", "zip"])
@@ -121,8 +76,6 @@ def test_a_class_is_found(tmp_path, files, expected, packed):
 @pytest.mark.parametrize(
     ("files", "named"),
     [
-        ({"x.ipynb": ADA}, "ada"),
-        ({"x.py": "ada"}, "ada"),
         ({f"{LAB}.ipynb": ADA, "figures/a.png": "b", "checks.py": "x"}, "ada"),
         ({f"{LAB} (1).ipynb": ADA, "01_motion_to_force.ipynb": BOB}, "ada"),
         ({f"{LAB}/{LAB}.ipynb": ADA, f"{LAB}/checks.py": "x"}, "ada"),
@@ -132,6 +85,16 @@ def test_a_class_is_found(tmp_path, files, expected, packed):
 def test_the_folder_of_one_student_is_named_after_it(tmp_path, files, named):
     assert whose(fill(tmp_path / "grace", files)) == {"grace": named}
     assert whose(zipped(files, tmp_path / "grace.zip")) == {"grace": named}
+
+
+@pytest.mark.parametrize("name", ["x.ipynb", "x.py", f"x-{LAB}.ipynb"])
+def test_a_file_alone_is_named_by_itself_in_a_folder_and_by_its_students_zip_or_folder(tmp_path, name):
+    content = "ada" if name.endswith("py") else ADA
+    assert whose(fill(tmp_path / "class", {name: content, "roster.csv": "x"})) == {"x": "ada"}
+    assert whose(zipped({name: content}, tmp_path / "grace.zip")) == {"grace": "ada"}
+    assert whose(fill(tmp_path / "school", {f"grace/{name}": content})) == {"grace": "ada"}
+    fill(tmp_path / "two", {f"grace/{name}": content, "bob/y.ipynb": BOB})
+    assert whose(*(tmp_path / "two").iterdir()) == {"grace": "ada", "bob": "bob"}
 
 
 @pytest.mark.parametrize("packed", [False, True], ids=["folder", "zip"])
@@ -276,12 +239,12 @@ NOTEBOOKS = {
 @pytest.mark.parametrize("kind", NOTEBOOKS)
 def test_a_notebook_is_read_however_it_was_saved(tmp_path, kind):
     fill(tmp_path, {"ada.ipynb": NOTEBOOKS[kind]})
-    assert [cell for cell in handed(tmp_path)[tmp_path.name][0] if cell] == [TEXT]
+    assert [cell for cell in handed(tmp_path)["ada"][0] if cell] == [TEXT]
 
 
 def test_cells_without_source_stay_in_their_places(tmp_path):
     raw = json.dumps({"cells": [{"cell_type": "code"}, {"cell_type": "code", "source": ["k", 3, "=2"]}]})
-    assert handed(fill(tmp_path, {"ada.ipynb": raw}))[tmp_path.name][0] == ("", "k=2")
+    assert handed(fill(tmp_path, {"ada.ipynb": raw}))["ada"][0] == ("", "k=2")
 
 
 NO_NOTEBOOKS = {
@@ -303,7 +266,7 @@ NO_NOTEBOOKS = {
 
 @pytest.mark.parametrize("kind", NO_NOTEBOOKS)
 def test_what_is_no_notebook_is_a_problem_in_words(tmp_path, kind):
-    cells, problem = handed(fill(tmp_path, {"ada.ipynb": NO_NOTEBOOKS[kind]}))[tmp_path.name]
+    cells, problem = handed(fill(tmp_path, {"ada.ipynb": NO_NOTEBOOKS[kind]}))["ada"]
     assert cells == ()
     assert problem.startswith("ada.ipynb ")
     assert "\n" not in problem
@@ -311,7 +274,7 @@ def test_what_is_no_notebook_is_a_problem_in_words(tmp_path, kind):
 
 def test_a_script_is_cells_that_keep_their_lines(tmp_path):
     script = "import math\r\n\r\n# %%\r\nk = (1 +\r\n  nothing)\r\nb = 3\r\ndef f(:\r\n    pass\r\ndef c():\r\n    return 4\r\n"
-    cells, _ = handed(fill(tmp_path, {"ada.py": script}))[tmp_path.name]
+    cells, _ = handed(fill(tmp_path, {"ada.py": script}))["ada"]
     names = {"__name__": "__main__"}
     problems = [run_cell(cell, names, number) for number, cell in enumerate(cells, start=1)]
     assert [problem.split(":")[0] for problem in problems if problem] == ["NameError in line 5", "SyntaxError in line 7"]
@@ -362,6 +325,7 @@ def test_links_and_what_is_no_file_are_never_read(tmp_path):
     os.mkfifo(tmp_path / "class/mallory/x.ipynb")
     found = handed(tmp_path / "class")
     assert found == {
+        "ada": ((), "no notebook is in it; there is a link"),
         "bob": (("bob",), ""),
         "eve": ((), "x.ipynb: it is a link; hand in the file itself"),
         "mallory": ((), "x.ipynb: it is no plain file"),
@@ -404,13 +368,14 @@ HOSTILE = {
     "no zip": (b"PK\3\4 and nothing more", "is no zip file, or was cut off"),
     "cut off": (zipped({"x.ipynb": ADA})[:-30], "is no zip file, or was cut off"),
     "a bomb": (zipped({"x.ipynb": b"0" * (40 << 20)}), "larger than 32 MiB"),
-    "a bomb in a zip": (zipped({"x.zip": zipped({"x.ipynb": b"0" * (40 << 20)})}), "no notebook is in it; there is x.zip"),
-    "a link": (hostile_link(), "no notebook is in it; there is nothing"),
+    "a bomb in a zip": (zipped({"x.zip": zipped({"x.ipynb": b"0" * (40 << 20)})}),
+                        "x.zip is a zip file inside a zip file; hand in the notebook itself"),
+    "a link": (hostile_link(), "no notebook is in it; there is a link"),
     "a large table": (with_size(zipped({"x.ipynb": ADA})), "its table of contents has 1073741824 bytes"),
-    "a password": (encrypted(zipped({"x.ipynb": ADA})), "cannot be read: RuntimeError"),
+    "a password": (encrypted(zipped({"x.ipynb": ADA})), "x.ipynb: it is locked by a password; hand it in without one"),
     "turned bytes": (zipped({"x.ipynb": ADA}).replace(b"PK\3\4", b"PK\3\5"), "cannot be read: BadZipFile"),
     "empty": (zipped({}), "no notebook is in it; there is nothing"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", HOSTILE)
@@ -441,7 +406,7 @@ def test_names_hold_nothing_that_turns_or_controls(tmp_path):
 
 
 def test_a_folder_of_more_files_than_any_class_has_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(archives, "MOST_FILES", 3)
+    monkeypatch.setattr(folders, "MOST_FILES", 3)
     fill(tmp_path, {f"{name}.ipynb": ADA for name in "abcd"})
     with pytest.raises(CourseError, match="more than 3 files; name the folder of the submissions"):
         find_submissions([tmp_path])
@@ -449,7 +414,7 @@ def test_a_folder_of_more_files_than_any_class_has_is_refused(tmp_path, monkeypa
 
 @pytest.mark.parametrize("tree", ["", "submitted/"])
 def test_too_many_files_of_one_student_are_a_problem_of_that_one_alone(tmp_path, monkeypatch, tree):
-    monkeypatch.setattr(archives, "MOST_OF_ONE", 3)
+    monkeypatch.setattr(folders, "MOST_OF_ONE", 3)
     many = {f"{tree}eve/{number}/{number}.ipynb": ADA for number in range(4)}
     fill(tmp_path / "class", {f"{tree}ada/x.ipynb": ADA, f"{tree}bob/x.ipynb": BOB, **many})
     assert handed(tmp_path / "class") == {
