@@ -34,6 +34,8 @@ DOORS = {
 }
 # modules that open their dependency at once, because nothing imports them but a function that has opened it already
 BEHIND_A_DOOR = {"compiler.llvm_emit", "device.urls.protocol_sim"}
+# modules that open the compiler when a function needs it: what judges answers seldom does
+OPENS_THE_COMPILER = {"course.felt"}
 FUNCTION_LINES, MODULE_LINES = 60, 300
 
 
@@ -80,7 +82,7 @@ def faults(name, source, is_package=False):
                 found.append(f"{name}:{node.lineno} imports {root} at once; open it inside the function that needs it")
             if root != "hapticlab" or target == "hapticlab.__version__":
                 continue
-            if node in deferred:
+            if node in deferred and not (name in OPENS_THE_COMPILER and inside[0] == "compiler"):
                 found.append(f"{name}:{node.lineno} imports {target} inside a function")
             if layer in OUTSIDE:
                 continue
@@ -146,6 +148,7 @@ def test_no_cycles():
         ("scene.bad", "import hapticlab.device.hand", "not below"),
         ("scene.bad", "import hapticlab", "not below"),
         ("device.bad", "def f():\n    from ..scene import Scene", "inside a function"),
+        ("course.felt", "def f():\n    from ..device.hand import Hand", "inside a function"),
         ("analysis.bad", "def f():\n    import pint", "its door is"),
         ("compiler.bad", "from scipy.linalg import expm", "its door is"),
         ("limits.matrix", "import scipy.linalg", "at once"),

@@ -9,7 +9,7 @@ import inspect
 import io
 import sys
 from contextlib import contextmanager, redirect_stdout
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,24 +18,8 @@ from ..scene.scene import Scene
 from .curves import curves
 from .expression import unit_remark, values
 from .felt import felt
+from .outcome import Outcome
 from .plain import NotPlain, a, plain
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What an answer gave for one case: a plain value; or why there is none, in words; or nothing, where unanswered.
-
-    Beside a value ``problem`` is a remark, told where the value is wrong. ``printed`` is what its code printed meanwhile.
-    """
-
-    value: object = None
-    problem: str = ""
-    printed: str = ""
-
-    @property
-    def answered(self):
-        """Whether anything was answered at all."""
-        return self.value is not None or bool(self.problem)
 
 
 def evaluate(kind, answer, given):

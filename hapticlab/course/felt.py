@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from ..compiler.engine import load
-from ..compiler.lower import compile
 from ..errors import CourseError
 from ..scene.scene import check_scene
 
@@ -40,6 +38,10 @@ def felt(scene, *, x, v=None, T=1e-3, values=None, channels=None, **options):
     >>> felt(hl.wall(), x=[0, 0.005, 0.012], values={"k": 150.0, "x_o": 0.01}).round(12).tolist()
     [0.0, 0.0, 0.3]
     """
+    # here, as the compiler takes as long to import as SymPy, and most answers are no scenes
+    from ..compiler.engine import load
+    from ..compiler.lower import compile
+
     check_scene(scene)
     strange = sorted(set(options) - set(OPTIONS))
     if strange:

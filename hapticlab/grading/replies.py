@@ -4,7 +4,7 @@ import math
 import re
 from itertools import islice
 
-from ..course.evaluate import Outcome
+from ..course.outcome import Outcome
 
 #: characters kept of a student's own words in a report, and of why there is no value
 TEXT, PROBLEM = 20_000, 400
