@@ -1,4 +1,4 @@
-"""What holds for every test: a limit, no event loop left behind, in CI no skip; and where the seconds went."""
+"""What holds for every test: which always run, a limit, no event loop left behind, in CI no skip; and where the seconds went."""
 
 import asyncio
 import faulthandler
@@ -6,6 +6,7 @@ import json
 import os
 import sys
 from collections import Counter
+from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
 import pytest
@@ -26,10 +27,20 @@ def pytest_configure(config):
     config.stash[STDERR] = os.dup(sys.__stderr__.fileno())  # what a test says goes elsewhere while it runs
 
 
+@pytest.hookimpl(tryfirst=True)  # before -m chooses
 def pytest_collection_modifyitems(items):
+    asked, met = set(), set()
     for item in items:
+        always = item.get_closest_marker("always")
+        cases = {(item.function, case) for case in always.args} if always else set()
+        fits = {(function, case) for function, case in cases if fnmatchcase(item.callspec.id, case)}
+        asked, met = asked | cases, met | fits
+        if always and not fits:
+            item.add_marker("wide")
         if item.get_closest_marker("slow") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(LONGEST))
+    if IN_CI and asked != met:  # elsewhere who asks for one case may collect only that
+        raise pytest.UsageError(f"always names no case of: {sorted((f.__name__, case) for f, case in asked - met)}")
 
 
 @pytest.hookimpl(wrapper=True, trylast=True)

@@ -69,6 +69,7 @@ def keeps_its_promise(equations, watch, exact, duration, method, rounding, T=2e-
 
 
 @pytest.mark.parametrize("method", SMOOTH)
+@pytest.mark.always("rk4", "verlet", "taylor")
 def test_a_pendulum_swings_by_elliptic_functions(method):
     """From rest at 2.5 rad: sin(theta/2) = k cd(t, k) with k = sin(1.25); a quarter of its period is K(k)."""
     theta, modulus = hl.coordinate("theta", unit="rad", initial=2.5), math.sin(1.25) ** 2
@@ -82,6 +83,7 @@ def test_a_pendulum_swings_by_elliptic_functions(method):
 
 
 @pytest.mark.parametrize("method", SMOOTH)
+@pytest.mark.always("rk4", "verlet", "taylor")
 def test_duffings_spring_swings_by_elliptic_functions(method):
     """q'' = -q - 3 q^3 from rest at 1 is cn(2 t) of parameter 3/8."""
     equation = sp.Eq(s**2 * q.diff(t, 2), -q - 3 * q**3 / m**2)

@@ -34,6 +34,7 @@ def test_a_tremor_on_a_stable_wall_is_driven_and_was_taken_for_chatter():
     assert "follow what drives" in str(found)
 
 
+@pytest.mark.wide
 def test_a_tremor_that_leaves_the_wall_and_comes_back_is_driven():
     paddle, log = run(500, intent=lambda t: tremor(t) - 0.02)
     assert hl.chatter(log, driven=paddle.hand).state == "driven"
@@ -52,6 +53,7 @@ def test_chatter_beside_a_tremor_is_found_at_its_own_frequency():
 
 
 @pytest.mark.parametrize("k", [500, 2000])
+@pytest.mark.always("2000")
 def test_noise_of_the_hand_rings_a_lightly_damped_handle(k):
     """At 2000 N/m the resonance remembers for longer than any finite memory of the fit: a linear loop explains it."""
     paddle, log = run(k, intent=0.02, noise=0.5)
@@ -62,6 +64,7 @@ def test_noise_of_the_hand_rings_a_lightly_damped_handle(k):
     assert hl.chatter(log, driven=other).state in ("chatter", "growing", "decaying")
 
 
+@pytest.mark.wide
 def test_a_vibration_that_the_scene_makes_is_driven_by_its_channel():
     import sympy as sp
 

@@ -59,6 +59,7 @@ def program_of(plan, points):
 
 @pytest.mark.parametrize("axes", [AXES, MORE], ids=["AXES", "MORE"])
 @pytest.mark.parametrize("hand", HANDS.values(), ids=HANDS)
+@pytest.mark.always("holding-*")
 def test_every_point_has_the_parameters_of_its_own_paddle(axes, hand):
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hand, counts_per_metre=1e4, force_max=5.0)
     plan = plan_of(paddle, axes)

@@ -29,6 +29,7 @@ def growth(scene, paddle, K, **options):
 
 @pytest.mark.parametrize("delay", [0.0, PERIOD])
 @pytest.mark.parametrize("law", TAPS)
+@pytest.mark.always("zoh-*", "ellis-0.001")
 def test_a_spring_that_always_acts_loses_stability_at_the_exact_limit(law, delay):
     paddle = hl.SimulatedPaddle(m=0.05, b=0.4, T=PERIOD, delay=delay)
     exact = hl.stability_limit(paddle, law=law).K
@@ -73,6 +74,7 @@ def test_the_plain_unilateral_wall_begins_to_chatter_at_the_exact_limit(delay):
         ("ellis", 0.05, 0.1, PERIOD, 0.97, False),
     ],
 )
+@pytest.mark.always("half_sample-*-True", "ellis-*-True")
 def test_a_predictive_law_behind_a_switch_chatters_earlier(law, m, b, delay, share, switched):
     """Under its linear limit the law that always acts comes to rest; the gated one may not."""
     paddle = hl.SimulatedPaddle(m=m, b=b, T=PERIOD, delay=delay, hand=hl.Hand(push=1.0))

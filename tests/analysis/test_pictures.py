@@ -39,6 +39,7 @@ FAR = [
 
 
 @pytest.mark.parametrize(("name", "state"), [*((name, {}) for name in CATALOGUE), *FAR])
+@pytest.mark.always("four_bar-*", "rolling-*", "gears-*")
 def test_a_picture_shows_handle_and_symbols_apart_from_each_other(name, state):
     figure = hl.picture(name, **state)
     shown = texts(figure)

@@ -163,6 +163,7 @@ def test_a_cart_and_pole_is_what_scipy_finds_of_equations_written_by_hand():
         *(pytest.param(name, marks=pytest.mark.slow) for name in hl.library.catalogue if name not in ("stick_slip", "detents")),
     ],
 )  # fmt: skip
+@pytest.mark.always("detents")
 def test_every_scene_of_the_library_is_certified(name):
     for found in references(getattr(hl.library, name)(), handle_motions()):
         assert found.certified and not found.chaotic, str(found)

@@ -43,6 +43,7 @@ def grows(scene, method, T, ticks):
 
 @pytest.mark.parametrize("method", WITH_INTERVAL)
 @pytest.mark.parametrize("scene", [coupler(), chain()], ids=["coupler", "chain"])
+@pytest.mark.always("coupler-*", "chain-verlet")
 def test_blow_ups_are_found_where_they_are_predicted(scene, method):
     """Within 2 % on linear scenes: no growth just below, a thousandfold growth just above."""
     limit = hl.step_limit(scene, method, T=1e-3)
@@ -65,6 +66,7 @@ def test_without_an_interval_the_gain_of_energy_is_predicted(method):
 
 @pytest.mark.parametrize("method", ["semi_implicit_euler", "semi_implicit_euler_damped", "verlet", "adams_bashforth3", "rk4"])
 @pytest.mark.parametrize("substeps", [1, 3])
+@pytest.mark.always("1-rk4", "1-verlet", "3-adams_bashforth3")
 def test_the_step_matrix_is_that_of_the_compiled_tick(method, substeps):
     """The tick, run from unit states, leaves the unit circle within a thousandth of the predicted longest step."""
     h = hl.step_limit(chain(), method, T=1e-3).h_max

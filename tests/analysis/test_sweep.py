@@ -61,6 +61,7 @@ def largest_swing(x, T, start, length):
 
 @pytest.mark.parametrize("paddle", [PUSHED, FULL], ids=["plain", "full"])
 @pytest.mark.parametrize("metric", ["growth", "contacts", "energy", "peak_force"])
+@pytest.mark.always("*-plain", "energy-full")
 def test_metrics_match_the_stored_traces(paddle, metric):
     swept = sweep(wall()(x_o=0.002), paddle, duration=0.8, metric=metric, progress=False, k=K)
     expected = [traces(run(paddle, k), metric) for k in K]
@@ -87,6 +88,7 @@ def test_motion_within_one_count_is_no_chatter():
 
 
 @pytest.mark.parametrize("paddle", [PUSHED, FULL], ids=["plain", "full"])
+@pytest.mark.always("full")
 def test_every_point_is_what_it_is_alone_bit_for_bit(paddle):
     axes = {"k": K, "T": np.array([5e-4, 1e-3]), "b": np.array([0.07, 0.2, 0.9])}
     for metric in ("chatter", "energy"):

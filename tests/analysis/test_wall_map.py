@@ -121,6 +121,7 @@ def test_a_handle_that_nothing_brings_back_is_decided_by_theory():
     assert "decided by the linear theory" in str(found)
 
 
+@pytest.mark.wide
 def test_ranges_that_are_not_given_show_the_limits():
     for over in (("K", "B"), ("K", "T"), ("K", "delay"), ("K", "hand_b"), ("K", "coulomb"), ("K", "counts_per_metre")):
         maps = WallMaps(FULL, over=over, points=12)
@@ -147,6 +148,7 @@ def test_a_scene_without_theory_says_so_and_shows_its_own_border():
 
 
 @pytest.mark.parametrize(("over", "law"), [(("K", "delay"), "zoh"), (("K", "B"), "half_sample")])
+@pytest.mark.always("over0-*")
 def test_the_legend_lies_within_the_picture(over, law):
     pytest.importorskip("matplotlib")
     figure = wall_map(replace(FULL, coulomb=0.0), over=over, law=law, points=3, duration=0.04).plot()

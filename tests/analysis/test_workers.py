@@ -37,6 +37,7 @@ def alone():
 
 @pytest.mark.parametrize("most", [1, 7, 64, 1000])
 @pytest.mark.parametrize("workers", [1, 2, 5])
+@pytest.mark.always("2-7", "5-64")
 def test_bits_do_not_depend_on_workers_and_chunks(most, workers, alone, monkeypatch):
     monkeypatch.setattr(chunks, "MOST", most)
     monkeypatch.setattr(chunks, "FEWEST", 1)

@@ -28,4 +28,5 @@ def browser(complete):
 @pytest.fixture(scope="module")
 def lab(server, browser):
     server.browser = browser
-    return server
+    yield server
+    server.end_kernels()

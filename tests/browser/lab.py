@@ -11,6 +11,7 @@ import threading
 import time
 from contextlib import contextmanager
 from pathlib import Path
+from urllib.request import Request, urlopen
 
 REPOSITORY = Path(__file__).parents[2]
 FLAGS = (
@@ -99,6 +100,14 @@ class Lab:
         self._reader = threading.Thread(target=lambda: self.said.extend(server.stderr), daemon=True)
         self._reader.start()
         return server
+
+    def end_kernels(self):
+        """End what the notebooks run: a simulation goes on after its page is closed."""
+        address = f"{self.address}/api/kernels"
+        with urlopen(address) as said:
+            running = json.load(said)
+        for kernel in running:
+            urlopen(Request(f"{address}/{kernel['id']}", method="DELETE")).close()
 
     def write(self, name, *cells):
         """Write a notebook of code cells, their code folded away so that what they show is on the screen."""

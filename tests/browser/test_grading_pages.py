@@ -63,6 +63,7 @@ def whole_picture(page, name, width):
 
 
 @pytest.mark.parametrize(("name", "shot"), [("class.html", "class"), (f"students/{file_name('sophie.germain')}.html", "student")])
+@pytest.mark.always("students*")
 def test_a_page_is_styled_readable_and_loads_nothing(browser, folder, name, shot):
     page = browser.new_context(viewport={"width": 1100, "height": 900}).new_page()
     said, asked = [], []

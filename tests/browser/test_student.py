@@ -17,6 +17,7 @@ def answer(name):
     return ast.get_source_segment(ANSWERS, nodes[name])
 
 
+@pytest.mark.wide
 def test_a_student_works_through_a_lab(lab):
     shutil.copy(REPOSITORY / "labs" / LAB / f"{LAB}.ipynb", lab.notebooks)
     page = lab.open(LAB)
@@ -69,6 +70,7 @@ def page(lab):
     page.close()
 
 
+@pytest.mark.wide
 def test_a_map_follows_its_slider(page):
     page.wait_for_selector(".widget-image[src]")
     before = page.locator(".widget-image").get_attribute("src")
@@ -89,6 +91,7 @@ def test_a_map_follows_its_slider(page):
     picture(page, "explore")
 
 
+@pytest.mark.wide
 def test_a_board_runs_by_its_button_and_not_by_a_page(page):
     until(page, STATUS, "Motor off")
     assert page.locator(STAGE).get_attribute("role") == "img"  # the real handle moves it

@@ -77,6 +77,7 @@ def test_friction_written_as_a_sign_sticks():
 
 
 @pytest.mark.parametrize("hold", ["zoh", "foh", "soh"])
+@pytest.mark.always("zoh")
 def test_a_smooth_scene_is_what_rk4_comes_to(hold):
     m, l, g, k, B, f, A = hl.parameters(
         "m l g k B f A", units="kg m m/s^2 N/m N*s/m Hz N*m", values=(0.1, 0.2, 9.81, 40.0, 0.3, 31.0, 0.02)
@@ -241,6 +242,7 @@ def test_a_contact_that_hardens_is_not_judged_by_where_it_does_not_touch():
 
 
 @pytest.mark.parametrize("law", [lambda y: sp.tanh(1000 * y), lambda y: y / sp.sqrt(y**2 + 1e-6)])
+@pytest.mark.always("<lambda>1")
 def test_a_series_that_diverges_within_a_step_is_a_fault(law):
     # steep within a millimetre of zero, which it passes at 3.7 m/s: a step of 1 ms is past the poles of the series
     y, program = free(lambda y, w: -20 * law(y), start=0.35, ticks=220)

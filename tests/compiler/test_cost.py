@@ -164,6 +164,7 @@ def offers(message):
     return given
 
 
+@pytest.mark.wide
 def test_a_double_pendulum_is_refused_with_its_share_and_every_offer_fits():
     scene, options = double_pendulum()
     with pytest.raises(ProgramLimitError) as refusal:
@@ -179,6 +180,7 @@ def test_a_double_pendulum_is_refused_with_its_share_and_every_offer_fits():
 
 @pytest.mark.parametrize("promise", [False, True])
 @pytest.mark.parametrize("make", SCENES, ids=lambda make: make.__name__)
+@pytest.mark.always("wall-*", "mass_and_wall-True", "cart_pole-False")
 def test_what_a_refusal_names_fits_and_nothing_else_is_refused(make, promise):
     scene, options = make()
     for T in (1e-3, 2e-3):

@@ -57,6 +57,7 @@ def test_asked_for_by_name_it_needs_a_declared_range():
     # a crank longer than its rod makes no full turn; one as long folds with it, at a quarter turn
     [("embed", 0.2, r"cannot close at theta = [-\d.]+"), ("kkt", 0.12, r"lose a rank .* at s = 0, theta = -?")],
 )
+@pytest.mark.always("embed-*")
 def test_over_a_declared_range_the_mechanism_must_close(enforce, longest, why):
     with pytest.raises(SceneError, match=rf"with r = {longest:g} m, which is live and may be set .*: .*{why}"):
         hl.compile(slider_crank((0.02, longest), enforce=enforce), T=1e-3, live="r")

@@ -69,6 +69,7 @@ SWING = 0.01 * np.sin(2 * np.pi * 5 * TIME), 0.01 * 2 * np.pi * 5 * np.cos(2 * n
 
 
 @pytest.mark.parametrize("hold", ["zoh", "foh", "soh"])
+@pytest.mark.always("foh")
 def test_chain_against_an_integrator(hold):
     X, V = SWING
     outputs = run(chain(3, b=0.3, k=2e4), X, V, hold=hold)
@@ -280,6 +281,7 @@ def test_one_way_only():
 
 @pytest.mark.parametrize("hold", ["zoh", "foh", "soh"])
 @pytest.mark.parametrize("velocity", ["measured", "backward_difference"])
+@pytest.mark.always("measured-zoh", "backward_difference-foh")
 def test_it_sees_the_handle_as_the_other_methods_do(hold, velocity):
     """What rk4 tends to as its error falls with the fourth power of its step."""
     X, V = SWING

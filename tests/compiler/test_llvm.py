@@ -33,6 +33,7 @@ def one_block(real, names, body):
 
 @pytest.mark.parametrize("reals", REALS)
 @pytest.mark.parametrize("seed", range(30))
+@pytest.mark.always("3-*", "18-*", "27-mixed")
 def test_a_random_program_gives_the_interpreters_bits_in_every_shape(seed, reals):
     operations = tuple(OPERATIONS) if seed % 3 == 0 else PRIMITIVE
     program = random_program(seed, REALS[reals], operations=operations)
@@ -155,6 +156,7 @@ def test_engines_in_a_cycle_are_collected_code_first():
 
 @pytest.mark.parametrize("real", ["f32", "f64"])
 @pytest.mark.parametrize("count", [1, 2, 5, 9, 17])
+@pytest.mark.always("2-*", "9-f64")
 def test_functions_side_by_side_give_the_bits_of_one_alone(real, count):
     """Vectors of 1, 2, 8 and 8 + 1 or 16 + 1 lanes; a sine of a sine waits for it; one angle is asked for twice."""
 

@@ -97,6 +97,7 @@ def penalty_flight(m, k, b, drop):
     "k, b, substeps, ticks",
     [(6e5, 0.0, 4, 0.95), (4e4, 2.0, 1, 3.6), pytest.param(1e6, 2.0, 5, 0.75, marks=pytest.mark.slow)],
 )
+@pytest.mark.always("40000*")
 def test_a_contact_of_a_spring_and_damper_shorter_than_a_tick(k, b, substeps, ticks):
     m, drop = 0.05, 0.1234
     assert math.sqrt(k / m) * T / substeps <= 1 and math.pi * math.sqrt(m / k) < ticks * T
@@ -125,6 +126,7 @@ def test_a_contact_of_a_spring_and_damper_shorter_than_a_tick(k, b, substeps, ti
 
 
 @pytest.mark.parametrize("depth", [1e-6, 1e-8, 1e-11])
+@pytest.mark.always("1e-08")
 def test_touching_and_leaving_within_one_tick(depth):
     # a parabola whose lowest point lies below the wall for 2 sqrt(2 depth/a), in the middle of a tick
     a, k, m = 40.0, 300.0, 0.02

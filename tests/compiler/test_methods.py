@@ -67,6 +67,7 @@ def error(scene, reference, method, T):
     [(OSCILLATOR, oscillator), pytest.param(PENDULUM, pendulum, marks=pytest.mark.slow), (MIXED, mixed)],
     ids=["oscillator", "pendulum", "with a first-order state"],
 )
+@pytest.mark.always("oscillator-*")
 def test_the_measured_order_is_within_a_tenth_of_the_claim(scene, reference, method):
     errors = [error(scene, reference, method, T) for T in (2e-3, 1e-3, 5e-4)]
     # Richardson on three steps: the order of the last halving, with the next term's drift taken out

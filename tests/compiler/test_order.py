@@ -106,6 +106,7 @@ def is_taken(force, method, hold, force_at):
         if is_taken(*one)
     ],
 )
+@pytest.mark.always("damped-*", "coupler-exact-*", "spring-taylor-*")
 def test_the_order_measured_is_the_order_claimed(force, method, hold, force_at):
     options = {"method": method, "hold": hold, "force_at": force_at}
     errors = [error(force, steps, **options) for steps in STEPS]
@@ -121,6 +122,7 @@ def test_the_order_measured_is_the_order_claimed(force, method, hold, force_at):
         ("coupler", "adams_bashforth3", "zoh", "mean", 1), ("damped", "adams_bashforth3", "zoh", "before", 3),
     ],
 )  # fmt: skip
+@pytest.mark.always("coupler-rk4-*")
 def test_an_estimated_velocity_costs_what_is_claimed(force, method, hold, force_at, claim):
     options = {"method": method, "hold": hold, "force_at": force_at, "velocity": "backward_difference"}
     errors = [error(force, steps, **options) for steps in STEPS]
@@ -200,6 +202,7 @@ def contact_error(wall, method, fraction, steps):
         ("jump", "rk4"), ("hertz", "verlet"), ("hertz", "rk4"),
     ],
 )  # fmt: skip
+@pytest.mark.always("jump-rk4", "kink-verlet", "hertz-rk4")
 def test_stepping_over_a_touch_costs_what_is_claimed(wall, method):
     errors = [contact_error(wall, method, 0.47, steps) for steps in (400, 800, 1600)]
     claim = float(order_of(thrown(wall), method))
@@ -208,6 +211,7 @@ def test_stepping_over_a_touch_costs_what_is_claimed(wall, method):
 
 @pytest.mark.parametrize("wall", ["kink", "jump"])
 @pytest.mark.parametrize("method", ["taylor", "exact"])
+@pytest.mark.always("exact-*", "taylor-kink")
 def test_a_touch_that_is_located_costs_nothing(wall, method):
     """At 1/40 of these steps the error is the rounding of F, 0.7 N."""
     assert float(order_of(thrown(wall), method)) == np.inf

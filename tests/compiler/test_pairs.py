@@ -241,6 +241,7 @@ def falling(shape, method, ticks):
         pytest.param(Capsule(0.1, 0.02), "sample", 2000, marks=pytest.mark.slow),
     ],
 )
+@pytest.mark.wide
 def test_a_fall_keeps_its_energy(shape, method, ticks):
     """The force is along the gradient of the gap, whichever corner or edge is closest, so k d^2/2 is its potential."""
     E, d, cost = falling(shape, method, ticks)

@@ -48,6 +48,7 @@ def velocities(handle):
 
 
 @pytest.mark.parametrize(("stiffness", "switches"), [(2e3, 6), slow(1e5, 10), slow(1e6, 10), (1e7, 10)])
+@pytest.mark.always("2000.0-6")
 def test_force_of_a_wall_is_exact_at_any_stiffness(stiffness, switches):
     """A part in 1e12 of the largest force: rounding of the crossing times the rates of the stiffest wall."""
     free = [500 / 0.05, 1 / 0.05, 500 / 0.05, 1 / 0.05, 0.0]
@@ -223,6 +224,7 @@ def every_hold(scene, known, felt, quick):
         *every_hold(struck, of_struck, (500, 0), "soh"),
     ],
 )
+@pytest.mark.always("rubbed-*", "struck-*")
 def test_it_is_what_exponentials_and_bracketed_roots_give(scene, known, felt, hold):
     """Several walls and two masses, friction, impacts: with nothing of the package; a part in 1e12 is rounding of both."""
     handle = SWING + 0.004 * np.sin(2 * np.pi * 11.7 * np.arange(300) * T)
@@ -236,6 +238,7 @@ def test_it_is_what_exponentials_and_bracketed_roots_give(scene, known, felt, ho
 
 
 @pytest.mark.parametrize("returned", [2e4, slow(500.0)])
+@pytest.mark.wide
 def test_cases_inside_of_cases_are_as_linear_as_cases_in_a_row(returned):
     """A spring that is another on the way back. Softer, it sticks where it turns, which only the nested form tells."""
     stiff, back = hl.parameters("stiff back", units="N/m N/m", values=(1e4, returned))
