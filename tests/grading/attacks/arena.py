@@ -61,7 +61,9 @@ class Arena:
         name = f"hapticlab-{os.getpid()}-{port}"
         self.unix.bind(f"\0{name}")
         self.unix.listen()
-        for trap in (self.tcp, self.udp, self.unix):
+        self.pair = self._stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM))
+        self.pair.bind(f"\0{name}.d")
+        for trap in (self.tcp, self.udp, self.unix, self.pair):
             trap.setblocking(False)
         self._stack.enter_context(_secret())
         surroundings = {
@@ -106,7 +108,8 @@ class Arena:
         left = (Path(folder, name) for folder in folders for name in (TOKEN, "left_for_the_next.py"))
         found += [f"{path} was written" for path in left if path.exists()]
         found += [f"{name} was reached" for name, trap in (("tcp", self.tcp), ("unix", self.unix)) if _was_called(trap.accept)]
-        return found + ["udp was reached"] * _was_called(lambda: self.udp.recv(100))
+        sent = (("udp", self.udp), ("a pair of sockets", self.pair))
+        return found + [f"{name} was reached" for name, trap in sent if _was_called(lambda trap=trap: trap.recv(100))]
 
 
 def _content(path):

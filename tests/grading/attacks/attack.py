@@ -20,6 +20,8 @@ PLACEHOLDERS = (
 EVERYTHING = tuple(POINTS)
 #: what would hurt this computer is done only where a namespace of processes was made around it, in an attack's code
 WALLED = "os.readlink('/proc/self/ns/pid') != '@NAMESPACE@'"
+#: what would hurt it if root did it
+HARMLESS = f"(os.getuid() or {WALLED})"
 
 
 @dataclass(frozen=True)
