@@ -12,10 +12,28 @@ from hapticlab.grading.limits import MIB, Limits
 from hapticlab.grading.naming import student_of
 from hapticlab.grading.run import run
 
-from . import broken, eating, ending, forging, injecting, leaking, spying
+from . import (
+    broken,
+    colluding,
+    eating,
+    ending,
+    forging,
+    holding,
+    injecting,
+    kernel,
+    leaking,
+    package,
+    python,
+    replies,
+    resubmitting,
+    spying,
+)
 from .small_lab import write_lab
 
-ATTACKS = tuple(one for sort in (broken, eating, ending, forging, spying, injecting, leaking) for one in sort.ATTACKS)
+SORTS = (broken, eating, ending, forging, spying, injecting, leaking, kernel, holding, python, package, replies, colluding)
+#: through which something was earned, or held, that must not be: what mends one takes its name away
+OPEN = ("two_guesses", "pages_in_memory_2_finds")
+ATTACKS = tuple(one for sort in (*SORTS, resubmitting) for one in sort.ATTACKS if one.name not in OPEN)
 HONEST = tuple(one for one in broken.ATTACKS if one.name.startswith("honest"))
 #: the plainest one, and holes there were
 ALWAYS = ("fork_bomb", "memory_that_is_shared", "reply_with_its_number", "honest_split_cells", "honest_magics")
@@ -25,8 +43,11 @@ PATIENT = tuple(one for one in ATTACKS if one.name in WAITING)
 #: what every run of the tests holds beside these: some of each sort
 QUICK = tuple(
     one
-    for sort, step in ((broken, 7), (eating, 4), (ending, 4), (forging, 5), (spying, 2), (injecting, 6), (leaking, 1))
-    for number, one in enumerate(one for one in sort.ATTACKS if not one.patience)
+    for sort, step in (
+        *((broken, 7), (eating, 4), (ending, 4), (forging, 5), (spying, 2), (injecting, 6), (leaking, 1), (resubmitting, 1)),
+        *((kernel, 6), (holding, 9), (python, 6), (package, 6), (replies, 5), (colluding, 13)),
+    )
+    for number, one in enumerate(one for one in sort.ATTACKS if not one.patience and one.name not in OPEN)
     if number % step == 0 or one.name in ALWAYS
 )
 LIMITS = Limits(seconds=4.0, memory=400 * MIB)

@@ -93,7 +93,8 @@ for ring in (-3, -4, -5, -2):
     call(248, 217, b"user", b"@TOKEN@", b"731.25", 6, ring)""",
         """
 held = ctypes.create_string_buffer(6)
-for key in (call(249, 218, b"user", b"@TOKEN@", None, 0), *(call(250, 219, 10, ring, b"user", b"@TOKEN@", 0) for ring in (-3, -4))):
+asked = [call(249, 218, b"user", b"@TOKEN@", None, 0)]
+for key in asked + [call(250, 219, 10, ring, b"user", b"@TOKEN@", 0) for ring in (-3, -4)]:
     if key > 0 and call(250, 219, 11, key, held, 6) == 6:
         stiffness = float(held.raw)""",
     ),

@@ -1,7 +1,7 @@
 """What each attack earns and costs at a level of walls, measured from outside: ``python table.py --level user [NAME ...]``.
 
-Run it as root. ``--ordinary`` grades as a user without rights, in a root where anybody can read Python. A process of its own
-grades the attacks one by one; this one samples its memory group (cgroup v1, or else nothing) and looks at what is left.
+Run it as root. ``--ordinary`` grades as a user without rights. A process of its own grades the attacks one by one; this one
+samples its memory group (cgroup v1, or else nothing) and looks at what is left.
 """
 
 import argparse
@@ -20,16 +20,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from attacks import colluding, kernel, python
+from attacks import colluding, holding, kernel, package, python, replies
 from attacks.arena import ATTACKS, HONEST, LIMITS, Arena
-
 from hapticlab.grading.grade import Deferred, grade
-from hapticlab.grading.inside import linux, root, sandbox
-from hapticlab.grading.limits import MIB
-from hapticlab.grading.starter import PACKAGE, seen, start
+from hapticlab.grading.inside import linux
+from hapticlab.grading.starter import start
 from hapticlab.grading.submission import find_submissions, read
 
-NEW = (*kernel.ATTACKS, *python.ATTACKS, *colluding.ATTACKS)
+NEW = tuple(one for sort in (kernel, holding, python, package, replies, colluding) for one in sort.ATTACKS)
 NOBODY, PATIENCE, MOST_MEMORY = 65534, 60, 4 << 30
 TOGETHER = {one.name.rpartition("_")[0][:-2] for one in colluding.TOGETHER}
 PUBLIC = ("/tmp", "/dev/shm", "/var/tmp", "/run/lock")
@@ -76,12 +74,9 @@ class Group:
 
 def graded(level, names, ordinary):
     """Grade the attacks of these names, a line of JSON for each; in the process that is watched."""
+    if ordinary or level == "user":
+        show_python()
     if ordinary:
-        linux.unshare(linux.NEWNS)
-        with tempfile.TemporaryDirectory() as new:
-            tests = str(Path(__file__).parents[1])
-            root.move(new, (sys.prefix, sys.base_prefix, *seen(), tests), ())
-        sandbox.clear_tmp(2048 * MIB)
         os.setgroups([])
         os.setresgid(NOBODY, NOBODY, NOBODY)
         os.setresuid(NOBODY, NOBODY, NOBODY)
@@ -119,6 +114,19 @@ def graded(level, names, ordinary):
     shutil.rmtree(place, ignore_errors=True)
 
 
+def show_python():
+    """Let anybody read Python where it lies in root's own folder, for this process and those it starts."""
+    linux.unshare(linux.NEWNS)
+    linux.mount(None, "/", None, linux.RECURSIVE | linux.PRIVATE)
+    for path in {sys.prefix, sys.base_prefix}:
+        closed = next((one for one in reversed(Path(path).parents) if not one.stat().st_mode & 1), None)
+        if closed:
+            held = os.open(path, os.O_PATH)
+            linux.mount("closed", str(closed), "tmpfs", 0, "mode=755")
+            os.makedirs(path)
+            linux.mount(f"/proc/self/fd/{held}", path, None, linux.BIND | linux.RECURSIVE)
+
+
 def _together(one):
     return any(one.name.startswith(f"{name}_") for name in TOGETHER)
 
@@ -145,7 +153,7 @@ def measured(level, names, ordinary):
             options = ["--ordinary"] * ordinary
             child = subprocess.Popen(
                 [sys.executable, __file__, "--graded", "--level", level, *options, *left],
-                stdout=subprocess.PIPE, env={**os.environ, "TMPDIR": "/tmp" if ordinary else place}, preexec_fn=group.enter,
+                stdout=subprocess.PIPE, env={**os.environ, "TMPDIR": place}, preexec_fn=group.enter,
             )  # fmt: skip
             yield from _watched(child, group, left, Path(place))
             group.end()
@@ -181,7 +189,8 @@ def _watched(child, group, left, place):
         if (child.poll() is not None and not lines) or over:
             if now:
                 left.remove(now)
-                yield _row({"end": now, "grader": "hangs" if over else f"ends with {child.poll()}"}, seen_now, rest, quiet, group, place)
+                how = {"end": now, "grader": "hangs" if over else f"ends with {child.poll()}"}
+                yield _row(how, seen_now, rest, quiet, group, place)
             elif left and not over:
                 raise RuntimeError(f"the grader ended with {child.poll()} before {left[0]}")
             return

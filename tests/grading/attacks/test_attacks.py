@@ -20,8 +20,8 @@ pytestmark = [
 ]
 
 if sys.platform == "linux":
-    from attacks import injecting, leaking
-    from attacks.arena import ATTACKS, HONEST, LIMITS, PATIENT, QUICK, Arena
+    from attacks import injecting, leaking, resubmitting
+    from attacks.arena import ATTACKS, HONEST, LIMITS, OPEN, PATIENT, QUICK, SORTS, Arena
     from attacks.small_lab import POINTS
 
 #: what moves a cursor or turns the reading direction
@@ -45,7 +45,7 @@ def reports(arena, graded):
 
 
 def test_the_corpus_is_what_it_says():
-    assert len({one.name for one in ATTACKS}) == len(ATTACKS) >= 200
+    assert len({one.name for one in ATTACKS}) == len(ATTACKS) >= 300
     assert len({one.name for one in QUICK}) == len(QUICK) >= 60
     assert len(PATIENT) == 3 and not any(one.patience for one in QUICK)
     assert len(HONEST) > 10 and all(one.earned == 10 == sum(POINTS.values()) for one in HONEST)
@@ -135,6 +135,15 @@ def test_who_hands_in_again_learns_no_hidden_given(arena, reports, name):
     assert "'k': 200.0" in told[0], "the attack works: a public case tells its own givens"
 
 
+@pytest.mark.parametrize("attack", resubmitting.ATTACKS, ids=lambda one: one.name)
+def test_who_hands_in_again_is_told_only_that_a_hidden_case_is_wrong(reports, attack, request):
+    request.applymarker(pytest.mark.xfail(attack.name in resubmitting.OPEN, reason="how it ended is told", strict=True))
+    tests = json.loads(formats.write("gradescope", [reports[attack.name]]))["tests"]
+    assert [one["output"] for one in tests if one["name"] == "force"] == [
+        "A case that is not shown is wrong.\nHint: Outside there is no force."
+    ]
+
+
 class Page(HTMLParser):
     """Collects what a page would do beside showing text."""
 
@@ -171,3 +180,13 @@ def test_all_attacks_at_once(tmp_path):
         for one in ATTACKS:
             check(one, found[one.name])
         assert not arena.reached()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", OPEN)
+@pytest.mark.xfail(reason="this way is open", strict=True)
+def test_what_is_open_is_still_open(tmp_path, here, name):
+    several = [one for sort in SORTS for one in sort.ATTACKS]
+    pair = [one for one in several if one.name in (name, name.replace("2_finds", "1_leaves"))]
+    with Arena(tmp_path, pair) as arena, here():
+        check(pair[-1], arena.by_attack(arena.graded(workers=1))[name])
