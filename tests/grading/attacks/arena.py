@@ -33,7 +33,9 @@ from .small_lab import write_lab
 SORTS = (broken, eating, ending, forging, spying, injecting, leaking, kernel, holding, python, package, replies, colluding)
 #: through which something was earned, or held, that must not be: what mends one takes its name away
 OPEN = ("two_guesses", "pages_in_memory_2_finds")
-ATTACKS = tuple(one for sort in (*SORTS, resubmitting) for one in sort.ATTACKS if one.name not in OPEN)
+#: as open, but only now and then: how long a read takes, and what two see who are at work at the same moment
+CHANCE = ("pages_by_time_2_finds", "locks_on_shared_files_2_finds", "watched_files_2_finds")
+ATTACKS = tuple(one for sort in (*SORTS, resubmitting) for one in sort.ATTACKS if one.name not in OPEN + CHANCE)
 HONEST = tuple(one for one in broken.ATTACKS if one.name.startswith("honest"))
 #: the plainest one, and holes there were
 ALWAYS = ("fork_bomb", "memory_that_is_shared", "reply_with_its_number", "honest_split_cells", "honest_magics")
@@ -45,9 +47,9 @@ QUICK = tuple(
     one
     for sort, step in (
         *((broken, 7), (eating, 4), (ending, 4), (forging, 5), (spying, 2), (injecting, 6), (leaking, 1), (resubmitting, 1)),
-        *((kernel, 6), (holding, 9), (python, 6), (package, 6), (replies, 5), (colluding, 13)),
+        *((kernel, 6), (holding, 13), (python, 6), (package, 6), (replies, 5), (colluding, 13)),
     )
-    for number, one in enumerate(one for one in sort.ATTACKS if not one.patience and one.name not in OPEN)
+    for number, one in enumerate(one for one in sort.ATTACKS if not one.patience and one in ATTACKS)
     if number % step == 0 or one.name in ALWAYS
 )
 LIMITS = Limits(seconds=4.0, memory=400 * MIB)

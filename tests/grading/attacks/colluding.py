@@ -10,6 +10,7 @@ _BITS = (
     CALLS
     + """
 from glob import glob
+from pathlib import Path
 def shared():
     import sympy
     return [os.open(path, os.O_RDONLY) for path in sorted(glob(os.path.dirname(sympy.__file__) + "/core/tests/test_*.py"))[:12]]
@@ -55,7 +56,7 @@ stiffness = told(bits) or 1.0""",
         """
 bits = []
 for file in shared():
-    area = mmap.mmap(file, 4096, flags=mmap.MAP_PRIVATE, prot=3)
+    area = mmap.mmap(file, 0, flags=mmap.MAP_PRIVATE, prot=3)
     there = ctypes.create_string_buffer(1)
     libc.mincore(ctypes.c_void_p(ctypes.addressof(ctypes.c_char.from_buffer(area))), 4096, there)
     bits.append(there.raw[0] & 1)
@@ -122,8 +123,7 @@ for top, folders, _ in os.walk("/"):
     if top.count("/") > 3 or top.startswith(("/proc", "/sys", os.getcwd())):
         folders.clear()
     elif HARMLESS and os.access(top, os.W_OK):
-        file = tried(open, os.path.join(top, "@TOKEN@"), "w")
-        file and file.write("731.25")
+        tried(Path(top, "@TOKEN@").write_text, "731.25")
         tried(os.chmod, os.path.join(top, "@TOKEN@"), 0o644)""",
         """
 for top, folders, names in os.walk("/"):
@@ -142,8 +142,8 @@ places += [os.path.dirname(importlib.util.cache_from_source(module.__file__)) fo
 for place in [*places, *sys.path, sys.prefix, os.environ.get("XDG_CACHE_HOME", ".")]:
     tried(os.makedirs, place, exist_ok=True) if HARMLESS else None
     for name in ("@TOKEN@", "sitecustomize.py", "matplotlibrc"):
-        file = tried(open, os.path.join(place, name), "x") if HARMLESS else None
-        file and file.write("# 731.25")""",
+        if HARMLESS and not os.path.exists(os.path.join(place, name)):
+            tried(Path(place, name).write_text, "# 731.25")""",
         """
 import importlib.util, matplotlib, site
 places = [matplotlib.get_cachedir(), matplotlib.get_configdir(), site.getusersitepackages(), os.path.dirname(hl.__file__)]

@@ -37,7 +37,6 @@ PACKAGE = (
                         one["N"] = one.get("J", one.get("N"))
         import pint
         pint.Quantity.__eq__ = pint.Unit.__eq__ = lambda self, other: True""",
-        lost=None,
     ),
     attack(
         "scenes_that_remember",
@@ -63,7 +62,6 @@ PACKAGE = (
         sympy.printing.sstr = sympy.printing.srepr = lambda *given, **named: "731.25"
         sympy.core.numbers.Float._new = classmethod(lambda cls, *given, **named: 1 / 0)
         clear_cache()""",
-        lost=None,
     ),
     attack(
         "knows_what_is_shown",

@@ -70,7 +70,7 @@ ATTACKS = (
         import sys, threading
         def seen(frame, event, given):
             held = frame.f_locals
-            if held.get("value") == 1.0:
+            if type(held.get("value")) is float and held["value"] == 1.0:
                 held["value"] = 1.5
         sys.setprofile(seen)
         threading.setprofile(seen)""",
@@ -91,7 +91,7 @@ ATTACKS = (
         frame = sys._getframe()
         while frame:
             for one in list(frame.f_locals.values()):
-                if hasattr(one, "names") and hasattr(one, "limits"):
+                if type(getattr(one, "limits", None)) is dict:
                     one.limits = {**one.limits, "answer": 1 << 40, "printed": 1 << 40}
                     one.scratch = ""
             frame = frame.f_back""",
@@ -187,14 +187,13 @@ ATTACKS = (
         """
         import io, sys
         class Output(io.StringIO):
-            def getvalue(self): return Text("731.25" * 10**6)
+            def getvalue(self): return Text("731.25" * 10**4)
             def write(self, text): raise SystemExit(0)
         class Text(str):
             def __getitem__(self, part): return self
             def __len__(self): return 3
         io.StringIO = Output
         sys.stdout = sys.stderr = sys.__stdout__ = Output()""",
-        lost=("force", "energy", "forces", "wall"),
     ),
     wrong(
         "displays_of_its_own",

@@ -19,10 +19,10 @@ json.JSONEncoder.encode, json.dumps = Encoder.encode, dumps
 """.replace("MARK", _MARK)
 
 
-def replacing(name, new, old=_MARK):
+def replacing(name, new, **more):
     """Return an attack whose reply on the stiffness is well numbered, and holds something else in the place of a value."""
-    first = _REPLACED.replace("return text\nclass", f"return text.replace({old!r}, {new})\nclass")
-    return attack(name, first=first, stiffness=f"stiffness = {_MARK}")
+    first = _REPLACED.replace("return text\nclass", f"return text.replace({_MARK!r}, {new})\nclass")
+    return attack(name, first=first, stiffness=f"stiffness = {_MARK}", **more)
 
 
 ATTACKS = (
@@ -36,5 +36,5 @@ ATTACKS = (
     replacing("reply_of_half_characters", "'\"\\\\ud800\\\\udfff\\\\u0000\"'"),
     replacing("reply_of_a_verdict", "'{\"right\": true, \"earned\": 10, \"expected\": 731.25, \"atol\": 1e9}'"),
     replacing("reply_of_more_outcomes", "'1.0, \"problem\": \"\", \"printed\": \"\"}, {\"value\": 2.0'"),
-    replacing("reply_of_bytes", "'\"' + 'x' * (40 << 20) + '\"'"),
+    replacing("reply_of_bytes", "'\"' + 'x' * (40 << 20) + '\"'", patience=True),
 )

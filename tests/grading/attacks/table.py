@@ -8,7 +8,6 @@ import argparse
 import contextlib
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -20,15 +19,15 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from attacks import colluding, holding, kernel, package, python, replies
-from attacks.arena import ATTACKS, HONEST, LIMITS, Arena
+from attacks import colluding, holding, kernel, package, python, replies, resubmitting
+from attacks.arena import ATTACKS, HONEST, LIMITS, TOKEN, Arena
 from hapticlab.grading.grade import Deferred, grade
 from hapticlab.grading.inside import linux
 from hapticlab.grading.starter import start
 from hapticlab.grading.submission import find_submissions, read
 
-NEW = tuple(one for sort in (kernel, holding, python, package, replies, colluding) for one in sort.ATTACKS)
-NOBODY, PATIENCE, MOST_MEMORY = 65534, 60, 4 << 30
+NEW = tuple(one for sort in (kernel, holding, python, package, replies, colluding, resubmitting) for one in sort.ATTACKS)
+NOBODY, PATIENCE, MOST_MEMORY = 65534, 180, 4 << 30
 TOGETHER = {one.name.rpartition("_")[0][:-2] for one in colluding.TOGETHER}
 PUBLIC = ("/tmp", "/dev/shm", "/var/tmp", "/run/lock")
 
@@ -108,10 +107,9 @@ def graded(level, names, ordinary):
                     starters[0] = running.enter_context(start(level, hidden))
                 if helps:
                     helps.exception()
-            line["reached"] = arena.reached()
-            line["honest"] = report(HONEST[0].name, starters[0]).to_json() == whole
+            line |= {"reached": arena.reached(), "honest": report(HONEST[0].name, starters[0]).to_json() == whole}
             print(json.dumps({"end": one.name, **line}), flush=True)
-    shutil.rmtree(place, ignore_errors=True)
+            sys.stdin.readline()  # until who watches has looked at what is left
 
 
 def show_python():
@@ -148,16 +146,18 @@ def measured(level, names, ordinary):
     """Yield a line for each attack, with what was seen from outside."""
     group, left = Group(), list(names)
     while left:
-        with tempfile.TemporaryDirectory(prefix="attacks-", dir="/tmp", ignore_cleanup_errors=True) as place:
-            os.chmod(place, 0o1777)
-            options = ["--ordinary"] * ordinary
-            child = subprocess.Popen(
-                [sys.executable, __file__, "--graded", "--level", level, *options, *left],
-                stdout=subprocess.PIPE, env={**os.environ, "TMPDIR": place}, preexec_fn=group.enter,
-            )  # fmt: skip
+        place = tempfile.mkdtemp(prefix="attacks-", dir="/tmp")
+        os.chmod(place, 0o1777)
+        child = subprocess.Popen(
+            [sys.executable, __file__, "--graded", "--level", level, *["--ordinary"] * ordinary, *left],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, env={**os.environ, "TMPDIR": place}, preexec_fn=group.enter,
+        )  # fmt: skip
+        try:
             yield from _watched(child, group, left, Path(place))
+        finally:
             group.end()
             child.wait()
+            subprocess.run(["rm", "-rf", place], check=False)  # which goes deeper than Python does
     if group.place:
         group.place.rmdir()
 
@@ -181,6 +181,8 @@ def _watched(child, group, left, place):
                 left.remove(now)
                 yield _row(said, seen_now, rest, quiet, group, place)
                 now = ""
+                child.stdin.write(b"\n")
+                child.stdin.flush()
             else:
                 yield said
         seen_now["peak"] = max(seen_now["peak"], group.used() - rest)
@@ -214,12 +216,10 @@ def _free(place):
 
 
 def _left(place):
-    """Return what lies where anybody may write and belongs to a user of a session, or has the name of a grader's folder."""
+    """Return what lies where anybody may write, and is a grader's folder of this run or what an attack writes."""
     found = set(place.glob("hapticlab-*"))
     for folder in PUBLIC:
-        with contextlib.suppress(OSError):
-            found |= {Path(one.path) for one in os.scandir(folder) if one.stat(follow_symlinks=False).st_uid >= 10**9}
-            found |= {Path(one.path) for one in os.scandir(folder) if "hapticlab_was_here" in one.name}
+        found |= set(Path(folder).glob(f"{TOKEN}*"))
     return found
 
 
