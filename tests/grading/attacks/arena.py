@@ -32,9 +32,9 @@ from .small_lab import write_lab
 
 SORTS = (broken, eating, ending, forging, spying, injecting, leaking, kernel, holding, python, package, replies, colluding)
 #: through which something was earned, or held, that must not be: what mends one takes its name away
-OPEN = ("two_guesses", "pages_in_memory_2_finds")
-#: as open, but only now and then: how long a read takes, and what two see who are at work at the same moment
-CHANCE = ("pages_by_time_2_finds", "locks_on_shared_files_2_finds", "watched_files_2_finds")
+OPEN = ("two_guesses",)
+#: as open, but only now and then: what lies in memory of files on a disk, and what two see who are at work at the same moment
+CHANCE = ("pages_in_memory_2_finds", "pages_by_time_2_finds", "locks_on_shared_files_2_finds", "watched_files_2_finds")
 ATTACKS = tuple(one for sort in (*SORTS, resubmitting) for one in sort.ATTACKS if one.name not in OPEN + CHANCE)
 HONEST = tuple(one for one in broken.ATTACKS if one.name.startswith("honest"))
 #: the plainest one, and holes there were
