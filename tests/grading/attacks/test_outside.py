@@ -32,6 +32,7 @@ UNTIDY = {"namespaces": (), "user": ("files_elsewhere", *["nested_folders"] * (s
 
 pytestmark = [
     pytest.mark.slow,
+    pytest.mark.timeout(1800),  # the first test of a level waits for all attacks
     pytest.mark.skipif(os.geteuid() != 0, reason="only root may make a memory group"),
 ]
 
