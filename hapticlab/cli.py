@@ -14,6 +14,8 @@ def main(arguments=None):
 
     130 for one interrupted by Ctrl-C, 141 where the reader of its output went away.
     """
+    if hasattr(sys.stdout, "reconfigure"):  # a console that cannot write a name writes its number, and the command goes on
+        sys.stdout.reconfigure(errors="backslashreplace")
     commands = parser()
     options = commands.parse_args(arguments)
     if options.command is None:
@@ -37,5 +39,5 @@ def main(arguments=None):
 
 def _command(name):
     """Return the function of a command, "module.function"; only this command's module is imported."""
-    module, function = name.split(".")
+    module, _, function = name.rpartition(".")
     return getattr(import_module(f"hapticlab.{module}"), function)

@@ -162,6 +162,11 @@ def _add_board_commands(commands, shared):
         if name != "ports":
             made[name].add_argument("--port", metavar="URL", help="by default the one known board that is plugged in")
     made["doctor"].add_argument("--no-person", action="store_true", help="skip what needs somebody at the handle")
+    words = "try what works on this computer, without a board, in two minutes, and write one file to send"
+    command = {"dest": "command", "action": "store_const", "const": "self_test.report.self_test"}
+    made["doctor"].add_argument("--self-test", **command, help=words)
+    words = "where the self-test writes what it found (default: %(default)s)"
+    made["doctor"].add_argument("--out", metavar="FILE", default="hapticlab-self-test.json", help=words)
     made["flash"].add_argument("--image", metavar="FILE.hex", help="by default the one that came with hapticlab")
     made["calibrate"].add_argument("--only", choices=STEPS, help="this step alone")
     made["calibrate"].add_argument("--yes", action="store_true", help="do not ask before the motor moves")
