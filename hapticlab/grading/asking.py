@@ -1,11 +1,10 @@
 """Asking a session: a request, a deadline, a watch over its processes, and a reply that nobody believes."""
 
 import json
-import os
+import math
 import secrets
 import select
 import socket
-from dataclasses import asdict
 
 from . import watch
 from .inside.protocol import MOST_NUMBERS
@@ -16,6 +15,8 @@ PERIOD = 0.05
 MOST_WALL = 10
 #: of a reply, beside its values
 FRAME = 1 << 16
+#: how long a process may take to end whose socket is closed already [s]
+GRACE = 2.0
 #: lists, dicts and quotes of a reply: what each costs to read is far more than its bytes
 MOST_PARTS = 2_000_000
 
@@ -49,8 +50,31 @@ def parsed(line, number):
     return reply if found == number else None
 
 
+class Replies:
+    """Reads the reply to one request out of what comes.
+
+    Parameters
+    ----------
+    number : str
+        Of the request.
+    most : int
+        Bytes that may come before there is a reply.
+    """
+
+    def __init__(self, number, most):
+        self.number, self.left, self.held = number, most, b""
+
+    def found(self, block):
+        """Return the reply, once the block ends its line; None before."""
+        self.left -= len(block)
+        if self.left < 0:
+            raise SessionEnded("flood")
+        *lines, self.held = (self.held + block).split(b"\n")
+        return next((reply for line in lines if (reply := parsed(line, self.number)) is not None), None)
+
+
 class Session:
-    """A student's session, asked by :meth:`ask`; a context manager, which kills all its processes when it is left.
+    """A student's session, asked by :meth:`ask`; a context manager, which kills it when it is left.
 
     Attributes
     ----------
@@ -59,16 +83,15 @@ class Session:
     """
 
     def __init__(self, starter, limits):
-        self.starter, self.limits, self.number, self.open = starter, limits, "", True
-        self.charged = 0.0
+        self.starter, self.limits, self.open, self.charged = starter, limits, True, 0.0
         self.folder = starter._scratch()
         self.channel, theirs = socket.socketpair()
         self.channel.setblocking(False)
-        self.status, status = os.pipe()
         scratch = self.folder.__enter__()
-        starter.order("session", theirs.fileno(), status, scratch=scratch, limits=asdict(limits))
-        theirs.close()
-        os.close(status)
+        with theirs:
+            self.process = starter.order("session", theirs.fileno(), **{**starter.settings, "scratch": scratch})["process"]
+        if starter.group and self.process:
+            starter.group.add(self.process)  # before anything of a student's is sent
 
     def ask(self, request, seconds):
         """Return the reply to a request.
@@ -86,10 +109,10 @@ class Session:
         if not self.open:
             raise SessionEnded("exit")
         # no reply can be written before its request, as nobody guesses its number
-        self.number = secrets.token_hex(8)
-        meter = watch.Meter(self.starter.process.pid)
+        number = secrets.token_hex(8)
+        meter = watch.Meter(self.process)
         try:
-            return self._reply(json.dumps({**request, "number": self.number}).encode() + b"\n", meter, seconds)
+            return self._reply(json.dumps({**request, "number": number}).encode() + b"\n", number, meter, seconds)
         except SessionEnded:
             self.charged += meter.charged()
             self.close()
@@ -98,32 +121,23 @@ class Session:
             if self.open:
                 self.charged += meter.charged() if meter.wall > PERIOD else meter.wall
 
-    def _reply(self, line, meter, seconds):
-        """Send a line and wait for the reply, watching meanwhile; the end of the socket is no news, as anybody may hold it."""
-        left, held, taken, look = memoryview(line), b"", 0, PERIOD
+    def _reply(self, line, number, meter, seconds):
+        """Send a line and wait for the reply, watching meanwhile."""
+        left, replies, look = memoryview(line), Replies(number, self.limits.answer + FRAME), PERIOD
         poller = select.poll()
-        poller.register(self.status, select.POLLIN)
         poller.register(self.channel, select.POLLIN | select.POLLOUT)
         while True:
             events = dict(poller.poll(max(0, 1e3 * (look - meter.wall))))
             about = events.get(self.channel.fileno(), 0)
             if about & select.POLLIN and (block := self.received()):
-                taken += len(block)
-                if taken > self.limits.answer + FRAME:
-                    raise SessionEnded("flood")
-                *lines, held = (held + block).split(b"\n")
-                for reply in (parsed(line, self.number) for line in lines):
-                    if reply is not None:
-                        return reply
-            elif about & select.POLLOUT and not about & select.POLLIN:
+                if (reply := replies.found(block)) is not None:
+                    return reply
+            elif about & (select.POLLIN | select.POLLHUP | select.POLLERR):
+                raise SessionEnded(self._how_it_ended())
+            elif about & select.POLLOUT:
                 left = left[self.sent(left) :]
                 if not left:
                     poller.modify(self.channel, select.POLLIN)
-            elif about:
-                poller.unregister(self.channel)
-            elif self.status in events:
-                code = os.read(self.status, 1)
-                raise SessionEnded(f"signal {code[0]}" if code and code[0] else "exit")
             if meter.wall >= look:
                 self.check()
                 if meter.wall > MOST_WALL * seconds or meter.charged() > seconds:
@@ -138,7 +152,7 @@ class Session:
             return b""
 
     def sent(self, line):
-        """Return how much could be sent; where the other end is gone, the keeper will say how it ended."""
+        """Return how much could be sent; where the other end is gone, that is seen next."""
         try:
             return self.channel.send(line)
         except BlockingIOError:
@@ -146,24 +160,43 @@ class Session:
         except OSError:
             return len(line)
 
+    def _how_it_ended(self):
+        """Return the reason, once the other end of the socket is closed; who closed it and goes on is ended."""
+        code = self._end(GRACE)
+        if self.starter.group and self.starter.group.exceeded():
+            return "memory"
+        return f"signal {-code}" if code is not None and code < 0 else "exit"
+
     def check(self):
-        """Raise where the session has too many processes, or too much memory."""
-        found = watch.descendants(self.starter.process.pid)
-        if len(found) > self.limits.processes + 2:
+        """Raise where the session has too many processes, or too much memory or files."""
+        limits, level = self.limits, self.starter.level
+        found = [self.process, *(watch.descendants(self.process) if limits.processes > 1 else ())]
+        if len(found) > limits.processes:
             raise SessionEnded("processes")
-        if watch.memory(found, self.starter.held) > self.limits.memory:
+        # of one process what it was forked with is known, of several what they share is told by smaps_rollup, which is slow
+        held = watch.memory(found) if limits.processes > 1 else watch.anonymous(self.process)
+        if held - self.starter.held > limits.memory:
             raise SessionEnded("memory")
-        if self.starter.level != "namespaces" and watch.size(self.folder.name) > self.limits.scratch:
+        if level != "namespaces" and self._files(found) > limits.scratch:
             raise SessionEnded("flood")
+
+    def _files(self, processes):
+        """Return what its files take [bytes], infinitely much where there are too many."""
+        places = [self.folder.name, *watch.left_by(self.starter.user, self.starter.writable)]
+        total, count = map(sum, zip(*map(watch.size, places), strict=True))
+        return total + sum(map(watch.unlinked, processes)) if count <= self.limits.files else math.inf
 
     def close(self):
         """Kill all processes of the session and delete what it wrote."""
         if self.open:
-            self.open = False
-            self.starter.end()
-            self.channel.close()
-            os.close(self.status)
-            self.folder.__exit__(None, None, None)
+            self._end(0.0)
+
+    def _end(self, grace):
+        self.open = False
+        code = self.starter.end(grace)
+        self.channel.close()
+        self.folder.__exit__(None, None, None)
+        return code
 
     def __enter__(self):
         return self

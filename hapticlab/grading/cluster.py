@@ -35,7 +35,7 @@ class ClusterWorkers:
         Of the scheduler, "tcp://host:8786".
     assignment : Assignment
     limits : Limits
-    sandbox : {"auto", "namespaces", "user", "none"}
+    sandbox : {"auto", "namespaces", "user", "landlock", "none"}
     hidden : sequence of str
         Paths of this computer, which the others may see too.
     """
@@ -66,12 +66,12 @@ class ClusterWorkers:
         self.seconds = sum(seconds - self._before.get(worker, 0.0) for worker, seconds in now.items())
         self._client.close()
 
-    def graded(self, tasks, alone):
-        """Yield (task, Reply) as each is known; where ``alone``, one after another."""
+    def graded(self, tasks, last):
+        """Yield (task, Reply) as each is known."""
         tasks, busy = iter(tasks), {}
         while True:
-            while len(busy) < (1 if alone else AHEAD * self.number) and (task := next(tasks, None)) is not None:
-                busy[self._client.submit(_graded, self._setup, as_json(task, alone), pure=False)] = task
+            while len(busy) < AHEAD * self.number and (task := next(tasks, None)) is not None:
+                busy[self._client.submit(_graded, self._setup, as_json(task, last), pure=False)] = task
             if not busy:
                 return
             for future in _done(self._client, busy):

@@ -3,6 +3,10 @@
 First the statements that the answers need run alone, which is quick; an exercise that is right there has earned its points.
 For the others the whole notebook runs, cell by cell, as it did for its student: only then is an answer called wrong.
 
+The answers of a session are evaluated in one process, one after another, so an answer may change what the next one finds. Right
+is right; wrong counts where no other answer can have made it so: the same came when the answers were asked for in the opposite
+order, or when nothing was asked before.
+
 What a student may be told comes from sessions that have not heard of a hidden case yet: all that is shown is asked for
 before all that is hidden, and what the quick way gave is told to nobody.
 """
@@ -19,24 +23,26 @@ from .starter import SessionEnded
 
 #: what a session is charged for its start [s], and how much wall clock a submission has, in what it may be charged
 START, MOST_WALL = 0.05, 3
+#: the quick way's part of the time of a step: who needs more is graded by the whole notebook anyway
+QUICK = 0.25
 
 
 @dataclass(frozen=True)
 class Deferred:
-    """A limit of time was met while others were at work beside; it is decided when nobody is."""
+    """A limit of time was met in a turn that is not the last; it is decided in that."""
 
     student: str
 
 
 class _Late(Exception):
-    """A limit of time was met, and others are at work."""
+    """A limit of time was met in a turn that is not the last."""
 
 
 class _Spent(Exception):
     """The time of the whole submission is over."""
 
 
-def grade(submission, assignment, starter, limits, *, alone=False):
+def grade(submission, assignment, starter, limits, *, last=True):
     """Grade one submission.
 
     Parameters
@@ -46,8 +52,8 @@ def grade(submission, assignment, starter, limits, *, alone=False):
     starter : Starter
         Of the processes that the student's code runs in.
     limits : Limits
-    alone : bool
-        Nobody else is at work, so that a limit of time that is met counts.
+    last : bool
+        Whether a limit of time that is met counts. It does not while others are at work who meet none, as these may be in its way.
 
     Returns
     -------
@@ -56,7 +62,7 @@ def grade(submission, assignment, starter, limits, *, alone=False):
     if submission.problem:
         return refused(submission, assignment, submission.problem, limits)
     cases = assignment.cases(submission.student)
-    work = _Work(submission, assignment, starter, limits, alone, cases, time.monotonic() + MOST_WALL * limits.total)
+    work = _Work(submission, assignment, starter, limits, last, cases, time.monotonic() + MOST_WALL * limits.total)
     try:
         work.quick()
         work.whole()
@@ -106,7 +112,7 @@ class _Work:
     assignment: object
     starter: object
     limits: object
-    alone: bool
+    last: bool
     cases: dict
     until: float
     spent: float = 0.0
@@ -116,7 +122,7 @@ class _Work:
 
     def __post_init__(self):
         self._untouched = tuple(self.submission.cells) == self.assignment.untouched
-        self._told = False
+        self._told, self._step = False, self.limits.seconds
 
     def quick(self):
         """Ask for all answers where only the statements ran that they need."""
@@ -127,19 +133,31 @@ class _Work:
             self._ask(session, {"do": "plan", "names": names})
             self._ask(session, {"do": "run_pieces"})
 
+        self._step = QUICK * self.limits.seconds
         # a text that is only noted is told, so it comes before all hidden cases
         first = sorted(exercises, key=lambda one: one.judged)
         self._answers([_Ask(one.name, *self._asked(one, (True, False))) for one in first], prepare)
+        self._step = self.limits.seconds
 
     def whole(self):
-        """Ask for the answers that are not right yet where the whole notebook ran: what is shown, then what is hidden."""
-        pending = [self.assignment.lab.exercise(name) for name in self.undecided()]
-        if pending:
-            self._told = True
-            self.found = {name: found for name, found in self.found.items() if self.assignment.lab.exercise(name) not in pending}
-            asks = [_Ask(one.name, *self._asked(one, (shown,))) for shown in (True, False) for one in pending]
-            end = self._answers([one for one in asks if one.givens], self._run_cells)
-            self.found |= {one.name: Found(ended=end) for one in self._left}
+        """Ask for the answers that are not right yet where the whole notebook ran."""
+        self._told, pending = True, self.undecided()
+        for step in (-1, 1):
+            before = {name: _said(self.found.get(name)) for name in pending}  # of the quick way, which asks in the lab's order
+            self._ask_whole(pending[::step])
+            if len(pending) < 2:
+                return
+            pending = [name for name in pending if name in self.undecided() and _said(self.found.get(name)) != before[name]]
+        for name in pending:
+            self._ask_whole([name])
+
+    def _ask_whole(self, names):
+        """Ask for answers in this order: all that is shown, then all that is hidden."""
+        asked = [self.assignment.lab.exercise(name) for name in names]
+        self.found = {name: found for name, found in self.found.items() if name not in names}
+        asks = [_Ask(one.name, *self._asked(one, (shown,))) for shown in (True, False) for one in asked]
+        end = self._answers([one for one in asks if one.givens], self._run_cells)
+        self.found |= {one.name: Found(ended=end) for one in self._left}
 
     def undecided(self):
         """Return the exercises that may be found otherwise when the whole notebook runs."""
@@ -171,26 +189,21 @@ class _Work:
     def _answers(self, asks, prepare):
         """Ask for answers in sessions that are prepared alike, a new one after each end; return why the last one ended."""
         self._left = asks
-        while left := self._left:
-            before = len(left), len(self.left_out)
+        while self._left:
+            before = len(self._left), len(self.left_out)
             try:
                 with self._session() as session:
                     self._ask(session, self._load())
                     prepare(session)
-                    for ask in left:
-                        if ask in self._left:
-                            self._answer(session, ask, first=ask is left[0])
+                    while self._left:
+                        self._answer(session, self._left[0])
             except SessionEnded as end:
                 if before == (len(self._left), len(self.left_out)):
                     return end.reason  # not by an answer, nor by a cell, which another session could leave out
         return ""
 
-    def _answer(self, session, ask, first):
-        """Ask for some cases of an answer; where it ends the session that is what was found, and no more of it is asked.
-
-        They are asked again as the ``first`` of another session otherwise: an answer before them may have left behind what
-        ended this one.
-        """
+    def _answer(self, session, ask):
+        """Ask for some cases of an answer; where it ends the session that is what was found, and no more of it is asked."""
         known = self.found.get(ask.name, Found()).outcomes
         try:
             reply = self._ask(session, {"do": "evaluate", "name": ask.name, "kind": ask.kind, "givens": ask.givens})
@@ -199,9 +212,8 @@ class _Work:
             found = Found(ended="garbage")
         except SessionEnded as end:
             found = Found(ended=end.reason)
-        if first or not found.ended:
-            self.found[ask.name] = found
-            self._left = [one for one in self._left if one is not ask and not (found.ended and one.name == ask.name)]
+        self.found[ask.name] = found
+        self._left = [one for one in self._left[1:] if not (found.ended and one.name == ask.name)]
         if found.ended:
             raise SessionEnded(found.ended)
 
@@ -235,10 +247,15 @@ class _Work:
     def _ask(self, session, request):
         left = self.limits.total - self.spent - session.charged
         if left <= 0 or time.monotonic() > self.until:
-            raise _Spent if self.alone else _Late
+            raise _Spent if self.last else _Late
         try:
-            return session.ask(request, min(self.limits.seconds, left))
+            return session.ask(request, min(self._step, left))
         except SessionEnded as end:
-            if end.reason == "time" and not self.alone:
+            if end.reason == "time" and not self.last:
                 raise _Late from None
             raise
+
+
+def _said(found):
+    """Return what an answer gave, to be compared: NaN is NaN."""
+    return repr(found and (found.ended, [(outcome.value, outcome.problem) for outcome in found.outcomes]))

@@ -22,9 +22,9 @@ class Limits:
     memory : int
         Of all its processes together, looked at 20 times a second; on Linux also what a process may reserve at all [bytes].
     processes : int
-        At one time.
-    scratch : int
-        What it may write to files [bytes].
+        At one time. On Linux one can start no other, and no program.
+    scratch, files : int
+        What it may write to files [bytes], and how many files and folders.
     answer : int
         Of the plain values of one exercise, as JSON [bytes].
     printed : int
@@ -43,8 +43,9 @@ class Limits:
     seconds: float = 10.0
     total: float = 120.0
     memory: int = 1024 * MIB
-    processes: int = 64
+    processes: int = 1
     scratch: int = 64 * MIB
+    files: int = 10_000
     answer: int = 32 * MIB
     printed: int = 4096
 

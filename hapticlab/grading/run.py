@@ -11,7 +11,7 @@ from .grade import refused
 from .journal import Journal, key_of
 from .limits import Limits
 from .submission import find_submissions, read
-from .workers import Task, Workers
+from .workers import Task, Workers, processor_seconds
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Graded:
     known : int
         How many reports the journal had already.
     processor : float
-        Processor time of all of this run's workers together, their start included [s].
+        Processor time of this process during the run and of all that it began, their start included [s].
     foreign : tuple of str
         Whose submission has other numbers than it is graded by, in a sentence each.
     refused : dict
@@ -52,7 +52,7 @@ class Graded:
         return tuple(report for report in self.reports if report.problem)
 
 
-def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=None, fresh=False, hidden=(), progress=False):
+def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=None, fresh=False, hidden=(), progress=False, preloaded=None):
     """Grade submissions.
 
     Parameters
@@ -72,24 +72,27 @@ def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=No
         Which a student's code must not see, beside submissions, answers and journal.
     progress : bool
         Show a bar on stderr.
+    preloaded : Preloaded, optional
+        Which began to load while submissions and answers were looked for.
 
     Returns
     -------
     Graded
     """
-    limits = limits or Limits()
+    limits, before = limits or Limits(), processor_seconds()
     sources = find_submissions(paths, assignment.folder.name)
     secrets = tuple(str(Path(path).resolve()) for path in (*paths, *hidden, *([journal] if journal else [])))
     if isinstance(workers, str):
         crew = ClusterWorkers(workers, assignment, limits, sandbox, secrets)
     else:
-        crew = Workers(min(workers, len(sources)), assignment, limits, sandbox, secrets)
+        crew = Workers(min(workers, len(sources)), assignment, limits, sandbox, secrets, preloaded=preloaded)
     with Journal(journal, fresh) as kept, progress_bar(len(sources), progress, unit="submission") as bar:
         work = _Run(assignment, limits, sandbox, kept, bar)
         work.all(sources, crew)
     reports = sorted(work.reports, key=lambda report: (report.student, report.submission, report.sha256))
     seconds, foreign = tuple(work.seconds), tuple(work.foreign)
-    return Graded(tuple(reports), crew.level, seconds, work.known, crew.seconds, foreign, crew.refused)
+    processor = processor_seconds() - before + crew.seconds
+    return Graded(tuple(reports), crew.level, seconds, work.known, processor, foreign, crew.refused)
 
 
 class _Run:
@@ -98,19 +101,19 @@ class _Run:
         self.reports, self.seconds, self.known, self.foreign = [], [], 0, []
 
     def all(self, sources, crew):
-        """Grade all; at the end, one by one, those that a limit of time or the end of a worker left open."""
+        """Grade all; at the end, side by side, those that a limit of time or the end of a worker left open."""
         tasks, left = self._tasks(sources), []
         first = next(tasks, None)
         if first is None:
             return  # all is known: no worker needs to begin
         with crew:
-            for task, reply in crew.graded(itertools.chain([first], tasks), alone=crew.number == 1):
+            for task, reply in crew.graded(itertools.chain([first], tasks), last=crew.number == 1):
                 if reply.report or reply.problem:
                     self._take(task, reply)
                 else:
                     left.append(task)
             left.sort(key=lambda task: task.key)
-            for task, reply in crew.graded(left, alone=True):
+            for task, reply in crew.graded(left, last=True):
                 self._take(task, reply)
 
     def _tasks(self, sources):

@@ -1,8 +1,5 @@
 """Sessions on a system without Linux' fork and /proc: each a new interpreter.
 
-Where the whole notebook ran, each request for answers has an interpreter of its own, as it has a fork elsewhere. Where only
-the statements ran that answers need, they share one: nothing is called wrong there, at worst it is asked for once more.
-
 There is a deadline, and the bounds on what is answered; nothing bounds memory and processes, and nothing is hidden.
 """
 
@@ -18,15 +15,15 @@ import threading
 import time
 from contextlib import suppress
 from dataclasses import asdict
-from pathlib import Path
 
-from .asking import FRAME, SessionEnded, parsed
+from .asking import FRAME, Replies, SessionEnded
+from .preloaded import ENVIRONMENT, FIND_PACKAGE, FLAGS, PACKAGE
 
-PROGRAM = "import sys; sys.path[0] = sys.argv[1]; from hapticlab.grading.inside.alone import main; main()"
+PROGRAM = FIND_PACKAGE + "from hapticlab.grading.inside.alone import main; main()"
 #: without these no interpreter starts on Windows
 KEPT = ("SYSTEMROOT", "WINDIR", "TEMP", "PATH")
-#: how long an interpreter may take to start [s], and a request that was answered before, in what its kind may
-START, MOST_AGAIN = 120.0, 3
+#: how long an interpreter may take to start [s]
+START = 120.0
 
 
 class SpawnedStarter:
@@ -34,14 +31,12 @@ class SpawnedStarter:
 
     level = "none"
 
-    def __init__(self, package, environment):
-        self.refused = dict.fromkeys(("namespaces", "user"), "only Linux has it")
-        self.package = str(Path(package).parent)
-        self.environment = {**{name: os.environ[name] for name in KEPT if name in os.environ}, **environment}
+    def __init__(self):
+        self.refused = dict.fromkeys(("namespaces", "user", "landlock"), "only Linux has it")
 
     def session(self, limits):
         """Return a new SpawnedSession."""
-        return SpawnedSession(self, limits)
+        return SpawnedSession(limits)
 
     def close(self):
         """Do nothing: each session ends its own process."""
@@ -54,23 +49,17 @@ class SpawnedStarter:
 
 
 class SpawnedSession:
-    """As :class:`hapticlab.grading.asking.Session`; what it was asked before is asked anew in each further interpreter.
+    """As :class:`hapticlab.grading.asking.Session`; ``charged`` is wall clock, without the start of its interpreter."""
 
-    ``charged`` is wall clock, without the start of interpreters and what is asked anew there.
-    """
-
-    def __init__(self, starter, limits):
-        self.starter, self.limits, self.charged = starter, limits, 0.0
-        self.asked, self.evaluated, self.shared, self.open = [], False, False, True
-        self._start()
-
-    def _start(self):
+    def __init__(self, limits):
+        self.limits, self.charged, self.open = limits, 0.0, True
         self.folder = tempfile.TemporaryDirectory(prefix="hapticlab-", ignore_cleanup_errors=True)
         home = dict.fromkeys(("HOME", "USERPROFILE", "TMPDIR"), self.folder.name)
+        kept = {name: os.environ[name] for name in KEPT if name in os.environ}
         self.process = subprocess.Popen(
-            [sys.executable, "-s", "-c", PROGRAM, self.starter.package, json.dumps(asdict(self.limits))],
+            [sys.executable, *FLAGS, "-c", PROGRAM, str(PACKAGE.parent), json.dumps(asdict(self.limits))],
             cwd=self.folder.name,
-            env={**self.starter.environment, **home},
+            env={**ENVIRONMENT, **kept, **home},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -89,36 +78,21 @@ class SpawnedSession:
         """Return the reply to a request, or raise SessionEnded; ``seconds`` of wall clock."""
         if not self.open:
             raise SessionEnded("exit")
+        began = time.monotonic()
         try:
-            if request["do"] == "evaluate" and self.evaluated:
-                self._begin_anew()
-            began = time.monotonic()
-            try:
-                reply = self._reply(request, seconds)
-            finally:
-                self.charged += time.monotonic() - began
+            return self._reply(request, seconds)
         except SessionEnded:
             self.close()
             raise
-        if request["do"] == "evaluate":
-            self.evaluated = not self.shared
-        else:
-            self.asked.append(request)
-            self.shared = request["do"] == "run_pieces"
-        return reply
-
-    def _begin_anew(self):
-        self._kill()
-        self._start()
-        for request in self.asked:
-            self._reply(request, MOST_AGAIN * self.limits.seconds)
+        finally:
+            self.charged += time.monotonic() - began
 
     def _reply(self, request, seconds):
         number, deadline = secrets.token_hex(8), time.monotonic() + seconds
         line = json.dumps({**request, "number": number}).encode() + b"\n"
         # in a thread: what nobody reads is never written to its end
         threading.Thread(target=_write, args=(self.process.stdin, line), daemon=True).start()
-        held, taken = b"", 0
+        replies = Replies(number, self.limits.answer + FRAME)
         while True:
             try:
                 block = self.blocks.get(timeout=max(0.0, deadline - time.monotonic()))
@@ -127,13 +101,8 @@ class SpawnedSession:
             if not block:
                 code = self.process.wait()
                 raise SessionEnded(f"signal {-code}" if code < 0 else "exit")
-            taken += len(block)
-            if taken > self.limits.answer + FRAME:
-                raise SessionEnded("flood")
-            *lines, held = (held + block).split(b"\n")
-            for reply in (parsed(line, number) for line in lines):
-                if reply is not None:
-                    return reply
+            if (reply := replies.found(block)) is not None:
+                return reply
 
     def _kill(self):
         """Kill the process with its group, or on Windows with its children."""
@@ -144,7 +113,8 @@ class SpawnedSession:
             subprocess.run(["taskkill", "/F", "/T", "/PID", str(self.process.pid)], capture_output=True, check=False)
         self.process.wait()
         self.process.stdin.close()
-        self.folder.cleanup()
+        with suppress(RecursionError):  # nested deeper than Python deletes
+            self.folder.cleanup()
 
     def close(self):
         """Kill its process and delete what it wrote."""

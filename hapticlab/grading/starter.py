@@ -2,52 +2,43 @@
 
 import json
 import os
-import secrets
-import shutil
 import socket
 import subprocess
 import sys
+import sysconfig
 import tempfile
-from contextlib import nullcontext, suppress
+from contextlib import ExitStack, nullcontext, suppress
 from dataclasses import asdict
 from pathlib import Path
 
 from ..errors import CourseError
-from . import watch
+from . import memory_group, watch
 from .asking import Session
 from .asking import SessionEnded as SessionEnded
+from .inside import linux, root
 from .limits import Limits
+from .preloaded import PACKAGE, Preloaded
 from .spawned import SpawnedStarter
 
-LEVELS = "namespaces", "user", "none"
+LEVELS = "namespaces", "user", "landlock", "none"
 #: more process ids no Linux has; pid_max in proc(5)
 PROCESSES = 1 << 22
-PACKAGE = Path(__file__).resolve().parents[1]
-#: one thread, as a zygote forks; no port but a simulated one; the same order of sets in every run
-ENVIRONMENT = {
-    "PATH": "/usr/local/bin:/usr/bin:/bin",
-    "LANG": "C.UTF-8",
-    "PYTHONHASHSEED": "0",
-    "PYTHONDONTWRITEBYTECODE": "1",
-    "MPLBACKEND": "Agg",
-    "HAPTICLAB_PORTS": "sim",
-    # large pages, of which a fork copies fewer: 3 ms instead of 14 where 130 MB are loaded
-    "PYTHONMALLOC": "malloc",
-    "GLIBC_TUNABLES": "glibc.malloc.hugetlb=1",
-    **{f"{library}_NUM_THREADS": "1" for library in ("OPENBLAS", "OMP", "MKL", "NUMEXPR", "VECLIB")},
-}
-#: in place of the folder that -c begins sys.path with: the folder of this package
-PROGRAM = "import sys; sys.path[0] = sys.argv[2]; from hapticlab.grading.inside.zygote import main; main(int(sys.argv[1]))"
+#: the labs that came with the package: what judges their public cases
+LABS = PACKAGE / "labs"
 
 
-def start(sandbox="auto", hidden=()):
+def start(sandbox="auto", hidden=(), limits=None, zygote=None):
     """Return a Starter of the best level that works here, or of the one named.
 
     Parameters
     ----------
-    sandbox : {"auto", "namespaces", "user", "none"}
+    sandbox : {"auto", "namespaces", "user", "landlock", "none"}
     hidden : sequence of path
         What no student's code may read: answers, submissions, results.
+    limits : Limits, optional
+        Of its sessions.
+    zygote : (socket, int), optional
+        Of :meth:`Preloaded.zygote`; without it one is begun.
 
     Raises
     ------
@@ -58,16 +49,22 @@ def start(sandbox="auto", hidden=()):
         raise CourseError(f"sandbox = {sandbox!r}; needs one of auto, {', '.join(LEVELS)}")
     if sys.platform != "linux":
         if sandbox in ("auto", "none"):
-            return SpawnedStarter(PACKAGE, ENVIRONMENT)
+            return SpawnedStarter()
         raise CourseError(f"sandbox = {sandbox!r}; only Linux has it; on this system use auto or none")
-    refused = {}
-    for level in LEVELS if sandbox == "auto" else (sandbox,):
-        try:
-            starter = Starter(level, hidden)
-            starter.refused = refused
-            return starter
-        except _Refused as refusal:
-            refused[level] = str(refusal)
+    refused, own = {}, None if zygote else Preloaded()
+    with ExitStack() as ending:
+        if own:
+            ending.callback(own.close)
+        control, process = zygote or own.zygote()
+        ending.callback(control.close)
+        for level in LEVELS if sandbox == "auto" else (sandbox,):
+            try:
+                starter = Starter(level, hidden, limits or Limits(), control, process, refused)
+            except _Refused as refusal:
+                refused[level] = str(refusal)
+            else:
+                starter.ending = ending.pop_all()
+                return starter
     raise CourseError(f"sandbox {sandbox}: {refused[sandbox]}; try another of auto, {', '.join(LEVELS)}")
 
 
@@ -81,71 +78,61 @@ class Starter:
     Attributes
     ----------
     level : str
-        "namespaces", "user" or "none".
+        "namespaces", "user", "landlock" or "none".
     refused : dict
         Why better levels do not work here: level to words.
     """
 
-    def __init__(self, level, hidden=()):
-        self.level, self.now, self.process, self.refused, self.sessions = level, None, None, {}, 0
-        self.hidden = [str(Path(path).resolve()) for path in (PACKAGE / "labs", *hidden)]
+    def __init__(self, level, hidden, limits, control, process, refused=()):
+        self.level, self.limits, self.refused = level, limits, dict(refused)
+        self.now, self.sessions, self.ending = None, 0, ExitStack()
+        self.hidden = [str(Path(path).resolve()) for path in hidden]
+        self.walled = level in ("user", "landlock") and linux.landlock_version() > 0
         if level == "user" and not _is_root():
             raise _Refused("only root can run code as another user")
-        self._begin()
+        if level == "landlock" and not self.walled:
+            raise _Refused("the kernel has no Landlock, or it is off; Linux has it from 5.13 on")
+        # where nothing keeps another user to its own folder, what it leaves elsewhere is counted and deleted
+        self.writable = watch.writable_folders() if level == "user" and not self.walled else []
+        self._begin(control, process)
+        self.group, self.no_group = memory_group.make(limits.memory + limits.scratch)
 
-    def _begin(self):
-        """Start the zygote, and see whether the level's walls hold."""
-        self.control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        self.control.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 20)
-        arguments = [sys.executable, "-s", "-c", PROGRAM, str(theirs.fileno()), str(PACKAGE.parent)]
-        cache = {name: os.environ[name] for name in ("HOME", "XDG_CACHE_HOME") if name in os.environ}
-        self.mark = secrets.token_hex(16)
-        # a session of its own: an interrupt at the keyboard is for the grader, which then ends it in order
-        self.process = subprocess.Popen(
-            arguments,
-            env={**cache, **ENVIRONMENT, watch.MARK: self.mark},
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            pass_fds=[theirs.fileno()],
-            start_new_session=True,
-        )
-        theirs.close()
-        self.user = _free_user(self.process.pid) if _is_root() and self.level != "none" else 0
-        self.others = watch.threads_of(os.getuid()) if self.level == "none" else 0
-        try:
-            self._settle()
-        except BaseException:
-            self.close()
-            raise
-        self.held, self.size = watch.anonymous(self.process.pid), watch.address_space(self.process.pid)
-
-    def _settle(self):
+    def _begin(self, control, process):
+        """Take a zygote, and see whether the level's walls hold."""
+        self.control, self.process = control, process
+        self.user = _free_user(process) if _is_root() and self.level in ("namespaces", "user") else 0
+        readable = seen(self.limits.processes > 1)
+        hidden = [str(LABS), *self.hidden]
         with tempfile.TemporaryDirectory(prefix="hapticlab-root-") as new, self._scratch() as scratch:
-            settings = {"new": new, "seen": seen(), "hidden": self.hidden, "scratch": scratch}
+            self.settings = {"new": new, "seen": readable, "hidden": hidden, "scratch": scratch, "readable": []}
+            if self.walled:
+                self.settings["readable"] = root.without(root.outermost(readable), hidden)
             if self.level != "none":
-                found = self.order("probe", **settings, limits=asdict(Limits()))
-                if "problem" in found:
-                    raise _Refused(found["problem"])
-                if found["missing"]:
-                    raise _Refused(f"the user of a session cannot read {found['missing']}, which Python needs")
-                if found["read"]:
-                    raise CourseError(f"a submission could read {found['read']}; chmod -R go= its folder")
-            self.order("ready", **settings)
+                self._probe()
+            self.order("ready", **self.settings)
+        self.held, self.size = watch.anonymous(process), watch.address_space(process)
+
+    def _probe(self):
+        """Have a session look what it can read."""
+        public = [] if self.level == "namespaces" or self.walled else [str(LABS)]  # nothing hides a part of what is seen
+        secret = [path for path in self.settings["hidden"] if path not in public]
+        found = self.order("probe", **{**self.settings, "hidden": secret}) if public else self.order("probe", **self.settings)
+        if "problem" in found:
+            raise _Refused(found["problem"])
+        if found["missing"]:
+            raise _Refused(f"the user of a session cannot read {found['missing']}, which Python needs")
+        if found["read"]:
+            raise CourseError(f"a submission could read {found['read']}; chmod -R go= its folder")
 
     def _scratch(self):
         """Return a folder for a session; in namespaces it has one in a file system of its own."""
-        if self.level == "namespaces":
-            return nullcontext("/tmp/hapticlab-scratch")
-        folder = tempfile.TemporaryDirectory(prefix="hapticlab-", ignore_cleanup_errors=True)
-        if self.user:
-            os.chown(folder.name, self.user, self.user)
-        return folder
+        return nullcontext("/tmp/hapticlab-scratch") if self.level == "namespaces" else _Folder(self.user)
 
     def order(self, do, *descriptors, **settings):
         """Have the zygote do something, and return what it answers."""
-        base = {"base": self.size} if do == "session" else {"base": watch.address_space(self.process.pid)}
-        request = {"do": do, "level": self.level, "user": self.user, "others": self.others, **base, **settings}
-        socket.send_fds(self.control, [json.dumps(request).encode()], descriptors)
+        base = {"base": self.size} if do == "session" else {"base": watch.address_space(self.process)}
+        own = {"level": self.level, "user": self.user, "limits": asdict(self.limits)}
+        socket.send_fds(self.control, [json.dumps({"do": do, **own, **base, **settings}).encode()], descriptors)
         answer = self.control.recv(1 << 16)
         if not answer:
             raise ConnectionError("the zygote is gone")
@@ -155,31 +142,36 @@ class Starter:
         """Return a new Session; one that is still open ends."""
         if self.now:
             self.now.close()
-        if self.process.poll() is not None:  # at level none, student's code can kill it
-            self.control.close()
-            self._begin()
         self.sessions += 1
         if self.level == "user":
-            self.user = _free_user(self.process.pid, self.sessions)
-        self.now = Session(self, limits)
+            self.user = _free_user(self.process, self.sessions)
+        try:
+            self.now = Session(self, limits)
+        except ConnectionError:  # the system had no memory for the zygote
+            self.control.close()
+            own = Preloaded()
+            self.ending.callback(own.close)
+            self._begin(*own.zygote())
+            self.now = Session(self, limits)
         return self.now
 
-    def end(self):
-        """Kill the session and all it started."""
-        try:
-            self.order("end")
-        except OSError:  # it is gone: at level none, student's code can kill it
-            self.process.wait()
-            watch.kill_marked(self.mark)
-        if self.level == "user":
-            _delete_files_of(self.user)
+    def end(self, grace=0.0):
+        """Kill the session and all it started; return how it ended by itself within some seconds, None where it did not."""
+        code = None
+        with suppress(OSError):  # the zygote is gone, and all it forked ends with it
+            code = self.order("end", grace=grace)["code"]
+        if self.writable:
+            _delete(watch.left_by(self.user, self.writable))
+        return code
 
     def close(self):
         """End the session and the zygote."""
         if self.now:
             self.now.close()
         self.control.close()
-        self.process.wait()
+        self.ending.close()
+        if self.group:
+            self.group.remove()
 
     def __enter__(self):
         return self
@@ -188,21 +180,40 @@ class Starter:
         self.close()
 
 
-def _delete_files_of(user):
-    """Delete what a user left where anybody may write: no session reads what another knew."""
-    for folder in {tempfile.gettempdir(), "/tmp", "/var/tmp", "/dev/shm"}:
-        with suppress(OSError):
-            for entry in list(os.scandir(folder)):
-                if entry.stat(follow_symlinks=False).st_uid == user:
-                    if entry.is_dir(follow_symlinks=False):
-                        shutil.rmtree(entry, ignore_errors=True)
-                    else:
-                        os.unlink(entry)
+class _Folder:
+    """A new folder of a user, deleted with whatever was made in it; a context manager."""
+
+    def __init__(self, user):
+        self.name = tempfile.mkdtemp(prefix="hapticlab-")
+        if user:
+            os.chown(self.name, user, user)
+
+    def __enter__(self):
+        return self.name
+
+    def __exit__(self, *_):
+        _delete([self.name])
 
 
-def seen():
-    """Return the folders that sessions see beside Python's own: this package, and others'."""
-    return [str(PACKAGE), *(path for path in sys.path if Path(path).name in ("site-packages", "dist-packages"))]
+def _delete(places):
+    """Delete files and folders, however deep they are nested: Python's own way has a limit."""
+    if places:
+        subprocess.run(["rm", "-rf", "--", *places], stderr=subprocess.DEVNULL, check=False)
+
+
+def seen(programs=False):
+    """Return what sessions read beside their own files: Python, its packages, this one, and what the system links.
+
+    Parameters
+    ----------
+    programs : bool
+        Whether they may start programs.
+    """
+    libraries = [f"{prefix}/{folder}" for prefix in (sys.prefix, sys.base_prefix) for folder in ("lib", "lib64")]
+    packages = [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
+    own = [str(PACKAGE), sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"), *packages]
+    bins = [*root.PROGRAMS, f"{sys.prefix}/bin", f"{sys.base_prefix}/bin", f"{sys.prefix}/pyvenv.cfg"] if programs else []
+    return sorted({path for path in (*root.SYSTEM, *libraries, *own, *bins) if os.path.exists(path)})
 
 
 def _is_root():

@@ -1,7 +1,9 @@
 """Watching a session from outside: which processes it has, and how much memory they use, as Linux tells in /proc."""
 
+import math
 import os
 import signal
+import stat
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -9,12 +11,9 @@ from pathlib import Path
 PROC = Path("/proc")
 PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 
-#: in the environment of a zygote and of all it forks; proc_pid_environ(5) tells it also where a program deleted its own
-MARK = "HAPTICLAB_SESSIONS"
-
 
 def descendants(root):
-    """Return the process ids below a process that still run; zombies left aside.
+    """Return the process ids below a process that still run, be it that their first thread has ended; the dead left aside.
 
     Examples
     --------
@@ -37,12 +36,21 @@ def descendants(root):
 
 
 def _looked_at(process):
-    """Return (process, state, children); proc_pid_stat(5): the name before the state stands in parentheses."""
+    """Return (process, state, children); proc_pid_stat(5): the name before the state stands in parentheses.
+
+    A process whose first thread has ended says Z while others run, and its memory is still there.
+    """
     try:
-        state = (PROC / str(process) / "stat").read_text("utf-8", "replace").rpartition(")")[2].split()[0]
+        threads = os.listdir(PROC / str(process) / "task")
+        states = [_fields(f"{process}/task/{thread}")[0] for thread in threads]
     except OSError:
         return process, "X", []
-    return process, state, _children(process)
+    running = [state for state in states if state not in "ZX"]
+    return process, (running or ["Z"])[0], _children(process)
+
+
+def _fields(process):
+    return (PROC / process / "stat").read_text("utf-8", "replace").rpartition(")")[2].split()
 
 
 def _children(process):
@@ -54,26 +62,30 @@ def _children(process):
         return []
 
 
-def memory(processes, shared=0):
-    """Return what processes hold beyond files, and beyond what each shares with the one they were forked from [bytes].
+def memory(processes):
+    """Return the memory of processes that is no file's; what several share is counted once [bytes].
 
-    Parameters
-    ----------
-    processes : sequence of int
-    shared : int
-        What that one holds [bytes].
+    proc_pid_smaps_rollup(5): of a page of three processes, each has a third.
     """
-    return sum(max(0, anonymous(process) - shared) for process in processes)
+    return sum(_first_of(process, "smaps_rollup", ("Pss_Anon:", "Pss_Shmem:")) for process in processes)
 
 
 def anonymous(process):
     """Return a process' resident memory that is no file's, shared or not [bytes]; proc_pid_status(5)."""
-    try:
-        lines = (PROC / str(process) / "status").read_text("utf-8", "replace").split("\n")
-    except OSError:
-        return 0
-    # a name of several lines would be escaped, so no program feigns one of these
-    return sum(int(line.split()[1]) << 10 for line in lines if line.startswith(("RssAnon:", "RssShmem:")))
+    return _first_of(process, "status", ("RssAnon:", "RssShmem:"))
+
+
+def _first_of(process, file, names):
+    """Return the sum of lines in kB of the first thread that has any: one that ended tells nothing [bytes]."""
+    with suppress(OSError):
+        for thread in os.listdir(PROC / str(process) / "task"):
+            with suppress(OSError):
+                # a name of several lines would be escaped, so no program feigns one of these
+                lines = (PROC / str(process) / "task" / thread / file).read_text("utf-8", "replace").split("\n")
+                found = [int(line.split()[1]) << 10 for line in lines if line.startswith(names)]
+                if found:
+                    return sum(found)
+    return 0
 
 
 def address_space(process):
@@ -86,13 +98,14 @@ class Meter:
 
     Parameters
     ----------
-    zygote : int
-        The session is below its only child, the keeper.
+    session : int
+        Its process.
     """
 
-    def __init__(self, zygote):
-        self.zygote, self.began = zygote, time.monotonic()
-        self.waited, self.wait_before, self.work_before = 0.0, self._waits(), self._work()
+    def __init__(self, session):
+        self.session, self.began = session, time.monotonic()
+        self.work = self.waited = 0.0
+        self._work_before, self._wait_before = self._worked(), _waited(session)
 
     @property
     def wall(self):
@@ -101,34 +114,29 @@ class Meter:
 
     def charged(self):
         """Return the greater of its processes' processor time, and the wall clock less what its main thread waited [s]."""
-        # a fork that has ended tells no more, so what was seen of it is kept
-        waits = sum(wait - self.wait_before.get(process, 0.0) for process, wait in self._waits().items())
-        self.waited = max(self.waited, waits)
-        return max(self._work() - self.work_before, self.wall - self.waited)
+        # what has ended tells no more, so what was seen of it is kept
+        self.work = max(self.work, self._worked() - self._work_before)
+        self.waited = max(self.waited, _waited(self.session) - self._wait_before)
+        return max(self.work, self.wall - self.waited)
 
-    def _waits(self):
-        """Return what the session's main thread waited, and that of the fork which evaluates for it [s]; proc(5), schedstat."""
-        session = [child for keeper in _children(self.zygote) for child in _children(keeper)[:1]]
-        return {process: _waited(process) for process in session + [fork for one in session for fork in _children(one)[-1:]]}
-
-    def _work(self):
-        return sum(map(_worked, descendants(self.zygote)))
+    def _worked(self):
+        return _processor(self.session) + sum(map(_processor, descendants(self.session)))
 
 
 def _waited(process):
+    """Return how long the first thread of a process waited for a processor [s]; proc(5), schedstat."""
     try:
         return int((PROC / str(process) / "schedstat").read_text().split()[1]) / 1e9
     except (OSError, IndexError):  # a kernel without it: all of the wall clock is charged
         return 0.0
 
 
-def _worked(process):
-    """Return the processor time of a process and of its children that ended [s]; proc_pid_stat(5), utime to cstime."""
+def _processor(process):
+    """Return the processor time of a process with all its threads [s]; clock_getcpuclockid(3)."""
     try:
-        fields = (PROC / str(process) / "stat").read_text("utf-8", "replace").rpartition(")")[2].split()
+        return time.clock_gettime(~process << 3 | 2)
     except OSError:
         return 0.0
-    return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
 
 
 def kill_descendants(root):
@@ -138,31 +146,63 @@ def kill_descendants(root):
             os.kill(process, signal.SIGKILL)
 
 
-def kill_marked(mark):
-    """Kill all processes that began, or whose parents began, with a mark in their environment."""
-    for entry in filter(str.isdigit, os.listdir(PROC)):
-        with suppress(OSError):
-            if f"{MARK}={mark}".encode() in (PROC / entry / "environ").read_bytes():
-                os.kill(int(entry), signal.SIGKILL)
+def size(folder, deepest=64):
+    """Return what is in a folder: bytes on the disk, and how many files and folders.
 
-
-def size(folder):
-    """Return what a folder holds on the disk [bytes]."""
-    total = 0
-    for where, _, names in os.walk(folder):
-        for name in names:
-            with suppress(OSError):
-                total += os.lstat(os.path.join(where, name)).st_blocks * 512
-    return total
-
-
-def threads_of(user):
-    """Return how many threads a user runs now."""
-    count = 0
-    for entry in filter(str.isdigit, os.listdir(PROC)):
+    One that is nested deeper, or whose folders cannot be looked into, has infinitely many.
+    """
+    total, count, left = 0, 0, [(folder, 0)]
+    while left:
+        place, depth = left.pop()
         try:
-            if (PROC / entry).stat().st_uid == user:
-                count += len(os.listdir(PROC / entry / "task"))
-        except OSError:
+            entries = list(os.scandir(place))
+        except FileNotFoundError:
             continue
-    return count
+        except NotADirectoryError:
+            total += os.lstat(place).st_blocks * 512
+            continue
+        except OSError:
+            return total, math.inf
+        for entry in entries:
+            count += 1
+            with suppress(FileNotFoundError):
+                total += entry.stat(follow_symlinks=False).st_blocks * 512
+                if entry.is_dir(follow_symlinks=False):
+                    if depth == deepest:
+                        return total, math.inf
+                    left.append((entry.path, depth + 1))
+    return total, count
+
+
+def writable_folders(top="/", deepest=4):
+    """Return the folders in which anybody may write, some levels below the top; not those of the system's own views."""
+    found, left = [], [(top, 0)]
+    while left:
+        place, depth = left.pop()
+        with suppress(OSError):
+            if os.stat(place).st_mode & stat.S_IWOTH:
+                found.append(place)
+            elif depth < deepest and place not in ("/proc", "/sys"):
+                below = [entry.path for entry in os.scandir(place) if entry.is_dir(follow_symlinks=False)]
+                left += [(path, depth + 1) for path in below]
+    return found
+
+
+def left_by(user, folders):
+    """Return what in these folders is a user's."""
+    found = []
+    for folder in folders:
+        with suppress(OSError):
+            found += [entry.path for entry in os.scandir(folder) if entry.stat(follow_symlinks=False).st_uid == user]
+    return found
+
+
+def unlinked(process):
+    """Return what a process holds of files that have no name any more [bytes]."""
+    total = 0
+    with suppress(OSError):
+        for descriptor in os.scandir(PROC / str(process) / "fd"):
+            with suppress(OSError):
+                file = os.stat(descriptor.path)
+                total += file.st_blocks * 512 if stat.S_ISREG(file.st_mode) and not file.st_nlink else 0
+    return total

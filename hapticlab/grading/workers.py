@@ -7,7 +7,7 @@ import signal
 import sys
 import threading
 import time
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import asdict, dataclass
 from multiprocessing.connection import wait
 from pathlib import Path
@@ -17,7 +17,9 @@ from . import asking
 from .assignment import Assignment
 from .formats.gradescope import GRADER_FAILED
 from .grade import MOST_WALL, Deferred, grade
+from .inside import linux
 from .limits import Limits
+from .preloaded import Preloaded
 from .report import Report
 from .starter import LEVELS, start
 from .submission import Submission
@@ -38,7 +40,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Reply:
-    """What came of a task: a report; or none, where it is to be decided alone, or the worker ended (``died``)."""
+    """What came of a task: a report; or none, where it is to be decided in the last turn, or the worker ended (``died``)."""
 
     report: Report | None = None
     seconds: float = 0.0
@@ -53,9 +55,9 @@ class Reply:
         return cls(report, held["seconds"], problem=held["problem"])
 
 
-def as_json(task, alone):
+def as_json(task, last):
     """Return what a worker is told of a task."""
-    return json.dumps({**asdict(task.submission), "alone": alone})
+    return json.dumps({**asdict(task.submission), "last": last})
 
 
 class Bench:
@@ -65,20 +67,23 @@ class Bench:
     ----------
     assignment : Assignment
     limits : Limits
-    sandbox : {"auto", "namespaces", "user", "none"}
+    sandbox : {"auto", "namespaces", "user", "landlock", "none"}
     hidden : sequence of str
         Paths that no student's code may see, beside the answers.
+    zygote : (socket, int), optional
+        Of :meth:`Preloaded.zygote`; without it one is begun.
     """
 
-    def __init__(self, assignment: Assignment, limits: Limits, sandbox="auto", hidden=()):
+    def __init__(self, assignment: Assignment, limits: Limits, sandbox="auto", hidden=(), zygote=None):
         self.assignment, self.limits, self.sandbox = assignment, limits, sandbox
         paths = {Path(path) for path in (*hidden, *([assignment.answers] if assignment.answers else []))}
         # what lies in another one is hidden with that
         self.hidden = sorted(str(path) for path in paths if paths.isdisjoint(path.parents))
-        self._starter = None
+        self._starter, self._zygote = None, zygote
 
     def __enter__(self):
-        self._starter = start(self.sandbox, hidden=self.hidden)
+        zygote, self._zygote = self._zygote, None
+        self._starter = start(self.sandbox, self.hidden, self.limits, zygote)
         self._starter.__enter__()
         return self
 
@@ -100,20 +105,20 @@ class Bench:
     def graded(self, text):
         """Grade a task of :func:`as_json`, and answer as JSON."""
         held, began = json.loads(text), time.perf_counter()
-        alone = held.pop("alone")
-        found, problem = self._found(Submission(**{**held, "cells": tuple(held["cells"])}), alone)
+        last = held.pop("last")
+        found, problem = self._found(Submission(**{**held, "cells": tuple(held["cells"])}), last)
         report = found.to_json() if isinstance(found, Report) else None
         return json.dumps({"report": report, "problem": problem, "seconds": time.perf_counter() - began})
 
-    def _found(self, submission, alone):
+    def _found(self, submission, last):
         """Return report or Deferred; or None, and why there is neither."""
-        for last in (False, True):
+        for again in (False, True):
             try:
-                return grade(submission, self.assignment, self._starter, self.limits, alone=alone), ""
+                return grade(submission, self.assignment, self._starter, self.limits, last=last), ""
             except HapticlabError as problem:
                 return None, f"{GRADER_FAILED}: {problem}"
             except Exception as problem:  # a student's code may end whatever it can reach; the class goes on
-                if last:
+                if again:
                     return None, f"{GRADER_FAILED}: {type(problem).__name__}: {problem}"
                 self.__exit__()
                 self.__enter__()
@@ -150,34 +155,42 @@ class Workers:
     number : int
     *bench
         As :class:`Bench` takes them.
+    preloaded : Preloaded, optional
+        Of whose zygotes they use; without it one is begun where the system has them.
     """
 
-    def __init__(self, number, *bench):
-        self.number, self._bench, self._all, self.seconds = number, bench, [], 0.0
-        self.level, self.refused = "", {}
+    def __init__(self, number, *bench, preloaded=None):
+        self.number, self._bench, self._all, self._preloaded = number, bench, [], preloaded
+        self.level, self.refused, self.seconds = "", {}, 0.0
 
     def __enter__(self):
-        try:
-            self._all = [_Worker(self._bench) for _ in range(self.number)]
+        with ExitStack() as stack:
+            if self._preloaded is None and sys.platform == "linux":
+                self._preloaded = stack.enter_context(Preloaded())
+            stack.callback(self._end)
+            for _ in range(self.number):
+                self._all.append(_Worker(self._bench, self._preloaded))
             self.level, self.refused = weakest([worker.level() for worker in self._all])
-        except BaseException:
-            self.__exit__()
-            raise
+            self._stack = stack.pop_all()
         return self
 
     def __exit__(self, *_):
+        self._stack.close()
+
+    def _end(self):
         for worker in self._all:
             worker.end()
-        self.seconds += sum(worker.ended() for worker in self._all)
+        for worker in self._all:
+            worker.ended()
         self._all = []
 
-    def graded(self, tasks, alone):
-        """Yield (task, Reply) as each is known; where ``alone``, one after another."""
+    def graded(self, tasks, last):
+        """Yield (task, Reply) as each is known."""
         tasks, busy = iter(tasks), {}
         while True:
-            while len(busy) < (1 if alone else self.number) and (task := next(tasks, None)) is not None:
+            while len(busy) < self.number and (task := next(tasks, None)) is not None:
                 worker = self._free(busy)
-                worker.begin(task, alone)
+                worker.begin(task, last)
                 busy[worker] = task
             if not busy:
                 return
@@ -194,7 +207,7 @@ class Workers:
         for worker in self._all:
             if worker not in busy:
                 return worker
-        self._all.append(_Worker(self._bench))
+        self._all.append(_Worker(self._bench, self._preloaded))
         self.level, self.refused = weakest([(self.level, self.refused), self._all[-1].level()])
         return self._all[-1]
 
@@ -211,12 +224,17 @@ def _ready(busy):
 class _Worker:
     """A process with a bench, and the connection to it, which carries JSON."""
 
-    def __init__(self, bench):
-        context = multiprocessing.get_context("spawn")
+    def __init__(self, bench, preloaded):
+        # a fork has all that this process loaded; on other systems a new interpreter, which takes nothing from the working folder
+        context = multiprocessing.get_context("fork" if preloaded else "spawn")
+        os.environ.setdefault("PYTHONSAFEPATH", "1")
+        zygote = preloaded.zygote() if preloaded else None
         self.connection, there = context.Pipe()
-        self._process = context.Process(target=_work, args=(there, bench), name="hapticlab grade")
+        self._process = context.Process(target=_work, args=(there, bench, zygote), name="hapticlab grade")
         self._process.start()
         there.close()
+        if zygote:
+            zygote[0].close()
         self._most, self.until = MOST_WALL * bench[1].total + asking.MOST_WALL * bench[1].seconds + GRACE, 0.0
 
     def level(self):
@@ -229,11 +247,11 @@ class _Worker:
             raise CourseError(said["problem"])
         return said["level"], said["refused"]
 
-    def begin(self, task, alone):
+    def begin(self, task, last):
         """Give it a task; whether it still lives is seen when it should reply."""
         self.until = time.monotonic() + self._most
         with suppress(OSError):
-            self.connection.send_bytes(as_json(task, alone).encode())
+            self.connection.send_bytes(as_json(task, last).encode())
 
     def reply(self):
         """Return what came of its task."""
@@ -250,34 +268,34 @@ class _Worker:
             self._process.terminate()
 
     def ended(self):
-        """Wait for its end and return its processor time [s], 0 where it cannot tell."""
+        """Wait for its end."""
         self._process.join(10)
         if self._process.is_alive():
             self._process.kill()
             self._process.join()
-        seconds = 0.0
-        with suppress(EOFError, OSError, ValueError, KeyError, TypeError):
-            while self.connection.poll():
-                seconds = json.loads(self.connection.recv_bytes())["processor"]
         self.connection.close()
-        return seconds
 
 
-def _work(connection, bench):
+def _work(connection, bench, zygote):
     """Grade what comes, until the other end is gone: the whole life of a worker."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that began this one
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    if zygote:
+        linux.die_with_parent()
+        linux.close_all_but(0, 1, 2, connection.fileno(), zygote[0].fileno())
+    else:
+        threading.Thread(target=_end_with_parent, daemon=True).start()
     with suppress(EOFError, OSError):
         try:
-            with Bench(*bench) as ready:
+            import traceback
+            try: Bench(*bench, zygote=zygote).__enter__()
+            except BaseException: traceback.print_exc(); os._exit(3)
+            with Bench(*bench, zygote=zygote) as ready:
                 connection.send_bytes(json.dumps({"level": ready.level, "refused": ready.refused, "problem": ""}).encode())
                 while True:
                     connection.send_bytes(ready.graded(connection.recv_bytes()).encode())
         except HapticlabError as problem:
             connection.send_bytes(json.dumps({"level": "", "problem": str(problem)}).encode())
-        finally:
-            connection.send_bytes(json.dumps({"processor": processor_seconds()}).encode())
 
 
 def _end_with_parent():

@@ -14,4 +14,4 @@ def main():
     for standard in (0, 1, 2):
         os.dup2(null, standard)
     limits = json.loads(sys.argv.pop())
-    Session(channel, limits, output=output, forks=False).serve()
+    Session(channel, limits, output=output).serve()

@@ -6,9 +6,11 @@ from pathlib import Path
 
 from . import linux
 
-#: what programs and their libraries are read from
-SYSTEM = ("/usr", "/bin", "/lib", "/lib32", "/lib64", "/libx32", "/nix/store", "/etc/alternatives", "/etc/fonts",
-    "/etc/ld.so.cache", "/etc/localtime")  # fmt: skip
+#: what libraries are read from, time zones and fonts; nothing of it is written by people
+SYSTEM = ("/lib", "/lib32", "/lib64", "/libx32", "/usr/lib", "/usr/lib32", "/usr/lib64", "/usr/libx32", "/nix/store",
+    "/usr/share/fonts", "/usr/share/zoneinfo", "/etc/fonts", "/etc/ld.so.cache", "/etc/localtime")  # fmt: skip
+#: where a session may start programs, beside these
+PROGRAMS = ("/bin", "/usr/bin", "/etc/alternatives")
 #: not zero, of which a shared mapping is memory that no file and no process seems to hold
 DEVICES = ("null", "full", "random", "urandom")
 
@@ -21,13 +23,13 @@ def move(new, seen, hidden):
     new : str
         An empty folder.
     seen : sequence of str
-        Folders to be seen beside the system's.
+        Folders and files to be seen.
     hidden : sequence of str
         Paths inside of these that must not be.
     """
     linux.mount(None, "/", None, linux.RECURSIVE | linux.PRIVATE)
     linux.mount("root", new, "tmpfs", linux.NOSUID | linux.NODEV, "mode=755,size=1m")
-    seen = outermost(path for path in (*SYSTEM, *seen) if os.path.exists(path))
+    seen = outermost(path for path in seen if os.path.exists(path))
     for path in seen:
         show(path, new + path)
     for path in hidden:
@@ -64,6 +66,25 @@ def outermost(paths):
 def inside(path, outer):
     """Whether a path is another, or inside of it."""
     return Path(path).is_relative_to(outer)
+
+
+def without(paths, hidden):
+    """Return paths that hold all of others but what is hidden: a folder with something hidden in it becomes its entries.
+
+    Examples
+    --------
+    >>> without(["/nowhere/lib"], ["/elsewhere"]), without(["/nowhere/lib"], ["/nowhere"])
+    (['/nowhere/lib'], [])
+    """
+    found = []
+    for path in paths:
+        if any(inside(path, one) for one in hidden):
+            continue
+        if any(inside(one, path) for one in hidden):
+            found += without([os.path.join(path, name) for name in sorted(os.listdir(path))], hidden)
+        else:
+            found.append(path)
+    return found
 
 
 def show(path, target):

@@ -1,17 +1,20 @@
 """The walls around a session: what it may use, whom it runs as, and what it sees."""
 
 import os
+import platform
 import resource
 import signal
-import sys
 
 from . import callfilter, linux, root
 
-NAMESPACES = linux.NEWNS | linux.NEWPID | linux.NEWNET | linux.NEWIPC | linux.NEWUTS
+#: of a grader, and of each of its sessions
+SHARED, NAMESPACES = linux.NEWNS | linux.NEWNET | linux.NEWIPC | linux.NEWUTS, linux.NEWNS | linux.NEWPID
 #: in namespaces each session has a file system of its own here
 TMP, SCRATCH = "/tmp", "/tmp/hapticlab-scratch"
-#: of a session beside the student's processes: its zygote, the one between, its keeper
-OWN = 3
+#: threads of a session beside its processes
+THREADS = 64
+#: what a session reads and writes beside its own files, where Landlock keeps it to them
+SYSTEM_FILES, NULL = ("/dev/urandom", "/dev/random", "/dev/full", "/proc/cpuinfo", "/proc/meminfo", "/proc/self"), "/dev/null"
 
 
 def move(new, seen, hidden):
@@ -24,17 +27,17 @@ def move(new, seen, hidden):
     seen, hidden : sequence of str
     """
     user, group = os.geteuid(), os.getegid()
-    linux.unshare(linux.NEWNS | (linux.NEWUSER if user else 0))
+    linux.unshare(SHARED | (linux.NEWUSER if user else 0))
     if user:
         for file, line in {"setgroups": "deny", "uid_map": f"{user} {user} 1", "gid_map": f"{group} {group} 1"}.items():
             with open(f"/proc/self/{file}", "w") as out:  # user_namespaces(7)
                 out.write(line)
-    root.move(new, (sys.prefix, sys.base_prefix, *seen), hidden)
+    root.move(new, seen, hidden)
 
 
 def furnish(request):
     """Give a session's namespaces, from inside, a /tmp and a /proc of their own."""
-    clear_tmp(int(request["limits"]["scratch"]))
+    clear_tmp(int(request["limits"]["scratch"]), int(request["limits"]["files"]))
     os.mkdir(SCRATCH)
     if request["user"]:
         os.chown(SCRATCH, request["user"], request["user"])
@@ -44,10 +47,10 @@ def furnish(request):
         linux.mount("proc", "/proc", "tmpfs", linux.NOSUID | linux.NODEV, "mode=555,size=4k")
 
 
-def clear_tmp(size):
+def clear_tmp(size, files):
     """Lay an empty /tmp over the one there is; what is seen of that, a Python or this package, is seen again."""
     held = os.open(TMP, os.O_PATH | os.O_DIRECTORY)
-    linux.mount("tmp", TMP, "tmpfs", linux.NOSUID | linux.NODEV, f"mode=1777,size={size},nr_inodes=10000")
+    linux.mount("tmp", TMP, "tmpfs", linux.NOSUID | linux.NODEV, f"mode=1777,size={size},nr_inodes={files}")
     before = f"/proc/self/fd/{held}"
     for name in os.listdir(before):
         root.show(f"{before}/{name}", f"{TMP}/{name}")
@@ -66,19 +69,30 @@ def enter(request):
         os.setresgid(*[request["user"]] * 3)
         os.setresuid(*[request["user"]] * 3)
     linux.drop_privileges()
-    linux.filter_calls(callfilter.program())
+    if request["readable"]:
+        system = [path for path in SYSTEM_FILES if os.path.exists(path)]
+        linux.keep_to([*request["readable"], *system], [request["scratch"], NULL])
+    if request["level"] != "namespaces":  # there the parent has gone on, and process 1 ends with its namespace's
+        linux.die_with_parent()
+    calls = callfilter.program((0, os.getpid()), processes=request["limits"]["processes"] > 1)
+    if calls:
+        linux.filter_calls(calls)
+    elif request["level"] != "none":
+        raise OSError(f"the numbers of system calls of {platform.machine()} are not known, so none can be refused")
 
 
 def limit(request):
-    """Bound what the system bounds by process, and the number of processes by user."""
+    """Bound what the system bounds by process, and the number of threads by user."""
     limits = request["limits"]
     bounds = {
         resource.RLIMIT_AS: int(limits["memory"]) + request["base"],
         resource.RLIMIT_CPU: int(limits["total"]) + 1,
         resource.RLIMIT_FSIZE: int(limits["scratch"]),
-        resource.RLIMIT_NPROC: int(limits["processes"]) + OWN + request["others"],
-        resource.RLIMIT_NOFILE: 256,
+        resource.RLIMIT_NOFILE: 128,
         resource.RLIMIT_CORE: 0,
+        resource.RLIMIT_MEMLOCK: 0,
+        # of a user who does nothing else
+        **({resource.RLIMIT_NPROC: int(limits["processes"]) + THREADS} if request["user"] else {}),
     }
     for which, most in bounds.items():
         hard = resource.getrlimit(which)[1]
@@ -100,16 +114,22 @@ def kill_user(user):
 
 def findings(request):
     """Return the first file that this process reads and must not, and the first that it must and does not."""
-    missing = [path for path in (os.__file__, linux.__file__, sys.executable) if not read(path)]
+    missing = [path for path in (os.__file__, linux.__file__) if not read(path)]
     files = (file for path in request["hidden"] for file in files_of(path) if read(file))
     return {"read": next(files, ""), "missing": "".join(missing[:1])}
 
 
 def files_of(path):
-    """Return a file, or the files of a folder."""
-    if not os.path.isdir(path):
-        return [path]
-    return (os.path.join(folder, name) for folder, _, names in os.walk(path) for name in names)
+    """Yield a file, or the files of a folder, however deep they lie."""
+    left = [path]
+    while left:
+        place = left.pop()
+        try:
+            left += sorted(entry.path for entry in os.scandir(place))
+        except NotADirectoryError:
+            yield place
+        except OSError:  # it cannot be looked into, or is gone
+            continue
 
 
 def read(file):

@@ -1,4 +1,4 @@
-"""A student's session: their cells run here, their answers are evaluated in a fork of it, and plain values go out.
+"""A student's session: their cells run here, their answers are evaluated, and plain values go out. It is one process.
 
 Nothing is enforced here, as the student's code could undo it: the grader does, from outside.
 """
@@ -9,22 +9,17 @@ import json
 import os
 import random
 import re
-import signal
 import sys
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 
 from ...course import check as checks
 from ...course.evaluate import evaluate
-from . import linux
 from .cells import fresh_names, run_cell
 from .protocol import MOST_NUMBERS, reply, requests
 from .slices import needed, run_pieces
 
-#: of a fork that has sent its reply
-DONE = 71
 ADDRESS = re.compile("0x[0-9a-fA-F]{6,}")
 
 
@@ -39,13 +34,10 @@ class Session:
         ``answer`` [bytes] and ``printed`` [characters].
     output : int, optional
         The writing end.
-    forks : bool
-        Whether each exercise is evaluated in a fork.
     """
 
-    def __init__(self, channel, limits, output=None, forks=True):
-        self.channel, self.output = channel, channel if output is None else output
-        self.limits, self.forks = limits, forks
+    def __init__(self, channel, limits, output=None):
+        self.channel, self.output, self.limits = channel, channel if output is None else output, limits
         self.cells, self.pieces = [], []
         self.names = quiet_names()
         self.scratch = os.getcwd()
@@ -53,9 +45,7 @@ class Session:
     def serve(self):
         """Answer until the grader closes."""
         for request in requests(self.channel):
-            answer = getattr(self, "do_" + request["do"])(request)
-            if answer is not None:
-                reply(self.output, request["number"], answer)
+            reply(self.output, request["number"], getattr(self, "do_" + request["do"])(request))
 
     def do_ready(self, request):
         """Say that all is loaded."""
@@ -83,26 +73,7 @@ class Session:
         return {"problem": self.masked(run_pieces(self.cells, self.pieces, self.names))}
 
     def do_evaluate(self, request):
-        """Evaluate an answer for each given, in a fork where there is one; the fork replies itself."""
-        if not self.forks:
-            return self.evaluated(request)
-        child = os.fork()
-        if child == 0:
-            linux.die_with_parent()
-            reply(self.output, request["number"], self.evaluated(request))
-            os._exit(DONE)
-        status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-        if status != DONE:
-            # as the exercise ended, so ends the session, and the grader sees how
-            if status < 0:
-                with suppress(OSError):  # SIGKILL has no handler
-                    signal.signal(-status, signal.SIG_DFL)
-                os.kill(os.getpid(), -status)
-            os._exit(1)
-        return None
-
-    def evaluated(self, request):
-        """Return the outcomes as plain values."""
+        """Evaluate an answer for each given, and return the outcomes as plain values."""
         answer = self.names.get(request["name"])
         outcomes = [self.outcome(request["kind"], answer, given) for given in request["givens"]]
         text = json.dumps(outcomes)

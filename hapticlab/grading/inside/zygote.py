@@ -1,21 +1,22 @@
-"""The zygote: a fresh interpreter that has loaded what notebooks need, and forks a session for each submission.
+"""A fresh interpreter that loads what notebooks need once, and forks: zygotes for graders, and these a session a submission.
 
-It never held an answer, so no session can find one in its memory. One thread only, as a fork takes no other along.
+No process here ever held an answer, so no session can find one in its memory. One thread only, as a fork takes no other along.
+
+    preloaded (main) --fork--> zygote (serve), one a grader --fork--> session, one a submission
 """
 
-import errno
 import gc
 import importlib
 import json
 import os
+import select
 import signal
 import socket
 import sys
 from contextlib import suppress
 
-from ..watch import MARK, kill_descendants
+from ..watch import kill_descendants
 from . import linux, sandbox
-from .keeper import keep, prepare
 
 #: beside what the package itself loads; by name, as all of it is needed only where the walls hold
 SESSION = "hapticlab.grading.inside.session"
@@ -23,41 +24,55 @@ PRELOADED = ("matplotlib.pyplot", "scipy.integrate", SESSION)
 
 
 def main(control):
-    """Serve the grader over a socket, until it closes it.
+    """Load, then fork a zygote for each socket that comes, until the other end is closed.
 
     Parameters
     ----------
     control : int
-        File descriptor of a SOCK_SEQPACKET socket. Requests: ``probe``, ``ready``, ``session`` with two file descriptors,
-        ``end``.
+        File descriptor of a SOCK_SEQPACKET socket.
     """
     control = socket.socket(fileno=control)
     linux.become_subreaper()
-    del os.environ[MARK]
     os.umask(0o022)  # in the new root, others pass through the folders it makes
-    keeper = user = 0
-    try:
-        while message := (received := socket.recv_fds(control, 1 << 20, 2))[0]:
-            request, descriptors = json.loads(message), received[1]
-            user, answer = request["user"], {}
+    preload()
+    with suppress(ConnectionError):
+        while message := (received := socket.recv_fds(control, 1 << 16, 1))[0]:
+            (descriptor,) = received[1]
+            child = os.fork()
+            if child == 0:
+                control.close()
+                serve(socket.socket(fileno=descriptor))
+                os._exit(0)
+            os.close(descriptor)
+            control.send(json.dumps({**json.loads(message), "process": child}).encode())
+    wait_for_all(kill=False)  # each ends as its grader does
+
+
+def serve(control):
+    """Go on as a zygote: serve a grader until it closes.
+
+    Parameters
+    ----------
+    control : socket
+        Requests: ``probe``, ``ready``, ``session`` with one file descriptor, ``end``.
+    """
+    linux.become_subreaper()
+    session, request = 0, {"user": 0}
+    with suppress(ConnectionError):
+        while message := (received := socket.recv_fds(control, 1 << 20, 1))[0]:
+            request, answer = json.loads(message), {}
             if request["do"] == "probe":
                 answer = probe(request)
             elif request["do"] == "ready":
-                preload()
                 settle(request)
             elif request["do"] == "session":
-                keeper = start(request, *descriptors)
-                for descriptor in descriptors:
-                    os.close(descriptor)
+                session = start(request, *received[1])
+                os.close(*received[1])
+                answer = {"process": session}
             else:
-                end(keeper, user)
-                keeper = 0
+                answer, session = end(session, request), 0
             control.send(json.dumps(answer).encode())
-    except OSError as problem:
-        if problem.errno not in (errno.EPIPE, errno.ECONNRESET):  # the grader closes while it is served
-            raise
-    finally:
-        end(keeper, user)
+    end(session, {**request, "grace": 0})
 
 
 def settle(request):
@@ -74,16 +89,16 @@ def probe(request):
         try:
             linux.become_subreaper()
             settle(request)
-            os.waitpid(start(request, inlet, inlet), 0)
+            os.waitpid(start(request, inlet), 0)
         except OSError as problem:
             os.write(inlet, json.dumps({"problem": str(problem)}).encode() + b"\n")
         finally:
             os._exit(0)
     os.close(inlet)
     os.waitpid(child, 0)
-    found = os.read(outlet, 1 << 16)
-    os.close(outlet)
-    return json.loads(found.partition(b"\n")[0]) if found else {"problem": "a session ended at once"}
+    with os.fdopen(outlet, "rb") as said:
+        found = said.readline()
+    return json.loads(found) if found else {"problem": "a session ended at once"}
 
 
 def preload():
@@ -104,56 +119,56 @@ def preload():
     gc.freeze()
 
 
-def start(request, channel, status):
-    """Fork a session and return the process id of its keeper, or 0 where the system refused one."""
+def start(request, channel):
+    """Fork a session and return its process id, or 0 where the system refused one, which the channel then says why.
+
+    In namespaces it is process 1 of its own: its end is the end of all it started.
+    """
+    if request["level"] != "namespaces":
+        return forked(request, channel)
     outlet, inlet = os.pipe()
     between = os.fork()
     if between == 0:
+        session = 0
         try:
-            become_keeper(request, channel, status, inlet)
+            linux.unshare(sandbox.NAMESPACES)
+            session = forked(request, channel)
+        except OSError as problem:
+            os.write(channel, json.dumps({"problem": str(problem)}).encode() + b"\n")
+        finally:
+            os.write(inlet, str(session).encode())
+            os._exit(0)
+    os.close(inlet)
+    os.waitpid(between, 0)  # the session is a child of this process from here on
+    with os.fdopen(outlet) as said:
+        return int(said.read() or 0)
+
+
+def forked(request, channel):
+    """Fork a session, and return its process id."""
+    session = os.fork()
+    if session == 0:
+        try:
+            become_session(request, channel)
         except OSError as problem:
             os.write(channel, json.dumps({"problem": str(problem)}).encode() + b"\n")
         finally:
             os._exit(1)
-    os.close(inlet)
-    keeper = int(os.read(outlet, 32) or 0)
-    os.close(outlet)
-    if keeper != between:
-        os.waitpid(between, 0)  # then the keeper is a child of this process
-    return keeper
-
-
-def become_keeper(request, channel, status, inlet):
-    """Go on as a keeper, in namespaces as process 1 of its own, which takes one more fork."""
-    namespaces = request["level"] == "namespaces"
-    if namespaces:
-        linux.unshare(sandbox.NAMESPACES)
-        keeper = os.fork()
-        if keeper:
-            os.write(inlet, str(keeper).encode())
-            os._exit(0)
-    else:
-        os.write(inlet, str(os.getpid()).encode())
-    prepare()
-    if namespaces:
-        sandbox.furnish(request)
-    session = os.fork()
-    if session:
-        keep(session, status)
-    become_session(request, channel)
+    return session
 
 
 def become_session(request, channel):
     """Go on as a student's session: behind the walls, with one file descriptor and nothing else."""
     os.setsid()
     linux.close_all_but(2, channel)
-    sandbox.enter(request)
-    linux.die_with_parent()
+    if request["level"] == "namespaces":
+        sandbox.furnish(request)
     null = os.open(os.devnull, os.O_RDWR)
     for standard in (0, 1, 2):
         os.dup2(null, standard)
     if null > 2:
         os.close(null)
+    sandbox.enter(request)
     if request["do"] == "probe":
         os.write(channel, json.dumps(sandbox.findings(request)).encode() + b"\n")
         os._exit(0)
@@ -162,17 +177,30 @@ def become_session(request, channel):
     os._exit(0)
 
 
-def end(keeper, user):
-    """Kill a session, and wait until all of it is gone.
+def end(session, request):
+    """Kill a session and all it started, wait until all is gone, and return how it ended by itself: {"code": ...}.
 
-    In namespaces the keeper's end is the end of all. Elsewhere orphans become children of this process.
+    It has ``grace`` seconds to end by itself: of a process that is ending its channel is closed first. None where it did not.
     """
-    if keeper:
-        os.kill(keeper, signal.SIGKILL)
-        os.waitpid(keeper, 0)
-    if user:
-        sandbox.kill_user(user)
+    code = None
+    if session:
+        own = os.pidfd_open(session)
+        if request["grace"] and select.select([own], [], [], request["grace"])[0]:
+            code = os.waitstatus_to_exitcode(os.waitpid(session, 0)[1])
+        else:
+            signal.pidfd_send_signal(own, signal.SIGKILL)
+            os.waitpid(session, 0)
+        os.close(own)
+    if request["user"] and request["level"] != "namespaces":
+        sandbox.kill_user(request["user"])
+    wait_for_all(kill=True)
+    return {"code": code}
+
+
+def wait_for_all(kill):
+    """Wait until this process has no child; where they are killed, nothing that one of them starts meanwhile is left."""
     with suppress(ChildProcessError):
         while True:
-            if os.waitpid(-1, os.WNOHANG)[0] == 0:
+            if kill:
                 kill_descendants(os.getpid())
+            os.waitpid(-1, 0)
