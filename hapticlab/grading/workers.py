@@ -285,11 +285,8 @@ def _work(connection, bench, zygote):
         linux.close_all_but(0, 1, 2, connection.fileno(), zygote[0].fileno())
     else:
         threading.Thread(target=_end_with_parent, daemon=True).start()
-    with suppress(EOFError, OSError):
+    with suppress(EOFError, BrokenPipeError, ConnectionResetError):
         try:
-            import traceback
-            try: Bench(*bench, zygote=zygote).__enter__()
-            except BaseException: traceback.print_exc(); os._exit(3)
             with Bench(*bench, zygote=zygote) as ready:
                 connection.send_bytes(json.dumps({"level": ready.level, "refused": ready.refused, "problem": ""}).encode())
                 while True:

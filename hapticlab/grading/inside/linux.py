@@ -140,6 +140,7 @@ def close_all_but(*kept):
     """Close every file descriptor but these."""
     low = 0
     for descriptor in sorted(kept):
-        os.closerange(low, descriptor)
+        if low < descriptor:  # closerange(0, 0) closes all
+            os.closerange(low, descriptor)
         low = descriptor + 1
     os.closerange(low, 1 << 20)
