@@ -209,9 +209,9 @@ class _Work:
             reply = self._ask(session, {"do": "evaluate", "name": ask.name, "kind": ask.kind, "givens": ask.givens})
             found = Found((*known, *outcomes_of(reply, len(ask.givens), self.limits.printed)), told=self._told)
         except Garbage:
-            found = Found(ended="garbage")
+            found = Found(known, ended="garbage")
         except SessionEnded as end:
-            found = Found(ended=end.reason)
+            found = Found(known, ended=end.reason)
         self.found[ask.name] = found
         self._left = [one for one in self._left[1:] if not (found.ended and one.name == ask.name)]
         if found.ended:

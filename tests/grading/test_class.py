@@ -58,7 +58,7 @@ class Crew:
     def __exit__(self, *_):
         pass
 
-    def graded(self, tasks, alone):
+    def graded(self, tasks, last):
         for task in tasks:
             self.asked.append(task.submission.student)
             yield task, Reply(refused(task.submission, self.assignment, "", Limits()))

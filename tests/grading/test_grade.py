@@ -108,7 +108,7 @@ def test_a_public_case_is_taught_by_slips_of_the_solution_too(assignment, starte
 
 def test_the_same_submission_gives_the_same_bytes(assignment, starter):
     handed_in = submission("import os\nos._exit(3)", **WRONG, **ENDED)
-    first, second = (grade(handed_in, assignment, starter, LIMITS, alone=True).to_json() for _ in range(2))
+    first, second = (grade(handed_in, assignment, starter, LIMITS, last=True).to_json() for _ in range(2))
     assert first == second
 
 
@@ -125,16 +125,42 @@ def test_who_ends_the_process_of_the_next_is_no_trouble_to_it(assignment, starte
     assert report.earned == 8.0
 
 
-def test_a_limit_of_time_counts_only_alone(assignment, starter):
+def test_a_limit_of_time_counts_only_in_the_last_turn(assignment, starter):
     slow, limits = submission(forces="def forces(x, k):\n    while True: pass"), Limits(seconds=0.6)
-    report = grade(slow, assignment, starter, limits, alone=True)
+    report = grade(slow, assignment, starter, limits, last=True)
     assert by_name(report)["forces"].ended == "time" and "0.6 s" in by_name(report)["forces"].words
-    assert grade(slow, assignment, starter, limits) == Deferred("ada")
+    assert grade(slow, assignment, starter, limits, last=False) == Deferred("ada")
+
+
+#: an exercise whose evaluation spoils another one, which stands before or after it in the lab
+SPOILERS = {
+    "later": {"force": "def force(x, k):\n    globals()['why'] = 'a'\n    return k * (x - 0.01) if x >= 0.01 else 0.0"},
+    "earlier": {"forces": "def forces(x, k):\n    globals()['force'] = None\n    return k * x"},
+    "later, by its end": {"force": "def force(x, k):\n    globals()['forces'] = lambda x, k: __import__('os')._exit(1)\n    return 9.0"},
+    "later, and is wrong itself": {"energy": "def energy(x, k):\n    globals()['forces'] = lambda x, k: -k * x\n    return 0.0"},
+    "each other": {
+        "force": "def force(x, k):\n    globals()['forces'] = len\n    return -1.0",
+        "forces": "def forces(x, k):\n    globals()['force'] = len\n    return k * x",
+    },
+}
+
+
+@pytest.mark.parametrize("spoiler", SPOILERS)
+def test_an_answer_that_spoils_another_one_costs_that_nothing(assignment, starter, spoiler):
+    report = grade(submission(**SPOILERS[spoiler]), assignment, starter, LIMITS)
+    wrong = {"later, by its end": {"force"}, "later, and is wrong itself": {"energy"}, "each other": {"force"}}
+    assert {one.name for one in report.exercises if one.earned < one.points} == wrong.get(spoiler, set())
+
+
+def test_what_is_wrong_in_both_orders_costs_one_run_of_the_notebook(assignment, starter):
+    before, wrong = starter.sessions, {"why": "why = 'a'", "energy": "def energy(x, k):\n    return 0.0"}
+    assert grade(submission(**wrong), assignment, starter, LIMITS).earned == 7.0
+    assert starter.sessions - before == 2, "the quick way, and the notebook"
 
 
 def test_when_the_time_of_all_is_over_what_is_left_is_wrong(assignment, starter):
     cells = (*OPEN.values(), *["import time\ntime.sleep(60)"] * 40)
-    report = grade(Submission("bob", "b.ipynb", cells), assignment, starter, Limits(seconds=0.3, total=1.5), alone=True)
+    report = grade(Submission("bob", "b.ipynb", cells), assignment, starter, Limits(seconds=0.3, total=1.5), last=True)
     assert report.earned == 0 and {one.ended for one in report.exercises if one.points} == {"time"}
 
 

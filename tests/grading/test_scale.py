@@ -23,7 +23,7 @@ ROOT = Path(__file__).parents[2]
 #: is not
 RACING = (b"getppid", b"kill(-1", b"setitimer", b"set_blocking")
 #: grades as the command does, and is killed, as `kill -9` does, once it has written so many reports, or, where that is 0, while
-#: it grades one submission alone; tells whom it leaves behind
+#: it grades those that met a limit; tells whom it leaves behind
 KILLED = """
 import os, signal, sys
 from pathlib import Path
@@ -44,9 +44,9 @@ if __name__ == "__main__":
         if len(written) == most:
             end()
 
-    def begun(self, task, alone):
-        begin(self, task, alone)
-        if alone and not most:
+    def begun(self, task, last):
+        begin(self, task, last)
+        if last and not most:
             end()
 
     journal.Journal.write, workers._Worker.begin = written_down, begun
@@ -94,7 +94,7 @@ def same_bytes(place, number, capsys, *ends):
         capsys.readouterr()
         assert main(command(arena, again, workers=2)) in (0, 1)
         left = int(re.search("([0-9]+) graded, [0-9]+ known from before", capsys.readouterr().err)[1])
-        assert 0 < left < number / 2, "what waited for a limit, alone"
+        assert 0 < left < number / 2, "what waited for a limit, at the end"
         first, second = ({one["student"]: one for one in json.loads(file.read_text())["reports"]} for file in (once, again))
         assert len(first) == number and [*first] == [*second]
         for one in class_:

@@ -1,4 +1,4 @@
-"""Sessions where no fork is: the same answers, each exercise by itself, and an end to each."""
+"""Sessions where no fork is: the same answers, and an end to each."""
 
 import os
 import time
@@ -8,7 +8,6 @@ import pytest
 from hapticlab.grading.asking import SessionEnded
 from hapticlab.grading.limits import MIB, Limits
 from hapticlab.grading.spawned import SpawnedStarter
-from hapticlab.grading.starter import ENVIRONMENT, PACKAGE
 
 CELL = """
 import os, time
@@ -28,13 +27,9 @@ def hang(x):
 """
 
 
-WHOLE = ({"do": "run", "cell": 0},)
-SLICE = {"do": "plan", "names": ["count", "leave"]}, {"do": "run_pieces"}
-
-
-def loaded(requests=WHOLE):
-    session = SpawnedStarter(PACKAGE, ENVIRONMENT).session(Limits(answer=MIB))
-    for request in ({"do": "load", "cells": [CELL], "files": {}}, *requests):
+def loaded():
+    session = SpawnedStarter().session(Limits(answer=MIB))
+    for request in ({"do": "load", "cells": [CELL], "files": {}}, {"do": "run", "cell": 0}):
         session.ask(request, 60)
     return session
 
@@ -53,17 +48,12 @@ def ended(session, name, seconds=60.0):
     return caught.value.reason
 
 
-def test_each_exercise_finds_the_notebook_as_it_ran_and_pays_for_no_interpreter():
+def test_one_interpreter_answers_for_all_and_its_start_is_not_charged():
     began = time.monotonic()
     with loaded() as session:
-        assert [counts(session), counts(session)] == [[1.0, 2.0], [1.0, 2.0]]
-        assert session.charged < 0.5 * (time.monotonic() - began)  # of two starts, and a cell that does nothing
-
-
-def test_where_only_a_slice_ran_one_interpreter_answers_for_all():
-    session = loaded(SLICE)
-    assert [counts(session), counts(session)] == [[1.0, 2.0], [3.0, 4.0]]
-    assert ended(session, "leave") == "exit"
+        assert [counts(session), counts(session)] == [[1.0, 2.0], [3.0, 4.0]]
+        assert session.charged < 0.5 * (time.monotonic() - began)  # a cell that does nothing
+    assert ended(loaded(), "leave") == "exit"
 
 
 @pytest.mark.parametrize(("name", "seconds", "reason"), [("flood", 60, "flood"), ("hang", 0.5, "time")])

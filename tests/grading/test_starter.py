@@ -1,18 +1,23 @@
 """A session answers with plain values; whatever it does, the grader knows how it ended, and goes on."""
 
 import os
+import signal
+from dataclasses import replace
 
 import pytest
 
 from hapticlab.errors import CourseError
+from hapticlab.grading import watch
 from hapticlab.grading.asking import parsed
 from hapticlab.grading.limits import MIB, Limits
-from hapticlab.grading.starter import SessionEnded, start
+from hapticlab.grading.preloaded import Preloaded
+from hapticlab.grading.starter import SessionEnded, Starter, start
 from hapticlab.grading.watch import descendants
 
-LIMITS = Limits(seconds=1.0, memory=300 * MIB, processes=16, scratch=4 * MIB, answer=MIB)
+LIMITS = Limits(seconds=1.0, memory=300 * MIB, scratch=4 * MIB, files=200, answer=MIB)
+MANY = replace(LIMITS, processes=16)
 IMPORTS = """
-import ctypes, os, signal, stat, time
+import ctypes, os, signal, stat, threading, time
 def fork():
     try:
         return os.fork()
@@ -25,15 +30,21 @@ def hold(size):
 FILE = "aGFsbG8="  # hallo
 
 
-@pytest.fixture(scope="module", params=["none", "namespaces"])
+@pytest.fixture(scope="module", params=["none", "landlock", "namespaces"])
 def starter(request):
-    with start(request.param) as started:
+    with start(request.param, limits=LIMITS) as started:
+        yield started
+
+
+@pytest.fixture(scope="module", params=["none", "landlock", "namespaces"])
+def with_processes(request):
+    with start(request.param, limits=MANY) as started:
         yield started
 
 
 def loaded(starter, *cells):
     """Return a session in which these cells ran."""
-    session = starter.session(LIMITS)
+    session = starter.session(starter.limits)
     assert session.ask({"do": "load", "cells": cells, "files": {"data.txt": FILE}}, 10) == {"cells": len(cells)}
     for k in range(len(cells)):
         assert session.ask({"do": "run", "cell": k}, 10) == {"problem": ""}
@@ -62,34 +73,55 @@ def test_a_function_answers_each_given(starter):
 
 
 SOCKET = "next(k for k in range(64) if stat.S_ISSOCK(os.fstat(k).st_mode))"
+#: how a body ends its session; process 1 of a namespace, which a session is there, ignores the signals it sends itself
 ENDS = {
     "os._exit(0)": "exit",
     "os.abort()": "signal 6",
-    "os.kill(os.getpid(), signal.SIGKILL)": "signal 9",
     "ctypes.string_at(0)": "signal 11",
     f"os.write({SOCKET}, b'{{[\\n')": "garbage",
     f"os.write({SOCKET}, b'[' * 100_000 + b'\\n')": "garbage",
     f"os.write({SOCKET}, b'1' * 5000 + b'\\n')": "garbage",
     f"[os.write({SOCKET}, bytes(1 << 16)) for _ in iter(int, 1)]": "flood",
+    "os.closerange(3, 64) or time.sleep(60)": "exit",
+    "time.sleep(60)": "time",
+    "threading.Thread(target=time.sleep, args=(60,)).start() or ctypes.CDLL(None).pthread_exit(None)": "time",
+}
+ENDS_MANY = {
     "[fork() for _ in iter(int, 1)]": "processes",
     "[fork() or hold(1 << 26) for _ in range(8)] and time.sleep(60)": "memory",
-    "os.closerange(3, 64) or time.sleep(60)": "time",
-    "time.sleep(60)": "time",
 }
 
 
 @pytest.mark.parametrize("body", ENDS)
 def test_how_it_ended(starter, body):
-    assert ended(starter, body, 1.0 if ENDS[body] == "time" else 20.0) == ENDS[body]
+    expected = "signal 11" if (ENDS[body], starter.level) == ("signal 6", "namespaces") else ENDS[body]
+    assert ended(starter, body, 1.0 if expected == "time" else 20.0) == expected
     with loaded(starter, "k = 2.5") as session:
+        assert value(session, "k") == 2.5
+    assert descendants(starter.process) == []
+
+
+@pytest.mark.parametrize("body", ENDS_MANY)
+def test_how_it_ended_where_it_may_start_processes(with_processes, body):
+    assert ended(with_processes, body, 20.0) == ENDS_MANY[body]
+    assert descendants(with_processes.process) == []
+    with loaded(with_processes, "import subprocess\nk = subprocess.run(['true']).returncode + 2.5") as session:
         assert value(session, "k") == 2.5
 
 
-def test_nothing_outlives_a_session(starter):
+def test_no_process_and_no_program_is_started(starter):
+    tried = "os.fork()", "os.execv('/bin/true', ['true'])", "os.posix_spawn('/bin/true', ['true'], {})", "os.system('true') or 1 / 0"
+    cells = [f"import os\ntry:\n    {one}\n    said = 'started'\nexcept Exception as e:\n    said = type(e).__name__" for one in tried]
+    for cell in cells:
+        with loaded(starter, cell) as session:
+            assert value(session, "said") in ("PermissionError", "ZeroDivisionError", "FileNotFoundError")
+
+
+def test_nothing_outlives_a_session(with_processes):
     orphan = "if fork() == 0:\n    os.setsid()\n    if fork() == 0:\n        time.sleep(600)\n    os._exit(0)\nos.wait()"
-    with loaded(starter, IMPORTS + orphan):
-        assert len(descendants(starter.process.pid)) == 3  # keeper, session, orphan
-    assert descendants(starter.process.pid) == []
+    with loaded(with_processes, IMPORTS + orphan):
+        assert len(descendants(with_processes.process)) == 2  # session, orphan
+    assert descendants(with_processes.process) == []
 
 
 def test_a_reply_written_before_its_request_is_none(starter):
@@ -108,10 +140,18 @@ def test_sleep_and_work_are_charged(starter):
         assert session.charged > 0.4
 
 
-def test_files_are_bounded(starter):
-    write = "for k in range(100):\n    open(str(k), 'wb').write(bytes(1 << 20))\nwhile True: pass"
+WRITES = {
+    "many": "for k in range(100):\n    open(str(k), 'wb').write(bytes(1 << 20))",
+    "empty": "for k in range(1000):\n    open(str(k), 'wb')",
+    "nested": "for k in range(1000):\n    os.mkdir('d')\n    os.chdir('d')",
+    "without a name": "for k in range(100):\n    f = open('f', 'wb', buffering=0)\n    f.write(bytes(1 << 20))\n    os.unlink('f')\n    os.dup(f.fileno())",
+}
+
+
+@pytest.mark.parametrize("what", WRITES)
+def test_files_are_bounded(starter, what):
     with starter.session(LIMITS) as session:
-        session.ask({"do": "load", "cells": [write], "files": {}}, 10)
+        session.ask({"do": "load", "cells": [f"import os\n{WRITES[what]}\nwhile True: pass"], "files": {}}, 10)
         if starter.level == "namespaces":
             assert "No space left" in session.ask({"do": "run", "cell": 0}, 10)["problem"]
         else:
@@ -119,25 +159,34 @@ def test_files_are_bounded(starter):
                 session.ask({"do": "run", "cell": 0}, 10)
 
 
-@pytest.mark.parametrize("starter", ["none"], indirect=True)
 def test_a_zygote_that_was_killed_is_started_anew(starter):
-    kill = f"if fork(): os.kill({starter.process.pid}, signal.SIGKILL)\n    time.sleep(600)"
-    assert ended(starter, kill, 0.5)
+    os.kill(starter.process, signal.SIGKILL)
     with loaded(starter, "k = 2.5") as session:
         assert value(session, "k") == 2.5
 
 
-def test_a_zygote_ends_all_when_its_grader_is_gone(starter):
-    session = loaded(starter, "k = 2.5")
-    before = descendants(starter.process.pid)
-    # as Ctrl-C does it: an order is being carried out, and nobody waits for the answer
-    starter.control.send(f'{{"do": "ready", "level": "none", "user": {starter.user}}}'.encode())
-    starter.control.close()
-    assert starter.process.wait() == 0
-    assert len(before) == 2 and not any(os.path.exists(f"/proc/{process}") for process in before)
-    session.close()
+def test_a_zygote_ends_all_when_its_grader_is_gone():
+    with Preloaded() as preloaded:
+        control, process = preloaded.zygote()
+        starter = Starter("none", (), LIMITS, control, process)
+        session = loaded(starter, "k = 2.5")
+        # as Ctrl-C does it: an order is being carried out, and nobody waits for the answer
+        control.send(b'{"do": "ready", "level": "none", "user": 0}')
+        control.close()
+    assert not os.path.exists(f"/proc/{process}") and not os.path.exists(f"/proc/{session.process}")
+
+
+def test_memory_is_bounded_by_a_group_where_there_is_one(starter):
+    if starter.group is None:
+        pytest.skip(f"no control group is to be had here: {starter.no_group}")
+    with pytest.MonkeyPatch.context() as patch, loaded(starter, IMPORTS + "def f(x):\n    hold(280 << 20)") as session:
+        patch.setattr(watch, "anonymous", lambda _: 0)
+        (starter.group.folder / "memory.limit_in_bytes").write_text(str(100 * MIB))
+        with pytest.raises(SessionEnded, match="memory"):
+            session.ask({"do": "evaluate", "name": "f", "kind": "function", "givens": [{"x": 1.0}]}, 10)
+        (starter.group.folder / "memory.limit_in_bytes").write_text(str(LIMITS.memory + LIMITS.scratch))
 
 
 def test_a_level_that_is_none_is_named():
-    with pytest.raises(CourseError, match="needs one of auto, namespaces, user, none"):
+    with pytest.raises(CourseError, match="needs one of auto, namespaces, user, landlock, none"):
         start("docker")

@@ -17,7 +17,7 @@ ALLOWED = {
     "read": (0, 63), "write": (1, 64), "readv": (19, 65), "writev": (20, 66), "pread64": (17, 67), "pwrite64": (18, 68),
     "preadv": (295, 69), "pwritev": (296, 70), "lseek": (8, 62), "close": (3, 57), "close_range": (436, 436),
     "fstat": (5, 80), "ftruncate": (77, 46), "fallocate": (285, 47), "fsync": (74, 82), "fdatasync": (75, 83),
-    "dup": (32, 23), "dup2": (33, None), "dup3": (292, 24), "flock": (73, 32), "sendfile": (40, 71),
+    "dup": (32, 23), "dup2": (33, None), "dup3": (292, 24),
     "copy_file_range": (326, 285), "fstatfs": (138, 44), "fgetxattr": (193, 10), "flistxattr": (196, 13),
     "fchmod": (91, 52), "fchdir": (81, 50), "getdents": (78, None), "getdents64": (217, 61),
     # files by their paths
@@ -62,10 +62,10 @@ CLONE, THREAD, NEW_NAMESPACES = (56, 220), 0x10000, 0x7E020000
 CLONE3 = 435
 #: shared memory without a file is still there when a process has let go of its pages, and no count of them finds it
 MMAP, SHARED, ANONYMOUS = (9, 222), 1, 0x20
-#: (numbers, which argument, values that are allowed); fcntl(2): no leases, no signals, no larger pipes; ioctl(2): what open()
+#: (numbers, which argument, values that are allowed); fcntl(2): no leases, locks and signals, no larger pipes; ioctl(2): what open()
 #: asks; prctl(2): names of threads and of memory
 BY_ARGUMENT = (
-    ((72, 25), 1, (0, 1, 2, 3, 4, 5, 6, 7, 36, 37, 38, 1030)),
+    ((72, 25), 1, (0, 1, 2, 3, 4, 1030)),
     ((16, 29), 1, (0x5401, 0x5413, 0x541B, 0x5421, 0x5450, 0x5451)),
     ((157, 167), 0, (15, 16, 0x53564D41)),
 )
