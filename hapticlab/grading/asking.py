@@ -87,9 +87,13 @@ class Session:
         self.folder = starter._scratch()
         self.channel, theirs = socket.socketpair()
         self.channel.setblocking(False)
-        scratch = self.folder.__enter__()
-        with theirs:
-            self.process = starter.order("session", theirs.fileno(), **{**starter.settings, "scratch": scratch})["process"]
+        settings = {**starter.settings, "scratch": self.folder.__enter__()}
+        try:
+            with theirs:
+                self.process = starter.order("session", theirs.fileno(), **settings)["process"]
+        except ConnectionError:
+            self._put_away()
+            raise
         if starter.group and self.process:
             starter.group.add(self.process)  # before anything of a student's is sent
 
@@ -163,7 +167,7 @@ class Session:
     def _how_it_ended(self):
         """Return the reason, once the other end of the socket is closed; who closed it and goes on is ended."""
         code = self._end(GRACE)
-        if self.starter.group and self.starter.group.exceeded():
+        if self._without_memory():
             return "memory"
         return f"signal {-code}" if code is not None and code < 0 else "exit"
 
@@ -175,10 +179,13 @@ class Session:
             raise SessionEnded("processes")
         # of one process what it was forked with is known, of several what they share is told by smaps_rollup, which is slow
         held = watch.memory(found) if limits.processes > 1 else watch.anonymous(self.process)
-        if held - self.starter.held > limits.memory:
+        if held - self.starter.held > limits.memory or self._without_memory():
             raise SessionEnded("memory")
         if level != "namespaces" and self._files(found) > limits.scratch:
             raise SessionEnded("flood")
+
+    def _without_memory(self):
+        return bool(self.starter.group) and self.starter.group.exceeded()
 
     def _files(self, processes):
         """Return what its files take [bytes], infinitely much where there are too many."""
@@ -194,9 +201,12 @@ class Session:
     def _end(self, grace):
         self.open = False
         code = self.starter.end(grace)
+        self._put_away()
+        return code
+
+    def _put_away(self):
         self.channel.close()
         self.folder.__exit__(None, None, None)
-        return code
 
     def __enter__(self):
         return self

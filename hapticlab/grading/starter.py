@@ -90,6 +90,8 @@ class Starter:
         self.walled = level in ("user", "landlock") and linux.landlock_version() > 0
         if level == "user" and not _is_root():
             raise _Refused("only root can run code as another user")
+        if limits.processes > 1 and level not in ("namespaces", "user"):
+            raise _Refused("more than one process needs namespaces, or a user of its own that the system counts them by")
         if level == "landlock" and not self.walled:
             raise _Refused("the kernel has no Landlock, or it is off; Linux has it from 5.13 on")
         # where nothing keeps another user to its own folder, what it leaves elsewhere is counted and deleted

@@ -91,8 +91,8 @@ def limit(request):
         resource.RLIMIT_NOFILE: 128,
         resource.RLIMIT_CORE: 0,
         resource.RLIMIT_MEMLOCK: 0,
-        # of a user who does nothing else
-        **({resource.RLIMIT_NPROC: int(limits["processes"]) + THREADS} if request["user"] else {}),
+        # of a user who does nothing else, or is counted in a namespace of its own
+        **({resource.RLIMIT_NPROC: int(limits["processes"]) + THREADS} if request["user"] or limits["processes"] > 1 else {}),
     }
     for which, most in bounds.items():
         hard = resource.getrlimit(which)[1]
