@@ -3,9 +3,9 @@
 First the statements that the answers need run alone, which is quick; an exercise that is right there has earned its points.
 For the others the whole notebook runs, cell by cell, as it did for its student: only then is an answer called wrong.
 
-The answers of a session are evaluated in one process, one after another, so an answer may change what the next one finds. Right
-is right; wrong counts where no other answer can have made it so: the same came when the answers were asked for in the opposite
-order, or when nothing was asked before.
+The answers of a session are evaluated in one process, one after another, so an answer may change what the next one finds. Wrong
+counts where no other answer can have made it so: the same came when the answers were asked for in the opposite order, or nothing
+was asked before. Right is right, but what was wrong before must be right twice: it may have been thrown with a die.
 
 What a student may be told comes from sessions that have not heard of a hidden case yet: all that is shown is asked for
 before all that is hidden, and what the quick way gave is told to nobody.
@@ -13,7 +13,7 @@ before all that is hidden, and what the quick way gave is told to nobody.
 
 import base64
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 
 from .marking import SHOWN, Found, ended_words, exercise_report
@@ -42,6 +42,10 @@ class _Spent(Exception):
     """The time of the whole submission is over."""
 
 
+class _Unknown(Exception):
+    """The code does not tell which statements the answers need."""
+
+
 def grade(submission, assignment, starter, limits, *, last=True):
     """Grade one submission.
 
@@ -53,7 +57,7 @@ def grade(submission, assignment, starter, limits, *, last=True):
         Of the processes that the student's code runs in.
     limits : Limits
     last : bool
-        Whether a limit of time that is met counts. It does not while others are at work who meet none, as these may be in its way.
+        Whether a limit of time that is met counts. It does not while others are at work who meet none and may be in its way.
 
     Returns
     -------
@@ -126,34 +130,51 @@ class _Work:
 
     def quick(self):
         """Ask for all answers where only the statements ran that they need."""
-        exercises = self.assignment.lab.exercises
-        names = [exercise.name for exercise in exercises]
+        names = [exercise.name for exercise in self.assignment.lab.exercises]
 
         def prepare(session):
-            self._ask(session, {"do": "plan", "names": names})
+            if not self._ask(session, {"do": "plan", "names": names}).get("known"):
+                raise _Unknown
             self._ask(session, {"do": "run_pieces"})
 
         self._step = QUICK * self.limits.seconds
-        # a text that is only noted is told, so it comes before all hidden cases
-        first = sorted(exercises, key=lambda one: one.judged)
-        self._answers([_Ask(one.name, *self._asked(one, (True, False))) for one in first], prepare)
+        with suppress(_Unknown):
+            self._answers([_Ask(one.name, *self._asked(one, (True, False))) for one in self._ordered(names)], prepare)
         self._step = self.limits.seconds
 
     def whole(self):
         """Ask for the answers that are not right yet where the whole notebook ran."""
         self._told, pending = True, self.undecided()
+        wrong = {name for name in pending if self._answered(name)}
         for step in (-1, 1):
             before = {name: _said(self.found.get(name)) for name in pending}  # of the quick way, which asks in the lab's order
-            self._ask_whole(pending[::step])
-            if len(pending) < 2:
+            self._ask_whole(pending, step)
+            left = [name for name in pending if name in self.undecided()]
+            doubtful = [name for name in pending if name in wrong and name not in left]
+            wrong |= {name for name in left if self._answered(name)}
+            # what is no code to be called is asked for before all that is
+            pending = [name for name in left if self._is_called(name) and _said(self.found.get(name)) != before[name]]
+            for name in doubtful:
+                self._ask_whole([name])
+            if len(before) < 2:
                 return
-            pending = [name for name in pending if name in self.undecided() and _said(self.found.get(name)) != before[name]]
         for name in pending:
             self._ask_whole([name])
+            if name in wrong and name not in self.undecided():
+                self._ask_whole([name])
 
-    def _ask_whole(self, names):
-        """Ask for answers in this order: all that is shown, then all that is hidden."""
-        asked = [self.assignment.lab.exercise(name) for name in names]
+    def _is_called(self, name):
+        exercise = self.assignment.lab.exercise(name)
+        return exercise.judged and exercise.kind not in SHOWN
+
+    def _ordered(self, names, step=1):
+        """Return exercises: what is only noted, as it is told to the student, what is no code to be called, and the others."""
+        asked = [self.assignment.lab.exercise(name) for name in names[::step]]
+        return sorted(asked, key=lambda one: (one.judged, self._is_called(one.name)))
+
+    def _ask_whole(self, names, step=1):
+        """Ask for answers: all that is shown, then all that is hidden."""
+        asked = self._ordered(names, step)
         self.found = {name: found for name, found in self.found.items() if name not in names}
         asks = [_Ask(one.name, *self._asked(one, (shown,))) for shown in (True, False) for one in asked]
         end = self._answers([one for one in asks if one.givens], self._run_cells)
@@ -178,6 +199,10 @@ class _Work:
         if not exercise.judged and report.answered:
             return not report.ended
         return (exercise.judged and report.right == report.cases) or (self._untouched and not report.answered)
+
+    def _answered(self, name):
+        """Whether there was an answer, be it a wrong one."""
+        return any(outcome.answered for outcome in self.found.get(name, Found()).outcomes)
 
     def _asked(self, exercise, shown):
         """Return the kind, and the givens of the cases that are shown, or hidden, or both."""

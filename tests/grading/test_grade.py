@@ -1,6 +1,7 @@
 """A submission earns what its honest part earns, and the report says of the rest what was wrong."""
 
 import json
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -150,6 +151,38 @@ def test_an_answer_that_spoils_another_one_costs_that_nothing(assignment, starte
     report = grade(submission(**SPOILERS[spoiler]), assignment, starter, LIMITS)
     wrong = {"later, by its end": {"force"}, "later, and is wrong itself": {"energy"}, "each other": {"force"}}
     assert {one.name for one in report.exercises if one.earned < one.points} == wrong.get(spoiler, set())
+
+
+class Thrown:
+    """Sessions of a submission whose choice is another one in each; the rest is honest."""
+
+    level = "none"
+
+    def __init__(self, assignment, *choices):
+        self.choices, self.sessions = iter(choices), 0
+        self.right = {name: [case.expected for case, _ in cases] for name, cases in assignment.cases("ada").items()}
+        self.seen = []
+
+    @contextmanager
+    def session(self, limits):
+        self.sessions += 1
+        self.choice = next(self.choices)
+        self.charged = 0.0
+        yield self
+
+    def ask(self, request, seconds):
+        if request["do"] == "evaluate":
+            expected = iter(self.right.get(request["name"], ["b"]))
+            value = lambda: self.choice if request["name"] == "why" else next(expected)  # noqa: E731
+            return {"outcomes": [{"value": value(), "problem": "", "printed": ""} for _ in request["givens"]]}
+        return {"known": True, "problem": ""}
+
+
+def test_a_choice_that_is_thrown_with_a_die_must_come_twice(assignment):
+    for choices, earned, sessions in (("b", 10.0, 1), ("aa", 9.0, 2), ("ac", 9.0, 2), ("abb", 10.0, 3), ("abc", 9.0, 3)):
+        starter = Thrown(assignment, *choices)
+        assert grade(submission(), assignment, starter, LIMITS).earned == earned, choices
+        assert starter.sessions == sessions, choices
 
 
 def test_what_is_wrong_in_both_orders_costs_one_run_of_the_notebook(assignment, starter):

@@ -33,6 +33,8 @@ def whole(cells, answers):
 
 def sliced(cells, answers):
     names, pieces = {"__name__": "__main__"}, needed(cells, answers)
+    if pieces is None:  # the whole notebook runs instead
+        return dict.fromkeys(answers, MISSING), "unknown"
     problem = run_pieces(cells, pieces, names)
     return values(names, answers), problem
 
@@ -274,6 +276,22 @@ def test_a_slice_gives_no_answer_that_the_notebook_does_not_give(trap, modules):
 )
 def test_what_shows_checks_or_goes_on_with_an_answer_is_left_out(cells, kept):
     assert needed(cells, ["k"]) == kept
+
+
+@pytest.mark.parametrize(
+    "cell",
+    [
+        "import sys\nk = len(sys._getframe().f_code.co_name)",
+        "import traceback\nk = str(traceback.extract_stack())",
+        "try:\n    1 / 0\nexcept ZeroDivisionError as e:\n    k = e.__traceback__.tb_frame.f_back",
+        "k = (lambda: (yield))().gi_frame",
+        "from inspect import stack\nk = len(stack())",
+        "exec('k = 2')",
+    ],
+)
+def test_code_that_can_see_what_runs_it_is_run_by_nothing_but_the_whole_notebook(cell):
+    assert needed(["k = 2", cell], ["k"]) is None
+    assert needed(["k = 2", "b = 3"], ["k"]) == [(0, 1, 1)]
 
 
 def test_names_that_are_never_bound_need_nothing():

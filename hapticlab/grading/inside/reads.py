@@ -5,12 +5,16 @@ import copy
 import dis
 from dataclasses import dataclass, field
 
-#: what else than by its name reaches a variable, as a name and as an attribute; where a notebook has one, nothing is left out
+#: what else than by its name reaches a variable, as a name and as an attribute; a notebook that has one is run as a whole
 OPAQUE_NAMES = frozenset(
     "exec eval compile globals locals vars setattr delattr breakpoint __import__ __builtins__ __main__ builtins importlib ctypes "
-    "gc inspect mock runpy".split()
+    "gc inspect mock runpy sys traceback tracemalloc faulthandler logging pdb bdb trace cProfile profile".split()
 )
-OPAQUE_ATTRIBUTES = frozenset("modules settrace _getframe __dict__ __globals__ __code__ __class__ __setattr__".split())
+#: with those by which code sees what runs it, and could answer a part of the notebook otherwise than the whole
+OPAQUE_ATTRIBUTES = frozenset(
+    "modules settrace setprofile _getframe _current_frames __dict__ __globals__ __code__ __class__ __setattr__ __traceback__ "
+    "__context__ tb_frame f_back f_code f_globals f_locals gi_frame cr_frame ag_frame".split()
+)
 #: state that belongs to no variable: name or attribute that uses it -> what stands for it. Settings are always needed
 STATE = {
     **dict.fromkeys("random rng shuffle seed".split(), "<random>"),

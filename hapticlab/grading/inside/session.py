@@ -64,9 +64,9 @@ class Session:
         return {"problem": self.masked(run_cell(self.cells[cell], self.names, cell + 1))}
 
     def do_plan(self, request):
-        """Say which statements the answers need, and keep them."""
+        """Say whether it is known which statements the answers need, and keep them."""
         self.pieces = needed(self.cells, request["names"])
-        return {"pieces": self.pieces}
+        return {"known": self.pieces is not None}
 
     def do_run_pieces(self, request):
         """Run them."""

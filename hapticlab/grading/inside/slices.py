@@ -12,7 +12,7 @@ from .cells import run_cell, runnable
 from .reads import STATE, Reads, reads_of
 from .solid import BUILTINS, is_solid
 
-#: more are run as a whole: telling them apart would take longer
+#: of more the whole notebook runs at once: telling them apart would take longer
 MOST = 1000
 
 
@@ -44,8 +44,8 @@ def needed(cells, names):
 
     Returns
     -------
-    list of (int, int, int)
-        Place of the cell, from 0, and first and last line, from 1.
+    list of (int, int, int), or None
+        Place of the cell, from 0, and first and last line, from 1. None where the code does not tell which.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def needed(cells, names):
     statements = [one for place, source in enumerate(cells) for one in _statements(place, source)]
     found = [_merged([reads_of(node) for node in one.nodes]) for one in statements[:MOST]]
     if len(statements) > MOST or any(one.opaque for one in found):
-        return [(one.cell, one.first, one.last) for one in statements]
+        return None
     others = {name for one in found for name in one.binds - set(one.imports)}
     imports = {name: what for one in found for name, what in one.imports.items() if name not in others}
     for one in found:
