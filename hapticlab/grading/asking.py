@@ -5,6 +5,7 @@ import math
 import secrets
 import select
 import socket
+from dataclasses import asdict
 
 from . import watch
 from .inside.protocol import MOST_NUMBERS
@@ -84,18 +85,17 @@ class Session:
 
     def __init__(self, starter, limits):
         self.starter, self.limits, self.open, self.charged = starter, limits, True, 0.0
+        self.killed = starter.group.ended() if starter.group else 0
         self.folder = starter._scratch()
         self.channel, theirs = socket.socketpair()
         self.channel.setblocking(False)
-        settings = {**starter.settings, "scratch": self.folder.__enter__()}
+        settings = {**starter.settings, "scratch": self.folder.__enter__(), "limits": asdict(limits)}
         try:
             with theirs:
                 self.process = starter.order("session", theirs.fileno(), **settings)["process"]
         except ConnectionError:
             self._put_away()
             raise
-        if starter.group and self.process:
-            starter.group.add(self.process)  # before anything of a student's is sent
 
     def ask(self, request, seconds):
         """Return the reply to a request.
@@ -185,7 +185,7 @@ class Session:
             raise SessionEnded("flood")
 
     def _without_memory(self):
-        return bool(self.starter.group) and self.starter.group.exceeded()
+        return bool(self.starter.group) and self.starter.group.ended() > self.killed
 
     def _files(self, processes):
         """Return what its files take [bytes], infinitely much where there are too many."""

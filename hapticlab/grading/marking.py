@@ -14,7 +14,7 @@ SHOWN = ("value", "choice")
 
 @dataclass(frozen=True)
 class Found:
-    """What an answer gave: an outcome for each case; or why its process ended before.
+    """What an answer gave: an outcome for each case; or those before its process ended, and why it did.
 
     What was printed is ``told`` where none of its processes knew of a hidden case.
     """
@@ -69,7 +69,10 @@ def exercise_report(exercise, cases, found, limits, slips=None):
     if found.ended:
         words = ended_words(found.ended, limits)
         wrong = {"hint": exercise.hint} if exercise.judged else {}
-        return ExerciseReport(**about, answered=True, cases=len(cases), words=words, ended=found.ended, **wrong)
+        hidden = not any(public or exercise.kind in SHOWN for _, public in cases[len(found.outcomes) :])
+        return ExerciseReport(
+            **about, answered=True, cases=len(cases), words=words, ended=found.ended, ended_hidden=hidden, **wrong
+        )
     if not exercise.judged:
         return ExerciseReport(**about, **_noted(exercise, found.outcomes))
     verdicts = [_verdict(exercise, case, outcome) for (case, _), outcome in zip(cases, found.outcomes, strict=False)]

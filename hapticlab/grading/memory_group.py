@@ -22,7 +22,7 @@ GRADERS = "hapticlab-graders"
 
 @dataclass
 class MemoryGroup:
-    """A control group of one session at a time.
+    """A control group of a zygote, with one session at a time.
 
     Parameters
     ----------
@@ -34,15 +34,11 @@ class MemoryGroup:
     version: int
 
     def add(self, process):
-        """Bound a process, and all that it starts from now on."""
-        self._before = self._ended()
+        """Bound a process and all that it forks from now on; what it holds already counts elsewhere."""
         (self.folder / "cgroup.procs").write_text(str(process))
 
-    def exceeded(self):
-        """Whether a process was ended for its memory since the last one was added."""
-        return self._ended() > self._before
-
-    def _ended(self):
+    def ended(self):
+        """Return how many processes were ended for their memory."""
         lines = (self.folder / EVENTS[self.version]).read_text().split("\n")
         return sum(int(line.split()[1]) for line in lines if line.startswith("oom_kill "))
 
@@ -100,7 +96,7 @@ def _made(within, most, version):
         if version == 2:
             with suppress(OSError):  # where there is no swap
                 (folder / "memory.swap.max").write_text("0")
-        group._ended()
+        group.ended()
     except BaseException:
         group.remove()
         raise

@@ -38,6 +38,8 @@ class ExerciseReport:
         Of the exercise, where it is wrong.
     ended : str
         Why its process ended early: "time", "memory", "processes", "exit", "signal 11", "flood", "garbage"; else empty.
+    ended_hidden : bool
+        Whether it was asked for cases then of which none is public.
     failing : Failing or None
     printed : str
         What its code printed in public cases.
@@ -57,6 +59,7 @@ class ExerciseReport:
     slip: str = ""
     hint: str = ""
     ended: str = ""
+    ended_hidden: bool = False
     failing: Failing | None = None
     printed: str = ""
     text: str = ""

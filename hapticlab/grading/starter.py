@@ -25,9 +25,11 @@ LEVELS = "namespaces", "user", "landlock", "none"
 PROCESSES = 1 << 22
 #: the labs that came with the package: what judges their public cases
 LABS = PACKAGE / "labs"
+#: characters of a notebook that a zygote is told
+MOST_CELLS = 200_000
 
 
-def start(sandbox="auto", hidden=(), limits=None, zygote=None):
+def start(sandbox="auto", hidden=(), limits=None, cells=(), zygote=None):
     """Return a Starter of the best level that works here, or of the one named.
 
     Parameters
@@ -37,6 +39,8 @@ def start(sandbox="auto", hidden=(), limits=None, zygote=None):
         What no student's code may read: answers, submissions, results.
     limits : Limits, optional
         Of its sessions.
+    cells : sequence of str
+        Of the notebook as it was handed out.
     zygote : (socket, int), optional
         Of :meth:`Preloaded.zygote`; without it one is begun.
 
@@ -59,7 +63,7 @@ def start(sandbox="auto", hidden=(), limits=None, zygote=None):
         ending.callback(control.close)
         for level in LEVELS if sandbox == "auto" else (sandbox,):
             try:
-                starter = Starter(level, hidden, limits or Limits(), control, process, refused)
+                starter = Starter(level, hidden, limits or Limits(), control, process, cells, refused)
             except _Refused as refusal:
                 refused[level] = str(refusal)
             else:
@@ -83,7 +87,7 @@ class Starter:
         Why better levels do not work here: level to words.
     """
 
-    def __init__(self, level, hidden, limits, control, process, refused=()):
+    def __init__(self, level, hidden, limits, control, process, cells=(), refused=()):
         self.level, self.limits, self.refused = level, limits, dict(refused)
         self.now, self.sessions, self.ending = None, 0, ExitStack()
         self.hidden = [str(Path(path).resolve()) for path in hidden]
@@ -96,10 +100,15 @@ class Starter:
             raise _Refused("the kernel has no Landlock, or it is off; Linux has it from 5.13 on")
         # where nothing keeps another user to its own folder, what it leaves elsewhere is counted and deleted
         self.writable = watch.writable_folders() if level == "user" and not self.walled else []
-        self._begin(control, process)
+        self.cells = list(cells) if sum(map(len, cells)) < MOST_CELLS else []
         self.group, self.no_group = memory_group.make(limits.memory + limits.scratch)
+        try:
+            self._take(control, process)
+        except BaseException:
+            self._remove_group()
+            raise
 
-    def _begin(self, control, process):
+    def _take(self, control, process):
         """Take a zygote, and see whether the level's walls hold."""
         self.control, self.process = control, process
         self.user = _free_user(process) if _is_root() and self.level in ("namespaces", "user") else 0
@@ -111,8 +120,10 @@ class Starter:
                 self.settings["readable"] = root.without(root.outermost(readable), hidden)
             if self.level != "none":
                 self._probe()
-            self.order("ready", **self.settings)
+            self.order("ready", **self.settings, cells=self.cells)
         self.held, self.size = watch.anonymous(process), watch.address_space(process)
+        if self.group:
+            self.group.add(process)
 
     def _probe(self):
         """Have a session look what it can read."""
@@ -153,7 +164,7 @@ class Starter:
             self.control.close()
             own = Preloaded()
             self.ending.callback(own.close)
-            self._begin(*own.zygote())
+            self._take(*own.zygote())
             self.now = Session(self, limits)
         return self.now
 
@@ -172,6 +183,9 @@ class Starter:
             self.now.close()
         self.control.close()
         self.ending.close()
+        self._remove_group()
+
+    def _remove_group(self):
         if self.group:
             self.group.remove()
 

@@ -83,7 +83,7 @@ class Bench:
 
     def __enter__(self):
         zygote, self._zygote = self._zygote, None
-        self._starter = start(self.sandbox, self.hidden, self.limits, zygote)
+        self._starter = start(self.sandbox, self.hidden, self.limits, self.assignment.untouched, zygote)
         self._starter.__enter__()
         return self
 

@@ -63,13 +63,14 @@ def state(one):
 def for_student(one):
     """Return what a student is told who may hand in again: of a case that is hidden, that it is wrong, and the slip's sentence.
 
-    Its numbers, and what a program raised with these in its words, would tell the case. A value or a choice has no numbers
-    but the student's own.
+    Its numbers, what a program raised with these in its words, and how it ended would tell the case. A value or a choice has no
+    numbers but the student's own.
     """
     if state(one) == "right":
         return f"Right: {one.cases} of {one.cases} cases."
     said = clean(one.words)
-    if one.failing is not None and not one.failing.public and one.kind not in ("value", "choice"):
+    hidden = one.ended_hidden if one.ended else one.failing is not None and not one.failing.public
+    if hidden and one.kind not in ("value", "choice"):
         said = f"A case that is not shown is wrong. {clean(one.slip)}".strip()
     hint = f"\nHint: {clean(one.hint)}" if one.hint else ""
     return f"{said}{hint}"

@@ -71,8 +71,8 @@ BY_ARGUMENT = (
 )
 #: streams of AF_UNIX, with and without SOCK_NONBLOCK and SOCK_CLOEXEC: a datagram could be sent to somebody else
 SOCKETPAIR, AF_UNIX, STREAMS = (53, 199), 1, (1, 0x801, 0x80001, 0x80801)
-#: kill, tgkill and prlimit64, whose first argument is a process
-OF_A_PROCESS = ((62, 129), (234, 131), (302, 261))
+#: prlimit64, whose first argument is a process; kill is not needed for the process itself, and of process 1 has no effect
+OF_A_PROCESS = ((302, 261),)
 #: calls after these came with kernels that this list does not know: a library that tries one takes an older one instead
 LAST_KNOWN = 451
 AUDIT_ARCH = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}

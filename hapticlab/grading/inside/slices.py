@@ -6,7 +6,8 @@ statement of a slice fails, the slice gives no answer at all.
 """
 
 import ast
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from .cells import run_cell, runnable
 from .reads import STATE, Reads, reads_of
@@ -14,6 +15,7 @@ from .solid import BUILTINS, is_solid
 
 #: of more the whole notebook runs at once: telling them apart would take longer
 MOST = 1000
+AWAIT = ast.PyCF_ALLOW_TOP_LEVEL_AWAIT
 
 
 @dataclass
@@ -24,6 +26,7 @@ class _Statement:
     first: int
     last: int
     nodes: list
+    text: str = ""
     reads: frozenset = frozenset()
     binds: frozenset = frozenset()
     touches: frozenset = frozenset()
@@ -53,14 +56,14 @@ def needed(cells, names):
     [(0, 1, 1), (1, 1, 1), (3, 1, 1)]
     """
     statements = [one for place, source in enumerate(cells) for one in _statements(place, source)]
-    found = [_merged([reads_of(node) for node in one.nodes]) for one in statements[:MOST]]
-    if len(statements) > MOST or any(one.opaque for one in found):
+    if len(statements) > MOST:
+        return None
+    found = [_reads_in(one.text) for one in statements]
+    if any(one.opaque for one in found):
         return None
     others = {name for one in found for name in one.binds - set(one.imports)}
     imports = {name: what for one in found for name, what in one.imports.items() if name not in others}
-    for one in found:
-        words = (word for name in one.now | one.later for word in imports.get(name, "").split("."))
-        one.now |= {STATE[word] for word in words if word in STATE}
+    found = [replace(one, now=one.now | _states(one, imports)) for one in found]
     last = _number(statements, found)
     for one in statements:
         one.always |= any(
@@ -70,15 +73,21 @@ def needed(cells, names):
     return [(one.cell, one.first, one.last) for place, one in enumerate(statements) if place in belongs]
 
 
+def _states(one, imports):
+    """Return what stands for the states that a statement reaches by what was imported."""
+    words = (word for name in one.now | one.later for word in imports.get(name, "").split("."))
+    return {STATE[word] for word in words if word in STATE}
+
+
 def _statements(place, source):
     """Return the statements of a cell; of one that is no Python, none."""
-    flags = ast.PyCF_ALLOW_TOP_LEVEL_AWAIT
+    source = runnable(source)
     try:
-        tree = compile(runnable(source), "", "exec", ast.PyCF_ONLY_AST | flags, dont_inherit=True)
-        compile(tree, "", "exec", flags, dont_inherit=True)
+        tree = _parsed(source)
+        compile(tree, "", "exec", AWAIT, dont_inherit=True)
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         return []
-    found = []
+    found, lines = [], source.split("\n")
     for node in tree.body:
         first = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", ()))])
         if found and first <= found[-1].last:
@@ -86,7 +95,19 @@ def _statements(place, source):
             found[-1].nodes.append(node)
         else:
             found.append(_Statement(place, first, node.end_lineno, [node]))
+    for one in found:
+        one.text = "\n".join(lines[one.first - 1 : one.last])
     return found
+
+
+def _parsed(source):
+    return compile(source, "", "exec", ast.PyCF_ONLY_AST | AWAIT, dont_inherit=True)
+
+
+@lru_cache(maxsize=4 * MOST)
+def _reads_in(text):
+    """Return what statements on the same lines read and bind; of those of the lab's own notebook it is known before a session."""
+    return _merged([reads_of(node) for node in _parsed(text).body])
 
 
 def _merged(several):

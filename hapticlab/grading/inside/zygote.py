@@ -19,7 +19,7 @@ from ..watch import kill_descendants
 from . import linux, sandbox
 
 #: beside what the package itself loads; by name, as all of it is needed only where the walls hold
-SESSION = "hapticlab.grading.inside.session"
+SESSION, SLICES = "hapticlab.grading.inside.session", "hapticlab.grading.inside.slices"
 PRELOADED = ("matplotlib.pyplot", "scipy.integrate", SESSION)
 
 
@@ -65,6 +65,7 @@ def serve(control):
                 answer = probe(request)
             elif request["do"] == "ready":
                 settle(request)
+                sys.modules[SLICES].needed(request["cells"], ())  # what students left as it came is then known
             elif request["do"] == "session":
                 session = start(request, *received[1])
                 os.close(*received[1])

@@ -31,11 +31,9 @@ from . import (
 from .small_lab import write_lab
 
 SORTS = (broken, eating, ending, forging, spying, injecting, leaking, kernel, holding, python, package, replies, colluding)
-#: through which something was earned, or held, that must not be: what mends one takes its name away
-OPEN = ("two_guesses",)
-#: as open, but only now and then: what lies in memory of files on a disk, and what two see who are at work at the same moment
-CHANCE = ("pages_in_memory_2_finds", "pages_by_time_2_finds", "locks_on_shared_files_2_finds", "watched_files_2_finds")
-ATTACKS = tuple(one for sort in (*SORTS, resubmitting) for one in sort.ATTACKS if one.name not in OPEN + CHANCE)
+#: what is open now and then: whether a file lies in the computer's memory is told by the time that it takes to read
+CHANCE = ("pages_by_time_2_finds",)
+ATTACKS = tuple(one for sort in (*SORTS, resubmitting) for one in sort.ATTACKS if one.name not in CHANCE)
 HONEST = tuple(one for one in broken.ATTACKS if one.name.startswith("honest"))
 #: the plainest one, and holes there were
 ALWAYS = ("fork_bomb", "memory_that_is_shared", "reply_with_its_number", "honest_split_cells", "honest_magics")

@@ -24,5 +24,3 @@ ATTACKS = (
     ending("tells_by_its_error", "raise [ValueError, KeyError, OSError, SystemExit, MemoryError][int(k) % 5](repr((x, k)))"),
     ending("tells_by_its_answering", "raise NotImplementedError"),
 )
-#: what tells more than it may; whoever mends one takes its name away
-OPEN = ("tells_by_its_signal", "tells_by_its_exit", "tells_by_its_size")

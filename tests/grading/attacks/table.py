@@ -23,7 +23,7 @@ from attacks import colluding, holding, kernel, package, python, replies, resubm
 from attacks.arena import ATTACKS, HONEST, LIMITS, TOKEN, Arena
 from hapticlab.grading.grade import Deferred, grade
 from hapticlab.grading.inside import linux
-from hapticlab.grading.starter import start
+from hapticlab.grading.starter import LEVELS, start
 from hapticlab.grading.submission import find_submissions, read
 
 NEW = tuple(one for sort in (kernel, holding, python, package, replies, colluding, resubmitting) for one in sort.ATTACKS)
@@ -86,11 +86,11 @@ def graded(level, names, ordinary):
         sources = {source.student: source for source in find_submissions([arena.submissions], arena.lab.name)}
         named = {one.name: sources[student] for student, one in arena.names.items()}
         hidden = (arena.submissions, arena.answers.parent)
-        starters = [running.enter_context(start(level, hidden)) for _ in range(1 + any(map(_together, chosen)))]
+        starters = [running.enter_context(start(level, hidden, LIMITS)) for _ in range(1 + any(map(_together, chosen)))]
 
         def report(name, starter):
             given = read(named[name], arena.assignment.untouched), arena.assignment, starter, LIMITS
-            return grade(*given, alone=True)
+            return grade(*given, last=True)
 
         whole = report(HONEST[0].name, starters[0]).to_json()
         print(json.dumps({"level": starters[0].level}), flush=True)
@@ -104,7 +104,7 @@ def graded(level, names, ordinary):
                     line = {"deferred": True} if isinstance(found, Deferred) else _line(one, found)
                 except BaseException as problem:
                     line = {"grader": f"{type(problem).__name__}: {problem}"[:200]}
-                    starters[0] = running.enter_context(start(level, hidden))
+                    starters[0] = running.enter_context(start(level, hidden, LIMITS))
                 if helps:
                     helps.exception()
             line |= {"reached": arena.reached(), "honest": report(HONEST[0].name, starters[0]).to_json() == whole}
@@ -227,7 +227,7 @@ def main():
     """Print a line of JSON for each attack, or a table."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("names", nargs="*", help="attacks; all new ones where none is named")
-    parser.add_argument("--level", default="namespaces", choices=["namespaces", "user", "none"])
+    parser.add_argument("--level", default="namespaces", choices=LEVELS)
     parser.add_argument("--ordinary", action="store_true", help="grade as a user without rights")
     parser.add_argument("--graded", action="store_true", help=argparse.SUPPRESS)
     given = parser.parse_args()

@@ -21,7 +21,7 @@ pytestmark = [
 
 if sys.platform == "linux":
     from attacks import injecting, leaking, resubmitting
-    from attacks.arena import ATTACKS, HONEST, LIMITS, OPEN, PATIENT, QUICK, SORTS, Arena
+    from attacks.arena import ATTACKS, HONEST, LIMITS, PATIENT, QUICK, Arena
     from attacks.small_lab import POINTS
 
 #: what moves a cursor or turns the reading direction
@@ -136,8 +136,7 @@ def test_who_hands_in_again_learns_no_hidden_given(arena, reports, name):
 
 
 @pytest.mark.parametrize("attack", resubmitting.ATTACKS, ids=lambda one: one.name)
-def test_who_hands_in_again_is_told_only_that_a_hidden_case_is_wrong(reports, attack, request):
-    request.applymarker(pytest.mark.xfail(attack.name in resubmitting.OPEN, reason="how it ended is told", strict=True))
+def test_who_hands_in_again_is_told_only_that_a_hidden_case_is_wrong(reports, attack):
     tests = json.loads(formats.write("gradescope", [reports[attack.name]]))["tests"]
     assert [one["output"] for one in tests if one["name"] == "force"] == [
         "A case that is not shown is wrong.\nHint: Outside there is no force."
@@ -180,12 +179,3 @@ def test_all_attacks_at_once(tmp_path):
         for one in ATTACKS:
             check(one, found[one.name])
         assert not arena.reached()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", OPEN)
-@pytest.mark.xfail(reason="this way is open", strict=True)
-def test_what_is_open_is_still_open(tmp_path, here, name):
-    one = next(one for sort in SORTS for one in sort.ATTACKS if one.name == name)
-    with Arena(tmp_path, [one]) as arena, here():
-        check(one, arena.by_attack(arena.graded(workers=1))[name])
