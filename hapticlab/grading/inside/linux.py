@@ -115,7 +115,7 @@ def keep_to(readable, writable):
     Parameters
     ----------
     readable, writable : sequence of str
-        Files, or folders with all that is in them.
+        Files, or folders with all that is in them; what a link leads to is not meant.
     """
     version = landlock_version()
     handled = (1 << 13) - 1 | (REFER if version >= 2 else 0) | (TRUNCATE if version >= 3 else 0) | (IOCTL if version >= 5 else 0)
@@ -124,6 +124,8 @@ def keep_to(readable, writable):
     ruleset = _call("syscall", LANDLOCK_CREATE, ctypes.byref((ctypes.c_uint64 * 3)(handled, net, scoped)), size, 0)
     for paths, access in ((readable, READ_FILE | READ_DIR), (writable, handled & ~EXECUTE)):
         for path in paths:
+            if os.path.islink(path):
+                continue
             try:
                 place = os.open(path, os.O_PATH | os.O_CLOEXEC)
             except OSError:  # nor can this process read it

@@ -70,7 +70,7 @@ def enter(request):
         os.setresuid(*[request["user"]] * 3)
     linux.drop_privileges()
     if request["readable"]:
-        system = [path for path in SYSTEM_FILES if os.path.exists(path)]
+        system = [os.path.realpath(path) for path in SYSTEM_FILES if os.path.exists(path)]
         linux.keep_to([*request["readable"], *system], [request["scratch"], NULL])
     if request["level"] != "namespaces":  # there the parent has gone on, and process 1 ends with its namespace's
         linux.die_with_parent()
