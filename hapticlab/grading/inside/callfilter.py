@@ -54,7 +54,7 @@ ALLOWED = {
 #: what starts processes and programs, allowed where a session may have more than one
 PROCESSES = {
     "fork": (57, None), "vfork": (58, None), "execve": (59, 221), "setsid": (112, 157), "setpgid": (109, 154),
-    "kill": (62, 129), "tgkill": (234, 131), "prlimit64": (302, 261),
+    "kill": (62, 129), "tgkill": (234, 131),
 }  # fmt: skip
 #: a clone that is a thread; one that makes namespaces
 CLONE, THREAD, NEW_NAMESPACES = (56, 220), 0x10000, 0x7E020000
@@ -71,8 +71,8 @@ BY_ARGUMENT = (
 )
 #: streams of AF_UNIX, with and without SOCK_NONBLOCK and SOCK_CLOEXEC: a datagram could be sent to somebody else
 SOCKETPAIR, AF_UNIX, STREAMS = (53, 199), 1, (1, 0x801, 0x80001, 0x80801)
-#: prlimit64, whose first argument is a process; kill is not needed for the process itself, and of process 1 has no effect
-OF_A_PROCESS = ((302, 261),)
+#: prlimit(2) where its third argument is no new limit
+PRLIMIT = (302, 261)
 #: calls after these came with kernels that this list does not know: a library that tries one takes an older one instead
 LAST_KNOWN = 451
 AUDIT_ARCH = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}
@@ -84,21 +84,19 @@ REFUSE, UNKNOWN = (RETURN, 0, 0, ERRNO | errno.EPERM), (RETURN, 0, 0, ERRNO | er
 PASS = (RETURN, 0, 0, ALLOW)
 
 
-def program(own, processes=False, machine=None):
+def program(processes=False, machine=None):
     """Return the filter as BPF; empty on a machine whose numbers are not listed.
 
     Parameters
     ----------
-    own : sequence of int
-        What the process itself is called by kill(2) and prlimit(2).
     processes : bool
-        Whether it may start others.
+        Whether it may start other processes.
     machine : str, optional
         As ``platform.machine()`` names it.
 
     Examples
     --------
-    >>> len(program([0, 1], machine="x86_64")) % 8, program([0, 1], machine="riscv64")
+    >>> len(program(machine="x86_64")) % 8, program(machine="riscv64")
     (0, b'')
     """
     machine = machine or platform.machine()
@@ -114,8 +112,9 @@ def program(own, processes=False, machine=None):
     code += _asked(MMAP[column], 3, [(ANY_BIT, 0, 2, ANONYMOUS), (ANY_BIT, 0, 1, SHARED), REFUSE, PASS])
     of_unix = [(EQUAL, 1, 0, AF_UNIX), REFUSE, (LOAD, 0, 0, ARGUMENTS + 8)]
     code += _asked(SOCKETPAIR[column], 0, [*of_unix, *_one_of(STREAMS)])
-    rules = (*BY_ARGUMENT, *((numbers, 0, tuple(own)) for numbers in OF_A_PROCESS))
-    for numbers, which, values in rules:
+    other_half = [(EQUAL, 1, 0, 0), REFUSE, (LOAD, 0, 0, ARGUMENTS + 8 * 2 + 4)]
+    code += _asked(PRLIMIT[column], 2, [*other_half, *_one_of((0,))])
+    for numbers, which, values in BY_ARGUMENT:
         code += _asked(numbers[column], which, _one_of(values))
     code += [(AT_LEAST, 0, 1, LAST_KNOWN + 1), UNKNOWN, REFUSE]
     return b"".join(struct.pack("=HBBI", *instruction) for instruction in code)

@@ -74,7 +74,7 @@ def enter(request):
         linux.keep_to([*request["readable"], *system], [request["scratch"], NULL])
     if request["level"] != "namespaces":  # there the parent has gone on, and process 1 ends with its namespace's
         linux.die_with_parent()
-    calls = callfilter.program((0, os.getpid()), processes=request["limits"]["processes"] > 1)
+    calls = callfilter.program(processes=request["limits"]["processes"] > 1)
     if calls:
         linux.filter_calls(calls)
     elif request["level"] != "none":
