@@ -21,14 +21,9 @@ from .grading.submission import find_submissions, lab_of, read
 CHECKED = re.compile(r"""\bcheck\(\s*['"]([0-9]{2})\.""")
 #: how often a submission may take the time of a step, beside once for each exercise
 MORE_STEPS = 4
-WEAK = {
-    "none": "nothing but limits stands around the students' code, which runs with your rights: grade only whom you trust, or in "
-    "a container",
-    "user": "students' code runs as another user, without namespaces: it sees the network and what all users may read",
-}
 
 
-def grade(parser, options):
+def grade(parser, options, preloaded=None):
     """Grade submissions; 1 where some could not be."""
     if options.fresh and not options.output:
         parser.error("--fresh forgets what is beside the results; it needs -o FILE")
@@ -43,14 +38,14 @@ def grade(parser, options):
         _say("warning: without --instructor only the public cases count, whose answers can be learnt by heart")
     if roster:  # a roster that fits nobody is told before a class is graded
         roster.match([source.student for source in find_submissions(options.submissions, assignment.folder.name)])
-    limits = limits_of(assignment.lab, options.timeout, options.memory * MIB)
+    limits = limits_of(assignment.lab, options.timeout, options.memory * MIB, options.processes)
     output = Path(options.output) if options.output else None
     hidden = (options.roster, options.gradebook, options.pages, options.instructor, output)
     journal = output and output.with_name(f"{output.name}.journal.jsonl")
     try:
         done = run(
             options.submissions, assignment, limits, workers=options.workers, sandbox=options.sandbox, journal=journal,
-            fresh=options.fresh, hidden=[path for path in hidden if path], progress=True,
+            fresh=options.fresh, hidden=[path for path in hidden if path], progress=True, preloaded=preloaded, begun=_tell_walls,
         )  # fmt: skip
     except KeyboardInterrupt:
         again = f"what was graded is in {journal}; the same command again goes on" if journal else "with -o FILE a run can go on"
@@ -61,7 +56,7 @@ def grade(parser, options):
     return 1 if done.failed else 0
 
 
-def limits_of(lab, seconds, memory):
+def limits_of(lab, seconds, memory, processes=1):
     """Return the limits of a lab's submissions, with time in all for every exercise and for some cells that take all theirs.
 
     Parameters
@@ -71,6 +66,7 @@ def limits_of(lab, seconds, memory):
         Of a step.
     memory : int
         Of all processes [bytes].
+    processes : int
 
     Examples
     --------
@@ -79,7 +75,7 @@ def limits_of(lab, seconds, memory):
     (8, 120.0, 240.0)
     """
     steps = MORE_STEPS + sum(one.judged for one in lab.exercises)
-    return Limits(seconds=seconds, total=max(Limits().total, steps * seconds), memory=memory)
+    return Limits(seconds=seconds, total=max(Limits().total, steps * seconds), memory=memory, processes=processes)
 
 
 def lab_asked(paths):
@@ -124,16 +120,20 @@ def _write(options, assignment, reports, roster, output):
         _say(f"pushed marks of {whose} into {options.gradebook}{', but for what is said above' * bool(lost)}")
 
 
-def _tell(done, roster):
-    """Say what stood around the students' code, what it cost, who could not be graded, and who handed in nothing."""
-    if done.level in WEAK:
-        _say(f"warning: {WEAK[done.level]}")
-    for level, reason in done.refused.items():
+def _tell_walls(walls):
+    """Say what stands around the students' code, before any of it runs."""
+    if walls.weakness:
+        _say(f"warning: {walls.weakness}")
+    for level, reason in walls.refused.items():
         _say(f"no {level} here: {reason}")
+
+
+def _tell(done, roster):
+    """Say what it cost, who could not be graded, and who handed in nothing."""
     graded = f"{len(done.seconds)} graded, {done.known} known from before"
     if done.seconds:
         each = done.processor / len(done.seconds)
-        graded += f"; sandbox: {done.level}"
+        graded += f"; sandbox: {done.walls.level}"
         graded += f"; {statistics.median(done.seconds):.2f} s each (median), {each:.2f} s of a processor (mean, start included)"
     _say(graded)
     for report in done.failed:

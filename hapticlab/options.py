@@ -21,7 +21,7 @@ METHODS = (
 TARGETS = ("pc", *(name for name, given in BOARDS.items() if given.hz))
 STEPS = ("stops", "sign", "force")
 SYSTEMS = ("nbgrader", "otter", "gradescope", "prairielearn")
-LEVELS = ("auto", "namespaces", "user", "none")
+LEVELS = ("auto", "namespaces", "user", "landlock", "none")
 
 
 def parser():
@@ -123,7 +123,7 @@ def _add_assign(commands):
 
 def _add_grade(commands):
     text = "grade submissions: run each in processes that know no answer, and judge what they give"
-    made = _add_command(commands, "grade_commands.grade", text)
+    made = _add_command(commands, "grade_start.grade", text)
     words = "notebooks, scripts, archives, folders of these, or nbgrader's submitted tree"
     made.add_argument("submissions", metavar="SUBMISSION", nargs="+", help=words)
     words = "lab number, or folder of a lab of your own (default: detected from the submissions)"
@@ -144,6 +144,8 @@ def _add_grade(commands):
     made.add_argument("--timeout", type=_amount, default=Limits().seconds, metavar="SECONDS", help=words)
     words = f"for a submission's processes together (default: {Limits().memory // MIB})"
     made.add_argument("--memory", type=_whole(64, "a number of MiB"), default=Limits().memory // MIB, metavar="MIB", help=words)
+    words = "that a submission may have at one time; from 2 on its code may also start programs (default: 1)"
+    made.add_argument("--processes", type=_whole(1, "a number of processes"), default=1, metavar="N", help=words)
     made.add_argument("--sandbox", choices=LEVELS, default="auto", help="walls around students' code (default: the best)")
     made.add_argument("--fresh", action="store_true", help="grade all anew, also what an earlier run wrote down")
 

@@ -1,5 +1,6 @@
 """What the documents promise: README's code runs, and its two commands are the ones CI runs."""
 
+import importlib
 import re
 import shlex
 import subprocess
@@ -8,7 +9,8 @@ from pathlib import Path
 import pytest
 
 import hapticlab as hl
-from hapticlab.cli import _parser, main
+from hapticlab.cli import main
+from hapticlab.options import parser
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text("utf-8")
@@ -70,8 +72,8 @@ def test_readme_command_of_a_scene_file_runs(tmp_path, capsys):
 def test_readme_commands_are_understood(line):
     program, *arguments = shlex.split(line)
     assert Path(program).name == "hapticlab"
-    options = _parser().parse_args(arguments)
-    assert callable(options.command)
+    module, function = parser().parse_args(arguments).command.split(".")
+    assert callable(getattr(importlib.import_module(f"hapticlab.{module}"), function))
 
 
 def test_readme_runs_on_a_simulated_board(tmp_path, capsys):

@@ -15,8 +15,10 @@ from pathlib import Path
 
 from ..errors import CourseError, EngineMissingError
 from .assignment import files_of, find_assignment
+from .bench import Bench, Reply, as_json
 from .limits import Limits
-from .workers import Bench, Reply, as_json, processor_seconds, weakest
+from .starter import Walls, weakest
+from .workers import processor_seconds
 
 #: how many submissions a thread of the cluster may have waiting
 AHEAD = 2
@@ -41,7 +43,7 @@ class ClusterWorkers:
     """
 
     def __init__(self, address, assignment, limits, sandbox="auto", hidden=()):
-        self.address, self.number, self.level, self.refused, self.seconds = address, 0, "", {}, 0.0
+        self.address, self.number, self.walls, self.seconds = address, 0, Walls(), 0.0
         self._setup, self._digest = _packed(assignment, limits, sandbox, hidden), assignment.digest
 
     def __enter__(self):
@@ -57,7 +59,7 @@ class ClusterWorkers:
         except BaseException:
             self._client.close()
             raise
-        self.level, self.refused = weakest([(one["level"], one["refused"]) for one in said])
+        self.walls = weakest([Walls(**one["walls"]) for one in said])
         return self
 
     def __exit__(self, *_):
@@ -148,7 +150,7 @@ def _with_bench(setup, work):
 def _ready(setup):
     return _with_bench(
         setup,
-        lambda bench: json.dumps({"level": bench.level, "refused": bench.refused, "digest": bench.assignment.digest}),
+        lambda bench: json.dumps({"walls": asdict(bench.walls), "digest": bench.assignment.digest}),
     )
 
 

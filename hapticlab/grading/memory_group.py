@@ -81,7 +81,8 @@ def _divided(folder):
         raise OSError(0, "the group of this process was not given the control of memory")
     others = {int(line) for line in (folder / "cgroup.procs").read_text().split()} - {os.getpid()}
     if others:
-        raise OSError(0, f"{len(others)} other processes are in its group; begin it by systemd-run --user --scope -p Delegate=yes")
+        begin = "systemd-run --user --scope -p Delegate=yes hapticlab grade ..."
+        raise OSError(0, f"{len(others)} other processes are in the group of this process; begin it by {begin}")
     (folder / GRADERS).mkdir(exist_ok=True)
     (folder / GRADERS / "cgroup.procs").write_text(str(os.getpid()))
     (folder / "cgroup.subtree_control").write_text("+memory")

@@ -56,6 +56,7 @@ class Preloaded:
             start_new_session=True,
         )
         theirs.close()
+        self._asked = False
 
     def zygote(self):
         """Return a socket to a new zygote, and its process id.
@@ -65,6 +66,7 @@ class Preloaded:
         ConnectionError
             Where this process is gone.
         """
+        self._asked = True
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 20)
         with theirs:
@@ -77,6 +79,8 @@ class Preloaded:
     def close(self):
         """Wait until its zygotes have ended, as each does with its socket, and it with them."""
         self._control.close()
+        if not self._asked:
+            self._process.kill()
         self._process.wait()
 
     def __enter__(self):

@@ -1,17 +1,19 @@
 """A class is graded: many submissions at once, each report kept as soon as it is known."""
 
 import itertools
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from ..course.personal import foreign_numbers
 from ..device.progress import progress_bar
+from .bench import Task
 from .cluster import ClusterWorkers
 from .grade import refused
 from .journal import Journal, key_of
 from .limits import Limits
+from .starter import Walls
 from .submission import find_submissions, read
-from .workers import Task, Workers, processor_seconds
+from .workers import Workers, processor_seconds
 
 
 @dataclass(frozen=True)
@@ -22,8 +24,8 @@ class Graded:
     ----------
     reports : tuple of Report
         By student.
-    level : str
-        Which walls there were around the students' processes.
+    walls : Walls
+        What stood around the students' code.
     seconds : tuple of float
         Wall clock of each submission that was graded in this run [s]; those of the journal are not among them.
     known : int
@@ -32,19 +34,16 @@ class Graded:
         Processor time of this process during the run and of all that it began, their start included [s].
     foreign : tuple of str
         Whose submission has other numbers than it is graded by, in a sentence each.
-    refused : dict
-        Why there were no better walls, level to words.
     failed : tuple of Report
         Those that could not be graded.
     """
 
     reports: tuple
-    level: str
+    walls: Walls
     seconds: tuple
     known: int
     processor: float
     foreign: tuple = ()
-    refused: dict = field(default_factory=dict)
 
     @property
     def failed(self):
@@ -52,7 +51,10 @@ class Graded:
         return tuple(report for report in self.reports if report.problem)
 
 
-def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=None, fresh=False, hidden=(), progress=False, preloaded=None):
+def run(
+    paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=None, fresh=False, hidden=(), progress=False,
+    preloaded=None, begun=None,
+):  # fmt: skip
     """Grade submissions.
 
     Parameters
@@ -63,7 +65,7 @@ def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=No
     limits : Limits, optional
     workers : int or str
         So many processes, or the address of a Dask scheduler, "tcp://...". The reports do not depend on it.
-    sandbox : {"auto", "namespaces", "user", "none"}
+    sandbox : {"auto", "namespaces", "user", "landlock", "none"}
     journal : str or Path, optional
         Where reports are written as they are made; those that are there already are taken.
     fresh : bool
@@ -74,6 +76,8 @@ def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=No
         Show a bar on stderr.
     preloaded : Preloaded, optional
         Which began to load while submissions and answers were looked for.
+    begun : callable, optional
+        Called with the Walls before any student's code runs.
 
     Returns
     -------
@@ -88,11 +92,11 @@ def run(paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=No
         crew = Workers(min(workers, len(sources)), assignment, limits, sandbox, secrets, preloaded=preloaded)
     with Journal(journal, fresh) as kept, progress_bar(len(sources), progress, unit="submission") as bar:
         work = _Run(assignment, limits, sandbox, kept, bar)
-        work.all(sources, crew)
+        work.all(sources, crew, begun)
     reports = sorted(work.reports, key=lambda report: (report.student, report.submission, report.sha256))
     seconds, foreign = tuple(work.seconds), tuple(work.foreign)
     processor = processor_seconds() - before + crew.seconds
-    return Graded(tuple(reports), crew.level, seconds, work.known, processor, foreign, crew.refused)
+    return Graded(tuple(reports), crew.walls, seconds, work.known, processor, foreign)
 
 
 class _Run:
@@ -100,13 +104,15 @@ class _Run:
         self.assignment, self.limits, self.sandbox, self.journal, self.bar = assignment, limits, sandbox, journal, bar
         self.reports, self.seconds, self.known, self.foreign = [], [], 0, []
 
-    def all(self, sources, crew):
+    def all(self, sources, crew, begun=None):
         """Grade all; at the end, side by side, those that a limit of time or the end of a worker left open."""
         tasks, left = self._tasks(sources), []
         first = next(tasks, None)
         if first is None:
             return  # all is known: no worker needs to begin
         with crew:
+            if begun:
+                begun(crew.walls)
             for task, reply in crew.graded(itertools.chain([first], tasks), last=crew.number == 1):
                 if reply.report or reply.problem:
                     self._take(task, reply)
@@ -142,7 +148,7 @@ class _Run:
             self.journal.write(task.key, reply.report)
             self._keep(reply.report)
         else:  # not into the journal: another run may have more luck
-            problem = reply.problem or "its code ended the process that grades, twice; it needs --sandbox namespaces or user"
+            problem = reply.problem or "the process that graded it ended twice; is there memory for it?"
             self._keep(refused(task.submission, self.assignment, problem, self.limits))
 
     def _know(self, report):

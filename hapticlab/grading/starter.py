@@ -8,14 +8,14 @@ import sys
 import sysconfig
 import tempfile
 from contextlib import ExitStack, nullcontext, suppress
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from ..errors import CourseError
 from . import memory_group, watch
 from .asking import Session
 from .asking import SessionEnded as SessionEnded
-from .inside import linux, root
+from .inside import callfilter, linux, root
 from .limits import Limits
 from .preloaded import PACKAGE, Preloaded
 from .spawned import SpawnedStarter
@@ -27,6 +27,51 @@ PROCESSES = 1 << 22
 LABS = PACKAGE / "labs"
 #: characters of a notebook that a zygote is told
 MOST_CELLS = 200_000
+
+
+#: what a level leaves open, told before it is used
+NONE_LINUX = (
+    "nothing hides files from the students' code, which runs with your rights: grade only whom you trust, or in a container"
+)
+NONE_ELSEWHERE = (
+    "nothing but limits of time and of what is answered stands around the students' code, which runs with your rights: grade "
+    "only whom you trust, or in a container"
+)
+NO_LANDLOCK = (
+    "the kernel has no Landlock, so the students' code sees what all users may read, and may write where all may write until its "
+    "session ends"
+)
+NO_CALLS = "system calls are not known on this machine, and none is refused"
+
+
+@dataclass(frozen=True)
+class Walls:
+    """What stands around students' code.
+
+    Attributes
+    ----------
+    level : str
+        "namespaces", "user", "landlock" or "none"; empty where nothing was begun.
+    refused : dict
+        Why better levels do not work here: level to words.
+    weakness : str
+        What this one leaves open, in a sentence.
+    """
+
+    level: str = ""
+    refused: dict = field(default_factory=dict)
+    weakness: str = ""
+
+
+def weakest(several):
+    """Return those of several walls that keep students' code in least.
+
+    Examples
+    --------
+    >>> weakest([Walls("namespaces"), Walls("none", {"user": "not root"}), Walls("user")]).level
+    'none'
+    """
+    return max(several, key=lambda walls: LEVELS.index(walls.level))
 
 
 def start(sandbox="auto", hidden=(), limits=None, cells=(), zygote=None):
@@ -53,7 +98,8 @@ def start(sandbox="auto", hidden=(), limits=None, cells=(), zygote=None):
         raise CourseError(f"sandbox = {sandbox!r}; needs one of auto, {', '.join(LEVELS)}")
     if sys.platform != "linux":
         if sandbox in ("auto", "none"):
-            return SpawnedStarter()
+            refused = dict.fromkeys(LEVELS[:-1], "only Linux has it")
+            return SpawnedStarter(Walls("none", refused, NONE_ELSEWHERE))
         raise CourseError(f"sandbox = {sandbox!r}; only Linux has it; on this system use auto or none")
     refused, own = {}, None if zygote else Preloaded()
     with ExitStack() as ending:
@@ -81,14 +127,11 @@ class Starter:
 
     Attributes
     ----------
-    level : str
-        "namespaces", "user", "landlock" or "none".
-    refused : dict
-        Why better levels do not work here: level to words.
+    walls : Walls
     """
 
     def __init__(self, level, hidden, limits, control, process, cells=(), refused=()):
-        self.level, self.limits, self.refused = level, limits, dict(refused)
+        self.level, self.limits = level, limits
         self.now, self.sessions, self.ending = None, 0, ExitStack()
         self.hidden = [str(Path(path).resolve()) for path in hidden]
         self.walled = level in ("user", "landlock") and linux.landlock_version() > 0
@@ -98,6 +141,7 @@ class Starter:
             raise _Refused("more than one process needs namespaces, or a user of its own that the system counts them by")
         if level == "landlock" and not self.walled:
             raise _Refused("the kernel has no Landlock, or it is off; Linux has it from 5.13 on")
+        self.walls = Walls(level, dict(refused), self._weakness())
         # where nothing keeps another user to its own folder, what it leaves elsewhere is counted and deleted
         self.writable = watch.writable_folders() if level == "user" and not self.walled else []
         self.cells = list(cells) if sum(map(len, cells)) < MOST_CELLS else []
@@ -107,6 +151,11 @@ class Starter:
         except BaseException:
             self._remove_group()
             raise
+
+    def _weakness(self):
+        if self.level == "none":
+            return NONE_LINUX if callfilter.program() else f"{NONE_LINUX}; {NO_CALLS}"
+        return NO_LANDLOCK if self.level == "user" and not self.walled else ""
 
     def _take(self, control, process):
         """Take a zygote, and see whether the level's walls hold."""

@@ -4,9 +4,9 @@ from contextlib import ExitStack, contextmanager
 
 import pytest
 
-from hapticlab.grading import run, workers
+from hapticlab.grading import bench, run
+from hapticlab.grading.bench import Bench, Reply, as_json
 from hapticlab.grading.starter import start
-from hapticlab.grading.workers import Bench, Reply, as_json
 
 
 @pytest.fixture(scope="session")
@@ -31,7 +31,7 @@ def here(started):
     @contextmanager
     def graded_here():
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(workers, "start", lambda sandbox, *_: _Lent(started(sandbox)))
+            patch.setattr(bench, "start", lambda sandbox, *_: _Lent(started(sandbox)))
             patch.setattr(run, "Workers", _Here)
             yield
 
@@ -57,11 +57,11 @@ class _Lent:
 class _Here:
     """A crew of one bench in this process; used as :class:`hapticlab.grading.workers.Workers`."""
 
-    def __init__(self, number, *bench, preloaded=None):
-        self.number, self._bench, self.level, self.seconds, self.refused = 1, Bench(*bench), "", 0.0, {}
+    def __init__(self, number, *given, preloaded=None):
+        self.number, self._bench, self.seconds = 1, Bench(*given), 0.0
 
     def __enter__(self):
-        self.level = self._bench.__enter__().level
+        self.walls = self._bench.__enter__().walls
         return self
 
     def __exit__(self, *_):

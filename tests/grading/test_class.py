@@ -9,15 +9,16 @@ from attacks.small_lab import OPEN, notebook, write_lab
 
 from hapticlab.cli import main
 from hapticlab.device.progress import progress_bar
-from hapticlab.grade_commands import _tell
+from hapticlab.grade_commands import _tell_walls
 from hapticlab.grading.assignment import find_assignment
+from hapticlab.grading.bench import Bench, Reply, Task, as_json
 from hapticlab.grading.cluster import ClusterWorkers
 from hapticlab.grading.grade import refused
 from hapticlab.grading.journal import Journal, key_of
 from hapticlab.grading.limits import Limits
-from hapticlab.grading.run import Graded, _Run
+from hapticlab.grading.run import _Run
+from hapticlab.grading.starter import Walls
 from hapticlab.grading.submission import Submission, find_submissions, read
-from hapticlab.grading.workers import Bench, Reply, Task, as_json
 
 INSTRUCTOR = Path(__file__).parents[1] / "instructor"
 
@@ -94,7 +95,7 @@ def test_a_worker_hides_what_this_computer_hides(course, tmp_path):
     assert set(json.loads(crew._setup)["hidden"]) == {*hidden, str(course.answers)}
 
 
-def test_why_there_are_no_better_walls_is_told(capsys):
-    _tell(Graded((), "none", (), 3, 0.0, refused={"namespaces": "unshare: Operation not permitted"}), None)
+def test_what_walls_leave_open_is_told(capsys):
+    _tell_walls(Walls("none", {"namespaces": "unshare: Operation not permitted"}, "nothing hides files"))
     told = capsys.readouterr().err
-    assert "which runs with your rights" in told and "no namespaces here: unshare: Operation not permitted" in told
+    assert "warning: nothing hides files" in told and "no namespaces here: unshare: Operation not permitted" in told

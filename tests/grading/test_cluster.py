@@ -51,7 +51,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_bytes(here, tmp_path):
     with here():
         alone = run(*given, workers=1)
     assert [report.to_json() for report in graded.reports] == [report.to_json() for report in alone.reports]
-    assert graded.level == alone.level and graded.processor > 0
+    assert graded.walls == alone.walls and graded.processor > 0
 
 
 def test_an_address_where_nobody_answers_is_told(tmp_path, monkeypatch):

@@ -137,7 +137,9 @@ def test_a_limit_of_time_counts_only_in_the_last_turn(assignment, starter):
 SPOILERS = {
     "later": {"force": "def force(x, k):\n    globals()['why'] = 'a'\n    return k * (x - 0.01) if x >= 0.01 else 0.0"},
     "earlier": {"forces": "def forces(x, k):\n    globals()['force'] = None\n    return k * x"},
-    "later, by its end": {"force": "def force(x, k):\n    globals()['forces'] = lambda x, k: __import__('os')._exit(1)\n    return 9.0"},
+    "later, by its end": {
+        "force": "import os\ndef force(x, k):\n    globals()['forces'] = lambda x, k: os._exit(1)\n    return 9.0",
+    },
     "later, and is wrong itself": {"energy": "def energy(x, k):\n    globals()['forces'] = lambda x, k: -k * x\n    return 0.0"},
     "each other": {
         "force": "def force(x, k):\n    globals()['forces'] = len\n    return -1.0",

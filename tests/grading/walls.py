@@ -155,4 +155,4 @@ if __name__ == "__main__":
             said = {"refused": str(refusal)}
     paths[0].chmod(0o600)
     with start(level, hidden=paths[:1] if "landlock" in without else paths) as starter:
-        print(json.dumps({"level": starter.level} | said | starter.refused | tried(starter, paths)))
+        print(json.dumps({"level": starter.level} | said | starter.walls.refused | tried(starter, paths)))

@@ -62,8 +62,8 @@ CLONE, THREAD, NEW_NAMESPACES = (56, 220), 0x10000, 0x7E020000
 CLONE3 = 435
 #: shared memory without a file is still there when a process has let go of its pages, and no count of them finds it
 MMAP, SHARED, ANONYMOUS = (9, 222), 1, 0x20
-#: (numbers, which argument, values that are allowed); fcntl(2): no leases, locks and signals, no larger pipes; ioctl(2): what open()
-#: asks; prctl(2): names of threads and of memory
+#: (numbers, which argument, values that are allowed); fcntl(2): no leases, locks and signals, no larger pipes; ioctl(2): what
+#: open() asks; prctl(2): names of threads and of memory
 BY_ARGUMENT = (
     ((72, 25), 1, (0, 1, 2, 3, 4, 1030)),
     ((16, 29), 1, (0x5401, 0x5413, 0x541B, 0x5421, 0x5450, 0x5451)),

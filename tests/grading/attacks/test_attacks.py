@@ -53,7 +53,7 @@ def test_the_corpus_is_what_it_says():
 
 
 def test_there_are_walls(graded):
-    assert graded.level == "namespaces"
+    assert graded.walls.level == "namespaces"
 
 
 def test_everybody_is_graded(reports):

@@ -20,7 +20,7 @@ def test_a_few_earn_what_is_honest_of_them_and_reach_nothing(here, tmp_path):
     with Arena(tmp_path, FEW) as arena, here():
         graded = arena.graded(workers=1)
         found = arena.by_attack(graded)
-        assert graded.level == "namespaces" and set(found) == {one.name for one in FEW}
+        assert graded.walls.level == "namespaces" and set(found) == {one.name for one in FEW}
         for one in FEW:
             check(one, found[one.name])
         assert not arena.reached()

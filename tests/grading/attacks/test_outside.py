@@ -30,18 +30,16 @@ def seen(request):
     if not group.place:
         pytest.skip("no memory group of version 1 can be made here")
     group.place.rmdir()
-    return request.param, {row["end"]: row for row in measured(request.param, MEMORY + FILES, False) if "end" in row}
+    return {row["end"]: row for row in measured(request.param, MEMORY + FILES, False) if "end" in row}
 
 
 @pytest.mark.parametrize("name", MEMORY)
 def test_memory_keeps_to_its_bound(seen, name):
-    level, rows = seen
-    assert rows[name]["memory"] <= LIMITS.memory / 2**20 + BESIDE
+    assert seen[name]["memory"] <= LIMITS.memory / 2**20 + BESIDE
 
 
 @pytest.mark.parametrize("name", MEMORY + FILES)
 def test_nothing_is_left_and_the_next_is_graded(seen, name):
-    level, rows = seen
-    row = rows[name]
+    row = seen[name]
     assert not row["processes"] and not row["files"] and not row.get("grader")
     assert row["honest"] and not row["gained"] and not row["missing"]

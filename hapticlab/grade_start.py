@@ -1,0 +1,13 @@
+"""`hapticlab grade` begins here: what students' sessions need is loaded while this process loads what grades them."""
+
+import sys
+from contextlib import nullcontext
+from importlib import import_module
+
+from .grading.preloaded import Preloaded
+
+
+def grade(parser, options):
+    """Grade submissions; see :func:`hapticlab.grade_commands.grade`."""
+    with Preloaded() if sys.platform == "linux" else nullcontext() as preloaded:
+        return import_module("hapticlab.grade_commands").grade(parser, options, preloaded)
