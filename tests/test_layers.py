@@ -13,7 +13,7 @@ PACKAGE = Path(hapticlab.__file__).parent
 LAYERS = (
     "errors", "records", "drawing", "scene", "library", "compiler", "device", "limits", "rendering", "analysis",
     "measurement", "identification", "experiments", "course", "grading", "widgets", "exits", "options", "scenefile",
-    "board_commands", "lab_commands", "grade_commands", "assign_commands", "demo", "scene_commands", "cli",
+    "board_commands", "lab_commands", "grade_commands", "grade_start", "assign_commands", "demo", "scene_commands", "cli",
     "self_test",
 )  # fmt: skip
 # the public names, and `python -m hapticlab`: above every layer; what Jupyter's server loads, which opens nothing else
