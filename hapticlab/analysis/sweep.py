@@ -133,7 +133,7 @@ def sweep(
     axes, fixed, units = _names(scene, values)
     scene = scene(**{name: a for name, a in fixed.items() if name in scene.parameters})
     for end in (np.min, np.max):  # the scene itself refuses what lies outside a parameter's range
-        bound = scene(**{name: float(end(a)) for name, a in axes.items() if name in scene.parameters})
+        bound = scene(**{name: float(end(a)) for name, a in axes.items() if name in own})
     if exact_and_rest(options.get("method"))[0]:
         options["live"] = [name for name in axes if name in own]
     paddle_here = replace(paddle, **{name: a for name, a in fixed.items() if name in PADDLE_AXES})
@@ -199,7 +199,8 @@ def _names(scene, values):
 
 def _in_si(given, unit, name):
     """Return numbers as an array in SI; a text carries its unit, as where a scene is bound."""
-    several = np.ravel(np.asarray(given, object))
+    numbers = isinstance(given, np.ndarray) and given.dtype.kind in "iuf"
+    several = () if numbers else np.ravel(np.asarray(given, object))
     if any(isinstance(one, str) for one in several):
         numbers = np.array([in_si(one, unit, name) for one in several])
         return numbers.reshape(np.shape(given)) if not isinstance(given, str) else numbers[0]

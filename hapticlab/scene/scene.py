@@ -1,7 +1,8 @@
 """A scene: what is felt, as equations. Frozen; calling it binds values."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from copy import copy
+from dataclasses import dataclass, field
 
 import sympy as sp
 
@@ -90,7 +91,9 @@ class Scene:
 
     def __call__(self, /, **values):
         """Return the scene with these parameters bound, each in SI or as a text with its unit."""
-        return replace(self, values={**self.values, **values})
+        known, bound = self.parameters, copy(self)  # the equations are checked already
+        _set(bound, "values", Frozen({**self.values, **{name: _bound(known, name, one) for name, one in values.items()}}))
+        return bound
 
     @property
     def parameters(self):
