@@ -209,19 +209,16 @@ class Writer:
             value = name
         return [*lines, f"store {wide} {value}, ptr {address}, align 8"]
 
-    def address(self, name, base, row):
-        """Return the lines that point ``name`` at this lane of a row."""
-        return [
-            f"{name}.m = mul i64 %stride, {row}",
-            f"{name}.n = add i64 {name}.m, %lane",
-            f"{name} = getelementptr double, ptr {base}, i64 {name}.n",
-        ]
+    def address(self, prefix, base, row):
+        """Return the line that points at this lane of a row, which is a stride on from the row before."""
+        before = f"{prefix}{row - 1}.p, i64 %stride" if row else f"{base}, i64 %lane"
+        return f"{prefix}{row}.p = getelementptr double, ptr {before}"
 
     def load_lanes(self, prefix, channels, base):
         """Read one row of an array a channel."""
         lines = []
         for k, c in enumerate(channels):
-            lines += self.address(f"{prefix}{k}.p", base, k) + self.load(f"{prefix}{k}", c, f"{prefix}{k}.p")
+            lines += [self.address(prefix, base, k), *self.load(f"{prefix}{k}", c, f"{prefix}{k}.p")]
         return lines
 
     def load_sample(self, prefix, channels, row):
@@ -236,7 +233,7 @@ class Writer:
         """Write one row of an array a channel."""
         lines = []
         for k, (c, value) in enumerate(zip(channels, values, strict=True)):
-            lines += self.address(f"{prefix}{k}.p", base, k) + self.store(f"{prefix}{k}", value, c, f"{prefix}{k}.p")
+            lines += [self.address(prefix, base, k), *self.store(f"{prefix}{k}", value, c, f"{prefix}{k}.p")]
         return lines
 
 
