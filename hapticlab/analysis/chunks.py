@@ -2,19 +2,19 @@
 
 import hashlib
 import pickle
-import threading
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..compiler.shared import Shared
 from ..device.link import link, load_linked
 from .grid import Points
 from .measures import METRICS, WithFault
 
 #: lanes and ticks of one call of an engine
 LANES, TICKS = 2048, 2000
-#: programs that a process keeps compiled
-KEPT = 4
+#: what chunks of the latest programs run with: instructions and inputs
+READY = Shared(4)
 #: instructions times ticks times points of a chunk: a few tenths of a second of machine code
 WORK = 8e9
 #: points of a chunk, whatever they cost
@@ -89,14 +89,9 @@ def chunk_size(program, ticks, points, workers):
 
 def _ready(chunk):
     """Return a chunk's program, the engine that runs it and its inputs; kept, so that a process makes them once."""
-    key = chunk.digest, chunk.engine
-    with _MAKING:
-        if key not in _MADE:
-            if len(_MADE) == KEPT:
-                del _MADE[next(iter(_MADE))]  # the oldest: programs come one after the other
-            program = pickle.loads(chunk.program)
-            _MADE[key] = program, load_linked(program, chunk.engine), chunk.points.paddle.inputs(chunk.ticks)
-        return _MADE[key]
 
+    def make():
+        program = pickle.loads(chunk.program)
+        return program, load_linked(program, chunk.engine), chunk.points.paddle.inputs(chunk.ticks)
 
-_MADE, _MAKING = {}, threading.Lock()
+    return READY.get((chunk.digest, chunk.engine), make)

@@ -1,4 +1,4 @@
-"""One scene on many paddles at once, a lane each; programs and machine code are kept, and a second map takes the runs alone."""
+"""One scene on many paddles at once, a lane each; machine code is kept, and a second map takes the runs alone."""
 
 import math
 from dataclasses import replace
@@ -38,7 +38,7 @@ class LaneRuns:
 
     def __init__(self, scene, duration, workers=-1, engine="auto"):
         self.scene, self.duration, self.workers, self.engine = scene, duration, number_of(workers), engine
-        self._programs, self._loaded, self._made = {}, {}, {}
+        self._loaded, self._made = {}, {}
 
     def chatter(self, paddle, columns, start=(0.0, 0.1)):
         """Return the lasting amplitude and the last swings' [m], and where the program faulted.
@@ -115,10 +115,7 @@ class LaneRuns:
         """Return the linked program of a structure of paddle, and the engine that runs it."""
         key = paddle.T, paddle.structure
         if key not in self._loaded:
-            sensed = paddle.T, paddle.velocity
-            if sensed not in self._programs:
-                self._programs[sensed] = paddle.program(self.scene)
-            linked = link(self._programs[sensed], paddle, WithFault(Swings(paddle.T)))
+            linked = link(paddle.program(self.scene), paddle, WithFault(Swings(paddle.T)))
             self._loaded[key] = linked, load_linked(linked, self.engine)
         return self._loaded[key]
 

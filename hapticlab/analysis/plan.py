@@ -34,7 +34,7 @@ class Plan:
     def __init__(self, scene, grid, starts, options, duration, metric, engine):
         self.scene, self.grid, self.starts, self.options = scene, grid, starts, options
         self.duration, self.metric, self.engine = duration, metric, engine
-        self.groups, self.digests, self.sent, self._compiled = grid.groups(), {}, {}, (None, None)
+        self.groups, self.digests, self.sent = grid.groups(), {}, {}
         for points in self.groups:
             ticks, T = points.paddle.ticks(duration), points.paddle.T
             if ticks > MOST_TICKS:
@@ -113,22 +113,18 @@ class Plan:
         )
 
     def _program(self, points):
-        """Return the program of the scene for a group; groups that follow one another often share it."""
-        paddle = points.paddle
-        key = paddle.T, paddle.velocity, tuple(points.lengths.items())
-        if key != self._compiled[0]:
-            try:
-                program = paddle.program(self.scene(**points.lengths), **self.options)
-            except ProgramError as error:
-                self._explain(error)
-                raise
-            for channel in program.parameters:  # a program may take less than a scene
-                if channel.name in self.grid.axes:
-                    swept = Parameter(channel.name, channel.unit, channel.low, channel.high)
-                    for end in (np.min, np.max):
-                        swept.check(float(end(self.grid.axes[channel.name])))
-            self._compiled = key, program
-        return self._compiled[1]
+        """Return the program of the scene for a group."""
+        try:
+            program = points.paddle.program(self.scene(**points.lengths) if points.lengths else self.scene, **self.options)
+        except ProgramError as error:
+            self._explain(error)
+            raise
+        for channel in program.parameters:  # a program may take less than a scene
+            if channel.name in self.grid.axes:
+                swept = Parameter(channel.name, channel.unit, channel.low, channel.high)
+                for end in (np.min, np.max):
+                    swept.check(float(end(self.grid.axes[channel.name])))
+        return program
 
 
 def _shown(given):

@@ -80,6 +80,7 @@ Fig. 23.7 of the chapter has three processes, each with its model. Here they are
 **Program -> numbers.** ``engine`` chooses one of three that give the same bits: ``interpreter`` (the reference),
 ``llvm`` (``llvm_emit``, ``side_by_side``; ``branches`` around what ``skipped`` finds that only one case needs), and the
 board's own code on this computer, ``vm`` and ``native`` (``toolchain``). The functions that all share are in
-``elementary``. For a board ``bytecode`` writes the program,
-``cheaders`` its tables; ``cost`` (``angles``, ``traffic``) says what it takes there, ``fit`` what would.
+``elementary``. A scene that was compiled is not compiled again, nor is a program: ``shared`` keeps both. For a board
+``bytecode`` writes the program, ``cheaders`` its tables; ``cost`` (``angles``, ``traffic``) says what it takes there,
+``fit`` what would.
 """

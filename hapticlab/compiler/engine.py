@@ -6,10 +6,13 @@ import numpy as np
 
 from ..errors import EngineMissingError, ProgramError
 from .interpreter import Interpreter
-from .llvm import Llvm, llvmlite_is_ready
+from .llvm import Llvm, llvmlite_is_ready, open_llvmlite
+from .shared import Shared, instructions
 from .vm import Vm
 
 ENGINES = ("auto", "llvm", "interpreter", "vm")
+#: programs that are kept ready to run: instructions, and 600 for the 0.8 MB that llvm takes for the smallest; 1.4 kB each
+KERNELS = Shared(24_000, lambda kernel: 600 + kernel.program.size)
 
 
 class Run(tuple):
@@ -143,6 +146,8 @@ def load(program, engine="auto"):
     engine : {"auto", "llvm", "interpreter", "vm"}
         "auto" is llvm where llvmlite is installed, else the interpreter. "vm" is the firmware's C machine built for this
         computer; it takes float32 programs.
+
+    Programs of the same instructions share the machine code, as :mod:`hapticlab.compiler.shared` says.
     """
     if engine not in ENGINES:
         raise ProgramError(f"engine = {engine!r}; needs one of {', '.join(ENGINES)}")
@@ -151,4 +156,8 @@ def load(program, engine="auto"):
         engine = "llvm" if llvmlite_is_ready() else "interpreter"
     if engine not in kernels:
         raise EngineMissingError(engine)
-    return Engine(program, kernels[engine](program))
+    if engine == "llvm":
+        open_llvmlite()
+    program.check_interface()
+    key = None if engine == "vm" else (engine, instructions(program))  # a vm remembers the faults of its last run
+    return Engine(program, KERNELS.get(key, lambda: kernels[engine](program)))

@@ -7,12 +7,14 @@ states. Programs are built by tracing (:mod:`hapticlab.compiler.trace`) and are 
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from numbers import Real
 
 import numpy as np
 
 from ..errors import ProgramError
+from ..scene.frozen import Frozen
 
 #: operation -> operand kinds, result kind. R: real (f32 or f64, all alike), B: bool, I: i32.
 OPERATIONS = {
@@ -85,11 +87,11 @@ class Program:
         Sampling period [s].
     values : tuple of float
         One value per parameter, in SI; nan where none is bound yet.
-    facts : dict
+    facts : dict, read-only
         How it was made (method, substeps, hold, velocity), for the listing and for whoever runs it.
     notes : tuple of str
         What was left out and why.
-    limits : dict name -> (low, value, high)
+    limits : dict name -> (low, value, high), read-only
         Between what a live parameter keeps a step stable, the others as bound, and the value it was bound to.
     """
 
@@ -102,13 +104,24 @@ class Program:
     tick: Block
     T: float
     values: tuple[float, ...] = ()
-    facts: dict = field(default_factory=dict, hash=False)
+    facts: Mapping = field(default_factory=Frozen, hash=False)
     notes: tuple[str, ...] = ()
-    limits: dict = field(default_factory=dict, hash=False)
+    limits: Mapping = field(default_factory=Frozen, hash=False)
+
+    def __post_init__(self):
+        # whoever compiles the same scene gets this very program: what one of them could change, all would see
+        for name in ("facts", "limits"):
+            given = getattr(self, name)
+            object.__setattr__(self, name, given if isinstance(given, Frozen) else Frozen(given))
 
     def __len__(self):
         """Count the instructions of one tick."""
         return len(self.tick)
+
+    @property
+    def size(self):
+        """The number of all instructions, of both blocks and leaves too: what a program takes in memory."""
+        return len(self.init.instructions) + len(self.tick.instructions)
 
     @property
     def types(self):
@@ -128,10 +141,28 @@ class Program:
         Traceback (most recent call last):
         hapticlab.errors.ProgramError: p, tick, instruction 1 (sqrt): operand 1 is not an earlier result
         """
-        _verify_interface(self)
+        self.check_interface()
         for name, block in (("init", self.init), ("tick", self.tick)):
             _verify_block(self, name, block)
         return self
+
+    def check_interface(self):
+        """Raise ProgramError where the channels, their values or T do not fit together; see :meth:`verify`."""
+        name = self.name
+        if len(self.values) != len(self.parameters):
+            raise ProgramError(f"{name}: {len(self.parameters)} parameters but {len(self.values)} values")
+        for channel, value in zip(self.parameters, self.values, strict=True):
+            if not isinstance(value, Real) or isinstance(value, bool):
+                raise ProgramError(f"{name}: {channel.name} = {value!r}; needs a number, nan where none is bound yet")
+        if not (isinstance(self.T, Real) and math.isfinite(self.T) and self.T > 0):
+            raise ProgramError(f"{name}: T = {self.T!r} s; a sampling period needs a finite T > 0")
+        for channel in (*self.inputs, *self.parameters, *self.states, *self.outputs):
+            if channel.type not in TYPES:
+                raise ProgramError(f"{name}: {channel.name} is of type {channel.type!r}; needs one of {', '.join(TYPES)}")
+        names = [channel.name for channel in self.outputs]
+        for twice in names:
+            if names.count(twice) > 1:
+                raise ProgramError(f"{name}: {names.count(twice)} outputs are called {twice}; give each a name of its own")
 
     def __str__(self):
         from_leaf = {"param": self.parameters, "input": self.inputs, "state": self.states}
@@ -147,24 +178,6 @@ class Program:
         for name, block in (("init", self.init), ("tick", self.tick)):
             lines += [f"{name}:", *_list_block(block, from_leaf, self)]
         return "\n".join(lines + [f"note: {note}" for note in self.notes])
-
-
-def _verify_interface(program):
-    name = program.name
-    if len(program.values) != len(program.parameters):
-        raise ProgramError(f"{name}: {len(program.parameters)} parameters but {len(program.values)} values")
-    for channel, value in zip(program.parameters, program.values, strict=True):
-        if not isinstance(value, Real) or isinstance(value, bool):
-            raise ProgramError(f"{name}: {channel.name} = {value!r}; needs a number, nan where none is bound yet")
-    if not (isinstance(program.T, Real) and math.isfinite(program.T) and program.T > 0):
-        raise ProgramError(f"{name}: T = {program.T!r} s; a sampling period needs a finite T > 0")
-    for channel in (*program.inputs, *program.parameters, *program.states, *program.outputs):
-        if channel.type not in TYPES:
-            raise ProgramError(f"{name}: {channel.name} is of type {channel.type!r}; needs one of {', '.join(TYPES)}")
-    names = [channel.name for channel in program.outputs]
-    for twice in names:
-        if names.count(twice) > 1:
-            raise ProgramError(f"{name}: {names.count(twice)} outputs are called {twice}; give each a name of its own")
 
 
 def _verify_block(program, name, block):

@@ -2,7 +2,7 @@
 
 import ctypes
 import functools
-import threading
+import math
 import weakref
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import EngineMissingError
 from .elementary import expand
 from .llvm_emit import emit
+from .shared import Shared
 
 #: Lanes stepped together in a program of at most so many instructions; 8 in a longer one. Several vectors a value hide
 #: the latency of a short program, a long one runs out of registers. Measured with AVX-512, seconds for 1e7 lane-ticks at 8,
@@ -26,10 +27,8 @@ class Llvm:
     name = "llvm"
 
     def __init__(self, program):
-        _open_llvmlite()
         self.program = program.verify()
-        self._compiled = {}
-        self._lock = threading.Lock()
+        self._compiled = Shared(math.inf)
 
     def run(self, ticks, inputs, parameters, states=None, every=1):
         lanes = parameters.shape[1]
@@ -65,22 +64,20 @@ class Llvm:
         return expand(self.program)
 
     def _function(self, width):
-        with self._lock:
-            if width not in self._compiled:
-                self._compiled[width] = _compile(emit(self.program if width == 1 else self._expanded, width))
-            return self._compiled[width]
+        return self._compiled.get(width, lambda: _compile(emit(self.program if width == 1 else self._expanded, width)))
 
 
 def llvmlite_is_ready():
     """Tell whether this machine has a working llvmlite."""
     try:
-        _open_llvmlite()
+        open_llvmlite()
     except EngineMissingError:
         return False
     return True
 
 
-def _open_llvmlite():
+def open_llvmlite():
+    """Return llvmlite's binding, ready to compile; EngineMissingError says what to install."""
     try:
         from llvmlite import binding
     except (ImportError, OSError) as missing:  # OSError: installed, but its library does not load here
@@ -105,7 +102,7 @@ def _context(binding):
 
 def _compile(text):
     """Return the function of a text as machine code, which lives as long as the function."""
-    binding = _open_llvmlite()
+    binding = open_llvmlite()
     target = binding.Target.from_default_triple()
     machine = target.create_target_machine(
         cpu=binding.get_host_cpu_name(), features=binding.get_host_cpu_features().flatten(), opt=2, jit=True

@@ -14,6 +14,10 @@ from .methods import METHODS
 from .modes import excluded, rests_on
 from .options import choice, live_names, period, steps, unusual
 from .pairs import Contacts
+from .shared import Shared, content
+
+#: compiled scenes that are kept: instructions, of which each takes 0.4 kB, and as many again for what else a program has
+PROGRAMS = Shared(60_000, lambda program: 200 + program.size)
 
 
 def compile(
@@ -70,7 +74,8 @@ def compile(
     Returns
     -------
     Program
-        ``len(program)`` is its number of instructions per tick; printing it lists them.
+        ``len(program)`` is its number of instructions per tick; printing it lists them. The same scene with the same
+        options gives the same object again, as :mod:`hapticlab.compiler.shared` says.
 
     Raises
     ------
@@ -86,7 +91,13 @@ def compile(
     """
     if not isinstance(scene, Scene):
         raise SceneError(no_scene(scene, "write hl.compile(hl.Scene(force=...), T=1e-3)"))
-    return lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at)
+    options = method, T, substeps, hold, dtype, velocity, live, force_at
+    return PROGRAMS.get(_key(scene, options), lambda: lowered(scene, *options))
+
+
+def _key(scene, options):
+    """Return what a program depends on: all that the scene holds, and the options as they were given."""
+    return content(type(scene), {**vars(scene), "_parameters": scene.parameters}, options)
 
 
 def lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at, undecided=()):

@@ -11,12 +11,13 @@ where one is unstable all shrink.
 
 import math
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 
+from ..scene.frozen import Frozen
 from ..scene.symbols import delay, lag_of, n
 from .advance import Switched, Taylor
+from .shared import Shared
 from .stable_values import SLOW, SMALL, SMALL_MOTIONS, StableValues
 
 #: states of a motion whose limits are looked for, and places between limits
@@ -35,7 +36,7 @@ UNKNOWN = "whether its steps are stable is not looked at: "
 NEAR = 1e2
 
 
-class Limits(dict):
+class Limits(Frozen):
     """name -> (low, value, high) of live parameters; and ``steps``, which tell of any values, None once it was pickled.
 
     Parameters
@@ -47,15 +48,21 @@ class Limits(dict):
 
     def __init__(self, found=(), lowering=None):
         super().__init__(found)
-        self.lowering = lowering
+        self.lowering, self._made = lowering, Shared(math.inf)
 
-    @cached_property
+    @property
     def steps(self):
         """The :class:`StableValues`, or None."""
-        return None if self.lowering is None else StableValues(self.lowering)
+        return None if self.lowering is None else self._made.get("steps", lambda: StableValues(self.lowering))
+
+    def found(self, limits):
+        """Return these limits of the same steps."""
+        more = Limits(limits, self.lowering)
+        more._made = self._made
+        return more
 
     def __reduce__(self):
-        return dict, (_apart(self.steps, self),)
+        return Frozen, (_apart(self.steps, self),)
 
 
 def kept_stable(program, lowering):
@@ -80,10 +87,12 @@ def kept_stable(program, lowering):
         unbound = ", ".join(name for name in steps.live if not math.isfinite(values.get(name, math.nan)))
         note = f"{UNKNOWN}{unbound} has no value; it is looked at when it is set"
         return replace(program, limits=limits, notes=(*program.notes, note))
-    program = replace(_told(program, steps), limits=limits if steps.live else Limits())
+    limits = limits if steps.live else Limits()
+    program = replace(_told(program, steps), limits=limits)
     if program.facts.get("doubles_s", math.inf) < SLOW:
         return program
-    limits.update(_limits(program, steps))
+    limits = limits.found(_limits(program, steps))
+    program = replace(program, limits=limits)
     near = {(name, side): end for name, (low, bound, high) in limits.items() for side, end in ((0, low), (1, high))
             if math.isfinite(end) and 1 / NEAR < abs(end / (bound or end)) < NEAR}  # fmt: skip
     units = {c.name: c.unit for c in program.parameters}

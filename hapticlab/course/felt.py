@@ -7,6 +7,8 @@ from ..scene.scene import check_scene
 
 #: what may be given beside the motion, as hl.compile takes it
 OPTIONS = ("method", "substeps", "hold", "force_at")
+#: samples times instructions, up to which interpreting takes less time than compiling to machine code, with the same bits
+FEW = 4000
 
 
 def felt(scene, *, x, v=None, T=1e-3, values=None, channels=None, **options):
@@ -51,7 +53,8 @@ def felt(scene, *, x, v=None, T=1e-3, values=None, channels=None, **options):
     program = compile(bound, T=T, dtype="float64", velocity=velocity, live=(), **options)
     motion = {"x": x, "v": v}
     rows = np.array([np.asarray(motion[c.name], float) for c in program.inputs]).T.reshape(len(x), len(program.inputs))
-    outputs = load(program).run(len(x), rows).outputs[:, :, 0]
+    engine = "interpreter" if len(x) * program.size <= FEW else "auto"
+    outputs = load(program, engine).run(len(x), rows).outputs[:, :, 0]
     named = dict(zip((c.name for c in program.outputs), outputs.T, strict=True))
     if channels is None:
         return named["F"]

@@ -4,14 +4,18 @@ Per tick: sense, run the scene, limit the force, apply it with its delay, advanc
 precision; everything around it is f64.
 """
 
+import math
 from dataclasses import replace
 
 from ..compiler.engine import load
 from ..compiler.ir import Channel, Program
+from ..compiler.shared import Shared, content, instructions
 from ..compiler.trace import Builder, cast, equal, floor, select
 from ..errors import PaddleError
 from .unused import drop_unused_states
 
+#: closed loops that are kept, weighed as :data:`hapticlab.compiler.lower.PROGRAMS` are
+LINKED = Shared(60_000, lambda program: 200 + program.size)
 #: largest finite numbers: |a| <= LARGEST is false for nan and for both infinities
 LARGEST = {"f32": 3.4028234663852886e38, "f64": 1.7976931348623157e308}
 
@@ -58,11 +62,26 @@ def link(program, paddle, measure=None):
     >>> [c.name for c in linked.outputs], [c.name for c in linked.parameters][:2]
     (['x', 'v', 'F', 'fault'], ['k', 'plant.phi_xv'])
     """
-    loop = _Loop(paddle.accept(program), paddle, measure)
+    paddle.accept(program)
+    channels = program.inputs, program.parameters, program.states, program.outputs
+    of_measure = content(measure)
+    key = of_measure and (instructions(program), content(channels, program.T, paddle.structure), of_measure)
+    return replace(
+        LINKED.get(key, lambda: _linked(program, paddle, measure)),
+        name=f"{program.name} on a simulated paddle",
+        values=(*program.values, *paddle.plant_values()),
+        facts={**program.facts, "paddle": "simulated"},
+        notes=program.notes,
+    )
+
+
+def _linked(program, paddle, measure):
+    """Return the closed loop of all paddles of one structure."""
+    loop = _Loop(program, paddle, measure)
     init = loop.trace_init()
     tick = loop.trace_tick()
     linked = Program(
-        name=f"{program.name} on a simulated paddle",
+        name=program.name,
         inputs=loop.inputs,
         parameters=loop.parameters,
         states=tuple(loop.states.values()),
@@ -70,9 +89,7 @@ def link(program, paddle, measure=None):
         init=init,
         tick=tick,
         T=program.T,
-        values=(*program.values, *paddle.plant_values()),
-        facts={**program.facts, "paddle": "simulated"},
-        notes=program.notes,
+        values=(math.nan,) * len(loop.parameters),
     )
     return drop_unused_states(linked).verify()
 

@@ -11,6 +11,7 @@ from hapticlab import t, v, x
 from hapticlab.compiler.value_limits import part_of_the_way
 from hapticlab.device.live import check_margin, checked
 from hapticlab.errors import PaddleError, ParameterError
+from hapticlab.scene.frozen import Frozen
 
 z = hl.coordinate("z", unit="m")
 K, B, m = hl.parameters("K B m", units="N/m N*s/m kg", values=(500, 0.0, 0.05))
@@ -60,7 +61,7 @@ def test_what_moves_away_from_its_limit_makes_no_room():
 
 def test_a_pickled_program_goes_by_parts():
     known = pickle.loads(pickle.dumps(program()))
-    assert type(known.limits) is dict and known.limits == program().limits
+    assert type(known.limits) is Frozen and known.limits == program().limits
     with pytest.raises(ParameterError, match=r"K = 1.5e\+04 \(57 %\), m = 0.001667 \(57 %\): .* add up to 11[34] %"):
         checked(known, {"K": 15_000, "m": 0.05 / 30})
     with pytest.raises(ParameterError, match=r"K = 210000: a step is stable for K <= "):
