@@ -15,6 +15,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1])]
 
+import again  # noqa: E402
 import footprint  # noqa: E402
 import latency  # noqa: E402
 import maps  # noqa: E402
@@ -26,6 +27,7 @@ from timing import SCALE  # noqa: E402
 
 SECTIONS = {
     "SymPy expression to running code, imports done": latency.rows,
+    "a scene again: compile, run, sweep and check, each against the line that it names": again.rows,
     "one RK4 step, float64; against the C by hand": steps.rows,
     "linear between switches, a tick, float64; against the C by hand": switched.rows,
     "10 000 points, a second at 1 kHz, one core; against the C by hand": sweeps.rows,

@@ -7,8 +7,8 @@ from floors import lanes
 from timing import best_of, imported, row
 
 import hapticlab as hl
-from hapticlab.analysis import chunks
 from hapticlab.analysis.measures import METRICS, WithFault
+from hapticlab.compiler import shared
 from hapticlab.compiler.engine import load
 from hapticlab.device.link import link
 
@@ -56,7 +56,7 @@ def _sweep(paddle, k, metric):
     scene = scenes.wall()(x_o=0.0)
 
     def call():
-        chunks._MADE.clear()
+        shared.clear()
         return hl.sweep(scene, paddle, metric=metric, v=V0, k=k, progress=False).values
 
     return call
