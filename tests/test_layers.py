@@ -1,6 +1,7 @@
 """The architecture: imports point one way, each heavy dependency has one door, nothing grows past a page or two."""
 
 import ast
+import functools
 import subprocess
 import sys
 from pathlib import Path
@@ -107,9 +108,9 @@ def lengths(name, source):
 
 def cycles(graph):
     """Return the modules that can reach themselves."""
-    reach = {name: set(targets) for name, targets in graph.items()}
-    for _ in graph:
-        reach = {name: near | {far for k in near for far in reach.get(k, ())} for name, near in reach.items()}
+    reach, before = {name: set(targets) for name, targets in graph.items()}, None
+    while reach != before:
+        reach, before = {name: near | {far for k in near for far in reach.get(k, ())} for name, near in reach.items()}, reach
     return sorted(name for name, far in reach.items() if name in far)
 
 
@@ -124,6 +125,7 @@ def graph_of(sources):
     return graph
 
 
+@functools.cache
 def sources():
     return {name: (text, (PACKAGE / Path(*name.split("."))).is_dir()) for name, text in modules(PACKAGE)}
 

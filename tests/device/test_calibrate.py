@@ -139,6 +139,7 @@ class TestSign:
     @pytest.mark.parametrize("hand", HANDS)
     @pytest.mark.parametrize(("m", "coulomb"), [(0.03, 0.0), (0.2, 0.2)])
     @pytest.mark.parametrize(("wiring", "verdict"), [(1, "right"), (-1, "wrong")])
+    @pytest.mark.always("-1-wrong-0.03-0.0-*", "1-right-0.2-0.2-flicks")
     def test_positive_work_tells_the_sign(self, hand, m, coulomb, wiring, verdict):
         mechanics = SimulatedPaddle(m=m, b=0.1, T=1e-3, coulomb=coulomb)
         paddle = bench.paddle(store=KNOWN.to_bytes(), wiring=wiring, mechanics=mechanics)
@@ -146,6 +147,7 @@ class TestSign:
         assert measure_sign(paddle, person, seed=3).verdict == verdict
 
     @pytest.mark.parametrize("hand", HANDS)
+    @pytest.mark.always("holds")
     def test_a_motor_without_supply_is_never_right(self, hand):
         paddle = bench.paddle(store=KNOWN.to_bytes(), wiring=0)
         found = check_sign(paddle, bench.Scripted(paddle, HOMING | tugged(HANDS[hand])), seed=5)
@@ -159,6 +161,7 @@ class TestSign:
         assert found.verdict == "unmoved"
         assert "move it 10 to 20 mm" in str(found)
 
+    @pytest.mark.wide
     def test_the_limit_holds_for_a_motor_that_does_nothing(self):
         """Z of thousands of other tosses over the same motion is as wide as the bound says: unit variance, thin tails."""
         paddle = bench.paddle(store=KNOWN.to_bytes(), wiring=0)
@@ -186,6 +189,7 @@ class TestSign:
         assert judge(terms, sides, sides, moved).verdict == "one way"
         assert judge(*np.zeros((4, 0))).verdict == "unmoved"
 
+    @pytest.mark.wide
     def test_a_missing_direction_wire_is_never_right(self):
         """It looks right on one side of the middle, and wrong on the other."""
         for hand in (holding(-0.012, k=200, b=1), holding_either_side()):
@@ -326,6 +330,7 @@ class TestForce:
 
     @pytest.mark.parametrize("coulomb", [0.0, 0.1])
     @pytest.mark.parametrize("side", [1, -1])
+    @pytest.mark.always("1-0.0", "-1-0.1")
     def test_hanging_weights(self, coulomb, side):
         mechanics = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, coulomb=coulomb)
         paddle = bench.paddle(store=CHECKED.to_bytes(), force_full=6.0, mechanics=mechanics)

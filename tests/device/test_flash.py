@@ -173,6 +173,7 @@ def test_another_chip(talk, image):
         (lambda a: a[:-1] + b"\x11", "14 "),  # failed
     ],
 )
+@pytest.mark.always("*-U*", "*-nothing-t")
 def test_an_answer_that_is_none(talk, image, kind, spoil, got):
     peer = Peer()
     peer.change = lambda asked, answer: spoil(answer) if asked == kind else answer
@@ -200,6 +201,7 @@ def test_a_lost_goodbye_is_no_failure(talk, image):
 
 
 @pytest.mark.parametrize("at", [0, 127, 128, 999])
+@pytest.mark.always("127", "128")
 def test_a_wrong_byte_puts_the_board_to_rest(talk, image, at):
     peer = Peer()
 

@@ -119,6 +119,7 @@ def random_case(seed):
 
 
 @pytest.mark.parametrize("seed", range(120))
+@pytest.mark.always("?", "?0")
 def test_against_located_events(seed):
     M, b, k, c, v, x, F, rate, T = random_case(seed)
     paddle = SimulatedPaddle(m=M, b=b, T=T, coulomb=c, hand=Hand(k=k, intent=np.sin))

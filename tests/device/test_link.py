@@ -90,6 +90,7 @@ def test_parameters_and_inputs_are_in_order():
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("given", [{}, {"counts_per_metre": 1e5}, EVERYTHING])
+@pytest.mark.always("given0-*", "given1-*", "given2-llvm")
 def test_lanes_equal_scalar(engine, given):
     """Lanes may differ in the scene's parameters, in mass, damping and start; every bit is that of the scalar run."""
     points = [(150, 0.05, 0.1, 0.0), (900, 0.07, 0.3, -0.2), (40, 0.03, 0.0, 0.4)]
@@ -106,6 +107,7 @@ def test_lanes_equal_scalar(engine, given):
 
 @pytest.mark.skipif("llvm" not in ENGINES, reason="llvmlite is not installed")
 @pytest.mark.parametrize("given", [{}, {"counts_per_metre": 1e5, "noise": 1e-5}])
+@pytest.mark.always("given1")
 def test_engines_give_the_same_bits(given):
     coupler = k * (x(t) - z) + B * (v(t) - z.diff(t))
     mass = Scene(force=coupler, eom=[sp.Eq(m * z.diff(t, 2), coupler)], watch=[z])
@@ -134,6 +136,7 @@ class PortEnergy:
 
 
 @pytest.mark.parametrize("delay", [0.0, 1e-3, 1.3e-3])
+@pytest.mark.always("0.0")
 def test_measure_sees_what_the_traces_show(delay):
     paddle = SimulatedPaddle(**{**EVERYTHING, "delay": delay})
     program = compile(WALL(k=150, x_o=0.001), T=1e-3, dtype="float64")

@@ -76,6 +76,7 @@ def test_a_scene_that_could_be_late_is_not_kept():
         assert "both stops" in paddle.keep(scene)
 
 
+@pytest.mark.wide
 def test_too_large_for_the_store_is_the_boards_word():
     past = sum(hl.x(hl.n - j) / (j + 1) for j in range(700))  # 700 states: 5 kB of moves alone
     with hl.connect("sim://hapkit") as paddle, pytest.raises(LinkError, match="TOO_LARGE"):

@@ -144,6 +144,7 @@ def test_answers_without_an_error_leave_the_threshold_open_in_between():
 
 
 @pytest.mark.parametrize("sets", [20, pytest.param(400, marks=pytest.mark.slow)])
+@pytest.mark.wide
 def test_intervals_cover_threshold_and_slope_at_forty_trials_a_level(sets):
     """Seven levels of 40 trials: 95 % of sets, where percentiles of a bootstrap hold the slope in 88 %."""
     truth, levels, hits = Psychometric(0.2, 1.0), np.geomspace(0.05, 0.8, 7), np.zeros(2)

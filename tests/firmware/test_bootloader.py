@@ -80,6 +80,7 @@ def stands_still(board):
 
 
 @pytest.mark.parametrize(("kind", "size"), [("optiboot", 2000), ("optiboot", 2048), ("ATmegaBOOT", 2000)])
+@pytest.mark.always("optiboot-2048")
 def test_the_image_is_in_flash_and_runs(connect, tmp_path, kind, size):
     """Sizes with and without a last page that is part full; the board talked at another rate before."""
     board, start = connect(kind), 0.1 if kind == "optiboot" else 2  # s; ATmegaBOOT waits for more to come
@@ -97,6 +98,7 @@ def test_the_image_is_in_flash_and_runs(connect, tmp_path, kind, size):
     assert str(done).startswith(f"new.hex: {size} bytes written to test:// by {kind}") and f"at {rate} baud" in str(done)
 
 
+@pytest.mark.wide
 def test_the_largest_image_ends_below_the_bootloader(connect, tmp_path):
     board = connect()
     bootloader, image = bytes(board.flash[0x7E00:]), random.Random(7).randbytes(0x7E00)
@@ -124,6 +126,7 @@ def test_another_chip_is_refused(connect, tmp_path):
 
 
 @pytest.mark.parametrize("at", [0x0000, 0x0001, 0x0080, 0x0123, 999])
+@pytest.mark.always("0")
 def test_a_byte_that_is_not_as_written(connect, tmp_path, at):
     """One bit of flash flips as the host begins to read its page back."""
 
@@ -147,6 +150,7 @@ def test_a_byte_that_is_not_as_written(connect, tmp_path, at):
 
 
 @pytest.mark.parametrize(("page", "bytes_of_it"), [(2, 0), (2, 70), (5, 1), (8, 132), (9, 0)])
+@pytest.mark.always("5-1")
 def test_a_cut_leaves_a_board_that_stands_still(connect, tmp_path, page, bytes_of_it):
     """The cable is pulled while a page is on its way, with an old program on the board that drives the motor's pins."""
 
@@ -201,6 +205,7 @@ def test_lost_requests_are_asked_again(connect, tmp_path):
     assert heard(board) == {ord("n")}
 
 
+@pytest.mark.wide
 def test_a_board_that_only_runs_its_program(connect, tmp_path):
     """No reset line: the old program talks on, and no bootloader answers."""
 

@@ -67,6 +67,7 @@ def error_of(log, truth):
     return np.abs(np.interp(n[kept] - start, truth.t, truth.F) - log.F[kept]).max()
 
 
+@pytest.mark.wide
 def test_the_chosen_configuration_has_the_error_and_the_load_that_it_promised():
     tolerance, scene = 1e-2, hl.library.mass_spring_damper()
     paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, counts_per_metre=1 / COUNT)

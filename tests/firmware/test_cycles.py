@@ -48,6 +48,7 @@ def awkward_rows(program, count, seed=1):
 
 @pytest.mark.parametrize("hold", ["soh", "zoh"])
 @pytest.mark.parametrize("make", SCENES, ids=lambda make: make.__name__)
+@pytest.mark.always("*-wall-*", "uno-pendulum-zoh")
 def test_five_scenes_take_the_typical_cycles_and_never_more_than_the_bound(make, hold, processor):
     program = compiled(make, hold=hold)
     said = cost(program, processor.board)
@@ -66,6 +67,7 @@ def test_five_scenes_take_the_typical_cycles_and_never_more_than_the_bound(make,
 @needs_uno
 @pytest.mark.parametrize("start", [1.2, 2.9])
 @pytest.mark.parametrize("make", SCENES[2:], ids=lambda make: make.__name__)
+@pytest.mark.always("cart_pole-*")
 def test_typical_cycles_hold_for_wide_angles_too(make, start):
     """A pendulum let go near the top: its sines leave the first eighth of a turn, and take longer."""
     scene, options = make(start)
@@ -117,6 +119,7 @@ def test_bounds_hold_over_20_000_awkward_states(make, processor):
 
 
 @needs_uno
+@pytest.mark.wide
 def test_the_rest_of_a_step_and_a_frame_are_what_the_table_says():
     """The real image, in emulation; a change of the loop asks for a new table."""
     found, committed = measure_step(), tables()["uno"]

@@ -116,6 +116,7 @@ CASES = [
 
 
 @pytest.mark.parametrize("make, every, promise", CASES)
+@pytest.mark.always("wall-1-True")
 def test_at_the_shortest_period_that_fits_no_step_is_late_and_no_sample_lost(make, every, promise):
     scene, options = make()
     T = period_needed(make, every, promise)

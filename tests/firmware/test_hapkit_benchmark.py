@@ -43,6 +43,7 @@ def test_the_sketch_sees_a_velocity_that_is_its_period_over_the_hard_coded_one_t
         assert period > 2.5e-4
 
 
+@pytest.mark.wide
 def test_the_benchmark_runs(hapkit, monkeypatch, tmp_path, capsys):
     ours, theirs = hapkit.measure_firmware(1e-3, 0.3), hapkit.measure_sketch(1, 1, 0.3)
     monkeypatch.setattr(hapkit, "measure", lambda: {"hapticlab 1 ms": ours, "hapticlab": ours, "sketch, line/1": theirs})

@@ -34,6 +34,7 @@ def count():
 """
 
 
+@pytest.mark.wide
 def test_a_cluster_that_loses_a_worker_gives_the_same_bytes(here, tmp_path):
     lab, answers = write_lab(tmp_path)
     drawing = (answers / "hidden.py").read_text().replace("def cases(random):", "def cases(random):\n    count()", 1)

@@ -45,6 +45,7 @@ def test_a_class_is_graded_into_a_table_pages_and_a_code(course, here, tmp_path,
     assert "0 graded, 2 known from before" in capsys.readouterr().err
 
 
+@pytest.mark.wide
 def test_a_solved_lab_earns_all_by_public_cases_with_a_warning(here, tmp_path, capsys):
     lab = next(one for one in find_labs() if one.number == "02")
     path = tmp_path / "ada.ipynb"

@@ -78,6 +78,7 @@ def test_the_zip_is_what_gradescope_asks_for(autograder, tmp_path):
 
 
 @needs_bash
+@pytest.mark.wide
 def test_run_autograder_writes_what_a_submission_earned(autograder):
     numbers = own_numbers(LAB.lab(), INSTRUCTOR / LAB.name, 4, "ada@x.edu")
     assert numbers["K_OWN"] != 500.0, "as everybody has it; take another seed"
@@ -160,6 +161,7 @@ def test_the_entrypoint_writes_what_a_submission_earned(course, tmp_path):
 
 
 @needs_bash
+@pytest.mark.wide
 def test_a_broken_upload_costs_no_attempt(course, tmp_path):
     results = graded_there(course, tmp_path, None)
     assert results["gradable"] is False and "no notebook" in str(results["format_errors"])

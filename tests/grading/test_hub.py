@@ -19,8 +19,9 @@ import pytest
 from handed_in import INSTRUCTOR, ROOT, WRONG, earned, handed_in
 from hub_trial import HUB, LAB, NOTEBOOK, PAGE, blocks, files
 
-from hapticlab.cli import _parser, main
+from hapticlab.cli import main
 from hapticlab.course.notebook import read
+from hapticlab.options import parser
 
 NEEDED = ("unshare", "nsenter", "mount", "ip", "su", "useradd", "chpasswd", "node")
 PROXY = os.environ.get("HAPTICLAB_PROXY", "")
@@ -48,7 +49,7 @@ def commands(tool):
 
 
 def test_every_command_of_hapticlab_is_understood():
-    parsed = [_parser().parse_args(words) for words in commands("hapticlab")]
+    parsed = [parser().parse_args(words) for words in commands("hapticlab")]
     assert [options.command.__name__ for options in parsed] == ["assign", "grade"]
 
 

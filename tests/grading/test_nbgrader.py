@@ -86,6 +86,7 @@ def exported(course):
 
 
 @pytest.mark.parametrize("number", TWO)
+@pytest.mark.wide
 def test_what_is_released_is_the_students_notebook(course, number):
     lab = LABS[number]
     came, given = read(lab.notebook), released(course, lab)
@@ -95,6 +96,7 @@ def test_what_is_released_is_the_students_notebook(course, number):
     assert problems == []
 
 
+@pytest.mark.wide
 def test_marks_equal_what_was_right(course):
     bob = {(number, "bob"): earned(LABS[number], WRONG[number]) for number in TWO}
     assert all(0 < points < 10 for points in bob.values())
@@ -110,6 +112,7 @@ def test_a_solution_passes_every_hidden_test_and_an_open_answer_none():
     assert [problem.cell for problem in notebooks.run(opened, lab.path)[1]] == [number + 1 for number in tests]
 
 
+@pytest.mark.wide
 def test_feedback_says_what_is_wrong(course):
     lab = LABS["02"]
     page = (course / "feedback" / "bob" / lab.name / f"{lab.name}.html").read_text("utf-8")
@@ -124,6 +127,7 @@ def marked(student, number, **points):
     return Report(student, number, "", "", exercises=tuple(made))
 
 
+@pytest.mark.wide
 def test_marks_go_over_those_of_nbgrader(course):
     before = scores(course)
     lost = push(
@@ -141,6 +145,7 @@ def test_marks_go_over_those_of_nbgrader(course):
     assert exported(course) == {**everybody, **before, **changed}
 
 
+@pytest.mark.wide
 def test_what_could_not_be_graded_changes_no_mark(course):
     push([marked("ada", "02", bounce_gain=2.0)], course / "gradebook.db")
     before = scores(course)
@@ -151,6 +156,7 @@ def test_what_could_not_be_graded_changes_no_mark(course):
     assert scores(course) == before and before["02", "ada"] == 2.0
 
 
+@pytest.mark.wide
 def test_grade_puts_its_marks_into_the_gradebook(course, monkeypatch):
     push([marked("bob", "02", two_walls=2.0)], course / "gradebook.db")  # not what bob earned
     monkeypatch.chdir(course)
@@ -159,6 +165,7 @@ def test_grade_puts_its_marks_into_the_gradebook(course, monkeypatch):
     assert scores(course)["02", "bob"] == earned(LABS["02"], WRONG["02"])
 
 
+@pytest.mark.wide
 def test_an_exercise_without_a_cell_is_told(course):
     extra = ExerciseReport("new_one", "value", points=1.0, earned=1.0)
     report = Report("bob", "01", "", "", exercises=(*marked("bob", "01", thousand=1.0).exercises, extra))

@@ -68,6 +68,7 @@ def students_notebook(made, lab):
 
 
 @pytest.mark.parametrize("number", TWO)
+@pytest.mark.wide
 def test_students_get_the_lab_with_otters_checks_and_no_solution(made, number):
     lab = LABS[number]
     came = [text(cell).rstrip() for cell in read(lab.notebook)["cells"]]
@@ -84,6 +85,7 @@ def test_students_get_the_lab_with_otters_checks_and_no_solution(made, number):
     assert problems == []
 
 
+@pytest.mark.wide
 def test_the_zip_installs_this_hapticlab_and_has_a_test_for_each_exercise(made):
     for number in TWO:
         lab = LABS[number]
@@ -97,6 +99,7 @@ def test_the_zip_installs_this_hapticlab_and_has_a_test_for_each_exercise(made):
 
 
 @pytest.mark.parametrize("number, wrong", [pytest.param("01", {}, marks=pytest.mark.slow), ("02", WRONG["02"])])
+@pytest.mark.wide
 def test_otter_gives_what_was_right(otter, made, number, wrong, tmp_path):
     lab = LABS[number]
     write(tmp_path / lab.notebook.name, handed_in(students_notebook(made, lab), lab, wrong))
@@ -121,6 +124,7 @@ def test_questions_of_every_lab_have_their_points():
         assert len({cell["id"] for cell in cells}) == len(cells)
 
 
+@pytest.mark.wide
 def test_a_missing_otter_and_a_failing_solution_are_told(tmp_path, monkeypatch):
     lab = LABS["01"]
     (tmp_path / "solution.py").write_text("spring_damper = None\n")

@@ -109,6 +109,7 @@ def same_bytes(place, number, capsys, *ends):
         assert not arena.reached()
 
 
+@pytest.mark.wide
 def test_a_few_graded_twice_and_once_killed(tmp_path, here, capsys):
     with here():  # but for the run that is killed, which has two workers
         same_bytes(tmp_path, 10, capsys, 0)

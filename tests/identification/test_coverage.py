@@ -31,10 +31,12 @@ def test_spin_down_covers_with_noise():
     check(trials.trial_rows(KINDS["spin-down"], SENSORS["noise 10 um"], 150), 150)
 
 
+@pytest.mark.wide
 def test_steps_cover_with_counts():
     check(trials.trial_rows(KINDS["steps"], SENSORS["noise 5 um, counts of 12.8 um"], 24), 24)
 
 
+@pytest.mark.wide
 def test_a_handle_without_friction_is_fitted_to_the_end():
     """The likelihood has a kink where friction begins, unless it is turned about zero."""
     kind = trials.kinds(b=0.0, coulomb=0.0)["chirp"]
@@ -45,6 +47,7 @@ def test_a_handle_without_friction_is_fitted_to_the_end():
     assert np.any(found.values[2] < 0) and np.any(found.values[2] > 0)
 
 
+@pytest.mark.wide
 def test_of_two_tops_the_higher_is_found_where_friction_takes_half_the_force():
     """From least squares alone all of these end at m = 0.037 kg, b = 1.5 N s/m with residuals of 12 um for 10 um."""
     kind = trials.kinds(coulomb=0.2)["chirp"]

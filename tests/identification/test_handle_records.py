@@ -41,6 +41,7 @@ def test_steps_tell_all_four(found):
     assert found.sigma == pytest.approx(6e-6, rel=0.15)
 
 
+@pytest.mark.wide
 def test_a_chirp_tells_all_four():
     check(hl.chirp_response(run(CHIRP), counts_per_metre=COUNTS), part=0.1, m=0.03, b=0.1, coulomb=0.05, delay=0.7e-3)
 
@@ -81,6 +82,7 @@ def test_a_known_mass_tells_the_force_constant(steps):
     check(found, m=0.03, b=0.1, coulomb=0.05, scale=0.8)
 
 
+@pytest.mark.wide
 def test_a_hanging_weight_tells_the_force_constant():
     weight = 0.01
     loaded = replace(PADDLE, m=PADDLE.m + weight, hand=hl.Hand(push=weight * 9.80665))

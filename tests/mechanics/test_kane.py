@@ -165,6 +165,7 @@ def held_disc():
     return kane, DISC, slip
 
 
+@pytest.mark.wide
 def test_rolling_disc_with_dependent_speeds():
     kane, values, slip = held_disc()
     q, u = list(kane.q), list(kane.u)

@@ -98,6 +98,7 @@ def four_bar():
     return kane, closing, dict(zip([*l, rho], [0.3, 0.1, 0.35, 0.25, 2.0], strict=True))
 
 
+@pytest.mark.wide
 def test_four_bar_linkage():
     kane, closing, values = four_bar()
     q, u = list(kane.q), list(kane.u)

@@ -183,6 +183,7 @@ def test_the_whole_of_a_friction_believed_too_high_runs_away():
 
 
 @quick
+@pytest.mark.wide
 def test_friction_identified_then_cancelled_comes_to_rest_up_to_the_limit_of_its_intervals():
     """The intervals hold the truth here; so 0.99 of the limit rests, and 1.02 of all that is there keeps moving."""
     true = hl.SimulatedPaddle(m=M, b=0.4, T=T, coulomb=0.05, noise=5e-6, force_max=2.0)

@@ -1,0 +1,30 @@
+"""What an installed wheel must hold, run by .ci/run from another folder, with no compiler in reach and no cache."""
+
+import json
+import pathlib
+import sys
+
+import hapticlab
+from hapticlab.compiler import engine, native
+
+package = pathlib.Path(hapticlab.__file__).parent
+assert "site-packages" in str(package), package
+assert list((package / "firmware").rglob("*.c")), "no firmware in the wheel"
+assert (package / "firmware" / "prebuilt" / "uno.hex").is_file(), "no image for the Uno in the wheel"
+assert (package / "examples" / "mass_on_coupler.py").is_file()
+assert not (package.parent / "tests").exists(), "the wheel holds tests"
+assert len(list((package / "labs").glob("[0-9][0-9]_*/[0-9][0-9]_*.ipynb"))) == 11, "labs are missing in the wheel"
+assert not list(package.rglob("solution*")), "the wheel holds solutions"
+assert (package / "grading" / "pages.css").is_file()
+assert {"view.js", "view.css"} <= {file.name for file in (package / "widgets" / "browser").iterdir()}
+assert (pathlib.Path(sys.prefix) / "etc/jupyter/jupyter_server_config.d/hapticlab.json").is_file()
+for bits in (8, 16):
+    assert native.prebuilt(bits), f"no library of {bits}-bit words of these sources in the wheel"
+scene = hapticlab.wall()(k=150, x_o=0.01)
+program = hapticlab.compile(scene, T=1e-3)
+x = hapticlab.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(scene, duration=0.1, v=1.0).x
+vm, reference = (engine.load(program, name).run(len(x), x[:, None], program.values).outputs for name in ("vm", "interpreter"))
+assert (vm == reference).all() and vm.max() > 1, vm.max()
+facts = json.loads(pathlib.Path("facts.json").read_text())
+assert all(hand["within_one_grid_step"] for hand in facts["hands"]), facts["hands"]
+print("wheel: ok")
