@@ -52,7 +52,7 @@ def test_readme_begins_with_the_two_commands():
 
 @pytest.mark.parametrize("ending", ["hapticlab demo", "pytest"])
 def test_ci_runs_what_readme_says(ending):
-    script = (ROOT / ".ci" / "run").read_text("utf-8")
+    script = "".join((ROOT / ".ci" / name).read_text("utf-8") for name in ("prepare", "run"))
     (line,) = re.findall(rf"^\w+=\$\((grep .*{ending}\$.*README.md)\)$", script, re.M)
     found = subprocess.run(shlex.split(line), cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
     assert found in (block.strip() for block in blocks("sh")[:2])
