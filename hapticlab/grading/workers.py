@@ -164,6 +164,7 @@ def _work(connection, bench, zygote):
     """Grade what comes, until the other end is gone: the whole life of a worker."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that began this one
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())
+    os.chdir(os.path.abspath(os.sep))  # away from what was handed in
     if zygote:
         linux.die_with_parent()
         linux.close_all_but(0, 1, 2, connection.fileno(), zygote[0].fileno())

@@ -114,9 +114,9 @@ def test_formats_levels_and_limits_are_those_of_the_package():
     assert first_column("| `kind` |") == ["kind", *JUDGED, *NOTED]
     assert first_column("| `--sandbox` |") == ["--sandbox", *LEVELS]
     limits, words = Limits(), " ".join(PAGE.split())
-    assert f"{limits.seconds:g} s for a cell" in words
-    assert f"{limits.total:g} s in all, {limits.memory // MIB} MiB (`--memory`)" in words
-    assert f"{limits.processes} processes, {limits.scratch // MIB} MiB of files" in words
+    assert f"exercise has {limits.seconds:g} s (`--timeout`), a submission {limits.total:g} s" in words
+    assert f"memory has {limits.memory // MIB} MiB (`--memory`)" in words and limits.processes == 1
+    assert f"files have {limits.scratch // MIB} MiB and may be {limits.files // 1000} {limits.files % 1000:03}" in words
 
 
 def test_lines_fit_a_page():
