@@ -76,6 +76,13 @@ class Preloaded:
             raise ConnectionError("the process that loads for all sessions ended")
         return ours, json.loads(answer)["process"]
 
+    def processor(self):
+        """Return the processor time of this process, its zygotes and their sessions [s], once all zygotes' sockets are closed."""
+        if not self._asked:
+            return 0.0
+        self._control.send(b"{}")
+        return json.loads(self._control.recv(1 << 16) or '{"processor": 0.0}')["processor"]
+
     def close(self):
         """Wait until its zygotes have ended, as each does with its socket, and it with them."""
         self._control.close()

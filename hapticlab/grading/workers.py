@@ -44,7 +44,7 @@ class Workers:
     """
 
     def __init__(self, number, *bench, preloaded=None):
-        self.number, self._bench, self._all, self._preloaded = number, bench, [], preloaded
+        self.number, self._bench, self._all, self._preloaded, self._lent = number, bench, [], preloaded, preloaded
         self.walls, self.seconds = Walls(), 0.0
 
     def __enter__(self):
@@ -67,6 +67,7 @@ class Workers:
         for worker in self._all:
             worker.ended()
         self._all = []
+        self.seconds = self._lent.processor() if self._lent else 0.0  # one's own is waited for, and counted with that
 
     def graded(self, tasks, last):
         """Yield (task, Reply) as each is known."""

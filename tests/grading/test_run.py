@@ -17,6 +17,7 @@ from hapticlab.errors import CourseError
 from hapticlab.grading import formats, workers
 from hapticlab.grading.assignment import find_assignment
 from hapticlab.grading.limits import Limits
+from hapticlab.grading.preloaded import Preloaded
 from hapticlab.grading.run import run
 
 LIMITS = Limits(seconds=2.0)
@@ -74,6 +75,19 @@ def test_two_workers_one_of_which_is_killed_give_the_same_bytes(one, course, tmp
     assert (zed.student, zed.earned) == ("zed", 0.0) and "ended twice" in zed.problem
     again = run([course[0]], course[1], LIMITS, **given)
     assert again.seconds == () and again.reports == tuple(others) and again.walls.level == "", "all is known: no process began"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="sessions are forked from another process")
+def test_the_processor_time_of_sessions_is_counted_and_charged(course, tmp_path):
+    folder, assignment, _ = course
+    (tmp_path / "bob.ipynb").write_bytes(notebook((HONEST | {"force": "def force(x, k):\n    while True: pass"}).values()))
+    with Preloaded() as lent:
+        asleep = run([folder / "ada.ipynb"], assignment, Limits(seconds=1.0), preloaded=lent)
+        burnt = run([tmp_path / "bob.ipynb"], assignment, Limits(seconds=1.0), preloaded=lent)
+    (report,) = burnt.reports
+    assert report.earned == 8.0 and {one.name: one.ended for one in report.exercises}["force"] == "time"
+    # a quarter of the limit the quick way, all of it in the notebook; what the first run took is in the second count too
+    assert 1.25 < burnt.processor - asleep.processor < 10 and asleep.processor > 0.5
 
 
 def test_what_keeps_a_worker_from_beginning_is_said(course):

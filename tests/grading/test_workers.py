@@ -12,8 +12,8 @@ from attacks.small_lab import HONEST, notebook, write_lab
 
 #: modules that Python, this package and what it uses import late or in each process
 SHADOWS = (
-    "multiprocessing", "json", "types", "socket", "resource", "encodings", "site", "sitecustomize", "usercustomize", "numpy", "sympy",
-    "hapticlab", "subprocess", "_bootsubprocess", "runpy", "pickle", "signal", "selectors", "tqdm", "ctypes", "ast",
+    "multiprocessing", "json", "types", "socket", "resource", "encodings", "site", "sitecustomize", "usercustomize", "numpy",
+    "sympy", "hapticlab", "subprocess", "_bootsubprocess", "runpy", "pickle", "signal", "selectors", "tqdm", "ctypes", "ast",
 )  # fmt: skip
 TRAP = "open({mark!r}, 'a').write(__name__ + ' ')\n"
 

@@ -24,7 +24,7 @@ PRELOADED = ("matplotlib.pyplot", "scipy.integrate", SESSION)
 
 
 def main(control):
-    """Load, then fork a zygote for each socket that comes, until the other end is closed.
+    """Load, then fork a zygote for each socket that comes, until the other end is closed; say what all took of processors.
 
     Parameters
     ----------
@@ -36,7 +36,11 @@ def main(control):
     os.umask(0o022)  # in the new root, others pass through the folders it makes
     preload()
     with suppress(ConnectionError):
-        while message := (received := socket.recv_fds(control, 1 << 16, 1))[0]:
+        while (received := socket.recv_fds(control, 1 << 16, 1))[0]:
+            if not received[1]:  # all zygotes end as their graders have
+                wait_for_all(kill=False)
+                control.send(json.dumps({"processor": sum(os.times()[:4])}).encode())
+                continue
             (descriptor,) = received[1]
             child = os.fork()
             if child == 0:
@@ -44,7 +48,7 @@ def main(control):
                 serve(socket.socket(fileno=descriptor))
                 os._exit(0)
             os.close(descriptor)
-            control.send(json.dumps({**json.loads(message), "process": child}).encode())
+            control.send(json.dumps({"process": child}).encode())
     wait_for_all(kill=False)  # each ends as its grader does
 
 
