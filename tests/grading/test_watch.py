@@ -28,7 +28,14 @@ def test_memory_is_counted_whether_shared_or_not(kind):
 
 
 #: computes for so long by its own clock, between two lines that it reads and writes
-WORKS = "import time\nprint(flush=True)\ninput()\nwhile time.process_time() < {}: pass\nprint(time.process_time(), flush=True)\ninput()"
+WORKS = """
+import time
+print(flush=True)
+input()
+while time.process_time() < {}: pass
+print(time.process_time(), flush=True)
+input()
+"""
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
