@@ -3,6 +3,7 @@
 import re
 import statistics
 import sys
+from contextlib import chdir
 from pathlib import Path
 
 from .errors import CourseError
@@ -12,25 +13,62 @@ from .grading.formats.gradescope import GRADER_FAILED
 from .grading.formats.words import clean
 from .grading.gradebook import push
 from .grading.limits import MIB, Limits
-from .grading.pages import write_pages
+from .grading.pages import check_folder, write_pages
+from .grading.places import check_places, check_written
 from .grading.roster import read_roster
 from .grading.run import run
-from .grading.submission import find_submissions, lab_of, read
+from .grading.submission import find_submissions, lab_of, left_aside, read
 
 #: where the cells of a submission say which lab they are of
 CHECKED = re.compile(r"""\bcheck\(\s*['"]([0-9]{2})\.""")
+#: files beside the submissions that are named
+MOST_BESIDE = 20
 #: how often a submission may take the time of a step, beside once for each exercise
 MORE_STEPS = 4
 
 
 def grade(parser, options, preloaded=None):
     """Grade submissions; 1 where some could not be."""
+    for name in ("instructor", "output", "pages", "roster", "gradebook"):
+        path = getattr(options, name)
+        setattr(options, name, Path(path).absolute() if path else None)
+    options.submissions = [Path(path).absolute() for path in options.submissions]
+    if options.lab and not options.lab.isdigit() and Path(options.lab).is_dir():
+        options.lab = Path(options.lab).absolute()
+    try:
+        _check(parser, options)
+    except CourseError as problem:
+        parser.error(str(problem))
+    with chdir(sys.base_prefix):  # away from what students handed in: libraries read settings from the working folder
+        return _grade(options, preloaded)
+
+
+def _check(parser, options):
+    """Refuse what cannot be meant, before anything is read."""
     if options.fresh and not options.output:
         parser.error("--fresh forgets what is beside the results; it needs -o FILE")
     if formats.WRITERS[options.format][1] and not options.roster:
         parser.error(f"{options.format} knows students by its own ids; name a CSV file that it gave out: --roster FILE.csv")
-    if options.gradebook and not Path(options.gradebook).is_file():
+    if options.gradebook and not options.gradebook.is_file():
         parser.error(f"{options.gradebook}: no such file; name the gradebook.db of a course of nbgrader")
+    if options.gradebook and not options.gradebook.read_bytes().startswith(b"SQLite format 3"):
+        parser.error(f"{options.gradebook} is not a database; name the gradebook.db of a course of nbgrader")
+    judging = {"--instructor": options.instructor, "--lab": options.lab if isinstance(options.lab, Path) else None}
+    written = {"-o": options.output, "--pages": options.pages}
+    check_places(options.submissions, judging=judging, written=written, imported=_import_path())
+    check_written(options.output, options.pages, [path for path in (options.roster, options.gradebook) if path])
+    if options.pages:
+        check_folder(options.pages)
+
+
+def _import_path():
+    """Return where Python imports from, or did before `python -m hapticlab` took the working folder away."""
+    started = getattr(sys.modules["__main__"], "__spec__", None)
+    by_module = started is not None and started.name == "hapticlab.__main__" and not sys.flags.safe_path
+    return [*sys.path, ""] if by_module else sys.path
+
+
+def _grade(options, preloaded):
     roster = read_roster(options.roster) if options.roster else None
     lab = options.lab or lab_asked(options.submissions)
     assignment = find_assignment(lab, options.instructor, options.seed, options.personal)
@@ -39,9 +77,10 @@ def grade(parser, options, preloaded=None):
     if roster:  # a roster that fits nobody is told before a class is graded
         roster.match([source.student for source in find_submissions(options.submissions, assignment.folder.name)])
     limits = limits_of(assignment.lab, options.timeout, options.memory * MIB, options.processes)
-    output = Path(options.output) if options.output else None
+    output = options.output
     hidden = (options.roster, options.gradebook, options.pages, options.instructor, output)
     journal = output and output.with_name(f"{output.name}.journal.jsonl")
+    began = bool(journal) and not options.fresh and journal.is_file() and journal.stat().st_size > 0
     try:
         done = run(
             options.submissions, assignment, limits, workers=options.workers, sandbox=options.sandbox, journal=journal,
@@ -51,8 +90,10 @@ def grade(parser, options, preloaded=None):
         again = f"what was graded is in {journal}; the same command again goes on" if journal else "with -o FILE a run can go on"
         _say(again)
         raise
-    _write(options, assignment, done.reports, roster, output)
-    _tell(done, roster)
+    _write(options, assignment, done.reports, roster)
+    if began and done.seconds and not done.known:
+        _say(f"nothing in {journal} was used: lab, seed, answers, limits or version differ; all was graded again")
+    _tell(done, roster, left_aside(options.submissions, assignment.folder.name))
     return 1 if done.failed else 0
 
 
@@ -99,16 +140,17 @@ def lab_asked(paths):
         return found.pop()
 
 
-def _write(options, assignment, reports, roster, output):
+def _write(options, assignment, reports, roster):
     """Write the results in all the ways asked for."""
     text = formats.write(options.format, reports, roster, options.assignment, assignment.folder.name)
-    if output is None:
-        sys.stdout.write(text)
-    else:
-        part = output.with_name(f"{output.name}.part")
-        output.parent.mkdir(parents=True, exist_ok=True)
-        part.write_text(text, "utf-8", newline="")
-        part.replace(output)  # whole, or as it was
+    try:
+        _write_text(text, options.output)
+    except BrokenPipeError:
+        raise
+    except OSError as problem:
+        place = options.output or "the results to the terminal"
+        words = "What was graded is kept; make room and give the same command again" if options.output else "Name a file: -o FILE"
+        raise CourseError(f"cannot write {place}: {problem.strerror}. {words}") from None
     if options.pages:
         write_pages(reports, options.pages, lab=assignment.lab)
     if options.gradebook:
@@ -120,6 +162,20 @@ def _write(options, assignment, reports, roster, output):
         _say(f"pushed marks of {whose} into {options.gradebook}{', but for what is said above' * bool(lost)}")
 
 
+def _write_text(text, output):
+    """Write results to a file, whole or not at all, or to the terminal."""
+    if output is None:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+        return
+    part = output.with_name(f"{output.name}.part")
+    try:
+        part.write_text(text, "utf-8", newline="")
+        part.replace(output)
+    finally:
+        part.unlink(missing_ok=True)
+
+
 def _tell_walls(walls):
     """Say what stands around the students' code, before any of it runs."""
     if walls.weakness:
@@ -128,7 +184,7 @@ def _tell_walls(walls):
         _say(f"no {level} here: {reason}")
 
 
-def _tell(done, roster):
+def _tell(done, roster, beside=()):
     """Say what it cost, who could not be graded, and who handed in nothing."""
     graded = f"{len(done.seconds)} graded, {done.known} known from before"
     if done.seconds:
@@ -146,6 +202,11 @@ def _tell(done, roster):
         for words, names in (("not in the roster", matched.unknown), ("no submission of", matched.missing)):
             if names:
                 _say(f"{words}: {', '.join(names)}")
+    if beside:
+        more = f" and {len(beside) - MOST_BESIDE} more" if len(beside) > MOST_BESIDE else ""
+        _say(f"left aside, as no submission: {', '.join(beside[:MOST_BESIDE])}{more}")
+    number = len(done.reports)
+    _say(f"{number} handed in: {number - len(done.failed)} graded, {len(done.failed)} not graded")
 
 
 def _say(words):

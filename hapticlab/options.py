@@ -22,6 +22,8 @@ TARGETS = ("pc", *(name for name, given in BOARDS.items() if given.hz))
 STEPS = ("stops", "sign", "force")
 SYSTEMS = ("nbgrader", "otter", "gradescope", "prairielearn")
 LEVELS = ("auto", "namespaces", "user", "landlock", "none")
+#: of `hapticlab grade --memory` [MiB]: 16 TiB; systems take no more for a limit, and end each process where they are given more
+MOST_MEMORY = 1 << 24
 
 
 def parser():
@@ -143,7 +145,7 @@ def _add_grade(commands):
     words = f"for a cell, and for an exercise (default: {Limits().seconds:g})"
     made.add_argument("--timeout", type=_amount, default=Limits().seconds, metavar="SECONDS", help=words)
     words = f"for a submission's processes together (default: {Limits().memory // MIB})"
-    made.add_argument("--memory", type=_whole(64, "a number of MiB"), default=Limits().memory // MIB, metavar="MIB", help=words)
+    made.add_argument("--memory", type=_memory, default=Limits().memory // MIB, metavar="MIB", help=words)
     words = "that a submission may have at one time; from 2 on its code may also start programs (default: 1)"
     made.add_argument("--processes", type=_whole(1, "a number of processes"), default=1, metavar="N", help=words)
     made.add_argument("--sandbox", choices=LEVELS, default="auto", help="walls around students' code (default: the best)")
@@ -192,13 +194,20 @@ def _workers(text):
     return text if "://" in text else _whole(1, "a number of processes")(text)
 
 
+def _memory(text):
+    if not text.isdecimal() or not 64 <= int(text) <= MOST_MEMORY:
+        words = f"give a whole number, 64 or greater, and {MOST_MEMORY} at most"
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of MiB; {words}")
+    return int(text)
+
+
 def _amount(text):
     try:
         amount = float(text)
     except ValueError:
         amount = 0.0
     if not 0 < amount < 1e6:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a duration; give a number of seconds greater than 0")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a duration; give a number of seconds greater than 0 and below 1e6")
     return amount
 
 

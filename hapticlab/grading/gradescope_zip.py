@@ -54,7 +54,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/submitted"
 cp -R -P "$root/submission" "$work/submitted/$student"
-{guard}$guard "$python" -m hapticlab grade "$work/submitted/$student" \\
+{guard}$guard "$python" -P -m hapticlab grade "$work/submitted/$student" \\
     --lab "$root/source/labs/{name}" --instructor "$root/source/answers" \\
     --seed {seed} --sandbox auto --workers 1 --fresh --format gradescope -o "$results"
 code=$?

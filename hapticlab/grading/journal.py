@@ -44,13 +44,13 @@ class Journal:
         self.reports = {} if fresh else self._read()
 
     def __enter__(self):
-        self._file = None if self.path is None else self.path.open("ab")
+        self._file = None if self.path is None else self.path.open("ab", buffering=0)
         if self._file:
             self._lock()
             if self._fresh:
                 self._file.truncate(0)
             elif self._file.tell():
-                self._file.write(b"\n")  # what was cut stays a line of its own
+                self._append(b"\n")  # what was cut stays a line of its own
         return self
 
     def _lock(self):
@@ -75,8 +75,16 @@ class Journal:
     def write(self, key, report):
         """Write down a report, at once."""
         if self._file:
-            self._file.write(json.dumps({"key": key, "report": report.to_json()}).encode() + b"\n")
-            self._file.flush()
+            self._append(json.dumps({"key": key, "report": report.to_json()}).encode() + b"\n")
+
+    def _append(self, left):
+        """Write bytes, at once, to the last one."""
+        try:
+            while left:
+                left = left[self._file.write(left) :]
+        except OSError as problem:  # of a disk that is full, without the name of the file
+            words = "The reports before are kept; make room and give the same command again"
+            raise CourseError(f"cannot write {self.path}: {problem.strerror or problem}. {words}") from None
 
     def _read(self):
         """Return the reports that are whole, by their keys; of several the last."""

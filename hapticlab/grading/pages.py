@@ -9,6 +9,8 @@ from .class_page import class_body
 from .page_text import clean, file_name
 from .student_page import student_body
 
+#: near the beginning of every page
+OWN = b"default-src 'none'; style-src 'sha256-"
 STYLE = Path(__file__).with_name("pages.css")
 
 
@@ -57,6 +59,18 @@ def write_pages(reports, folder, *, lab):
     return _written(Path(folder), pages)
 
 
+def check_folder(folder):
+    """Refuse a folder whose class.html is of something else, which would be overwritten.
+
+    Raises
+    ------
+    CourseError
+    """
+    path = Path(folder) / "class.html"
+    if path.is_file() and OWN not in path.read_bytes()[:500]:
+        raise CourseError(f"{path} is not a page of hapticlab's and would be overwritten; name a folder of its own for the pages")
+
+
 def page(title, body, style):
     """Return a whole page, which may load and run nothing: its style is allowed by its hash alone."""
     allowed = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
@@ -70,11 +84,13 @@ def page(title, body, style):
 
 
 def _written(folder, pages):
+    path = folder / "students"
     try:
-        (folder / "students").mkdir(parents=True, exist_ok=True)
+        path.mkdir(parents=True, exist_ok=True)
         for address, text in pages.items():
-            (folder / address).write_text(text, "utf-8", newline="\n")
-    except OSError as problem:
-        why = f"cannot write {problem.filename or folder}: {problem.strerror or problem}"
+            path = folder / address
+            path.write_text(text, "utf-8", newline="\n")
+    except OSError as problem:  # of a disk that is full, without the name of the file
+        why = f"cannot write {problem.filename or path}: {problem.strerror or problem}"
         raise CourseError(f"{why}; name a folder of your own, such as: --pages pages") from None
     return [folder / address for address in pages]

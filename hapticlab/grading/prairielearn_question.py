@@ -43,7 +43,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/submitted"
 cp -R -P "$root/student" "$work/submitted/$variant"
-{guard}$guard python3 -m hapticlab grade "$work/submitted/$variant" \\
+{guard}$guard python3 -P -m hapticlab grade "$work/submitted/$variant" \\
     --lab "$root/tests/labs/{name}" --instructor "$root/tests/answers" \\
     --seed {seed} --sandbox auto --workers 1 --fresh --format prairielearn -o "$results"
 rm -f "$results.journal.jsonl"

@@ -90,3 +90,42 @@ def test_what_is_not_there_is_said(course, capsys):
     assert "no such file or folder" in capsys.readouterr().err
     assert main([*course[1], "--lab", "77"]) == 1
     assert "there is no lab 77" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no disk that is always full")
+def test_a_full_disk_is_told_with_the_name_of_the_results_and_loses_no_report(course, here, tmp_path, capsys):
+    output = tmp_path / "r.json"
+    output.write_text("as it was")
+    (tmp_path / "r.json.part").symlink_to("/dev/full")
+    with here():
+        assert main([*course[1], "--format", "json", "-o", str(output)]) == 1
+        assert f"cannot write {output}: No space left on device. What was graded is kept" in capsys.readouterr().err
+        assert output.read_text() == "as it was"
+        assert main([*course[1], "--format", "json", "-o", str(output)]) == 1
+    assert "0 graded, 2 known from before" in capsys.readouterr().err
+    assert len(json.loads(output.read_text())["reports"]) == 3
+
+
+def test_another_seed_at_a_resumed_run_is_told(course, here, tmp_path, capsys):
+    command = [*course[1], "--format", "csv", "-o", str(tmp_path / "grades.csv")]
+    with here():
+        for seed, told in (("3", False), ("3", False), ("33", True)):
+            assert main([*command, "--seed", seed]) == 1
+            said = capsys.readouterr().err
+            assert ("grades.csv.journal.jsonl was used: lab, seed, answers, limits or version differ" in said) == told
+    assert said.endswith("hapticlab: 3 handed in: 2 graded, 1 not graded\n")
+
+
+def test_what_lies_beside_the_submissions_is_told(course, here, tmp_path, capsys):
+    for name in ("ada.ipynb", "cy.ipynb"):
+        (tmp_path / name).write_bytes((course[0] / "class" / name).read_bytes())
+    for name in ("roster.csv", "notes.md", "cy.pdf", "dan.rar"):
+        (tmp_path / name).write_bytes(b"x")
+    (tmp_path / "eve").mkdir()
+    with here():
+        assert main([course[1][0], str(tmp_path), *course[1][2:]]) == 1
+    told = capsys.readouterr()
+    assert "dan: 0 of 10 points, lab 42 A small wall, dan.rar; could not be graded: dan.rar cannot be unpacked here" in told.out
+    assert "not graded: eve, eve: no notebook is in it; there is nothing" in told.err
+    assert "left aside, as no submission: cy.pdf, notes.md, roster.csv" in told.err
+    assert told.err.endswith("hapticlab: 4 handed in: 1 graded, 3 not graded\n")

@@ -1,6 +1,9 @@
 """Whatever ends a run, and at whatever byte, the reports that were whole are there."""
 
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -70,3 +73,33 @@ def test_a_key_is_of_all_that_a_report_depends_on():
     }
     assert len(keys) == 7
     assert key_of(replace(handed_in, cells=()), assignment, Limits(), "auto") in keys, "cells are those of the digest"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no disk that is always full")
+def test_a_full_disk_is_told_with_the_files_name(tmp_path):
+    path = tmp_path / "r.json.journal.jsonl"
+    path.symlink_to("/dev/full")
+    with pytest.raises(CourseError, match=r"cannot write .*r\.json\.journal\.jsonl: No space left"), Journal(path) as journal:
+        journal.write("1", ADA)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="this system bounds no file")
+def test_a_disk_that_fills_up_keeps_what_was_whole_and_the_next_run_goes_on(tmp_path):
+    path = tmp_path / "j"
+    code = f"""
+import resource, sys
+sys.path.insert(0, {str(Path(__file__).parent)!r})
+from test_journal import ADA, Journal
+with Journal({str(path)!r}) as journal:
+    journal.write("1", ADA)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+    for key in "23456789":
+        journal.write(key, ADA)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
+    assert f"CourseError: cannot write {path}: File too large. The reports before are kept" in done.stderr
+    kept = Journal(path).reports
+    assert 1 <= len(kept) < 8 and path.stat().st_size == 1000
+    with Journal(path) as journal:
+        journal.write("9", BOB)
+    assert Journal(path).reports == {**kept, "9": BOB}

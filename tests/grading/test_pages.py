@@ -5,6 +5,7 @@ import hashlib
 import itertools
 import re
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -292,3 +293,18 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path):
     (tmp_path / "file").write_text("here")
     with pytest.raises(CourseError, match="cannot write .*file.*; name a folder of your own"):
         write_pages([], tmp_path / "file", lab=LAB)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no disk that is always full")
+def test_a_full_disk_is_told_with_the_pages_name(written, tmp_path):
+    (tmp_path / "students").mkdir()
+    name = f"{file_name(written.reports[0].student)}.html"
+    (tmp_path / "students" / name).symlink_to("/dev/full")
+    with pytest.raises(CourseError, match=f"cannot write .*students/{name}: No space left on device; name a folder"):
+        write_pages(written.reports, tmp_path, lab=written.lab)
+
+
+def test_students_whose_names_differ_in_capitals_have_pages_that_no_system_takes_for_one(tmp_path):
+    reports = [Report(name, "02", "Walls", f"{name}.ipynb") for name in ("ada", "Ada", "ADA", "adA", "Zoë", "ZOË", "con", "CON")]
+    paths = write_pages(reports, tmp_path, lab=Lab("02", "Walls", 90, ()))
+    assert len({path.name.casefold() for path in paths}) == len(reports) + 1
