@@ -6,7 +6,7 @@ import pytest
 
 from hapticlab.grading import bench, run
 from hapticlab.grading.bench import Bench, Reply, as_json
-from hapticlab.grading.starter import start
+from hapticlab.grading.starter import Walls, start
 
 
 @pytest.fixture(scope="session")
@@ -58,7 +58,7 @@ class _Here:
     """A crew of one bench in this process; used as :class:`hapticlab.grading.workers.Workers`."""
 
     def __init__(self, number, *given, preloaded=None):
-        self.number, self._bench, self.seconds = 1, Bench(*given), 0.0
+        self.number, self._bench, self.seconds, self.walls = 1, Bench(*given), 0.0, Walls()
 
     def __enter__(self):
         self.walls = self._bench.__enter__().walls
