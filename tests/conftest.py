@@ -33,7 +33,7 @@ def pytest_collection_modifyitems(items):
     for item in items:
         always = item.get_closest_marker("always")
         cases = {(item.function, case) for case in always.args} if always else set()
-        fits = {(function, case) for function, case in cases if fnmatchcase(item.callspec.id, case)}
+        fits = {(function, case) for function, case in cases if fnmatchcase(_case(item), case)}
         asked, met = asked | cases, met | fits
         if always and not fits:
             item.add_marker("wide")
@@ -41,6 +41,10 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.timeout(LONGEST))
     if IN_CI and asked != met:  # elsewhere who asks for one case may collect only that
         raise pytest.UsageError(f"always names no case of: {sorted((f.__name__, case) for f, case in asked - met)}")
+
+
+def _case(item):
+    return item.callspec.id if hasattr(item, "callspec") else ""
 
 
 @pytest.hookimpl(wrapper=True, trylast=True)
