@@ -250,6 +250,7 @@ class _Folder:
 
     def __init__(self, user):
         self.name = tempfile.mkdtemp(prefix="hapticlab-")
+        self._held = os.open(self.name, os.O_PATH)
         if user:
             os.chown(self.name, user, user)
 
@@ -261,9 +262,10 @@ class _Folder:
 
 
 def _delete(places):
-    """Delete files and folders, however deep they are nested: Python's own way has a limit."""
-    if places:
-        subprocess.run(["rm", "-rf", "--", *places], stderr=subprocess.DEVNULL, check=False)
+    """Delete files and folders, however deep they are nested, where Python's own way has a limit, and whatever their rights."""
+    commands = [["rm", "-rf"]] if _is_root() else [["chmod", "-R", "u+rwX"], ["rm", "-rf"]]
+    for command in commands if places else ():
+        subprocess.run([*command, "--", *places], stderr=subprocess.DEVNULL, check=False)
 
 
 def seen(programs=False):
