@@ -199,7 +199,9 @@ def _tell(done, roster, beside=()):
         _say(f"warning: {words}")
     if roster:
         matched = roster.match([report.student for report in done.reports])
-        for words, names in (("not in the roster", matched.unknown), ("no submission of", matched.missing)):
+        alike = f"in one row of {roster.path}, so without a mark in its tables; rename one"
+        told = {"not in the roster": matched.unknown, alike: matched.alike, "no submission of": matched.missing}
+        for words, names in told.items():
             if names:
                 _say(f"{words}: {', '.join(names)}")
     if beside:

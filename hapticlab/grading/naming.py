@@ -20,7 +20,10 @@ TREE = "submitted"
 #: how a file ends that somebody handed in; a browser may add to the name of a notebook
 OFFERED = re.compile(rf"(?<=.)(\.ipynb\.(txt|json)|\.tar\.\w+|{'|'.join(map(re.escape, (*WORK, *MISTAKEN)))})$", re.IGNORECASE)
 MOODLE, GRADESCOPE = re.compile(r"(.+?)_assignsubmission_\w*"), re.compile(r"submission_\d+")
-CANVAS = re.compile(r"([^_]+?)(?:_LATE)?_(\d+)_\d+_.+")
+#: a file of somebody, a text or an address that was typed in, and a file of somebody whose name is hidden
+CANVAS = re.compile(
+    r"([^_]+?)(?:_LATE)?_(\d+)_(?:\d+_.+|text\.html|link\.html)|(?:LATE_)?(anon_[^\W_]+)_(?:\d+_.+|text\.html|link\.html)"
+)
 #: a lab's number, as its folder and its notebook begin
 LAB = re.compile(r"(\d\d)[_\- ]")
 #: what browsers, Jupyter and file managers add to the name of a second copy
@@ -45,7 +48,7 @@ def student_of(name, lab=""):
     """
     system = MOODLE.match(name) or CANVAS.fullmatch(name)
     if system:
-        name = "_".join(system.groups())
+        name = "_".join(filter(None, system.groups()))
     else:
         name = OFFERED.sub("", name)
     if len(lab) > 2 and not is_lab(name, lab):

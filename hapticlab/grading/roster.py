@@ -17,6 +17,10 @@ TEST_STUDENT = re.compile(r"\s*(student, ?test|test student)\s*", re.I)
 OF_SYSTEM = re.compile(r"(.+)_(\d+)", re.DOTALL)
 #: Canvas' ID, and Moodle's Identifier in any language
 NUMBER = re.compile(r"(?:[^\d\s]\D*\s)?(\d+)")
+#: a line with which Excel begins a file, to say what stands between its cells
+SEPARATOR = re.compile(r"\A\s*sep=.\s*\n", re.IGNORECASE)
+#: of letters alone
+WORD = re.compile(r"[^\W\d_]{2,}")
 #: columns of a student's name
 NAMES = ("student", "full_name", "name")
 
@@ -35,12 +39,15 @@ class Matched:
         Students without a row.
     missing : tuple of str
         What the column says of people without a submission, and their names.
+    alike : tuple of str
+        Students who are found in one row, such as Ada and ada: nobody has that row.
     """
 
     column: str
     rows: dict
     unknown: tuple
     missing: tuple
+    alike: tuple = ()
 
 
 @dataclass(frozen=True)
@@ -66,7 +73,8 @@ class Roster:
         Taken is the column in which most of them are found, of equal ones the first. A cell is a student's where it is the
         student's id, or begins with the id and an @, without regard to capitals and to spaces around. Where no column holds
         any, submissions are taken to be named by Canvas or Moodle: "lovelaceada_4242" is the row of ID 4242, "Ada
-        Lovelace_123456" that of "Participant 123456", or else the only Ada Lovelace, in one column or two.
+        Lovelace_123456" that of "Participant 123456", or else the only Ada Lovelace, in one column or two. A row of that number
+        in which no word is of that name is somebody else's: Moodle numbers groups as it numbers participants.
 
         Parameters
         ----------
@@ -79,7 +87,7 @@ class Roster:
         Raises
         ------
         CourseError
-            Where no column holds any of them, or two rows are of one student, or two students of one row.
+            Where no column holds any of them, or two rows are of one student.
 
         Examples
         --------
@@ -102,12 +110,13 @@ class Roster:
             if len(several) > 1:
                 raise CourseError(f"{self.path}: {len(several)} rows of {self.columns[column]} are {student!r}; it needs one")
             rows[student] = self.rows[several[0]]
-        taken = {several[0]: student for student, several in found[column].items()}
-        alike = [one for one, several in found[column].items() if taken[several[0]] != one]
-        if alike:
-            raise CourseError(f"{alike[0]!r} and {taken[found[column][alike[0]][0]]!r} are one row of {self.path}; rename one")
-        missing = tuple(_told(row, column) for number, row in enumerate(self.rows) if number not in taken)
-        return Matched(column, rows, tuple(one for one in students if one not in rows), missing)
+        owners = defaultdict(list)
+        for student, several in found[column].items():
+            owners[several[0]].append(student)
+        alike = tuple(student for sharing in owners.values() if len(sharing) > 1 for student in sharing)
+        rows = {student: row for student, row in rows.items() if student not in alike}
+        missing = tuple(_told(row, column) for number, row in enumerate(self.rows) if number not in owners)
+        return Matched(column, rows, tuple(one for one in students if one not in {*rows, *alike}), missing, alike)
 
     def rows_of(self, students):
         """Return student to row, without those who have none."""
@@ -124,9 +133,18 @@ class Roster:
             return found
         parts = {one: OF_SYSTEM.fullmatch(one) for one in students if not is_of_system(one)}
         numbers = _looked_up(self._cells(_numbers), {one: part[2].lstrip("0") for one, part in parts.items() if part})
+        numbers = {column: {one: [row for row in rows if self._is_called(row, parts[one][1])] for one, rows in held.items()}
+                   for column, held in numbers.items()}  # fmt: skip
+        numbers = {column: {one: rows for one, rows in held.items() if rows} for column, held in numbers.items()}
         names = _looked_up(self._cells(_names), {one: _key(part[1]) for one, part in parts.items() if part})
         only = {column: {one: rows for one, rows in held.items() if len(rows) == 1} for column, held in names.items()}
         return max(numbers, only, key=lambda several: max(map(len, several.values()), default=0))
+
+    def _is_called(self, number, name):
+        """Return whether a word of a row is in a name, or the row has no words."""
+        cells = [cell for cell in self.rows[number].values() if "@" not in cell]
+        words = {word for cell in cells for word in WORD.findall(cell.casefold())}
+        return not words or any(word in name.casefold() for word in words)
 
     def _cells(self, called):
         """Return, for each column, what a cell may be called to the numbers of its rows."""
@@ -189,6 +207,7 @@ def read_roster(path):
         raise CourseError(f"{path}: {problem.strerror or problem}; a roster is a CSV file with a row for each student") from None
     except UnicodeError:
         raise CourseError(f"{path} is no text in UTF-8; save it as CSV UTF-8") from None
+    text = SEPARATOR.sub("", text)
     first = text.partition("\n")[0]
     separator = max(",;\t", key=first.count)
     try:

@@ -129,3 +129,16 @@ def test_what_lies_beside_the_submissions_is_told(course, here, tmp_path, capsys
     assert "not graded: eve, eve: no notebook is in it; there is nothing" in told.err
     assert "left aside, as no submission: cy.pdf, notes.md, roster.csv" in told.err
     assert told.err.endswith("hapticlab: 4 handed in: 1 graded, 3 not graded\n")
+
+
+def test_two_students_of_one_row_do_not_stop_the_class(course, here, tmp_path, capsys):
+    for name in ("ada", "Ada", "bob"):
+        (tmp_path / "class" / name).mkdir(parents=True)
+        (tmp_path / "class" / name / "x.ipynb").write_bytes((course[0] / "class" / "ada.ipynb").read_bytes())
+    (tmp_path / "class.csv").write_text("Student,ID,Section\nada,1,A\nbob,2,A\n")
+    extra = ["--roster", str(tmp_path / "class.csv"), "--format", "canvas"]
+    with here():
+        assert main([course[1][0], str(tmp_path / "class"), *course[1][2:], *extra]) == 0
+    told = capsys.readouterr()
+    assert "bob,2,A,10" in told.out and "ada" not in told.out.casefold().replace("lab 42", "")
+    assert "so without a mark in its tables; rename one: Ada, ada" in told.err

@@ -49,6 +49,10 @@ from hapticlab.grading.submission import find_submissions, lab_of, read
             {"lovelaceada_12_345_x-1.ipynb": ADA, "lovelaceada_12_346_data.csv": "", "bobb_LATE_9_8_y.py": "bob"},
             {"lovelaceada_12": "ada", "bobb_9": "bob"},
         ),
+        ({"anon_x7Qa_345_x.ipynb": ADA, "anon_x7Qa_346_x.png": "", "LATE_anon_b2Cd_8_y.py": "bob"},
+         {"anon_x7Qa": "ada", "anon_b2Cd": "bob"}),
+        ({"Red team_17_assignsubmission_file/x.ipynb": ADA, "Default group_assignsubmission_file/y.ipynb": BOB},
+         {"Red team_17": "ada", "Default group": "bob"}),
         ({"export/submission_77/x.ipynb": ADA, "export/submission_metadata.yml": "x"}, {"submission_77": "ada"}),
         ({"ada.zip": zipped({"x.ipynb": ADA}), "bob.zip": zipped({"deep/er/y.py": "bob"})}, {"ada": "ada", "bob": "bob"}),
         ({"ada/w.zip": zipped({f"{LAB}.ipynb": ADA, "x.png": "1"}), "bob/y.py": "bob"}, {"ada": "ada", "bob": "bob"}),
@@ -119,6 +123,14 @@ def test_what_moodle_makes_beside_the_files_is_no_other_submission(tmp_path):
     assert handed(zipped(files, tmp_path / "class.zip")) == expected
     folder = fill(tmp_path / "class", files)
     assert handed(folder) == handed(*folder.iterdir()) == expected
+
+
+def test_a_text_or_an_address_typed_into_canvas_is_a_student_without_a_notebook(tmp_path):
+    files = {"ngcleo_LATE_8_text.html": "x", "dvdan_9_link.html": "x", "eve_10_11_x.ipynb": ADA}
+    words = "no notebook is in it; there is {}"
+    expected = {"ngcleo_8": ((), words.format("ngcleo_LATE_8_text.html")), "dvdan_9": ((), words.format("dvdan_9_link.html")),
+                "eve_10": (("ada",), "")}  # fmt: skip
+    assert handed(fill(tmp_path / "class", files)) == handed(zipped(files, tmp_path / "class.zip")) == expected
 
 
 def test_a_notebook_of_another_lab_is_a_problem(tmp_path):
