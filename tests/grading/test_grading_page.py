@@ -80,13 +80,22 @@ def test_the_lab_of_the_page_is_graded(own_lab, here, tmp_path, capsys):
     handed_in.mkdir()
     solution = (tmp_path / command[2]).read_text("utf-8")
     (handed_in / "ada.py").write_text(solution, "utf-8")
-    (handed_in / "bob.py").write_text(solution.replace("return k * x", "return -k * x").replace('"b"', '"a"'), "utf-8")
+    slips = {"return k * x": "return -k * x", "k * handle)": "-k * handle)", '"b"': '"a"'}
+    assert [solution.count(right) for right in slips] == [1, 1, 1]
+    wrong = re.sub("|".join(map(re.escape, slips)), lambda found: slips[found[0]], solution)
+    (handed_in / "bob.py").write_text(wrong, "utf-8")
+    (handed_in / "dora.py").write_text(solution.replace("x [mm]", "x [m]").replace("1000 * handle", "handle"), "utf-8")
+    (handed_in / "emil.py").write_text(solution.replace("x [mm]", "x"), "utf-8")
     shutil.copy(own_lab.notebook, handed_in / "cleo.ipynb")
     with here():
         assert main(["grade", str(handed_in), *command[3:], "--format", "json"]) == 0
     found = {one["student"]: one for one in json.loads(capsys.readouterr().out)["reports"]}
-    assert {student: one["earned"] for student, one in found.items()} == {"ada": 6.0, "bob": 3.0, "cleo": 0.0}
-    force, _, way, stores, why = found["bob"]["exercises"]
+    assert {student: one["earned"] for student, one in found.items()} == {
+        "ada": 7.0, "bob": 3.0, "cleo": 0.0, "dora": 7.0, "emil": 6.0
+    }  # fmt: skip
+    force, _, way, stores, curve, why = found["bob"]["exercises"]
+    assert curve["cases"] == 3 and curve["slip"].startswith("That is the force of the spring")
+    assert "The x axis has no unit" in found["emil"]["exercises"][4]["words"]
     assert force["slip"].startswith("That is the force of the spring") and stores["slip"].startswith("What a damper takes")
     assert (force["cases"], way["cases"], way["earned"]) == (5, 1, 1.0) and why["text"].startswith("A spring that is let go")
 
@@ -96,7 +105,7 @@ def test_the_lab_of_the_page_checks_itself_gives_own_numbers_and_can_be_assigned
     cells = code_of(solved_notebook(own_lab, answers))
     checks = [cell for cell in cells if cell.startswith("hl.check")]
     names, problems = run([*cells, f"judged = [{', '.join(checks)}]"], own_lab.path)
-    assert problems == [] and [one.passed for one in names["judged"]] == [True] * 5
+    assert problems == [] and [one.passed for one in names["judged"]] == [True] * 6
     lines = ["".join(cell["source"]) for cell in personal_notebook(own_lab, answers, 3, "ada")["cells"]]
     assert re.search(r"^K_OWN = (300|400|750)\.0", "\n".join(lines), re.M)
     assert main(["assign", "course", "--for", "nbgrader", "--lab", "mine/20_spring", "--instructor", "answers"]) == 0
