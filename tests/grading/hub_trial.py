@@ -155,7 +155,7 @@ class Trial:
         self.facts["bobs_page"] = (course / "pages" / "students" / "bob.html").read_text("utf-8")
 
     def without_user_namespaces(self):
-        """Return what the page's command says to prof and to root where no user may make namespaces."""
+        """Return what the page's ways of grading say where no user may make namespaces."""
         line = next(one for one in blocks()[8][2].splitlines() if one.startswith("hapticlab grade"))
         command = f"cd /home/prof/haptics; PATH={ENVIRONMENT}/bin:$PATH {line}"
         with subprocess.Popen(["unshare", "--user", "cat"], stdin=subprocess.PIPE) as inside:
@@ -166,6 +166,7 @@ class Trial:
             enter = ["nsenter", "--user", f"--target={inside.pid}", "--setuid=0", "--setgid=0"]
             subprocess.run([*enter, "sh", "-c", "echo 0 > /proc/sys/user/max_user_namespaces"], check=True)
             ways = {"prof": ["su", "prof", "-c", command], "root": ["bash", "-c", command]}
+            ways["landlock"] = ["su", "prof", "-c", command.replace("namespaces", "landlock").replace("--pages pages", "")]
             found = {who: subprocess.run([*enter, *way], text=True, capture_output=True) for who, way in ways.items()}
             inside.stdin.close()
         return {who: [one.returncode, one.stdout + one.stderr] for who, one in found.items()}

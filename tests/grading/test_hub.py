@@ -186,11 +186,12 @@ def test_the_marks_of_hapticlab_are_in_the_gradebook(facts):
 
 
 @pytest.mark.slow
-def test_where_no_user_may_make_namespaces_root_grades_and_nobody_else(facts):
+def test_where_no_user_may_make_namespaces_root_grades_or_landlock_holds(facts):
     status, said = facts["forbidden"]["prof"]
     assert status == 1 and "sandbox namespaces" in said and "points" not in said
-    status, said = facts["forbidden"]["root"]
-    assert status == 0 and "sandbox: namespaces" in said and "ada: 10 of 10 points" in said
+    for who, level in {"root": "namespaces", "landlock": "landlock"}.items():
+        status, said = facts["forbidden"][who]
+        assert status == 0 and f"sandbox: {level}" in said and "ada: 10 of 10 points" in said
 
 
 @pytest.mark.slow
