@@ -1,10 +1,11 @@
 """Seconds per submission of three graders on one lab: `python tests/benchmarks/grading.py`.
 
 `hapticlab grade`, `nbgrader autograde` and `otter run` grade the same answers to lab 02, handed in as their own notebooks: all
-right, partly wrong, untouched. nbgrader and otter have one of each, hapticlab the same three, and twenty of each. nbgrader and
-hapticlab take them in one command, otter in one each, as they are meant to. Each ratio is of the faster of the two others. Then
-a class of 1 000 mixed submissions of the tests' small lab, attackers among them, is graded by two workers; it is another lab, so
-it has no ratio. `--quick` takes few of them.
+right, partly wrong, untouched. nbgrader and otter have one of each, hapticlab twenty of each. nbgrader and hapticlab take them in
+one command, otter in one each, as they are meant to. Each ratio is of the faster of the two others. hapticlab also grades 1, 20,
+200 and 1 000 solved notebooks, by one worker and by two; seconds are from the prompt to the report, and are also said in
+`import sympy` of the same run. Then a class of 1 000 mixed submissions of the small lab, attackers among them, is graded by
+two workers; it is another lab, so it has no ratio. `--quick` takes few of them.
 """
 
 import argparse
@@ -35,25 +36,28 @@ def main():
     parser.add_argument("--json", metavar="FILE")
     options = parser.parse_args()
     few, many, mix = (3, 12, 30) if options.quick else (3, 60, 1000)
+    solved = (1, 20) if options.quick else (1, 20, 200, 1000)
     print(f"{platform.machine()}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, Python {platform.python_version()}")
     with tempfile.TemporaryDirectory() as place:
-        rows = {**_peers(Path(place), few), **_ours(Path(place), few, many), **_mixed(Path(place), mix)}
-    _tell(rows)
+        rows = {**_peers(Path(place), few), **_ours(Path(place), many), **_solved(Path(place), solved)}
+        rows |= _mixed(Path(place), mix)
+    _tell(rows, min(_measured(1, ["-c", "import sympy"], cwd=ROOT)["seconds"] for _ in range(5)))
     if options.json:
         Path(options.json).write_text(json.dumps(rows, indent=1), "utf-8")
 
 
-def _tell(rows):
+def _tell(rows, sympy):
     """Print a line for each, with the ratio to the faster of the two others where the answers are the same."""
     peer = min((row for name, row in rows.items() if not name.startswith("hapticlab")), key=lambda row: row["seconds"])
-    for row in rows.values():
+    print(f"import sympy: {sympy:.3f} s")
+    print(f"\n{'':42} {'submissions':>11} {'s in all':>9} {'sympys':>7} {'s each':>8} {'ratio':>6} {'processor s each':>17}")
+    for name, row in rows.items():
+        row["sympys"] = row["seconds"] * row["number"] / sympy
         if row["lab"] == NUMBER:
             row["faster"] = peer["seconds"] / row["seconds"]
-            row["less processor"] = peer["processor"] / row["processor"]
-    print(f"\n{'':42} {'submissions':>11} {'s each':>8} {'ratio':>6} {'processor s each':>17} {'ratio':>6}")
-    for name, row in rows.items():
-        faster, less = (f"{row[ratio]:.1f}" if ratio in row else "" for ratio in ("faster", "less processor"))
-        print(f"{name:42} {row['number']:11} {row['seconds']:8.3f} {faster:>6} {row['processor']:17.3f} {less:>6}")
+        faster, total = f"{row['faster']:.1f}" if "faster" in row else "", row["seconds"] * row["number"]
+        figures = f"{total:9.2f} {row['sympys']:7.1f} {row['seconds']:8.3f} {faster:>6} {row['processor']:17.3f}"
+        print(f"{name:42} {row['number']:11} {figures}")
 
 
 def _measured(number, *commands, cwd, codes=(0,), lab=NUMBER):
@@ -101,17 +105,35 @@ def _peers(place, number):
     return {**rows, "otter run": _measured(number, *commands, cwd=place)}
 
 
-def _ours(place, few, many):
-    rows = {}
-    for number, workers in ((few, 1), (many, 1), (many, 2)):
-        submissions = place / f"{number} by {workers}"
+def _ours(place, number):
+    """Grade the same answers as the others do."""
+    submissions = place / "the same"
+    submissions.mkdir()
+    for student in range(number):
+        write(submissions / f"s{student}.ipynb", _answered(read(LAB.notebook), student))
+    return _graded(submissions, number, "the same answers")
+
+
+def _solved(place, numbers):
+    """Grade solved notebooks."""
+    rows, solved = {}, handed_in(read(LAB.notebook), LAB)
+    for number in numbers:
+        submissions = place / f"{number} solved"
         submissions.mkdir()
         for student in range(number):
-            write(submissions / f"s{student}.ipynb", _answered(read(LAB.notebook), student))
+            write(submissions / f"s{student}.ipynb", solved)
+        rows |= _graded(submissions, number, f"{number} solved")
+    return rows
+
+
+def _graded(submissions, number, name):
+    rows = {}
+    for workers in (1, 2):
         command = ["-m", "hapticlab", "grade", str(submissions), "--lab", NUMBER, "--instructor", str(INSTRUCTOR)]
-        output = ["--format", "json", "-o", f"{submissions}.json", "--workers", str(workers), "--sandbox", "namespaces"]
-        row = _measured(number, [*command, *output], cwd=ROOT)
-        rows[f"hapticlab grade, {workers} worker{'s' * (workers > 1)}, {number}"] = row
+        output = ["--format", "json", "-o", f"{submissions} by {workers}.json", "--workers", str(workers)]
+        command += ["--sandbox", "namespaces"]
+        row = _measured(number, [*command, *output], cwd=ROOT, lab=NUMBER if name.startswith("the") else "02, solved")
+        rows[f"hapticlab grade, {workers} worker{'s' * (workers > 1)}, {name}"] = row
     return rows
 
 
