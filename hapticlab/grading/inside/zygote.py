@@ -20,7 +20,7 @@ from . import linux, sandbox
 
 #: beside what the package itself loads; by name, as all of it is needed only where the walls hold
 SESSION, SLICES = "hapticlab.grading.inside.session", "hapticlab.grading.inside.slices"
-PRELOADED = ("matplotlib.pyplot", "scipy.integrate", SESSION)
+PRELOADED = ("matplotlib.pyplot", SESSION)
 
 
 def main(control):
@@ -108,6 +108,7 @@ def probe(request):
 
 def preload():
     """Load what notebooks use, and run a scene once, which fills caches on the way."""
+    gc.disable()  # it finds nothing among what is loaded, and looks at all of it again and again
     for name in PRELOADED:
         importlib.import_module(name)
     package = sys.modules["hapticlab"]
@@ -122,6 +123,7 @@ def preload():
     sys.modules["hapticlab.course.felt"].felt(package.wall()(k=150.0, x_o=0.01), x=[0.0, 0.012])
     gc.collect()
     gc.freeze()
+    gc.enable()
 
 
 def start(request, channel):
