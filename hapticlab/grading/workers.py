@@ -112,7 +112,8 @@ class _Worker:
     def __init__(self, bench, preloaded):
         # a fork has all that this process loaded; on other systems a new interpreter, which takes nothing from the working folder
         context = multiprocessing.get_context("fork" if preloaded else "spawn")
-        os.environ.setdefault("PYTHONSAFEPATH", "1")
+        if not preloaded:
+            os.environ["PYTHONSAFEPATH"] = "1"
         zygote = preloaded.zygote() if preloaded else None
         self.connection, there = context.Pipe()
         self._process = context.Process(target=_work, args=(there, bench, zygote), name="hapticlab grade")
