@@ -179,7 +179,7 @@ def itself():
         (changes, "it raises ValueError: two lines !!!"),
         (2.4, "it is a float, needs a function of (x, v, k)"),
         (Hostile, "it takes (), and is called"),
-        (math.hypot, "it raises TypeError"),
+        (max, "it raises TypeError"),
     ],
 )
 def test_no_answer_breaks_a_check_or_earns_what_it_should_not(answer, words):

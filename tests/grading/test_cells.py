@@ -77,7 +77,7 @@ PROBLEMS = {
         "E in line 5: here"
     ),
     "class E(Exception):\n    __traceback__ = property(lambda s: 1 / 0)\nraise E": "an error that cannot be read",
-    "import asyncio\nawait asyncio.sleep(0)\nawait 3": "TypeError in line 3: object int can't be used in 'await' expression",
+    "import asyncio\nawait asyncio.sleep(0)\nawait 3": "TypeError in line 3: ",  # then Python's words, which change
     "return 3": "SyntaxError in line 1: 'return' outside function",
     "input()": None,
 }
@@ -87,8 +87,8 @@ PROBLEMS = {
 def test_a_problem_is_one_line_and_nothing_is_raised(source, monkeypatch):
     monkeypatch.setattr(sys, "stdin", None)
     told = run_cell(source, {"__name__": "__main__"}, 4)
-    expected = PROBLEMS[source] or "RuntimeError in line 1: input(): lost sys.stdin"
-    assert told.startswith(expected)
+    assert told.startswith(PROBLEMS[source] or "RuntimeError in line 1: ")
+    assert PROBLEMS[source] or told.endswith("lost sys.stdin")
     assert "\n" not in told
     assert len(told) < 360
 
@@ -147,9 +147,10 @@ def test_the_namespace_is_that_of_a_main_module(monkeypatch):
 
 def test_what_comes_from_the_future_holds_for_later_cells():
     names = {"__name__": "__main__"}
-    assert run_cell("def f(x: Nothing): pass", names, 1).startswith("NameError in line 1")
+    asked = "def f(x: Nothing): pass\nf.__annotations__"  # Python 3.14 evaluates when it is asked
+    assert run_cell(asked, names, 1).startswith("NameError in line ")
     run_cell("from __future__ import annotations", names, 2)
-    assert run_cell("def f(x: Nothing): pass", names, 3) == ""
+    assert run_cell(asked, names, 3) == ""
     assert names["f"].__annotations__ == {"x": "Nothing"}
 
 
