@@ -25,6 +25,7 @@ COMMANDS = [
     line.strip()
     for block in re.findall(r"^ *```sh\n(.*?)^ *```", PAGE, re.M | re.S)
     for line in block.strip().split("\n")
+    if line.strip().startswith("hapticlab")  # one is shown with what starts it
 ]
 
 
