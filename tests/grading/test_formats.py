@@ -15,7 +15,7 @@ from hapticlab.errors import CourseError
 from hapticlab.grading.formats import FORMATS, write
 from hapticlab.grading.limits import Limits
 from hapticlab.grading.marking import Found, exercise_report
-from hapticlab.grading.report import ExerciseReport, Report
+from hapticlab.grading.report import ExerciseReport, Failing, Report
 from hapticlab.grading.roster import read_roster
 
 VISIBILITY = {"enum": ["hidden", "after_due_date", "after_published", "visible"]}
@@ -365,3 +365,25 @@ def test_the_same_reports_give_the_same_bytes_and_can_be_written(name, tmp_path)
 def test_an_unknown_format_is_refused():
     with pytest.raises(CourseError, match="format 'xls': needs one of text, json"):
         write("xls", [report()])
+
+
+#: sentences on a hidden case, and whether they are told: not those by whose numbers a student's code could pass a given on
+SENTENCES = {
+    "The sign is turned.": True,
+    "It is 1000 times too large: is it in millimetres?": True,
+    "It is 2 times what is expected, at every point.": True,
+    "It is 231.4 times what is expected, at every point.": False,
+    "It is 2314 times what is expected, at every point.": False,
+    "It is 1.2e-05 times what is expected, at every point.": False,
+    "It lacks a factor k, so its unit is wrong. Beside that it is 0.731 times too large.": False,
+    "It is 1000 times too large. In this case k = 654, so a factor k may also be missing.": False,
+}
+
+
+@pytest.mark.parametrize("name", ["gradescope", "prairielearn"])
+@pytest.mark.parametrize("sentence", SENTENCES)
+def test_no_number_worked_out_of_a_hidden_case_is_told(name, sentence):
+    one = ExerciseReport("force", "function", points=1, answered=True, cases=1, words=sentence, slip=sentence)
+    hidden = write(name, [report(exercises=(replace(one, failing=Failing({}, 1.0, 2.0, "N", public=False)),))])
+    public = write(name, [report(exercises=(replace(one, failing=Failing({}, 1.0, 2.0, "N", public=True)),))])
+    assert (sentence in hidden) is SENTENCES[sentence] and sentence in public

@@ -1,9 +1,13 @@
 """Words and points of a report for any reader: bounded, without what a terminal or a database takes for a command."""
 
+import re
+
 from ...errors import CourseError
 
 #: characters kept of a sentence, and of what was printed
 SENTENCE, BLOCK = 600, 4000
+#: in a slip's sentence, a number worked out from the case: a fraction, a given, a factor that is no usual mistake
+WORKED_OUT = re.compile(r"\d\.\d|\de[+-]|= -?\d|\b(?!10*\b|[23]\b)\d+ times")
 #: joins letters of some scripts; neither turns nor hides anything
 JOINERS = "\u200c\u200d"
 
@@ -63,15 +67,16 @@ def state(one):
 def for_student(one):
     """Return what a student is told who may hand in again: of a case that is hidden, that it is wrong, and the slip's sentence.
 
-    Its numbers, what a program raised with these in its words, and how it ended would tell the case. A value or a choice has no
-    numbers but the student's own.
+    Its numbers, sentences with numbers worked out from them, what a program raised with these in its words, and how it ended
+    would tell the case. A value or a choice has no numbers but the student's own.
     """
     if state(one) == "right":
         return f"Right: {one.cases} of {one.cases} cases."
     said = clean(one.words)
     hidden = one.ended_hidden if one.ended else one.failing is not None and not one.failing.public
     if hidden and one.kind not in ("value", "choice"):
-        said = f"A case that is not shown is wrong. {clean(one.slip)}".strip()
+        slip = "" if WORKED_OUT.search(one.slip) else clean(one.slip)
+        said = f"A case that is not shown is wrong. {slip}".strip()
     hint = f"\nHint: {clean(one.hint)}" if one.hint else ""
     return f"{said}{hint}"
 
