@@ -191,6 +191,7 @@ def test_an_error_in_a_chunk_comes_out(monkeypatch):
             list(spread(sum, [[1, 2], ["a"], [3]], 2, threads=threads))
 
 
+@pytest.mark.wide
 def test_processes_measure_the_same(alone):
     """Of the interpreter, which holds Python's lock; the other engine's bits."""
     given = {"T": 1e-3, "k": AXES["k"][::9], "duration": 0.05}

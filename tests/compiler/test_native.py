@@ -118,6 +118,7 @@ def package(tmp_path, monkeypatch):
 # ---------------------------------------------------------------- the wheel
 
 
+@pytest.mark.wide
 def test_the_wheel_runs_the_machine_where_nothing_can_be_built(wheel, tmp_path):
     python, package = installed(wheel, tmp_path / "empty")
     surroundings = without_compiler(tmp_path)
@@ -140,6 +141,7 @@ def test_the_wheel_names_the_platform_and_holds_its_library_alone(wheel):
         assert re.search(r"-manylinux_2_\d+_" + HERE.partition("-")[2], wheel.name)
 
 
+@pytest.mark.wide
 def test_without_a_system_compiler_ziglang_makes_the_wheel(tmp_path):
     (tmp_path / "nothing").mkdir()
     made, _ = wheel_into(tmp_path / "dist", path=tmp_path / "nothing")
@@ -192,6 +194,7 @@ def compiler_of_ziglang(folder):
     return f"{folder}{os.pathsep}{os.environ['PATH']}"
 
 
+@pytest.mark.wide
 def test_the_source_distribution_makes_the_same_wheel(wheel, tmp_path):
     done = child(sys.executable, "-m", "hatchling", "build", "-t", "sdist", "-d", tmp_path)
     assert done.returncode == 0, done.stderr
@@ -228,6 +231,7 @@ def test_no_multiplication_is_fused_with_an_addition(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["linux-aarch64", "macos-x86_64", "macos-aarch64"])
+@pytest.mark.wide
 def test_ziglang_compiles_for_another_computer(name, tmp_path):
     made = toolchain.build_library(native.firmware_folder(), tmp_path, name, 16)
     check_library(name, made.read_bytes(), 16)

@@ -302,6 +302,7 @@ def framed(programs):
 
 
 @pytest.mark.parametrize("word_bits", WORDS)
+@pytest.mark.always("16")
 def test_sanitizers_find_nothing_in_damaged_programs(tmp_path, word_bits):
     flags = ("-g", "-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all")
     path, done = compiled(tmp_path, *flags, word_bits=word_bits)

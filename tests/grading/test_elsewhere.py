@@ -152,6 +152,7 @@ def graded_there(course, root, wrong, **variables):
 
 
 @needs_bash
+@pytest.mark.wide
 def test_the_entrypoint_writes_what_a_submission_earned(course, tmp_path):
     results = graded_there(course, tmp_path, WRONG["02"])
     assert results["gradable"] is True

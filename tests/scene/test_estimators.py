@@ -300,6 +300,7 @@ DEAR = [
 
 
 @pytest.mark.parametrize(("estimate", "period", "named"), DEAR)
+@pytest.mark.wide
 def test_a_scene_that_does_not_fit_the_uno_names_the_cheaper_estimate(estimate, period, named):
     """Any scene that holds one, and watches it; and what is named does fit a wall of ours."""
     k, B = OWN
