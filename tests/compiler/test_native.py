@@ -221,6 +221,7 @@ def fused(library):
     return scalar + sum(word & 0xBF20FC00 == 0x0E20CC00 for word in words)  # FMLA, FMLS of vectors
 
 
+@pytest.mark.wide
 def test_no_multiplication_is_fused_with_an_addition(tmp_path):
     firmware = native.firmware_folder()
     made = {}
@@ -269,6 +270,7 @@ def test_a_release_is_one_wheel_for_every_target(tmp_path):
 # ---------------------------------------------------------------- which library is taken
 
 
+@pytest.mark.wide
 def test_a_library_of_other_sources_is_refused(package):
     path = native.prebuilt(16)
     assert path == package / "prebuilt" / HERE / toolchain.library_name(HERE, 16)
@@ -291,6 +293,7 @@ def test_a_library_of_other_sources_is_refused(package):
     assert native.prebuilt(16) is None
 
 
+@pytest.mark.wide
 def test_a_library_that_does_not_load_is_built_instead(package, monkeypatch, tmp_path):
     stamp = toolchain.stamp(package / "firmware", 16)
     (package / "prebuilt" / HERE / toolchain.library_name(HERE, 16)).write_bytes(stamp)  # right sources, no library
@@ -299,6 +302,7 @@ def test_a_library_that_does_not_load_is_built_instead(package, monkeypatch, tmp
     assert len(list((tmp_path / "cache").iterdir())) == 1
 
 
+@pytest.mark.wide
 def test_flags_are_always_built_for(package, monkeypatch):
     monkeypatch.setattr(native, "built", lambda *asked: pytest.fail(f"built {asked}"))
     native.load_library.__wrapped__(16)

@@ -327,6 +327,7 @@ def test_sanitizers_find_nothing_in_damaged_programs(tmp_path, word_bits):
 
 @pytest.mark.parametrize("dispatch", [(), ("-DHL_NO_COMPUTED_GOTO",)])
 @pytest.mark.parametrize("word_bits", WORDS)
+@pytest.mark.always("16-dispatch1")
 def test_the_sources_compile_without_a_warning(tmp_path, word_bits, dispatch):
     strict = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Werror")
     _, done = compiled(tmp_path, *strict, *dispatch, word_bits=word_bits)

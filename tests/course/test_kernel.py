@@ -14,6 +14,7 @@ CELLS = [
 ]
 
 
+@pytest.mark.wide
 def test_a_check_shows_text_alone_and_a_kernel_lives_on(tmp_path, monkeypatch):
     nbclient, nbformat = pytest.importorskip("nbclient"), pytest.importorskip("nbformat")
     root = __file__.rsplit("tests", 1)[0]

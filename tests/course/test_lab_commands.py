@@ -161,6 +161,7 @@ def all_ended(group):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no process groups here")
+@pytest.mark.wide
 def test_ctrl_c_is_answered_by_jupyterlab_alone(place):
     code = "import sys; from hapticlab.course import labs; from hapticlab.cli import main; from pathlib import Path\n"
     code += f"labs.PLACES = (Path({str(place / 'labs')!r}),); sys.exit(main(['labs']))"

@@ -49,6 +49,7 @@ FILES = {
 OTHERWISE = {name: words for name, words in (EXPECTED | FILES).items() if name != "many_files"}
 
 
+@pytest.mark.wide
 @needs_root
 @pytest.mark.parametrize(("user", "level"), [(0, "user"), (NOBODY, "landlock")])
 def test_landlock_holds_where_there_are_no_namespaces(user, level):
@@ -59,6 +60,7 @@ def test_landlock_holds_where_there_are_no_namespaces(user, level):
     assert found == {"problem": "", **OTHERWISE}
 
 
+@pytest.mark.wide
 @needs_root
 def test_another_user_keeps_to_itself_where_there_is_no_landlock():
     found = elsewhere("auto", 0, "unshare", "landlock")
@@ -69,6 +71,7 @@ def test_another_user_keeps_to_itself_where_there_is_no_landlock():
     assert {**found, **dict.fromkeys(seen)} == {"problem": "", **OTHERWISE, **dict.fromkeys(seen)}
 
 
+@pytest.mark.wide
 @needs_root
 def test_where_nothing_hides_files_calls_are_refused_still():
     found = elsewhere("auto", NOBODY, "unshare", "landlock")

@@ -37,7 +37,9 @@ def hold(size):
 FILE = "aGFsbG8="  # hallo
 
 
-@pytest.fixture(scope="module", params=["none", "landlock", "namespaces"])
+@pytest.fixture(
+    scope="module", params=[*(pytest.param(level, marks=pytest.mark.wide) for level in ("none", "landlock")), "namespaces"]
+)
 def starter(request):
     with start(request.param, limits=LIMITS) as started:
         yield started
@@ -98,7 +100,7 @@ ENDS_MANY = {
     "[fork() or hold(1 << 26) for _ in range(8)] and time.sleep(60)": "memory",
 }
 
-
+@pytest.mark.always("namespaces-time*", "namespaces-os.close*", "namespaces-os._exit*", "namespaces-os.abort*")
 @pytest.mark.parametrize("body", ENDS)
 @pytest.mark.always("none-time*", "none-os.close*", "landlock-os._exit*", "namespaces-os.abort*")
 def test_how_it_ended(starter, body):

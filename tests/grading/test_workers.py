@@ -38,13 +38,14 @@ def graded(submissions, *options, **environment):
     return json.loads(done.stdout)["reports"]
 
 
-@pytest.mark.parametrize("level", ["auto", "none"])
+@pytest.mark.parametrize("level", ["auto", pytest.param("none", marks=pytest.mark.wide)])
 def test_no_process_imports_from_the_working_folder(submissions, level):
     (report,) = graded(submissions, "--sandbox", level, "--workers", "2")
     assert sum(one["earned"] for one in report["exercises"]) == 10
     assert not (submissions.parent / "mark").exists(), (submissions.parent / "mark").read_text()
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_what_grades_holds_nothing_that_was_handed_in_open(submissions):
     # a cell that looks at every process of its user, which at this level are those of the grader
