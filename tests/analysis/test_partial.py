@@ -188,6 +188,7 @@ t.swept(workers=dies, resume={file!r})
 """
 
 
+@pytest.mark.wide
 def test_a_sweep_goes_on_after_its_process_was_killed(tmp_path):
     """In another process, with other hashes: what it measured is the same to the bit, or the file would be refused."""
     path = tmp_path / "map.sweep"

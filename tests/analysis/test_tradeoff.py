@@ -275,6 +275,7 @@ def test_of_measured_times_that_are_the_same_the_error_decides():
 
 
 @pytest.mark.skipif(not hasattr(__import__("os"), "fork"), reason="needs processes that can be copied")
+@pytest.mark.wide
 def test_two_workers_find_the_same_as_one():
     scene, paddle = hl.library.detents(), hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3)
     one, two = (tradeoff(scene, paddle, targets=["uno"], workers=n, progress=False).table for n in (1, 2))

@@ -143,6 +143,7 @@ def test_many_engines_and_threads_share_nothing():
         assert_same_bits(result.states, reference.states)
 
 
+@pytest.mark.wide
 def test_engines_in_a_cycle_are_collected_code_first():
     for seed in range(4):  # a context freed before its code crashed at once
         program = random_program(seed)

@@ -164,6 +164,7 @@ def test_what_is_needed_anyway_and_what_is_little_is_not_skipped():
         assert "arm" not in emit(program) and "arm" not in emit(program, lanes=8)
 
 
+@pytest.mark.wide
 def test_deep_nests_of_arms_compile():
     def body(x, y):
         value = y

@@ -335,6 +335,7 @@ def test_the_sources_compile_without_a_warning(tmp_path, word_bits, dispatch):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads the names in an ELF object")
+@pytest.mark.wide
 def test_nothing_of_the_c_library_but_the_square_root_is_called(tmp_path):
     path = tmp_path / "vm.o"
     command = [*native.c_compiler(), "-c", *toolchain.FLAGS, "-Wall", "-Werror", "-fno-builtin", "-o", str(path)]

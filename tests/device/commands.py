@@ -11,7 +11,9 @@ if sys.platform == "win32":
     _context = multiprocessing.get_context("spawn")
 else:
     _context = multiprocessing.get_context("forkserver")
-    _context.set_forkserver_preload(["hapticlab.cli", "matplotlib.backends.backend_agg"])
+    # what the commands import, which the command line does only when one runs
+    _commands = [f"hapticlab.{kind}_commands" for kind in ("scene", "board", "lab", "assign", "grade")]
+    _context.set_forkserver_preload(["hapticlab.cli", *_commands, "matplotlib.backends.backend_agg"])
 
 
 def run_command(arguments, folder):

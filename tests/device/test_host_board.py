@@ -300,6 +300,7 @@ def test_a_damaged_upload_leaves_the_old_program_running(damage):
     assert host.tick(1000) == pytest.approx(-2.0 / 8, abs=1e-4)
 
 
+@pytest.mark.wide
 def test_an_upload_that_lost_its_pieces_is_not_the_one_of_before():
     """One place, the bytes of an earlier program of the same length still in it; every CRC-32 in it is right."""
     host = Host(HostBoard(settings(speed_max=1e3).to_bytes(), slots=1))

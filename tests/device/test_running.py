@@ -115,6 +115,7 @@ def test_a_dropped_paddle_says_stop_and_gives_the_port_back(peer):
     assert peer.ended.wait(10) and "STOP" in peer.heard and not reader.is_alive()
 
 
+@pytest.mark.wide
 def test_a_program_that_ends_says_stop(peer):
     program = f"""if True:
         import hapticlab as hl

@@ -53,6 +53,7 @@ def test_telemetry_equals_the_program_in_every_bit_for_long(make):
     same_bits(make, 10_000)
 
 
+@pytest.mark.wide
 def test_three_numbers_a_millisecond_arrive_without_loss_and_on_time():
     with emulated_uno(HAND) as paddle:
         log = paddle.run(wall()[0], duration=3.0)
