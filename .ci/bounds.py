@@ -113,7 +113,7 @@ def row(version, which, python, work, tools, tests):
     log.parent.mkdir(exist_ok=True)
     log.unlink(missing_ok=True)
     place.mkdir()
-    env = {**os.environ, "TMPDIR": str(place), "PIP_DISABLE_PIP_VERSION_CHECK": "1", "UV_PYTHON_DOWNLOADS": "never"}
+    env = {**os.environ, "PIP_DISABLE_PIP_VERSION_CHECK": "1", "UV_PYTHON_DOWNLOADS": "never"}
     env.pop("CI", None)  # there a test may not be skipped, and here emulators and a browser may be missing
     limits = ["-c", str(bounds(version, work, tools))] if which == "lowest" else []
     install = f"{tools}/uv pip install {' '.join(limits)} --python .venv/bin/python" if limits else ".venv/bin/pip install"
@@ -149,7 +149,7 @@ def row(version, which, python, work, tools, tests):
     cells = ["yes" if installed and not failed else f"no: {', '.join(failed) or 'README'}", "yes" if shown else "no"]
     passed, started, counts = installed and shown and not failed, time.monotonic(), "not run"
     if tests:
-        ok, text = run(f"{test} -q -p no:cacheprovider", log, shell=True, **copy("tests"))
+        ok, text = run(f"{test} -q -p no:cacheprovider --basetemp {place}/pytest", log, shell=True, **copy("tests"))
         closing = re.findall(r"^=*\s*((?:\d+ \w+(?:, )?)+) in [\d.]+s", text, re.M)
         counts, passed = closing[-1] if closing else "did not end", passed and ok
     cells += [counts, f"{time.monotonic() - started:.0f}" if tests else ""]
