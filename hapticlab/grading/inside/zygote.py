@@ -35,10 +35,11 @@ def main(control):
     linux.become_subreaper()
     os.umask(0o022)  # in the new root, others pass through the folders it makes
     preload()
+    zygotes = []
     with suppress(ConnectionError):
         while (received := socket.recv_fds(control, 1 << 16, 1))[0]:
             if not received[1]:  # all zygotes end as their graders have
-                wait_for_all(kill=False)
+                wait_for(zygotes)
                 control.send(json.dumps({"processor": sum(os.times()[:4])}).encode())
                 continue
             (descriptor,) = received[1]
@@ -48,8 +49,11 @@ def main(control):
                 serve(socket.socket(fileno=descriptor))
                 os._exit(0)
             os.close(descriptor)
+            zygotes.append(child)
             control.send(json.dumps({"process": child}).encode())
-    wait_for_all(kill=False)  # each ends as its grader does
+    wait_for(zygotes)  # each ends as its grader does
+    wait_for_all()
+    os._exit(0)  # nothing is left to be put in order, nor told that it was ended
 
 
 def serve(control):
@@ -200,14 +204,19 @@ def end(session, request):
         os.close(own)
     if request["user"] and request["level"] != "namespaces":
         sandbox.kill_user(request["user"])
-    wait_for_all(kill=True)
+    wait_for_all()
     return {"code": code}
 
 
-def wait_for_all(kill):
-    """Wait until this process has no child; where they are killed, nothing that one of them starts meanwhile is left."""
+def wait_for(zygotes):
+    """Wait for zygotes alone: what Python itself starts, such as its resource tracker, ends only after this process."""
+    while zygotes:
+        os.waitpid(zygotes.pop(), 0)
+
+
+def wait_for_all():
+    """Kill what is below this process, and wait until it has no child: nothing that one of them starts meanwhile is left."""
     with suppress(ChildProcessError):
         while True:
-            if kill:
-                kill_descendants(os.getpid())
+            kill_descendants(os.getpid())
             os.waitpid(-1, 0)
