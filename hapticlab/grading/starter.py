@@ -178,7 +178,7 @@ class Starter:
         """Have a session look what it can read."""
         public = [] if self.level == "namespaces" or self.walled else [str(LABS)]  # nothing hides a part of what is seen
         secret = [path for path in self.settings["hidden"] if path not in public]
-        found = self.order("probe", **{**self.settings, "hidden": secret}) if public else self.order("probe", **self.settings)
+        found = self.order("probe", **{**self.settings, "hidden": secret})
         if "problem" in found:
             raise _Refused(found["problem"])
         if found["missing"]:
