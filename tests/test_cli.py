@@ -132,6 +132,7 @@ def test_demo_writes_its_files_where_it_says(demo):
     assert len(rows) == 3001
 
 
+@pytest.mark.wide
 def test_demo_in_words_names_both_limits_and_its_files(tmp_path):
     done = command("demo", "--quick", "--out", tmp_path / "here", folder=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -154,6 +155,7 @@ def test_run_binds_and_overrides(tmp_path):
     assert all(Path(path).is_file() for path in facts["files"].values())
 
 
+@pytest.mark.wide
 def test_run_settles_where_statics_say(tmp_path):
     done = command("run", EXAMPLE, "--json", folder=tmp_path)
     facts = json.loads(done.stdout)
@@ -167,6 +169,7 @@ def test_run_settles_where_statics_say(tmp_path):
     assert last["F [N]"] == pytest.approx(K * (x - z), rel=1e-4)
 
 
+@pytest.mark.wide
 def test_run_names_every_number_with_its_unit(tmp_path):
     facts = json.loads(command("run", EXAMPLE, "--json", folder=tmp_path).stdout)
     assert nameless(facts) == []
@@ -318,6 +321,7 @@ def test_an_error_without_a_file_names_none(tmp_path, monkeypatch, capsys):
     assert capsys.readouterr().err == "hapticlab: No space left on device\n"
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows reports a closed pipe in another way")
 def test_a_closed_pipe_ends_it_quietly(tmp_path):
     call = [sys.executable, "-m", "hapticlab", "run", str(EXAMPLE), "--json", "--duration", "0.1"]
@@ -368,6 +372,7 @@ def answering(monkeypatch):
     return types
 
 
+@pytest.mark.wide
 def test_run_on_a_board_in_place_of_the_files_paddle(tmp_path):
     done = command("run", EXAMPLE, "--port", "sim://hapkit", "--T", "5e-4", "--duration", "0.3", "--json", folder=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -568,6 +573,7 @@ def test_tradeoff_wants_parts(given, capsys):
     assert f"{given[1]!r} is not a fraction; give a number greater than 0" in capsys.readouterr().err
 
 
+@pytest.mark.wide
 def test_tradeoff_prints_what_it_chose_and_draws_it(tmp_path):
     (tmp_path / "spring.py").write_text(SPRING)
     done = command("tradeoff", "spring.py", "--T", "2e-3", "1e-3", "--targets", "uno", folder=tmp_path)
@@ -579,6 +585,7 @@ def test_tradeoff_prints_what_it_chose_and_draws_it(tmp_path):
     assert [(float(row["T"]), row["passive"]) for row in rows] == [(2e-3, "True"), (1e-3, "True")]
 
 
+@pytest.mark.wide
 def test_tradeoff_says_as_json_what_to_relax(tmp_path, capsys):
     path = tmp_path / "stiff.py"
     path.write_text(SPRING.replace("150", "900"))

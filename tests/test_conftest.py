@@ -70,6 +70,7 @@ def test_skip_of_a_whole_module_is_a_failure_in_ci(tmp_path):
     assert "skipped in CI" in done.stdout
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(not importlib.util.find_spec("xdist"), reason="needs pytest-xdist")
 def test_both_are_failures_in_ci_where_other_processes_run_the_tests(tmp_path):
     (tmp_path / "test_it.py").write_text(SKIPPING)
@@ -86,6 +87,7 @@ def test_a_loop_that_a_module_leaves_running_is_an_error(tmp_path):
     assert "1 passed, 1 error" in done.stdout and "still runs after this module" in done.stdout, done.stdout
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(not hasattr(signal, "SIGALRM"), reason="without SIGALRM a limit ends the run, as in the next test")
 def test_a_test_that_waits_for_ever_fails_where_nobody_can_interrupt_it(tmp_path):
     (tmp_path / "test_it.py").write_text(WAITS)
@@ -93,6 +95,7 @@ def test_a_test_that_waits_for_ever_fails_where_nobody_can_interrupt_it(tmp_path
     assert "1 failed, 1 passed" in done.stdout and "Timeout" in done.stdout, done.stdout
 
 
+@pytest.mark.wide
 def test_one_whose_clean_up_waits_too_ends_the_run_and_is_named(tmp_path):
     (tmp_path / "test_it.py").write_text(WAITS_AT_ITS_END)
     done = run(tmp_path, {}, "--timeout=1")

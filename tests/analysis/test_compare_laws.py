@@ -17,6 +17,7 @@ def bounce():
     return hl.compare_laws(FREE, K=K, speed=0.1, entries=8)
 
 
+@pytest.mark.wide
 def test_the_plain_wall_throws_back_faster_by_its_half_sample(bounce):
     """A delay of T/2 on a spring is a damper of -K T/2: over half a swing the amplitude grows by exp(pi wT/4)."""
     plain = bounce["zoh"]

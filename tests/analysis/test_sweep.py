@@ -109,6 +109,7 @@ def test_axes_keep_the_order_given():
     assert ab.units == {"T": "s", "k": "N/m"} and ab.unit == "N"
 
 
+@pytest.mark.wide
 def test_the_engines_agree():
     ways = [
         sweep(wall(), FULL, duration=0.1, metric=metric, engine=engine, progress=False, k=K, delay=[0.0, 4e-4]).values

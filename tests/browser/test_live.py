@@ -3,6 +3,8 @@
 import pytest
 from lab import ask, command, eventually, grab, picture, until
 
+pytestmark = pytest.mark.wide  # the scripts and the silent view beside it always run
+
 BEGIN = """
 import hapticlab as hl
 paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch"))

@@ -37,6 +37,7 @@ def play(page, arrivals):
     )
 
 
+@pytest.mark.wide
 def test_frames_that_arrive_evenly_are_shown_at_once(page):
     arrivals = [0.005 + k / 60 + 0.004 * (k % 3) for k in range(240)]
     for now, shown in play(page, arrivals)[120:]:

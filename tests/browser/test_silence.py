@@ -44,6 +44,7 @@ def presses(page):
     return [PRESSES[int(value)] for kind, value, _ in page.evaluate("said") if kind == 6]
 
 
+@pytest.mark.wide
 def test_without_a_kernel_nothing_can_be_pressed(page):
     words, button, *off = page.evaluate("shown()")
     assert words == "Waiting for the kernel: this moves in a running notebook only."

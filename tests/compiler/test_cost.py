@@ -211,6 +211,7 @@ def test_a_program_is_offered_a_rate_the_first_that_is_long_enough():
         fit(hl.compile(scene, T=shorter, **options))
 
 
+@pytest.mark.wide
 def test_a_law_of_the_book_is_offered_where_it_needs_fewer_samples():
     ellis, zoh = (hl.wall(law)(k=150, x_o=0.01) for law in ("ellis", "zoh"))
     T = next(T * 1e-6 for T in range(1, 2000) if cost(hl.compile(zoh, T=T * 1e-6), every=20).fits)

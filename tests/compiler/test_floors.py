@@ -17,6 +17,7 @@ def bench(monkeypatch):
     return importlib.import_module("scenes"), importlib.import_module("floors")
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize(("name", "columns"), [("coupler", 2), ("pendulum", 1)])
 def test_a_step_by_hand_and_a_compiled_step_agree(bench, name, columns):
     scenes, floors = bench

@@ -131,6 +131,7 @@ def test_the_wheel_runs_the_machine_where_nothing_can_be_built(wheel, tmp_path):
     assert "EngineMissingError" in ran.stderr and "set XDG_CACHE_HOME" in ran.stderr
 
 
+@pytest.mark.wide
 def test_the_wheel_names_the_platform_and_holds_its_library_alone(wheel):
     found = libraries(wheel)
     assert list(found) == [HERE]

@@ -281,6 +281,7 @@ def bouncing(shape, ticks):
     return engine.load(program).run(ticks, np.zeros((ticks, 1)), np.array(program.values)[:, None]).outputs[:, 1:3, 0].T
 
 
+@pytest.mark.wide
 def test_impulses_between_a_disc_and_a_tile():
     E, d = bouncing(Circle(0.04), 250)
     assert np.ptp(E) < 1e-9 * E[0]

@@ -293,6 +293,7 @@ def test_what_could_not_be_made_is_not_kept_and_the_error_comes_again():
     assert len(PROGRAMS) == 0
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("table", [PROGRAMS, LINKED, KERNELS], ids=["programs", "linked", "kernels"])
 def test_tables_stay_within_their_bound(table, monkeypatch):
     monkeypatch.setattr(table, "most", 3000)

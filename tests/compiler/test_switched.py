@@ -47,8 +47,8 @@ def velocities(handle):
     return np.array([0, *map(mp.mpf, np.diff(handle))]) / mp.mpf(T)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize(("stiffness", "switches"), [(2e3, 6), slow(1e5, 10), slow(1e6, 10), (1e7, 10)])
-@pytest.mark.always("2000.0-6")
 def test_force_of_a_wall_is_exact_at_any_stiffness(stiffness, switches):
     """A part in 1e12 of the largest force: rounding of the crossing times the rates of the stiffest wall."""
     free = [500 / 0.05, 1 / 0.05, 500 / 0.05, 1 / 0.05, 0.0]
@@ -114,6 +114,7 @@ def walls(count):
     return [hl.when(z > j * x_o / 10, k * (z - j * x_o / 10), 0) for j in range(1, 1 + count)]
 
 
+@pytest.mark.wide
 def test_walls_in_a_row_take_a_map_more_than_there_are_walls():
     program = compiled(hl.Scene(FELT, [sp.Eq(m * z.diff(t, 2), FREE - sum(walls(5)))], watch=[z]))
     assert program.facts["maps"] == 6
@@ -260,6 +261,7 @@ def test_float32_rounds_and_no_more():
     np.testing.assert_allclose(seen[:, 0], exact[:, 0], rtol=0, atol=5e-6 * abs(exact[:, 0]).max())
 
 
+@pytest.mark.wide
 def test_a_stiff_wall_takes_pieces_of_a_radian_and_says_so():
     program = compiled(wall(k=1e7))
     assert program.facts["pieces"] == 15 + 2 + 9 and program.facts["maps"] == 2  # of 14.1 rad, two events and two each half turn

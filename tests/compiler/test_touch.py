@@ -209,6 +209,7 @@ def test_a_stack_throws_its_upper_ball_in_sequence():
     assert ran.w[-1] == pytest.approx([stayed - G * s, thrown - G * s], abs=1e-12)
 
 
+@pytest.mark.wide
 def test_a_box_lands_on_two_corners_whatever_their_order():
     """Flat, it rebounds flat with e; tilted, the first corner turns it; the listing of the corners changes nothing."""
     half, inertia = 0.2, 0.02

@@ -301,8 +301,8 @@ def framed(programs):
     return b"".join(struct.pack("<I", len(p)) + bytes(p) for p in programs)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("word_bits", WORDS)
-@pytest.mark.always("16")
 def test_sanitizers_find_nothing_in_damaged_programs(tmp_path, word_bits):
     flags = ("-g", "-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all")
     path, done = compiled(tmp_path, *flags, word_bits=word_bits)
@@ -325,9 +325,9 @@ def test_sanitizers_find_nothing_in_damaged_programs(tmp_path, word_bits):
     assert set(verdicts) >= {number(name) for name in ("OK", "SIZE", "TABLE", "TYPE", "OPCODE", "OPERAND", "UNSET")}
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("dispatch", [(), ("-DHL_NO_COMPUTED_GOTO",)])
 @pytest.mark.parametrize("word_bits", WORDS)
-@pytest.mark.always("16-dispatch1")
 def test_the_sources_compile_without_a_warning(tmp_path, word_bits, dispatch):
     strict = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Werror")
     _, done = compiled(tmp_path, *strict, *dispatch, word_bits=word_bits)

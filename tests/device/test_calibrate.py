@@ -146,8 +146,8 @@ class TestSign:
         person = bench.Scripted(paddle, HOMING | tugged(HANDS[hand]))
         assert measure_sign(paddle, person, seed=3).verdict == verdict
 
+    @pytest.mark.wide
     @pytest.mark.parametrize("hand", HANDS)
-    @pytest.mark.always("holds")
     def test_a_motor_without_supply_is_never_right(self, hand):
         paddle = bench.paddle(store=KNOWN.to_bytes(), wiring=0)
         found = check_sign(paddle, bench.Scripted(paddle, HOMING | tugged(HANDS[hand])), seed=5)
@@ -155,6 +155,7 @@ class TestSign:
         assert "check its supply" in str(found)
         assert paddle.settings.checked == 0
 
+    @pytest.mark.wide
     def test_a_handle_left_alone_is_told(self):
         paddle = bench.paddle(store=KNOWN.to_bytes())
         found = measure_sign(paddle, bench.Scripted(paddle, HOMING | tugged(holding(0.0))), seed=5)
@@ -204,6 +205,7 @@ class TestSign:
         found = check_sign(paddle, bench.Scripted(paddle, HOMING | YES | tugged(swaying())), seed=3)
         assert (found.verdict, kept_on_board(paddle).checked) == ("right", 1)
 
+    @pytest.mark.wide
     def test_swapped_wires_are_turned_and_checked_again(self):
         paddle = bench.paddle(store=KNOWN.to_bytes(), wiring=-1)
         person = bench.Scripted(paddle, HOMING | YES | tugged(swaying()))
@@ -328,9 +330,9 @@ class TestForce:
         assert "'abc' is no number" in person.words
         assert "1e+09: needs a number from" in person.words
 
+    @pytest.mark.wide
     @pytest.mark.parametrize("coulomb", [0.0, 0.1])
     @pytest.mark.parametrize("side", [1, -1])
-    @pytest.mark.always("1-0.0", "-1-0.1")
     def test_hanging_weights(self, coulomb, side):
         mechanics = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, coulomb=coulomb)
         paddle = bench.paddle(store=CHECKED.to_bytes(), force_full=6.0, mechanics=mechanics)
@@ -375,6 +377,7 @@ class TestForce:
             assert paddle.exchange.port.seen_duty == pytest.approx(duty_of(force, paddle.settings, 32767), abs=1 / 32767)
 
 
+@pytest.mark.wide
 def test_all_of_it_in_one_go():
     paddle = bench.paddle(wiring=-1, force_full=6.5, metres_per_count=-11.9e-6)
     answers = {"Which sensor": "hapkit"} | STOPS | YES | HOMING | tugged(swaying()) | on_a_scale()

@@ -101,6 +101,7 @@ class TestFirmware:
         found = checks._other_firmware("/dev/ttyACM0", LinkError("no paddle answers"))
         assert "hapticlab flash --port /dev/ttyACM0" in found.cure
 
+    @pytest.mark.wide
     @pytest.mark.skipif(not hasattr(os, "openpty"), reason="this system has no pseudo-terminals")
     @pytest.mark.parametrize("answer", [b"\x14\x10", b""])
     def test_a_bootloader_is_found_on_a_terminal(self, monkeypatch, answer):

@@ -105,9 +105,9 @@ def test_lanes_equal_scalar(engine, given):
         assert np.array_equal(lanes.states[:, lane], alone.states[:, 0])
 
 
+@pytest.mark.wide
 @pytest.mark.skipif("llvm" not in ENGINES, reason="llvmlite is not installed")
 @pytest.mark.parametrize("given", [{}, {"counts_per_metre": 1e5, "noise": 1e-5}])
-@pytest.mark.always("given1")
 def test_engines_give_the_same_bits(given):
     coupler = k * (x(t) - z) + B * (v(t) - z.diff(t))
     mass = Scene(force=coupler, eom=[sp.Eq(m * z.diff(t, 2), coupler)], watch=[z])

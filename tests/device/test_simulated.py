@@ -176,6 +176,7 @@ def test_chatter_boundary_is_not_shifted(spring):
         assert (determinant > 1) == (K > limit)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("given", [{}, {"coulomb": 0.1, "delay": 1.4e-3, "noise": 1e-6}])
 def test_chunks_do_not_change_the_run(spring, monkeypatch, given):
     paddle = SimulatedPaddle(**PLAIN, **given, hand=Hand(k=100, b=1, intent=lambda t: 0.01 * np.sin(9 * t)))

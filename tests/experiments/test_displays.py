@@ -59,6 +59,7 @@ def test_a_body_that_is_late_by_half_a_period_drives_the_hand():
     assert alone.damping == pytest.approx(0.1, rel=0.01) and alone.misfit < 1e-4
 
 
+@pytest.mark.wide
 def test_an_admittance_display_hides_friction():
     rough = replace(PADDLE, coulomb=0.1)
     assert render(rough, Impedance(k=400.0)).friction == pytest.approx(0.1, rel=0.1)

@@ -147,6 +147,7 @@ def is_felt_or_named(program, push):
         assert not log.F[stop:].any()
 
 
+@pytest.mark.wide
 @EVERY_DRAW
 @given(programs(), st.floats(-20, 20))
 def test_a_simulated_paddle_feels_finite_forces_or_names_the_fault(program, push):
@@ -216,6 +217,7 @@ def test_a_damaged_program_is_refused_in_words_or_runs_as_any_other(program, han
 # any finite numbers at the boundary of an engine
 
 
+@pytest.mark.wide
 @EVERY_DRAW
 @given(programs(), st.lists(st.floats(), min_size=2 * TICKS, max_size=2 * TICKS), st.floats())
 def test_any_float64_at_all_is_taken_or_refused_alike(program, numbers, value):

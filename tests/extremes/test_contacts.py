@@ -62,6 +62,7 @@ def test_an_elastic_ball_bounces_for_ever():
     np.testing.assert_allclose(found["h"], 0.04 - G * tau**2 / 2, rtol=0, atol=1e-11)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("stiffness", [1e4, 1e6, pytest.param(1e7, marks=pytest.mark.slow)])
 def test_a_contact_shorter_than_a_tick_gives_back_the_height(stiffness):
     """It lasts 7, 0.7 and 0.2 ms of 1 ms. Between contacts the energy is m g 40 mm, whenever they were."""

@@ -191,6 +191,7 @@ def polynomial(terms):
     return sp.Mul(F0, sp.Add(*powers, evaluate=False), evaluate=False)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("terms", [34_000, pytest.param(100_000, marks=pytest.mark.slow)])
 def test_sums_that_no_program_can_hold_are_refused_before_they_are_looked_into(terms):
     with pytest.raises(SceneError, match="more than 100000 different parts.*fewer terms"):

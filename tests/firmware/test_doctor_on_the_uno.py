@@ -16,6 +16,7 @@ def test_a_healthy_board_is_healthy():
         assert "2000 samples of 2000, 0 gaps, 0 lost, 0 damaged" in str(checks[3])
 
 
+@pytest.mark.wide
 def test_a_frame_damaged_on_the_way_is_told():
     with emulated_uno() as paddle:
         wait = paddle.exchange.wait

@@ -30,6 +30,7 @@ def test_a_scene_that_does_not_fit_is_refused_with_what_would():
         assert paddle.run(scene, duration=0.1, method="semi_implicit_euler").fault is None
 
 
+@pytest.mark.wide
 def test_the_cost_said_before_is_the_load_measured_after():
     hand = hl.Hand(m=0.05, b=3, k=400, intent=lambda t: 0.006 * np.sin(9 * t) + 0.003 * np.sin(31 * t))
     with emulated_uno(hand) as paddle:
@@ -45,6 +46,7 @@ def test_the_cost_said_before_is_the_load_measured_after():
     assert worst <= said.longest() <= said.longest(promise=True)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("every", [50, 333])
 def test_rare_samples_leave_the_heartbeat_alone(every):
     with emulated_uno() as paddle:
@@ -134,6 +136,7 @@ def named(message):
         yield dict(re.findall(r"(\w+)='(\w*)'", words)) | made
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize(
     "make, T",
     [pytest.param(m, T, marks=() if (m, T) == (wall, 0.45e-3) else pytest.mark.slow)

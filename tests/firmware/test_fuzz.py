@@ -329,9 +329,9 @@ def talk_of(frames, seed):
     return talk
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("frames", [60_000, pytest.param(250_000, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("slots", [1, 2])
-@pytest.mark.always("1-*")
 def test_a_bad_link_never_moves_the_motor_wrongly_and_always_recovers(tmp_path, slots, frames, capsys):
     talk = talk_of(frames, seed=slots)
     seen = fuzz(build(tmp_path, slots), talk)

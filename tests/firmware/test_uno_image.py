@@ -47,6 +47,7 @@ def connect(image):
         board.close()
 
 
+@pytest.mark.wide
 def test_the_port_is_pyserials(image):
     with Uno(image[1]) as board:
         url = offer("bare", ClosedLoop.of(nominal("hapkit"), board, PaddleHandle(hl.SimulatedPaddle(m=1, b=1, T=1e-3))))
@@ -73,6 +74,7 @@ def test_a_ping_takes_less_than_a_millisecond(connect):
     assert np.median(times) < 1e-3
 
 
+@pytest.mark.wide
 def test_a_kilohertz_of_telemetry_without_loss(connect):
     paddle, loop = connect()
     paddle.home(at=0.0)

@@ -109,6 +109,7 @@ def test_names_in_zip_files_are_read_as_their_systems_wrote_them(tmp_path):
         assert archives.read_entry(entry, 1 << 20) == ADA
 
 
+@pytest.mark.wide
 def test_a_zip_file_of_many_members_is_read(tmp_path):
     with zipfile.ZipFile(tmp_path / "class.zip", "w") as made:  # as zip64, of more members than 16 bits count
         for number in range(66_000):

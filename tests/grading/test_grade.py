@@ -126,6 +126,7 @@ def test_who_ends_the_process_of_the_next_is_no_trouble_to_it(assignment, starte
     assert report.earned == 8.0
 
 
+@pytest.mark.wide
 def test_a_limit_of_time_counts_only_in_the_last_turn(assignment, starter):
     slow, limits = submission(forces="def forces(x, k):\n    while True: pass"), Limits(seconds=0.6)
     report = grade(slow, assignment, starter, limits, last=True)
@@ -193,6 +194,7 @@ def test_what_is_wrong_in_both_orders_costs_one_run_of_the_notebook(assignment, 
     assert starter.sessions - before == 2, "the quick way, and the notebook"
 
 
+@pytest.mark.wide
 def test_when_the_time_of_all_is_over_what_is_left_is_wrong(assignment, starter):
     cells = (*OPEN.values(), *["import time\ntime.sleep(60)"] * 40)
     report = grade(Submission("bob", "b.ipynb", cells), assignment, starter, Limits(seconds=0.3, total=1.5), last=True)

@@ -75,6 +75,7 @@ def notebook(text):
     return json.dumps({"cells": cells, "metadata": {}, "nbformat": 4, "nbformat_minor": 5})
 
 
+@pytest.mark.wide
 def test_the_lab_of_the_page_is_graded(own_lab, here, tmp_path, capsys):
     (command,) = (shlex.split(line) for line in COMMANDS if "20_spring" in line)
     handed_in = tmp_path / "handed-in"

@@ -91,6 +91,7 @@ def exchange(tmp_path, monkeypatch):
     return part
 
 
+@pytest.mark.wide
 @pytest.mark.filterwarnings("ignore:Exception ignored in")  # nbgrader leaves timestamp.txt open
 @pytest.mark.filterwarnings("ignore:unclosed file")
 def test_the_exchange_takes_labs_out_and_back_and_pages_to_students(exchange, tmp_path, here, monkeypatch):

@@ -135,6 +135,7 @@ def test_files_in_the_working_folder_are_not_imported(course, hostile):
     assert "ada: 10 of 10 points" in done.stdout, done.stderr
 
 
+@pytest.mark.wide
 def test_a_module_is_not_started_from_the_working_folder(course, hostile):
     done = run(command(course, sys.executable, "-m", "hapticlab"), hostile)
     assert not (hostile / "ran").exists(), (hostile / "ran").read_text()
@@ -142,6 +143,7 @@ def test_a_module_is_not_started_from_the_working_folder(course, hostile):
     assert "start with: python -P -m hapticlab grade" in done.stderr
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("folder", ["class", "class/ada"])
 def test_an_import_path_among_the_submissions_is_refused(course, tmp_path, folder):
     fill(tmp_path / "class", {"ada/x.ipynb": notebook(HONEST.values())})

@@ -77,6 +77,7 @@ def test_two_workers_one_of_which_is_killed_give_the_same_bytes(one, course, tmp
     assert again.seconds == () and again.reports == tuple(others) and again.walls.level == "", "all is known: no process began"
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(sys.platform != "linux", reason="sessions are forked from another process")
 def test_the_processor_time_of_sessions_is_counted_and_charged(course, tmp_path):
     folder, assignment, _ = course
@@ -90,11 +91,13 @@ def test_the_processor_time_of_sessions_is_counted_and_charged(course, tmp_path)
     assert 1.25 < burnt.processor - asleep.processor < 10 and asleep.processor > 0.5
 
 
+@pytest.mark.wide
 def test_what_keeps_a_worker_from_beginning_is_said(course):
     with pytest.raises(CourseError, match="sandbox"):
         run([course[0] / "ada.ipynb"], course[1], LIMITS, sandbox="iron")
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(os.name == "nt", reason="there is no SIGINT to send to one process")
 def test_ctrl_c_ends_cleanly_and_the_same_command_goes_on(one, course, here, tmp_path, capsys):
     folder, assignment, _ = course

@@ -48,6 +48,7 @@ def ended(session, name, seconds=60.0):
     return caught.value.reason
 
 
+@pytest.mark.wide
 def test_one_interpreter_answers_for_all_and_its_start_is_not_charged():
     began = time.monotonic()
     with loaded() as session:

@@ -145,6 +145,7 @@ def test_a_reply_of_too_many_numbers_is_not_read():
         parsed(b'{"number": 0, "a": [' + b"0," * 3_000_000 + b"0]}", "another")
 
 
+@pytest.mark.wide
 def test_sleep_and_work_are_charged(starter):
     with loaded(starter, "import time\ntime.sleep(0.4)", "while time.process_time() < 0.3: pass") as session:
         assert session.charged > 0.4
@@ -169,12 +170,14 @@ def test_files_are_bounded(starter, what):
                 session.ask({"do": "run", "cell": 0}, 10)
 
 
+@pytest.mark.wide
 def test_a_zygote_that_was_killed_is_started_anew(starter):
     os.kill(starter.process, signal.SIGKILL)
     with loaded(starter, "k = 2.5") as session:
         assert value(session, "k") == 2.5
 
 
+@pytest.mark.wide
 def test_a_zygote_ends_all_when_its_grader_is_gone():
     with Preloaded() as preloaded:
         control, process = preloaded.zygote()
@@ -199,6 +202,7 @@ def test_memory_is_bounded_by_a_group_where_there_is_one(starter):
         (starter.group.folder / "memory.limit_in_bytes").write_text(str(LIMITS.memory + LIMITS.scratch))
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("level", ["landlock", "none"])
 def test_processes_are_refused_where_none_counts_them(level):
     with pytest.raises(CourseError, match="needs namespaces, or a user of its own"):

@@ -38,6 +38,7 @@ input()
 """
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize("rivals", [0, 2])
 def test_a_meter_charges_what_a_process_works_and_not_what_it_waits_for_a_processor(rivals):

@@ -74,6 +74,7 @@ def weaker(log, scale):
     return replace(log, F=log.F / scale)
 
 
+@pytest.mark.wide
 def test_a_known_mass_tells_the_force_constant(steps):
     heavy = weaker(run(STEPS, replace(PADDLE, m=0.05, seed=1)), 0.8)
     found = hl.identify(
@@ -97,12 +98,14 @@ def test_what_a_record_does_not_tell_is_named(steps):
         hl.identify(hl.HandleRecord(held, at_rest=False))
 
 
+@pytest.mark.wide
 def test_a_hand_on_the_handle_is_told_as_not_explained():
     found = hl.step_response(run(STEPS, replace(PADDLE, hand=hl.Hand(m=0.02, b=0.5, k=60))), counts_per_metre=COUNTS)
     assert not found.explained
     assert "NOT EXPLAINED" in str(found) and "a hand" in str(found)
 
 
+@pytest.mark.wide
 def test_a_sensor_without_dither_is_told_and_its_rounding_is_no_misfit():
     for seed in range(2):
         found = hl.step_response(run(STEPS, replace(PADDLE, noise=5e-7, seed=seed)), counts_per_metre=COUNTS)

@@ -17,6 +17,7 @@ def check(found, **true):
         assert abs(found[name].value - value) < 2 * found[name].half_width, name
 
 
+@pytest.mark.wide
 def test_a_simulated_paddle_tells_its_constants_within_its_travel():
     paddle = hl.SimulatedPaddle(**BODY | {"b": 0.5}, delay=1.3e-3, counts_per_metre=COUNTS, force_max=1.0)
     found = hl.identify_paddle(paddle, travel=0.012, kinds=("kick", "steps"))

@@ -55,6 +55,7 @@ def test_the_test_bed_emulates_the_floor_for_two_seconds(delay, x_o):
     assert not log.fault
 
 
+@pytest.mark.wide
 def test_a_reactive_pair_makes_good_what_the_entry_missed():
     log = run(BED, hl.deadbeat_wall(BED, K=5000, begins="reactive"), 2.0, -0.02)
     exact = hl.hybrid_wall(BED, K=5000, duration=2.0, x=-0.02)

@@ -71,6 +71,7 @@ def test_what_a_check_does_is_told(broken, name, state, words):
     assert outcome.state == state and words in outcome.found, outcome
 
 
+@pytest.mark.wide
 def test_a_check_that_hangs_is_ended(broken):
     outcome = alone(broken("hangs"), 2.0)
     assert outcome.state == FAULT and "it did not end within 2 s" in outcome.found

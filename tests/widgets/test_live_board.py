@@ -328,6 +328,7 @@ def test_a_scene_that_does_not_fit_is_refused_before_it_is_shown(board, monkeypa
         hl.live(board, WALL)
 
 
+@pytest.mark.wide
 def test_by_the_clock_on_the_wall_in_its_own_thread():
     """The real protocol in real time: frames come, and with the last view the motor is off."""
     with hl.connect("sim://hapkit?pace=real", paddle=HAND) as board:

@@ -56,6 +56,7 @@ def test_a_slider_of_the_period_compiles_nothing():
     np.testing.assert_array_equal(moved.map.limit("stability"), expected.limit("stability"))
 
 
+@pytest.mark.wide
 def test_no_queue_piles_up(view):
     """While the first map is held up, a hundred places of the slider pass; one map more is made, of the last of them."""
     made, go, begun, draw = [], threading.Event(), threading.Event(), view.maps.of
