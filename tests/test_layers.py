@@ -49,6 +49,11 @@ def modules(package):
             yield ".".join(parts[:-1] if parts[-1] == "__init__" and len(parts) > 1 else parts), path.read_text("utf-8")
 
 
+@functools.cache
+def parsed(source):
+    return ast.parse(source)
+
+
 def imported(name, is_package, node):
     """Return the absolute dotted names an import statement opens; names inside the package start with hapticlab."""
     if isinstance(node, ast.Import):
@@ -70,7 +75,7 @@ def in_functions(tree):
 
 def faults(name, source, is_package=False):
     """Return what one module does against the architecture, one line each."""
-    tree, found = ast.parse(source), []
+    tree, found = parsed(source), []
     deferred = in_functions(tree)
     layer = name.split(".")[0]
     for node in ast.walk(tree):
@@ -97,7 +102,7 @@ def faults(name, source, is_package=False):
 def lengths(name, source):
     """Return the functions and modules that are too long."""
     found = [f"{name} has {source.count(chr(10))} lines"] if source.count("\n") > MODULE_LINES else []
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(parsed(source)):
         if isinstance(node, ast.FunctionDef):
             body = node.body[1:] if ast.get_docstring(node) else node.body
             lines = node.end_lineno - body[0].lineno + 1 if body else 0
@@ -118,7 +123,7 @@ def graph_of(sources):
     """Return module -> modules of the package it imports, for sources {dotted name: (source, is_package)}."""
     graph = {}
     for name, (source, is_package) in sources.items():
-        nodes = [i for i in ast.walk(ast.parse(source)) if isinstance(i, ast.Import | ast.ImportFrom)]
+        nodes = [i for i in ast.walk(parsed(source)) if isinstance(i, ast.Import | ast.ImportFrom)]
         targets = [t.removeprefix("hapticlab.") for i in nodes for t in imported(name, is_package, i)]
         exact = {t if t in sources else t.rpartition(".")[0] for t in targets}
         graph[name] = (exact & set(sources)) - {name}

@@ -110,6 +110,7 @@ def test_how_it_ended(starter, body):
     assert descendants(starter.process) == []
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("body", ENDS_MANY)
 def test_how_it_ended_where_it_may_start_processes(with_processes, body):
     assert ended(with_processes, body, 20.0) == ENDS_MANY[body]
