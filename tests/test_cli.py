@@ -45,6 +45,7 @@ def demo(tmp_path_factory):
     return from_nothing("demo", "--quick", "--json", folder=folder), folder
 
 
+@pytest.mark.wide
 def test_demo_prints_json_and_nothing_else(demo):
     done, _ = demo
     assert done.returncode == 0, done.stderr
@@ -142,6 +143,7 @@ def test_demo_in_words_names_both_limits_and_its_files(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["here"]
 
 
+@pytest.mark.wide
 def test_run_binds_and_overrides(tmp_path):
     options = ("--set", "K=500", "--set", "z_o=4 mm", "--duration", "0.5", "--T", "5e-4", "--method", "heun", "--json")
     done = command("run", EXAMPLE, *options, folder=tmp_path)

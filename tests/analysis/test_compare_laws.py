@@ -28,6 +28,7 @@ def test_the_plain_wall_throws_back_faster_by_its_half_sample(bounce):
     assert bounce.incoming == pytest.approx(0.05 * 0.1**2 / 2, rel=1e-9)
 
 
+@pytest.mark.wide
 def test_where_nothing_dissipates_energy_generated_is_speed_gained(bounce):
     for law in LAWS:
         assert bounce[law].generated / bounce.incoming == pytest.approx(

@@ -92,6 +92,7 @@ def test_stick_and_slip_have_the_period_of_the_closed_form():
     assert np.abs(found - (F_c + K * q))[slips].max() < 1e-8
 
 
+@pytest.mark.wide
 def test_two_contacts_at_once_have_one_solver():
     y, _ = body(hl.rigid())
     m, g = hl.parameters("m g", units="kg m/s^2", values=(0.03, 9.81))

@@ -170,6 +170,7 @@ def test_every_scene_of_the_library_is_certified(name):
         assert found.horizon == found.t[-1]
 
 
+@pytest.mark.wide
 def test_chaos_cuts_the_horizon():
     # a double pendulum let go from high up: rounding grows by e every 0.2 s or so
     a, b = hl.coordinate("a", unit="rad", initial=2.6), hl.coordinate("b", unit="rad", initial=2.9)

@@ -237,6 +237,7 @@ def bouncing():
     return Scene(force=k * x(n) + felt.force, eom=[free, *felt.equations], watch=[q])
 
 
+@pytest.mark.wide
 def test_impacts_are_swept_by_a_method_that_knows_them():
     scene, axes = bouncing(), {"e": [0.2, 0.9], "k": [100.0, 400.0]}
     with pytest.raises(ProgramError, match="taylor"):

@@ -216,6 +216,7 @@ def test_the_handle_that_falls_away_leaves_it_behind():
     assert N[40] == pytest.approx(0.05 * 9.81) and not N[60:].any()
 
 
+@pytest.mark.wide
 def test_a_declared_range_is_looked_at_where_the_motion_is_not_linear():
     m, k, start, u = hl.parameters("m k q_0 u", units="kg N/m^3 m N/m", values=(0.05, 5e8, 0.0, 1.0))
 

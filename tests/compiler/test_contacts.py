@@ -95,6 +95,7 @@ def test_hunt_crossley_rebounds_with_its_restitution(exponent, unit):
     assert log["w"][-1] / 1.4 == pytest.approx(hl.hunt_crossley.restitution(0.42), rel=1e-7)
 
 
+@pytest.mark.wide
 def test_newtons_cradle_of_three_swings_without_loss():
     """Equal pendulums in touch: the first swings in from the left, the last swings out on the right, the middle hangs still."""
     k_p, lift = hl.parameters("k_p lift", units="N/m m", values=(20, -0.03))

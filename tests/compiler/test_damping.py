@@ -18,6 +18,7 @@ matrices = st.integers(1, 4).flatmap(
 )
 
 
+@pytest.mark.wide
 @settings(max_examples=60, derandomize=True)
 @given(matrices, st.lists(st.floats(0.1, 10), min_size=4, max_size=4))
 def test_what_is_kept_never_drives(slopes, sizes):

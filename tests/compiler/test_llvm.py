@@ -129,6 +129,7 @@ def test_the_number_of_lanes_stepped_together_changes_no_bit(size):
     assert_same_bits(together.states, reference.states)
 
 
+@pytest.mark.wide
 def test_many_engines_and_threads_share_nothing():
     program = random_program(11)
     inputs, parameters = drive(program, 11, 50, 40)

@@ -242,6 +242,7 @@ def test_printing_a_program_lists_every_instruction_and_its_facts():
     assert all(word in shown for word in ("method = rk4", "hold = soh", "K = 400 N/m", "dz/dt [m/s]", "next   z"))
 
 
+@pytest.mark.wide
 def test_an_eight_link_pendulum_is_a_straight_line():
     """Absolute angles: M_ij = c_ij cos(q_i - q_j), a symmetric matrix of rank 8, solved in the program."""
     N = 8

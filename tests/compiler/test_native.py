@@ -163,6 +163,7 @@ def test_a_compiler_that_fails_leaves_a_wheel_without_library_that_says_so(tmp_p
     assert "this wheel is without its library" in said and "zig is out of order" in said
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(os.name == "nt", reason="the broken compilers are shell scripts")
 @pytest.mark.parametrize(
     "kind, compiler, chosen, needed",
@@ -360,6 +361,7 @@ def test_the_target_is_what_this_python_runs_on(monkeypatch, system, name, machi
 # ---------------------------------------------------------------- the user's cache
 
 
+@pytest.mark.wide
 def test_a_build_that_fails_says_what_the_compiler_said(monkeypatch, tmp_path):
     monkeypatch.setattr(native, "_cache_folder", lambda: tmp_path)
     with pytest.raises(EngineMissingError, match=r"did not compile(.|\n)*no_such_header"):
@@ -367,6 +369,7 @@ def test_a_build_that_fails_says_what_the_compiler_said(monkeypatch, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.wide
 def test_the_library_is_built_once_and_kept(monkeypatch, tmp_path):
     monkeypatch.setattr(native, "_cache_folder", lambda: tmp_path)
     first = native.built(8)

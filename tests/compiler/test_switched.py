@@ -301,6 +301,7 @@ def test_what_it_proposes_instead_of_too_many_surfaces_compiles_and_says_that_it
     assert f"{len(program)} instructions a tick" in program.notes[-1] and len(compiled(few)) < 2e5
 
 
+@pytest.mark.wide
 def test_a_place_may_be_live_where_a_slope_may_not():
     moved = load(compiled(wall(), live="x_o")).run(300, SWING[:, None], [0.012]).outputs[:, 0, 0]
     np.testing.assert_allclose(moved, run(compiled(wall(x_o=0.012)), SWING)[:, 0], rtol=0, atol=1e-13)

@@ -64,6 +64,7 @@ def test_a_random_program_gives_the_interpreters_bits(seed, word_bits):
     assert_same_bits(states, end)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("seed", range(10))
 def test_switch_and_computed_goto_do_the_same(seed, monkeypatch):
     program = small_program(seed)

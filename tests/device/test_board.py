@@ -169,6 +169,7 @@ def test_heartbeats_keep_a_run_alive_while_nobody_asks():
 
 
 @pytest.mark.parametrize("number", [3, 6, 9, 11, 13])
+@pytest.mark.always("6", "13")
 def test_a_dropped_frame_is_said_again(number):
     peer = Peer(told=nth(number, lambda f: True))
     with SerialPaddle(peer.url) as board:

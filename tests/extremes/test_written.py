@@ -204,6 +204,7 @@ def test_a_power_of_a_hundred_thousand_is_short():
     assert load(program).run(1, [[0.02]]).outputs[0, 0, 0] == pytest.approx((1 + 2e-6) ** 100_000, rel=1e-10)
 
 
+@pytest.mark.wide
 def test_a_nest_too_deep_says_how_to_write_it():
     deep = x(n)
     for _ in range(300):

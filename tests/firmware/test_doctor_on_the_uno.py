@@ -9,6 +9,7 @@ from hapticlab.device.doctor_checks import latency, loop_and_link, sensor_at_res
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
 
+@pytest.mark.wide
 def test_a_healthy_board_is_healthy():
     with emulated_uno() as paddle:
         checks = [settings(paddle), latency(paddle), *loop_and_link(paddle), sensor_at_rest(paddle)]

@@ -39,6 +39,7 @@ def test_known_mass_and_records_belong_together():
         hl.identify_paddle(hl.SimulatedPaddle(**BODY), beside=(1,))
 
 
+@pytest.mark.wide
 def test_a_board_is_identified_by_the_same_call():
     pytest.importorskip("serial")
     paddle = hl.SimulatedPaddle(**BODY, delay=0.4e-3, counts_per_metre=COUNTS)

@@ -21,6 +21,7 @@ def test_a_gap_of_exactly_zero_may_count_as_open_or_closed(closed):
     assert checked("08.penalty_force", find_lab("08").exercise("penalty_force"), penalty_force).passed
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("seed", range(40))
 def test_the_momentum_that_a_heavy_plate_gains_is_the_impulse(seed):
     def impact(v, w, m, M, e):

@@ -35,6 +35,7 @@ def test_the_pair_of_an_entry_has_its_closed_form():
     assert [log.x[2], log.v[2]] == pytest.approx([2 * T * v0 - depth - dx, v0 - dv], rel=1e-11)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize(
     ("delay", "x_o"), [(0.0, 0.0), pytest.param(0.01, 0.003, marks=pytest.mark.slow), (0.004, 0.003)]
 )

@@ -103,6 +103,7 @@ def test_gap_changes_as_the_closest_points_move(one, other):
         assert np.abs(arm - (late - early) / (2 * h))[smooth].max() < 2e-6, (one, other, q)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize(
     ("one", "other"),
     [

@@ -248,6 +248,7 @@ def test_a_stiff_wall_is_said_to_chatter_at_the_frequency_of_the_record():
     assert f"at {found.frequency:.0f} Hz" in stage.session.status
 
 
+@pytest.mark.wide
 def test_a_grating_that_a_hand_is_led_across_is_not_said_to_chatter():
     paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch"))
     stage = Stage(paddle, hl.library.detents()).open()
