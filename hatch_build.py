@@ -35,7 +35,7 @@ def load(path):
     return module
 
 
-toolchain = load(ROOT / "hapticlab" / "compiler" / "toolchain.py")
+toolchain = load(ROOT / "hapticlab" / "compiler" / "engines" / "toolchain.py")
 
 
 class Library(BuildHookInterface):

@@ -5,7 +5,7 @@ import pathlib
 import sys
 
 import hapticlab
-from hapticlab.compiler import engine, native
+from hapticlab.compiler.engines import engine, firmware_library
 
 package = pathlib.Path(hapticlab.__file__).parent
 assert "site-packages" in str(package), package
@@ -19,7 +19,7 @@ assert (package / "grading" / "pages.css").is_file()
 assert {"view.js", "view.css"} <= {file.name for file in (package / "widgets" / "browser").iterdir()}
 assert (pathlib.Path(sys.prefix) / "etc/jupyter/jupyter_server_config.d/hapticlab.json").is_file()
 for bits in (8, 16):
-    assert native.prebuilt(bits), f"no library of {bits}-bit words of these sources in the wheel"
+    assert firmware_library.prebuilt(bits), f"no library of {bits}-bit words of these sources in the wheel"
 scene = hapticlab.wall()(k=150, x_o=0.01)
 program = hapticlab.compile(scene, T=1e-3)
 x = hapticlab.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(scene, duration=0.1, v=1.0).x

@@ -14,6 +14,9 @@ from .analysis.pictures import picture
 from .analysis.plots import plot
 from .analysis.port_error import force_error, sensor_floor
 from .analysis.port_passivity import port_passivity
+from .analysis.programs.error_order import order_of
+from .analysis.programs.replay import replay
+from .analysis.programs.requires import requires
 from .analysis.reduction import reduction
 from .analysis.reference import reference
 from .analysis.staircase import staircase
@@ -23,12 +26,9 @@ from .analysis.sweep import sweep
 from .analysis.tradeoff import tradeoff
 from .analysis.wall_laws import wall_law
 from .analysis.wall_map import wall_map
-from .compiler.advance import Taylor
-from .compiler.lower import compile
-from .compiler.order import order_of
-from .compiler.pairs import contacts_between
-from .compiler.replay import replay
-from .compiler.requires import requires
+from .compiler.contacts.broad_phase import contacts_between
+from .compiler.events.taylor_method import Taylor
+from .compiler.tick.compile_scene import compile
 from .course.check import check
 from .device.board import SerialPaddle
 from .device.calibrate import calibrate

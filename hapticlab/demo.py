@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from .analysis.sweep import Sweep, sweep
-from .compiler.engine import load
+from .compiler.engines.engine import load
 from .device.hand import Hand
 from .device.profiles import profile
 from .device.progress import progress_bar

@@ -8,7 +8,7 @@ import argparse
 import os
 
 from . import __version__
-from .compiler.boards import BOARDS
+from .compiler.boards.board_records import BOARDS
 from .grading.formats import FORMATS
 from .grading.limits import MIB, Limits
 

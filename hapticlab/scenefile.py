@@ -10,7 +10,7 @@ import numpy as np
 
 from .analysis.chatter import chatter
 from .analysis.energy import energy
-from .compiler.ir import Program
+from .compiler.ir.program import Program
 from .device.hand import Hand
 from .device.paddle import Paddle
 from .device.simulated import SimulatedPaddle

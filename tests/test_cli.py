@@ -16,9 +16,9 @@ from commands import run_command
 import hapticlab as hl
 from hapticlab import board_commands, cli, options, scene_commands
 from hapticlab.analysis.tradeoff import PC
-from hapticlab.compiler.advance import Taylor
-from hapticlab.compiler.exact import EXACT
-from hapticlab.compiler.methods import METHODS
+from hapticlab.compiler.events.taylor_method import Taylor
+from hapticlab.compiler.methods.exact_linear import EXACT
+from hapticlab.compiler.methods.method_table import METHODS
 from hapticlab.device.calibrate import STEPS
 from hapticlab.device.serial import Port
 from hapticlab.device.settings import nominal

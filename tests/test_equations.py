@@ -8,7 +8,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import T, n, t, v, x
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 
 k, x_o = hl.parameters("k x_o", units="N/m m")
 PERIOD, K, BOUNDARY = 1e-3, 230.0, 0.012

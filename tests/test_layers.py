@@ -22,7 +22,7 @@ OUTSIDE = {"__init__", "__main__", "_jupyter"}
 # dependency -> the only modules that may open it
 DOORS = {
     "pint": {"scene.units"},
-    "llvmlite": {"compiler.llvm", "compiler.llvm_emit"},
+    "llvmlite": {"compiler.engines.llvm", "compiler.engines.llvm_emit"},
     "scipy": {"analysis.hybrid", "limits.matrix", "identification.fit", "experiments.fit"},
     "matplotlib": {"drawing"},
     "serial": {"device.serial", "device.urls.protocol_sim"},
@@ -35,7 +35,7 @@ DOORS = {
     "pytest": set(),
 }
 # modules that open their dependency at once, because nothing imports them but a function that has opened it already
-BEHIND_A_DOOR = {"compiler.llvm_emit", "device.urls.protocol_sim"}
+BEHIND_A_DOOR = {"compiler.engines.llvm_emit", "device.urls.protocol_sim"}
 # modules that open the compiler when a function needs it: what judges answers seldom does
 OPENS_THE_COMPILER = {"course.felt"}
 FUNCTION_LINES, MODULE_LINES = 60, 300

@@ -1,7 +1,7 @@
 /* The virtual machine: runs a verified straight-line program, one call a sample.
  *
  * No allocation, no recursion, no loop that a program controls. The caller gives one array of registers; the program's
- * bytes stay where they are and may be const. The format is described in hapticlab/compiler/bytecode.py.
+ * bytes stay where they are and may be const. The format is described in hapticlab/compiler/engines/bytecode.py.
  *
  *     hl_program program;
  *     if (hl_verify(&program, bytes, size, registers, capacity) == HL_OK) {

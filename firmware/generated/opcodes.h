@@ -1,4 +1,4 @@
-/* Written by hapticlab/compiler/cheaders.py: change the Python tables, not this file. */
+/* Written by hapticlab/compiler/boards/c_headers.py: change the Python tables, not this file. */
 
 #ifndef HL_OPCODES_H
 #define HL_OPCODES_H

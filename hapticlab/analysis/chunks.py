@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiler.shared import Shared
+from ..compiler.ir.cache import Shared
 from ..device.link import link, load_linked
 from .grid import Points
 from .measures import METRICS, WithFault

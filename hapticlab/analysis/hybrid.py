@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiler.instant import ROWS
 from ..errors import AnalysisError
+from .accuracy.accelerations_at import ROWS
 
 #: places within a step at which surfaces are looked at
 PLACES = np.linspace(0, 1, 5)[1:]
@@ -22,7 +22,7 @@ MOST_STEPS = 20_000
 
 
 class Field:
-    """Evaluates an :class:`~hapticlab.compiler.instant.Instant` at any time, in any mode.
+    """Evaluates an :class:`~hapticlab.analysis.accuracy.accelerations_at.Instant` at any time, in any mode.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class Field:
     T : float
         Length of those periods [s].
     once : tuple
-        Of :meth:`~hapticlab.compiler.engine.Engine.once`.
+        Of :meth:`~hapticlab.compiler.engines.engine.Engine.once`.
     """
 
     def __init__(self, instant, rows, T, once):

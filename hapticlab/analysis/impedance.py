@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from ..compiler.coefficients import Coefficients
-from ..compiler.dependence import FORCE, Dependence, part_of
-from ..compiler.graph import shown
+from ..compiler.algebra.graph import shown
+from ..compiler.prune.constant_coefficients import Coefficients
+from ..compiler.prune.dependence import FORCE, Dependence, part_of
 from ..errors import AnalysisError, ParameterError
 from ..scene.derivative import Partial
 from ..scene.scene import Scene

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from ..compiler.trace import equal, maximum, minimum, select
+from ..compiler.ir.trace import equal, maximum, minimum, select
 from ..device.lanes import device_values, together
 from ..device.link import link, load_linked
 from ..device.plant import decided

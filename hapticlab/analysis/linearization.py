@@ -1,18 +1,18 @@
 """Linearised at operating points: the equations of motion, and the tick of the program that runs them.
 
-Nothing is differenced: slopes come from the instructions, over all points at once (:mod:`hapticlab.compiler.tangents`).
+Nothing is differenced: slopes come from the instructions, over all points at once (:mod:`hapticlab.compiler.algebra.tangents`).
 """
 
 import numpy as np
 
-from ..compiler.advance import Taylor
-from ..compiler.exact import EXACT
-from ..compiler.lower import compile
-from ..compiler.lowering import Lowering
-from ..compiler.phase import TICKS
-from ..compiler.slopes import Slopes
-from ..compiler.tangents import tangents
+from ..compiler.algebra.phase import TICKS
+from ..compiler.algebra.tangents import tangents
+from ..compiler.events.taylor_method import Taylor
+from ..compiler.methods.exact_linear import EXACT
+from ..compiler.tick.compile_scene import compile
+from ..compiler.tick.lowering import Lowering
 from ..errors import AnalysisError
+from .stability.slopes import Slopes
 
 
 def slopes_of(scene, T, method=None, exact=False):

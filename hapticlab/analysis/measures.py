@@ -7,8 +7,8 @@ halves of the run are counted in ticks, as :func:`hapticlab.analysis.chatter.cha
 
 import numpy as np
 
-from ..compiler.ir import Channel
-from ..compiler.trace import equal, maximum, minimum, select
+from ..compiler.ir.program import Channel
+from ..compiler.ir.trace import equal, maximum, minimum, select
 from .chatter import decaying
 
 #: a swing below this [m] is rounding of a float32 scene: some ulp of a position of centimetres

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiler.methods import METHODS
-from ..compiler.options import choice
+from ..compiler.ir.options import choice
+from ..compiler.methods.method_table import METHODS
 from ..drawing import house_style, new_figure, style_of
 
 #: damping ratios of the right picture, and omega h past which nothing is drawn
@@ -26,7 +26,7 @@ class WithoutSteps:
     order, evaluations, cost : str
         In words: there is no power of a step.
     real, imaginary : float
-        The largest h b/m and omega h, as of :class:`~hapticlab.compiler.methods.Method`; inf where any is stable.
+        The largest h b/m and omega h, as of :class:`~hapticlab.compiler.methods.method_table.Method`; inf where any is stable.
     """
 
     name: str

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from ..compiler.graph import Graph, driven
+from ..compiler.algebra.graph import Graph, driven
 from ..drawing import STYLES, house_style, new_figure
 from ..errors import AnalysisError
 from ..scene.derivative import Partial

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiler.phase import TICKS
+from ..compiler.algebra.phase import TICKS
 from ..errors import AnalysisError
 from .places import Places
 from .switches import MOST_MODES

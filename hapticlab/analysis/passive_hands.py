@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..compiler.exponential import exponential
+from ..compiler.algebra.matrix_exponential import exponential
 from ..limits.limit import whole_and_fraction
 
 #: a closed loop is unstable where an eigenvalue is this far outside the unit circle

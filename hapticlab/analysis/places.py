@@ -3,9 +3,9 @@
 import numpy as np
 import sympy as sp
 
-from ..compiler.channels import channel_of
-from ..compiler.first_sample import numbers
-from ..compiler.graph import Graph
+from ..compiler.algebra.first_sample import numbers
+from ..compiler.algebra.graph import Graph
+from ..compiler.ir.channels import channel_of
 from ..errors import ParameterError
 from ..scene.parameters import Parameter, T
 from ..scene.symbols import delay, t, v, x

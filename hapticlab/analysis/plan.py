@@ -7,7 +7,7 @@ import textwrap
 import numpy as np
 
 from .. import __version__
-from ..compiler.llvm import llvmlite_is_ready
+from ..compiler.engines.llvm import llvmlite_is_ready
 from ..errors import AnalysisError, ProgramError
 from ..scene.parameters import Parameter
 from .chatter import SHORTEST

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiler.advance import Taylor
-from ..compiler.engine import load
-from ..compiler.lower import compile
+from ..compiler.engines.engine import load
+from ..compiler.events.taylor_method import Taylor
+from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
 
 #: of the Taylor series that a sensor floor is measured with

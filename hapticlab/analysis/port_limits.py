@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..compiler.step_matrix import rising
+from ..compiler.methods.step_matrix import rising
 from ..errors import AnalysisError
 from ..limits.port import POINTS, negative, required, static_stiffness, unstable_pole
 from .linearization import motion_at

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..compiler.options import period
+from ..compiler.ir.options import period
 from ..errors import AnalysisError
 from ..limits.limit import check_number
 from ..scene.scene import Scene

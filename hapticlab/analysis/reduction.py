@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..compiler.lower import compile
+from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
 from ..limits.limit import check_number
 from ..limits.port import port_damping

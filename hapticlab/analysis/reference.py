@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiler.driven import DEGREE, coefficients, driven, without_samples
-from ..compiler.engine import load
-from ..compiler.graph import Graph
-from ..compiler.graph import driven as turning
-from ..compiler.instant import instant
+from ..compiler.algebra.graph import Graph
+from ..compiler.algebra.graph import driven as turning
+from ..compiler.engines.engine import load
 from ..errors import AnalysisError, ProgramError
 from ..scene.symbols import acceleration, n, t, v, x
+from .accuracy.accelerations_at import instant
+from .accuracy.continuous_handle import DEGREE, coefficients, driven, without_samples
 from .hybrid import Field, Hybrid
 from .motions import HandleMotion
 from .reference_plot import plot_reference

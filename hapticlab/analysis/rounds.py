@@ -4,7 +4,7 @@ import math
 import statistics
 from dataclasses import replace
 
-from ..compiler.methods import METHODS
+from ..compiler.methods.method_table import METHODS
 from .choice import MARGIN, STEPS_PER_CONTACT
 from .tradeoff_rows import NOT_TRIED, OK, exactness, percent
 from .trials import Trial, timed, tried, tried_again

@@ -5,13 +5,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import sympy as sp
 
-from ..compiler.advance import Taylor
-from ..compiler.contact_steps import STEPS_PER_CONTACT
-from ..compiler.exact import EXACT
-from ..compiler.exponential import exponential
-from ..compiler.methods import METHODS
-from ..compiler.options import choice, period, steps
-from ..compiler.step_matrix import GRID, GROWS, longest_step, rising, step_matrix
+from ..compiler.algebra.matrix_exponential import exponential
+from ..compiler.contacts.contact_steps import STEPS_PER_CONTACT
+from ..compiler.events.taylor_method import Taylor
+from ..compiler.ir.options import choice, period, steps
+from ..compiler.methods.exact_linear import EXACT
+from ..compiler.methods.method_table import METHODS
+from ..compiler.methods.step_matrix import GRID, GROWS, longest_step, rising, step_matrix
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from ..scene.symbols import delay

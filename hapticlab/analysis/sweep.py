@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..compiler.exact import exact_and_rest
-from ..compiler.held import held
+from ..compiler.methods.exact_linear import exact_and_rest
+from ..compiler.prune.constraint_lengths import held
 from ..device.progress import progress_bar
 from ..errors import AnalysisError
 from ..scene.scene import Scene

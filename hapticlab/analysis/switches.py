@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import sympy as sp
 
-from ..compiler.channels import short
+from ..compiler.ir.channels import short
 from ..scene.cases import Piecewise
 from ..scene.explicit import ExplicitForm
 from ..scene.parameters import Parameter

@@ -7,12 +7,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from numbers import Real
 
-from ..compiler.cost import BOARDS
-from ..compiler.exact import EXACT
-from ..compiler.force_at import FORCE_AT
-from ..compiler.handle import HOLDS
-from ..compiler.methods import METHODS
-from ..compiler.options import choice, period, steps
+from ..compiler.boards.cost import BOARDS
+from ..compiler.ir.options import choice, period, steps
+from ..compiler.methods.exact_linear import EXACT
+from ..compiler.methods.force_timing import FORCE_AT
+from ..compiler.methods.method_table import METHODS
+from ..compiler.tick.handle_samples import HOLDS
 from ..device.progress import progress_bar
 from ..errors import AnalysisError
 from ..scene.scene import Scene
@@ -47,9 +47,10 @@ def tradeoff(
 ):  # fmt: skip
     """Measure speed against accuracy of a scene: error of the force, cost, stability and passivity of every setting.
 
-    The handle is led along motions; the force of each compiled setting is compared with a reference that two independent
-    solvers agree on, and with what the paddle's encoder alone makes of it. On boards cost is predicted, as
-    :func:`~hapticlab.compiler.cost.cost` does; here it is timed, where a setting can be the least, and estimated elsewhere.
+    The handle is led along motions; the force of each compiled setting is compared with a reference that two
+    independent solvers agree on, and with what the paddle's encoder alone makes of it. On boards cost is predicted, as
+    :func:`~hapticlab.compiler.boards.cost.cost` does; here it is timed, where a setting can be the least, and estimated
+    elsewhere.
 
     A setting is left out where a cheaper method or fewer substeps already have the error of the hold itself, and float64
     where rounding is no part of the error: ``status`` says "not tried", and ``why``.

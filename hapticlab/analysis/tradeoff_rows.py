@@ -5,7 +5,7 @@ import itertools
 import math
 from dataclasses import asdict, astuple, dataclass, fields, replace
 
-from ..compiler.methods import METHODS
+from ..compiler.methods.method_table import METHODS
 
 OK, TOO_LARGE, NOT_TRIED = "ok", "does not fit", "not tried"
 #: percentages below this are not told apart

@@ -3,13 +3,13 @@
 import functools
 import math
 
-from ..compiler.exact import EXACT
-from ..compiler.order import order_of
+from ..compiler.methods.exact_linear import EXACT
 from ..errors import HapticlabError
 from ..limits.port import negative
 from .linearization import forces_and_ticks_at, forces_and_ticks_of
 from .operating import TRAVEL
 from .port_limits import Looked
+from .programs.error_order import order_of
 from .step_limit import step_limit
 from .switches import switched
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..compiler.cost import costs
-from ..compiler.engine import load
-from ..compiler.lower import compile
-from ..compiler.vm import machine
+from ..compiler.boards.cost import costs
+from ..compiler.engines.engine import load
+from ..compiler.engines.vm import machine
+from ..compiler.tick.compile_scene import compile
 from ..errors import EngineMissingError, HapticlabError, ProgramLimitError
 from .port_error import WILD, compared, counted
 from .tradeoff_rows import OK

@@ -41,8 +41,8 @@ def felt(scene, *, x, v=None, T=1e-3, values=None, channels=None, **options):
     [0.0, 0.0, 0.3]
     """
     # here, as the compiler takes as long to import as SymPy, and most answers are no scenes
-    from ..compiler.engine import load
-    from ..compiler.lower import compile
+    from ..compiler.engines.engine import load
+    from ..compiler.tick.compile_scene import compile
 
     check_scene(scene)
     strange = sorted(set(options) - set(OPTIONS))

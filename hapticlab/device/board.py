@@ -6,9 +6,9 @@ import weakref
 from contextlib import suppress
 from dataclasses import replace
 
-from ..compiler.cost import BOARDS, cost
-from ..compiler.fit import fit
-from ..compiler.ir import Program
+from ..compiler.boards.board_fit import fit
+from ..compiler.boards.cost import BOARDS, cost
+from ..compiler.ir.program import Program
 from ..errors import PaddleError
 from .exchange import Exchange
 from .greeting import cleared, introduction, say_hello, what_happened

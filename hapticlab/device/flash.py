@@ -4,7 +4,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..compiler.native import firmware_folder
+from ..compiler.engines.firmware_library import firmware_folder
 from ..errors import PaddleError, PortError
 from .intelhex import parse_hex
 from .progress import progress_bar

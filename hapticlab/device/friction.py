@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiler.trace import equal, maximum, minimum, select, sqrt
+from ..compiler.ir.trace import equal, maximum, minimum, select, sqrt
 from ..errors import PaddleError
 
 #: number of terms -> growth rate of the derivatives, per piece, for which the first neglected term is below 1e-17

@@ -2,7 +2,7 @@
 
 import ctypes
 
-from ..compiler.native import load_library
+from ..compiler.engines.firmware_library import load_library
 from .messages import FAULTS
 
 STORE_BYTES, DUTY_FULL, CLOCK_HZ = 4096, 32767, 1_000_000

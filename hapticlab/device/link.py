@@ -7,14 +7,14 @@ precision; everything around it is f64.
 import math
 from dataclasses import replace
 
-from ..compiler.engine import load
-from ..compiler.ir import Channel, Program
-from ..compiler.shared import Shared, content, instructions
-from ..compiler.trace import Builder, cast, equal, floor, select
+from ..compiler.engines.engine import load
+from ..compiler.ir.cache import Shared, content, instructions
+from ..compiler.ir.program import Channel, Program
+from ..compiler.ir.trace import Builder, cast, equal, floor, select
 from ..errors import PaddleError
 from .unused import drop_unused_states
 
-#: closed loops that are kept, weighed as :data:`hapticlab.compiler.lower.PROGRAMS` are
+#: closed loops that are kept, weighed as :data:`hapticlab.compiler.tick.compile_scene.PROGRAMS` are
 LINKED = Shared(60_000, lambda program: 200 + program.size)
 #: largest finite numbers: |a| <= LARGEST is false for nan and for both infinities
 LARGEST = {"f32": 3.4028234663852886e38, "f64": 1.7976931348623157e308}
@@ -53,7 +53,7 @@ def link(program, paddle, measure=None):
 
     Examples
     --------
-    >>> from hapticlab.compiler.lower import compile
+    >>> from hapticlab.compiler.tick.compile_scene import compile
     >>> from hapticlab.device.simulated import SimulatedPaddle, link
     >>> from hapticlab.scene.scene import Scene
     >>> from hapticlab.scene.symbols import n, parameters, x

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..compiler.stable_values import SLOW, SMALL_MOTIONS
-from ..compiler.value_limits import UNSTABLE, part_of_the_way
+from ..compiler.tick.live_limits import UNSTABLE, part_of_the_way
+from ..compiler.tick.live_stability import SLOW, SMALL_MOTIONS
 from ..errors import PaddleError, ParameterError
 from ..scene.parameters import Parameter
 

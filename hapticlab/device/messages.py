@@ -22,8 +22,8 @@ import struct
 import zlib
 from dataclasses import dataclass
 
-from ..compiler.bytecode import RESULTS as MACHINE_RESULTS
-from ..compiler.bytecode import table_hash as machine_hash
+from ..compiler.engines.bytecode import RESULTS as MACHINE_RESULTS
+from ..compiler.engines.bytecode import table_hash as machine_hash
 
 PROTOCOL = 1
 #: of COBS and CRC together, more than any message needs

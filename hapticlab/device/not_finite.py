@@ -1,7 +1,7 @@
 """Why a simulated run stopped: what was not finite, when, and what to look for."""
 
-from ..compiler.bounds import BEYOND
-from ..compiler.elementary import TABLES
+from ..compiler.contacts.coordinate_bounds import BEYOND
+from ..compiler.ir.elementary import TABLES
 
 
 def not_finite(program, code, tick, T):

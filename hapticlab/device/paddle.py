@@ -5,8 +5,8 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
-from ..compiler.ir import Program
-from ..compiler.lower import compile
+from ..compiler.ir.program import Program
+from ..compiler.tick.compile_scene import compile
 from ..errors import PaddleError, ParameterError
 from ..scene.scene import Scene
 from ..scene.written import no_scene

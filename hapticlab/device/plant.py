@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiler.ir import Channel
+from ..compiler.ir.program import Channel
 from . import friction
 from .transition import PHI, transition
 

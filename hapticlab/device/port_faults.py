@@ -8,7 +8,7 @@ import shlex
 import sys
 from pathlib import Path
 
-from ..compiler.native import firmware_folder
+from ..compiler.engines.firmware_library import firmware_folder
 
 #: of udev, in firmware/udev
 RULES = "60-hapticlab.rules"

@@ -3,7 +3,7 @@
 import zlib
 from contextlib import contextmanager
 
-from ..compiler.bytecode import encode
+from ..compiler.engines.bytecode import encode
 from ..errors import HapticlabError, LinkError, PaddleError, PortError
 from .greeting import explain_silence
 from .live import in_portions, named_values, send

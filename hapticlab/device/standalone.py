@@ -1,8 +1,8 @@
 """A scene that a board keeps over power-off and runs without a computer."""
 
-from ..compiler.bytecode import encode
-from ..compiler.fit import fit
-from ..compiler.ir import Program
+from ..compiler.boards.board_fit import fit
+from ..compiler.engines.bytecode import encode
+from ..compiler.ir.program import Program
 from ..errors import PaddleError
 from .live import check_margin
 from .upload import STORE_PATIENCE, upload

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from ..compiler.exponential import exponential
+from ..compiler.algebra.matrix_exponential import exponential
 
 #: entry of the transition -> its unit; u is a force, d the rate of a force
 PHI = {

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ..compiler.ir import Block, Instruction
+from ..compiler.ir.program import Block, Instruction
 
 
 def drop_unused_states(program):

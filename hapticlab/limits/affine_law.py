@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..compiler.engine import load
-from ..compiler.lower import compile
+from ..compiler.engines.engine import load
+from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from ..scene.taps import LEAD, TAPS

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiler.lower import compile
+from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
 from ..scene.taps import LEAD, TAPS
 from .limit import check_law, check_number, check_period

@@ -7,9 +7,9 @@ of velocity included: it is run once from every unit state and unit input.
 
 import numpy as np
 
-from ..compiler.engine import load
-from ..compiler.lower import compile
-from ..compiler.phase import is_timed
+from ..compiler.algebra.phase import is_timed
+from ..compiler.engines.engine import load
+from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
 from .limit import whole_and_fraction
 

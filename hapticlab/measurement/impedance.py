@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..analysis.impedance import impedance as impedance_of
-from ..compiler.lower import compile
+from ..compiler.tick.compile_scene import compile
 from ..device.simulated import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
 from .excitation import Excitation

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..compiler.engine import load
+from ..compiler.engines.engine import load
 from ..errors import AnalysisError
 
 #: of the motion [m], and samples of the answer that are followed

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from ..compiler.cost import Cost, cost
-from ..compiler.lower import compile
+from ..compiler.boards.cost import Cost, cost
+from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError, ProgramLimitError
 from ..scene.scene import Scene
 from .deadbeat import deadbeat_wall
@@ -60,7 +60,7 @@ def wall_for_board(paddle, *, K, board="uno", **options):
     K : float
         [N/m]
     board : str
-        See :func:`hapticlab.compiler.cost.cost`.
+        See :func:`hapticlab.compiler.boards.cost.cost`.
     **options
         B, hand, velocity, force_max of :func:`digital_wall`.
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..compiler.cost import cost
-from ..compiler.engine import load
-from ..compiler.lower import compile
+from ..compiler.boards.cost import cost
+from ..compiler.engines.engine import load
+from ..compiler.tick.compile_scene import compile
 from ..drawing import house_style, new_figure, style_of
 from ..errors import AnalysisError
 from ..records import Telemetry
@@ -117,7 +117,7 @@ def velocity_errors(log, estimates=(), *, board="uno"):
         Of a simulated paddle with an encoder or noise, which records ``v_true``; without gaps.
     estimates : sequence of VelocityEstimate
     board : str
-        Whose cycles are counted; see :func:`~hapticlab.compiler.cost.cost`.
+        Whose cycles are counted; see :func:`~hapticlab.compiler.boards.cost.cost`.
 
     Returns
     -------

@@ -163,7 +163,7 @@ def virtual_coupler(z, *, K, b):
     between samples as ``hold`` says. As the force that is felt it takes v(t) = v(n), the plain backward difference on a
     board, so the two sides differ by b a T/2, with a the acceleration of the handle: 0.036 % of K times 10 mm at
     K = 500 N/m, b = 1 N s/m, T = 1 ms and 10 mm at 3 Hz. Looking ahead in the force as well would close that gap to
-    0.007 % and ask for b more damping from the device (:class:`~hapticlab.compiler.handle.Handle`).
+    0.007 % and ask for b more damping from the device (:class:`~hapticlab.compiler.tick.handle_samples.Handle`).
 
     Parameters
     ----------

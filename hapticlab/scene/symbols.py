@@ -185,7 +185,7 @@ class v(_HandleSignal):
     """Velocity of the handle v_e [m/s]: v(n) at the present sample, v(t) in an equation of motion.
 
     In a force or a watched expression v(t) is the sample v(n), the plain backward difference on a board, while an
-    equation of motion may see it half a period further on (see :class:`~hapticlab.compiler.handle.Handle`). The two
+    equation of motion may see it half a period further on (see :class:`~hapticlab.compiler.tick.handle_samples.Handle`). The two
     differ by a T/2, with a the acceleration of the handle, on purpose: a force that looks ahead through a damper b asks
     for b more damping from the device (2.29 instead of 1.29 N s/m at b = 1 N s/m). For a coupler the difference is
     0.036 % of the force of its spring at 10 mm and 3 Hz (K = 500 N/m, b = 1 N s/m, T = 1 ms).

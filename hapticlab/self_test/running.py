@@ -10,10 +10,10 @@ import numpy as np
 
 from ..analysis.plots import plot
 from ..analysis.sweep import sweep
-from ..compiler.engine import load
-from ..compiler.ir import Channel, Program
-from ..compiler.lower import compile
-from ..compiler.trace import Builder, cos, exp, maximum, select, sin, tanh
+from ..compiler.engines.engine import load
+from ..compiler.ir.program import Channel, Program
+from ..compiler.ir.trace import Builder, cos, exp, maximum, select, sin, tanh
+from ..compiler.tick.compile_scene import compile
 from ..device.connect import connect
 from ..device.doctor import doctor
 from ..device.hand import Hand

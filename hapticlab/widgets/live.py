@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..compiler.lower import compile
+from ..compiler.tick.compile_scene import compile
 from ..device.board import SerialPaddle
 from ..device.intents import MinimumJerk
 from ..device.stepping import with_grip

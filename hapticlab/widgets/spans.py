@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..compiler.value_limits import NEAR
+from ..compiler.tick.live_limits import NEAR
 from ..errors import ParameterError
 from ..scene.units import dimension
 

@@ -7,7 +7,7 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab import n, t, v, x
 from hapticlab.analysis.books import CHANNELS, balance, energy_books
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import AnalysisError, SceneError
 from hapticlab.scene.mechanics import lagrange
 

@@ -11,8 +11,8 @@ from scipy.special import ellipj, ellipk
 
 import hapticlab as hl
 from hapticlab import t
-from hapticlab.compiler.engine import load
-from hapticlab.compiler.methods import METHODS
+from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.methods.method_table import METHODS
 
 s, m, kg = hl.parameters(
     "s m kg", units="s m kg", values=(1.0, 1.0, 1.0)

@@ -7,11 +7,11 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab import t, x
 from hapticlab.analysis import hybrid
+from hapticlab.analysis.accuracy.accelerations_at import instant
+from hapticlab.analysis.accuracy.continuous_handle import DEGREE, coefficients
 from hapticlab.analysis.motions import HandleMotion
 from hapticlab.analysis.reference import reference
-from hapticlab.compiler.driven import DEGREE, coefficients
-from hapticlab.compiler.engine import load
-from hapticlab.compiler.instant import instant
+from hapticlab.compiler.engines.engine import load
 
 STEP = 1e-4
 STILL = HandleMotion("still", sp.Float(0.0), 0.3)

@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 import hapticlab as hl
-from hapticlab.compiler.methods import METHODS
+from hapticlab.compiler.methods.method_table import METHODS
 from hapticlab.errors import ProgramError
 
 

@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost as cost_of
+from hapticlab.compiler.boards.cost import cost as cost_of
 from hapticlab.drawing import STYLES, describe
 from hapticlab.records import Telemetry
 

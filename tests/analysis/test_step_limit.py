@@ -6,7 +6,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import t, v, x
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import AnalysisError, HapticlabError, ParameterError
 from hapticlab.limits.port import tick_map
 

@@ -9,7 +9,7 @@ from hapticlab import n, t, v, x
 from hapticlab.analysis.linearization import motion_at, tick_at
 from hapticlab.analysis.operating import operating_points
 from hapticlab.analysis.switches import switched
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 
 z, y = hl.coordinate("z", unit="m", initial=0.002), hl.coordinate("y", unit="m", initial=0.03)
 K, B, m, k, x_o = hl.parameters("K B m k x_o", units="N/m N*s/m kg N/m m", values=(500, 0.4, 0.05, 4000, 0.01))

@@ -6,8 +6,8 @@ from timing import best_of, row
 
 import hapticlab as hl
 from hapticlab.analysis.measures import METRICS, WithFault
-from hapticlab.compiler import shared
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.ir import cache
 from hapticlab.course.felt import felt
 from hapticlab.device.link import link
 
@@ -42,7 +42,7 @@ def _scene(name, scene, rounds):
         """Return the CPU seconds of a call for the first time, after what was ``ready``."""
         best = None
         for _ in range(min(rounds, 3)):
-            shared.clear()
+            cache.clear()
             ready()
             spent = best_of(1, call=call)["call"]
             best = spent if best is None else min(best, spent)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hapticlab.compiler.native import c_compiler
+from hapticlab.compiler.engines.firmware_library import c_compiler
 
 SOURCE = Path(__file__).with_name("floors.c")
 

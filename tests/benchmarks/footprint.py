@@ -9,7 +9,7 @@ import sweeps
 from timing import row
 
 import hapticlab as hl
-from hapticlab.compiler.bytecode import encode
+from hapticlab.compiler.engines.bytecode import encode
 
 CLOCK = "import time; start = time.process_time(); {}; print(time.process_time() - start)"
 #: names load on first use, so the import alone says little: also what writing a scene needs, and everything

@@ -30,7 +30,7 @@ def hapticlab(units_open=True):
     import pint  # noqa: F401
 
     import hapticlab as hl
-    from hapticlab.compiler.engine import load
+    from hapticlab.compiler.engines.engine import load
 
     _ = hl.Scene, hl.compile, hl.n, hl.parameters, hl.when, hl.x  # names load on first use: the imports are done here
     if units_open:

@@ -19,7 +19,7 @@ import scenes
 from timing import SCALE, best_of, imported, row
 
 import hapticlab as hl
-from hapticlab.compiler import shared
+from hapticlab.compiler.ir import cache
 from hapticlab.device.transition import transition
 
 SIDE, TICKS, V0 = 1000, 1000, 0.1
@@ -47,7 +47,7 @@ def ours(points, **given):
     scene, fixed = scenes.wall()(x_o=0.0), {"metric": "peak_force", "progress": False, "v": V0}
 
     def call():
-        shared.clear()
+        cache.clear()
         return hl.sweep(scene, paddle, k=k, b=b, **fixed, **given).values.ravel()
 
     return call

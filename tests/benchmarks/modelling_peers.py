@@ -130,7 +130,7 @@ def declared(letter, units, values):
 def scene_made(scene, names, w0, h):
     """Return what hapticlab makes of a scene with coordinates of these names and rates ``w0``."""
     import hapticlab as hl
-    from hapticlab.compiler.engine import load
+    from hapticlab.compiler.engines.engine import load
 
     engines = {}
 
@@ -158,8 +158,8 @@ def program_operations(program):
 
     The step w + T a is two operations a rate, which the method does and not the equations.
     """
-    from hapticlab.compiler.ir import LEAVES
-    from hapticlab.compiler.trace import reachable
+    from hapticlab.compiler.ir.program import LEAVES
+    from hapticlab.compiler.ir.trace import reachable
 
     code = program.tick.instructions
     rates = [k for c, k in zip(program.states, program.tick.states, strict=True) if c.name.endswith("/dt")]

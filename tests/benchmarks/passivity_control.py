@@ -13,7 +13,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import n, x
-from hapticlab.compiler.cost import cost
+from hapticlab.compiler.boards.cost import cost
 
 PAGE = Path(__file__).parents[2] / "docs" / "passivity_control.md"
 M, B, T = 0.05, 0.1, 1e-3

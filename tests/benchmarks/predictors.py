@@ -15,7 +15,7 @@ import numpy as np
 
 import hapticlab as hl
 from hapticlab.analysis.wall_laws import LAWS, wall_law
-from hapticlab.compiler.cost import cost
+from hapticlab.compiler.boards.cost import cost
 from hapticlab.drawing import colour_map, house_style, new_figure
 
 DOCS = Path(__file__).parents[2] / "docs"

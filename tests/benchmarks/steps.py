@@ -8,7 +8,7 @@ import scenes
 from floors import stepper
 from timing import best_of, imported, row
 
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 
 FLOOR, OURS = "C by hand, -O3", "hapticlab llvm"
 NUMBA = {"8-link pendulum": "numba (lambdify with cse, np.linalg.solve)", "coupler": "numba (its rates by hand)"}

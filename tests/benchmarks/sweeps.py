@@ -8,8 +8,8 @@ from timing import best_of, imported, row
 
 import hapticlab as hl
 from hapticlab.analysis.measures import METRICS, WithFault
-from hapticlab.compiler import shared
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.ir import cache
 from hapticlab.device.link import link
 
 POINTS, TICKS, V0 = 10_000, 1000, 0.1
@@ -56,7 +56,7 @@ def _sweep(paddle, k, metric):
     scene = scenes.wall()(x_o=0.0)
 
     def call():
-        shared.clear()
+        cache.clear()
         return hl.sweep(scene, paddle, metric=metric, v=V0, k=k, progress=False).values
 
     return call

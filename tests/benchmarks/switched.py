@@ -12,7 +12,7 @@ import scenes
 from floors import stepper
 from timing import best_of, imported, row
 
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 
 FLOOR, OURS = "C by hand, -O3, rk4 in 4 substeps", "hapticlab, exact"
 STIFF = (1e3, 1e5, 1e7)  # N/m

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
+from hapticlab.compiler.boards.cost import cost
 
 PAGE = Path(__file__).parents[2] / "docs" / "velocities.md"
 T, COUNT, B = 1e-3, 20e-6, 0.1

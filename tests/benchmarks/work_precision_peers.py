@@ -38,8 +38,8 @@ def _millis(problem, steps):
 def ours(problem, method, steps):
     """hapticlab: the scene compiled to machine code, the handle at rest; the last sample is the end."""
     import hapticlab as hl
-    from hapticlab.compiler.advance import Taylor
-    from hapticlab.compiler.engine import load
+    from hapticlab.compiler.engines.engine import load
+    from hapticlab.compiler.events.taylor_method import Taylor
 
     method = Taylor(order=12) if method.endswith("12") else method
     scene, T = problem.scene(problem.q, problem.w), problem.duration / steps

@@ -3,8 +3,8 @@
 import struct
 import zlib
 
-from hapticlab.compiler.bytecode import OPCODES, TYPE_CODES, layout, words_of
-from hapticlab.compiler.ir import OPERATIONS
+from hapticlab.compiler.engines.bytecode import OPCODES, TYPE_CODES, layout, words_of
+from hapticlab.compiler.ir.program import OPERATIONS
 
 KIND = {"R": TYPE_CODES["f32"], "B": TYPE_CODES["bool"], "I": TYPE_CODES["i32"]}
 NAME = {number: name for name, number in OPCODES.items()}

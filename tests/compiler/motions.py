@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from hapticlab.compiler.engine import load
-from hapticlab.compiler.flow import motion_of
-from hapticlab.compiler.ir import Channel, Program
-from hapticlab.compiler.located import Stepper
-from hapticlab.compiler.phase import digit
-from hapticlab.compiler.trace import Builder, Value, select
+from hapticlab.compiler.algebra.phase import digit
+from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.events.flow import motion_of
+from hapticlab.compiler.events.located_step import Stepper
+from hapticlab.compiler.ir.program import Channel, Program
+from hapticlab.compiler.ir.trace import Builder, Value, select
 
 
 def program(rates, q, w, first=(), *, T, substeps=1, order=16, events=3, contacts=None, impact=None, real="f64"):

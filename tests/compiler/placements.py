@@ -3,11 +3,11 @@
 import numpy as np
 import shapely
 
-from hapticlab.compiler.elementary import expand
-from hapticlab.compiler.expressions import Translator
-from hapticlab.compiler.interpreter import evaluate
-from hapticlab.compiler.ir import Block, Program
-from hapticlab.compiler.trace import Builder
+from hapticlab.compiler.algebra.expressions import Translator
+from hapticlab.compiler.engines.interpreter import evaluate
+from hapticlab.compiler.ir.elementary import expand
+from hapticlab.compiler.ir.program import Block, Program
+from hapticlab.compiler.ir.trace import Builder
 
 BOX = [(-0.5, -0.3), (0.5, -0.3), (0.5, 0.3), (-0.5, 0.3)]
 BAR = [(-0.5, 0.0), (0.5, 0.0)]

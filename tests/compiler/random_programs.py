@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hapticlab.compiler.ir import ELEMENTARY, OPERATIONS, Block, Channel, Instruction, Program
+from hapticlab.compiler.ir.program import ELEMENTARY, OPERATIONS, Block, Channel, Instruction, Program
 
 #: what breaks arithmetic that is not IEEE: signed zeros, denormals, halves, the ends of the range, infinities and nan
 HARD = (

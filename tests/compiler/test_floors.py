@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from random_programs import assert_same_bits
 
-from hapticlab.compiler.bytecode import OPCODES, encode
-from hapticlab.compiler.engine import load
-from hapticlab.compiler.ir import Block, Channel, Instruction, Program
-from hapticlab.compiler.vm import Vm
+from hapticlab.compiler.engines.bytecode import OPCODES, encode
+from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.engines.vm import Vm
+from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program
 from hapticlab.errors import EngineMissingError
 
 GOLDEN = json.loads((Path(__file__).parents[1] / "vectors" / "golden.json").read_text())

@@ -11,10 +11,10 @@ from motions import at_tick
 
 import hapticlab as hl
 from hapticlab import T, n, t, v, x
-from hapticlab.compiler.bytecode import encode, layout
-from hapticlab.compiler.constants import entering
-from hapticlab.compiler.engine import load
-from hapticlab.compiler.phase import frequency
+from hapticlab.compiler.algebra.constants import entering
+from hapticlab.compiler.algebra.phase import frequency
+from hapticlab.compiler.engines.bytecode import encode, layout
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import ParameterError, ProgramError
 
 F0, u = hl.parameters("F0 u", units="N m", values=(1, 1))

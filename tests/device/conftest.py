@@ -3,9 +3,9 @@
 import pytest
 from bad_line import lossy_port
 
-from hapticlab.compiler.ir import Channel, Program
-from hapticlab.compiler.lower import compile
-from hapticlab.compiler.trace import Builder, equal, select
+from hapticlab.compiler.ir.program import Channel, Program
+from hapticlab.compiler.ir.trace import Builder, equal, select
+from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.board import SerialPaddle
 from hapticlab.scene.scene import Scene
 from hapticlab.scene.symbols import n, parameters, x

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from host_driver import Host, fault_name, fixed, result_name, settings, spring, state_name
 
-from hapticlab.compiler.bytecode import encode as encode_program
-from hapticlab.compiler.bytecode import layout
-from hapticlab.compiler.lower import compile
+from hapticlab.compiler.engines.bytecode import encode as encode_program
+from hapticlab.compiler.engines.bytecode import layout
+from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.host_board import HostBoard
 from hapticlab.device.messages import SENSORS
 from hapticlab.device.recording import fault_words

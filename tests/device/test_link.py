@@ -7,10 +7,10 @@ import pytest
 import sympy as sp
 from scipy.integrate import solve_ivp
 
-from hapticlab.compiler.engine import load
-from hapticlab.compiler.ir import Block, Channel, Program
-from hapticlab.compiler.lower import compile
-from hapticlab.compiler.trace import Builder, cast, maximum, select
+from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.ir.program import Block, Channel, Program
+from hapticlab.compiler.ir.trace import Builder, cast, maximum, select
+from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.hand import Hand
 from hapticlab.device.simulated import SimulatedPaddle, link
 from hapticlab.errors import PaddleError

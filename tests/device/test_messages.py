@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import pytest
 
-from hapticlab.compiler import native
+from hapticlab.compiler.engines import firmware_library
 from hapticlab.device import cheaders, messages
 from hapticlab.device.messages import MESSAGES, SETTINGS, SETTINGS_STRUCT, Message, fields
 
 
 def test_the_committed_header_is_fresh():
     for name, text in cheaders.generate().items():
-        assert (native.firmware_folder() / "generated" / name).read_text() == text
+        assert (firmware_library.firmware_folder() / "generated" / name).read_text() == text
 
 
 def test_numbers_are_unique_and_on_their_side():

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from hapticlab.compiler.lower import compile
+from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.hand import Hand
 from hapticlab.device.simulated import SimulatedPaddle
 from hapticlab.errors import PaddleError

@@ -4,7 +4,7 @@ import pytest
 from bad_line import lossy_port
 from host_driver import fixed, settings, spring
 
-from hapticlab.compiler.bytecode import encode
+from hapticlab.compiler.engines.bytecode import encode
 from hapticlab.device.exchange import Exchange
 from hapticlab.device.messages import LARGEST_PAYLOAD, TARGETS
 from hapticlab.device.settings import nominal

@@ -63,7 +63,7 @@ def test_a_fixture_keeps_the_handle_out_and_guidance_leads_it():
 def test_a_band_pass_has_its_gain_and_its_edges():
     # the filter's own answer to a sinusoid of velocity: 1 at the centre, half the power at edges bandwidth apart
     program = hl.compile(hl.tremor_filter(centre=9, bandwidth=4)(B=1), T=1e-3, dtype="float64", velocity="measured")
-    from hapticlab.compiler.engine import load
+    from hapticlab.compiler.engines.engine import load
 
     def gain(f):
         t = np.arange(4000) * 1e-3

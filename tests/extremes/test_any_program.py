@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from random_programs import assert_same_bits
 
 import hapticlab as hl
-from hapticlab.compiler.engine import load
-from hapticlab.compiler.ir import LEAVES, OPERATIONS, Block, Channel, Instruction, Program
-from hapticlab.compiler.trace import Builder
+from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.ir.program import LEAVES, OPERATIONS, Block, Channel, Instruction, Program
+from hapticlab.compiler.ir.trace import Builder
 from hapticlab.errors import ProgramError
 
 TICKS = 12

@@ -9,7 +9,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import t, x
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.device.live import checked
 from hapticlab.errors import HapticlabError, ProgramError, SceneError
 

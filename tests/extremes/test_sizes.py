@@ -9,7 +9,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import n, t, v, x
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import HapticlabError, ProgramError, SceneError
 
 z = hl.coordinate("z", unit="m")

@@ -10,7 +10,7 @@ from motions import at_tick
 
 import hapticlab as hl
 from hapticlab import n, t, x
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import HapticlabError, ProgramLimitError, SceneError
 
 F0, w = hl.parameters("F0 w", units="N rad", values=(1.0, 0.0))

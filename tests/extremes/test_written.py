@@ -8,7 +8,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import n, t, x
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import HapticlabError, MassError, ProgramError, SceneError, UnitsError
 
 k, x_o, F0 = hl.parameters("k x_o F0", units="N/m m N", values=(100.0, 0.01, 1.0))

@@ -16,7 +16,7 @@ import emulator
 import numpy as np
 from build_image import build_image
 
-from hapticlab.compiler.bytecode import encode, layout
+from hapticlab.compiler.engines.bytecode import encode, layout
 
 HERE = Path(__file__).resolve().parent
 SOURCES = ("core/vm.c", "core/verify.c", "generated/elementary.c")

@@ -19,7 +19,7 @@ from types import ModuleType
 import pytest
 import serial
 
-from hapticlab.compiler.native import c_compiler
+from hapticlab.compiler.engines.firmware_library import c_compiler
 from hapticlab.device.intelhex import parse_hex
 
 HERE = Path(__file__).parent

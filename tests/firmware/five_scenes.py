@@ -8,8 +8,8 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import t, v, x
-from hapticlab.compiler.cost import BOARDS
-from hapticlab.compiler.fit import table
+from hapticlab.compiler.boards.board_fit import table
+from hapticlab.compiler.boards.cost import BOARDS
 
 MOVE = 0.01  # how far the handle moves [m]
 

@@ -5,8 +5,8 @@ import zlib
 
 import numpy as np
 
-from hapticlab.compiler.bytecode import encode as encode_program
-from hapticlab.compiler.lower import compile
+from hapticlab.compiler.engines.bytecode import encode as encode_program
+from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.host_board import WORD_BITS, HostBoard
 from hapticlab.device.messages import FAULTS, FLAGS, MESSAGES, RESULTS, STATES, TARGETS
 from hapticlab.device.settings import Settings

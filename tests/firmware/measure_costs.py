@@ -22,9 +22,9 @@ from bare import Avr, Bench  # noqa: E402
 from cortex import Cortex  # noqa: E402
 from whole_step import measure_step  # noqa: E402
 
-from hapticlab.compiler.bytecode import OPCODES  # noqa: E402
-from hapticlab.compiler.cost import COSTS  # noqa: E402
-from hapticlab.compiler.ir import OPERATIONS, Block, Channel, Instruction, Program  # noqa: E402
+from hapticlab.compiler.boards.cost import COSTS  # noqa: E402
+from hapticlab.compiler.engines.bytecode import OPCODES  # noqa: E402
+from hapticlab.compiler.ir.program import OPERATIONS, Block, Channel, Instruction, Program  # noqa: E402
 
 TYPE = {"R": "f32", "B": "bool", "I": "i32"}
 MODELLED = (

@@ -9,8 +9,8 @@ from cortex import PROCESSORS, Cortex
 from measure_costs import awkward_bits
 from test_golden import GOLDEN, NAMES, array, program_of
 
-from hapticlab.compiler.interpreter import Interpreter
-from hapticlab.compiler.ir import OPERATIONS, Block, Channel, Instruction, Program
+from hapticlab.compiler.engines.interpreter import Interpreter
+from hapticlab.compiler.ir.program import OPERATIONS, Block, Channel, Instruction, Program
 
 BOARDS = ("uno", *PROCESSORS)
 NUMPY = {

@@ -8,7 +8,7 @@ import pytest
 import serial
 from bootloader import Board, BoardPort, bootloader_folder, build_shim, hex_file, offer
 
-from hapticlab.compiler.native import firmware_folder
+from hapticlab.compiler.engines.firmware_library import firmware_folder
 from hapticlab.device.flash import PAGE, STAND_STILL, flash
 from hapticlab.device.serial import BOARDS
 from hapticlab.errors import PaddleError, PortError

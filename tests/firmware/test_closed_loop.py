@@ -7,7 +7,7 @@ from emulator import missing
 from five_scenes import cart_pole, double_pendulum, mass_and_wall, pendulum, wall
 
 import hapticlab as hl
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.device.paddle import Paddle
 from hapticlab.device.settings import nominal
 

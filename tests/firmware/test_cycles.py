@@ -1,4 +1,4 @@
-"""Cycles counted in emulation against what hapticlab.compiler.cost says: typical close, bound never passed."""
+"""Cycles counted in emulation against what hapticlab.compiler.boards.cost says: typical close, bound never passed."""
 
 import bare
 import cortex
@@ -12,9 +12,9 @@ from random_programs import random_program, random_rows
 from whole_step import measure_step
 
 import hapticlab as hl
-from hapticlab.compiler.bytecode import OPCODES
-from hapticlab.compiler.cost import TYPICAL_ERROR, cost, tables
-from hapticlab.compiler.fit import table
+from hapticlab.compiler.boards.board_fit import table
+from hapticlab.compiler.boards.cost import TYPICAL_ERROR, cost, tables
+from hapticlab.compiler.engines.bytecode import OPCODES
 
 BOARDS = ("uno", *PROCESSORS)
 needs_uno = pytest.mark.skipif(bool(bare.missing()), reason=str(bare.missing()))

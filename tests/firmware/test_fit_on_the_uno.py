@@ -11,8 +11,8 @@ from emulator import INT0, INT1, TIMER1_COMPA, missing
 from five_scenes import SCENES, cart_pole, mass_and_wall, pendulum, wall
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
-from hapticlab.compiler.fit import fit
+from hapticlab.compiler.boards.board_fit import fit
+from hapticlab.compiler.boards.cost import cost
 from hapticlab.device.messages import SENSORS
 from hapticlab.device.settings import nominal
 from hapticlab.errors import ProgramLimitError

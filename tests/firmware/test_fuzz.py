@@ -15,9 +15,9 @@ from dataclasses import dataclass, field
 import pytest
 from host_driver import settings
 
-from hapticlab.compiler import native, toolchain
-from hapticlab.compiler.bytecode import encode as encode_program
-from hapticlab.compiler.lower import compile
+from hapticlab.compiler.engines import firmware_library, toolchain
+from hapticlab.compiler.engines.bytecode import encode as encode_program
+from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.messages import MESSAGES, STATES, TARGETS
 from hapticlab.device.wire import Decoder, encode
 from hapticlab.scene.scene import Scene
@@ -264,12 +264,12 @@ def accepted(out, number):
 
 def build(tmp_path, slots):
     """Return the driver, with sanitizers."""
-    firmware = native.firmware_folder()
+    firmware = firmware_library.firmware_folder()
     files = [f for f in toolchain.sources(firmware) if f != "boards/host/host.c"]
     path = tmp_path / (f"fuzz{slots}" + (".exe" if os.name == "nt" else ""))
     here = os.path.join(os.path.dirname(os.path.abspath(__file__)), "fuzz_link.c")
     flags = (*SANITIZERS, f"-DHL_SLOTS={slots}")
-    command = toolchain.build_command(native.c_compiler(), firmware, 16, path, *flags, files=[*files, here])
+    command = toolchain.build_command(firmware_library.c_compiler(), firmware, 16, path, *flags, files=[*files, here])
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
         pytest.skip(f"no sanitizers here: {done.stderr.splitlines()[:1]}")

@@ -6,7 +6,7 @@ from emulated import emulated_uno
 from emulator import TIMER1_COMPA, missing
 
 import hapticlab as hl
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import ProgramLimitError
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))

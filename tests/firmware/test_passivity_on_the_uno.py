@@ -6,8 +6,8 @@ from emulated import emulated_uno
 from emulator import missing
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.boards.cost import cost
+from hapticlab.compiler.engines.engine import load
 from hapticlab.device.paddle import Paddle
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))

@@ -19,7 +19,7 @@ from five_scenes import compiled, mass_and_wall, wall
 from uno_port import offer
 
 import hapticlab as hl
-from hapticlab.compiler.cost import SEARCH_MARGIN, tables
+from hapticlab.compiler.boards.cost import SEARCH_MARGIN, tables
 from hapticlab.device.settings import nominal
 from hapticlab.device.wire import decode, encode
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
+from hapticlab.compiler.boards.cost import cost
 from hapticlab.errors import AnalysisError
 from hapticlab.identification.excitation import Excitation
 from hapticlab.identification.hand import _motion, _start, _windows

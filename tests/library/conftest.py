@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.compiler import engine
+from hapticlab.compiler.engines import engine
 
 
 @pytest.fixture(scope="session")

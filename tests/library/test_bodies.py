@@ -3,7 +3,7 @@
 import numpy as np
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
+from hapticlab.compiler.boards.cost import cost
 
 
 def test_mass_spring_damper_rings_as_an_oscillator_on_both_springs(led):

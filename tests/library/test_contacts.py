@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
+from hapticlab.compiler.boards.cost import cost
 
 
 def test_a_ball_on_a_held_plate_bounces_by_restitution(led):

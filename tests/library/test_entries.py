@@ -7,8 +7,8 @@ import pytest
 
 import hapticlab as hl
 from hapticlab.cli import main
-from hapticlab.compiler import engine
-from hapticlab.compiler.cost import cost
+from hapticlab.compiler.boards.cost import cost
+from hapticlab.compiler.engines import engine
 from hapticlab.library.entries import CATALOGUE, NOMINAL
 
 ASKED = (

@@ -5,7 +5,7 @@ from scipy.linalg import solve_continuous_are
 from scipy.special import ellipk
 
 import hapticlab as hl
-from hapticlab.compiler import engine
+from hapticlab.compiler.engines import engine
 
 
 def crossings(t, y):

@@ -5,12 +5,7 @@ import pytest
 
 import hapticlab as hl
 from hapticlab.errors import AnalysisError
-from hapticlab.limits.colgate import (
-    equivalent_damper,
-    largest_passive_stiffness,
-    passivity_margin,
-    wall_damping,
-)
+from hapticlab.limits.colgate import equivalent_damper, largest_passive_stiffness, passivity_margin, wall_damping
 from hapticlab.limits.linear_law import LinearLaw
 from hapticlab.limits.passivity import required_damping
 from hapticlab.limits.port import asked

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.boards.cost import cost
+from hapticlab.compiler.engines.engine import load
 from hapticlab.measurement.excitation import Excitation
 from hapticlab.measurement.guard import guarded
 

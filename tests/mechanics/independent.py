@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 from sympy.physics.mechanics import dynamicsymbols
 
 import hapticlab as hl
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 
 
 def motion(method, values, starts, times):

@@ -17,7 +17,7 @@ from sympy.physics.mechanics import (
 )
 
 import hapticlab as hl
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 
 t = dynamicsymbols._t
 SPEED, G = 5.0, 9.81

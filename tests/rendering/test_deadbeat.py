@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.boards.cost import cost
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import AnalysisError, SceneError
 
 #: Gillespie and Cutkosky (1996): 0.35 kg, a finger of 0.006 kg on 500 N/m, a floor of 5000 N/m, 100 Hz

@@ -7,8 +7,8 @@ import pytest
 from scipy.linalg import expm
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.boards.cost import cost
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import AnalysisError, SceneError
 
 HAND = hl.Hand(m=0.02, b=1.0, k=200.0)

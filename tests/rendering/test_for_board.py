@@ -3,7 +3,7 @@
 import pytest
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
+from hapticlab.compiler.boards.cost import cost
 from hapticlab.errors import AnalysisError, ProgramLimitError
 
 

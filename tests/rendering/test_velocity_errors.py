@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
+from hapticlab.compiler.boards.cost import cost
 from hapticlab.errors import AnalysisError
 from hapticlab.rendering.velocity_errors import velocity_errors
 

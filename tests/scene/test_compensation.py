@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.compiler.cost import cost
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.boards.cost import cost
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import ParameterError, SceneError
 
 T, M, DAMPING, COULOMB, WIDTH = 1e-3, 0.05, 0.1, 0.05, 0.004

@@ -8,7 +8,7 @@ from scipy.special import lambertw
 
 import hapticlab as hl
 from hapticlab import n, t, v, x
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import SceneError, SignalError, UnitsError
 from hapticlab.scene.contact import Contact, friction
 from hapticlab.scene.contact_laws import hunt_crossley, impulse, micro_impulse, penalty, rigid

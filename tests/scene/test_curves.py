@@ -9,7 +9,7 @@ import sympy as sp
 from placements import values
 
 import hapticlab as hl
-from hapticlab.compiler import engine
+from hapticlab.compiler.engines import engine
 from hapticlab.errors import SceneError, UnitsError
 from hapticlab.scene.amount import Amount
 from hapticlab.scene.curves import Curve, track

@@ -9,9 +9,9 @@ from scipy.signal import lfilter, lfilter_zi
 
 import hapticlab as hl
 from hapticlab import n, x
-from hapticlab.compiler.cost import cost
-from hapticlab.compiler.engine import load
-from hapticlab.compiler.fit import fit
+from hapticlab.compiler.boards.board_fit import fit
+from hapticlab.compiler.boards.cost import cost
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import ProgramLimitError, SceneError, UnitsError
 from hapticlab.scene.adaptive_window import window_velocity
 from hapticlab.scene.estimators import backward_velocity, filtered_velocity

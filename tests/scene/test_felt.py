@@ -7,7 +7,7 @@ import pytest
 
 import hapticlab as hl
 from hapticlab import n, t, x
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import SceneError
 from hapticlab.scene.contact import Contact
 from hapticlab.scene.contact_laws import impulse

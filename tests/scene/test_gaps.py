@@ -9,8 +9,8 @@ import sympy as sp
 from placements import convex, outlines, poses, signed_distance, values
 
 import hapticlab as hl
-from hapticlab.compiler.graph import Graph
-from hapticlab.compiler.trace import reachable
+from hapticlab.compiler.algebra.graph import Graph
+from hapticlab.compiler.ir.trace import reachable
 from hapticlab.errors import SceneError
 from hapticlab.scene.amount import Amount
 from hapticlab.scene.closest_points import ClosestPoints

@@ -6,8 +6,8 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import n, t, v, x
-from hapticlab.compiler.engine import load
-from hapticlab.compiler.fit import _cheaper_laws
+from hapticlab.compiler.boards.board_fit import _cheaper_laws
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import SceneError
 from hapticlab.scene.laws import UNILATERAL
 from hapticlab.scene.taps import LEAD, TAPS

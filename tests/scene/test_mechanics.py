@@ -9,8 +9,8 @@ from sympy.physics.mechanics import LagrangesMethod
 
 import hapticlab as hl
 from hapticlab import t, x
-from hapticlab.compiler.engine import load
-from hapticlab.compiler.graph import Graph
+from hapticlab.compiler.algebra.graph import Graph
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import MassError, ProgramLimitError, SceneError, UnitsError
 
 m, M, l, g, k, c = hl.parameters(
@@ -130,7 +130,7 @@ def test_a_model_without_energies_has_none():
 
 
 def test_past_the_limit_the_term_that_grew_is_named(monkeypatch):
-    monkeypatch.setattr("hapticlab.compiler.expressions.MOST_INSTRUCTIONS", 300)
+    monkeypatch.setattr("hapticlab.compiler.algebra.expressions.MOST_INSTRUCTIONS", 300)
     rough = sp.Add(*(sp.sin(j * phi) ** j for j in range(1, 80)))
     mech = hl.lagrange(KINETIC - m * g * l * rough)
     with pytest.raises(ProgramLimitError, match=r"more than 300 instructions: \d+ of them for sin\(phi\(t\)\) \+ .*fewer terms"):

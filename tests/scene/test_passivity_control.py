@@ -6,7 +6,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import n, t, v
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import ParameterError, SceneError, UnitsError
 
 T, K = 1e-3, 700.0

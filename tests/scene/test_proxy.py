@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 import hapticlab as hl
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import SceneError
 from hapticlab.scene.proxy import proxy_curve, proxy_wall
 

@@ -8,7 +8,7 @@ from sympy.physics.mechanics.models import n_link_pendulum_on_cart
 
 import hapticlab as hl
 from hapticlab import t, v, x
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import MassError, ParameterError, SceneError, UnitsError
 from hapticlab.scene.derivative import Rate
 

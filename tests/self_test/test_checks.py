@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hapticlab.compiler.engine import load
+from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import EngineMissingError
 from hapticlab.self_test import computer, places, running, teaching
 from hapticlab.self_test.outcome import Attention, Fault

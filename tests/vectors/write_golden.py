@@ -15,10 +15,10 @@ sys.path[:0] = [str(HERE.parents[1]), str(HERE.parent / "compiler")]
 
 from random_programs import kept_finite, random_program, random_rows  # noqa: E402
 
-from hapticlab.compiler.bytecode import OPCODES, encode  # noqa: E402
-from hapticlab.compiler.engine import load  # noqa: E402
-from hapticlab.compiler.ir import OPERATIONS, Block, Channel, Instruction, Program  # noqa: E402
-from hapticlab.compiler.trace import Builder, cos, exp, maximum, select, sin, tanh  # noqa: E402
+from hapticlab.compiler.engines.bytecode import OPCODES, encode  # noqa: E402
+from hapticlab.compiler.engines.engine import load  # noqa: E402
+from hapticlab.compiler.ir.program import OPERATIONS, Block, Channel, Instruction, Program  # noqa: E402
+from hapticlab.compiler.ir.trace import Builder, cos, exp, maximum, select, sin, tanh  # noqa: E402
 
 TICKS = 8
 

@@ -567,7 +567,7 @@ def test_a_record_comes_before_a_rehearsal():
 
 
 def test_without_llvmlite_it_runs_too(monkeypatch):
-    monkeypatch.setattr("hapticlab.compiler.engine.llvmlite_is_ready", lambda: False)
+    monkeypatch.setattr("hapticlab.compiler.engines.engine.llvmlite_is_ready", lambda: False)
     stage = Stage().open()
     stage.go(0.1, pointer=lead)
     assert next(iter(stage.session.source._loops.values())).loaded.name == "interpreter"

@@ -1,0 +1,58 @@
+"""How much mass is felt at the handle through a constraint: what the force gains with the handle's acceleration."""
+
+import numpy as np
+
+from ...scene.closing import driven_over
+from ...scene.symbols import acceleration, t
+from ..algebra.expressions import Translator
+from ..algebra.graph import NUMPY, Graph
+from ..ir.trace import Builder, reachable
+
+
+def port_mass(enforced, force, M, f, start):
+    """Return dF/dx'' [kg], the largest over the range of the drivers, at the rates of the start.
+
+    Parameters
+    ----------
+    enforced : what enforces the constraints
+    force : expression [N]
+        Holding reactions of constraints.
+    M, f : lists of expressions
+        Of the coordinates that the constraints have in common.
+    start : dict
+        Every variable -> its value at the start.
+    """
+    builder, leaves = Builder("f64"), {}
+
+    def leaf(expr):
+        if getattr(type(expr), "role", None) == "reaction" and hasattr(type(expr), "constraint"):
+            return enforced.reactions(instant, *motion)[type(expr).constraint]
+        known = instant.leaf(expr)
+        return builder.leaf("input", leaves.setdefault(expr, len(leaves)), "f64") if known is None else known
+
+    translate = Translator(builder, leaf, clock=_Stopped, graph=Graph())
+    instant = enforced.instant(translate)
+    motion = [[translate(m) for m in row] for row in M], [translate(right) for right in f]
+    felt = translate(force)
+    at = start | driven_over(enforced.second, start)
+    of_acceleration = [_evaluated(felt, [at.get(expr, 0.0) for expr in leaves], list(leaves), a) for a in (0.0, 1.0)]
+    return float(np.nanmax(np.abs(np.subtract(*of_acceleration))))
+
+
+class _Stopped:
+    """The clock at the first sample: angles that time drives have not moved."""
+
+    @staticmethod
+    def angle(translator, f):
+        return translator.builder.const(0.0)
+
+
+def _evaluated(value, inputs, variables, a):
+    """Return a traced value in numbers, with the handle's acceleration a."""
+    inputs = [a if variable == acceleration(t) else number for variable, number in zip(variables, inputs, strict=True)]
+    done, instructions = {}, value.builder.instructions
+    with np.errstate(all="ignore"):
+        for k in reachable(instructions, [value.id]):
+            i = instructions[k]
+            done[k] = i.value if i.op == "const" else inputs[i.index] if i.op == "input" else NUMPY[i.op](*map(done.get, i.args))
+    return done[value.id]

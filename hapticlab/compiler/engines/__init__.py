@@ -1,0 +1,7 @@
+"""What executes a program: three engines that give the same bits.
+
+In: a ``Program`` and arrays of inputs. Out: arrays of outputs and states.
+Read ``engine`` (the contract, and which is chosen) and ``interpreter`` (the reference); ``llvm``, ``llvm_emit`` and
+``side_by_side`` (machine code), ``skipped_arms`` and ``llvm_branches`` (what only one case needs); ``bytecode``, ``vm``
+and ``firmware_library`` (the board's own code on this computer, built by ``toolchain``).
+"""

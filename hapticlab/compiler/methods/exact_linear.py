@@ -1,0 +1,241 @@
+"""``method="exact"``: linear equations of motion advanced by their matrix exponential, constants of the program."""
+
+import numpy as np
+
+from ...errors import ProgramError
+from ...scene.symbols import t
+from ..algebra.graph import driven
+from ..contacts.scene_contacts import located
+from ..events.taylor_method import Switched
+from ..ir.channels import channel_of, short
+from ..ir.program import Channel
+from ..prune.constant_coefficients import HANDLE, JUMPS, Coefficients, leaves, linear_rows
+from ..prune.dependence import Dependence, coupled, part_of
+from .force_timing import IMPULSE
+
+#: what a method's name begins with, where its linear parts are taken exactly; the rest follows a plus sign
+EXACT = "exact"
+#: of a state by another [1/s, 1/s^2], in the matrix exponential
+_LARGEST_RATE = 1e150
+
+
+def exact_and_rest(method):
+    """Split "exact" or "exact+rk4" into (True, the other method's name or None), any other into (False, itself)."""
+    if not isinstance(method, str) or method.split("+")[0] != EXACT:
+        return False, method
+    _, plus, rest = method.partition("+")
+    return True, rest if plus else None
+
+
+class _NotLinear(ProgramError):
+    """What ``method="exact"`` cannot take as one linear system: the reason, and what to do where there is no other way."""
+
+    def __init__(self, reason, cure):
+        super().__init__(f"{reason}; {cure}")
+        self.reason = reason
+
+
+def exact_or_switched(lowering, form, method):
+    """Return (Exact, method), or (None, Switched) for what may be linear between switches and has no other method."""
+    try:
+        return Exact(lowering, form, method and method.name), method
+    except _NotLinear as why:
+        if method is not None or any(model.constraints for model in form.models):
+            raise
+        return None, Switched(reason=why.reason, cure=str(why).removeprefix(why.reason))
+
+
+class Exact:
+    """The linear equations of a scene on their way into a program.
+
+    Parameters
+    ----------
+    lowering : the scene's lowering
+        Its tracing, its handle, and what translates expressions.
+    form : ExplicitForm
+    rest : str or None
+        The method for what is not linear.
+
+    Attributes
+    ----------
+    others : ExplicitForm
+        What is not linear.
+    left_out : tuple of str
+        Coordinates that neither the force nor a channel depends on.
+    notes : tuple of str
+        Switches of time that are sampled instead of located.
+    """
+
+    def __init__(self, lowering, form, rest):
+        self.lowering, self.tracing, constants = lowering, lowering.tracing, lowering.folded
+        linear, self.others = linear_part(lowering.scene, form, constants, self.tracing.T, rest, lowering.graph)
+        _check_size(linear, lowering.scene.name)
+        self.constant_parts = [form.f[form.coordinates.index(q)] for q in linear.coordinates]
+        self.notes = tuple(self._switches(linear.coordinates))
+        kept = {*linear.coordinates, *self.others.coordinates}
+        self.left_out = tuple(type(q).__name__ for q in form.coordinates if q not in kept)
+        self.states = {s: k for k, s in enumerate(linear.states)}
+        other = [form.force, *form.watch.values(), *form.updates.values(), *self.others.f, *sum(self.others.M, ())]
+        read = set().union(*map(leaves, other))
+        averaged = IMPULSE in self.states  # which starts anew at each sample, alone
+        seen = [k for s, k in self.states.items() if s in read]
+        self.space = linear.space if averaged else _cheaper(linear, seen, self.tracing.T)
+        first, back = [lowering.first_of(s) for s in self.states], np.linalg.inv(self.space.V)
+        plain, real = self.space.is_plain, self.tracing.real
+        self.keys = list(self.states) if plain else [f"mode {k}" for k in range(1, 1 + len(self.states))]
+        channels = [channel_of(key, real) if plain else Channel(key, "1", real) for key in self.keys]
+        self.now = [
+            self.tracing.tick.const(0.0) if key == IMPULSE else self.tracing.state(key, channel, _sum(row, first))
+            for key, channel, row in zip(self.keys, channels, back, strict=True)
+        ]
+        self._at = {}
+
+    def state(self, s):
+        """Return a state at the sample."""
+        return _sum(self.space.V[self.states[s]], self.now)
+
+    def advance(self):
+        """Give every state its value at the next sample; return {state: value}."""
+        self.rest = list(map(self._rest_of, self.constant_parts))
+        self.motion = self.lowering.handle.polynomial()
+        for key, value in zip(self.keys, self._moved(self.tracing.T), strict=True):
+            if key != IMPULSE:
+                self.tracing.set_next(key, value)
+        return self.at(self.tracing.T)
+
+    def _rest_of(self, f):
+        """Return what an equation holds beside states and handle, over the period: value, rate, second rate.
+
+        It stays as it is at the sample, but for what t drives: a parabola through its values at both ends and midway.
+        """
+        T, lowering = self.tracing.T, self.lowering
+        still = dict.fromkeys((*self.states, *HANDLE), self.tracing.tick.const(0.0))
+
+        def at(tau):
+            def leaf(expr):
+                if expr in still:
+                    return still[expr]
+                return lowering.at_sample(expr) + tau if expr == t and tau else lowering.at_sample(expr)
+
+            return lowering.translator(leaf, tau)(f)
+
+        if not self._has_time([f]):
+            return [at(0.0)]
+        first, middle, last = map(at, (0.0, T / 2, T))
+        return [first, (4 * middle - 3 * first - last) * (1 / T), (first - 2 * middle + last) * (4 / T**2)]
+
+    def _has_time(self, exprs):
+        return any(a == t or isinstance(a, driven) for a in self.lowering.graph.variables_of(exprs))
+
+    def _switches(self, coordinates):
+        """Yield a note for each jump in time of an equation: of the parabola, a switch is up to T/3 early or late."""
+        for q, f in zip(coordinates, self.constant_parts, strict=True):
+            for jump in sorted(f.atoms(*JUMPS) if self._has_time([f]) else (), key=str):
+                if self._has_time(jump.args):
+                    yield (
+                        f"{short(jump, 40)} in the equation of {type(q).__name__} is taken at the start, middle and end of "
+                        "each period, so that it switches up to T/3 early or late; method='taylor' locates it"
+                    )
+
+    def at(self, tau):
+        """Return {state: value} at tau [s] after the sample."""
+        if tau not in self._at:
+            moved = self._moved(tau) if tau else self.now
+            self._at[tau] = {s: _sum(row, moved) for s, row in zip(self.states, self.space.V, strict=True)}
+        return self._at[tau]
+
+    def _moved(self, tau):
+        """Return what the program keeps, at tau [s] after the sample."""
+        if not self.now:
+            return []
+        space, effects = self.space, {}  # value -> its effect on all of them
+        Phi, Psi = space.over(tau)
+
+        def add(value, effect):
+            if value.constant != 0:
+                effects[value.id] = value, effect + effects.get(value.id, (value, 0.0))[1]
+
+        for k, value in enumerate(self.now):
+            # w + (Phi - 1) w keeps the digits of a small change, and those of float32 constants
+            add(value, Phi[:, k] - np.eye(len(Phi))[k])
+        for column, powers in enumerate(self.motion):
+            for k, value in enumerate(powers):
+                add(value, Psi[k] @ space.inputs[:, column])
+        for row, powers in enumerate(self.rest):
+            for k, value in enumerate(powers):
+                add(value, Psi[k] @ space.rest[:, row])
+        values, table = [value for value, _ in effects.values()], [effect for _, effect in effects.values()]
+        return [
+            value + _sum(row, values)
+            for value, row in zip(self.now, np.reshape(table, (-1, len(self.now))).T, strict=True)
+        ]
+
+
+def _sum(row, values):
+    """Return the sum of row[k] * values[k], without what is zero."""
+    total = None
+    for factor, value in zip(row, values, strict=True):
+        if factor:
+            part = value * float(factor)
+            total = part if total is None else total + part
+    return values[0].builder.const(0.0) if total is None else total
+
+
+def _check_size(linear, name):
+    with np.errstate(all="ignore"):
+        largest = np.abs(linear.A).max(initial=0.0)
+    if not largest < _LARGEST_RATE:
+        names = ", ".join(type(q).__name__ for q in linear.coordinates)
+        raise ProgramError(
+            f"{name}: the rates of {names} are {largest:.3g} times what they depend on, past {_LARGEST_RATE:g}: no exponential "
+            "of that is a number; look at its masses, stiffnesses and dampings"
+        )
+
+
+def _cheaper(linear, read, T):
+    """Return the Space that takes fewer products a period, where the states of these numbers are read."""
+    plain, modes = linear.space, linear.modes
+    if modes is None or not read:
+        return plain
+    products = [np.count_nonzero(space.over(T)[0] - np.eye(len(space.A))) for space in (plain, modes)]
+    return modes if products[1] + np.count_nonzero(modes.V[read]) < products[0] else plain
+
+
+def linear_part(scene, form, constants, T, rest, graph):
+    """Return (Linear, the form of the other equations); refuse what ``method="exact"`` cannot take, with the reason.
+
+    Equations that neither the force nor a channel depends on are in neither.
+
+    Parameters
+    ----------
+    constants : dict name -> float
+        Parameters that are constants of the program.
+    rest : str or None
+        The method for what is not linear.
+    graph : Graph
+        Of the form's expressions, with these constants.
+
+    Raises
+    ------
+    ProgramError
+    """
+    form = part_of(form, Dependence(form, graph).needed)
+    coefficients = Coefficients(form, constants, T, graph)
+    rows, reasons = linear_rows(coefficients)
+    names = ", ".join(type(form.coordinates[k]).__name__ for k in rows)
+    reason = f"{scene.name}: {next(iter(reasons.values()), '')}"
+    if reasons and any(located(model.contacts) for model in coupled(form)):
+        raise _NotLinear(reason, "use method='taylor', which locates that and is exact where motion is linear")
+    if reasons and not rows:
+        other = "'taylor', which locates that" if any(f.has(*JUMPS) for f in form.f) else "'rk4'"
+        raise _NotLinear(reason, f"nothing is left for method='exact', use {other}")
+    if reasons and rest is None:
+        raise _NotLinear(reason, f"method='exact+rk4' takes {names} exactly and the rest by rk4")
+    live = coefficients.live(rows)
+    if live:
+        keep = " ".join(sorted(set(scene.parameters) - set(live) - set(constants)))
+        raise ProgramError(
+            f"{scene.name}: method='exact' makes constants of the motion of {names}, and {', '.join(live)} of it may be set "
+            f"while it runs; fix what it is made of, hl.compile(..., method='exact', live={keep!r})"
+        )
+    return coefficients.linear(rows), part_of(form, sorted(reasons))

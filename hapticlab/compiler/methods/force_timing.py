@@ -1,0 +1,85 @@
+"""When in the period a force is evaluated: at its start, with the states at its end, or on average."""
+
+from dataclasses import replace
+
+import sympy as sp
+
+from ...errors import ProgramError
+from ...scene.contact_laws import micro_impulse
+from ...scene.symbols import T, t, v, x
+from ..algebra.graph import driven
+
+#: with the states at the sample, with those at the end of the period, or the mean over the period
+FORCE_AT = ("before", "after", "mean")
+
+#: what the force adds up to since the sample, as a coordinate of first order: its name is no word, so no scene has it
+IMPULSE = sp.Function("impulse of F", real=True, unit="N*s", role="coordinate", initial=sp.S.Zero, low=-sp.oo, high=sp.oo)(t)
+
+
+def averaged(form, graph):
+    """Return a form whose force is the mean over the period, the integral of F since the sample divided by T.
+
+    The integral is one more state of the same method, so that the impulse which is felt is the impulse that the bodies
+    are given. A force of samples alone is its own mean.
+    """
+    variables = graph.variables_of([form.force])
+    if not any(map(_moves, variables)):
+        return form
+    for c in (c for model in form.models for c in model.contacts if getattr(c, "force", None) in variables):
+        if isinstance(getattr(c, "law", None), micro_impulse):
+            raise ProgramError(
+                f"force_at = 'mean': {c.force} acts in an instant at the end of a step, between which it is nothing; take "
+                "force_at='before', which holds the force of its impulse over the period"
+            )
+    return replace(
+        form,
+        coordinates=(*form.coordinates, IMPULSE),
+        orders=(*form.orders, 1),
+        M=(*((*row, sp.S.Zero) for row in form.M), (*[sp.S.Zero] * len(form.f), sp.S.One)),
+        f=(*form.f, form.force),
+        force=IMPULSE / T,
+    )
+
+
+def _moves(variable):
+    """Tell whether a variable of a graph changes between two samples."""
+    role = getattr(type(variable.expr if variable.is_Derivative else variable), "role", None)
+    return variable in (t, x(t), v(t)) or isinstance(variable, driven) or role in ("coordinate", "reaction")
+
+
+def hints(lowering, hold):
+    """Return notes on a hold that goes badly with the instant of the force, or with substeps."""
+    form, substeps = lowering.form, lowering.substeps
+    led = [a for a in lowering.graph.variables_of(form.f) if a in (x(t), v(t))]
+    if not led:
+        return
+    if lowering.force_at == "after" and hold != "zoh":
+        yield (
+            f"force_at = 'after' with hold = {hold!r}: lightly damped bodies ask a device for more damping than with 'before', "
+            "or with hold='zoh'; hl.port_passivity tells how much"
+        )
+    if substeps > 1 and hold == "zoh" and lowering.method is not None:
+        yield (
+            f"hold = 'zoh' sets the error, of order 1: {substeps} substeps shorten the step for stability and contacts, not the "
+            "error, which hold='foh' or 'soh' makes smaller"
+        )
+
+
+def at_the_end(lowering):
+    """Return what translates the force once the period is traced: states at its end, all else as at the sample."""
+    dynamics = lowering.dynamics
+
+    def leaf(expr):
+        if expr in lowering.moved:
+            return lowering.moved[expr]
+        if hasattr(type(expr), "contact"):
+            return dynamics.contacts.at_the_end(expr)
+        if hasattr(type(expr), "constraint"):
+            return dynamics.reaction(expr, translate, instant)
+        follows = instant.leaf(expr) if instant else None
+        return lowering.at_sample(expr) if follows is None else follows
+
+    translate = lowering.translator(leaf)
+    instant = dynamics.enforced.instant(translate) if dynamics.enforced else None
+    translate.instant = instant
+    return translate

@@ -1,0 +1,130 @@
+"""Lower a scene to a program: the sample is taken, the force computed from it, then the equations of motion advance."""
+
+from dataclasses import replace
+
+from ...errors import ProgramError, SceneError
+from ...scene.scene import Scene
+from ...scene.written import no_scene
+from ..contacts.broad_phase import Contacts
+from ..events.taylor_method import Taylor
+from ..ir.cache import Shared, content
+from ..ir.options import choice, live_names, period, steps, unusual
+from ..methods.exact_linear import EXACT, exact_and_rest
+from ..methods.force_timing import FORCE_AT
+from ..methods.method_table import METHODS
+from ..prune.excluded_modes import excluded, rests_on
+from .handle_samples import HOLDS, VELOCITIES
+from .lowering import REAL_OF, Lowering
+
+#: compiled scenes that are kept: instructions, of which each takes 0.4 kB, and as many again for what else a program has
+PROGRAMS = Shared(60_000, lambda program: 200 + program.size)
+
+
+def compile(
+    scene,
+    method="rk4",
+    *,
+    T,
+    substeps=1,
+    hold="soh",
+    dtype="float32",
+    velocity="backward_difference",
+    live=None,
+    force_at="before",
+):
+    """Compile a scene to the program that runs at the sample rate.
+
+    At sample n the force is computed from x(n) and the present states (``force_at`` has two other ways); then the
+    equations of motion advance by T in ``substeps`` steps of an explicit method.
+
+    Parameters
+    ----------
+    scene : Scene
+    method : {"euler", "semi_implicit_euler", "semi_implicit_euler_damped", "verlet", "midpoint", "heun", "ssprk3", "rk4", \
+"nystrom4", "adams_bashforth2", "adams_bashforth3", "taylor", "exact", "exact+rk4", ...}
+        ``hl.methods()`` tables the explicit ones: order, cost, where each is stable; ``hl.order_of`` says what order
+        the error of a scene's force has. "semi_implicit_euler_damped" takes dampers implicitly, however stiff.
+        "nystrom4" is for accelerations free of velocities, the Adams-Bashforth methods are for motion without cases.
+        "taylor" locates the instants at which walls, contacts and friction change the motion; between them it is exact
+        to rounding where the motion is linear. :class:`~hapticlab.compiler.events.taylor_method.Taylor` sets its order
+        and events. "exact" advances linear equations of motion by their matrix exponential, whose constants it makes of
+        parameters that are not ``live``: no step error at any stiffness. Of what is linear between switches (walls,
+        contacts, friction) it makes a map a mode, and locates the switches. With "+rk4" rk4 takes what is not linear.
+    T : float or str
+        Sampling period [s], > 0, or a text with its unit, ``"1 ms"``.
+    substeps : int
+        Steps per period, >= 1.
+    hold : {"zoh", "foh", "soh"}
+        How an equation of motion sees x(t) and v(t) between samples (see
+        :class:`~hapticlab.compiler.tick.handle_samples.Handle`). It sets the accuracy more than the method does: a held
+        sample ("zoh") costs RK4 ten percent of the force.
+    dtype : {"float32", "float64"}
+        float32 is what a board runs.
+    velocity : {"backward_difference", "measured"}
+        Where v(n) comes from; "measured" asks the paddle for it.
+    live : str or sequence of names or Parameters, optional
+        Parameters that stay settable while running, by default all but those that constraints hold; the others become
+        constants.
+    force_at : {"before", "after", "mean"}
+        With which states the force is computed. ``"before"``: those at the sample, so that F(n) is the force at that
+        instant. ``"after"``: those at the end of the period, with the sample x(n), v(n), as a loop that moves its bodies
+        first does it; what difference equations and channels hold stays that of the sample. ``"mean"``: the mean of F
+        over the period as the equations of motion see it, with x(t) of ``hold``, so that the impulse felt is the impulse
+        that the bodies are given.
+
+    Returns
+    -------
+    Program
+        ``len(program)`` is its number of instructions per tick; printing it lists them. The same scene with the same
+        options gives the same object again, as :mod:`hapticlab.compiler.ir.cache` says.
+
+    Raises
+    ------
+    ProgramError, ParameterError, SceneError
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k, x_o = hl.parameters("k x_o", units="N/m m")
+    >>> wall = hl.Scene(force=hl.when(hl.x(hl.n) >= x_o, k * (hl.x(hl.n) - x_o)))
+    >>> len(hl.compile(wall, T=1e-3))
+    4
+    """
+    if not isinstance(scene, Scene):
+        raise SceneError(no_scene(scene, "write hl.compile(hl.Scene(force=...), T=1e-3)"))
+    options = method, T, substeps, hold, dtype, velocity, live, force_at
+    return PROGRAMS.get(_key(scene, options), lambda: lowered(scene, *options))
+
+
+def _key(scene, options):
+    """Return what a program depends on: all that the scene holds, and the options as they were given."""
+    return content(type(scene), {**vars(scene), "_parameters": scene.parameters}, options)
+
+
+def lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at, undecided=()):
+    """Return the program of a scene; of the conditions in ``undecided``, declared ranges decide nothing."""
+    exact, other = exact_and_rest(method)
+    if not isinstance(other, Taylor) and (not exact or other is not None):
+        choice("method", other, (*METHODS, *([] if exact else [Taylor.name, EXACT, f"{EXACT}+rk4"])))
+    choice("hold", hold, HOLDS)
+    choice("dtype", dtype, REAL_OF)
+    choice("velocity", velocity, VELOCITIES)
+    choice("force_at", force_at, FORCE_AT)
+    T, substeps, live = period(T), steps(substeps), live_names(live)
+    if exact and other is None and substeps > 1:
+        raise ProgramError(f"substeps = {substeps}: method='exact' takes the whole period at once; leave substeps out")
+    try:
+        form, decisions = excluded(scene, T, live, undecided)
+        for model in form.models:
+            if isinstance(model.contacts, Contacts):
+                model.contacts.check(scene.values)
+        other = Taylor() if other == Taylor.name else other
+        other = other if isinstance(other, Taylor) else METHODS.get(other)
+        lowering = Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live, force_at)
+        program = lowering.program(rests_on(form, decisions))
+        return replace(program, notes=(*program.notes, *unusual(T, len(program))))
+    except RecursionError:
+        raise ProgramError(
+            f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals, "
+            "y = hl.signal(...), with an equation for each"
+        ) from None
