@@ -1,31 +1,30 @@
 """The public names and where they live; __init__.py loads each on first use (SPEC 1)."""
 
 from . import library
-from .analysis.books import balance, energy_books
-from .analysis.chatter import chatter
-from .analysis.compare_laws import compare_laws
-from .analysis.energy import energy
-from .analysis.impedance import impedance
-from .analysis.law_limits import law_limits
-from .analysis.methods import methods
-from .analysis.motions import HandleMotion, handle_motions
-from .analysis.passivity_trace import passivity_trace
-from .analysis.pictures import picture
-from .analysis.plots import plot
-from .analysis.port_error import force_error, sensor_floor
-from .analysis.port_passivity import port_passivity
+from .analysis.accuracy.handle_motions import HandleMotion, handle_motions
+from .analysis.accuracy.port_error import force_error, sensor_floor
+from .analysis.accuracy.reference import reference
+from .analysis.accuracy.tradeoff import tradeoff
+from .analysis.impedance.impedance import impedance
+from .analysis.impedance.reduction import reduction
+from .analysis.pictures.pictures import picture
 from .analysis.programs.error_order import order_of
+from .analysis.programs.method_comparison import methods
 from .analysis.programs.replay import replay
 from .analysis.programs.requires import requires
-from .analysis.reduction import reduction
-from .analysis.reference import reference
-from .analysis.staircase import staircase
-from .analysis.step_limit import step_limit
-from .analysis.storage import storage
-from .analysis.sweep import sweep
-from .analysis.tradeoff import tradeoff
-from .analysis.wall_laws import wall_law
-from .analysis.wall_map import wall_map
+from .analysis.records.chatter import chatter
+from .analysis.records.energy import energy
+from .analysis.records.energy_books import balance, energy_books
+from .analysis.records.passivity_trace import passivity_trace
+from .analysis.records.plots import plot
+from .analysis.records.staircase import staircase
+from .analysis.records.storage import storage
+from .analysis.stability.port_passivity import port_passivity
+from .analysis.stability.step_limit import step_limit
+from .analysis.sweeps.sweep import sweep
+from .analysis.walls.compare_laws import compare_laws
+from .analysis.walls.law_limits import law_limits
+from .analysis.walls.wall_map import wall_map
 from .compiler.contacts.broad_phase import contacts_between
 from .compiler.events.taylor_method import Taylor
 from .compiler.tick.compile_scene import compile
@@ -102,6 +101,7 @@ from .rendering.hybrid import hybrid_wall
 from .rendering.over_compensation import over_compensation
 from .rendering.predictive import predictive_wall
 from .rendering.velocity_errors import velocity_errors
+from .rendering.wall_laws import wall_law
 from .scene.adaptive_window import window_velocity
 from .scene.amount import Amount
 from .scene.compensation import damping_compensation

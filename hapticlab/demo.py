@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .analysis.sweep import Sweep, sweep
+from .analysis.sweeps.sweep import Sweep, sweep
 from .compiler.engines.engine import load
 from .device.hand import Hand
 from .device.profiles import profile

@@ -9,8 +9,8 @@ from pathlib import Path
 from . import __version__
 from . import board_commands as board
 from . import demo as demonstration
-from .analysis.plots import plot
-from .analysis.tradeoff import tradeoff as measure_tradeoff
+from .analysis.accuracy.tradeoff import tradeoff as measure_tradeoff
+from .analysis.records.plots import plot
 from .errors import HapticlabError, SceneError
 from .exits import INTERRUPTED, complain
 from .scenefile import describe, load_scene, report_of, run_scene

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .analysis.chatter import chatter
-from .analysis.energy import energy
+from .analysis.records.chatter import chatter
+from .analysis.records.energy import energy
 from .compiler.ir.program import Program
 from .device.hand import Hand
 from .device.paddle import Paddle

@@ -15,7 +15,7 @@ from commands import run_command
 
 import hapticlab as hl
 from hapticlab import board_commands, cli, options, scene_commands
-from hapticlab.analysis.tradeoff import PC
+from hapticlab.analysis.accuracy.tradeoff import PC
 from hapticlab.compiler.events.taylor_method import Taylor
 from hapticlab.compiler.methods.exact_linear import EXACT
 from hapticlab.compiler.methods.method_table import METHODS

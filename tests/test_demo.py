@@ -7,7 +7,7 @@ import pytest
 import tqdm
 
 from hapticlab import demo
-from hapticlab.analysis.sweep import Sweep
+from hapticlab.analysis.sweeps.sweep import Sweep
 from hapticlab.limits.limit import Limit
 
 

@@ -23,7 +23,7 @@ OUTSIDE = {"__init__", "__main__", "_jupyter"}
 DOORS = {
     "pint": {"scene.units"},
     "llvmlite": {"compiler.engines.llvm", "compiler.engines.llvm_emit"},
-    "scipy": {"analysis.hybrid", "limits.matrix", "identification.fit", "experiments.fit"},
+    "scipy": {"analysis.accuracy.hybrid_solver", "limits.matrix", "identification.fit", "experiments.fit"},
     "matplotlib": {"drawing"},
     "serial": {"device.serial", "device.urls.protocol_sim"},
     "ipywidgets": {"widgets.view", "widgets.plain"},

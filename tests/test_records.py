@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.analysis.chatter import chatter
-from hapticlab.analysis.energy import energy
+from hapticlab.analysis.records.chatter import chatter
+from hapticlab.analysis.records.energy import energy
 from hapticlab.errors import AnalysisError
 from hapticlab.records import PaddleProfile, Telemetry
 

@@ -168,7 +168,8 @@ def follow(
     Parameters
     ----------
     path : object with ``at(t)`` that returns position [m], velocity [m/s], acceleration [m/s^2]
-        ``hl.MinimumJerk`` or an :class:`~hapticlab.analysis.motions.HandleMotion`. The others are those of :func:`reach`.
+        ``hl.MinimumJerk`` or an :class:`~hapticlab.analysis.accuracy.handle_motions.HandleMotion`. The others are those
+        of :func:`reach`.
     """
     check_held(paddle, "reach")
     check_path(path)

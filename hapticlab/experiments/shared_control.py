@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..analysis.energy import energy
+from ..analysis.records.energy import energy
 from ..device.asked import check_held
 from ..device.hand import require
 from ..device.intents import Tremor

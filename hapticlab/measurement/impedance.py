@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..analysis.impedance import impedance as impedance_of
+from ..analysis.impedance.impedance import impedance as impedance_of
 from ..compiler.tick.compile_scene import compile
 from ..device.simulated import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError

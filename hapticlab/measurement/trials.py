@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..analysis.chatter import chatter
+from ..analysis.records.chatter import chatter
 from ..device.simulated import SimulatedPaddle
 from ..errors import PaddleError
 from ..scene.laws import wall

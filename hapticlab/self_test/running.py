@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..analysis.plots import plot
-from ..analysis.sweep import sweep
+from ..analysis.records.plots import plot
+from ..analysis.sweeps.sweep import sweep
 from ..compiler.engines.engine import load
 from ..compiler.ir.program import Channel, Program
 from ..compiler.ir.trace import Builder, cos, exp, maximum, select, sin, tanh

@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 
-from ..analysis.pictures import drawing_of, named_by
-from ..analysis.schematic import Schematic
+from ..analysis.pictures.pictures import drawing_of, named_by
+from ..analysis.pictures.schematic import Schematic
 from ..drawing import COLD
 from ..errors import AnalysisError
 from ..library.entries import CATALOGUE

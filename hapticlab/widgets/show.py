@@ -2,7 +2,7 @@
 
 import sys
 
-from ..analysis.plots import plot
+from ..analysis.records.plots import plot
 from ..drawing import bundle, describe, forget
 from ..errors import AnalysisError
 from ..records import Telemetry

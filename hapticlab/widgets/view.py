@@ -3,8 +3,8 @@
 import math
 from collections.abc import Mapping
 
-from ..analysis.wall_map import OTHERS, WallMaps, changed
-from ..analysis.wall_map_plot import WallMapPicture
+from ..analysis.walls.wall_map import OTHERS, WallMaps, changed
+from ..analysis.walls.wall_map_plot import WallMapPicture
 from ..errors import AnalysisError, EngineMissingError
 from .front import around
 from .latest import Latest

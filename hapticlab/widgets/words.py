@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..analysis.chatter import SHORTEST, chatter
+from ..analysis.records.chatter import SHORTEST, chatter
 from ..errors import AnalysisError
 from ..records import Telemetry
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from hapticlab.analysis.wall_laws import LAWS
+from hapticlab.rendering.wall_laws import LAWS
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "benchmarks"))

@@ -2,7 +2,7 @@
 
 import math
 
-from hapticlab.analysis.tradeoff_rows import Row
+from hapticlab.analysis.accuracy.tradeoff_rows import Row
 
 
 def one_row(**changes):

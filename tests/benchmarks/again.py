@@ -5,7 +5,7 @@ import scenes
 from timing import best_of, row
 
 import hapticlab as hl
-from hapticlab.analysis.measures import METRICS, WithFault
+from hapticlab.analysis.sweeps.sweep_measures import METRICS, WithFault
 from hapticlab.compiler.engines.engine import load
 from hapticlab.compiler.ir import cache
 from hapticlab.course.felt import felt

@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 
 import hapticlab as hl
-from hapticlab.analysis.wall_laws import LAWS, wall_law
 from hapticlab.compiler.boards.cost import cost
 from hapticlab.drawing import colour_map, house_style, new_figure
+from hapticlab.rendering.wall_laws import LAWS, wall_law
 
 DOCS = Path(__file__).parents[2] / "docs"
 BASE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)

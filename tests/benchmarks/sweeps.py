@@ -7,7 +7,7 @@ from floors import lanes
 from timing import best_of, imported, row
 
 import hapticlab as hl
-from hapticlab.analysis.measures import METRICS, WithFault
+from hapticlab.analysis.sweeps.sweep_measures import METRICS, WithFault
 from hapticlab.compiler.engines.engine import load
 from hapticlab.compiler.ir import cache
 from hapticlab.device.link import link

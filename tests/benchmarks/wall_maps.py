@@ -15,8 +15,8 @@ import numpy as np
 from timing import row
 
 import hapticlab as hl
-from hapticlab.analysis.wall_map import WallMaps
-from hapticlab.analysis.wall_map_plot import WallMapPicture
+from hapticlab.analysis.walls.wall_map import WallMaps
+from hapticlab.analysis.walls.wall_map_plot import WallMapPicture
 
 POINTS = 100
 HAND = hl.Hand(m=0.02, b=1.0, k=200.0, push=1.0)

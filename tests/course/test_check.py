@@ -325,7 +325,7 @@ def test_a_scene_with_motion_is_run_as_asked():
     given = {"x": list(1e-3 * np.sin(60 * time)), "v": list(0.06 * np.cos(60 * time)), "method": "exact", "channels": ["z"]}
     program = hl.compile(body, "exact", T=1e-3, dtype="float64", velocity="measured", live=())
     rows = np.array([given[c.name] for c in program.inputs]).T
-    out = hl.compiler.engine.load(program).run(20, rows).outputs[:, :, 0]
+    out = hl.compiler.engines.engine.load(program).run(20, rows).outputs[:, :, 0]
     names = [c.name for c in program.outputs]
     exercise = Exercise(
         "body", kind="scene", points=1, cases=[Case(given, {name: out[:, names.index(name)].tolist() for name in ("F", "z")})]

@@ -9,8 +9,8 @@ from emulator import CYCLES_PER_SECOND, TIMER1_COMPA, Uno, missing
 from uno_port import offer
 
 import hapticlab as hl
-from hapticlab.analysis.motions import HandleMotion
-from hapticlab.analysis.reference import reference
+from hapticlab.analysis.accuracy.handle_motions import HandleMotion
+from hapticlab.analysis.accuracy.reference import reference
 from hapticlab.device.board import SerialPaddle
 from hapticlab.device.settings import nominal
 

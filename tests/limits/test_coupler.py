@@ -7,7 +7,7 @@ from scipy.optimize import minimize_scalar
 
 import hapticlab as hl
 from hapticlab import t
-from hapticlab.analysis.passive_hands import network, radii
+from hapticlab.analysis.stability.passive_hands import network, radii
 from hapticlab.errors import AnalysisError
 from hapticlab.limits.coupler import coupler_design, impedance_display
 from hapticlab.limits.passivity import required_damping

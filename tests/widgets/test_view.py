@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.analysis.wall_map import WallMaps
+from hapticlab.analysis.walls.wall_map import WallMaps
 from hapticlab.errors import AnalysisError, EngineMissingError
 from hapticlab.widgets.view import MapView, explore
 

@@ -9,7 +9,7 @@ from ..ir.program import Channel
 from ..ir.trace import select
 from .flow import motion_of
 from .located_step import Stepper
-from .series_checks import (  # fmt: skip
+from .series_checks import (
     MOST_INSTRUCTIONS,
     around,
     check_size,

@@ -1,0 +1,117 @@
+"""What all settings of a trade-off are tried on: a scene, a paddle, and the force that it would give without samples."""
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import AnalysisError
+from ...scene.symbols import delay, lag_of, v, x
+from ..stability.operating_points import TRAVEL
+from ..stability.trial_limits import Limits
+from .tradeoff_rows import percent
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """What all settings of a scene are tried on.
+
+    Attributes
+    ----------
+    scene, paddle
+    runs : tuple of Reference
+        Each with its motion.
+    boards : tuple of str
+    every, velocity, live
+        As of :func:`~hapticlab.analysis.accuracy.tradeoff.tradeoff`.
+    """
+
+    scene: object
+    paddle: object
+    runs: tuple
+    boards: tuple
+    every: int
+    velocity: str
+    live: object = ()
+
+    def __post_init__(self):
+        if not self.peak > 0:
+            motions = ", ".join(known.motion.name for known in self.runs)
+            raise AnalysisError(
+                f"{self.scene.name}: its force stays 0 N or is no number during {motions}, so there is nothing to compare; "
+                "give motions=[HandleMotion(...)] that bring the handle to where it acts"
+            )
+
+    @functools.cached_property
+    def peak(self):
+        """Greatest force of the reference [N]."""
+        return max(known.peak for known in self.runs)
+
+    @property
+    def doubt(self):
+        """By which part of the greatest force the solvers of the reference differ."""
+        return max(known.agreement for known in self.runs) / self.peak
+
+    @property
+    def certainty(self):
+        """How far the solvers of the reference agree, in words."""
+        if not np.isfinite(self.doubt):
+            return "a motion has one solver only, so that no error is certain"
+        return f"the solvers of its reference differ by {percent(self.doubt)} of it"
+
+    @property
+    def chaotic(self):
+        """From when on rounding decides the motion [s]; None where it does not."""
+        return min((known.horizon for known in self.runs if known.chaotic), default=None)
+
+    @property
+    def faulted(self):
+        """From when on the force of the reference is no number [s]; None where it always is one."""
+        return min((known.horizon for known in self.runs if known.faulted), default=None)
+
+    @property
+    def delay(self):
+        """After which the paddle's force is felt [s]."""
+        return float(getattr(self.paddle, "delay", 0.0))
+
+    @property
+    def notes(self):
+        """What is to be known of the whole, in sentences."""
+        told, most = [], getattr(self.paddle, "force_max", None)
+        if most and self.peak > most:
+            told += [f"the paddle gives {most:.3g} N at most: what is above is not felt, and no error here counts it"]
+        if any(_lagged(expr) for expr in _equations(self.scene)):
+            told += ["past samples and delayed forces are those of now in the reference: what they are late by counts as error"]
+        return told
+
+    @functools.cached_property
+    def limits(self):
+        """Of stability and passivity, for all settings: over a paddle's travel, or further where the motions go further."""
+        reach = max(float(np.abs(known.motion.at(known.t)[0]).max()) for known in self.runs)
+        return Limits(self.scene, max(reach, TRAVEL), self.delay)
+
+    @functools.cached_property
+    def same(self):
+        """Pairs of holds that were found to compile to the same instructions."""
+        return set()
+
+    def options(self, setting):
+        """Return the options of :func:`hapticlab.compile` of a setting or a row."""
+        made = {name: getattr(setting, name) for name in ("method", "T", "substeps", "hold", "force_at")}
+        return made | {"dtype": setting.precision, "velocity": self.velocity, "live": self.live}
+
+    @functools.lru_cache(maxsize=8)  # noqa: B019  it lives as long as its worker
+    def samples(self, T):
+        """Return the samples x, v of each motion, arrays of shape (ticks, 2)."""
+        counts = [round(known.horizon / T) for known in self.runs]
+        return [np.stack(known.motion.at(T * np.arange(n))[:2], 1) for n, known in zip(counts, self.runs, strict=True)]
+
+
+def _equations(scene):
+    form = scene.explicit()
+    return [form.force, *form.f, *form.updates.values()]
+
+
+def _lagged(expr):
+    """Tell whether an expression takes samples of before, or a delayed force."""
+    return expr.has(delay) or any(lag_of(sample) for sample in expr.atoms(x, v))

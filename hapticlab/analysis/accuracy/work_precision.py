@@ -1,0 +1,115 @@
+"""The figure of a trade-off: error against load, both logarithmic, a line for each method."""
+
+from ...drawing import FRAME, house_style, log_scales, new_figure, style_of
+
+MARKERS = {"zoh": "s", "foh": "^", "soh": "o"}
+#: with a force of the period's end or mean a marker has a bar through it
+BARRED = {"before": None, "after": "|", "mean": "_"}
+#: an error of nothing at all is drawn here
+LEAST = 1e-12
+#: panels beside each other
+ACROSS = 2
+
+
+def plot_work_precision(tradeoff, targets=None, asked=None):
+    """Draw the error of the force against the load of the target, a panel for each.
+
+    A marker is a setting, its shape the hold, filled where stability, contacts, passivity and the board allow it, with a
+    black edge where its numbers are float64. A line
+    goes along the settings of one method that none of its others beats. Dashed: the error that the encoder alone makes.
+
+    Parameters
+    ----------
+    tradeoff : Tradeoff
+    targets : sequence of str, optional
+    asked : Asked
+        What decides which markers are filled, and where tolerance and load are drawn.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    targets = list(targets or tradeoff.targets)
+    shown = {target: [row for row in tradeoff.table if row.target == target and row.ran and row.load > 0] for target in targets}
+    methods = list(dict.fromkeys(row.method for rows in shown.values() for row in rows))
+    down, across = -(-len(targets) // ACROSS), min(ACROSS, len(targets))
+    with house_style():
+        figure = new_figure(height=1.0 + 3.4 * down + 0.25 * ((len(methods) + 6) // (2 * across) + 1), width=5.0 * across + 0.6)
+        panels = figure.subplots(down, across, sharey=True, squeeze=False).ravel()
+        for axes, target in zip(panels, targets, strict=False):
+            _panel(axes, target, shown[target], methods, asked)
+        for axes in panels[len(targets) :]:
+            axes.set_visible(False)
+        for axes in panels[::across]:
+            axes.set_ylabel("greatest error of the force [% of its peak]")
+        if len(targets) == 1:
+            panels[0].set_title(f"{tradeoff.name}, on {targets[0]}")
+        else:
+            figure.suptitle(tradeoff.name)
+        _legend(figure, panels[0], methods, [row for rows in shown.values() for row in rows])
+    return figure
+
+
+def _panel(axes, target, rows, methods, asked):
+    for number, method in enumerate(methods):
+        own, style = [row for row in rows if row.method == method], style_of(number)
+        best = front(own)
+        axes.plot(*_places(best), **style, linewidth=1.2, zorder=2)
+        for row in own:
+            allowed = not asked.excess(row).keys() - {"tolerance", "load"} and not row.status.startswith("does not fit")
+            axes.plot(
+                *_places([row]), MARKERS[row.hold], color=style["color"], markersize=6, zorder=3,
+                markerfacecolor=style["color"] if allowed else "white", markeredgewidth=0.8,
+                markeredgecolor="black" if row.precision == "float64" else style["color"],
+            )  # fmt: skip
+            if BARRED[row.force_at]:
+                axes.plot(*_places([row]), BARRED[row.force_at], color="black", markersize=8, zorder=4)
+    _sensor(axes, {row.T: row.sensor_floor for row in rows if row.sensor_floor > 0})
+    axes.axhline(100 * asked.tolerance, color="black", linestyle=":", linewidth=1.0, zorder=1)
+    axes.axvline(100 * asked.load, color="black", linestyle=":", linewidth=1.0, zorder=1)
+    axes.set(title=target, xlabel="load [% of the period]")
+    log_scales(axes)
+
+
+def _sensor(axes, floors):
+    """Draw what the encoder alone makes of error at each period, those that lie near each other under one label."""
+    labels = []
+    for T, floor in sorted(floors.items(), key=lambda item: item[1]):
+        axes.axhline(100 * floor, color="#4d4d4d", linestyle="--", linewidth=1.0, zorder=1)
+        if labels and floor < 1.6 * labels[-1][0]:
+            labels[-1][:] = [floor, [*labels[-1][1], T]]
+        else:
+            labels.append([floor, [T]])
+    for floor, periods in labels:
+        text = "sensor at " + ", ".join(f"{T * 1e3:g}" for T in sorted(periods)) + " ms"
+        style = {"ha": "right", "va": "bottom", "fontsize": "x-small", "color": "#4d4d4d"}
+        axes.annotate(text, (0.995, 100 * floor), xycoords=("axes fraction", "data"), **style)
+
+
+def front(rows):
+    """Return the rows that none of them beats in both load and error, cheapest first."""
+    found = []
+    for row in sorted(rows, key=lambda row: (row.load, row.err_max)):
+        if not found or row.err_max < found[-1].err_max:
+            found.append(row)
+    return found
+
+
+def _places(rows):
+    return [100 * row.load for row in rows], [100 * max(row.err_max, LEAST) for row in rows]
+
+
+def _legend(figure, axes, methods, rows):
+    """Tell lines and markers apart below the panels."""
+
+    def sign(label, **style):
+        return axes.plot([], [], label=label, **style)[0]
+
+    signs = [sign(method, **style_of(number)) for number, method in enumerate(methods)]
+    grey = {"color": "#8a8a8a", "linestyle": "", "markersize": 6}
+    signs += [sign(f"hold {hold}", marker=mark, **grey) for hold, mark in MARKERS.items() if hold in {row.hold for row in rows}]
+    signs += [sign("hollow: not allowed", marker="o", markerfacecolor="white", **grey)]
+    if any(row.precision == "float64" for row in rows):
+        signs += [sign("black edge: float64", marker="o", markeredgecolor="black", **grey)]
+    signs += [sign("asked for", color="black", linestyle=":")]
+    figure.legend(handles=signs, loc="outside lower center", ncols=2 if len(figure.axes) == 1 else 4, **FRAME)

@@ -1,0 +1,255 @@
+"""A scene of fewer masses that feels the same at the handle: offered, measured, never taken without a word."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...compiler.tick.compile_scene import compile
+from ...errors import AnalysisError
+from ...limits.limit import check_number
+from ...limits.port import port_damping
+from ...scene.scene import Scene
+from .impedance import port_of
+from .impedance_peaks import BESIDE, around, frequencies, held, infinite, outside, refined
+from .mass_chain import modal, network_of, scene_of
+from .moment_matching import candidates
+from .reduction_plot import plot_reduction
+
+#: below what a hand tells from another force, 7 to 10 %
+TOLERANCE = 0.05
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """A reduced scene and how far it is from the full one; printing it shows both.
+
+    Attributes
+    ----------
+    scene, full : Scene
+        The reduced scene runs like any other. What the full one watched is not in it.
+    before, masses : int
+        Masses that are felt in the full scene, and masses of the reduced one.
+    band : (float, float)
+        [Hz]
+    tolerance : float
+    frequency : array, shape (P,)
+        [Hz], over the band and finest at resonances; nothing within BESIDE, half a percent, of those of ``poles``.
+    impedance, full_impedance : complex array, shape (P,)
+        At the handle, F/v [N s/m].
+    error : array, shape (P,)
+        ``|Z_reduced - Z| / |Z + Z_hand + Z_paddle|``: the part by which the motion of handle and hand changes.
+    within : bool
+        Whether the largest error is below the tolerance, and every pole within BESIDE of where it was.
+    poles : tuple of (float, float)
+        Frequencies without damping [Hz], at which the full impedance is infinite, each with the one nearest to it of the
+        reduced scene; no error is defined between the two.
+    tried : tuple of (int, float)
+        Masses and largest error of all that were looked at.
+    """
+
+    scene: Scene
+    full: Scene
+    before: int
+    masses: int
+    band: tuple
+    tolerance: float
+    frequency: np.ndarray = field(repr=False)
+    impedance: np.ndarray = field(repr=False)
+    full_impedance: np.ndarray = field(repr=False)
+    error: np.ndarray = field(repr=False)
+    tried: tuple = ()
+    poles: tuple = ()
+
+    @property
+    def largest(self):
+        """The largest error over the band."""
+        return float(self.error.max())
+
+    @property
+    def within(self):
+        return self.largest <= self.tolerance and self.shift <= BESIDE
+
+    @property
+    def shift(self):
+        """How far a pole has moved, the largest part of its frequency."""
+        return max((abs(now / before - 1) for before, now in self.poles), default=0.0)
+
+    def below(self, frequency):
+        """Return the largest error up to a frequency [Hz]."""
+        return float(self.error[self.frequency <= frequency * (1 + 1e-12)].max())
+
+    def instructions(self, T=1e-3):
+        """Return the instructions a tick of (the full, the reduced) scene, each compiled with its parameters fixed."""
+        return tuple(len(compile(scene, T=T, live=())) for scene in (self.full, self.scene))
+
+    def device_damping(self, T=1e-3):
+        """Return the damping b [N s/m] that a device needs for (the full, the reduced) scene, each compiled.
+
+        See :func:`~hapticlab.limits.port.port_damping`; ``inf`` without damping of the scene's own.
+        """
+        return tuple(port_damping(scene, T=T, method="exact") for scene in (self.full, self.scene))
+
+    def plot(self):
+        """Draw both impedances and the error over the band; return a figure."""
+        return plot_reduction(self)
+
+    def __str__(self):
+        before, after = self.instructions()
+        needed = "{:.4g} N s/m, of the reduced one {:.4g}".format(*self.device_damping())
+        high = self.band[1]
+        lines = [
+            f"{self.full.name}: {self.before} masses replaced by {self.masses}, {before} instructions by {after}",
+            *(f"  {p.name:<6} {self.scene.values[p.name]:.6g} {p.unit}" for p in self.scene.parameters.values()),
+            "  up to [Hz]  |Z_r - Z|/|Z + hand + paddle|",
+            *(f"  {f:>10.4g}  {self.below(f):.2g}" for f in (high / 8, high / 4, high / 2, high) if f > self.band[0]),
+            *map(_shifted, self.poles),
+            f"  a device's damping for the full scene {needed} (T = 1 ms)",
+            f"  {'within' if self.within else 'past'} the tolerance of {self.tolerance:.3g} over {self.band[0]:g} to {high:g} Hz",
+        ]
+        return "\n".join(lines)
+
+
+def reduction(scene, paddle, *, band=(0.1, 20.0), masses=None, tolerance=TOLERANCE, accept=False):
+    """Offer a scene of fewer masses whose impedance at the handle is the same within a tolerance over a band.
+
+    Second-order and structure-preserving: the reduced scene has masses, springs and dampers whose energies are those of
+    the full one seen through fewer motions, so it is passive where that is (:mod:`hapticlab.analysis.impedance.moment_matching`).
+
+    Parameters
+    ----------
+    scene : Scene
+        Linear, passive, of masses, springs and dampers that the handle moves; every parameter bound.
+    paddle : SimulatedPaddle or any object with m [kg], b [N s/m] and hand
+        In parallel with the scene. Its mass and hand decide what part of the impedance is the scene's.
+    band : (float, float)
+        Lowest and highest frequency [Hz], 0 < low < high.
+    masses : int, optional
+        Of the reduced scene; by default the fewest that are within the tolerance.
+    tolerance : float
+        Largest ``|Z_reduced - Z| / |Z + Z_hand + Z_paddle|``.
+    accept : bool
+        Take ``masses`` though they are past the tolerance.
+
+    Returns
+    -------
+    Reduction
+
+    Raises
+    ------
+    AnalysisError
+        The scene is not linear, not passive or has no masses to spare; nothing is within the tolerance.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> import hapticlab as hl
+    >>> import sympy as sp
+    >>> y, z = hl.coordinate("y", unit="m"), hl.coordinate("z", unit="m")
+    >>> k, m = hl.parameters("k m", units="N/m kg", values=(2000, 0.02))
+    >>> F, between = k * (hl.x(hl.t) - y), k * (y - z)
+    >>> eom = [sp.Eq(m * y.diff(hl.t, 2), F - between), sp.Eq(m * z.diff(hl.t, 2), between)]
+    >>> paddle = SimpleNamespace(m=0.05, b=0.1, hand=None)
+    >>> offer = reduction(hl.Scene(force=F, eom=eom), paddle, band=(0.1, 10), tolerance=0.01)
+    >>> offer.masses, {name: round(value, 6) for name, value in offer.scene.values.items()}
+    (1, {'k_1': 1600.0, 'm_1': 0.04})
+    """
+    if not (hasattr(paddle, "m") and hasattr(paddle, "b")):
+        cure = "needs one with m [kg] and b [N s/m], such as hl.SimulatedPaddle(m=0.05, b=0.1)"
+        raise AnalysisError(f"paddle = {paddle!r}; {cure}")
+    low, high = _band(band)
+    tolerance = check_number("tolerance", tolerance, "", "needs a part > 0, such as 0.05", lambda a: a > 0)
+    network = network_of(scene, port_of(scene, linear=True))
+    N = len(network.mass)
+    wanted = _wanted(scene, masses, N)
+    offers = []
+    for count in wanted:
+        offers.append(_best(scene, network, paddle, (low, high), tolerance, count))
+        if offers[-1].within:
+            break
+    tried = tuple((offer.masses, offer.largest) for offer in offers)
+    best = offers[-1]
+    if best.within or (accept and masses is not None):
+        return Reduction(**{**vars(best), "tried": tried})
+    shown = ", ".join(f"{error:.2g} with {count} mass{'es' * (count > 1)}" for count, error in tried)
+    which = "takes it" if masses is not None else f"with masses={best.masses} takes that"
+    cure = f"accept=True {which} all the same"
+    moved = [_shifted(pair).strip() + ". " for pair in best.poles if best.shift > BESIDE]
+    raise AnalysisError(
+        f"{''.join(moved)}{scene.name}: past the tolerance of {tolerance:g} over {low:g} to {high:g} Hz: {shown}; "
+        f"ask a narrower band, or {cure}"
+    )
+
+
+def _best(scene, network, paddle, band, tolerance, count):
+    """Return the offer of ``count`` masses that is nearest over the band."""
+    unit = network.of_unit_masses
+    poles = infinite(network, lambda f: _of_paddle(paddle, f), band)
+    common = frequencies(network, paddle, band, poles)
+    rate = 2 * np.pi * np.sqrt(band[0] * band[1])  # time in which the band is of order one
+    best = None
+    for stiffness, damping, V in candidates(unit.stiffness / rate**2, unit.damping / rate, count):
+        reduced = modal(stiffness * rate**2, damping * rate, np.einsum("ji,abj->abi", V, unit.start))
+        own = around(held(reduced)[0], band)
+        found = _Compared(network, reduced, paddle, np.union1d(common, own[outside(own, poles)]))
+        if best is None or found.error.max() < best.error.max():
+            best = found
+    if best is None:
+        raise AnalysisError(f"{scene.name}: the handle tells fewer than {count} masses apart; ask for fewer")
+    best = best.at(refined(best.frequency, lambda f: best.at(f).error, poles))
+    resonances = held(best.reduced)[0].imag / (2 * np.pi)
+    pairs = tuple((float(f), float(min(resonances, key=lambda r: abs(r - f), default=np.inf))) for f in poles)
+    name = f"{scene.name} with {count} mass{'es' * (count > 1)}"
+    return Reduction(
+        scene_of(best.reduced, name), scene, len(network.mass), count, band, tolerance, best.frequency, best.Z_reduced,
+        best.Z, best.error, poles=pairs,
+    )  # fmt: skip
+
+
+class _Compared:
+    """Two networks and their impedances at frequencies [Hz]."""
+
+    def __init__(self, network, reduced, paddle, frequency):
+        self.network, self.reduced, self.paddle, self.frequency = network, reduced, paddle, frequency
+        self.Z, self.Z_reduced = network.impedance(frequency), reduced.impedance(frequency)
+        self.error = np.abs(self.Z_reduced - self.Z) / np.abs(self.Z + _of_paddle(paddle, frequency))
+
+    def at(self, frequency):
+        return _Compared(self.network, self.reduced, self.paddle, frequency)
+
+
+def _shifted(pair):
+    """Say where an impedance is infinite, and where that of the reduced scene is."""
+    before, now = pair
+    return (
+        f"  undamped: its impedance is infinite at {before:.5g} Hz, that of the reduced scene at {now:.5g} Hz "
+        f"({abs(now / before - 1):.2g} of it away); nothing within {BESIDE:g} of it is compared"
+    )
+
+
+def _of_paddle(paddle, frequency):
+    """Return the impedance of handle and hand [N s/m]."""
+    hand, s = getattr(paddle, "hand", None), 2j * np.pi * frequency
+    Z = paddle.m * s + paddle.b
+    return Z if hand is None else Z + hand.m * s + hand.b + hand.k / s
+
+
+def _band(band):
+    try:
+        low, high = map(float, band)
+    except (TypeError, ValueError):
+        raise AnalysisError(f"band = {band!r}; needs (low, high) in Hz, such as (0.1, 20)") from None
+    if not 0 < low < high < np.inf:
+        raise AnalysisError(f"band = {band!r} Hz; needs 0 < low < high")
+    return low, high
+
+
+def _wanted(scene, masses, N):
+    if masses is None:
+        if N < 2:
+            raise AnalysisError(f"{scene.name} has {N} mass; there is none to spare")
+        return range(1, N)
+    if isinstance(masses, bool) or not (isinstance(masses, int) and 0 < masses < N):
+        raise AnalysisError(
+            f"masses = {masses!r}; {scene.name} has {N}, a reduction has at least 1 and fewer than that"
+        )
+    return [masses]

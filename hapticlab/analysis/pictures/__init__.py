@@ -1,0 +1,5 @@
+"""Drawings of a scene: its schematic, its shapes and walls, its formulas in plain text.
+
+In: a scene. Out: a figure, or sentences for who cannot see it.
+Read ``pictures`` first, then ``schematic``, ``wall_boundaries``, ``shape_outlines`` and ``plain_formulas``.
+"""

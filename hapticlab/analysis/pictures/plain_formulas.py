@@ -1,0 +1,48 @@
+"""Expressions of a scene as plain Python functions of named numbers, for pictures: fast, and nothing is compiled."""
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from ...scene.amount import Amount
+from ...scene.symbols import delay, v, x
+
+#: the handle's place in a formula
+HANDLE = sp.Symbol("x", real=True)
+
+
+def plain_symbols(expr):
+    """Return an expression at rest, of symbols alone: every sample of the handle is its place, what moves has no rate."""
+    rates = dict.fromkeys(expr.atoms(sp.Derivative), sp.S.Zero)
+    expr = expr.xreplace(rates)
+    while expr.atoms(delay):
+        expr = expr.xreplace({held: held.args[0] for held in expr.atoms(delay)})
+    known = dict.fromkeys(expr.atoms(x), HANDLE) | dict.fromkeys(expr.atoms(v), sp.S.Zero)
+    known |= {one: one.value for one in expr.atoms(Amount)}
+    known |= {f: sp.Symbol(type(f).__name__, real=True) for f in expr.atoms(AppliedUndef)}
+    return expr.xreplace(known).xreplace({s: sp.Symbol(s.name, real=True) for s in expr.free_symbols})
+
+
+def formula(*expressions):
+    """Return a function of a dict of numbers, which gives the value of each expression, and the names it needs.
+
+    Parameters
+    ----------
+    *expressions : sympy expressions
+        Of the handle ``x``, coordinates, signals and parameters; taken at rest.
+
+    Returns
+    -------
+    function, frozenset of str
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> force, names = formula(hl.wall().force)
+    >>> sorted(names), force({"x": 0.012, "x_o": 0.01, "k": 500.0})
+    (['k', 'x', 'x_o'], [1.0])
+    """
+    plain = [plain_symbols(sp.sympify(expr)) for expr in expressions]
+    symbols = sorted(set().union(*(expr.free_symbols for expr in plain)), key=str)
+    names = [symbol.name for symbol in symbols]
+    values = sp.lambdify(symbols, plain, "math", cse=True)
+    return lambda known: values(*(known[name] for name in names)), frozenset(names)

@@ -1,0 +1,233 @@
+"""Chatter: is there a sustained oscillation, how large, how fast, and has it settled."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ...errors import AnalysisError
+from ...records import check_record
+from .chatter_findings import Chatter
+from .chatter_signs import leaves_its_drive, levels_off, runs_away, scatter, upward_crossings
+from .driven_motion import drive_of, following
+
+#: amplitudes of the last two quarters within this ratio count as one sustained oscillation
+LOCK = 0.01
+#: fewer cycles in a quarter of the record than this do not tell a sustained oscillation from a growing one
+CYCLES = 3
+#: swings that differ by less are the same, turning points being located between samples
+SAME = 5e-4
+#: samples, below which a quarter of a record says nothing
+SHORTEST = 32
+#: a motion that turns round less often than this in the last half is no oscillation
+REVERSALS = 2
+#: what is left of a driven motion is its own below this part of it
+FOLLOWS = 0.02
+#: a handle that turned round once, and in the last quarter moves by more than this part of all its way, does not rest
+RESTS = 0.01
+#: a cycle repeats itself where it comes back within this part of its amplitude; it is looked for up to so many samples
+REPEATS, LONGEST_CYCLE = 1e-4, 2000
+#: a swing over so many counts of the encoder or fewer: its unevenness may be what is left of a decay
+COUNTS = 4
+
+
+def chatter(log, driven=None):
+    """Find chatter, Section 23.4: sustained oscillation, often with repeated contact with the wall.
+
+    Looks at the last half of a record, at the handle itself where an encoder or noise hid it (``x_true``). An
+    oscillation turns round at least twice there and is larger than a nanometre, a millionth of the travel, and single
+    precision; to call it sustained takes three cycles in a quarter of the record. Motion that is driven, by a hand's
+    noise or moving intent or by a scene's own vibration, looks like chatter, unless ``driven`` says what drives: the
+    part that follows it is then taken off (:func:`~hapticlab.analysis.records.driven_motion.following`). A chatter that
+    has locked onto its drive's own frequency, or onto a harmonic of it up to the eighth, cannot be told from it and
+    counts as driven.
+
+    Without ``x_true`` a sensor's noise is all there is of a resting handle: what is white at every lag up to 40 samples is
+    no chatter, and a chatter below 0.6 standard deviations of that noise is not seen.
+
+    Parameters
+    ----------
+    log : Telemetry
+        Uses t [s], x [m], F [N] and, where recorded, x_true [m]; at least 32 samples.
+    driven : Hand, callable, str or array, optional
+        What drives: a hand with a moving intent, a function of an array of times [s], the name of a watched channel, or
+        one number a sample. Its size and unit do not matter.
+
+    Returns
+    -------
+    Chatter
+
+    Raises
+    ------
+    AnalysisError
+        For a record that is too short or not finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hapticlab.records import Telemetry
+    >>> t = np.arange(2000) * 1e-3
+    >>> x = 1e-3 * np.sin(2 * np.pi * 20 * t)
+    >>> found = chatter(Telemetry(t=t, x=x, v=0 * t, F=np.maximum(100 * x, 0), T=1e-3))
+    >>> found.state, round(found.frequency, 2), round(found.contacts_per_second)
+    ('chatter', 20.0, 20)
+    """
+    check_record(log, "chatter")
+    return replace(_found(log, driven), record=log)
+
+
+def _found(log, driven):
+    """Return what the last half of a record shows."""
+    t, x, F = (np.asarray(a, float) for a in (log.t, log.channels.get("x_true", log.x), log.F))
+    if len(t) < SHORTEST:
+        raise AnalysisError(f"the record has {len(t)} samples; chatter needs at least {SHORTEST}: run longer")
+    if not (np.isfinite(x).all() and np.isfinite(F).all()):
+        raise AnalysisError(f"the record holds values that are not finite; fault: {log.fault or 'none recorded'}")
+    half, quarter = len(t) // 2, len(t) // 4
+    contacts = float(np.count_nonzero((F[-half:][1:] != 0) & (F[-half:][:-1] == 0)) / (half * log.T))
+    rest, travel = float(x[-quarter:].mean()), float(np.ptp(x[-quarter:]))
+    least = max(1e-9, 1e-6 * np.ptp(x), 4 * np.finfo(np.float32).eps * abs(x).max())
+    size, quarter_before = 0.0, slice(-2 * quarter, -quarter)
+
+    def still(state, scatter=0.0, amplitude=0.0, growth=0.0):
+        return Chatter(
+            state, amplitude, None, contacts, growth, False, False, rest, travel, None, size, math.nan, scatter
+        )
+
+    whole = float(np.ptp(x))
+    if driven is not None:
+        drive = drive_of(log, driven)
+        if leaves_its_drive(x, drive, quarter):
+            return still("runaway")
+        follows = following(x, drive)
+        size, x = float(np.ptp(follows)) / 2, x[-half:] - follows
+        if _strength(x) < max(least, FOLLOWS * _strength(follows)):
+            return still("driven")
+    turns = _reversals(x[-half:])
+    if turns == 1 and travel > RESTS * whole and not size and _strength(x[-quarter:]) >= least:
+        return still("undecided", 0.0, float(np.ptp(x[-half:]) / 2), math.nan)
+    if _strength(x[-quarter:]) < least or turns < REVERSALS:
+        return still("runaway" if runs_away(x, quarter) else "none")
+    y, _ = _around_trend(x[-half:])
+    if "x_true" not in log.channels and len(np.unique(log.x[-half:])) > 2 and (noise := scatter(y)):
+        return still("none", noise)
+    crossings = upward_crossings(y) * log.T
+    frequency = float((len(crossings) - 1) / (crossings[-1] - crossings[0])) if len(crossings) > 1 else None
+    if len(crossings) > 2 * CYCLES:
+        ratio = math.log(_strength(x[-quarter:]) / max(_strength(x[quarter_before]), least * 1e-3))
+        uneven = _irregularity(y)
+        locked = abs(ratio) < LOCK or (abs(ratio) < 2 * uneven and not _sinks_to_counts(y, log.x[-half:]))
+        state = "chatter" if locked else "growing" if ratio > 0 else "decaying"
+    else:
+        state, ratio, locked, uneven = *_compare_swings(x, quarter), False, math.nan
+    dither, amplitude = len(np.unique(log.x[-half:])) == 2, float(np.ptp(y) / 2)
+    period = cycle_length(x[-half:], amplitude) if locked else None
+    growth, error = ratio / (quarter * log.T), uneven / (quarter * log.T)
+    clipped = log.saturated is not None and np.any(log.saturated[-half:])
+    slower = state == "decaying" and bool(clipped or levels_off(_amplitudes(x[-half:], y, len(crossings))))
+    return Chatter(
+        state, amplitude, frequency, contacts, growth, locked, dither, rest, travel, period, size, error, 0.0, slower
+    )
+
+
+def _amplitudes(x, y, cycles):
+    """Return amplitudes one after the other: of four windows that hold three cycles each, or else of every swing."""
+    size = len(y) // 4
+    if cycles > 4 * CYCLES:
+        return [_strength(y[i * size : (i + 1) * size]) for i in range(4)]
+    return _swings(x)[1]
+
+
+def _sinks_to_counts(y, sensed):
+    """Tell whether a swing of a few encoder counts has lost a third: a decay, perhaps onto a smaller cycle.
+
+    Four windows make a decay that has just ended look as uneven as an irregular cycle.
+    """
+    size = len(y) // 4
+    first, second, third, fourth = (_strength(y[i * size : (i + 1) * size]) for i in range(4))
+    steps = np.diff(np.unique(sensed))
+    few = len(steps) > 0 and round(steps.sum() / steps.min()) <= COUNTS
+    return few and max(third, fourth) < 2 / 3 * max(first, second)
+
+
+def cycle_length(x, amplitude):
+    """Return the samples after which x repeats itself, three times over at least, or None."""
+    for p in range(2, min(len(x) // 4, LONGEST_CYCLE) + 1):
+        if abs(x[-1] - x[-1 - p]) < REPEATS * amplitude and abs(x[p:] - x[:-p])[-3 * p :].max() < REPEATS * amplitude:
+            return p
+    return None
+
+
+def decaying(largest, least_before, largest_before):
+    """Tell whether swings die out, from those of the last quarter and of the one before it.
+
+    However slow a decay, all of the last quarter lie below all of the one before; where the difference is too small to
+    be seen in neighbours, the largest lies at the bottom of the range before it, by 1 % in all. No limit cycle does that,
+    regular or not. Where a beat hides a decay, the largest has lost a third.
+    """
+    bottom = least_before + 0.05 * (largest_before - least_before)
+    slow = (largest <= bottom) & (largest < (1 - LOCK) * largest_before)
+    return (largest < (1 - SAME) * least_before) | slow | (largest < 2 / 3 * largest_before)
+
+
+def _compare_swings(x, quarter):
+    """Return what a few swings show, and the logarithm of the ratio of the largest of the last two quarters."""
+    ends, swings = _swings(x)
+    last = swings[ends >= len(x) - quarter]
+    before = swings[(ends < len(x) - quarter) & (ends >= len(x) - 2 * quarter)]
+    if not (len(last) and len(before)):
+        return "undecided", math.nan
+    ratio = math.log(last.max() / before.max())
+    if decaying(last.max(), before.min(), before.max()):
+        return "decaying", ratio
+    return ("growing" if last.min() > (1 + SAME) * before.max() else "undecided"), ratio
+
+
+def _swings(x):
+    """Return where swings end, in samples, and how far each goes: from turning point to turning point."""
+    d = np.diff(x)
+    moving = np.flatnonzero(d)
+    turns = np.flatnonzero(d[moving[:-1]] * d[moving[1:]] < 0)
+    a, b = moving[turns], moving[turns + 1]
+    # the parabola through a turning point's three samples; a handle that stops for a while turns where it stands
+    peak = x[b] + np.where(b == a + 1, (d[b] + d[a]) ** 2 / (8 * (d[a] - d[b])), 0.0)
+    return b[1:], abs(np.diff(peak))
+
+
+def _reversals(x):
+    """Return how often the handle turns round; standing still between is no turn."""
+    moves = np.sign(np.diff(x))
+    moves = moves[moves != 0]
+    return int(np.count_nonzero(moves[1:] != moves[:-1]))
+
+
+def _around_trend(x):
+    """Return x less its straight line, and the weights of the fit: a drift is no oscillation.
+
+    The line is fitted under a Hann window, which makes whole cycles unnecessary.
+    """
+    n = np.linspace(-1, 1, len(x))
+    window = np.hanning(len(x) + 2)[1:-1]
+    window /= window.sum()
+    x = x - window @ x
+    return x - n * ((window * n) @ x) / ((window * n) @ n), window
+
+
+def _strength(x):
+    """Return the amplitude of the sinusoid of equal energy."""
+    y, window = _around_trend(x)
+    return math.sqrt(2 * (window @ y**2))
+
+
+def _irregularity(y):
+    """Return the standard error of the logarithm of the amplitude's ratio between the two halves of y.
+
+    Four windows, a straight line through the logarithms of their amplitudes: exponential growth lies on it, the ups and
+    downs of an irregular limit cycle (encoder, friction, contacts between samples) do not.
+    """
+    size = len(y) // 4
+    logs = np.log([_strength(y[i * size : (i + 1) * size]) + 1e-300 for i in range(4)])
+    at = np.array([-0.75, -0.25, 0.25, 0.75])  # so that the slope is the change from one half to the other
+    slope = (at @ logs) / (at @ at)
+    residual = logs - logs.mean() - slope * at
+    return math.sqrt((residual @ residual) / 2 / (at @ at))

@@ -1,0 +1,97 @@
+"""What is found of chatter in a record, in words and as a picture."""
+
+import math
+from dataclasses import dataclass, field
+
+from ...records import Telemetry
+from .record_plots import plot_chatter
+
+
+@dataclass(frozen=True)
+class Chatter:
+    """What the last half of a record shows.
+
+    Attributes
+    ----------
+    state : {"none", "chatter", "growing", "decaying", "undecided", "driven", "runaway"}
+        "chatter" is a sustained limit cycle: the last two quarters agree within 1 %, or differ by less than its own
+        irregularity explains. Just inside a stability limit a decay can take 1e5 samples, so look at ``growth`` too.
+        "undecided": it oscillates, but with fewer than three cycles a quarter that neither all grow nor all decay; or it
+        turned round once in the last half and still moves, half a swing that may be a slow oscillation or none.
+        "driven": it oscillates because, and as, what drives it does. "runaway": it does not turn round and becomes faster.
+    amplitude : float
+        Half the peak-to-peak of the handle's oscillation over the last half [m]; 0 where there is none. Without the part
+        that is driven, where ``driven`` was given.
+    frequency : float or None
+        [Hz], from interpolated zero crossings; its error is below one sampling period in half the record.
+    contacts_per_second : float
+        How often the force goes from zero to nonzero [1/s], over the last half.
+    growth : float
+        Logarithm of the amplitude's ratio between the last two quarters, per second [1/s]; nan where one has no swing.
+    locked : bool
+        True for a sustained oscillation alone.
+    dither : bool
+        The sensed position takes two neighbouring values and no other: one encoder count.
+    rest : float
+        Mean position over the last quarter [m].
+    travel : float
+        Peak-to-peak of the handle over the last quarter [m].
+    period : int or None
+        Samples after which a locked cycle repeats itself, to 1e-4 of its amplitude; None where it is not locked to the
+        sampling within 2000 samples.
+    scatter : float
+        Standard deviation of what is left where that is white noise of the sensor, and so no motion [m]; else 0.
+    levels_off : bool
+        A decay that becomes slower and slower, or whose force is at its limit: onto a cycle, perhaps, and not to rest.
+    driven : float
+        Half the peak-to-peak of the part that follows the drive [m]; 0 where none was given.
+    growth_error : float
+        Standard error of ``growth`` [1/s], by what four windows differ from an exponential; nan with too few cycles.
+    record : Telemetry
+        Where it was found.
+    """
+
+    state: str
+    amplitude: float
+    frequency: float | None
+    contacts_per_second: float
+    growth: float
+    locked: bool
+    dither: bool
+    rest: float
+    travel: float
+    period: int | None = None
+    driven: float = 0.0
+    growth_error: float = math.nan
+    scatter: float = 0.0
+    levels_off: bool = False
+    record: Telemetry | None = field(default=None, repr=False, compare=False)
+
+    def plot(self):
+        """Return a figure: the handle's motion with the swing found in its last half, and which frequencies are in it."""
+        return plot_chatter(self)
+
+    def __str__(self):
+        if self.state == "runaway":
+            return f"runaway: the handle moves on by {1e3 * self.travel:.4g} mm in the last quarter, faster and faster"
+        if self.state == "driven":
+            return f"driven: {1e3 * self.driven:.4g} mm follow what drives the handle; no oscillation of its own beside it"
+        if self.scatter:
+            noise = f"the sensor scatters by {1e3 * self.scatter:.3g} mm (standard deviation)"
+            return f"none: the handle rests at {1e3 * self.rest:.4g} mm; {noise}, which is no motion"
+        if self.state == "none":
+            moves = self.travel > 1e-3 * abs(self.rest) + 1e-6
+            where = f"moves on by {1e3 * self.travel:.4g} mm" if moves else f"rests at {1e3 * self.rest:.4g} mm"
+            return f"none: the handle {where}, with no oscillation in the last half"
+        tone = "no measurable frequency" if self.frequency is None else f"{self.frequency:.4g} Hz"
+        place = f"{1e3 * self.amplitude:.4g} mm at {tone}, {self.contacts_per_second:.4g} contacts/s"
+        if self.dither:
+            place += "; the sensed position moves by one encoder count only: dither of the encoder"
+        place += f", beside {1e3 * self.driven:.4g} mm that are driven" if self.driven else ""
+        if self.locked:
+            cycle = f", repeats itself every {self.period} samples" if self.period else ""
+            return f"chatter: {place}; sustained (growth {self.growth:+.2g} 1/s){cycle}"
+        cure = "it dies out" if self.state == "decaying" else "run longer for its final amplitude"
+        cure = "it may end in a cycle and not at rest: run longer" if self.levels_off else cure
+        growth = "growth unknown" if math.isnan(self.growth) else f"growth {self.growth:+.3g} 1/s"
+        return f"{self.state}: {place}; not locked ({growth}): {cure}"

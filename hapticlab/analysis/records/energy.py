@@ -1,0 +1,112 @@
+"""Energy at the port: what a rendered wall gives back beyond what was put in, Fig. 23.6."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import AnalysisError
+from ...limits.limit import whole_and_fraction
+from ...records import check_record
+from .record_plots import plot_energy
+
+
+@dataclass(frozen=True, eq=False)
+class Energy:
+    """The work exchanged between the handle and the rendered environment.
+
+    Attributes
+    ----------
+    t : array, shape (N,)
+        [s]
+    W : array, shape (N,)
+        Work done by the handle on the environment up to each sample [J]; negative where the environment has given more.
+    generated : float
+        -W at the last sample without force after a contact [J]: what the completed penetrations generated. nan where the
+        handle has not left the wall again.
+    extracted : float
+        The most that was ever drawn, max(0, -min W) [J]; for a spring that started loaded this includes its load.
+    contacts : int
+        Completed penetrations.
+    exact : bool
+        False where the force changed inside the periods and the position there was not recorded.
+    """
+
+    t: np.ndarray
+    W: np.ndarray
+    generated: float
+    extracted: float
+    contacts: int
+    exact: bool
+
+    def plot(self):
+        """Return a figure: the energy that the environment holds over time, and where it gave more than it took."""
+        return plot_energy(self)
+
+    def __str__(self):
+        if np.isnan(self.generated):
+            return f"no completed penetration; {1e3 * self.extracted:.4g} mJ was drawn from the environment at most"
+        about = "" if self.exact else ", the position at the force's changes interpolated"
+        verb = "generated" if self.generated >= 0 else "dissipated"
+        penetrations = f"{self.contacts} penetration{'s' * (self.contacts != 1)}"
+        return f"{penetrations} {verb} {1e3 * abs(self.generated):.4g} mJ{about}"
+
+
+def energy(log):
+    """Return the energy through the port, force and displacement paired as they acted: Fig. 23.6.
+
+    The force computed from sample n acts while the handle moves from x[n] to x[n+1]; a delay of d + f periods moves it on
+    by d samples and lets it change at the fraction f of a period. Pairing F[n] with x[n] - x[n-1] instead makes a wall
+    that generates energy look like one that dissipates it.
+
+    Parameters
+    ----------
+    log : Telemetry
+        Uses x [m] and F [N]; where recorded x_true [m], F_applied [N] and x_switch [m].
+
+    Returns
+    -------
+    Energy
+
+    Raises
+    ------
+    AnalysisError
+        For fewer than two samples or values that are not finite.
+
+    Examples
+    --------
+    A spring of 100 N/m pushed in by 2 mm a sample to 6 mm and out again gives K (v T) x_max too much:
+
+    >>> import numpy as np
+    >>> from hapticlab.records import Telemetry
+    >>> x = 1e-3 * np.array([0, 2, 4, 6, 4, 2, 0, -2])
+    >>> log = Telemetry(t=np.arange(8) * 1e-3, x=x, v=0 * x, F=np.maximum(100 * x, 0), T=1e-3)
+    >>> round(energy(log).generated, 12)
+    0.0012
+    """
+    check_record(log, "energy")
+    if log.every > 1:
+        raise AnalysisError(
+            f"energy: the record holds one sample in {log.every}, and the force between them is not known; "
+            "needs every sample: run with every=1, fewer watched channels or a longer T"
+        )
+    x = np.asarray(log.channels.get("x_true", log.x), float)
+    if len(x) < 2:
+        raise AnalysisError(f"the record has {len(x)} sample(s); energy needs at least 2")
+    whole, fraction = whole_and_fraction(log.delay, log.T)
+    held = log.channels.get("F_applied")
+    if held is None:
+        held = np.r_[np.zeros(whole), log.F][: len(x)]
+    if not (np.isfinite(x).all() and np.isfinite(held).all()):
+        raise AnalysisError(f"the record holds values that are not finite; fault: {log.fault or 'none recorded'}")
+    exact = True
+    if fraction:
+        exact = "x_switch" in log.channels
+        switch = log.channels["x_switch"][:-1] if exact else x[:-1] + fraction * np.diff(x)
+        work = np.r_[0.0, held[:-2]] * (switch - x[:-1]) + held[:-1] * (x[1:] - switch)
+    else:
+        work = held[:-1] * np.diff(x)
+    W = np.r_[0.0, np.cumsum(work)]
+    left = np.flatnonzero((held[1:] == 0) & (held[:-1] != 0)) + 1 + (fraction > 0)  # samples with no force left to act
+    left = left[left < len(W)]
+    generated = -float(W[left[-1]]) if len(left) else np.nan
+    return Energy(np.asarray(log.t), W, generated, max(0.0, -float(W.min())), len(left), exact)

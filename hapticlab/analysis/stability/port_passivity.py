@@ -1,0 +1,177 @@
+"""Whether a device pays for what sampling adds, in every mode of a scene: the compiled tick, linearised, at its port."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...compiler.ir.options import period
+from ...errors import AnalysisError
+from ...limits.limit import check_number
+from ...scene.scene import Scene
+from ...scene.written import no_scene
+from .condition_switches import switched
+from .limit_plots import plot_port
+from .linearization import forces_and_ticks_at
+from .operating_points import WORTH
+from .passive_hands import UNSTABLE, radii, single
+from .port_limits import WORST, Looked
+
+
+@dataclass(frozen=True, eq=False)
+class PortPassivity:
+    """The damping that a scene asks of a device, and what the device has; printing it shows every mode.
+
+    Attributes
+    ----------
+    scene : str
+    T, delay : float
+        [s]
+    modes : tuple of PortLimit
+    kind : {"linear", "piecewise linear", "small-signal"}
+        What it is worth: exact; exact within each mode; of small motions about the operating points.
+    b_device, m : float or None
+        Damping [N s/m] and mass [kg] of the paddle.
+    travel : float or None
+        The handle was looked at as far to either side [m]; None where places were given.
+    """
+
+    scene: str
+    T: float
+    delay: float
+    modes: tuple
+    kind: str
+    b_device: float | None = None
+    m: float | None = None
+    travel: float | None = None
+
+    @property
+    def worst(self):
+        """The mode that asks for the most; one that falls before all others."""
+        return max(self.modes, key=lambda m: (np.isnan(m.b_req), m.b_req))
+
+    @property
+    def b_req(self):
+        """Least damping of a device [N s/m] for every passive hand, in every mode that was looked at."""
+        return self.worst.b_req
+
+    @property
+    def floor(self):
+        """What the force asks for that follows the handle alone [N s/m]."""
+        return self.worst.floor
+
+    @property
+    def frequency(self):
+        """Where b_req is asked for [Hz]."""
+        return self.worst.frequency
+
+    @property
+    def passive(self):
+        """Whether the paddle's own damping is enough; None without a paddle, and where the scene falls by itself."""
+        return None if self.b_device is None or np.isnan(self.b_req) else bool(self.b_device >= self.b_req)
+
+    @property
+    def small_signal(self):
+        """Whether this is about small motions about the operating points alone."""
+        return self.kind == "small-signal"
+
+    @cached_property
+    def b_stable(self):
+        """Least damping [N s/m] with which the handle of this mass is stable in every mass and spring that was tried."""
+        if self.m is None:
+            return None
+        # from where a nonlinear scene moves on it is not a question of damping
+        asking = [m for m in self.modes if np.isnan(m.b_req) or not m.stiffness < 0]
+        if any(np.isinf(m.floor) for m in asking):  # the force jumps
+            return np.inf
+        return max((stable_damping(m.tick, self.m, self.T, self.delay, m.b_req) for m in asking), default=np.nan)
+
+    def __float__(self):
+        return float(self.b_req)
+
+    def __str__(self):
+        enough = {True: "passive", False: "not passive", None: "no damping makes it passive"}[self.passive]
+        has = "" if self.b_device is None else f"; the device has {self.b_device:.4g}: {enough}"
+        head = f"{self.scene}, T = {1e3 * self.T:g} ms: needs b = {self.b_req:.4g} N s/m{has} ({WORTH[self.kind]}"
+        head += ")" if self.travel is None else f"; handle within +-{1e3 * self.travel:g} mm)"
+        lines = [head, f"  {'b [N s/m]':>10} {'floor':>8} {'at [Hz]':>8}  mode; where"]
+        for m in self.modes:
+            reason = "" if m.reason == WORST else f" ({m.reason})"
+            lines.append(f"  {m.b_req:10.4g} {m.floor:8.4g} {m.frequency:8.4g}  {m.mode}; {m.point}{reason}")
+        return "\n".join(lines)
+
+    __repr__ = __str__
+
+    def plot(self):
+        """Draw the damping that each frequency asks of a device, in every mode."""
+        return plot_port(self)
+
+
+def port_passivity(scene, paddle=None, *, T=None, at=None, **options):
+    """Least damping b_req [N s/m] of a device for a scene to be passive in every passive hand, in every mode of its contacts.
+
+    Colgate and Schenkel's criterion on the tick of the compiled program, linearised at operating points; its cases are
+    held in their modes. The velocity is the backward difference; without encoder, friction of the device and saturation.
+
+    Parameters
+    ----------
+    scene : Scene
+        Every parameter bound.
+    paddle : optional
+        With b [N s/m], m [kg], and delay [s] and T [s] where it has them.
+    T : float, optional
+        Sampling period [s], > 0; the paddle's unless given.
+    at : dict name -> float, or sequence of them, optional
+        Operating points, as in :func:`~hapticlab.analysis.stability.step_limit.step_limit`.
+    **options
+        Of :func:`hapticlab.compile`: method, substeps, hold, force_at.
+
+    Returns
+    -------
+    PortPassivity
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> wall = hl.wall()(k=200, x_o="10 mm")
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.15, T=1e-3)
+    >>> port = hl.port_passivity(wall, paddle)
+    >>> round(port.b_req, 9), port.worst.mode, port.passive
+    (0.1, 'x(n) >= x_o', True)
+    """
+    if not isinstance(scene, Scene):
+        raise AnalysisError(no_scene(scene, "needs hl.port_passivity(hl.Scene(force=...), T=1e-3)"))
+    if T is None and not hasattr(paddle, "T"):
+        raise AnalysisError("T is missing; needs a sampling period, T=1e-3, or a paddle that has one")
+    T = period(paddle.T if T is None else T)
+    delay = check_number("delay", getattr(paddle, "delay", 0.0), "s", "needs delay >= 0", lambda d: d >= 0)
+    known = switched(scene)
+    looked = Looked(known, at, T)
+    modes, kind = looked.limits(*forces_and_ticks_at(known, looked.all, T, **options), T, delay)
+    own = [None if paddle is None else float(getattr(paddle, name)) for name in ("b", "m")]
+    return PortPassivity(scene.name, T, delay, modes, kind, *own, looked.travel)
+
+
+def stable_damping(tick, m, T, delay=0.0, b_req=np.inf):
+    """Return the least damping [N s/m] above which a handle of mass m is stable held by any mass and spring of a scan."""
+    added, turns = np.meshgrid([0.0, 0.1, 1.0, 10.0, 100.0], np.r_[0.0, np.geomspace(1e-2, 3.0, 14)])
+    masses = m * (1 + added.ravel())
+    hands = single(masses, masses * (turns.ravel() / T) ** 2)
+    most = 1e3 * (abs(tick[3]) * T + m / T)
+
+    def unstable(b):
+        return bool((radii(tick, hands, b, T, delay) > 1 + UNSTABLE).any())
+
+    # with b_req it is stable, were it not for what a linearisation falls by
+    top = b_req if 0 < b_req < np.inf and not unstable(b_req) else most
+    levels = top * np.r_[np.geomspace(1.0, 1e-7 if top == most else 1e-3, 25), 0.0]
+    last = next((k for k, b in enumerate(levels) if unstable(b)), None)
+    if last is None:
+        return 0.0
+    if last == 0:
+        return np.inf
+    high, low = levels[last - 1], levels[last]
+    for _ in range(10):
+        middle = (high + low) / 2
+        high, low = (high, middle) if unstable(middle) else (middle, low)
+    return float(high)

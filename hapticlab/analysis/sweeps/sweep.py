@@ -1,0 +1,210 @@
+"""One metric over the product of many parameter values: a lane a point, a run for every period and structure."""
+
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ...compiler.methods.exact_linear import exact_and_rest
+from ...compiler.prune.constraint_lengths import held
+from ...device.progress import progress_bar
+from ...errors import AnalysisError
+from ...scene.scene import Scene
+from ...scene.units import in_si
+from ..records.plots import plot_sweep
+from .sweep_chunks import measured
+from .sweep_file import Partial
+from .sweep_grid import PADDLE_AXES, START_AXES, Grid
+from .sweep_measures import METRICS
+from .sweep_plan import Plan, identity
+from .workers import number_of, spread
+
+#: what a sweep may say about how its scene is compiled; a parameter of that name goes first
+OPTIONS = ("method", "substeps", "hold", "force_at")
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A metric over a grid.
+
+    Attributes
+    ----------
+    axes : dict of str to array
+        The swept names, in the order given; SI units.
+    values : array, one dimension an axis
+        nan where the program faulted (a force that was not finite stops the motor).
+    metric, unit : str
+    units : dict of str to str
+        Of the axes.
+    duration : float
+        Simulated time of every point [s].
+    about : str
+        The scene, the paddle and the values that were the same everywhere, in lines.
+    """
+
+    axes: dict
+    values: np.ndarray
+    metric: str
+    unit: str
+    units: dict = field(default_factory=dict)
+    duration: float = 1.0
+    about: str = ""
+
+    def plot(self, *, limits=None):
+        """Draw lines or a map; see :func:`hapticlab.analysis.records.plots.plot_sweep`."""
+        return plot_sweep(self, limits=limits)
+
+    def __repr__(self):
+        grid = " x ".join(f"{name} ({len(a)})" for name, a in self.axes.items())
+        return f"Sweep({self.metric} [{self.unit}] over {grid}, {self.duration:g} s each)"
+
+
+def sweep(
+    scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progress=True, workers=1, resume=None, **values
+):
+    """Simulate every combination of the named values and measure each, without storing a trace.
+
+    Points that differ in values only are lanes of one program; every T, and every paddle of another structure, is a run
+    of its own. A point's result is the same as when it runs alone, bit for bit, for any number of workers.
+
+    Parameters
+    ----------
+    scene : Scene
+    paddle : SimulatedPaddle
+    duration : float
+        [s]
+    metric : {"chatter", "growth", "contacts", "energy", "peak_force"}
+        ``chatter`` sustained or growing amplitude [m]: half the largest swing, from turning point to turning point, of the
+        last quarter. 0 where the handle rests, where every swing of the last quarter is smaller than every one of the
+        quarter before, and within one encoder count or 20 nm. nan where the run cannot tell: nothing moves the handle, or
+        a quarter has no whole swing; lengthen ``duration``. Driven motion (noise, a moving intent) is not told apart.
+        ``growth`` logarithm of the
+        swing's ratio between these quarters [1/s].
+        ``contacts`` of the last half [1/s]. ``energy`` the most ever drawn from the environment [J]. ``peak_force`` [N].
+    engine : {"auto", "llvm", "interpreter"}
+    progress : bool
+        Show a bar when the sweep lasts longer than two seconds.
+    workers : int or callable
+        So many at once, -1 for one a processor: threads, which is all that machine code needs; processes where
+        llvmlite is missing (a script then needs ``if __name__ == "__main__":``). Or what maps a function over a sequence as
+        ``map`` does: ``pool.imap_unordered`` of a multiprocessing pool, ``executor.map``, or a Dask cluster's
+        ``client.get_executor().map``, where hapticlab must be installed too. It is called again and again, with 256
+        chunks at most. A chunk carries a program, the axes' values that it takes, the paddle with its seed, and a range of
+        points.
+    resume : path, optional
+        A file that keeps what is finished. The same call goes on from it, whatever stopped it: Ctrl-C, a crash, a reboot;
+        workers may differ. A file of another sweep, or of another version of hapticlab, is refused. Two calls at once on
+        one file do each other no harm, and the work twice.
+    method, substeps, hold, force_at : optional
+        As :func:`hapticlab.compile` takes them, the same for every point; method="taylor" sweeps impacts and sticking
+        friction. With method="exact" parameters of the scene that are no axis are constants.
+    **values : float or array of shape (n,)
+        SI, or texts with a unit. An array is an axis, a single number only sets the value. Names: the scene's
+        parameters; of the paddle T, m, b, delay, counts_per_metre, coulomb, force_max, noise; x and v, where the handle starts.
+
+    Returns
+    -------
+    Sweep
+
+    Raises
+    ------
+    AnalysisError
+        For an unknown metric or name, a name that both the scene and the paddle have, values that are not finite, a file
+        to resume from that is of another sweep, and workers that died.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
+    >>> grid = hl.sweep(hl.wall(), paddle, metric="energy", v=0.1, k=[100.0, 400.0], T=[5e-4, 1e-3])
+    >>> grid
+    Sweep(energy [J] over k (2) x T (2), 1 s each)
+    >>> bool((np.diff(grid.values, axis=1) > 0).all())      # a longer hold generates more
+    True
+    >>> fine = {"k": np.linspace(100, 400, 50), "b": np.linspace(0.1, 0.5, 40)}
+    >>> hl.sweep(hl.wall(), paddle, metric="energy", v=0.1, duration=0.1, workers=2, **fine)  # resume="walls.sweep" keeps it
+    Sweep(energy [J] over k (50) x b (40), 0.1 s each)
+    """
+    if metric not in METRICS:
+        raise AnalysisError(f"metric = {metric!r}; needs one of {', '.join(METRICS)}")
+    workers = number_of(workers)
+    own = scene.parameters if isinstance(scene, Scene) else ()
+    options = {name: values.pop(name) for name in OPTIONS if name in values and name not in own}
+    axes, fixed, units = _names(scene, values)
+    scene = scene(**{name: a for name, a in fixed.items() if name in scene.parameters})
+    for end in (np.min, np.max):  # the scene itself refuses what lies outside a parameter's range
+        bound = scene(**{name: float(end(a)) for name, a in axes.items() if name in own})
+    if exact_and_rest(options.get("method"))[0]:
+        options["live"] = [name for name in axes if name in own]
+    paddle_here = replace(paddle, **{name: a for name, a in fixed.items() if name in PADDLE_AXES})
+    starts = {name: fixed.get(name, 0.0) for name in START_AXES}
+    grid = Grid(paddle_here, axes, held(scene))
+    plan = Plan(bound, grid, starts, options, duration, metric, engine)
+    result = _filled(plan, identity(plan, scene), workers, resume, progress)
+    about = "\n".join([scene.name, str(paddle), *(f"{name} = {a:g}" for name, a in fixed.items())])
+    return Sweep(axes, result.reshape(grid.shape), metric, METRICS[metric].unit, units, duration, about)
+
+
+def _filled(plan, what, workers, resume, progress):
+    """Return the metric at every point: what the file has, and what the workers measure."""
+    points, done = plan.grid.points, 0
+    result, known = np.full(points, np.nan), np.zeros(points, bool)
+    with Partial(resume, what) as kept, progress_bar(points, progress, "point") as shown:
+        for record in kept.records:
+            done += plan.put(result, record, known)
+        shown.update(done)
+        before, chunks = done, plan.chunks(kept.records, workers)
+        try:
+            with closing(spread(measured, chunks, workers, threads=plan.machine_code)) as results:
+                for given in results:
+                    record = plan.taken(given)
+                    kept.add(record)
+                    more = plan.put(result, record, known)
+                    done += more
+                    shown.update(more)
+        except BaseException as stop:
+            if resume is not None and (done > before or isinstance(stop, KeyboardInterrupt)):
+                stop.add_note(f"{done} of {points} points are in {str(resume)!r}; the same call goes on from there")
+            raise
+    if done != points:
+        raise AnalysisError(f"workers gave back {done} of {points} points; needs a map that returns every result once")
+    return result
+
+
+def _names(scene, values):
+    """Return the axes, the single values and the units of the axes; refuse names that mean nothing or two things."""
+    if not isinstance(scene, Scene):
+        what = getattr(scene, "name", repr(scene))
+        raise AnalysisError(f"{what} is no scene; a sweep compiles one for every T and needs a Scene")
+    own = {name: str(p.unit) for name, p in scene.parameters.items()}
+    known = {**START_AXES, **PADDLE_AXES, **own}
+    axes, fixed = {}, {}
+    for name, given in values.items():
+        if name not in known:
+            listed = ", ".join(own) or "none"
+            raise AnalysisError(
+                f"{name}: nothing has that name. The scene's parameters: {listed}; the paddle's: {', '.join(PADDLE_AXES)}; "
+                f"the start: {', '.join(START_AXES)}"
+            )
+        if name in own and name in {**PADDLE_AXES, **START_AXES}:
+            raise AnalysisError(
+                f"{name} is a parameter of the scene and of the paddle; rename the scene's to sweep one of them"
+            )
+        array = _in_si(given, known[name], name)
+        if array.ndim > 1 or array.size == 0 or not np.isfinite(array).all():
+            raise AnalysisError(f"{name} = {given}; an axis needs one or more finite numbers [{known[name]}]")
+        (axes if array.ndim else fixed)[name] = array if array.ndim else float(array)
+    return axes, fixed, {name: known[name] for name in axes}
+
+
+def _in_si(given, unit, name):
+    """Return numbers as an array in SI; a text carries its unit, as where a scene is bound."""
+    numbers = isinstance(given, np.ndarray) and given.dtype.kind in "iuf"
+    several = () if numbers else np.ravel(np.asarray(given, object))
+    if any(isinstance(one, str) for one in several):
+        numbers = np.array([in_si(one, unit, name) for one in several])
+        return numbers.reshape(np.shape(given)) if not isinstance(given, str) else numbers[0]
+    try:
+        return np.asarray(given, float)
+    except (TypeError, ValueError, OverflowError):
+        raise AnalysisError(f"{name} = {given!r}; an axis needs one or more finite numbers [{unit}]") from None

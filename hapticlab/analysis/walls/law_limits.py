@@ -1,0 +1,202 @@
+"""How stiff a wall each law can hold against a push, by trials from soft to stiff on a simulated paddle."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...device.hand import Hand, require
+from ...drawing import COLD, house_style, new_figure, scale_axis
+from ...errors import AnalysisError, HapticlabError
+from ...rendering.wall_laws import LAWS, wall_law
+from ..records.chatter import SHORTEST, chatter
+
+#: largest ratio between what stood and what did not, of the last trials
+GROWTH, FINEST = 1.5, 1.03
+#: where not even the first wall stands: tenths, down to this part of it, each trial longer as it swings slower
+SOFTER, SOFTEST = 0.1, 1e-3
+#: longest trial, in durations
+LONGEST = 32.0
+
+
+@dataclass(frozen=True)
+class LawLimit:
+    """The stiffest wall that stood, and what happened beyond.
+
+    Attributes
+    ----------
+    law : str
+    K : float
+        [N/m]; 0 where not even the softest stood, nan where no trial told.
+    beyond : float
+        The softest that did not stand [N/m]; inf where all did.
+    why : str
+        What the wall beyond did.
+    rest : float
+        Stiffness felt at rest under the push over K, at the stiffest that stood; nan where it had not come to rest.
+    """
+
+    law: str
+    K: float
+    beyond: float
+    why: str
+    rest: float
+
+
+@dataclass(frozen=True)
+class LawLimits:
+    """The stiffest wall of every law.
+
+    Attributes
+    ----------
+    limits : tuple of LawLimit
+    push : float
+        [N]
+    duration : float
+        Of a trial [s].
+    paddle : str
+    """
+
+    limits: tuple
+    push: float
+    duration: float
+    paddle: str
+
+    def __getitem__(self, law):
+        """Return the limit of a law by name."""
+        found = {limit.law: limit for limit in self.limits}
+        if law not in found:
+            raise AnalysisError(f"no limit of {law!r}; there are {', '.join(found)}")
+        return found[law]
+
+    def __str__(self):
+        head = f"walls that stand under a push of {self.push:g} N, an outcome of one start: {self.duration:g} s from the boundary"
+        rows = [
+            f"{m.law:<20} {m.why}" if math.isnan(m.K) else f"{m.law:<20} {m.K:>9.4g} N/m   beyond: {m.why}"
+            for m in self.limits
+        ]
+        return "\n".join([head, *rows])
+
+    def plot(self):
+        """Draw the stiffest wall of each law on one scale."""
+        names, places = [m.law.replace("_", " ") for m in self.limits], np.arange(len(self.limits))
+        with house_style():
+            figure = new_figure(height=0.6 + 0.42 * len(names))
+            axes = figure.subplots()
+            axes.barh(places, np.nan_to_num([m.K for m in self.limits]), color=COLD, height=0.6)
+            stood = [m.K for m in self.limits if m.K > 0]
+            axes.set_xlim((0.5 * min(stood), 1.1 * max(stood)) if stood else (10, 1e5))
+            scale_axis(axes, "x", np.geomspace(10, 1e5, 5))
+            axes.set(xlabel="stiffest wall that stands [N/m]", yticks=places, yticklabels=names)
+            axes.invert_yaxis()
+        return figure
+
+
+def law_limits(
+    paddle, *, push=1.0, laws=tuple(LAWS), first=50.0, most=1e5, duration=1.0, model=None, unilateral="gate", clamp=False,
+    velocity="handle",
+):  # fmt: skip
+    """Search, law by law, the stiffest wall against which a pushed handle does not chatter.
+
+    From soft to stiff: the handle starts at rest on the boundary, pushed by a constant force that no law knows of. A wall
+    stands where :func:`chatter` finds no oscillation that lasts or grows, dither below one encoder count apart. The
+    stiffness grows by half until a wall does not stand, then the ratio is halved down to 3 %. Where not even the first
+    stands, softer ones are tried, each for longer.
+
+    Parameters
+    ----------
+    paddle : SimulatedPaddle
+    push : float
+        [N], > 0, and less than the paddle's force_max: no wall answers more.
+    laws : str or sequence of str
+        Of :data:`hapticlab.rendering.wall_laws.LAWS`.
+    first, most : float
+        The softest wall tried, and the stiffest [N/m].
+    duration : float
+        Of a trial [s].
+    model, unilateral, clamp, velocity
+        Of :func:`~hapticlab.rendering.wall_laws.wall_law`.
+
+    Returns
+    -------
+    LawLimits
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
+    >>> found = hl.law_limits(paddle, laws=["zoh"])["zoh"]
+    >>> found.K <= hl.stability_limit(paddle).K * 1.03 and found.beyond >= hl.stability_limit(paddle).K * 0.97
+    True
+    """
+    laws = (laws,) if isinstance(laws, str) else tuple(laws)
+    _check(paddle, laws, push, first, most, duration)
+    hand = paddle.hand or Hand()
+    pushed = replace(paddle, hand=replace(hand, push=hand.push + push))
+    options = dict(model=model or paddle, unilateral=unilateral, clamp=clamp, velocity=velocity)
+    limits = tuple(_limit(name, pushed, first, most, push, duration, options) for name in laws)
+    return LawLimits(limits, push, duration, str(paddle))
+
+
+def _check(paddle, laws, push, first, most, duration):
+    unknown = [law for law in laws if law not in LAWS]
+    if unknown or not laws:
+        raise AnalysisError(f"law_limits: laws = {unknown or laws}; needs one or more of {', '.join(LAWS)}")
+    push, duration = (require(name, value, unit, "law_limits", above=0) for name, value, unit in (
+        ("push", push, "N"), ("duration", duration, "s")))  # fmt: skip
+    if paddle.force_max is not None and push >= paddle.force_max:
+        raise AnalysisError(
+            f"law_limits: push = {push:g} N, and the motor gives no more than force_max = {paddle.force_max:g} N: no wall "
+            "holds it. Push less"
+        )
+    if duration / paddle.T < SHORTEST:
+        raise AnalysisError(
+            f"law_limits: duration = {duration:g} s is {duration / paddle.T:.3g} samples; needs {SHORTEST} at least"
+        )
+    if not 0 < first <= most < math.inf:
+        raise AnalysisError(f"law_limits: first = {first} N/m, most = {most} N/m; needs 0 < first <= most, both finite")
+
+
+def _limit(name, paddle, first, most, push, duration, options):
+    stood, beyond, why, rest = 0.0, math.inf, "nothing stiffer was tried", np.nan
+    K, longer = first, 1.0
+    while K <= most and (beyond == math.inf or beyond / max(stood, 1e-9) > FINEST):
+        fault, felt, clipped = _trial(name, paddle, K, push, duration * longer, options)
+        untold = fault is not None and fault.startswith("undecided")
+        if untold and (stood == 0 or clipped) and longer < LONGEST:
+            longer = min(2 * longer, LONGEST)
+            continue
+        if untold and stood == 0:
+            return LawLimit(name, math.nan, math.nan, f"{K:g} N/m {fault}: it neither dies out nor grows", np.nan)
+        if fault is None:
+            stood, rest = K, felt
+        else:
+            beyond, why = K, fault
+            if stood == 0 and K * SOFTER < SOFTEST * first:
+                break
+            longer = max(longer, min(math.sqrt(first / (K * SOFTER)), LONGEST)) if stood == 0 else longer
+        K = K * SOFTER if stood == 0 else stood * (GROWTH if beyond == math.inf else math.sqrt(beyond / stood))
+    return LawLimit(name, stood, beyond, why, rest)
+
+
+def _trial(name, paddle, K, push, duration, options):
+    """Return what is wrong with a wall, or None, the stiffness felt at rest over K, and whether the motor's limit is in it.
+
+    A decay in which the motor clips, or that slows down, may end in a cycle: it is undecided.
+    """
+    try:
+        law = wall_law(name, paddle, K=K, **options)
+        log = law.paddle.run(law.scene, duration=duration, progress=False)
+    except HapticlabError as refusal:
+        return f"refused: {refusal}", np.nan, False
+    if log.fault:
+        return "its force was not finite", np.nan, False
+    found = chatter(log)
+    clipped = log.saturated is not None and bool(log.saturated[len(log) // 2 :].any())
+    state = "undecided" if found.state == "decaying" and clipped else found.state
+    seen = found.amplitude > (0.0 if paddle.counts_per_metre is None else 1 / paddle.counts_per_metre)
+    if (seen and state in ("chatter", "growing", "undecided")) or abs(found.rest) > 20 * push / K:
+        tone = "" if found.frequency is None else f" at {found.frequency:.4g} Hz"
+        return f"{state}, {1e3 * found.amplitude:.3g} mm{tone}", np.nan, clipped
+    settled = found.travel < 0.05 * abs(found.rest)
+    return None, push / (K * found.rest) if settled else np.nan, clipped

@@ -1,0 +1,136 @@
+"""A map of a wall: its regions, the limits on it, and what it says of itself."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...errors import AnalysisError
+from .wall_map_plot import plot_wall_map
+
+REGIONS = ("passive", "stable", "chatters", "unusable")
+
+
+@dataclass(frozen=True, eq=False)
+class WallMap:
+    """A wall over stiffness and one more quantity.
+
+    ``passive``: within the passivity limit of this device, so that no passive hand of any kind sets it chattering, and
+    resting in the simulation too. ``stable``: beyond that limit, but at rest at the end of the simulated contact, in this
+    hand, from this start. ``chatters``: a sustained or growing oscillation, larger than one encoder count. ``unusable``: one
+    of more than ``unusable`` [m] half the swing, or a handle thrown off that is not back in time where the linear loop is
+    unstable or not known, or forces that are not finite.
+
+    Attributes
+    ----------
+    axes : dict of str to array
+        K [N/m], then the other quantity; SI.
+    regions : int array of shape (len(K), len(other))
+        0 passive, 1 stable, 2 chatters, 3 unusable.
+    amplitude : array of that shape
+        Half the largest swing of the last quarter [m], 0 at rest; nan where the run cannot tell.
+    undecided : bool array of that shape
+        The run cannot tell; the linear theory decided.
+    rows : array
+        Values of the other quantity at which theory was computed.
+    limits : dict of str to tuple of Limit
+        "passivity", "stability" and bounds by name: the largest K at each of ``rows``; None where a bound does not hold.
+    unusable : float
+        [m]
+    duration : float
+        Simulated time of a point [s], or a little more where T is an axis.
+    units : dict of str to str
+    about : str
+        Law, paddle and start, in lines.
+    seconds : float
+        How long the map took.
+    """
+
+    axes: dict
+    regions: np.ndarray
+    amplitude: np.ndarray
+    undecided: np.ndarray
+    rows: np.ndarray
+    limits: dict
+    unusable: float
+    duration: float
+    units: dict = field(default_factory=dict)
+    about: str = ""
+    seconds: float = math.nan
+
+    def limit(self, name):
+        """Return the stiffnesses [N/m] of a limit at ``rows``; nan where a bound's assumptions fail."""
+        if name not in self.limits:
+            raise AnalysisError(f"no limit {name} here; the map has {', '.join(self.limits)}")
+        return np.array([math.nan if one is None else one.K for one in self.limits[name]])
+
+    def share(self, region):
+        """Return the part of the map that is a region, 0 to 1."""
+        if region not in REGIONS:
+            raise AnalysisError(f"region = {region!r}; needs one of {', '.join(REGIONS)}")
+        return float((self.regions == REGIONS.index(region)).mean())
+
+    @property
+    def surprises(self):
+        """Points within the passivity limit that chatter all the same, as an encoder or friction makes them: bool array."""
+        return under(self, "passivity") & (self.regions >= 2)
+
+    @property
+    def inside_only(self):
+        """Whether the passivity limit says nothing about the switching at the boundary: a law with a memory, or delay."""
+        return any("not covered" in note for one in self.limits.get("passivity", ()) for note in one.assumptions)
+
+    def plot(self):
+        """Draw the regions with the lines of the theory; see :func:`hapticlab.analysis.walls.wall_map_plot.plot_wall_map`."""
+        return plot_wall_map(self)
+
+    def __str__(self):
+        (K, k), (other, a) = self.axes.items()
+        known = "passivity" in self.limits
+        shares = ", ".join(f"{name} {100 * self.share(name):.1f} %" for name in REGIONS[0 if known else 1 :])
+        shares += "" if known else "; passive: not known of a scene (law=\"zoh\" and its like draw the theory too)"
+        lines = [
+            f"wall map over {K} = {k[0]:g} to {k[-1]:g} N/m and {other} = {a[0]:g} to {a[-1]:g} {self.units[other]}: {shares}",
+            f"  {self.about}".replace("\n", "\n  "),
+            f"  {self.regions.size} points of {self.duration:g} s; unusable is a swing of more than {1e3 * self.unusable:g} mm "
+            "to either side, or a handle thrown off by an unstable loop",
+        ]
+        if self.surprises.any():
+            lines.append(
+                f"  {self.surprises.sum()} points within the passivity limit chatter: it is about device damping alone, not "
+                "about an encoder"
+            )
+        if self.undecided.any():
+            judge = "by the linear theory" if "stability" in self.limits else "against the wall"
+            lines.append(f"  {self.undecided.sum()} points are decided {judge}: the handle does not come back in time")
+        if "stability" not in self.limits:
+            lines.append(
+                "  without linear= no theory is known of a scene: a swing that only gets smaller counts as coming to rest"
+            )
+        if self.inside_only:
+            lines.append("  passivity is that of the spring always acting: switching at the boundary is not in it")
+        return "\n".join(lines)
+
+    __repr__ = __str__
+
+
+def under(found, name):
+    """Return where K is at most a limit, straight lines between the rows; nowhere where the limit is not known."""
+    K, other = found.axes.values()
+    if name not in found.limits:
+        return np.zeros((len(K), len(other)), bool)
+    top = np.minimum(found.limit(name), 1e300)
+    return K[:, None] <= np.interp(other, found.rows, top)[None, :]
+
+
+def beyond(found):
+    """Return where the linear loop is known to be unstable."""
+    return ~under(found, "stability") & ("stability" in found.limits)
+
+
+def regions_of(found, fault):
+    """Return the number of the region of every point."""
+    amplitude = np.nan_to_num(found.amplitude)
+    lost = found.undecided & (beyond(found) | ("stability" not in found.limits))
+    kinds = [fault | lost | (amplitude > found.unusable), amplitude > 0, ~under(found, "passivity")]
+    return np.select(kinds, [3, 2, 1], 0)

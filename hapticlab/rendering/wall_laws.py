@@ -1,0 +1,121 @@
+"""Every law that renders one and the same wall, by name: of the chapter, of its model-based section, and of a real damper."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from ..errors import AnalysisError
+from ..scene.laws import wall
+from ..scene.scene import Scene
+from ..scene.symbols import T, n, parameters, x
+from ..scene.taps import TAPS
+from .deadbeat import deadbeat_wall
+from .digital import digital_wall
+from .predictive import predictive_wall
+
+
+@dataclass(frozen=True)
+class WallLaw:
+    """A wall as a law renders it, and the paddle it needs.
+
+    Attributes
+    ----------
+    name : str
+    scene : Scene
+    paddle : SimulatedPaddle
+        The paddle given, but for "damped", which puts a damper of K T/2 on it.
+    """
+
+    name: str
+    scene: Scene
+    paddle: object
+
+    def __str__(self):
+        return f"{self.name}: {LAWS[self.name]}\n  {self.scene.name} on {self.paddle}"
+
+
+def _deadbeat(begins, between):
+    return lambda model, clamp, **options: deadbeat_wall(model, begins=begins, between=between, **options)
+
+
+MODEL_LAWS = {
+    "digital": digital_wall,
+    "predictive": predictive_wall,
+    "deadbeat": _deadbeat("predictive", "pairs"),
+    "deadbeat_reactive": _deadbeat("reactive", "pairs"),
+    "deadbeat_crossings": _deadbeat("predictive", "half_sample"),
+}
+#: name -> what it is, in the words of a table
+LAWS = {
+    "zoh": "K p(n), Eq. (23.1)",
+    "half_sample": "velocity half a sample on, Eq. (23.3)",
+    "backward_difference": "Eq. (23.5)",
+    "ellis": "predictor-corrector, Eq. (23.7)",
+    "damped": "Eq. (23.1), with a damper K T/2 on the paddle and B = -K T/2 everywhere",
+    "digital": "poles of the wall, in the digital domain",
+    "predictive": "half a sample by the model",
+    "deadbeat": "dead-beat pairs inside and at foreseen crossings",
+    "deadbeat_reactive": "dead-beat pairs inside and after crossings",
+    "deadbeat_crossings": "half a sample by the model, dead-beat pairs at foreseen crossings",
+}
+
+
+def _damper():
+    """Return a virtual damper of either sign that acts everywhere, by backward difference."""
+    return parameters("B", units="N*s/m", ranges=(-math.inf, math.inf)) * (x(n) - x(n - 1)) / T
+
+
+def checked_laws(laws):
+    """Return names of :data:`LAWS` as a tuple, one name alone too, or say which is none."""
+    names = tuple(laws) if isinstance(laws, Iterable) and not isinstance(laws, str) else (laws,)
+    for name in names:
+        if not isinstance(name, str) or name not in LAWS:
+            given = repr(name) if isinstance(name, str) else f"a {type(name).__name__}"
+            raise AnalysisError(f"laws hold {given}; needs names, of {', '.join(LAWS)}; of a scene, hl.wall_map draws a map")
+    if not names:
+        raise AnalysisError(f"laws = {laws!r}; needs one name or more, of {', '.join(LAWS)}")
+    return names
+
+
+def wall_law(name, paddle, *, K, model=None, unilateral="gate", clamp=False, velocity="handle"):
+    """Return a wall of stiffness K as one of :data:`LAWS` renders it.
+
+    Parameters
+    ----------
+    name : str
+    paddle : SimulatedPaddle
+    K : float
+        [N/m]
+    model : SimulatedPaddle, optional
+        What a model-based law believes; the paddle unless given.
+    unilateral : {"gate", "clip"}
+        Of the chapter's laws; the others act where the handle is, or is predicted, inside.
+    clamp : bool
+        Never pull; a dead-beat pair is not clamped.
+    velocity : {"handle", "model"}
+        Of the model-based laws.
+
+    Returns
+    -------
+    WallLaw
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> law = hl.wall_law("damped", hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), K=400)
+    >>> round(law.paddle.b, 9)
+    0.3
+    """
+    if name not in LAWS:
+        raise AnalysisError(f"law = {name!r}; needs one of {', '.join(LAWS)}")
+    if name in TAPS:
+        return WallLaw(name, wall(name, unilateral, clamp)(k=K), paddle)
+    if name == "damped":
+        added = K * paddle.T / 2
+        plain = wall("zoh", unilateral, clamp)
+        scene = Scene(plain.force.xreplace({plain.parameters["B"]: sp.S.Zero}) + _damper(), name="damped wall")
+        return WallLaw(name, scene(k=K, B=-added), replace(paddle, b=paddle.b + added))
+    scene = MODEL_LAWS[name](model or paddle, K=K, clamp=clamp, velocity=velocity, force_max=paddle.force_max)
+    return WallLaw(name, scene, paddle)
