@@ -29,17 +29,17 @@ from .compiler.contacts.broad_phase import contacts_between
 from .compiler.events.taylor_method import Taylor
 from .compiler.tick.compile_scene import compile
 from .course.check import check
-from .device.board import SerialPaddle
-from .device.calibrate import calibrate
-from .device.connect import connect
-from .device.doctor import doctor
-from .device.hand import Hand
-from .device.hands import hand, hand_presets
-from .device.intents import MinimumJerk, Tremor
+from .device.board.serial_paddle import SerialPaddle
+from .device.hand.hand import Hand
+from .device.hand.hand_presets import hand, hand_presets
+from .device.hand.intents import MinimumJerk, Tremor
+from .device.hand.reacting_hand import Reacting
 from .device.paddle import Paddle
 from .device.profiles import profile
-from .device.reacting import Reacting
-from .device.simulated import SimulatedPaddle
+from .device.setup.calibrate import calibrate
+from .device.setup.connect import connect
+from .device.setup.doctor import doctor
+from .device.simulated.simulated_paddle import SimulatedPaddle
 from .errors import (
     AnalysisError,
     CourseError,

@@ -8,10 +8,10 @@ import numpy as np
 
 from .analysis.sweeps.sweep import Sweep, sweep
 from .compiler.engines.engine import load
-from .device.hand import Hand
+from .device.hand.hand import Hand
 from .device.profiles import profile
 from .device.progress import progress_bar
-from .device.simulated import SimulatedPaddle
+from .device.simulated.simulated_paddle import SimulatedPaddle
 from .drawing import STYLES, house_style, new_figure
 from .limits.limit import Limit
 from .limits.passivity import passivity_limit

@@ -70,7 +70,7 @@ class PortError(PaddleError):
 class LinkError(PaddleError):
     """A board does not answer, refuses what was asked, or speaks another version.
 
-    ``result`` is the board's own word for a refusal, a name in hapticlab.device.messages.RESULTS, else None.
+    ``result`` is the board's own word for a refusal, a name in hapticlab.device.link.messages.RESULTS, else None.
     """
 
     def __init__(self, message, result=None):

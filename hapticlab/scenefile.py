@@ -11,9 +11,9 @@ import numpy as np
 from .analysis.records.chatter import chatter
 from .analysis.records.energy import energy
 from .compiler.ir.program import Program
-from .device.hand import Hand
+from .device.hand.hand import Hand
 from .device.paddle import Paddle
-from .device.simulated import SimulatedPaddle
+from .device.simulated.simulated_paddle import SimulatedPaddle
 from .errors import AnalysisError, PaddleError, SceneError
 from .scene.scene import Scene
 

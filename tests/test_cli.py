@@ -19,9 +19,9 @@ from hapticlab.analysis.accuracy.tradeoff import PC
 from hapticlab.compiler.events.taylor_method import Taylor
 from hapticlab.compiler.methods.exact_linear import EXACT
 from hapticlab.compiler.methods.method_table import METHODS
-from hapticlab.device.calibrate import STEPS
-from hapticlab.device.serial import Port
-from hapticlab.device.settings import nominal
+from hapticlab.device.board.settings import nominal
+from hapticlab.device.link.serial_ports import Port
+from hapticlab.device.setup.calibrate import STEPS
 from hapticlab.scenefile import load_scene
 
 EXAMPLE = Path(hl.__file__).parent / "examples" / "mass_on_coupler.py"

@@ -25,7 +25,7 @@ DOORS = {
     "llvmlite": {"compiler.engines.llvm", "compiler.engines.llvm_emit"},
     "scipy": {"analysis.accuracy.hybrid_solver", "limits.matrix", "identification.fit", "experiments.fit"},
     "matplotlib": {"drawing"},
-    "serial": {"device.serial", "device.urls.protocol_sim"},
+    "serial": {"device.link.serial_ports", "device.urls.protocol_sim"},
     "ipywidgets": {"widgets.view", "widgets.plain"},
     "anywidget": {"widgets.front"},
     "IPython": {"widgets.show"},
@@ -153,7 +153,7 @@ def test_no_cycles():
     [
         ("scene.bad", "from ..compiler.ir import Program", "not below"),
         ("scene.bad", "from .. import compiler", "not below"),
-        ("scene.bad", "import hapticlab.device.hand", "not below"),
+        ("scene.bad", "import hapticlab.device.hand.hand", "not below"),
         ("scene.bad", "import hapticlab", "not below"),
         ("device.bad", "def f():\n    from ..scene import Scene", "inside a function"),
         ("course.felt", "def f():\n    from ..device.hand import Hand", "inside a function"),
@@ -169,7 +169,7 @@ def test_a_bad_import_is_found(name, source, word):
 
 def test_good_imports_pass():
     good = "import numpy as np\nfrom ..errors import SceneError\nfrom .hand import Hand\nfrom ..compiler import ir"
-    assert faults("device.simulated", good) == []
+    assert faults("device.simulated.simulated_paddle", good) == []
     assert faults("limits.matrix", "def f():\n    from scipy.linalg import expm") == []
 
 

@@ -1,4 +1,4 @@
-/* Written by hapticlab/device/cheaders.py: change the Python tables, not this file. */
+/* Written by hapticlab/device/link/message_headers.py: change the Python tables, not this file. */
 
 #ifndef HL_MESSAGES_H
 #define HL_MESSAGES_H

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..device.handle import Handle
+from ..device.simulated.moved_handle import Handle
 from ..errors import PaddleError
 
 

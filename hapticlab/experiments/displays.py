@@ -5,12 +5,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..device.asked import check_simulated
-from ..device.hand import require
-from ..device.hands import hand as named_hand
+from ..device.hand.hand import require
+from ..device.hand.hand_presets import hand as named_hand
 from ..drawing import house_style, new_figure, scale_axis, style_of
 from ..errors import AnalysisError
 from .display_laws import Admittance, Impedance, display_motion, largest_stiffness
+from .paddle_needs import check_simulated
 
 #: the hand moves freely, presses, and holds until [s]
 FREE, PRESSED, HELD = 1.0, 1.4, 2.0

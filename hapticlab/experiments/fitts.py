@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ..device.asked import check_held
-from ..device.intents import Intent
-from ..device.reacting import REACTION, Reacting
+from ..device.hand.intents import Intent
+from ..device.hand.reacting_hand import REACTION, Reacting
 from ..drawing import FRAME, house_style, new_figure, style_of
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from ..scene.symbols import n, parameters, x
 from .arm import Arm, along, quintic
+from .paddle_needs import check_held
 from .submovements import Submovements
 
 #: in the target for so long, it is selected [s]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..device.person import Person
+from ..device.setup.person import Person
 from ..drawing import COLD, WARM, house_style, new_figure, scale_axis
 from ..errors import AnalysisError
 from .observers import PersonObserver, SimulatedObserver

@@ -26,7 +26,7 @@ MOST = 100_000
 
 
 class Juggler:
-    """A plan for :class:`~hapticlab.device.reacting.Reacting`. One juggler, one run: it remembers its stroke.
+    """A plan for :class:`~hapticlab.device.hand.reacting_hand.Reacting`. One juggler, one run: it remembers its stroke.
 
     The ball is to be struck at x = 0. In flight it is known by place and velocity at its last impact, with a covariance:
     by expectation first, then by touch, then by every sight of it, weighed by their certainties.

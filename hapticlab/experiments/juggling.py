@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..device.asked import check_held
-from ..device.hand import require
-from ..device.reacting import REACTION, Reacting
+from ..device.hand.hand import require
+from ..device.hand.reacting_hand import REACTION, Reacting
 from ..drawing import house_style, new_figure, style_of
 from ..errors import AnalysisError
 from ..library.contacts import ball_on_the_paddle
 from ..records import Telemetry
 from .arm import Arm
 from .juggler import SENSES, Juggler
+from .paddle_needs import check_held
 
 WORDS = {"vision": "sight", "touch": "touch", "both": "sight and touch", "none": "neither sight nor touch"}
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..device.person import Person
+from ..device.setup.person import Person
 from ..errors import AnalysisError
 from .curves import Psychometric
 

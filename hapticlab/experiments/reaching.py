@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..device.asked import check_held
-from ..device.hand import UNITS, require
-from ..device.intents import Intent, MinimumJerk
-from ..device.reacting import REACTION, Reacting
+from ..device.hand.hand import UNITS, require
+from ..device.hand.intents import Intent, MinimumJerk
+from ..device.hand.reacting_hand import REACTION, Reacting
 from ..drawing import house_style, new_figure, style_of
 from ..errors import PaddleError
 from ..records import Telemetry
 from .arm import Arm
+from .paddle_needs import check_held
 
 HOW = ("anticipatory", "feedback", "both")
 #: of the distance: so near, a reach has arrived

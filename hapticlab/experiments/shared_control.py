@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..analysis.records.energy import energy
-from ..device.asked import check_held
-from ..device.hand import require
-from ..device.intents import Tremor
+from ..device.hand.hand import require
+from ..device.hand.intents import Tremor
 from ..drawing import house_style, new_figure, style_of
 from ..errors import PaddleError
 from ..records import Telemetry
 from ..scene.scene import Scene
 from ..scene.symbols import n, parameters, x
+from .paddle_needs import check_held
 from .reaching import Anticipated, Load, check_path, handle, inverse_dynamics
 
 #: what is in this band of a handle's motion is tremor [Hz]

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..device.hand import Hand
-from ..device.link import link, load_linked
-from ..device.reacting import Reacting
-from ..device.simulated import SimulatedPaddle
+from ..device.hand.hand import Hand
+from ..device.hand.reacting_hand import Reacting
+from ..device.simulated.closed_loop import link, load_linked
+from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
 from ..library.surfaces import texture
 from ..scene.laws import virtual_damper, wall

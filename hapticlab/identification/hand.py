@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..device.board import SerialPaddle
-from ..device.hand import Hand
-from ..device.simulated import SimulatedPaddle
+from ..device.board.serial_paddle import SerialPaddle
+from ..device.hand.hand import Hand
+from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
 from ..records import Telemetry, check_record
 from .found import Found, told

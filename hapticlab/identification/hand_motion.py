@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..device.transition import transition
+from ..device.simulated.transition import transition
 
 #: instead of zero under a fraction: N/m, 1/s^2
 LEAST = 1e-12

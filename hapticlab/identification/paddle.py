@@ -4,10 +4,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..device.board import SerialPaddle
-from ..device.force_fit import duty_of
-from ..device.hand import require
-from ..device.messages import MOTOR_LAWS
+from ..device.board.serial_paddle import SerialPaddle
+from ..device.hand.hand import require
+from ..device.link.messages import MOTOR_LAWS
+from ..device.setup.force_fit import duty_of
 from ..errors import AnalysisError, PaddleError
 from .excitation import LEAD, Excitation, centring, designed
 from .handle_records import HandleRecord, identify

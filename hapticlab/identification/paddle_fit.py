@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..device.simulated import SimulatedPaddle
+from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
 from ..records import PaddleProfile
 from .found import Found

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import sympy as sp
 
-from ..device.board import SerialPaddle
-from ..device.hand import require
+from ..device.board.serial_paddle import SerialPaddle
+from ..device.hand.hand import require
 from ..errors import PaddleError
 from ..measurement.leash import leashed
 from ..measurement.trials import speed_limit

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 import sympy as sp
 
-from ..device.hand import Hand
+from ..device.hand.hand import Hand
 from ..scene.cases import when
 from ..scene.symbols import n, parameters, signal
 from .signals import chirp, multisine

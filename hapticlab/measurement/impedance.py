@@ -7,7 +7,7 @@ import numpy as np
 
 from ..analysis.impedance.impedance import impedance as impedance_of
 from ..compiler.tick.compile_scene import compile
-from ..device.simulated import SimulatedPaddle
+from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
 from .excitation import Excitation
 from .measured import MeasuredImpedance

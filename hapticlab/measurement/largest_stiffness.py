@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 from ..device.live import named_values
-from ..device.simulated import SimulatedPaddle
+from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
 from ..limits.limit import Limit, whole_and_fraction
 from ..limits.passivity import passivity_limit

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..device.simulated import SimulatedPaddle
+from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
 from .trials import ENOUGH, PERIODS, period_on
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..analysis.records.chatter import chatter
-from ..device.simulated import SimulatedPaddle
+from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import PaddleError
 from ..scene.laws import wall
 from ..scene.scene import Scene

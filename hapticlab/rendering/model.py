@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..device.hand import Hand
-from ..device.transition import transition
+from ..device.hand.hand import Hand
+from ..device.simulated.transition import transition
 from ..errors import AnalysisError
 from ..limits.limit import MOST_PERIODS, check_number, check_period, whole_and_fraction
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..device.link import link, load_linked
-from ..device.simulated import SimulatedPaddle
+from ..device.simulated.closed_loop import link, load_linked
+from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..drawing import WARM, house_style, new_figure
 from ..errors import AnalysisError
 from ..limits.limit import check_number

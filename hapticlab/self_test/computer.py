@@ -8,7 +8,7 @@ import time
 from importlib.metadata import PackageNotFoundError, requires, version
 from statistics import median
 
-from ..device.serial import available_ports
+from ..device.link.serial_ports import available_ports
 from .outcome import Attention, need
 
 #: s: what a clock must resolve for a link to be timed

@@ -14,10 +14,10 @@ from ..compiler.engines.engine import load
 from ..compiler.ir.program import Channel, Program
 from ..compiler.ir.trace import Builder, cos, exp, maximum, select, sin, tanh
 from ..compiler.tick.compile_scene import compile
-from ..device.connect import connect
-from ..device.doctor import doctor
-from ..device.hand import Hand
-from ..device.simulated import SimulatedPaddle
+from ..device.hand.hand import Hand
+from ..device.setup.connect import connect
+from ..device.setup.doctor import doctor
+from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import EngineMissingError
 from ..scene.laws import wall
 from ..scenefile import load_scene, report_of, run_scene

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..compiler.tick.compile_scene import compile
-from ..device.board import SerialPaddle
-from ..device.intents import MinimumJerk
-from ..device.stepping import with_grip
+from ..device.board.serial_paddle import SerialPaddle
+from ..device.hand.intents import MinimumJerk
+from ..device.simulated.stepping import with_grip
 from ..errors import EngineMissingError, PaddleError
 from ..records import Telemetry
 from ..scene.scene import check_scene

@@ -1,9 +1,9 @@
 """What gives a live view its samples, and how that is moved."""
 
-from ..device.board import SerialPaddle
-from ..device.simulated import SimulatedPaddle
-from ..device.stepping import Stepping
-from ..device.streaming import Streaming
+from ..device.board.serial_paddle import SerialPaddle
+from ..device.board.streaming import Streaming
+from ..device.simulated.simulated_paddle import SimulatedPaddle
+from ..device.simulated.stepping import Stepping
 from ..errors import PaddleError
 
 

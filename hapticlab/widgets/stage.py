@@ -5,8 +5,8 @@ from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 
+from ..device.board.running import is_refusal
 from ..device.live import named_values
-from ..device.running import is_refusal
 from ..errors import HapticlabError, PaddleError
 from .frame import COLUMNS, Frame
 from .motion import Motion

@@ -9,7 +9,7 @@ from hapticlab.analysis.sweeps.sweep_measures import METRICS, WithFault
 from hapticlab.compiler.engines.engine import load
 from hapticlab.compiler.ir import cache
 from hapticlab.course.felt import felt
-from hapticlab.device.link import link
+from hapticlab.device.simulated.closed_loop import link
 
 SCENES = {
     "8-link pendulum": (scenes.pendulum, scenes.PENDULUM),

@@ -14,7 +14,7 @@ from emulated import emulated_uno
 from emulator import Uno
 
 import hapticlab as hl
-from hapticlab.device.settings import nominal
+from hapticlab.device.board.settings import nominal
 
 SOURCE = Path(__file__).with_name("hapkit.c")
 FLAGS = "-mmcu=atmega328p -DF_CPU=16000000UL -std=c99 -Os -Wall -Wextra -Wpedantic -Wconversion".split()

@@ -20,7 +20,7 @@ from timing import SCALE, best_of, imported, row
 
 import hapticlab as hl
 from hapticlab.compiler.ir import cache
-from hapticlab.device.transition import transition
+from hapticlab.device.simulated.transition import transition
 
 SIDE, TICKS, V0 = 1000, 1000, 0.1
 HAND = hl.Hand(m=0.1, b=2.0, k=200.0, push=1.0)

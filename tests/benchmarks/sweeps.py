@@ -10,7 +10,7 @@ import hapticlab as hl
 from hapticlab.analysis.sweeps.sweep_measures import METRICS, WithFault
 from hapticlab.compiler.engines.engine import load
 from hapticlab.compiler.ir import cache
-from hapticlab.device.link import link
+from hapticlab.device.simulated.closed_loop import link
 
 POINTS, TICKS, V0 = 10_000, 1000, 0.1
 FLOOR, OURS, SWEEP = "C by hand, SIMD", "hapticlab, the run", "hapticlab, hl.sweep with compiling"

@@ -10,10 +10,10 @@ import sympy as sp
 from emulated import emulated_uno
 from emulator import missing
 
-from hapticlab.device.connect import connect
-from hapticlab.device.hand import Hand
+from hapticlab.device.hand.hand import Hand
 from hapticlab.device.paddle import Paddle
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.setup.connect import connect
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import HapticlabError, ParameterError
 from hapticlab.records import Telemetry
 from hapticlab.scene.scene import Scene

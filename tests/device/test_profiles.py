@@ -3,7 +3,7 @@
 import pytest
 
 from hapticlab.device.profiles import eth, hapkit, profile
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import PaddleError
 
 

@@ -3,12 +3,12 @@
 import math
 from dataclasses import replace
 
-from hapticlab.device.board import SerialPaddle
-from hapticlab.device.handle import Handle
-from hapticlab.device.person import Person
-from hapticlab.device.serial import open_port
-from hapticlab.device.settings import Settings, nominal
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.board.serial_paddle import SerialPaddle
+from hapticlab.device.board.settings import Settings, nominal
+from hapticlab.device.link.serial_ports import open_port
+from hapticlab.device.setup.person import Person
+from hapticlab.device.simulated.moved_handle import Handle
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.scene.scene import Scene
 from hapticlab.scene.symbols import parameters
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hapticlab.device.hand import Hand
-from hapticlab.device.intents import MinimumJerk
-from hapticlab.device.reacting import Reacting
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.hand.hand import Hand
+from hapticlab.device.hand.intents import MinimumJerk
+from hapticlab.device.hand.reacting_hand import Reacting
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.experiments.arm import Arm, along, quintic
 from hapticlab.scene.laws import wall
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hapticlab.device.hand import Hand
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.hand.hand import Hand
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError, PaddleError
 from hapticlab.experiments.display_laws import Admittance, Impedance, display_motion, growth, largest_stiffness
 from hapticlab.experiments.displays import compare_displays, render

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hapticlab.device.hands import hand
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.hand.hand_presets import hand
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError, PaddleError
 from hapticlab.experiments.fitts import Fitts, Targets, fitts, selections
 

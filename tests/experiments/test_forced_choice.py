@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hapticlab.device.connect import connect
-from hapticlab.device.person import Person
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.setup.connect import connect
+from hapticlab.device.setup.person import Person
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError
 from hapticlab.experiments.forced_choice import ForcedChoice, Trial, forced_choice
 from hapticlab.experiments.observers import SimulatedObserver

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from hapticlab.device.hands import hand
-from hapticlab.device.reacting import Seen
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.hand.hand_presets import hand
+from hapticlab.device.hand.reacting_hand import Seen
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError, PaddleError
 from hapticlab.experiments.arm import Arm
 from hapticlab.experiments.juggler import Juggler

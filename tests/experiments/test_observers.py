@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from hapticlab.device.person import Person
+from hapticlab.device.setup.person import Person
 from hapticlab.errors import AnalysisError
 from hapticlab.experiments.observers import PersonObserver, SimulatedObserver
 from hapticlab.experiments.tasks import stiffness_task

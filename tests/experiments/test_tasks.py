@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hapticlab.device.hand import Hand
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.hand.hand import Hand
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError
 from hapticlab.experiments.tasks import (
     damping_task,

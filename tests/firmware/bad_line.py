@@ -6,10 +6,10 @@ import threading
 
 from host_driver import settings
 
-from hapticlab.device.host_board import HostBoard
-from hapticlab.device.messages import MESSAGES
-from hapticlab.device.serial import open_port
-from hapticlab.device.wire import Decoder
+from hapticlab.device.board.host_board import HostBoard
+from hapticlab.device.link.messages import MESSAGES
+from hapticlab.device.link.serial_ports import open_port
+from hapticlab.device.link.wire import Decoder
 
 
 def said(piece):

@@ -20,7 +20,7 @@ import pytest
 import serial
 
 from hapticlab.compiler.engines.firmware_library import c_compiler
-from hapticlab.device.intelhex import parse_hex
+from hapticlab.device.setup.intel_hex import parse_hex
 
 HERE = Path(__file__).parent
 INSTALLED = Path("/usr/share/arduino/hardware/arduino/avr")

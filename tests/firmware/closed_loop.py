@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from emulator import CYCLES_PER_SECOND, Uno
 
-from hapticlab.device.handle import Handle
-from hapticlab.device.messages import MOTOR_LAWS, SENSORS
+from hapticlab.device.link.messages import MOTOR_LAWS, SENSORS
+from hapticlab.device.simulated.moved_handle import Handle
 
 STEP = 50e-6  # [s]
 LINEAR, SQRT = 0, 1

@@ -10,9 +10,9 @@ from closed_loop import ClosedLoop, PaddleHandle
 from emulator import Uno
 from uno_port import offer
 
-from hapticlab.device.board import SerialPaddle
-from hapticlab.device.settings import nominal
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.board.serial_paddle import SerialPaddle
+from hapticlab.device.board.settings import nominal
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 
 
 @cache

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from build_image import tool
 
-from hapticlab.device.intelhex import parse_hex
+from hapticlab.device.setup.intel_hex import parse_hex
 
 CYCLES_PER_SECOND = 16_000_000
 POWER, EXTERNAL, BROWN_OUT, WATCHDOG = 1, 2, 4, 8  # bits of MCUSR

@@ -15,8 +15,8 @@ from five_scenes import pendulum
 
 import hapticlab as hl
 from hapticlab import n, x
-from hapticlab.device.messages import SENSORS
-from hapticlab.device.settings import nominal
+from hapticlab.device.board.settings import nominal
+from hapticlab.device.link.messages import SENSORS
 
 T = 1e-3
 HAND = hl.Hand(m=0.05, b=3, k=400, intent=lambda t: 0.004 * np.sin(9 * t))

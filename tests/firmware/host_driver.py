@@ -7,10 +7,10 @@ import numpy as np
 
 from hapticlab.compiler.engines.bytecode import encode as encode_program
 from hapticlab.compiler.tick.compile_scene import compile
-from hapticlab.device.host_board import WORD_BITS, HostBoard
-from hapticlab.device.messages import FAULTS, FLAGS, MESSAGES, RESULTS, STATES, TARGETS
-from hapticlab.device.settings import Settings
-from hapticlab.device.wire import Decoder, encode
+from hapticlab.device.board.host_board import WORD_BITS, HostBoard
+from hapticlab.device.board.settings import Settings
+from hapticlab.device.link.messages import FAULTS, FLAGS, MESSAGES, RESULTS, STATES, TARGETS
+from hapticlab.device.link.wire import Decoder, encode
 from hapticlab.scene.scene import Scene
 from hapticlab.scene.symbols import n, parameters, x
 

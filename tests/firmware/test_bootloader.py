@@ -9,8 +9,8 @@ import serial
 from bootloader import Board, BoardPort, bootloader_folder, build_shim, hex_file, offer
 
 from hapticlab.compiler.engines.firmware_library import firmware_folder
-from hapticlab.device.flash import PAGE, STAND_STILL, flash
-from hapticlab.device.serial import BOARDS
+from hapticlab.device.link.serial_ports import BOARDS
+from hapticlab.device.setup.flash import PAGE, STAND_STILL, flash
 from hapticlab.errors import PaddleError, PortError
 
 DDRB, DDRD = 0x24, 0x2A

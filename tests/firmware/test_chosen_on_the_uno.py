@@ -11,8 +11,8 @@ from uno_port import offer
 import hapticlab as hl
 from hapticlab.analysis.accuracy.handle_motions import HandleMotion
 from hapticlab.analysis.accuracy.reference import reference
-from hapticlab.device.board import SerialPaddle
-from hapticlab.device.settings import nominal
+from hapticlab.device.board.serial_paddle import SerialPaddle
+from hapticlab.device.board.settings import nominal
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 QUICKEST = 0.06  # of the motion [m/s]

@@ -8,8 +8,8 @@ from five_scenes import cart_pole, double_pendulum, mass_and_wall, pendulum, wal
 
 import hapticlab as hl
 from hapticlab.compiler.engines.engine import load
+from hapticlab.device.board.settings import nominal
 from hapticlab.device.paddle import Paddle
-from hapticlab.device.settings import nominal
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 # a hand that moves the handle over 8 mm and lets it swing; the scenes' periods are those that an Uno has time for, and

@@ -4,7 +4,7 @@ import pytest
 from emulated import emulated_uno
 from emulator import missing
 
-from hapticlab.device.doctor_checks import latency, loop_and_link, sensor_at_rest, settings
+from hapticlab.device.setup.doctor_checks import latency, loop_and_link, sensor_at_rest, settings
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 

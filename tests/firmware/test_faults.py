@@ -4,7 +4,7 @@ import pytest
 from emulator import missing
 from faults import FAULTS, measure
 
-from hapticlab.device.messages import FAULTS as NAMES
+from hapticlab.device.link.messages import FAULTS as NAMES
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 

@@ -13,8 +13,8 @@ from five_scenes import SCENES, cart_pole, mass_and_wall, pendulum, wall
 import hapticlab as hl
 from hapticlab.compiler.boards.board_fit import fit
 from hapticlab.compiler.boards.cost import cost
-from hapticlab.device.messages import SENSORS
-from hapticlab.device.settings import nominal
+from hapticlab.device.board.settings import nominal
+from hapticlab.device.link.messages import SENSORS
 from hapticlab.errors import ProgramLimitError
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))

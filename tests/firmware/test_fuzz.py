@@ -18,8 +18,8 @@ from host_driver import settings
 from hapticlab.compiler.engines import firmware_library, toolchain
 from hapticlab.compiler.engines.bytecode import encode as encode_program
 from hapticlab.compiler.tick.compile_scene import compile
-from hapticlab.device.messages import MESSAGES, STATES, TARGETS
-from hapticlab.device.wire import Decoder, encode
+from hapticlab.device.link.messages import MESSAGES, STATES, TARGETS
+from hapticlab.device.link.wire import Decoder, encode
 from hapticlab.scene.scene import Scene
 from hapticlab.scene.symbols import n, parameters, x
 

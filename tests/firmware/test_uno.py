@@ -20,8 +20,8 @@ from emulator import (
     missing,
 )
 
-from hapticlab.device.messages import FAULTS, RESET_CAUSES, SENSORS
-from hapticlab.device.settings import nominal
+from hapticlab.device.board.settings import nominal
+from hapticlab.device.link.messages import FAULTS, RESET_CAUSES, SENSORS
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 

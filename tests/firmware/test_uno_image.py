@@ -11,10 +11,10 @@ from stack_bound import StackBound
 from uno_port import offer
 
 import hapticlab as hl
-from hapticlab.device.board import SerialPaddle
-from hapticlab.device.hand import Hand
-from hapticlab.device.settings import nominal
-from hapticlab.device.upload import read_settings, upload
+from hapticlab.device.board.serial_paddle import SerialPaddle
+from hapticlab.device.board.settings import nominal
+from hapticlab.device.board.upload import read_settings, upload
+from hapticlab.device.hand.hand import Hand
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 

@@ -20,8 +20,8 @@ from uno_port import offer
 
 import hapticlab as hl
 from hapticlab.compiler.boards.cost import SEARCH_MARGIN, tables
-from hapticlab.device.settings import nominal
-from hapticlab.device.wire import decode, encode
+from hapticlab.device.board.settings import nominal
+from hapticlab.device.link.wire import decode, encode
 
 TICKS = 400
 OVERHEAD = 11  # bytes of a sample's frame beside its numbers

@@ -122,7 +122,8 @@ def test_a_fault_names_the_call_and_an_interrupt_leaves_the_motor_off(monkeypatc
     with board:
         with pytest.raises(hl.PaddleError, match="identify_hand: force = 99 N; the motor stands for"):
             hl.identify_hand(board, force=99.0)
-        monkeypatch.setattr("hapticlab.device.board.collect", lambda *given: (_ for _ in ()).throw(KeyboardInterrupt))
+        patch = "hapticlab.device.board.serial_paddle.collect"
+        monkeypatch.setattr(patch, lambda *given: (_ for _ in ()).throw(KeyboardInterrupt))
         with pytest.raises(KeyboardInterrupt):
             hl.identify_hand(board)
         assert board.state()["state"] == 0 and board.state()["force"] == 0

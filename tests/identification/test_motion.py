@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from hapticlab.device.hand import Hand
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.hand.hand import Hand
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.identification.excitation import Excitation, designed
 from hapticlab.identification.hand_motion import hand_positions
 from hapticlab.identification.motion import positions

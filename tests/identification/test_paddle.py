@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.device.serial import open_port
-from hapticlab.device.settings import changed, simulated
+from hapticlab.device.board.settings import changed, simulated
+from hapticlab.device.link.serial_ports import open_port
 from hapticlab.errors import AnalysisError
 
 BODY = {"m": 0.03, "b": 0.1, "T": 1e-3, "coulomb": 0.05, "noise": 8e-6}

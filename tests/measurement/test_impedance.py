@@ -5,8 +5,8 @@ import pytest
 import sympy as sp
 
 import hapticlab as hl
-from hapticlab.device.serial import open_port
-from hapticlab.device.settings import changed, simulated
+from hapticlab.device.board.settings import changed, simulated
+from hapticlab.device.link.serial_ports import open_port
 from hapticlab.measurement.excitation import Excitation
 from hapticlab.measurement.impedance import measured_impedance
 from hapticlab.measurement.signals import lines_of
@@ -259,7 +259,8 @@ def test_a_board_refuses_more_than_its_motor_stands_and_an_interrupt_leaves_it_o
         with pytest.raises(hl.PaddleError, match="2.5 N to hold the place and 0.1 N .* more than the 2 N"):
             measured_impedance(board, hl.wall()(k=500), place=0.005, **SHORT)
         assert not logs  # before anything moves
-        monkeypatch.setattr("hapticlab.device.board.collect", lambda *given: (_ for _ in ()).throw(KeyboardInterrupt))
+        patch = "hapticlab.device.board.serial_paddle.collect"
+        monkeypatch.setattr(patch, lambda *given: (_ for _ in ()).throw(KeyboardInterrupt))
         with pytest.raises(KeyboardInterrupt):
             measured_impedance(board, hl.wall()(k=150), **SHORT)
         assert board.state()["state"] == 0 and board.state()["force"] == 0

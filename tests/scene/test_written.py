@@ -8,7 +8,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import n, t, v, x
-from hapticlab.device.link import link
+from hapticlab.device.simulated.closed_loop import link
 from hapticlab.errors import HapticlabError, ParameterError, SceneError, SignalError, UnitsError
 from hapticlab.scene.written import RESERVED, check_name
 

@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 import hapticlab as hl
-from hapticlab.device import stepping
+from hapticlab.device.simulated import stepping
 from hapticlab.widgets.frame import Frame
 from hapticlab.widgets.front import _canvas
 from hapticlab.widgets.pace import LONGEST

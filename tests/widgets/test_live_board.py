@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.device.messages import STATES
-from hapticlab.device.streaming import LEAD, LEASH
+from hapticlab.device.board.streaming import LEAD, LEASH
+from hapticlab.device.link.messages import STATES
 from hapticlab.widgets.plain import PlainFront
 from hapticlab.widgets.session import GAP, SILENCE, STEADY, Session
 from hapticlab.widgets.stage import CAME_LATE, TIMELY
@@ -289,8 +289,8 @@ def test_a_board_that_cannot_be_told_to_stop_is_abandoned_in_words(board, monkey
 def test_a_handle_that_is_lost_is_led_to_its_stops_first(board, monkeypatch):
     """Until the board knows where its handle is, Start waits, in words, and blocks nothing."""
     homed = []
-    monkeypatch.setattr("hapticlab.device.streaming.state_flag", lambda exchange, name: bool(homed))
-    monkeypatch.setattr("hapticlab.device.streaming.hasattr", lambda port, name: False, raising=False)
+    monkeypatch.setattr("hapticlab.device.board.streaming.state_flag", lambda exchange, name: bool(homed))
+    monkeypatch.setattr("hapticlab.device.board.streaming.hasattr", lambda port, name: False, raising=False)
     stage = Stage(board).press("start").go(0.3)
     assert LEAD in stage.session.status
     assert not stage.is_running

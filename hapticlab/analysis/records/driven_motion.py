@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...device.hand import Hand
+from ...device.hand.hand import Hand
 from ...errors import AnalysisError
 
 #: samples of memory of the linear part, at most, and one in so many of the record that it may take

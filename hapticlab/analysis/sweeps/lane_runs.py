@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 
 from ...compiler.ir.trace import equal, maximum, minimum, select
-from ...device.lanes import device_values, together
-from ...device.link import link, load_linked
-from ...device.plant import decided
+from ...device.simulated.closed_loop import link, load_linked
+from ...device.simulated.lanes import device_values, together
+from ...device.simulated.plant import decided
 from ...errors import AnalysisError
 from ..records.chatter import SHORTEST
 from .sweep_measures import LEAST, METRICS, WithFault, f64

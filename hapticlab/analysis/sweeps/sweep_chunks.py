@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...compiler.ir.cache import Shared
-from ...device.link import link, load_linked
+from ...device.simulated.closed_loop import link, load_linked
 from .sweep_grid import Points
 from .sweep_measures import METRICS, WithFault
 

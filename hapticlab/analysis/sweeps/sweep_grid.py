@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...device.lanes import lane_values, together
-from ...device.plant import decided
+from ...device.simulated.lanes import lane_values, together
+from ...device.simulated.plant import decided
 
 #: what a sweep may change about a simulated paddle, and its unit
 PADDLE_AXES = {

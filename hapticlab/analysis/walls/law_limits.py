@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...device.hand import Hand, require
+from ...device.hand.hand import Hand, require
 from ...drawing import COLD, house_style, new_figure, scale_axis
 from ...errors import AnalysisError, HapticlabError
 from ...rendering.wall_laws import LAWS, wall_law

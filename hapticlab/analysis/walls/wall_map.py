@@ -8,7 +8,7 @@ from difflib import get_close_matches
 
 import numpy as np
 
-from ...device.simulated import SimulatedPaddle
+from ...device.simulated.simulated_paddle import SimulatedPaddle
 from ...errors import AnalysisError
 from ...limits.limit import check_number
 from ...scene.laws import wall

@@ -11,11 +11,11 @@ from urllib.parse import parse_qs, urlsplit
 from serial import SerialBase
 
 from ...errors import PaddleError, PortError
-from ..handle import Handle
-from ..host_board import HostBoard
+from ..board.host_board import HostBoard
+from ..board.settings import nominal, simulated
 from ..profiles import PROFILES
-from ..settings import nominal, simulated
-from ..simulated import SimulatedPaddle
+from ..simulated.moved_handle import Handle
+from ..simulated.simulated_paddle import SimulatedPaddle
 
 #: of ticks that are late, made up for at once [s]
 LONGEST_BURST = 0.03

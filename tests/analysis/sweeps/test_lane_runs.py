@@ -7,8 +7,8 @@ import pytest
 
 from hapticlab.analysis.sweeps.lane_runs import LaneRuns
 from hapticlab.analysis.sweeps.sweep import sweep
-from hapticlab.device.hand import Hand
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.hand.hand import Hand
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError
 from hapticlab.scene.laws import wall
 

@@ -13,8 +13,8 @@ import hapticlab as hl
 from hapticlab.analysis.records.chatter import chatter
 from hapticlab.analysis.records.energy import energy
 from hapticlab.analysis.sweeps.sweep import sweep
-from hapticlab.device.hand import Hand
-from hapticlab.device.simulated import SimulatedPaddle
+from hapticlab.device.hand.hand import Hand
+from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError, PaddleError, ParameterError, ProgramError
 from hapticlab.limits.stability import stability_limit
 from hapticlab.scene.laws import wall

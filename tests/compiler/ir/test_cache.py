@@ -24,7 +24,7 @@ from hapticlab.compiler.ir.trace import Builder
 from hapticlab.compiler.tick import compile_scene
 from hapticlab.compiler.tick.compile_scene import PROGRAMS
 from hapticlab.course.felt import felt
-from hapticlab.device.link import LINKED
+from hapticlab.device.simulated.closed_loop import LINKED
 from hapticlab.scene.symbols import Parameter
 
 T = 1e-3

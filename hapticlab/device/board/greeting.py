@@ -1,0 +1,81 @@
+"""The first words with a board: is it a paddle, does it speak this version, what did it go through."""
+
+import math
+
+from ...errors import LinkError
+from ..link.messages import RESET_CAUSES, STATES, row_of, table_hash
+from .recording import fault_words
+
+#: seconds between two hellos: opening the port has reset many a board, whose bootloader listens first
+AGAIN = 0.2
+
+
+def say_hello(exchange, url, seconds):
+    """Return what the board says of itself, the fields of WELCOME.
+
+    Raises
+    ------
+    LinkError
+        If nothing answers within so many seconds, or in another version.
+    """
+    try:
+        said = exchange.ask("HELLO", exchange.session, patience=AGAIN, tries=max(1, round(seconds / AGAIN))).fields
+    except LinkError:
+        raise LinkError(
+            f"{url}: no paddle answers within {seconds:g} s. Either the board has no hapticlab firmware "
+            "(`hapticlab flash` puts it there) or this is another device: `hapticlab ports` lists what is plugged in."
+        ) from None
+    if said["table"] != table_hash():
+        raise LinkError(
+            f"{url}: the board's firmware {said['major']}.{said['minor']} speaks another version of the messages than "
+            "this package; flash the firmware that came with it: hapticlab flash",
+            "VERSION",
+        )
+    return said | {"board": said["board"].rstrip(b"\0").decode("ascii", "replace")}
+
+
+def what_happened(exchange, url, reset_cause):
+    """Return sentences about what the board went through before this hello, and clear a standing fault."""
+    told = []
+    if reset_cause in (RESET_CAUSES["BROWN_OUT"][0], RESET_CAUSES["WATCHDOG"][0]):
+        told.append(f"{url}: the board was reset by {row_of(RESET_CAUSES, reset_cause)[1]}")
+    return told + cleared(exchange, url)
+
+
+def cleared(exchange, url):
+    """Clear a standing fault; return the sentence that tells it, in a list that is empty where none stood."""
+    state = exchange.refresh()
+    if state["state"] != STATES["FAULT"]:
+        return []
+    exchange.command("CLEAR")
+    return [f"{url}: a fault stood: {fault_words(state)}"]
+
+
+def introduction(board, settings, T):
+    """Return a paddle in one line: board, firmware, period, calibration, limit."""
+    parts = [f"{board['board']} {board['ident']:04X}", f"firmware {board['major']}.{board['minor']}", f"T = {T * 1e3:g} ms"]
+    if settings is None:
+        return ", ".join([*parts, "not calibrated: gives no force (run `hapticlab calibrate`)"])
+    day = str(settings.date)
+    calibrated = "nominal constants, not calibrated" if settings.is_nominal else f"calibrated {day[:4]}-{day[4:6]}-{day[6:]}"
+    parts += [calibrated, f"|F| <= {min(settings.force_max, settings.force_full):.4g} N"]
+    return ", ".join(parts if settings.checked else [*parts, "motor sign not checked: 0.5 N at most"])
+
+
+def explain_silence(exchange, url):
+    """Return the fault that keeps a running board from sending samples, or raise LinkError with another reason."""
+    state = exchange.refresh()
+    if state["session"] not in (0, exchange.session):
+        raise LinkError(
+            f"{url}: another program said hello to the board while the scene ran, which ended it: the board is that "
+            "program's now. End it (another notebook, another user of the same socket), then connect again."
+        )
+    if state["session"] != exchange.session:
+        raise LinkError(
+            f"{url}: the board was reset while the scene ran, and its motor is off: a supply that falls too low when the "
+            "motor pulls, or its reset button. Check the supply, then connect again."
+        )
+    if state["state"] == STATES["FAULT"]:  # and the report of it was lost on its way
+        return {"fault": state["fault"], "tick": state["tick"], "value": math.nan}
+    what = "runs but sends no samples" if state["state"] == STATES["RUN"] else "was told to stop by somebody else"
+    raise LinkError(f"{url}: the board {what}; connect again")

@@ -1,0 +1,119 @@
+"""Samples as they come from a board, and the Telemetry they make."""
+
+import math
+import struct
+from collections import deque
+
+import numpy as np
+
+from ...errors import PaddleError
+from ...records import Telemetry
+from ..link.messages import FAULTS, SAMPLE_FLAGS, row_of
+
+#: part of the link that samples may take; state and requests need the rest
+SAMPLES_SHARE = 0.9
+#: bytes of a sample beside its numbers: tick, flags, frame
+SAMPLE_OVERHEAD = 11
+_NUMPY = {"f32": "<f4", "bool": "<i4", "i32": "<i4"}
+
+
+class Recording:
+    """What one run said: samples are kept as bytes, and become arrays once, at the end.
+
+    Parameters
+    ----------
+    program : Program
+        Whose outputs the samples carry.
+    every : int
+        Ticks from one sample to the next.
+    """
+
+    def __init__(self, program, every):
+        self.program, self.every = program, every
+        self.fault, self.last_tick, self.changes, self.begun = None, -1, [], False
+        self._rows, self._taken = deque(), -every
+        self._row = np.dtype([("tick", "<u4"), ("flags", "u1"), ("x", "<f4"), ("v", "<f4"), ("F", "<f4")] + [
+            (f"channel.{c.name}", _NUMPY[c.type]) for c in program.outputs[1:]])  # fmt: skip
+
+    def begin(self):
+        """Take samples from here on: those that are still under way from an earlier run came before."""
+        self.begun = True
+
+    def add(self, frame):
+        """Take a SAMPLE or FAULTED frame."""
+        if frame.message == "FAULTED":
+            self.fault = frame.fields
+        elif len(frame.payload) == self._row.itemsize:
+            tick, flags = struct.unpack_from("<IB", frame.payload)
+            self.begun = self.begun or bool(flags & SAMPLE_FLAGS["FIRST"])
+            if not self.begun:
+                return
+            if tick > self.last_tick or self.last_tick < 0:  # a repeat on the wire is no new sample
+                self._rows.append(frame.payload)
+                self.last_tick = tick
+
+    def take(self):
+        """Return what came since the last look, a dict of columns, and forget it; what is left is the telemetry."""
+        rows = self._table([self._rows.popleft() for _ in range(len(self._rows))])
+        found = self._columns(rows, self._taken)
+        self._taken = int(rows["tick"][-1]) if len(rows) else self._taken
+        return found
+
+    def telemetry(self, *, ticks, delay, paddle):
+        """Return the Telemetry of the first so many ticks; None takes them all."""
+        rows = self._table(self._rows)
+        rows = rows if ticks is None else rows[rows["tick"] < ticks]
+        return self.as_telemetry(self._columns(rows, self._taken), delay=delay, paddle=paddle, changes=self.changes)
+
+    def as_telemetry(self, columns, *, delay, paddle, changes=(), values=None):
+        """Return columns of :meth:`take`, put together, as Telemetry; values are the parameters', the program's if None."""
+        program = self.program
+        values = dict(zip((c.name for c in program.parameters), program.values, strict=True)) if values is None else values
+        own = {name: columns[name] for name in ("t", "x", "v", "F", "saturated", "gap", "overrun")}
+        return Telemetry(
+            **own, T=program.T * self.every, delay=delay, channels={c.name: columns[c.name] for c in program.outputs[1:]},
+            units={c.name: c.unit for c in program.outputs[1:]}, paddle=paddle, scene=program.name, parameters=values,
+            fault=fault_words(self.fault, program.T), every=self.every, changes=tuple(changes),
+        )  # fmt: skip
+
+    def _table(self, rows):
+        return np.frombuffer(b"".join(rows), self._row)
+
+    def _columns(self, rows, before):
+        """Return rows as columns by name; before is the tick of the row before the first."""
+        tick = rows["tick"].astype(np.int64)
+        flags = {name.lower(): rows["flags"] & bit > 0 for name, bit in SAMPLE_FLAGS.items()}
+        found = {name: rows[name].astype(float) for name in ("x", "v", "F")}
+        found |= {c.name: rows[f"channel.{c.name}"].astype(float) for c in self.program.outputs[1:]}
+        missing = np.diff(tick, prepend=before) > self.every
+        return {"t": tick * self.program.T, **found, "saturated": flags["saturated"], "gap": missing, "overrun": flags["overrun"]}
+
+
+def decimation(program, port, every=None):
+    """Return the ticks from one sample to the next: as asked, or as few as the link carries.
+
+    Raises
+    ------
+    PaddleError
+        If it carries fewer than asked.
+    """
+    channels = 2 + len(program.outputs)
+    rate = getattr(port, "bytes_per_second", port.baudrate / 10)
+    least = max(1, math.ceil((SAMPLE_OVERHEAD + 4 * channels) / program.T / (SAMPLES_SHARE * rate) - 1e-9))
+    if every is None:
+        return least
+    if every < least or every != int(every) or every > 65535:
+        raise PaddleError(
+            f"every = {every}; at T = {program.T:g} s with {channels} numbers a sample this link carries one in {least}: "
+            "give a whole number from there on, watch fewer channels, or leave it out."
+        )
+    return int(every)
+
+
+def fault_words(fault, T=None):
+    """Return a fault's name, time, cause and cure in words, or None for no fault."""
+    if fault is None:
+        return None
+    name, cause, cure = row_of(FAULTS, fault["fault"]) or ("UNKNOWN", "", "")
+    when = f"tick {fault['tick']}" + (f" (t = {fault['tick'] * T:g} s)" if T else "")
+    return f"{when}: {name}: {cause}; the motor is off from there on. {cure[:1].upper()}{cure[1:]}."

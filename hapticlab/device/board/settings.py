@@ -1,0 +1,161 @@
+"""What a board keeps over power-off: its calibration, its limits, its name."""
+
+import math
+import zlib
+from dataclasses import dataclass, fields, replace
+
+from ...errors import PaddleError
+from ..link.messages import (
+    COUNTS_MAX,
+    METRES_PER_COUNT_MIN,
+    MOTOR_LAWS,
+    SENSORS,
+    SETTING_RANGES,
+    SETTINGS,
+    SETTINGS_STRUCT,
+    WRAP_MAX,
+    WRAP_MIN,
+    settings_hash,
+)
+from ..profiles import profile as named_profile
+
+_CHOICES = {
+    "ident": range(1 << 16), "date": range(1 << 32), "checked": (0, 1), "motor_law": tuple(MOTOR_LAWS.values()),
+    "motor_sign": (1, -1), "sensor": tuple(SENSORS.values()), "wrap": range(1 << 32),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """The record a board keeps; units and meanings are in messages.SETTINGS, and ``print`` shows them.
+
+    Examples
+    --------
+    >>> from hapticlab.device.board.settings import Settings, nominal
+    >>> kept = nominal("hapkit")
+    >>> Settings.from_bytes(kept.to_bytes()).travel_max == kept.to_float32().travel_max
+    True
+    """
+
+    ident: int = 0
+    date: int = 0
+    checked: int = 0
+    metres_per_count: float
+    travel_min: float
+    travel_max: float
+    force_full: float
+    force_max: float
+    force_continuous: float
+    heating_time: float
+    speed_max: float
+    motor_law: int = MOTOR_LAWS["LINEAR"]
+    motor_sign: int = 1
+    sensor: int = SENSORS["QUADRATURE"]
+    wrap: int = 1024
+    m: float = 0.0
+    b: float = 0.0
+    coulomb: float = 0.0
+
+    def __post_init__(self):
+        for name, (low, high) in SETTING_RANGES.items():
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise PaddleError(f"{name} = {value:g}; a board's settings need {low:g} to {high:g}. Calibrate again.")
+        step = abs(self.metres_per_count)
+        if step < METRES_PER_COUNT_MIN:
+            raise PaddleError(f"metres_per_count = {self.metres_per_count:g}; needs {METRES_PER_COUNT_MIN:g} at least.")
+        if not self.travel_min < self.travel_max:
+            raise PaddleError(f"travel from {self.travel_min:g} to {self.travel_max:g} m; needs the lower stop first.")
+        counts = max(-self.travel_min, self.travel_max, key=abs) / step
+        if not abs(counts) < COUNTS_MAX:
+            raise PaddleError(f"a stop at {counts:g} counts; a board counts to {COUNTS_MAX:g}: use a coarser encoder.")
+        for name, allowed in _CHOICES.items():
+            if getattr(self, name) not in allowed:
+                raise PaddleError(f"{name} = {getattr(self, name)!r}; needs {_spoken(allowed)}.")
+        if self.sensor == SENSORS["MAGNETORESISTIVE"] and not WRAP_MIN <= self.wrap <= WRAP_MAX:
+            raise PaddleError(f"wrap = {self.wrap}; a magnetoresistive sensor needs {WRAP_MIN} to {WRAP_MAX} counts a half turn.")
+
+    def to_bytes(self):
+        """Return the record as a board keeps it, its CRC-32 at the end."""
+        names = [name for _, name, *_ in SETTINGS[1:-1]]
+        body = SETTINGS_STRUCT.pack(settings_hash(), *(getattr(self, name) for name in names), 0)[:-4]
+        return body + zlib.crc32(body).to_bytes(4, "little")
+
+    @classmethod
+    def from_bytes(cls, data):
+        """Return the settings in a board's record, or None where it holds none of this layout."""
+        values = dict(zip((name for _, name, *_ in SETTINGS), SETTINGS_STRUCT.unpack(data), strict=True))
+        if values.pop("layout") != settings_hash() or values.pop("crc") != zlib.crc32(data[:-4]):
+            return None
+        return cls(**values)
+
+    def to_float32(self):
+        """Return the settings with every number rounded as a board keeps it."""
+        return Settings.from_bytes(self.to_bytes())
+
+    @property
+    def is_nominal(self):
+        """Whether nothing in it was measured on this very paddle."""
+        return self.date == 0
+
+    def force_of_duty(self, duty):
+        """Return the force [N] at the handle of a duty in -1 ... 1, the motor's law undone."""
+        part = abs(duty) if self.motor_law == MOTOR_LAWS["LINEAR"] else duty * duty
+        return math.copysign(part * self.force_full, duty) * self.motor_sign
+
+    def __str__(self):
+        rows = {name: (unit, meaning) for _, name, unit, meaning in SETTINGS}
+        lines = [f"{f.name:<17} {getattr(self, f.name):<12.7g} {'' if rows[f.name][0] == '1' else rows[f.name][0]:<6}"
+                 f" {rows[f.name][1]}" for f in fields(self)]  # fmt: skip
+        return "\n".join([*lines, "nominal: nothing here was measured on this paddle"] if self.is_nominal else lines)
+
+
+#: what the profiles do not say. Hapkit: KMA210 on its nominal 920 counts per half turn, 12.8 um a count; the square-root
+#: law and 8 N at full duty are of the published sketches; travel, heating and speed are guesses that keep a motor cool
+_NOMINAL = {
+    "hapkit": {
+        "travel_min": -0.05, "travel_max": 0.05, "force_full": 8.0, "force_continuous": 2.0, "heating_time": 60.0,
+        "speed_max": 2.0, "motor_law": MOTOR_LAWS["SQRT"], "sensor": SENSORS["MAGNETORESISTIVE"], "wrap": 920,
+    },
+}  # fmt: skip
+
+
+def _spoken(allowed):
+    if isinstance(allowed, range):
+        return f"a whole number from {allowed[0]} to {allowed[-1]}"
+    return " or ".join(map(str, allowed))
+
+
+def nominal(profile, **changes):
+    """Return nominal settings for a kind of paddle: nothing in them was measured on the very device.
+
+    Parameters
+    ----------
+    profile : {"hapkit"}
+    **changes
+        Fields that are known better.
+    """
+    if profile not in _NOMINAL:
+        raise PaddleError(f"no nominal settings for {profile!r}; there are some for {', '.join(_NOMINAL)}.")
+    kind = named_profile(profile)
+    known = {"metres_per_count": 1 / kind.counts_per_metre, "force_max": kind.force_max, "m": kind.m, "b": kind.b}
+    return Settings(**{**known, "coulomb": kind.coulomb, **_NOMINAL[profile], **changes})
+
+
+def simulated(paddle):
+    """Return the settings of a board around a simulated paddle: ideal where the paddle says nothing."""
+    full = paddle.force_max or 20.0
+    return Settings(
+        checked=1,
+        metres_per_count=1 / (paddle.counts_per_metre or 1e7),  # without an encoder a tenth of a micrometre
+        travel_min=-0.5, travel_max=0.5, force_full=full, force_max=full, force_continuous=full, heating_time=60.0,
+        speed_max=10.0, m=paddle.m, b=paddle.b, coulomb=paddle.coulomb,
+    )  # fmt: skip
+
+
+def changed(settings, **values):
+    """Return the settings with some fields replaced; a misspelt one is refused."""
+    unknown = sorted(set(values) - {f.name for f in fields(Settings)})
+    if unknown:
+        raise PaddleError(f"{unknown[0]} is no setting; there are {', '.join(f.name for f in fields(Settings))}.")
+    return replace(settings, **values)

@@ -1,0 +1,119 @@
+"""The user's hand, as a mass, a damper and a spring on the handle, with a push and an intended path."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import PaddleError
+
+UNITS = {"m": "kg", "b": "N s/m", "k": "N/m", "push": "N", "noise": "N"}
+_REASONS = {
+    "m": "A negative mass is no mass.",
+    "b": "A negative damper feeds energy to the handle.",
+    "k": "A negative spring feeds energy to the handle.",
+    "noise": "It is a standard deviation.",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hand:
+    """A hand lumped on the handle: (m + m_hand) x'' = push - b_hand (x' - intent') - k_hand (x - intent) - ...
+
+    A linear hand that does not react: it holds for some 30 ms after contact, before reflexes. Passive with push = 0 and
+    a resting intent.
+
+    Parameters
+    ----------
+    m : float
+        Mass [kg], m >= 0.
+    b : float
+        Damping [N s/m], b >= 0.
+    k : float
+        Stiffness [N/m], k >= 0.
+    push : float
+        Constant force on the handle [N], positive into the wall.
+    intent : None, float or callable, optional
+        Where the hand means to be [m]: a place, or a function of an array of times [s] that returns as many positions
+        [m]. It is sampled at the ticks and linear in between. It acts through k or b.
+    noise : float
+        Standard deviation of a white Gaussian force beside the push [N], held over each sample; the paddle's seed draws it.
+
+    Raises
+    ------
+    PaddleError
+        For a negative or non-finite value, and for an intent with nothing to act through.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hapticlab.device.hand.hand import Hand
+    >>> print(Hand(m=0.02, b=1, k=200, intent=lambda t: 0.01 * np.sin(6 * t)))
+    m = 0.02 kg, b = 1 N s/m, k = 200 N/m, a moving intent
+    """
+
+    m: float = 0.0
+    b: float = 0.0
+    k: float = 0.0
+    push: float = 0.0
+    intent: float | Callable | None = None
+    noise: float = 0.0
+
+    def __post_init__(self):
+        for name, reason in _REASONS.items():
+            number = require(name, getattr(self, name), UNITS[name], "a hand", reason, low=0)
+            object.__setattr__(self, name, number)
+        object.__setattr__(self, "push", require("push", self.push, "N", "a hand"))
+        if self.intent is None:
+            return
+        if not self.moves:
+            object.__setattr__(self, "intent", require("intent", self.intent, "m", "a hand"))
+        if self.k == 0 and self.b == 0:
+            raise PaddleError(
+                "intent without k or b: an intended place acts through the hand's spring or damper. "
+                "Give Hand(k=..., intent=...) in N/m, or b in N s/m."
+            )
+
+    @property
+    def moves(self):
+        """Whether the intent is a function of time."""
+        return callable(self.intent)
+
+    def samples(self, ticks, T, first=0):
+        """Return the intent at the ticks first ... first + ticks (one more than the ticks) [m], shape (ticks + 1,)."""
+        times = np.arange(first, first + ticks + 1) * T
+        places = np.asarray(self.intent(times), float)
+        if places.shape not in ((), times.shape):
+            raise PaddleError(
+                f"intent gave shape {places.shape} for {ticks + 1} times; needs one position [m] for each: "
+                "use NumPy functions of the whole array, as in lambda t: 0.01*np.sin(t)."
+            )
+        bad = ~np.isfinite(places)
+        if bad.any():
+            first = float(np.broadcast_to(times, bad.shape)[bad][0]) if bad.ndim else 0.0
+            raise PaddleError(f"intent is not finite at t = {first:g} s; needs a position [m] at every tick.")
+        return np.broadcast_to(places, times.shape)
+
+    def __str__(self):
+        parts = [f"{name} = {getattr(self, name):g} {unit}" for name, unit in UNITS.items() if getattr(self, name)]
+        if self.moves:
+            parts.append("a moving intent")
+        elif self.intent is not None:
+            parts.append(f"intent = {self.intent:g} m")
+        return ", ".join(parts) or "nothing"
+
+
+def require(name, value, unit, owner, reason="", low=-math.inf, above=None):
+    """Return value as a float, or raise PaddleError, in words, unless it is finite and >= low (and > above)."""
+    unit = f" {unit}"
+    bound = f"{name} >= {low:g}" if low > -math.inf else f"a finite {name}"
+    bound = bound if above is None else f"{name} > {above:g}"
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise PaddleError(f"{name} = {value!r}; {owner} needs {bound}, a number in{unit}.") from None
+    if not math.isfinite(number) or number < low or (above is not None and number <= above):
+        reason = reason if math.isfinite(number) else "It must be finite."
+        raise PaddleError(f"{name} = {number:g}{unit}; {owner} needs {bound}. {reason}".rstrip())
+    return number

@@ -1,0 +1,244 @@
+"""Requests and replies over one open port, with one reader.
+
+On a real port a thread reads, and keeps the board's watchdog fed. A port in virtual time (``lockstep``) has no thread:
+whoever waits reads, so that the same calls give the same run; time passes for that thread alone, and others are refused.
+"""
+
+import itertools
+import secrets
+import threading
+import time
+from contextlib import contextmanager, suppress
+
+from ...errors import LinkError, PaddleError
+from .messages import HOST_SILENCE_MS, MESSAGES, RESULTS, row_of
+from .serial_ports import port_watched, read_available
+from .wire import Decoder, encode
+
+#: seconds; four heartbeats fit into the silence that a board takes for the host's end
+HEARTBEAT = HOST_SILENCE_MS / 4000
+#: seconds until a request is sent again, soon enough to break no silence, and how often. A board answers within 2 ms.
+PATIENCE, TRIES = 0.03, 33
+
+
+class Exchange:
+    """Ask a board, and collect what it says by itself.
+
+    Parameters
+    ----------
+    port : serial object
+        Of open_port.
+    on_frame : callable
+        Called with every Frame that is no reply: samples, fault reports. In the reader's thread, so it only stores. The
+        thread keeps alive whatever this refers to: never a paddle, whose motor would then run on when nobody holds it.
+
+    Attributes
+    ----------
+    state : dict or None
+        Fields of the last STATE.
+    broken : PortError or None
+        Why the reader stopped.
+    """
+
+    def __init__(self, port, on_frame=lambda frame: None):
+        self.port, self.on_frame = port, on_frame
+        self.lockstep = getattr(port, "lockstep", False)
+        self.now = port.now if self.lockstep else time.monotonic
+        self.decoder = Decoder()
+        self.session = secrets.randbits(31) + 1
+        self.state, self.broken, self.beating = None, None, False
+        # guarded requests count by themselves: a board refuses one older than the last it obeyed
+        self._sequences = {guarded: itertools.count(1) for guarded in (False, True)}
+        self._wanted = self._reply = self._then = self._beat_sequence = None
+        port.timeout = HEARTBEAT / 4  # so that a silent board does not keep the reader from beating
+        self._turn, self._news, self._closed = threading.Lock(), threading.Condition(), False
+        self._waiting = None  # the thread for which virtual time passes
+        self._last_sent = self.now()
+        self._thread = None
+        if not self.lockstep:
+            self._thread = threading.Thread(target=self._read_for_ever, name=f"hapticlab {port.port}", daemon=True)
+            self._thread.start()
+
+    def ask(self, message, *values, rest=b"", patience=PATIENCE, tries=TRIES, then=lambda: None):
+        """Send a request until its reply comes; return the reply's Frame.
+
+        A repeat carries the same sequence number, so that a board obeys it once. ``then`` is called, between the frames
+        that came before the reply and those after it, if the board did what was asked.
+
+        Raises
+        ------
+        LinkError
+            If nothing came back.
+        PortError
+            If the port failed.
+        PaddleError
+            If time is virtual, and another thread waits.
+        """
+        with self._turn:
+            self._require_my_time()
+            # a board takes one frame at a time: a heartbeat under way is answered first
+            self._wait_until(lambda: self._beat_sequence is None, HEARTBEAT / 2)
+            self._beat_sequence = None
+            sequence = self._next_sequence(message)
+            frame = encode(message, sequence, *values, rest=rest, session=self.session)
+            self._wanted, self._reply, self._then = (message, sequence & 255), None, then
+            for _ in range(tries):
+                self._send(frame)
+                if self._wait_until(lambda: self._reply is not None, patience):
+                    return self._reply
+        raise LinkError(
+            f"{self.port.port} does not answer {message} in {tries} tries of {patience:g} s; "
+            "check that the board has power and its cable is in, then connect again (`hapticlab doctor` finds the cause)"
+        )
+
+    def command(self, message, *values, rest=b"", **options):
+        """Ask for something to be done; return the tick after which it was, or raise LinkError with the board's reason."""
+        reply = self.ask(message, *values, rest=rest, **options)
+        said = reply.fields
+        if said["result"]:
+            name, meaning = _result(said["result"])
+            raise LinkError(f"the board refused {message}: {name}: {meaning}", name)
+        return said["tick"]
+
+    def refresh(self):
+        """Ask for the board's state and return its fields."""
+        return self.ask("STATUS").fields
+
+    def wait(self, condition, seconds):
+        """Read until condition() holds; return whether it did within so many seconds of the port's time."""
+        with self._my_time():
+            return self._wait_until(condition, seconds, beat=True)
+
+    def give(self, on_frame=None):
+        """Give samples and fault reports to another than before, or to nobody."""
+        with self._news:
+            self.on_frame = on_frame or (lambda frame: None)
+            self._news.notify_all()
+
+    def hang_up(self):
+        """Say STOP, to whoever may hear it, and close. Waits for no answer: a garbage collector may call it anywhere."""
+        self.beating = False
+        with suppress(Exception):  # then the board stops its motor by itself, 100 ms after the last word
+            if self._turn.acquire(timeout=HEARTBEAT):
+                try:
+                    self._send(encode("STOP", self._next_sequence("STOP"), session=self.session))
+                finally:
+                    self._turn.release()
+        self.close()
+
+    def close(self):
+        """End the reader and close the port; the board goes silent-host by itself."""
+        self._closed = True
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join(2)
+        carrier = getattr(self.port, "_socket", None)
+        self.port.close()
+        if carrier is not None:
+            carrier.close()  # pyserial leaves it open where the other end has gone first
+
+    @contextmanager
+    def _my_time(self):
+        """On a port in virtual time nobody else may ask or wait meanwhile: they would let each other's time pass."""
+        if not self.lockstep:
+            yield
+            return
+        with self._turn:
+            self._require_my_time()
+            before, self._waiting = self._waiting, threading.get_ident()
+        try:
+            yield
+        finally:
+            self._waiting = before
+
+    def _require_my_time(self):
+        if self._waiting not in (None, threading.get_ident()):
+            raise PaddleError(
+                f"{self.port.port}: time is virtual here and passes for the thread that waits; another thread waits now. "
+                "Ask between its waits, or let time pass by itself: sim://hapkit?pace=real"
+            )
+
+    def _next_sequence(self, message):
+        return next(self._sequences[MESSAGES[message].guarded])
+
+    def _send(self, frame):
+        self._check()
+        self._last_sent = self.now()
+        with port_watched(self.port):
+            self.port.write(frame)
+
+    def _check(self):
+        if self.broken is not None:
+            raise self.broken
+
+    def _wait_until(self, condition, seconds, beat=False):
+        deadline = self.now() + seconds
+        if not self.lockstep:
+            with self._news:
+                self._news.wait_for(lambda: condition() or self.broken, seconds)
+            self._check()
+            return bool(condition())
+        while not condition():
+            if self.now() >= deadline:
+                return False
+            if beat:
+                self._beat()
+            self._take(read_available(self.port))
+        return True
+
+    def _take(self, data):
+        """Sort what came: replies to whoever waits, states kept, the rest to on_frame."""
+        for frame in self.decoder.feed(data):
+            try:
+                known = frame.fields
+            except ValueError:
+                self.decoder.damaged += 1
+                continue
+            if frame.message == "STATE":
+                self.state = known
+                self._beat_sequence = None if frame.sequence == self._beat_sequence else self._beat_sequence
+            if frame.message in ("SAMPLE", "FAULTED"):
+                self.on_frame(frame)
+            elif self._is_wanted(frame, known):
+                self._reply, self._wanted = frame, None
+                if not known.get("result"):
+                    self._then()
+
+    def _is_wanted(self, frame, known):
+        if self._wanted is None or frame.sequence != self._wanted[1]:
+            return False
+        asked = MESSAGES[self._wanted[0]].number
+        return known["request"] == asked if frame.message == "ACK" else frame.message in _ANSWERS.get(self._wanted[0], ())
+
+    def _beat(self):
+        """Say that the host is there, unless a request said so or waits for its reply."""
+        if not self.beating or self.now() - self._last_sent < HEARTBEAT or not self._turn.acquire(blocking=False):
+            return
+        try:
+            self._beat_sequence = self._next_sequence("STATUS") & 255
+            self._send(encode("STATUS", self._beat_sequence))
+        finally:
+            self._turn.release()
+
+    def _read_for_ever(self):
+        while not self._closed:
+            try:
+                data = read_available(self.port)
+                self._beat()
+                if data:
+                    with self._news:
+                        self._take(data)
+                        self._news.notify_all()
+            except Exception as problem:  # whatever it was, those who wait must hear of it
+                if not self._closed:
+                    self.broken = problem
+                with self._news:
+                    self._news.notify_all()
+                return
+
+
+#: which message answers which request, where it is not ACK
+_ANSWERS = {"HELLO": ("WELCOME",), "PING": ("PONG",), "STATUS": ("STATE",), "READ": ("BYTES",)}
+
+
+def _result(number):
+    return row_of(RESULTS, number) or (f"result {number}", "unknown")

@@ -1,0 +1,109 @@
+"""Why a serial port does not open, in the words of whoever has to cure it."""
+
+import errno
+import glob
+import os
+import re
+import shlex
+import sys
+from pathlib import Path
+
+from ...compiler.engines.firmware_library import firmware_folder
+
+#: of udev, in firmware/udev
+RULES = "60-hapticlab.rules"
+
+
+def explain(url, baudrate, problem, ports):
+    """Return the sentence and its cause for a port that did not open; ``ports`` are those there are."""
+    if "://" in url:
+        return _explain_url(url, problem)
+    code, text = _code_of(problem), str(problem)
+    if code == errno.ENOENT:
+        there = ", ".join(map(str, ports))
+        return f"{url}: no such port; there {f'are: {there}' if there else 'is none. Plug the board in'}", "missing"
+    if code in (errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK):
+        return f"{url} is taken by {_holder(url)}; close it there, then connect again{_modem_manager()}", "busy"
+    if code in (errno.EACCES, errno.EPERM):
+        return f"{url}: permission denied; {permission_cure()}", "permission"
+    if code in (errno.ENOTTY, errno.EISDIR, errno.EINVAL, errno.ENXIO, errno.ENODEV, errno.EIO):
+        return f"{url} is no serial port that answers ({text}); plug it in again, or name another port", "missing"
+    if isinstance(problem, ValueError) or "baud" in text:
+        return f"{url} cannot be set to {baudrate} baud ({text}); use a port that can, or another USB adapter", "settings"
+    return f"{url} did not open ({text}); plug the board in again, then connect again", "failed"
+
+
+def _explain_url(url, problem):
+    scheme = url.split("://", 1)[0]
+    if isinstance(problem, ValueError) and "protocol" in str(problem):
+        return (
+            f"{url}: no port speaks {scheme!r}; give a port such as {'COM3' if os.name == 'nt' else '/dev/ttyACM0'}, "
+            "or sim://hapkit, or socket://host:port",
+            "url",
+        )
+    if isinstance(problem, ValueError) or any(w in str(problem) for w in ("debug|info", "not supported between")):
+        return f"{url}: not a port's address; write it as in socket://host:port", "url"
+    return f"{url}: nothing answers there ({problem}); start what should, or check the address", "refused"
+
+
+def _code_of(problem):
+    """Return the POSIX number of a failure.
+
+    pyserial's Windows messages hold the error only as text, in the system's language; its numbers are in every one:
+    ``PermissionError(13, 'Access is denied.', None, 5)``.
+    """
+    windows = re.search(r"Error\(\d+, .*, None, (\d+)\)", str(problem))
+    if windows:
+        # ERROR_FILE_NOT_FOUND, PATH_NOT_FOUND, ACCESS_DENIED (Windows: somebody has the port), INVALID_HANDLE (closed
+        # by its driver), BAD_COMMAND, GEN_FAILURE, SHARING_VIOLATION, INVALID_PARAMETER, SEM_TIMEOUT, INVALID_NAME,
+        # DEVICE_NOT_CONNECTED
+        return {
+            2: errno.ENOENT, 3: errno.ENOENT, 5: errno.EBUSY, 6: errno.EIO, 22: errno.EIO, 31: errno.EIO,
+            32: errno.EBUSY, 121: errno.EIO, 123: errno.ENOENT, 1167: errno.EIO,
+        }.get(int(windows[1]))  # fmt: skip
+    number = re.search(r"\((\d+), '", str(problem))  # termios.error and pyserial's "Could not configure port: (25, ..."
+    return getattr(problem, "errno", None) or (int(number[1]) if number else None)
+
+
+def _holder(device):
+    """Return who has a device open, as far as Linux lets this user see."""
+    held = []
+    for link in glob.iglob("/proc/[0-9]*/fd/*"):
+        try:
+            if os.path.samefile(link, device):
+                number = int(link.split("/")[2])
+                name = Path(f"/proc/{number}/comm").read_text("utf-8").strip()
+                held.append("this very program" if number == os.getpid() else f"{name} (process {number})")
+        except OSError:  # ended meanwhile, or another user's
+            continue
+    return " and ".join(dict.fromkeys(held)) or "another program (another notebook, the Arduino IDE's serial monitor)"
+
+
+def _modem_manager():
+    if not sys.platform.startswith("linux"):
+        return ""
+    return f". In the first seconds after plugging in it may be ModemManager, which {RULES} keeps away"
+
+
+def rules_file():
+    """Return the udev rules: they let the user at the screen open the boards, and keep ModemManager away from them."""
+    return firmware_folder() / "udev" / RULES
+
+
+def permission_cure():
+    """Return what lets this user open serial ports, as one instruction for this system."""
+    if not sys.platform.startswith("linux"):
+        return "close every other program that uses it, and install the USB driver of the board's maker"
+    group = next((g for g in ("dialout", "uucp") if _has_group(g)), "dialout")
+    rules = shlex.quote(str(rules_file()))
+    return (
+        f"do: sudo cp {rules} /etc/udev/rules.d/ && sudo udevadm control --reload && sudo udevadm trigger, "
+        f"then plug it in again; or: sudo usermod -aG {group} $USER, then log out and in"
+    )
+
+
+def _has_group(name):
+    try:
+        return any(line.startswith(f"{name}:") for line in Path("/etc/group").read_text("utf-8").splitlines())
+    except OSError:
+        return False

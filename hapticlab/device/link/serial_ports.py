@@ -1,0 +1,158 @@
+"""Serial ports, opened in one place: which there are, and what is wrong when one does not open.
+
+The only module that opens pyserial, which opens ``urls``. It asks of it what its successors have too: ``serial_for_url``,
+``read``, ``write``, ``in_waiting``, ``close`` and ``comports``.
+"""
+
+import os
+import re
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+
+from ...errors import HapticlabError, PortError
+from .port_faults import explain
+
+try:
+    from termios import error as TerminalError  # pyserial lets it through, and it is no OSError
+except ImportError:  # Windows
+    TerminalError = OSError
+
+#: pyserial looks for protocol_<scheme> in these packages
+HANDLERS = "hapticlab.device.urls"
+#: bytes that are worth waking a reader for at once: two samples
+ENOUGH = 64
+#: an environment variable; where it is "sim", as while grading, nobody's hand is at the handle and no other port opens
+PORTS = "HAPTICLAB_PORTS"
+#: (vendor, product) of boards a paddle is built on, and of the USB bridges on their copies. Sources: boards.txt of
+#: ArduinoCore-avr (uno), the device tables of Linux's ch341.c, cp210x.c and ftdi_sio_ids.h.
+BOARDS = {
+    (0x2341, 0x0043): "Arduino Uno R3",
+    (0x2341, 0x0001): "Arduino Uno",
+    (0x2341, 0x0243): "Genuino Uno",
+    (0x2A03, 0x0043): "Arduino Uno (arduino.org)",
+    (0x2341, 0x006A): "Arduino Uno Mini",
+    (0x1A86, 0x7523): "CH340 (copies of the Uno and Nano)",
+    (0x1A86, 0x5523): "CH341 (copies of the Uno and Nano)",
+    (0x0403, 0x6001): "FT232R (Hapkit board, Nano)",
+    (0x0403, 0x6015): "FT231X (copies of the Uno)",
+    (0x10C4, 0xEA60): "CP210x (copies of the Uno)",
+}
+
+
+@dataclass(frozen=True)
+class Port:
+    """A serial port of this computer; ``known`` names the kind of board, or is None for a stranger's device."""
+
+    device: str
+    description: str = ""
+    vid: int | None = None
+    pid: int | None = None
+    serial_number: str | None = None
+    known: str | None = None
+
+    def __str__(self):
+        return f"{self.device} ({self.known or self.description or 'unknown'})"
+
+
+def available_ports():
+    """Return the serial ports of this computer, in the order of their names.
+
+    Only a port whose ``known`` is not None may be opened without being asked for: another may drive a stranger's motor.
+
+    Returns
+    -------
+    list of Port
+    """
+    from serial.tools import list_ports
+
+    return sorted((_described(p) for p in list_ports.comports()), key=_natural)
+
+
+def _described(info):
+    words = "" if info.description == "n/a" else info.description or ""
+    return Port(info.device, words, info.vid, info.pid, info.serial_number, BOARDS.get((info.vid, info.pid)))
+
+
+def _natural(port):
+    """Order COM10 after COM9."""
+    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", port.device)]
+
+
+def open_port(url, *, baudrate=500000, timeout=0.05):
+    """Open a serial port, for this program alone, and return pyserial's object.
+
+    Parameters
+    ----------
+    url : str
+        A port (``COM3``, ``/dev/ttyACM0``) or a URL: ``sim://hapkit``, ``socket://host:port``, any of pyserial's.
+    baudrate : int
+    timeout : float, s
+        The longest a read waits.
+
+    Raises
+    ------
+    PortError
+        Always with what to do; its ``cause`` is one word.
+    """
+    import serial
+
+    if not isinstance(url, str) or not url:
+        raise PortError(f'{url!r} is no port; needs its name or address as text: "COM3", "/dev/ttyACM0", "sim://hapkit"', "url")
+    if os.environ.get(PORTS) == "sim" and not url.lower().startswith("sim://"):
+        raise PortError(
+            f"{url}: {PORTS}=sim lets only simulated paddles open, as while a notebook is graded; use sim://hapkit there, "
+            "or unset it for a paddle with a person at it",
+            "refused",
+        )
+    if HANDLERS not in serial.protocol_handler_packages:
+        serial.protocol_handler_packages.append(HANDLERS)
+    try:
+        port = serial.serial_for_url(url, baudrate=baudrate, timeout=timeout, write_timeout=1, exclusive=True)
+    except HapticlabError:  # sim:// explains itself
+        raise
+    except (OSError, ValueError, TerminalError) as problem:
+        raise PortError(*explain(url, baudrate, problem, available_ports())) from problem
+    with suppress(AttributeError, NotImplementedError, ValueError, OSError):  # Linux, and drivers that have it
+        port.set_low_latency_mode(True)
+    return port
+
+
+def read_available(port):
+    """Return the bytes that have come, after waiting for the first as long as the port's timeout.
+
+    One byte is asked for where none has come, so that a reader wakes with the first and never waits for a full buffer.
+
+    Raises
+    ------
+    PortError
+        If the device left.
+    """
+    with port_watched(port):
+        waiting = port.in_waiting
+        data = port.read(max(1, waiting))
+        while waiting == 1 and len(data) < ENOUGH:  # socket:// says 1 however many wait
+            waiting = port.in_waiting
+            data += port.read(waiting) if waiting else b""
+        return data
+
+
+@contextmanager
+def port_watched(port):
+    """Turn what pyserial raises about an open port into a PortError."""
+    try:
+        yield
+    except (OSError, TypeError, TerminalError) as problem:
+        if not port.is_open:  # closed meanwhile, by another thread or by a with: pyserial then stumbles over None
+            raise PortError(f"{port.port} is closed; connect again", "left") from problem
+        if isinstance(problem, TypeError):
+            raise
+        if "timeout" in str(problem).lower():
+            raise PortError(
+                f"{port.port}: the device takes no data for {port.write_timeout} s; plug it in again, then connect again",
+                "silent",
+            ) from problem
+        raise PortError(
+            f"{port.port}: the device left during use ({problem}). Check its cable and supply, plug it in again, "
+            "then connect again",
+            "left",
+        ) from problem

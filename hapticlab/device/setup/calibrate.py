@@ -1,0 +1,106 @@
+"""Calibrate a paddle: stops, motor sign, force constant, one after the other, each agreed to before it is stored."""
+
+import secrets
+
+from ...errors import PaddleError
+from ..board.settings import changed, nominal
+from ..link.messages import SENSORS
+from .force_constant import measure_force
+from .person import Person
+from .sign_check import check_sign
+from .stops import measure_stops
+from .stored_settings import lead_home, offer
+
+STEPS = ("stops", "sign", "force")
+
+
+def calibrate(paddle, person=None, *, date, only=None):
+    """Measure what a paddle is and store it on its board; nothing is written that the person did not agree to.
+
+    Parameters
+    ----------
+    paddle : SerialPaddle
+    person : Person, optional
+        Who holds the handle and answers; by default whoever sits at this terminal.
+    date : int
+        Today, as 20261120; kept with the calibration.
+    only : {"stops", "sign", "force"}, optional
+        This step alone.
+
+    Returns
+    -------
+    Settings
+        What the board keeps now.
+
+    Raises
+    ------
+    PaddleError
+        If a step's numbers make no sense; what was stored before stays.
+
+    Notes
+    -----
+    Stops: two sweeps with the handle led from stop to stop, and the travel between them with a ruler. Sign: see
+    hapticlab.device.setup.sign_check. Force: a kitchen scale or a hanging weight, least squares. Mass, damping, friction,
+    heating and speed limits stay nominal: a lab identifies them.
+    """
+    if only is not None and only not in STEPS:
+        raise PaddleError(f"only = {only!r}; a calibration has the steps {', '.join(STEPS)}, or None for all.")
+    if not 20200101 <= date <= 99991231:
+        raise PaddleError(f"date = {date}; needs today's, as 20261120.")
+    person = person or Person()
+    if paddle.settings is None and not _begin(paddle, person):
+        return None
+    for step in STEPS if only is None else (only,):
+        person.say(f"\n== {step}")
+        if not _STEP[step](paddle, person, date):
+            break
+    person.say("\n".join(["", f"{paddle}", *still_nominal(paddle.settings)]))
+    return paddle.settings
+
+
+def still_nominal(settings):
+    """Return a line on the constants that are as shipped: measured on no paddle."""
+    shipped = nominal("hapkit").to_float32()
+    names = [name for name in ("metres_per_count", "force_full", "force_continuous", "heating_time", "speed_max", "m", "b")
+             if getattr(settings, name) == getattr(shipped, name)]  # fmt: skip
+    return [f"nominal    {', '.join(names)}: as shipped, not measured on this paddle"] if names else []
+
+
+def _begin(paddle, person):
+    """Store nominal constants on a new board: the sensor's kind decides how it counts. Returns whether it was agreed to."""
+    kind = person.choose(
+        "This board has no settings yet. Which sensor has the paddle?",
+        {"hapkit": "magnetoresistive sensor on A2, as on a Hapkit", "encoder": "quadrature encoder on D2 and D3"},
+    )
+    sensor = SENSORS["MAGNETORESISTIVE" if kind == "hapkit" else "QUADRATURE"]
+    begun = nominal("hapkit", sensor=sensor, ident=_named(0))
+    return offer(paddle, person, begun, ["to store   nominal constants of a Hapkit, motor at 0.5 N at most, to begin with"])
+
+
+def _named(ident):
+    """Return the 16 bits that name a paddle, drawn where it has none."""
+    return ident or 1 + secrets.randbelow(0xFFFF)
+
+
+def _stops(paddle, person, date):
+    found = measure_stops(paddle, person)
+    was = paddle.settings.metres_per_count
+    settings = changed(found.into(paddle.settings), date=date, ident=_named(paddle.settings.ident))
+    words = [*found.words(), f"before     {abs(was) * 1e6:.4g} um a count", f"kept       force_full = {settings.force_full:g} N"]
+    return offer(paddle, person, settings, words)
+
+
+def _sign(paddle, person, date):
+    lead_home(paddle, person)
+    found = check_sign(paddle, person)
+    person.say(str(found))
+    return found.verdict == "right"
+
+
+def _force(paddle, person, date):
+    settings, words = measure_force(paddle, person)
+    settings = changed(settings, date=date, ident=_named(settings.ident))
+    return offer(paddle, person, settings, [*words, f"before     force_full = {paddle.settings.force_full:g} N"])
+
+
+_STEP = {"stops": _stops, "sign": _sign, "force": _force}

@@ -1,0 +1,89 @@
+"""Find a paddle and connect to it."""
+
+from contextlib import suppress
+
+from ...errors import LinkError, PaddleError, PortError
+from ..board.serial_paddle import SerialPaddle
+from ..link.serial_ports import available_ports, open_port
+from ..simulated.simulated_paddle import SimulatedPaddle
+
+
+def connect(port=None, *, T=None, paddle=None, hello=3.0):
+    """Connect to a paddle and return it; use it in a ``with``, which leaves the motor off whatever happens.
+
+    Parameters
+    ----------
+    port : str, optional
+        ``COM3``, ``/dev/ttyACM0``, ``sim://hapkit``, ``socket://host:port``, any URL of pyserial. Without it the ports
+        whose USB numbers are of a known kind of board are asked, and only one that answers as a paddle is taken.
+    T : float, optional
+        Sampling period [s], whole microseconds within the board's range; 1 ms, or that of ``paddle``.
+    paddle : SimulatedPaddle, optional
+        The mechanics behind a ``sim://`` port.
+    hello : float
+        How long a board may take to answer, from reset [s].
+
+    Returns
+    -------
+    SerialPaddle
+
+    Raises
+    ------
+    PortError, LinkError
+        No port, a port that does not open, no paddle behind it, firmware of another version: each with its cure.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> with hl.connect("sim://hapkit") as paddle:
+    ...     print(paddle)
+    host 0000, firmware 1.0, T = 1 ms, nominal constants, not calibrated, |F| <= 3.3 N
+    """
+    if paddle is not None and not isinstance(paddle, SimulatedPaddle):
+        raise PaddleError(f"paddle = {paddle!r}; needs a SimulatedPaddle, the mechanics of a simulated board.")
+    if paddle is not None and T not in (None, paddle.T):
+        raise PaddleError(f"T = {T} s, and the paddle has T = {paddle.T:g} s; give one of them.")
+    T = T if T is not None else paddle.T if paddle is not None else 1e-3
+    if port is None:
+        if paddle is not None:
+            raise PaddleError('paddle= is the mechanics of a simulated board: connect("sim://hapkit", paddle=...)')
+        return _first_found(T, hello)
+    opened = open_port(port)
+    if not hasattr(opened, "put_on"):
+        if paddle is not None:
+            opened.close()
+            raise PaddleError(f'paddle= is for a simulated board, and {port} is none: connect("sim://hapkit", paddle=...)')
+        return SerialPaddle(port, T=T, port=opened, hello=hello)
+    if paddle is not None:
+        opened.put_on(paddle)
+    board = SerialPaddle(port, T=T, port=opened, hello=hello)
+    board.home(at=opened.handle.x)  # nobody's hand is on a simulated handle: where it starts is known
+    return board
+
+
+def _first_found(T, hello):
+    """Ask every port that may be a board; none else is opened, for it may drive a stranger's motor."""
+    ports = available_ports()
+    candidates = [port for port in ports if port.known]
+    if not candidates:
+        seen = ", ".join(str(port) for port in ports) or "no serial port at all"
+        raise PortError(
+            f"no known board is plugged in; found {seen}. Check the cable (some carry power only), or name the port: "
+            'connect("COM3"), connect("/dev/ttyACM0"); connect("sim://hapkit") needs no board.',
+            "missing",
+        )
+    refusals, found = [], []
+    for port in candidates:
+        try:
+            found.append(SerialPaddle(port.device, T=T, hello=hello))
+        except (PortError, LinkError) as problem:
+            refusals.append(str(problem))
+    if len(found) == 1:
+        return found[0]
+    for paddle in found:
+        with suppress(PaddleError):
+            paddle.close()
+    if found:
+        named = "; ".join(f"{p.url}: {p}" for p in found)
+        raise PortError(f"{len(found)} paddles are plugged in: {named}. Say which: connect({found[0].url!r})", "many")
+    raise PortError("; ".join(refusals))

@@ -1,0 +1,131 @@
+"""What is wrong with this paddle? A walk from the cable to the motor; every step says what it found and what to do."""
+
+from dataclasses import asdict, dataclass
+
+from ...errors import HapticlabError
+from ..board.serial_paddle import SerialPaddle
+from ..link.port_faults import permission_cure
+from ..link.serial_ports import available_ports, open_port
+from . import computer_checks
+from . import doctor_checks as checks
+
+STATES = ("ok", "attention", "fault", "skipped")
+
+
+@dataclass(frozen=True)
+class Report:
+    """Every step's Check, in order; prints as lines."""
+
+    checks: tuple
+
+    @property
+    def exit_code(self):
+        """0, or 1 where anything is a fault."""
+        return int(any(check.state == "fault" for check in self.checks))
+
+    def __getitem__(self, name):
+        """Return the last check of that name; KeyError where the walk did not come so far."""
+        return {check.name: check for check in self.checks}[name]
+
+    def records(self):
+        """Return the checks as dictionaries."""
+        return [asdict(check) for check in self.checks]
+
+    def __str__(self):
+        counted = ", ".join(f"{count} {s}" for s in STATES if (count := sum(c.state == s for c in self.checks)))
+        return "\n".join([*map(str, self.checks), counted])
+
+    __repr__ = __str__  # what a notebook shows
+
+
+def doctor(url=None, person=None, *, tell=lambda check: None):
+    """Walk through notebook, rights, cable, port, firmware, settings, latency, loop, link, sensor, home and motor sign.
+
+    Parameters
+    ----------
+    url : str, optional
+        A port; without it the one whose USB numbers are of a known board.
+    person : Person, optional
+        Who moves the handle when asked; None skips what needs one, and says so. Force, 0.5 N at most, is given only in
+        the check of the motor's sign, and only if the person agrees.
+    tell : callable
+        Called with every Check as it is made.
+
+    Returns
+    -------
+    Report
+
+    Examples
+    --------
+    >>> from hapticlab.device.setup.doctor import doctor
+    >>> report = doctor("sim://hapkit")
+    >>> report.exit_code
+    0
+    >>> print(report["port"])
+    ok         port       sim://hapkit opens
+    """
+    made = []
+    for check in _walk(url, person):
+        made.append(check)
+        tell(check)
+    return Report(tuple(made))
+
+
+def _walk(url, person):
+    """Yield one Check after another, until one leaves nothing to go on with."""
+    yield computer_checks.notebook()
+    if url is None or "://" not in url:
+        yield computer_checks.rights(url)
+    found, url = _ports(url)
+    yield found
+    if url is None:
+        return
+    try:
+        port = open_port(url)
+    except HapticlabError as problem:  # sim:// has reasons of its own: no such paddle, no library
+        cause = getattr(problem, "cause", None)
+        yield checks.Check("port", "fault", f"{url} does not open" + (f" ({cause})" if cause else ""), str(problem))
+        return
+    yield checks.Check("port", "ok", f"{url} opens")
+    paddle = None
+    try:
+        found, paddle = checks.firmware(port, url, SerialPaddle)
+        yield from found
+        if paddle is not None:
+            yield from _on_board(paddle, person)
+    except HapticlabError as problem:
+        yield checks.Check("link", "fault", "the walk ended here", str(problem))
+    finally:
+        if paddle is not None:
+            paddle.close()
+        elif port.is_open:
+            port.close()
+
+
+def _on_board(paddle, person):
+    yield checks.settings(paddle)
+    yield checks.latency(paddle)
+    yield from checks.loop_and_link(paddle)
+    yield checks.sensor_at_rest(paddle)
+    yield checks.sensor_moved(paddle, person)
+    yield checks.home(paddle, person)
+    yield checks.sign(paddle, person)
+
+
+def _ports(url):
+    """Return the Check of this computer's ports, and the port to look at, or None."""
+    there = available_ports()
+    known = [port for port in there if port.known]
+    listed = "; ".join(map(str, there)) or "no serial port"
+    if url is not None:
+        return checks.Check("computer", "ok", f"{listed}; {url} was named"), url
+    if len(known) == 1:
+        return checks.Check("computer", "ok", listed), known[0].device
+    if known:
+        names = ", ".join(port.device for port in known)
+        return checks.Check("computer", "fault", f"{len(known)} known boards: {listed}", f"name one of {names} with --port"), None
+    cure = (
+        "plug the board in; try another cable, as some carry power only, and another USB socket without a hub. Copies with "
+        "a CH340 need its driver on Windows and older macOS. If the port is there but not known, name it with --port"
+    )
+    return checks.Check("computer", "fault", f"no known board: {listed}", f"{cure}; Linux: {permission_cure()}"), None

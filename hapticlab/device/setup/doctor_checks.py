@@ -1,0 +1,224 @@
+"""The steps of hapticlab.device.setup.doctor: each looks at one thing and returns a Check."""
+
+import secrets
+import sys
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import HapticlabError, LinkError, PaddleError, PortError
+from ...scene.scene import Scene
+from ...scene.symbols import n, parameters, x
+from ..board.homing import state_flag
+from ..link.messages import RESET_CAUSES, SENSORS, row_of, table_hash
+from ..link.serial_ports import open_port
+from .flash import find_bootloader
+from .person import agrees
+from .sign_check import check_sign
+from .stored_settings import lead_home
+
+#: requests timed, and medians [s] from which the link is slow and from which it is an FTDI left as its driver starts it
+PINGS, SLOW, LAZY = 200, 4e-3, 8e-3
+#: s of watching: the loop, the handle at rest, the handle moved
+LOOP, REST, MOVED = 2.0, 1.0, 6.0
+#: part of the period by which it may vary
+JITTER = 0.05
+#: counts: at rest no more than this is noise, and no less than this is a motion
+NOISY, LEAST_SWEEP = 6, 50
+#: counts by which a sensor may leave the straight line through its neighbours
+JUMP = 20
+#: part of the sweep at either end where a handle that hits its stop is no jump of the sensor
+STOPS_PART = 0.02
+
+
+@dataclass(frozen=True)
+class Check:
+    """One step: name, state ("ok", "attention", "fault", "skipped"), what was found, what to do."""
+
+    name: str
+    state: str
+    found: str
+    cure: str = ""
+
+    def __str__(self):
+        return f"{self.state:<10} {self.name:<10} {self.found}" + (f"\n{'':<21} -> {self.cure}" if self.cure else "")
+
+
+def firmware(port, url, connected):
+    """Return the Checks of what runs on the board, and the paddle made by ``connected`` or None."""
+    try:
+        paddle = connected(url, port=port)
+    except PortError as problem:
+        return [Check("firmware", "fault", "the port failed", str(problem))], None
+    except LinkError as problem:
+        return [_other_firmware(url, problem)], None
+    same = f"messages {table_hash():08x} as here; {paddle}"
+    return [Check("firmware", "ok", same), _reset_cause(paddle.board["reset_cause"])], paddle
+
+
+def _other_firmware(url, problem):
+    if problem.result == "VERSION":
+        return Check("firmware", "fault", "hapticlab firmware of another version", str(problem))
+    if "://" in url or not _bootloader_answers(url):
+        return Check("firmware", "fault", "no paddle answers, no bootloader either", str(problem))
+    cure = f"put the firmware on it: hapticlab flash --port {url}"
+    return Check("firmware", "fault", "a board with a bootloader, but no hapticlab firmware", cure)
+
+
+def _bootloader_answers(url):
+    from_start = 115200  # what optiboot speaks; find_bootloader changes it for others
+    try:
+        port = open_port(url, baudrate=from_start)
+    except HapticlabError:
+        return False
+    try:
+        find_bootloader(port)
+        return True
+    except HapticlabError:
+        return False
+    finally:
+        port.close()
+
+
+def _reset_cause(number):
+    name, meaning = row_of(RESET_CAUSES, number) or ("?", "unknown")
+    if name in ("BROWN_OUT", "WATCHDOG"):
+        return Check("reset", "attention", f"the last reset was {name}", meaning)
+    return Check("reset", "ok", f"last reset: {meaning}")
+
+
+def settings(paddle):
+    """Whether the board has settings, and whether anything in them was measured."""
+    kept = paddle.settings
+    if kept is None:
+        return Check("settings", "attention", "none: this board gives no force", "run `hapticlab calibrate`")
+    sensor = next(name for name, k in SENSORS.items() if k == kept.sensor).lower()
+    words = f"{abs(kept.metres_per_count) * 1e6:.4g} um a count, {sensor}, force_full = {kept.force_full:.4g} N"
+    if kept.is_nominal and paddle.url.startswith("sim://"):
+        return Check("settings", "ok", f"as simulated: {words}")
+    if kept.is_nominal:
+        return Check("settings", "attention", f"nominal: {words}", "run `hapticlab calibrate`: nothing was measured here")
+    day = str(kept.date)
+    return Check("settings", "ok", f"{words}, calibrated {day[:4]}-{day[4:6]}-{day[6:]}")
+
+
+def latency(paddle):
+    """Time requests there and back."""
+    exchange, times = paddle.exchange, []
+    for _ in range(PINGS):
+        begun = exchange.now()
+        exchange.ask("PING", secrets.randbits(32))
+        times.append(exchange.now() - begun)
+    median, worst = float(np.median(times)), max(times)
+    words = f"{median * 1e3:.2f} ms median, {worst * 1e3:.2f} ms worst of {PINGS} requests"
+    if median < SLOW:
+        return Check("latency", "ok", words)
+    return Check("latency", "attention", words, _latency_cure(median))
+
+
+def _latency_cure(median):
+    if median < LAZY:
+        return "use a USB socket of the computer itself, no hub; walls run on the board and do not feel it"
+    where = {
+        "win32": "Device Manager > Ports > properties > Port Settings > Advanced > Latency Timer: 1 ms",
+        "linux": "it was asked for less when the port was opened, and its driver did not follow: "
+        "echo 1 | sudo tee /sys/bus/usb-serial/devices/ttyUSB*/latency_timer",
+    }.get(sys.platform, "the FTDI driver of the system sets it; Apple's own has 1 ms to 16 ms by its version")
+    return f"an FTDI adapter waits 16 ms by default: {where}. Walls run on the board and do not feel it"
+
+
+def loop_and_link(paddle):
+    """Watch the loop for two seconds with the motor off; return its Check and the link's."""
+    before = _damaged(paddle)  # the first hello of a board that has just been reset comes to it in part
+    log = _watch(paddle, LOOP)
+    timing, expected = paddle.timing, round(LOOP / paddle.T)
+    jitter = max(timing.period_max - timing.T, timing.T - timing.period_min)
+    bad = timing.overruns or jitter > JITTER * timing.T
+    loop = Check("loop", "attention" if bad else "ok", str(timing), "report this with the board's name" if bad else "")
+    missing = int(np.sum(log.gap)) if log.gap is not None else 0
+    damaged = _damaged(paddle) - before
+    words = f"{len(log)} samples of {expected // round(log.T / paddle.T)}, {missing} gaps, {timing.lost} lost, {damaged} damaged"
+    cure = "another cable, short, away from the motor's wires; no hub" if missing or damaged or timing.lost else ""
+    return [loop, Check("link", "attention" if cure else "ok", words, cure)]
+
+
+def _damaged(paddle):
+    """Damaged frames so far, both ways."""
+    return paddle.state()["damaged"] + paddle.exchange.decoder.damaged
+
+
+def sensor_at_rest(paddle):
+    """Noise of a handle that nobody touches, in counts."""
+    counts = _counts(paddle, _watch(paddle, REST))
+    wide = float(np.ptp(counts))
+    words = f"at rest {wide:.0f} counts wide, {np.std(counts):.2f} rms"
+    if wide <= NOISY:
+        return Check("noise", "ok", words)
+    cure = "let go of the handle; else check the sensor's supply and ground, and keep its wires from the motor's"
+    return Check("noise", "attention", words, cure)
+
+
+def sensor_moved(paddle, person):
+    """Whether the sensor follows the handle, over its wraps, without jumps."""
+    if person is None:
+        return Check("sensor", "skipped", "whether it follows the handle: needs a person")
+    person.ask(f"Press Enter, then lead the handle slowly from stop to stop and back, for {MOVED:g} s. The motor is off.")
+    counts = _counts(paddle, _watch(paddle, MOVED))
+    sweep, jump = float(np.ptp(counts)), _largest_jump(counts)
+    if sweep < LEAST_SWEEP:
+        cure = "check the sensor's wires (A2, or D2 and D3), that its magnet is there and turns, and the kind of sensor"
+        return Check("sensor", "fault", f"{sweep:.0f} counts while the handle was led to and fro", cure)
+    kept = paddle.settings
+    wraps = f", {sweep / kept.wrap:.1f} turns of {kept.wrap}" if kept and kept.sensor == SENSORS["MAGNETORESISTIVE"] else ""
+    words = f"{sweep:.0f} counts from end to end{wraps}, largest jump {jump:.0f}"
+    if jump <= JUMP:
+        return Check("sensor", "ok", words)
+    cure = "lead it slowly and try again; else the magnet is loose or far off, or counts are lost where the sensor wraps"
+    return Check("sensor", "attention", words, cure)
+
+
+def home(paddle, person):
+    """Whether the board knows where the handle is, or learns it from both stops."""
+    if paddle.settings is None:
+        return Check("home", "skipped", "whether both stops are found: needs a calibration")
+    if state_flag(paddle.exchange, "HOMED"):
+        return Check("home", "ok", f"the position is known: x = {paddle.state()['x'] * 1e3:.2f} mm")
+    if person is None:
+        return Check("home", "skipped", "unknown since the last reset; leading the handle to both stops needs a person")
+    try:
+        lead_home(paddle, person)
+    except PaddleError as problem:
+        return Check("home", "fault", "not found between the stops", str(problem))
+    return Check("home", "ok", f"found from both stops: x = {paddle.state()['x'] * 1e3:.2f} mm")
+
+
+def sign(paddle, person):
+    """Whether the motor pulls the way it is told."""
+    kept = paddle.settings
+    if kept is None or not state_flag(paddle.exchange, "HOMED"):
+        return Check("motor", "skipped", "its sign: needs a calibration and a known position")
+    before = "checked, as the board keeps" if kept.checked else "not checked: 0.5 N at most"
+    cure = "" if kept.checked else "run `hapticlab calibrate --only sign`"
+    if person is None or not agrees(person, f"The motor's sign is {before}. Check it now, with 0.5 N at most?"):
+        return Check("motor", "ok" if kept.checked else "attention", f"its sign is {before}", cure)
+    found = check_sign(paddle, person)
+    state = {"right": "ok", "wrong": "fault"}.get(found.verdict, "attention")
+    return Check("motor", state, str(found), "" if state == "ok" else "run `hapticlab calibrate --only sign`")
+
+
+def _watch(paddle, seconds):
+    """Return the Telemetry of a handle watched with the motor off."""
+    k = parameters("k", units="N/m")
+    return paddle.run(Scene(force=k * x(n), name="watching")(k=0.0), duration=seconds, passive=True, progress=False)
+
+
+def _counts(paddle, log):
+    return log.x / (paddle.settings.metres_per_count if paddle.settings else 1.0)
+
+
+def _largest_jump(counts):
+    """Return the largest distance of a sample from the middle between its neighbours, in counts, away from both stops."""
+    stop = STOPS_PART * np.ptp(counts)
+    free = (counts[1:-1] > counts.min() + stop) & (counts[1:-1] < counts.max() - stop)
+    off = np.abs(counts[1:-1] - (counts[2:] + counts[:-2]) / 2)
+    return float(np.max(off, where=free, initial=0.0))

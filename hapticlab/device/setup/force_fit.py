@@ -1,0 +1,118 @@
+"""Force constant and law of a motor, by least squares from duties and the forces that a scale or a weight told."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import PaddleError
+from ..link.messages import MOTOR_LAWS
+
+#: a fit is poor where its residual is more than this part of the range of forces, or this many newtons (3 g on a scale)
+POOR_PART, POOR_N = 0.05, 0.03
+#: the other law is taken where its residual is so many times smaller
+CLEARLY = 2.0
+#: N at full duty: outside these it is no paddle's motor
+LEAST, MOST = 0.1, 100.0
+
+
+@dataclass(frozen=True)
+class ForceFit:
+    """force_full [N] with its standard error [N], the law, the residuals [N, rms] of both laws."""
+
+    force_full: float
+    error: float
+    law: str
+    residuals: dict
+
+    def words(self, was):
+        """Return what was found, in lines; ``was`` is the law the board had."""
+        rms = ", ".join(f"{1e3 * a:.1f} mN with {law}" for law, a in self.residuals.items() if np.isfinite(a))
+        error = f" +- {self.error:.2g}" if np.isfinite(self.error) else ""
+        lines = [f"measured   force_full = {self.force_full:.4g}{error} N", f"measured   residual {rms}"]
+        if self.law != was:
+            return [*lines, f"measured   force follows {self.law}, not {was}: the law is changed, too"]
+        told = len([a for a in self.residuals.values() if np.isfinite(a)]) > 1
+        return [*lines, f"kept       motor law {was}" + ("" if told else ": so few points tell no law")]
+
+
+def duty_of(force, settings, duty_full):
+    """Return the duty, 0 ... 1, that a board gives for a force [N]: its law, rounded to its steps."""
+    part = min(abs(force) / settings.force_full, 1.0)
+    part = part**0.5 if settings.motor_law == MOTOR_LAWS["SQRT"] else part
+    return int(part * duty_full + 0.5) / duty_full
+
+
+def fit_force(duties, forces, law, *, intercept=True):
+    """Fit force = offset + force_full g(duty), where g is duty (LINEAR) or its square (SQRT: duty is the root of force).
+
+    Parameters
+    ----------
+    duties, forces : array_like, shape (points,)
+        0 ... 1, and [N].
+    law : {"LINEAR", "SQRT"}
+        The board's. The other is taken only if it fits clearly better.
+    intercept : bool
+        Whether an offset (tare, constant friction) is fitted.
+
+    Raises
+    ------
+    PaddleError
+        If the force does not grow with the duty, or no law fits.
+
+    Examples
+    --------
+    >>> from hapticlab.device.setup.force_fit import fit_force
+    >>> found = fit_force([0, 0.1, 0.2, 0.3], [0.0, 0.4, 0.8, 1.2], "LINEAR")
+    >>> round(found.force_full, 6), found.law
+    (4.0, 'LINEAR')
+    """
+    duties, forces = np.asarray(duties, float), np.asarray(forces, float)
+    fits = {name: _line(duties if name == "LINEAR" else duties**2, forces, intercept) for name in MOTOR_LAWS}
+    if len(duties) < (4 if intercept else 3):
+        fits = {name: (full, error, rms if name == law else np.nan, rest) for name, (full, error, rms, rest) in fits.items()}
+    other = next(name for name in fits if name != law)
+    best = other if CLEARLY * fits[other][2] < fits[law][2] else law
+    full, error, rms, rest = fits[best]
+    _require_growth(full, forces)
+    allowed = max(POOR_PART * np.ptp(forces), POOR_N)
+    if rms > allowed:
+        worst = int(np.argmax(np.abs(rest)))
+        raise PaddleError(
+            f"force: no motor law fits: residual {rms:.3g} N, {allowed:.3g} N is allowed. The reading {forces[worst]:.3g} N at "
+            f"duty {duties[worst]:.2f} is {rest[worst]:+.2g} N off; tap the table before each reading, see that the handle "
+            "touches nothing but the scale, and measure again."
+        )
+    _require_sense(full, error)
+    return ForceFit(full, error, best, {name: fit[2] for name, fit in fits.items()})
+
+
+def _line(g, forces, intercept):
+    """Return slope, its standard error, rms residual, residuals of a straight line."""
+    columns = np.column_stack([g, np.ones_like(g)] if intercept else [g])
+    found = np.linalg.lstsq(columns, forces, rcond=None)[0]
+    rest = forces - columns @ found
+    free = len(g) - columns.shape[1]
+    if free <= 0:
+        return float(found[0]), np.nan, 0.0, rest
+    variance = rest @ rest / free * np.linalg.pinv(columns.T @ columns)[0, 0]
+    return float(found[0]), float(np.sqrt(variance)), float(np.sqrt(np.mean(rest**2))), rest
+
+
+def _require_growth(full, forces):
+    if np.ptp(forces) < POOR_N and full < 1:
+        raise PaddleError(
+            f"force: the same {np.mean(forces):.3g} N at every duty; the motor has no supply, or the handle does not press "
+            "on the scale. Check both and measure again."
+        )
+    if full <= 0:
+        raise PaddleError(
+            f"force: {full:.3g} N at full duty; it falls as the duty grows. The handle presses the other way: choose the other "
+            "direction, or check the motor's sign."
+        )
+
+
+def _require_sense(full, error):
+    if not LEAST <= full <= MOST:
+        raise PaddleError(f"force: {full:.3g} N at full duty; a paddle has {LEAST:g} to {MOST:g} N. Were grams typed?")
+    if np.isfinite(error) and error > full / 5:
+        raise PaddleError(f"force: {full:.3g} +- {error:.2g} N at full duty is too uncertain; take more care, or more force.")

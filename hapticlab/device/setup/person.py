@@ -1,0 +1,59 @@
+"""Whoever holds the handle: everything asked of a person passes through one small object, so that a test can be it."""
+
+import math
+
+from ...errors import PaddleError
+
+
+class Person:
+    """The person at this terminal. Others have the same three methods.
+
+    Examples
+    --------
+    >>> from hapticlab.device.setup.person import Person, number
+    >>> class Quick(Person):
+    ...     def ask(self, question):
+    ...         return "100"
+    >>> number(Quick(), "How far do the stops lie apart [mm]?", low=5, high=1000)
+    100.0
+    """
+
+    def say(self, text):
+        """Tell something."""
+        print(text)
+
+    def ask(self, question):
+        """Ask for a line of text, or to press Enter when something is done; return what was typed."""
+        try:
+            return input(f"{question} ").strip()
+        except EOFError:
+            raise PaddleError("nobody answers here; run this in a terminal, with a person at the paddle") from None
+
+    def choose(self, question, options):
+        """Return the key of one of the options, a dict {key: meaning}; the first letter is enough where it tells."""
+        self.say("\n".join([question, *(f"  {key:<8} {meaning}" for key, meaning in options.items())]))
+        while True:
+            typed = self.ask(f"[{'/'.join(options)}]?").lower()
+            meant = [key for key in options if typed in (key, key[0])]
+            if len(meant) == 1:
+                return meant[0]
+            self.say(f"{typed!r} is none of {', '.join(options)}")
+
+
+def agrees(person, question):
+    """Return whether the person says yes."""
+    return person.choose(question, {"yes": "do it", "no": "leave everything as it is"}) == "yes"
+
+
+def number(person, question, *, low, high):
+    """Ask until the answer is a number in low ... high, and return it."""
+    while True:
+        typed = person.ask(question)
+        try:
+            value = float(typed.replace(",", "."))
+        except ValueError:
+            person.say(f"{typed!r} is no number")
+            continue
+        if math.isfinite(value) and low <= value <= high:
+            return value
+        person.say(f"{value:g}: needs a number from {low:g} to {high:g}")

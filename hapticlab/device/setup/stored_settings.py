@@ -1,0 +1,51 @@
+"""Settings onto a board, never unasked: shown, agreed to, written, read back, compared."""
+
+from ...errors import LinkError, PaddleError
+from ..board.homing import state_flag
+from ..board.upload import read_settings, upload
+from .person import agrees
+
+#: how often a person may try to lead the handle to both stops
+TRIES = 3
+
+
+def offer(paddle, person, settings, found):
+    """Show what is to be stored and store it if the person agrees; return whether it was."""
+    person.say("\n".join(["", *found]))
+    if not agrees(person, "Store this on the board?"):
+        person.say("Nothing was written.")
+        return False
+    store(paddle, settings)
+    person.say("Stored, read back, and equal in every bit.")
+    return True
+
+
+def store(paddle, settings):
+    """Write settings on the board and read them back; the board forgets its position over it.
+
+    Raises
+    ------
+    LinkError
+        If the board refuses, or keeps anything else than was sent.
+    """
+    upload(paddle.exchange, "SETTINGS", settings.to_bytes())
+    kept = read_settings(paddle.exchange)
+    if kept is None or kept.to_bytes() != settings.to_bytes():
+        raise LinkError(f"{paddle.url}: the board keeps other settings than were sent; write again, then replace it", "STORE")
+    paddle.settings = kept
+    paddle.board["ident"] = kept.ident
+
+
+def lead_home(paddle, person):
+    """Have the person lead the handle to both stops, until the board knows where it is."""
+    if state_flag(paddle.exchange, "HOMED"):
+        return
+    for _ in range(TRIES):
+        person.ask("Lead the handle slowly to one stop, then to the other, back to the middle; then press Enter.")
+        if state_flag(paddle.exchange, "HOMED"):
+            return
+        person.say("The board has not seen both stops yet; once more, against each stop.")
+    if state_flag(paddle.exchange, "TRAVEL_MISMATCH"):
+        raise PaddleError("the handle moved further than between the calibrated stops: calibrate the stops again")
+    raise PaddleError("the handle did not reach both calibrated stops: free its way, or calibrate the stops again")
+

@@ -1,0 +1,36 @@
+"""Why a simulated run stopped: what was not finite, when, and what to look for."""
+
+from ...compiler.contacts.coordinate_bounds import BEYOND
+from ...compiler.ir.elementary import TABLES
+
+
+def not_finite(program, code, tick, T):
+    """Return in words what stopped a linked program.
+
+    Parameters
+    ----------
+    program : Program
+        The scene's.
+    code : float
+        The linked program's output ``fault``, not 0: see :func:`hapticlab.device.simulated.closed_loop.link`.
+    tick : int
+        Where it was raised.
+    T : float
+        Sampling period [s].
+    """
+    watched = (f"the watched {c.name}" for c in program.outputs[1:])
+    names = ["the force F", *watched, *(f"the state {c.name}" for c in program.states)]
+    culprit = f"{names[int(code) - 1]} of {program.name}"
+    when = f"tick {tick} (t = {tick * T:g} s)"
+    return f"{when}: {culprit} was not finite; the motor is off from there on{_likely_cause(program)}"
+
+
+def _likely_cause(program):
+    """Return what to look for where a program stopped: what its notes say, an angle past all sines; else nothing."""
+    left = [note.removeprefix(BEYOND) for note in program.notes if note.startswith(BEYOND)]
+    likely = f". Most likely {' or '.join(left)}" if left else ""
+    if not any(i.op in ("sin", "cos") for i in program.tick.instructions):
+        return likely
+    real = program.outputs[0].type
+    dtype = "float32" if real == "f32" else "float64"
+    return f"{likely}. Look for an angle beyond {TABLES[real].angle_limit:g} rad: it has no meaning in {dtype}, and no sine"
