@@ -102,28 +102,28 @@ from .rendering.over_compensation import over_compensation
 from .rendering.predictive import predictive_wall
 from .rendering.velocity_errors import velocity_errors
 from .rendering.wall_laws import wall_law
-from .scene.adaptive_window import window_velocity
-from .scene.amount import Amount
-from .scene.compensation import damping_compensation
-from .scene.contact import Contact, friction
-from .scene.contact_laws import impulse, micro_impulse, rigid
-from .scene.curves import Curve, track
-from .scene.device_image import device_image
-from .scene.entry_pulse import braking_pulse, friction_pulse
-from .scene.estimators import VelocityEstimate, backward_velocity, filtered_velocity
-from .scene.felt import felt_impulse, pulse_time
-from .scene.fixtures import guidance, tremor_filter
-from .scene.force_laws import hunt_crossley, penalty
-from .scene.from_mechanics import from_mechanics
-from .scene.gaps import closest, gap
-from .scene.kalman import kalman_velocity
-from .scene.laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
-from .scene.mechanics import Mechanics, lagrange
-from .scene.passivity_control import passivity_controller, passivity_observer, wall_energy
-from .scene.proxy import proxy_curve, proxy_wall
+from .scene.contact.contact import Contact, friction
+from .scene.contact.contact_laws import impulse, micro_impulse, rigid
+from .scene.contact.felt_impulses import felt_impulse, pulse_time
+from .scene.contact.penalty_laws import hunt_crossley, penalty
+from .scene.laws.adaptive_window import window_velocity
+from .scene.laws.chapter_laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
+from .scene.laws.compensation import damping_compensation
+from .scene.laws.entry_pulse import braking_pulse, friction_pulse
+from .scene.laws.estimators import VelocityEstimate, backward_velocity, filtered_velocity
+from .scene.laws.fixtures import guidance, tremor_filter
+from .scene.laws.kalman import kalman_velocity
+from .scene.laws.passivity_control import passivity_controller, passivity_observer, wall_energy
+from .scene.laws.proxy import proxy_curve, proxy_wall
+from .scene.mechanics.device_image import device_image
+from .scene.mechanics.lagrange import Mechanics, lagrange
+from .scene.mechanics.sympy_models import from_mechanics
+from .scene.notation.amount import Amount
+from .scene.notation.symbols import T, coordinate, delay, n, parameters, signal, t, v, when, x
 from .scene.scene import Scene
-from .scene.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, ground, replacement
-from .scene.symbols import T, coordinate, delay, n, parameters, signal, t, v, when, x
+from .scene.shapes.curves import Curve, track
+from .scene.shapes.gaps import closest, gap
+from .scene.shapes.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, ground, replacement
 from .widgets.live import live
 from .widgets.show import show
 from .widgets.view import explore

@@ -16,7 +16,7 @@ from .drawing import STYLES, house_style, new_figure
 from .limits.limit import Limit
 from .limits.passivity import passivity_limit
 from .limits.stability import stability_limit
-from .scene.laws import wall
+from .scene.laws.chapter_laws import wall
 from .scenefile import SceneFile, describe, load_scene, report_of, run_scene
 
 EXAMPLE = Path(__file__).with_name("examples") / "mass_on_coupler.py"

@@ -21,7 +21,7 @@ LAYERS = (
 OUTSIDE = {"__init__", "__main__", "_jupyter"}
 # dependency -> the only modules that may open it
 DOORS = {
-    "pint": {"scene.units"},
+    "pint": {"scene.notation.units"},
     "llvmlite": {"compiler.engines.llvm", "compiler.engines.llvm_emit"},
     "scipy": {"analysis.accuracy.hybrid_solver", "limits.matrix", "identification.fit", "experiments.fit"},
     "matplotlib": {"drawing"},

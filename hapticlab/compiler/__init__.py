@@ -14,7 +14,7 @@ contact.
 >>> motion = hl.lagrange(L, forces={z: F_c}, constraints=[z + y - h], contacts=[lands])
 >>> scene = hl.Scene(force=F_c, eom=[motion], watch=[z, y])
 
-**Scene -> ExplicitForm.** ``scene.mechanics`` derives M a = f of the Lagrangian, ``scene.explicit`` gathers it with
+**Scene -> ExplicitForm.** ``scene.mechanics.lagrange`` derives M a = f of the Lagrangian, ``scene.explicit`` gathers it with
 what is written by hand. Nothing is solved in symbols.
 
 >>> form = scene.explicit()
@@ -36,9 +36,9 @@ answer, ``first_sample`` where it starts, ``structural_zeros`` leaves out what i
 
 - A constraint: ``enforcement_choice`` chooses how it is kept, and refuses one that cannot be:
   ``constraint_consistency`` says why, ``constraint_assembly`` has walked the configurations. ``enforcement`` does what
-  was chosen while it runs: a closed form (``scene.loops`` found it, ``loop_embedding`` traces it), multipliers, or
-  Newton's method, all three on the linear algebra of ``multipliers``. What the handle feels of it is bounded by
-  ``port_mass``.
+  was chosen while it runs: a closed form (``scene.mechanics.loop_solutions`` found it, ``loop_embedding`` traces it),
+  multipliers, or Newton's method, all three on the linear algebra of ``multipliers``. What the handle feels of it is
+  bounded by ``port_mass``.
 - A contact: ``scene_contacts`` is what dynamics knows of it. ``contact_starts`` and ``contact_steps`` have looked at
   the start and the step. Laws with a force are a case of f; of the others, see below.
 
@@ -71,14 +71,14 @@ and ``live_limits`` how far each may go. The result is a ``program``:
 
 Fig. 23.7 of the chapter has three processes, each with its model. Here they are:
 
-- Collision detector, on the geometric model (``scene.shapes``, ``scene.curves``). Broad phase: ``broad_phase``, once,
-  when the scene is compiled. Narrow phase: ``scene.gaps`` with ``polygon_distance`` and ``gjk``, or tracked in
-  ``scene.curves``. When bodies touch: ``guards`` and ``polynomial_crossing`` of method "taylor"; a case of the force at
-  the sample, with other methods.
-- Interaction calculator, on the interaction model (``scene.force_laws``, ``scene.contact_laws``). ``scene_contacts``,
-  with forces that go into f or into ``complementarity``; impulses, that is new initial conditions, by ``impacts``,
-  ``touch`` and ``impulses``, which ask the dynamic model for its mass.
-- Forward dynamics solver, on the dynamic model with its constraints (``scene.mechanics``). ``dynamics`` with
+- Collision detector, on the geometric model (``scene.shapes.shapes``, ``scene.shapes.curves``). Broad phase:
+  ``broad_phase``, once, when the scene is compiled. Narrow phase: ``scene.shapes.gaps`` with ``polygon_distance`` and
+  ``gjk``, or tracked in ``scene.shapes.curves``. When bodies touch: ``guards`` and ``polynomial_crossing`` of method
+  "taylor"; a case of the force at the sample, with other methods.
+- Interaction calculator, on the interaction model (``scene.contact.penalty_laws``, ``scene.contact.contact_laws``).
+  ``scene_contacts``, with forces that go into f or into ``complementarity``; impulses, that is new initial conditions,
+  by ``impacts``, ``touch`` and ``impulses``, which ask the dynamic model for its mass.
+- Forward dynamics solver, on the dynamic model with its constraints (``scene.mechanics.lagrange``). ``dynamics`` with
   ``enforcement`` and ``linear_solve``, stepped by ``method_table``, ``exact_linear`` or ``located_step``.
 
 **Program -> numbers.** ``engine`` chooses one of three that give the same bits: ``interpreter`` (the reference),

@@ -8,7 +8,7 @@ import re
 import numpy as np
 
 from ..errors import UnitsError
-from ..scene.units import dimension, quantity, si_name
+from ..scene.notation.units import dimension, quantity, si_name
 from .plain import NotPlain, a, numbers
 
 #: more curves than any exercise asks for: one of very many would fit whatever is expected

@@ -16,8 +16,8 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from ..errors import UnitsError
-from ..scene.symbols import delay, n
-from ..scene.units import agree, dimension, si_name
+from ..scene.notation.symbols import delay, n
+from ..scene.notation.units import agree, dimension, si_name
 from .plain import NotPlain, a
 
 #: how far an equation may be from a straight line in what it is solved for, of its largest term

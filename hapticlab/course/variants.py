@@ -9,8 +9,8 @@ from itertools import islice
 import numpy as np
 import sympy as sp
 
+from ..scene.notation.symbols import n
 from ..scene.scene import Scene
-from ..scene.symbols import n
 from .evaluate import evaluate
 from .exercise import Case
 from .expression import spelling, symbols

@@ -5,7 +5,7 @@ import numpy as np
 from ..compiler.tick.live_limits import UNSTABLE, part_of_the_way
 from ..compiler.tick.live_stability import SLOW, SMALL_MOTIONS
 from ..errors import PaddleError, ParameterError
-from ..scene.parameters import Parameter
+from ..scene.notation.parameters import Parameter
 
 #: parameters in one SET
 MOST_AT_ONCE = 8

@@ -8,8 +8,8 @@ import numpy as np
 from ..compiler.ir.program import Program
 from ..compiler.tick.compile_scene import compile
 from ..errors import PaddleError, ParameterError
+from ..scene.notation.written import no_scene
 from ..scene.scene import Scene
-from ..scene.written import no_scene
 from .port_mass import check_port_mass
 
 

@@ -11,8 +11,8 @@ from ..device.hand.intents import Intent
 from ..device.hand.reacting_hand import REACTION, Reacting
 from ..drawing import FRAME, house_style, new_figure, style_of
 from ..errors import AnalysisError
+from ..scene.notation.symbols import n, parameters, x
 from ..scene.scene import Scene
-from ..scene.symbols import n, parameters, x
 from .arm import Arm, along, quintic
 from .paddle_needs import check_held
 from .submovements import Submovements

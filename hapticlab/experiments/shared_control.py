@@ -10,8 +10,8 @@ from ..device.hand.intents import Tremor
 from ..drawing import house_style, new_figure, style_of
 from ..errors import PaddleError
 from ..records import Telemetry
+from ..scene.notation.symbols import n, parameters, x
 from ..scene.scene import Scene
-from ..scene.symbols import n, parameters, x
 from .paddle_needs import check_held
 from .reaching import Anticipated, Load, check_path, handle, inverse_dynamics
 

@@ -12,7 +12,7 @@ from ..device.simulated.closed_loop import link, load_linked
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
 from ..library.surfaces import texture
-from ..scene.laws import virtual_damper, wall
+from ..scene.laws.chapter_laws import virtual_damper, wall
 from ..scene.scene import Scene
 
 

@@ -8,10 +8,10 @@ import sympy as sp
 
 from ..errors import AnalysisError
 from ..measurement.leash import leashed
-from ..scene.laws import virtual_damper
-from ..scene.parameters import parameters
+from ..scene.laws.chapter_laws import virtual_damper
+from ..scene.notation.parameters import parameters
+from ..scene.notation.symbols import n, when, x
 from ..scene.scene import Scene
-from ..scene.symbols import n, when, x
 from .motion import positions
 
 #: samples of rest before a force begins

@@ -10,9 +10,9 @@ from ..device.hand.hand import require
 from ..errors import PaddleError
 from ..measurement.leash import leashed
 from ..measurement.trials import speed_limit
-from ..scene.parameters import parameters
+from ..scene.notation.parameters import parameters
+from ..scene.notation.symbols import n, when
 from ..scene.scene import Scene
-from ..scene.symbols import n, when
 from .paddle import after, given
 
 #: s that a push lasts, and s from one push to the next: least and most

@@ -4,9 +4,9 @@ import math
 
 import sympy as sp
 
-from ..scene.laws import virtual_coupler
+from ..scene.laws.chapter_laws import virtual_coupler
+from ..scene.notation.symbols import coordinate, n, parameters, t, x
 from ..scene.scene import Scene
-from ..scene.symbols import coordinate, n, parameters, t, x
 from .sketch import Sketch, clearance
 
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ..scene.contact import Contact, friction
-from ..scene.contact_laws import impulse
-from ..scene.mechanics import lagrange
+from ..scene.contact.contact import Contact, friction
+from ..scene.contact.contact_laws import impulse
+from ..scene.mechanics.lagrange import lagrange
+from ..scene.notation.symbols import coordinate, n, parameters, t, x
 from ..scene.scene import Scene
-from ..scene.symbols import coordinate, n, parameters, t, x
 from .bodies import coupler
 from .sketch import SOFT, Sketch, clearance
 

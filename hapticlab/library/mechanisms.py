@@ -3,9 +3,9 @@
 import numpy as np
 import sympy as sp
 
-from ..scene.mechanics import lagrange
+from ..scene.mechanics.lagrange import lagrange
+from ..scene.notation.symbols import coordinate, n, parameters, t, x
 from ..scene.scene import Scene
-from ..scene.symbols import coordinate, n, parameters, t, x
 from .bodies import coupler
 from .sketch import SOFT, Sketch, clearance
 

@@ -9,8 +9,8 @@ import math
 import numpy as np
 import sympy as sp
 
+from ..scene.notation.symbols import n, parameters, when, x
 from ..scene.scene import Scene
-from ..scene.symbols import n, parameters, when, x
 from .sketch import INK, SOFT, Sketch
 
 TWO_PI = 2 * sp.pi

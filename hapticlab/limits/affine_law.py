@@ -7,8 +7,8 @@ import numpy as np
 from ..compiler.engines.engine import load
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
+from ..scene.laws.taps import LEAD, TAPS
 from ..scene.scene import Scene
-from ..scene.taps import LEAD, TAPS
 from .limit import check_law
 from .linear_law import LinearLaw
 from .port import SMALL, tick_map

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, replace
 
 from ..errors import AnalysisError
-from ..scene.taps import LEAD
+from ..scene.laws.taps import LEAD
 from .limit import Limit, check_law, check_number, check_paddle, check_period, whole_and_fraction
 from .passivity import passivity_limit
 from .plots import plot_bounds

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from ..errors import AnalysisError
-from ..scene.taps import TAPS
+from ..scene.laws.taps import TAPS
 from .plots import plot_limit
 
 #: a limit's polynomials have a degree for each period of delay; past this their roots lose their digits

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
-from ..scene.taps import LEAD, TAPS
+from ..scene.laws.taps import LEAD, TAPS
 from .limit import check_law, check_number, check_period
 from .plots import plot_law
 from .port import static_stiffness, tick_map

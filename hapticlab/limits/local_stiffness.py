@@ -4,7 +4,7 @@ import numpy as np
 import sympy as sp
 
 from ..errors import AnalysisError
-from ..scene.symbols import n, x
+from ..scene.notation.symbols import n, x
 from .limit import check_number
 
 #: places looked at; secants between them are the slopes to some 1e-8 of their curvature

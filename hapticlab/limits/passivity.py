@@ -20,7 +20,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..errors import AnalysisError
-from ..scene.taps import LEAD, TAPS
+from ..scene.laws.taps import LEAD, TAPS
 from .affine_law import affine_law
 from .colgate import largest_passive_stiffness, least_passive_stiffness
 from .limit import MOST_PERIODS, Limit, check_law, check_number, check_period, whole_and_fraction

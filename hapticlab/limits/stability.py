@@ -12,8 +12,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..errors import AnalysisError
+from ..scene.laws.taps import LEAD
 from ..scene.scene import Scene
-from ..scene.taps import LEAD
 from .limit import Limit, check_number
 from .linear_law import LinearLaw
 from .loop import Loop

@@ -8,8 +8,8 @@ import numpy as np
 import sympy as sp
 
 from ..device.hand.hand import Hand
-from ..scene.cases import when
-from ..scene.symbols import n, parameters, signal
+from ..scene.notation.cases import when
+from ..scene.notation.symbols import n, parameters, signal
 from .signals import chirp, multisine
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from ..scene.symbols import n, parameters, signal, v, when, x
+from ..scene.notation.symbols import n, parameters, signal, v, when, x
 
 
 def guarded(scene, *, energy_max, speed_max, periods=0):

@@ -10,9 +10,9 @@ from ..errors import AnalysisError, PaddleError
 from ..limits.limit import Limit, whole_and_fraction
 from ..limits.passivity import passivity_limit
 from ..limits.stability import stability_limit
+from ..scene.laws.taps import TAPS
+from ..scene.notation.symbols import parameters
 from ..scene.scene import Scene
-from ..scene.symbols import parameters
-from ..scene.taps import TAPS
 from .guard import guarded
 from .search_plot import plot_search
 from .search_start import durations_of, first_of, hopeless, pushes_of

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from ..scene.symbols import n, parameters, signal, v, when, x
+from ..scene.notation.symbols import n, parameters, signal, v, when, x
 from .guard import guarded
 
 #: [J] that a guarded scene may give beside what its excitation does

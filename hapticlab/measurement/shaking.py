@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 from ..errors import PaddleError
-from ..scene.cases import when
-from ..scene.symbols import n
+from ..scene.notation.cases import when
+from ..scene.notation.symbols import n
 from .leash import held_back
 from .small_signal import force_at_rest
 from .trials import lead_back, speed_limit

@@ -8,7 +8,7 @@ import numpy as np
 from ..analysis.records.chatter import chatter
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import PaddleError
-from ..scene.laws import wall
+from ..scene.laws.chapter_laws import wall
 from ..scene.scene import Scene
 from .guard import guarded
 

@@ -11,7 +11,7 @@ from ..errors import AnalysisError
 from ..limits.limit import check_number
 from ..limits.loop import Loop
 from ..limits.stability import crossings, stability_limit
-from ..scene.compensation import damping_compensation
+from ..scene.laws.compensation import damping_compensation
 
 #: relative distance from a crossing at which the poles say whether it counts
 NEAR = 1e-6
@@ -178,7 +178,7 @@ class CompensationLimit:
 
 
 def compensation_limit(paddle, *, velocity=None, b_least=None, coulomb_least=None):
-    """Largest part of a paddle's friction that :func:`~hapticlab.scene.compensation.damping_compensation` may cancel.
+    """Largest part of a paddle's friction that :func:`~hapticlab.scene.laws.compensation.damping_compensation` may cancel.
 
     The viscous part is a pole on the unit circle of the sampled loop, with hand, delay and the lag of the velocity. A free
     handle drifts off at viscous = 1 + b_hand/b whatever the lag, for at constant speed every estimate is right; about a

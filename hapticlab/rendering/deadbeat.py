@@ -6,7 +6,7 @@ import numpy as np
 import sympy as sp
 
 from ..errors import SceneError
-from ..scene.symbols import delay, n, signal, when
+from ..scene.notation.symbols import delay, n, signal, when
 from .digital import digital_force, motor_limit
 from .flight import Flight
 from .lines import Lines, number

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..scene.symbols import when
+from ..scene.notation.symbols import when
 from .lines import Lines, number
 from .model import WallModel
 
@@ -91,7 +91,7 @@ def digital_wall(paddle, *, K, B=0.0, hand=None, velocity="handle", clamp=False,
         As in :func:`digital_gains`.
     velocity : {"handle", "model"} or VelocityEstimate
         v(n) of the paddle; or what two positions and the forces between them say by the model, exact where the model is;
-        or :func:`~hapticlab.scene.estimators.filtered_velocity` and its like.
+        or :func:`~hapticlab.scene.laws.estimators.filtered_velocity` and its like.
     clamp : bool
         Never pull.
     force_max : float, optional

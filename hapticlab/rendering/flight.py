@@ -11,7 +11,7 @@ import math
 import sympy as sp
 
 from ..errors import AnalysisError
-from ..scene.symbols import when
+from ..scene.notation.symbols import when
 from .lines import number
 
 #: how far a mode may move in a period, as the norm of its rates: half a swing, so that none returns unseen

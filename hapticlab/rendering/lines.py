@@ -10,10 +10,10 @@ import numpy as np
 import sympy as sp
 
 from ..errors import SceneError
-from ..scene.amount import Amount
-from ..scene.estimators import VelocityEstimate
+from ..scene.laws.estimators import VelocityEstimate
+from ..scene.notation.amount import Amount
+from ..scene.notation.symbols import T, n, parameters, signal, v, when, x
 from ..scene.scene import Scene
-from ..scene.symbols import T, n, parameters, signal, v, when, x
 
 #: where v(n) comes from
 VELOCITY = ("handle", "model")

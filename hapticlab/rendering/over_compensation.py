@@ -10,8 +10,8 @@ from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..drawing import WARM, house_style, new_figure
 from ..errors import AnalysisError
 from ..limits.limit import check_number
-from ..scene.compensation import damping_compensation
-from ..scene.units import in_si
+from ..scene.laws.compensation import damping_compensation
+from ..scene.notation.units import in_si
 from .compensation_limit import CompensationLimit, compensation_limit
 
 #: parts of the Coulomb friction looked at side by side, and how often the gap around the limit is divided again
@@ -93,7 +93,7 @@ def over_compensation(
     paddle : SimulatedPaddle
         With coulomb > 0 and a hand that rests.
     speed, shape, velocity
-        Of :func:`~hapticlab.scene.compensation.damping_compensation`.
+        Of :func:`~hapticlab.scene.laws.compensation.damping_compensation`.
     viscous : float
         Part of the viscous damping that is compensated; below its own limit.
     up_to : float, optional

@@ -1,6 +1,6 @@
 """A wall that looks half a period ahead with the exact motion of handle, hand and wall, Section 23.4.1."""
 
-from ..scene.symbols import when
+from ..scene.notation.symbols import when
 from .digital import motor_limit
 from .lines import Lines, number
 from .model import WallModel

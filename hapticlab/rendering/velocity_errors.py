@@ -10,8 +10,8 @@ from ..compiler.tick.compile_scene import compile
 from ..drawing import house_style, new_figure, style_of
 from ..errors import AnalysisError
 from ..records import Telemetry
-from ..scene.estimators import VelocityEstimate, backward_velocity
-from ..scene.laws import virtual_damper
+from ..scene.laws.chapter_laws import virtual_damper
+from ..scene.laws.estimators import VelocityEstimate, backward_velocity
 
 MARKERS = "osD^v*P"
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from ..errors import AnalysisError
-from ..scene.laws import wall
+from ..scene.laws.chapter_laws import wall
+from ..scene.laws.taps import TAPS
+from ..scene.notation.symbols import T, n, parameters, x
 from ..scene.scene import Scene
-from ..scene.symbols import T, n, parameters, x
-from ..scene.taps import TAPS
 from .deadbeat import deadbeat_wall
 from .digital import digital_wall
 from .predictive import predictive_wall

@@ -7,7 +7,7 @@ right. It costs nothing then, and a chain of such equations may be written in an
 import sympy as sp
 
 from ..errors import SceneError
-from .symbols import t, v, x
+from .notation.symbols import t, v, x
 
 
 def definitions(equations, coordinates):

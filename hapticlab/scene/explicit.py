@@ -10,8 +10,8 @@ import sympy as sp
 
 from ..errors import MassError, SceneError
 from .aliases import definitions, substituted
-from .mechanics import Mechanics
-from .symbols import t
+from .mechanics.lagrange import Mechanics
+from .notation.symbols import t
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from ..errors import ParameterError, SceneError
-from .checks import (
+from .explicit import explicit_form
+from .frozen import Frozen
+from .notation.checks import (
     applied,
     check_size,
     check_symbols,
@@ -18,10 +20,8 @@ from .checks import (
     parameters_in,
     written_in,
 )
-from .explicit import explicit_form
-from .frozen import Frozen
-from .units import unit_of
-from .written import expression, no_scene
+from .notation.units import unit_of
+from .notation.written import expression, no_scene
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Scene:
     force : sympy expression
         F_e [N], the force on the environment, positive into the wall (Eq. 23.1); the motor applies -F_e. A power whose
         exponent is no fixed fraction, such as a parameter, runs as exp(exponent*log(base)): its base must be positive.
-    eom : sequence of sympy.Eq, or models of :func:`~hapticlab.scene.mechanics.lagrange`
+    eom : sequence of sympy.Eq, or models of :func:`~hapticlab.scene.mechanics.lagrange.lagrange`
         Equations of motion of the coordinates, linear in the highest derivatives, and difference equations
         ``Eq(y(n), ...)`` of signals.
     watch : sequence of expressions or names, or dict name -> expression

@@ -19,7 +19,7 @@ from ..device.setup.connect import connect
 from ..device.setup.doctor import doctor
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import EngineMissingError
-from ..scene.laws import wall
+from ..scene.laws.chapter_laws import wall
 from ..scenefile import load_scene, report_of, run_scene
 from .outcome import Attention, need
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ..compiler.tick.live_limits import NEAR
 from ..errors import ParameterError
-from ..scene.units import dimension
+from ..scene.notation.units import dimension
 
 #: of a parameter that is zero and has no declared range, by unit; any other from -1 to 1
 FROM_ZERO = {

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.scene.taps import TAPS
+from hapticlab.scene.laws.taps import TAPS
 
 PERIOD = 1e-3
 STEP = 0.004  # relative step of the grid in K, which the limit must fall into

@@ -7,8 +7,8 @@ from hapticlab.compiler.ir.program import Channel, Program
 from hapticlab.compiler.ir.trace import Builder, equal, select
 from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.board.serial_paddle import SerialPaddle
+from hapticlab.scene.notation.symbols import n, parameters, x
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import n, parameters, x
 
 
 @pytest.fixture

@@ -16,8 +16,8 @@ from hapticlab.device.setup.connect import connect
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import HapticlabError, ParameterError
 from hapticlab.records import Telemetry
+from hapticlab.scene.notation.symbols import coordinate, n, parameters, t, v, when, x
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import coordinate, n, parameters, t, v, when, x
 
 HAND = Hand(m=0.02, b=1, k=200, push=0.5, intent=lambda t: 0.004 * np.sin(20 * t))
 PADDLES = {

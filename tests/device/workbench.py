@@ -9,8 +9,8 @@ from hapticlab.device.link.serial_ports import open_port
 from hapticlab.device.setup.person import Person
 from hapticlab.device.simulated.moved_handle import Handle
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
+from hapticlab.scene.notation.symbols import parameters
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import parameters
 
 STOP = 0.045
 

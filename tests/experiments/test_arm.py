@@ -10,7 +10,7 @@ from hapticlab.device.hand.intents import MinimumJerk
 from hapticlab.device.hand.reacting_hand import Reacting
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.experiments.arm import Arm, along, quintic
-from hapticlab.scene.laws import wall
+from hapticlab.scene.laws.chapter_laws import wall
 
 
 def test_a_path_meets_both_ends():

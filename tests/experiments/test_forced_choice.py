@@ -16,7 +16,7 @@ from hapticlab.experiments.observers import SimulatedObserver
 from hapticlab.experiments.psi import ConstantLevels, Psi
 from hapticlab.experiments.tasks import damping_task, stiffness_task, texture_task
 from hapticlab.experiments.up_down import UpDown
-from hapticlab.scene.laws import wall
+from hapticlab.scene.laws.chapter_laws import wall
 
 PADDLE = SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
 QUICK = replace(stiffness_task(), duration=0.3)

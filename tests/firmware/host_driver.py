@@ -11,8 +11,8 @@ from hapticlab.device.board.host_board import WORD_BITS, HostBoard
 from hapticlab.device.board.settings import Settings
 from hapticlab.device.link.messages import FAULTS, FLAGS, MESSAGES, RESULTS, STATES, TARGETS
 from hapticlab.device.link.wire import Decoder, encode
+from hapticlab.scene.notation.symbols import n, parameters, x
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import n, parameters, x
 
 PIECE = 40
 #: 10 um a count, +-50 mm, linear motor of 8 N, limited to 4 N

@@ -20,8 +20,8 @@ from hapticlab.compiler.engines.bytecode import encode as encode_program
 from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.link.messages import MESSAGES, STATES, TARGETS
 from hapticlab.device.link.wire import Decoder, encode
+from hapticlab.scene.notation.symbols import n, parameters, x
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import n, parameters, x
 
 PIECE = 40
 RUN, IDLE = STATES["RUN"], STATES["IDLE"]

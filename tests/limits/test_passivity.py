@@ -7,7 +7,7 @@ import pytest
 
 from hapticlab.errors import AnalysisError
 from hapticlab.limits.passivity import passivity_limit, required_damping
-from hapticlab.scene.taps import TAPS
+from hapticlab.scene.laws.taps import TAPS
 
 b, T = 0.13, 0.7e-3
 

@@ -10,7 +10,7 @@ import pytest
 from hapticlab.errors import AnalysisError
 from hapticlab.limits.passivity import passivity_limit
 from hapticlab.limits.stability import closed_loop_matrix, closed_loop_poles, stability_limit
-from hapticlab.scene.taps import LEAD, TAPS
+from hapticlab.scene.laws.taps import LEAD, TAPS
 
 
 def paddle(m=0.045, b=0.12, T=0.8e-3, delay=0.0, hand=None):

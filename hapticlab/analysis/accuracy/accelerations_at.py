@@ -18,8 +18,8 @@ from ...compiler.events.taylor_series import Series
 from ...compiler.ir.program import Channel, Program
 from ...compiler.ir.trace import Builder, Value, select
 from ...errors import ProgramError
-from ...scene.contact_laws import rigid
-from ...scene.symbols import acceleration, t
+from ...scene.contact.contact_laws import rigid
+from ...scene.notation.symbols import acceleration, t
 from .continuous_handle import DEGREE, Followed, lowering_of
 
 #: what is known of every reaction

@@ -11,7 +11,7 @@ from ...compiler.prune.excluded_modes import excluded, rests_on
 from ...compiler.tick.handle_samples import Handle
 from ...compiler.tick.lowering import Lowering
 from ...errors import ProgramError
-from ...scene.symbols import T, acceleration, delay, lag_of, n, t, v, x
+from ...scene.notation.symbols import T, acceleration, delay, lag_of, n, t, v, x
 
 #: of the polynomial that the handle follows over a period
 DEGREE = 6

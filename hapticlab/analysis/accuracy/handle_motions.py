@@ -9,8 +9,8 @@ import sympy as sp
 from ...compiler.algebra.graph import Graph, driven
 from ...drawing import STYLES, house_style, new_figure
 from ...errors import AnalysisError
-from ...scene.derivative import Partial
-from ...scene.symbols import t
+from ...scene.notation.derivative import Partial
+from ...scene.notation.symbols import t
 
 #: band of a hand's voluntary motion [Hz]; irrational, so that no period is a whole number of samples
 BAND = (math.sqrt(0.5), 5 * math.sqrt(2))

@@ -9,7 +9,7 @@ from ...compiler.algebra.graph import Graph
 from ...compiler.algebra.graph import driven as turning
 from ...compiler.engines.engine import load
 from ...errors import AnalysisError, ProgramError
-from ...scene.symbols import acceleration, n, t, v, x
+from ...scene.notation.symbols import acceleration, n, t, v, x
 from .accelerations_at import instant
 from .continuous_handle import DEGREE, coefficients, driven, without_samples
 from .handle_motions import HandleMotion

@@ -15,8 +15,8 @@ from ...compiler.methods.method_table import METHODS
 from ...compiler.tick.handle_samples import HOLDS
 from ...device.progress import progress_bar
 from ...errors import AnalysisError
+from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
-from ...scene.written import no_scene
 from ..sweeps.process_copies import shared_out
 from .handle_motions import HandleMotion, handle_motions
 from .reference import references

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import AnalysisError
-from ...scene.symbols import delay, lag_of, v, x
+from ...scene.notation.symbols import delay, lag_of, v, x
 from ..stability.operating_points import TRAVEL
 from ..stability.trial_limits import Limits
 from .tradeoff_rows import percent

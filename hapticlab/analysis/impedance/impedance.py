@@ -9,10 +9,10 @@ from ...compiler.algebra.graph import shown
 from ...compiler.prune.constant_coefficients import Coefficients
 from ...compiler.prune.dependence import FORCE, Dependence, part_of
 from ...errors import AnalysisError, ParameterError
-from ...scene.derivative import Partial
+from ...scene.notation.derivative import Partial
+from ...scene.notation.symbols import Parameter, delay, lag_of, n, t, v, x
+from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
-from ...scene.symbols import Parameter, delay, lag_of, n, t, v, x
-from ...scene.written import no_scene
 from .impedance_curve import LOOKED_AT, Impedance
 
 #: the handle as a force sees it at the sample, and as an equation of motion sees it

@@ -6,9 +6,9 @@ import numpy as np
 import sympy as sp
 
 from ...errors import AnalysisError
-from ...scene.parameters import Parameter
+from ...scene.notation.parameters import Parameter
+from ...scene.notation.symbols import coordinate, n, t, v, x
 from ...scene.scene import Scene
-from ...scene.symbols import coordinate, n, t, v, x
 
 #: parts of an equation that differ by less are the same; smaller ones are rounding
 ROUNDING = 1e-9

@@ -9,8 +9,8 @@ import numpy as np
 from ...drawing import house_style, new_figure
 from ...errors import AnalysisError
 from ...library.entries import CATALOGUE
+from ...scene.notation.units import in_si
 from ...scene.scene import Scene
-from ...scene.units import in_si
 from .schematic import Schematic
 
 

@@ -3,8 +3,8 @@
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from ...scene.amount import Amount
-from ...scene.symbols import delay, v, x
+from ...scene.notation.amount import Amount
+from ...scene.notation.symbols import delay, v, x
 
 #: the handle's place in a formula
 HANDLE = sp.Symbol("x", real=True)

@@ -10,8 +10,8 @@ import sympy as sp
 
 from ...errors import HapticlabError
 from ...library.sketch import SOFT, Sketch, clearance
-from ...scene.contact import Contact
-from ...scene.symbols import n, t, v, x
+from ...scene.contact.contact import Contact
+from ...scene.notation.symbols import n, t, v, x
 from .plain_formulas import formula, plain_symbols
 from .shape_outlines import Outline
 from .wall_boundaries import boundaries

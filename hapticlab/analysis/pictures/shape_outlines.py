@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...library.sketch import BODY
-from ...scene.shapes import HalfPlane
+from ...scene.shapes.shapes import HalfPlane
 from .plain_formulas import formula
 
 TURNS = 8

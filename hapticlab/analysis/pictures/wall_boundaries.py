@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ...scene.contact import Contact
+from ...scene.contact.contact import Contact
 from .plain_formulas import HANDLE, formula, plain_symbols
 
 

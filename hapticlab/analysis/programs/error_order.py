@@ -18,7 +18,7 @@ from ...compiler.methods.method_table import METHODS
 from ...compiler.prune.dependence import Dependence, part_of
 from ...compiler.prune.excluded_modes import excluded
 from ...compiler.prune.mass_matrix import start_of
-from ...scene.symbols import Parameter, acceleration, delay, n, t, v, x
+from ...scene.notation.symbols import Parameter, acceleration, delay, n, t, v, x
 
 #: error of x(t) and of v(t) within a period, as a power of T
 HOLD = {"zoh": (1, 1), "foh": (2, 1), "soh": (3, 2)}

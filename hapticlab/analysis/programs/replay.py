@@ -11,9 +11,9 @@ from ...compiler.tick.compile_scene import compile
 from ...drawing import STYLES, axis_label, house_style, new_figure
 from ...errors import AnalysisError, ProgramError
 from ...records import Telemetry, check_record
+from ...scene.notation.symbols import T, delay, lag_of, n
+from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
-from ...scene.symbols import T, delay, lag_of, n
-from ...scene.written import no_scene
 
 
 @dataclass(frozen=True)

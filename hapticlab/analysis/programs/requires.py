@@ -15,9 +15,9 @@ from ...compiler.prune.dependence import FORCE, Dependence, part_of
 from ...compiler.prune.excluded_modes import excluded, open_conditions
 from ...compiler.tick.compile_scene import compile, lowered
 from ...errors import HapticlabError, SceneError
+from ...scene.notation.symbols import n, t, v
+from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
-from ...scene.symbols import n, t, v
-from ...scene.written import no_scene
 from .requirement_report import PART, Item, Requirements
 
 

@@ -11,10 +11,10 @@ import sympy as sp
 
 from ...errors import AnalysisError, SceneError
 from ...records import check_record
-from ...scene.contact import friction
-from ...scene.derivative import Partial, Rate
-from ...scene.mechanics import Mechanics
-from ...scene.symbols import acceleration, coordinate, lag_of, t, v, x
+from ...scene.contact.contact import friction
+from ...scene.mechanics.lagrange import Mechanics
+from ...scene.notation.derivative import Partial, Rate
+from ...scene.notation.symbols import acceleration, coordinate, lag_of, t, v, x
 from .energy import energy
 from .record_plots import plot_balance
 

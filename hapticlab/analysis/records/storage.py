@@ -8,7 +8,7 @@ import sympy as sp
 from ...drawing import STYLES, house_style, new_figure
 from ...errors import AnalysisError
 from ...records import check_record
-from ...scene.symbols import Parameter, lag_of, x
+from ...scene.notation.symbols import Parameter, lag_of, x
 from .energy import energy
 
 

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 
 from ...compiler.ir.channels import short
-from ...scene.cases import Piecewise
 from ...scene.explicit import ExplicitForm
-from ...scene.parameters import Parameter
+from ...scene.notation.cases import Piecewise
+from ...scene.notation.parameters import Parameter
+from ...scene.notation.symbols import delay, t
 from ...scene.scene import Scene
-from ...scene.symbols import delay, t
 
 #: how far beyond its surface a mode is looked at, in the unit of what is compared
 BEYOND_SURFACE = 1e-3

@@ -8,8 +8,8 @@ import numpy as np
 from ...compiler.ir.options import period
 from ...errors import AnalysisError
 from ...limits.limit import check_number
+from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
-from ...scene.written import no_scene
 from .condition_switches import switched
 from .limit_plots import plot_port
 from .linearization import forces_and_ticks_at

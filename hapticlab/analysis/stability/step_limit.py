@@ -13,9 +13,9 @@ from ...compiler.methods.exact_linear import EXACT
 from ...compiler.methods.method_table import METHODS
 from ...compiler.methods.step_matrix import GRID, GROWS, longest_step, rising, step_matrix
 from ...errors import AnalysisError
+from ...scene.notation.symbols import delay
+from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
-from ...scene.symbols import delay
-from ...scene.written import no_scene
 from .condition_switches import switched
 from .limit_plots import plot_step_limit
 from .linearization import motion_at, slopes_of, tick_at

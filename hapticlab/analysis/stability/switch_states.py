@@ -7,8 +7,8 @@ from ...compiler.algebra.first_sample import numbers
 from ...compiler.algebra.graph import Graph
 from ...compiler.ir.channels import channel_of
 from ...errors import ParameterError
-from ...scene.parameters import Parameter, T
-from ...scene.symbols import delay, t, v, x
+from ...scene.notation.parameters import Parameter, T
+from ...scene.notation.symbols import delay, t, v, x
 from .condition_switches import BEYOND_SURFACE
 
 #: how far from a surface its two sides are told apart

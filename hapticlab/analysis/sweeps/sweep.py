@@ -9,8 +9,8 @@ from ...compiler.methods.exact_linear import exact_and_rest
 from ...compiler.prune.constraint_lengths import held
 from ...device.progress import progress_bar
 from ...errors import AnalysisError
+from ...scene.notation.units import in_si
 from ...scene.scene import Scene
-from ...scene.units import in_si
 from ..records.plots import plot_sweep
 from .sweep_chunks import measured
 from .sweep_file import Partial

@@ -9,7 +9,7 @@ import numpy as np
 from ... import __version__
 from ...compiler.engines.llvm import llvmlite_is_ready
 from ...errors import AnalysisError, ProgramError
-from ...scene.parameters import Parameter
+from ...scene.notation.parameters import Parameter
 from ..records.chatter import SHORTEST
 from .sweep_chunks import Chunk, chunk_size, linked
 from .sweep_file import Record, remaining

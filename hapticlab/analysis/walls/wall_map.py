@@ -11,7 +11,7 @@ import numpy as np
 from ...device.simulated.simulated_paddle import SimulatedPaddle
 from ...errors import AnalysisError
 from ...limits.limit import check_number
-from ...scene.laws import wall
+from ...scene.laws.chapter_laws import wall
 from ...scene.scene import Scene
 from ..sweeps.lane_runs import LaneRuns
 from .wall_limits import ChapterLimits, SceneLimits

@@ -5,11 +5,11 @@ import operator
 import sympy as sp
 
 from ...errors import ProgramError, ProgramLimitError
-from ...scene.amount import Amount
-from ...scene.closest_points import ClosestPoints, sampled
-from ...scene.derivative import Partial, Rate
-from ...scene.symbols import delay
-from ...scene.units import fixed
+from ...scene.notation.amount import Amount
+from ...scene.notation.derivative import Partial, Rate
+from ...scene.notation.symbols import delay
+from ...scene.notation.units import fixed
+from ...scene.shapes.closest_points import ClosestPoints, sampled
 from ..ir import trace
 from ..ir.trace import Value, maximum, minimum, select
 from . import gjk

@@ -4,8 +4,8 @@ import math
 
 import sympy as sp
 
-from ...scene.parameters import Parameter
-from ...scene.symbols import delay, n, t
+from ...scene.notation.parameters import Parameter
+from ...scene.notation.symbols import delay, n, t
 from .graph import Graph
 
 

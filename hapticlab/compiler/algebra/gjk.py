@@ -13,9 +13,9 @@ corners that a radius widens.
 import sympy as sp
 from sympy.core.symbol import Str
 
-from ...scene.closest_points import PARTS, ClosestPoints, sampled
-from ...scene.plane import dot, less, minus
-from ...scene.symbols import t
+from ...scene.notation.symbols import t
+from ...scene.shapes.closest_points import PARTS, ClosestPoints, sampled
+from ...scene.shapes.plane import dot, less, minus
 from ..ir.trace import clip, maximum, select, sqrt
 from .polygon_distance import SAME_POINT, closest, core, distinct, moved, pick, relative, turned
 
@@ -103,7 +103,7 @@ def _measured(A, B, one, two):
 
 
 def trace(translator, node):
-    """Return the value of a :class:`~hapticlab.scene.closest_points.ClosestPoints`; its other parts are known then."""
+    """Return the value of a :class:`~hapticlab.scene.shapes.closest_points.ClosestPoints`; its other parts are known then."""
     first, second, method, label, _ = node.args
     found = _pairs(translator, first, second, method.name)
     if method.name == "sample" and len(found) > 1:

@@ -9,9 +9,9 @@ derivatives share is computed once.
 import numpy as np
 import sympy as sp
 
-from ...scene.closest_points import sampled
-from ...scene.derivative import Partial, Rate
-from ...scene.symbols import Parameter, acceleration, t, v, x
+from ...scene.notation.derivative import Partial, Rate
+from ...scene.notation.symbols import Parameter, acceleration, t, v, x
+from ...scene.shapes.closest_points import sampled
 from ..ir.simplify import EVALUATE
 from ..ir.trace import reachable
 from .constants import entering
@@ -52,7 +52,7 @@ class Graph:
     --------
     >>> import hapticlab as hl
     >>> from hapticlab.compiler.algebra.graph import Graph
-    >>> from hapticlab.scene.derivative import Partial
+    >>> from hapticlab.scene.notation.derivative import Partial
     >>> z = hl.coordinate("z", unit="m")
     >>> float(Graph().evaluate([Partial(z**3, z)], {z: 2.0})[0])
     12.0

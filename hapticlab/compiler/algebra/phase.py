@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ...scene.symbols import Parameter, T, n, t
+from ...scene.notation.symbols import Parameter, T, n, t
 from ..ir.program import Channel
 from ..ir.trace import Value, floor, select
 

@@ -14,7 +14,7 @@ normal . d(witness)/dq, with the place of the witness on each body held (the env
 
 from dataclasses import dataclass
 
-from ...scene.plane import dot, less, minus
+from ...scene.shapes.plane import dot, less, minus
 from ..ir.trace import clip, maximum, select, sqrt
 
 #: square of the distance [m^2] below which two corners are one, and have no direction from each other

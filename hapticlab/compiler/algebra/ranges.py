@@ -8,9 +8,9 @@ import math
 
 import sympy as sp
 
-from ...scene.amount import Amount
-from ...scene.symbols import Parameter, T, delay, n, t
-from ...scene.units import fixed
+from ...scene.notation.amount import Amount
+from ...scene.notation.symbols import Parameter, T, delay, n, t
+from ...scene.notation.units import fixed
 
 EVERYTHING = (-math.inf, math.inf)
 

@@ -4,10 +4,10 @@ import inspect
 import itertools
 
 from ...errors import HapticlabError, ProgramLimitError
-from ...scene.checks import applied, is_model, written_in
-from ...scene.laws import UNILATERAL, wall
+from ...scene.laws.chapter_laws import UNILATERAL, wall
+from ...scene.laws.taps import TAPS
+from ...scene.notation.checks import applied, is_model, written_in
 from ...scene.scene import Scene
-from ...scene.taps import TAPS
 from ..methods.method_table import METHODS
 from ..tick.compile_scene import compile
 from .cost import board_named, cost
@@ -175,7 +175,7 @@ def _cheaper_laws(scene):
 
 
 def _cheaper_velocities(scene):
-    """Yield (words, scene) with estimates of less work, where the scene holds one of hapticlab/scene/estimators.py."""
+    """Yield (words, scene) with estimates of less work, where the scene holds one of hapticlab/scene/laws/estimators.py."""
     defined = {type(e.lhs): e for e in scene.eom if not is_model(e) and getattr(type(e.lhs), "role", None) == "signal"}
     for kind in [kind for kind in defined if hasattr(kind, "instead")]:
         own, waiting = set(), {kind}

@@ -7,9 +7,9 @@ of a step what the other coordinates and rates are, the accelerations, the react
 
 import sympy as sp
 
-from ...scene.derivative import Partial, Rate
-from ...scene.loops import is_holonomic
-from ...scene.symbols import t
+from ...scene.mechanics.loop_solutions import is_holonomic
+from ...scene.notation.derivative import Partial, Rate
+from ...scene.notation.symbols import t
 from ..algebra.linear_solve import solve
 from ..ir.structural_zeros import dot, plus, scaled
 from ..ir.trace import Value

@@ -11,10 +11,10 @@ import numpy as np
 import sympy as sp
 
 from ...errors import MassError, SceneError
-from ...scene.closing import name, names
-from ...scene.loop_terms import NotClosed
-from ...scene.loops import embed, is_holonomic
-from ...scene.symbols import t
+from ...scene.mechanics.loop_closure import name, names
+from ...scene.mechanics.loop_solutions import embed, is_holonomic
+from ...scene.mechanics.loop_terms import NotClosed
+from ...scene.notation.symbols import t
 from ..prune.constraint_assembly import SMALLEST
 from ..prune.constraint_consistency import assembled, check_independent, check_rank, check_rates, check_start, shown_at
 from .enforcement import Closed, Multipliers, Partitioned

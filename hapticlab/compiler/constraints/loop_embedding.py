@@ -6,8 +6,8 @@ B w' + b. Each group of one or two constraints gives the rows of its coordinates
 
 import sympy as sp
 
-from ...scene.derivative import Partial, Rate, rates_of
-from ...scene.symbols import t
+from ...scene.notation.derivative import Partial, Rate, rates_of
+from ...scene.notation.symbols import t
 from ..ir.structural_zeros import dot, less_product, plus, scaled, times
 from ..ir.trace import Value
 

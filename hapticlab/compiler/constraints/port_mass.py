@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ...scene.closing import driven_over
-from ...scene.symbols import acceleration, t
+from ...scene.mechanics.loop_closure import driven_over
+from ...scene.notation.symbols import acceleration, t
 from ..algebra.expressions import Translator
 from ..algebra.graph import NUMPY, Graph
 from ..ir.trace import Builder, reachable

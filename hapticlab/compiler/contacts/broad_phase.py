@@ -13,14 +13,14 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from ...errors import SceneError
-from ...scene.amount import number_of
-from ...scene.checks import applied
-from ...scene.contact import Contact
-from ...scene.gaps import check_placed, closest
-from ...scene.gaps import corners as corners_of
-from ...scene.parameters import Parameter
-from ...scene.shapes import HalfPlane
-from ...scene.symbols import t, x
+from ...scene.contact.contact import Contact
+from ...scene.notation.amount import number_of
+from ...scene.notation.checks import applied
+from ...scene.notation.parameters import Parameter
+from ...scene.notation.symbols import t, x
+from ...scene.shapes.gaps import check_placed, closest
+from ...scene.shapes.gaps import corners as corners_of
+from ...scene.shapes.shapes import HalfPlane
 from ..algebra.first_sample import numbers
 from ..algebra.ranges import Ranges
 
@@ -111,7 +111,7 @@ def contacts_between(bodies, *, law, ignore=(), handle=(-math.inf, math.inf), co
         Give each corner above a half-plane a contact of its own: what holds a box that lies flat, for a law without a
         place. Its stiffness then counts once a corner.
     method : {"sample", "faces", "gjk"}
-        How often the closest edges and corners are looked for: see :func:`hapticlab.scene.gaps.gap`. Once a sample unless
+        How often the closest edges and corners are looked for: see :func:`hapticlab.scene.shapes.gaps.gap`. Once a sample unless
         asked otherwise.
     values : dict name -> number, optional
         Parameters, for looking where the bodies start; their declared values unless given.

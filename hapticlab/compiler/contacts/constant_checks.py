@@ -11,9 +11,9 @@ from dataclasses import replace
 import sympy as sp
 
 from ...errors import SceneError
-from ...scene.contact import Contact
-from ...scene.symbols import Parameter, T
-from ...scene.units import unit_of
+from ...scene.contact.contact import Contact
+from ...scene.notation.symbols import Parameter, T
+from ...scene.notation.units import unit_of
 from ..algebra.first_sample import numbers
 from ..algebra.graph import Graph
 from ..algebra.ranges import Ranges

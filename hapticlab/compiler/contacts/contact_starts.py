@@ -4,9 +4,9 @@ import numpy as np
 import sympy as sp
 
 from ...errors import SceneError
-from ...scene.contact import Contact, friction
-from ...scene.derivative import Partial, Rate
-from ...scene.symbols import x
+from ...scene.contact.contact import Contact, friction
+from ...scene.notation.derivative import Partial, Rate
+from ...scene.notation.symbols import x
 from ..algebra.first_sample import numbers
 from .broad_phase import TOUCHING
 

@@ -6,11 +6,11 @@ import numpy as np
 import sympy as sp
 
 from ...errors import SceneError
-from ...scene.contact import Contact
-from ...scene.contact_laws import impulse
-from ...scene.derivative import Partial, Rate
-from ...scene.force_laws import hunt_crossley
-from ...scene.parameters import Parameter
+from ...scene.contact.contact import Contact
+from ...scene.contact.contact_laws import impulse
+from ...scene.contact.penalty_laws import hunt_crossley
+from ...scene.notation.derivative import Partial, Rate
+from ...scene.notation.parameters import Parameter
 from ..algebra.first_sample import numbers
 from ..events.taylor_method import Taylor
 from ..ir.options import proposed

@@ -3,7 +3,7 @@
 import math
 
 from ...errors import SceneError
-from ...scene.symbols import x
+from ...scene.notation.symbols import x
 from ..algebra.first_sample import numbers
 from ..prune.excluded_modes import within
 

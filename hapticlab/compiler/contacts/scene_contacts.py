@@ -3,10 +3,10 @@
 import sympy as sp
 
 from ...errors import ProgramError, SceneError
-from ...scene.contact import friction
-from ...scene.contact_laws import impulse, micro_impulse, rigid
-from ...scene.derivative import Partial, Rate
-from ...scene.symbols import t, x
+from ...scene.contact.contact import friction
+from ...scene.contact.contact_laws import impulse, micro_impulse, rigid
+from ...scene.notation.derivative import Partial, Rate
+from ...scene.notation.symbols import t, x
 from ..algebra.complementarity import response
 from ..events.guards import contact, coulomb
 from ..events.taylor_method import Taylor

@@ -26,7 +26,7 @@ from types import BuiltinFunctionType, FunctionType
 from sympy.core.function import UndefinedFunction
 from sympy.core.parameters import global_parameters
 
-from ...scene.symbols import Parameter
+from ...scene.notation.symbols import Parameter
 
 #: modules whose classes and functions stay what they are while a process runs; a student's may be defined anew
 LASTING = {"builtins", "collections", "copyreg", "hapticlab", "mpmath", "numpy", "sympy"}

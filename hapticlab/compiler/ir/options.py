@@ -5,8 +5,8 @@ import operator
 from numbers import Real
 
 from ...errors import ParameterError, ProgramError, ProgramLimitError
-from ...scene.symbols import Parameter
-from ...scene.units import in_si
+from ...scene.notation.symbols import Parameter
+from ...scene.notation.units import in_si
 
 #: of a period, that an error may propose: more of any method are more instructions than a program may have
 MOST_SUBSTEPS = 1000

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...errors import ProgramError
-from ...scene.symbols import t
+from ...scene.notation.symbols import t
 from ..algebra.graph import driven
 from ..contacts.scene_contacts import located
 from ..events.taylor_method import Switched

@@ -5,8 +5,8 @@ from dataclasses import replace
 import sympy as sp
 
 from ...errors import ProgramError
-from ...scene.contact_laws import micro_impulse
-from ...scene.symbols import T, t, v, x
+from ...scene.contact.contact_laws import micro_impulse
+from ...scene.notation.symbols import T, t, v, x
 from ..algebra.graph import driven
 
 #: with the states at the sample, with those at the end of the period, or the mean over the period

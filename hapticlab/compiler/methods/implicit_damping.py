@@ -7,8 +7,8 @@ since a step that trusts it divides by 1 - h d, and explodes where that is zero.
 
 import sympy as sp
 
-from ...scene.derivative import Partial
-from ...scene.symbols import t
+from ...scene.notation.derivative import Partial
+from ...scene.notation.symbols import t
 from ..algebra.first_sample import numbers
 from ..ir.structural_zeros import is_zero, minus, plus, scaled
 from ..ir.trace import minimum, select, sqrt

@@ -3,8 +3,8 @@
 import sympy as sp
 
 from ...errors import ProgramError
-from ...scene.derivative import Partial
-from ...scene.symbols import Parameter, t
+from ...scene.notation.derivative import Partial
+from ...scene.notation.symbols import Parameter, t
 from ..ir.channels import short
 from .force_timing import IMPULSE
 

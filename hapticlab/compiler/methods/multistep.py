@@ -1,6 +1,6 @@
 """Multistep methods in a program: the rates of the steps before are states, whose first values RK4 finds backwards."""
 
-from ...scene.symbols import t, v, x
+from ...scene.notation.symbols import t, v, x
 from ..algebra.expressions import Translator
 from ..ir.channels import channel_of, short
 from ..ir.program import Channel

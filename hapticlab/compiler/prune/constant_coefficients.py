@@ -3,9 +3,9 @@
 import numpy as np
 import sympy as sp
 
-from ...scene.contact import Contact
-from ...scene.derivative import Partial
-from ...scene.symbols import Parameter, T, delay, t, v, x
+from ...scene.contact.contact import Contact
+from ...scene.notation.derivative import Partial
+from ...scene.notation.symbols import Parameter, T, delay, t, v, x
 from ..algebra.graph import Graph, shown
 from ..ir.channels import short
 from .dependence import blocks, coupled

@@ -7,9 +7,9 @@ import numpy as np
 import sympy as sp
 
 from ...errors import SceneError
-from ...scene.closing import declared_range, in_unit, is_angle, name, shown, values
-from ...scene.loops import AGREEING, is_holonomic
-from ...scene.symbols import t, v
+from ...scene.mechanics.loop_closure import declared_range, in_unit, is_angle, name, shown, values
+from ...scene.mechanics.loop_solutions import AGREEING, is_holonomic
+from ...scene.notation.symbols import t, v
 from .constraint_assembly import SMALLEST, Assembly
 
 

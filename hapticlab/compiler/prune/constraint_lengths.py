@@ -10,11 +10,11 @@ import math
 import numpy as np
 
 from ...errors import ParameterError, SceneError
-from ...scene.checks import is_model
-from ...scene.closing import check_range
-from ...scene.loop_terms import NotClosed
-from ...scene.loops import is_holonomic
-from ...scene.symbols import Parameter
+from ...scene.mechanics.loop_closure import check_range
+from ...scene.mechanics.loop_solutions import is_holonomic
+from ...scene.mechanics.loop_terms import NotClosed
+from ...scene.notation.checks import is_model
+from ...scene.notation.symbols import Parameter
 from .constraint_consistency import assembled, check_independent, check_rank
 
 #: places of the ranges of live lengths that are looked at: all combinations of the ends and middles of so many

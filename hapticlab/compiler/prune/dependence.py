@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ...scene.symbols import delay
+from ...scene.notation.symbols import delay
 from ..algebra.graph import Graph
 
 FORCE = "F"

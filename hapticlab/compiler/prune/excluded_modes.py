@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from ...errors import ParameterError
-from ...scene.cases import Piecewise
+from ...scene.notation.cases import Piecewise
 from ..algebra.ranges import Ranges
 from ..ir.trace import select
 from .constraint_lengths import check_live, held

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...scene.symbols import t
+from ...scene.notation.symbols import t
 from ..algebra.matrix_exponential import held
 
 #: how much rounding may grow where modes are kept in place of states

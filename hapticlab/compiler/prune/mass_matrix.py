@@ -6,8 +6,8 @@ import numpy as np
 import sympy as sp
 
 from ...errors import MassError
-from ...scene.parameters import Parameter
-from ...scene.symbols import T
+from ...scene.notation.parameters import Parameter
+from ...scene.notation.symbols import T
 
 #: configurations looked at: generic ones, then the initial state, then others over a turn of every angle
 GENERIC, WIDE = 3, 5

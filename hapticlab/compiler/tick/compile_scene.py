@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 from ...errors import ProgramError, SceneError
+from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
-from ...scene.written import no_scene
 from ..contacts.broad_phase import Contacts
 from ..events.taylor_method import Taylor
 from ..ir.cache import Shared, content

@@ -4,8 +4,8 @@ import numpy as np
 import sympy as sp
 
 from ...errors import MassError, ParameterError, SceneError
-from ...scene.derivative import Partial
-from ...scene.symbols import acceleration, t, v, x
+from ...scene.notation.derivative import Partial
+from ...scene.notation.symbols import acceleration, t, v, x
 from ..algebra.first_sample import numbers
 from ..algebra.linear_solve import solve
 from ..constraints.enforcement_choice import enforcement

@@ -1,6 +1,6 @@
 """How a program sees the handle: the samples it remembers, its velocity, and its motion between two samples."""
 
-from ...scene.symbols import t, v, x
+from ...scene.notation.symbols import t, v, x
 from ..ir.program import Channel
 
 HOLDS = ("zoh", "foh", "soh")

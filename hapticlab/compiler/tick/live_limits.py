@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...scene.frozen import Frozen
-from ...scene.symbols import delay, lag_of, n
+from ...scene.notation.symbols import delay, lag_of, n
 from ..events.taylor_method import Switched, Taylor
 from ..ir.cache import Shared
 from .live_stability import SLOW, SMALL, SMALL_MOTIONS, StableValues

@@ -5,8 +5,8 @@ from dataclasses import replace
 import sympy as sp
 
 from ...errors import ParameterError, SceneError
-from ...scene.symbols import Parameter, T, acceleration, delay, lag_of, n, t, v, x
-from ...scene.units import unit_of
+from ...scene.notation.symbols import Parameter, T, acceleration, delay, lag_of, n, t, v, x
+from ...scene.notation.units import unit_of
 from ..algebra.constants import entering
 from ..algebra.expressions import Translator
 from ..algebra.graph import Graph

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ...errors import ProgramLimitError
-from ...scene.symbols import v, x
+from ...scene.notation.symbols import v, x
 from ..events.series_checks import numbers
 from ..ir.program import Block, Channel, Program
 from ..ir.trace import Builder

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import HapticlabError, LinkError, PaddleError, PortError
+from ...scene.notation.symbols import n, parameters, x
 from ...scene.scene import Scene
-from ...scene.symbols import n, parameters, x
 from ..board.homing import state_flag
 from ..link.messages import RESET_CAUSES, SENSORS, row_of, table_hash
 from ..link.serial_ports import open_port

@@ -1,8 +1,8 @@
 """Measure a motor's force constant: the handle presses on a kitchen scale, or lifts a hanging weight."""
 
 from ...errors import PaddleError
+from ...scene.notation.symbols import parameters
 from ...scene.scene import Scene
-from ...scene.symbols import parameters
 from ..board.settings import changed
 from ..link.messages import MOTOR_LAWS, UNCHECKED_FORCE_N
 from .attended_motor import attended

@@ -23,8 +23,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import PaddleError
+from ...scene.notation.symbols import n, parameters, x
 from ...scene.scene import Scene
-from ...scene.symbols import n, parameters, x
 from ..board.settings import changed
 from ..link.messages import UNCHECKED_FORCE_N
 from .attended_motor import attended

@@ -56,7 +56,7 @@ def link(program, paddle, measure=None):
     >>> from hapticlab.compiler.tick.compile_scene import compile
     >>> from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle, link
     >>> from hapticlab.scene.scene import Scene
-    >>> from hapticlab.scene.symbols import n, parameters, x
+    >>> from hapticlab.scene.notation.symbols import n, parameters, x
     >>> k = parameters("k", units="N/m")
     >>> linked = link(compile(Scene(force=k * x(n)), T=1e-3), SimulatedPaddle(m=0.05, b=0.1, T=1e-3))
     >>> [c.name for c in linked.outputs], [c.name for c in linked.parameters][:2]

@@ -11,7 +11,7 @@ from hapticlab.analysis.programs.requires import requires
 from hapticlab.compiler.contacts.broad_phase import contacts_between
 from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import AnalysisError, ParameterError, ProgramError, SceneError
-from hapticlab.scene.shapes import Circle, ground
+from hapticlab.scene.shapes.shapes import Circle, ground
 
 T = 1e-3
 w, y, z = (hl.coordinate(name, unit="m") for name in "wyz")

@@ -9,7 +9,7 @@ from hapticlab import n, t, v, x
 from hapticlab.analysis.records.energy_books import CHANNELS, balance, energy_books
 from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import AnalysisError, SceneError
-from hapticlab.scene.mechanics import lagrange
+from hapticlab.scene.mechanics.lagrange import lagrange
 
 T, M, G, H = 1e-3, 0.5, 9.81, 0.1
 m, g, h0 = hl.parameters("m g h0", units="kg m/s^2 m", values=(M, G, H))

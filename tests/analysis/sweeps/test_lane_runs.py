@@ -10,7 +10,7 @@ from hapticlab.analysis.sweeps.sweep import sweep
 from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError
-from hapticlab.scene.laws import wall
+from hapticlab.scene.laws.chapter_laws import wall
 
 HAND = Hand(m=0.01, b=0.3, k=40.0, push=1.5)
 FULL = SimulatedPaddle(

@@ -17,9 +17,9 @@ from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError, PaddleError, ParameterError, ProgramError
 from hapticlab.limits.stability import stability_limit
-from hapticlab.scene.laws import wall
+from hapticlab.scene.laws.chapter_laws import wall
+from hapticlab.scene.notation.symbols import n, parameters, t, x
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import n, parameters, t, x
 
 PUSHED = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=Hand(push=2.0))
 #: encoder, friction, noise, saturation, and a force that changes inside the periods

@@ -7,8 +7,8 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab import t, v, x
 from hapticlab.compiler.algebra.graph import Graph, driven
-from hapticlab.scene.derivative import Partial, Rate
-from hapticlab.scene.symbols import acceleration
+from hapticlab.scene.notation.derivative import Partial, Rate
+from hapticlab.scene.notation.symbols import acceleration
 
 a, f = hl.parameters("a f", units="1 1/s")
 p, q = hl.coordinate("p", unit="1"), hl.coordinate("q", unit="1")

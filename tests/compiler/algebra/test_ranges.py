@@ -10,8 +10,8 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab.compiler.algebra.ranges import Ranges
 from hapticlab.compiler.prune.excluded_modes import decide
-from hapticlab.scene.amount import amount
-from hapticlab.scene.parameters import Parameter
+from hapticlab.scene.notation.amount import amount
+from hapticlab.scene.notation.parameters import Parameter
 
 a, b, c = Parameter("a", "1", -0.7, 1.3), Parameter("b", "1", 0.2, 0.9), Parameter("c", "1", -3.0, -1.0)
 EXPRESSIONS = (

@@ -13,12 +13,12 @@ from hapticlab.compiler.contacts.broad_phase import Contacts, _sweep, check_apar
 from hapticlab.compiler.engines import engine
 from hapticlab.compiler.events.taylor_method import Taylor
 from hapticlab.errors import SceneError
-from hapticlab.scene.amount import Amount
-from hapticlab.scene.contact_laws import impulse, rigid
-from hapticlab.scene.force_laws import penalty
-from hapticlab.scene.gaps import gap
-from hapticlab.scene.mechanics import lagrange
-from hapticlab.scene.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, ground
+from hapticlab.scene.contact.contact_laws import impulse, rigid
+from hapticlab.scene.contact.penalty_laws import penalty
+from hapticlab.scene.mechanics.lagrange import lagrange
+from hapticlab.scene.notation.amount import Amount
+from hapticlab.scene.shapes.gaps import gap
+from hapticlab.scene.shapes.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, ground
 
 t = hl.t
 

@@ -11,8 +11,8 @@ from hapticlab import t
 from hapticlab.compiler.contacts.contact_steps import check_contact_steps
 from hapticlab.device.live import checked
 from hapticlab.errors import ParameterError, SceneError
-from hapticlab.scene.contact import Contact
-from hapticlab.scene.force_laws import hunt_crossley, penalty
+from hapticlab.scene.contact.contact import Contact
+from hapticlab.scene.contact.penalty_laws import hunt_crossley, penalty
 
 Q = hl.coordinate("q", unit="m")
 K, KH, C = hl.parameters("k k_h c", units="N/m N/m^1.5 s/m")

@@ -10,7 +10,7 @@ import hapticlab as hl
 from hapticlab import n, t, x
 from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import ProgramError, SceneError
-from hapticlab.scene.mechanics import lagrange
+from hapticlab.scene.mechanics.lagrange import lagrange
 
 T, M, G, H = 1e-3, 0.5, 9.81, 0.1
 m, g, h0 = hl.parameters("m g h0", units="kg m/s^2 m", values=(M, G, H))

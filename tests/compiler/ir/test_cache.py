@@ -25,7 +25,7 @@ from hapticlab.compiler.tick import compile_scene
 from hapticlab.compiler.tick.compile_scene import PROGRAMS
 from hapticlab.course.felt import felt
 from hapticlab.device.simulated.closed_loop import LINKED
-from hapticlab.scene.symbols import Parameter
+from hapticlab.scene.notation.symbols import Parameter
 
 T = 1e-3
 

@@ -11,7 +11,7 @@ import hapticlab as hl
 from hapticlab import n, t, x
 from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import MassError, ParameterError, SceneError
-from hapticlab.scene.derivative import Rate
+from hapticlab.scene.notation.derivative import Rate
 
 m, l, g, k, a = hl.parameters("m l g k a", units="kg m m/s^2 N/m m", values=(0.1, 0.1, 9.81, 20.0, 0.01))
 f = hl.parameters("f", units="1/s", values=25.25)

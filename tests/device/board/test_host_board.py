@@ -15,8 +15,8 @@ from hapticlab.device.board.host_board import HostBoard
 from hapticlab.device.board.recording import fault_words
 from hapticlab.device.link.messages import SENSORS
 from hapticlab.device.link.wire import encode
+from hapticlab.scene.notation.symbols import n, parameters, x
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import n, parameters, x
 
 # ---------------------------------------------------------------- sessions and sequence
 

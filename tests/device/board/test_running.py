@@ -16,8 +16,8 @@ from hapticlab.device.board.serial_paddle import SerialPaddle
 from hapticlab.device.link.messages import STATES
 from hapticlab.device.link.wire import encode
 from hapticlab.errors import LinkError, PaddleError, ParameterError, PortError
+from hapticlab.scene.notation.symbols import n, parameters, x
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import n, parameters, x
 
 k, push = parameters("k push", units="N/m N")
 LEAN = Scene(force=k * x(n) + push, name="lean")

@@ -11,8 +11,8 @@ from hapticlab.device.board.serial_paddle import SerialPaddle
 from hapticlab.device.board.upload import upload
 from hapticlab.device.link.messages import STATES
 from hapticlab.errors import LinkError, PaddleError, PortError
+from hapticlab.scene.notation.symbols import n, parameters, x
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import n, parameters, x
 
 k, push = parameters("k push", units="N/m N")
 LEAN = Scene(force=k * x(n) + push, name="lean")

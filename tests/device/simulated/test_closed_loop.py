@@ -14,8 +14,8 @@ from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle, link
 from hapticlab.errors import PaddleError
+from hapticlab.scene.notation.symbols import coordinate, n, parameters, t, v, when, x
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import coordinate, n, parameters, t, v, when, x
 
 ENGINES = ["interpreter"] + ["llvm"] * (importlib.util.find_spec("llvmlite") is not None)
 HAND = Hand(m=0.02, b=1, k=200, push=0.6, intent=lambda t: 0.004 * np.sin(40 * t))

@@ -10,8 +10,8 @@ from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import PaddleError
+from hapticlab.scene.notation.symbols import n, parameters, v, x
 from hapticlab.scene.scene import Scene
-from hapticlab.scene.symbols import n, parameters, v, x
 
 PLAIN = {"m": 0.05, "b": 0.1, "T": 1e-3}
 NAN = float("nan")

@@ -1,0 +1,292 @@
+"""Contacts of a scene: a gap, the law that acts where it closes, and Coulomb friction."""
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ...errors import SceneError, SignalError
+from ..notation.amount import number_of
+from ..notation.cases import when
+from ..notation.checks import applied, check_symbols
+from ..notation.derivative import Partial, Rate
+from ..notation.symbols import lag_of, t, v, x
+from ..notation.units import dimension_of, si_name
+from ..notation.written import check_name, expression
+from .contact_laws import EVENT_LAWS, FORCE_LAWS
+from .penalty_laws import check_constant, constant, gap_units, written_out
+
+
+class _InASum:
+    """What is no expression, and says so where it is added to one."""
+
+    def _refuse(self, other=None):
+        raise SceneError(f"{self.name} is a {type(self).__name__}, not a force; its force is an expression, {self.name}.force")
+
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __neg__ = _refuse
+
+
+@dataclass(frozen=True)
+class Contact(_InASum):
+    """Two bodies, or a body and the handle, that cannot pass each other.
+
+    Parameters
+    ----------
+    gap : expression [m], or [rad] for a joint that stops
+        >= 0 apart, 0 in touch; of coordinates, parameters, t and the handle x(t). It starts so, the handle at 0; under
+        a force law it may start pressed in by 1 mm, or with a force up to ten times what presses the bodies together.
+    law : penalty, hunt_crossley, impulse, micro_impulse or rigid
+    name : str
+        Names the contact in messages and records; two contacts of a scene need two names.
+    slip : expression [m/s]
+        Tangential velocity of the surfaces on each other, linear in rates; for a law with friction mu in its impacts. Friction
+        of a body that stays in touch is ``hl.friction(slip=..., F_c=mu*contact.force)`` beside the contact.
+
+    Attributes
+    ----------
+    force : expression [N]
+        Normal force, never negative. For a force law an expression of the gap and its rate; for an event law the
+        reaction found while the scene runs, zero in free flight (an impulse is not a force and not in it).
+
+    Raises
+    ------
+    SceneError, UnitsError, SignalError
+
+    Examples
+    --------
+    A ball on a table of stiffness k:
+
+    >>> import hapticlab as hl
+    >>> q = hl.coordinate("q", unit="m"); k = hl.parameters("k", units="N/m")
+    >>> hl.Contact(q, hl.penalty(k=k), name="table").force
+    Piecewise((-k*q(t), q(t) <= 0), (0, True))
+    """
+
+    gap: sp.Expr
+    law: object
+    name: str = "contact"
+    slip: sp.Expr = sp.S.Zero
+
+    __repr__ = written_out
+
+    def __post_init__(self):
+        check_name(self.name, "contact")
+        _check_is_distance(self.gap, self.name)
+        gap, slip = expression(self.gap, f"{self.name}: gap"), expression(self.slip, f"{self.name}: slip")
+        object.__setattr__(self, "gap", gap)
+        object.__setattr__(self, "slip", slip)
+        if not isinstance(self.law, FORCE_LAWS + EVENT_LAWS):
+            raise SceneError(f"{self.name}: law = {self.law!r}; needs penalty, hunt_crossley, impulse, micro_impulse or rigid")
+        _check_gap(gap, self.name)
+        gap_units(gap, f"{self.name}: gap")
+        if not self.is_force and not applied([gap], "coordinate"):
+            raise SceneError(
+                f"{self.name}: gap = {gap} holds the handle alone, which no impulse can turn round; put a body behind a "
+                "virtual coupler, or take a penalty, hunt_crossley, or hl.proxy_wall"
+            )
+        self.law.check(gap, self.name)
+        mu = getattr(self.law, "mu", sp.S.Zero)
+        if mu != 0 and slip == 0:
+            raise SceneError(f"{self.name}: friction mu = {mu} needs a direction; give slip=, the tangential velocity [m/s]")
+        if slip != 0:
+            _check_slip(slip, self.name)
+            if not hasattr(self.law, "mu"):
+                cure = "add hl.friction(slip=..., F_c=mu*contact.force) beside the contact"
+                raise SceneError(f"{self.name}: a {type(self.law).__name__} has no friction of its own; {cure}")
+
+    @property
+    def is_force(self):
+        """True for a law that is an expression of the state; False for one of impulses and reactions."""
+        return isinstance(self.law, FORCE_LAWS)
+
+    @property
+    def constants(self):
+        """The expressions of the law, and the slip."""
+        return (self.slip, *(part for part in vars(self.law).values() if isinstance(part, sp.Expr)))
+
+    @property
+    def unit(self):
+        """Unit of the force: N, or N*m where the gap is an angle."""
+        return gap_units(self.gap, self.name)[0]
+
+    @property
+    def force(self):
+        """The normal force [N], an expression."""
+        if not self.is_force:
+            return reaction(self.name, self.unit)
+        return when(self.gap <= 0, self.law.force(self.gap, Rate(self.gap)))
+
+    @property
+    def impulse(self):
+        """The sum of the normal impulses since the last sample [N s], found while the scene runs; zero of a force law."""
+        return self._met("impulse", f"{self.unit}*s")
+
+    @property
+    def impact_loss(self):
+        """The energy that impacts have dissipated so far [J]; zero of a force law."""
+        return self._met("impact_loss", "J")
+
+    @property
+    def impact_work(self):
+        """The work that handle and moving surfaces have done in impacts so far [J]; zero of a force law."""
+        return self._met("impact_work", "J")
+
+    @property
+    def rub(self):
+        """The tangential force of an impact [N]: a leaf along which a program pushes in the instant, else zero."""
+        return sp.Function(f"{self.name}_rub", real=True, unit=self.unit, role="rub", contact=self.name)(t)
+
+    def _met(self, role, unit):
+        """Return the leaf of what impacts add up to."""
+        if self.is_force:
+            return sp.S.Zero
+        return sp.Function(f"{self.name}_{role}", real=True, unit=unit, role=role, contact=self.name)(t)
+
+    @property
+    def felt(self):
+        """The force on the environment [N] where the gap holds the handle x(t): -force times dgap/dx; not its impulses."""
+        return -self.generalized_force(x(t))
+
+    def generalized_force(self, q):
+        """Return what the contact does to a coordinate q, or to the handle x(t): force times dgap/dq.
+
+        With friction in its impacts, the leaf ``rub`` along dslip/dq' too, zero at all other times.
+        """
+        along = Partial(self.gap, q)
+        normal = self.force * along if along != 0 else along
+        if self.slip == 0:
+            return normal
+        return normal + self.rub * Partial(self.slip, v(t) if q == x(t) else q.diff(t))
+
+
+@dataclass(frozen=True, kw_only=True)
+class friction(_InASum):
+    """Coulomb friction between two surfaces that slip on each other.
+
+    Sliding: F_c against the slip. Sticking: whatever keeps the slip at zero, up to F_s. Sticking is a mode with its own
+    reaction, entered where the slip crosses zero and left where the reaction passes F_s, so it holds still, which a
+    steep tanh cannot do.
+
+    Parameters
+    ----------
+    slip : expression [m/s]
+        Relative velocity, linear in rates; of coordinates' rates and the handle's v(t).
+    F_c : Parameter, expression or text with a unit [N], >= 0
+        Sliding friction; ``mu * contact.force`` for dry friction at a contact.
+    F_s : Parameter, expression or text with a unit [N], optional
+        Breakaway force, >= F_c; F_c unless given.
+    stick_speed : Parameter, expression or text with a unit [m/s], optional
+        Replaces sticking by a steep line: the force is F_c slip/stick_speed up to that speed. An ordinary force, for
+        every method; it creeps where it should stick.
+    name : str
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> q = hl.coordinate("q", unit="m"); F_c, v_s = hl.parameters("F_c v_s", units="N m/s")
+    >>> hl.friction(slip=q.diff(hl.t), F_c=F_c, stick_speed=v_s).force
+    F_c*Max(-1, Min(1, Derivative(q(t), t)/v_s))
+    """
+
+    slip: sp.Expr
+    F_c: sp.Expr
+    F_s: sp.Expr = None
+    stick_speed: sp.Expr = None
+    name: str = "friction"
+
+    __repr__ = written_out
+
+    def __post_init__(self):
+        check_name(self.name, "friction")
+        for part in ("slip", "F_c", "F_s", "stick_speed"):
+            given = getattr(self, part)
+            if given is not None:
+                object.__setattr__(self, part, constant(given, f"{self.name}: {part}"))
+        if self.F_s is not None and self.stick_speed is not None:
+            raise SceneError(f"{self.name}: stick_speed replaces sticking, so there is no breakaway force F_s; leave one out")
+        if self.F_s is None:
+            object.__setattr__(self, "F_s", self.F_c)
+        if self.slip == 0:
+            raise SceneError(f"{self.name}: slip = 0; needs the relative velocity of the surfaces, such as q.diff(t)")
+        _check_slip(self.slip, self.name)
+        unit = self.unit
+        for part in ("F_c", "F_s"):
+            if not isinstance(getattr(self, part), sp.Expr):
+                raise SceneError(f"{self.name}: {part} = {getattr(self, part)!r}; needs a force such as '0.5 N'")
+            if getattr(self, part).is_negative:
+                raise SceneError(f"{self.name}: {part} = {getattr(self, part)}; friction opposes the slip: needs {part} >= 0")
+            check_constant(getattr(self, part), unit, f"{self.name}, {part}")
+        if (number_of(self.F_s) - number_of(self.F_c)).is_negative:
+            raise SceneError(f"{self.name}: F_s = {self.F_s} < F_c = {self.F_c}; breaking away takes at least the sliding force")
+        if self.stick_speed is not None:
+            check_constant(self.stick_speed, si_name(dimension_of(self.slip, self.name)), f"{self.name}, stick_speed")
+
+    @property
+    def is_force(self):
+        """True with a ``stick_speed``: then the force is an expression of the state."""
+        return self.stick_speed is not None
+
+    @property
+    def constants(self):
+        """The expressions of the law."""
+        return tuple(part for part in (self.F_c, self.F_s, self.stick_speed) if part is not None)
+
+    @property
+    def unit(self):
+        """Unit of the force: N, or N*m where the slip is an angular velocity."""
+        return "N" if si_name(dimension_of(self.slip, self.name)) == "m/s" else "N*m"
+
+    @property
+    def force(self):
+        """The friction force [N] against the slip, an expression."""
+        if not self.is_force:
+            return reaction(self.name, self.unit, "F")
+        return self.F_c * sp.Max(-1, sp.Min(1, self.slip / self.stick_speed))
+
+    def generalized_force(self, q):
+        """Return what the friction does to a coordinate q, or to the handle x(t): -force times dslip/dq'."""
+        return -self.force * Partial(self.slip, v(t) if q == x(t) else q.diff(t))
+
+
+def reaction(name, unit, letter="N"):
+    """Return the leaf that stands for a reaction found while the scene runs; a contact's name may be a function's, floor."""
+    printed = {"letter": letter, "_sympystr": _as_text, "_latex": _as_latex}
+    return sp.Function(name, real=True, unit=unit, role="reaction", contact=name, **printed)(t)
+
+
+def _as_text(leaf, printer):
+    return f"{type(leaf).letter}_{type(leaf).__name__}(t)"
+
+
+def _as_latex(leaf, printer, exp=None):
+    name = type(leaf).__name__.replace("_", r"\_")
+    plain = rf"{type(leaf).letter}_{{\mathrm{{{name}}}}}"
+    return plain if exp is None else f"{plain}^{{{exp}}}"
+
+
+def _check_is_distance(gap, name):
+    if isinstance(gap, sp.core.relational.Relational):
+        apart = gap.gts - gap.lts if hasattr(gap, "gts") else gap.lhs - gap.rhs
+        raise SceneError(f"{name}: gap = {gap} is a condition; a contact takes the distance itself, >= 0 apart: {apart}")
+
+
+def _check_gap(gap, name):
+    check_symbols([gap])
+    moving = applied([gap], "coordinate", "handle")
+    if not moving:
+        raise SceneError(f"{name}: gap = {gap} holds no coordinate and not x(t), so nothing can close it")
+    for sample in applied([gap], "handle", "signal"):
+        if lag_of(sample) is not None:
+            raise SignalError(f"{name}: gap holds the sample {sample}; a contact sees the handle between samples too: x(t)")
+    if gap.atoms(sp.Derivative) or gap.has(v(t)):
+        raise SceneError(f"{name}: gap = {gap} holds a velocity; a gap is a distance, of positions alone")
+
+
+def _check_slip(slip, name):
+    check_symbols([slip])
+    rates = [*slip.atoms(sp.Derivative), *({v(t)} & slip.atoms(v))]
+    if not rates:
+        raise SceneError(f"{name}: slip = {slip} holds no velocity; needs a relative velocity such as q.diff(t) - v(t)")
+    dummies = {rate: sp.Dummy() for rate in rates}
+    plain = slip.xreplace(dummies)
+    if any(plain.diff(a, b) != 0 for a in dummies.values() for b in dummies.values()):
+        raise SceneError(f"{name}: slip = {slip} is not linear in the velocities; a relative velocity is")

@@ -1,0 +1,218 @@
+"""Contact laws that are forces over a time: the penalty spring and damper, and Hunt and Crossley's; chapter section 23.5.2."""
+
+import math
+from dataclasses import dataclass, fields
+
+import sympy as sp
+
+from ...errors import SceneError, UnitsError
+from ..notation.amount import Amount
+from ..notation.checks import agree_with
+from ..notation.units import dimension, dimension_of, fixed, quantity
+from ..notation.written import expression
+
+#: exponent of two spheres, or a sphere on a plane
+HERTZ = sp.Rational(3, 2)
+#: what a gap is measured in -> units of force, stiffness, damping and speed
+_OF_GAP = {
+    dimension("m"): ("N", "N/m", "N*s/m", "m/s"),
+    (): ("N*m", "N*m/rad", "N*m*s/rad", "rad/s"),
+}
+
+
+def written_out(law):
+    """Return a law, contact or friction as it is written, its numbers in few digits."""
+    values = {f.name: getattr(law, f.name) for f in fields(law)}
+    text = {k: sp.sstr(value, full_prec=False) if isinstance(value, sp.Basic) else repr(value) for k, value in values.items()}
+    return f"{type(law).__name__}({', '.join(f'{name}={value}' for name, value in text.items())})"
+
+
+def gap_units(gap, where):
+    """Return the units of force, stiffness, damping and speed that belong to a gap in m, or in rad."""
+    units = _OF_GAP.get(dimension_of(gap, where))
+    if units is None:
+        raise SceneError(f"{where}: a gap is a distance in m, or an angle in rad; {gap} is neither")
+    return units
+
+
+@dataclass(frozen=True, kw_only=True)
+class penalty:
+    """Penalty contact: a spring and a damper act on the penetration, and never pull.
+
+    N = max(0, k d - b dgap/dt) where the gap is closed, with the penetration d = -gap. With b > 0 the force jumps at
+    touch, which costs an explicit method its order; :class:`hunt_crossley` has no jump. A contact lasts
+    pi sqrt(m/k) with the effective mass m; explicit methods need ten steps in that time.
+
+    Parameters
+    ----------
+    k : Parameter, expression or text with a unit [N/m], >= 0
+    b : Parameter, expression or text with a unit [N s/m], >= 0
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k = hl.parameters("k", units="N/m")
+    >>> hl.penalty(k=k)
+    penalty(k=k, b=0)
+    """
+
+    k: sp.Expr
+    b: sp.Expr = 0
+
+    __repr__ = written_out
+
+    def __post_init__(self):
+        take(self, k="stiffness", b="damping")
+
+    def check(self, gap, where):
+        """Refuse constants whose units do not belong to the gap."""
+        _, stiffness, damping, _ = gap_units(gap, where)
+        check_constant(self.k, stiffness, f"{where}, k")
+        check_constant(self.b, damping, f"{where}, b")
+
+    def force(self, gap, rate):
+        """Return the normal force of a gap, <= 0, that changes at a rate."""
+        # a spring alone never pulls while the gap is closed, and a case less is half the work of method="taylor"
+        return sp.Max(0, -self.k * gap - self.b * rate) if self.b != 0 else -self.k * gap
+
+    def stored(self, gap):
+        """Return the energy in the spring."""
+        return self.k * sp.Max(0, -gap) ** 2 / 2
+
+    @staticmethod
+    def duration(k, mass, speed=None):
+        """Return how long a contact lasts [s]: half a period, pi sqrt(m/k), whatever the speed.
+
+        ``mass`` is the effective one of the contact, 1/W. A damper below critical makes it somewhat longer or shorter.
+        """
+        return math.pi * math.sqrt(mass / k)
+
+
+@dataclass(frozen=True, kw_only=True)
+class hunt_crossley:
+    """Hunt-Crossley contact: N = k d^n (1 + c dd/dt), never pulling, with the penetration d = -gap.
+
+    Hunt and Crossley, *Coefficient of restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42 (1975)
+    440-445: their lambda = 3/2 alpha k is k c here, and their restitution e = 1 - alpha v is e = 1 - 2/3 c v to first
+    order in the approach speed v, for every mass, stiffness and exponent. :meth:`restitution` is exact. The force starts
+    and ends at zero, unlike that of a damper, and the energy lost grows as v cubed. Hertz: n = 3/2 for spheres.
+
+    Parameters
+    ----------
+    k : Parameter, expression or text with a unit [N/m^n], >= 0
+    c : Parameter, expression or text with a unit [s/m], >= 0
+    exponent : fraction
+        n >= 1; 3/2 unless given. With a whole n the force is a polynomial in d.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> k, c = hl.parameters("k c", units="N/m^1.5 s/m")
+    >>> hl.hunt_crossley(k=k, c=c)
+    hunt_crossley(k=k, c=c, exponent=3/2)
+    """
+
+    k: sp.Expr
+    c: sp.Expr
+    exponent: sp.Rational = HERTZ
+
+    __repr__ = written_out
+
+    def __post_init__(self):
+        take(self, k="stiffness", c="damping factor")
+        exponent = fixed(expression(self.exponent, "exponent"))
+        if not (exponent.is_Rational and exponent >= 1):
+            raise SceneError(f"exponent = {self.exponent}; needs a fraction n >= 1, such as 3/2 for spheres (Hertz)")
+        object.__setattr__(self, "exponent", exponent)
+
+    def check(self, gap, where):
+        """Refuse constants whose units do not belong to the gap."""
+        force, _, _, speed = gap_units(gap, where)
+        if self.k.is_number:
+            check_constant(self.k, f"{force}/{speed.removesuffix('/s')}^{float(self.exponent):g}", f"{where}, k")
+        if self.c.is_number:
+            check_constant(self.c, f"s/{speed.removesuffix('/s')}", f"{where}, c")
+        agree_with(self.k * gap**self.exponent, force, f"{where}, k gap^{self.exponent}")
+        agree_with(1 / self.c if self.c != 0 else 0, speed, f"{where}, 1/c")
+
+    def force(self, gap, rate):
+        """Return the normal force of a gap that changes at a rate."""
+        # the factor alone is held at zero: where it is negative the contact would pull
+        return self.k * sp.Max(0, -gap) ** self.exponent * sp.Max(0, 1 - self.c * rate)
+
+    def duration(self, k, mass, speed):
+        """Return how long an undamped contact at a speed lasts [s]: 2 d/v int_0^1 dx/sqrt(1 - x^(n+1)), deepest at d.
+
+        For n = 3/2, 2.943 d/v (Hertz; Johnson, *Contact Mechanics*, 1985, section 11.4): the faster the shorter.
+
+        Examples
+        --------
+        >>> import hapticlab as hl
+        >>> k_h, c = hl.parameters("k_h c", units="N/m^1.5 s/m")
+        >>> round(hl.hunt_crossley(k=k_h, c=c).duration(1e6, 0.05, 1.0) * 1e3, 4)
+        3.8653
+        """
+        power = float(self.exponent) + 1
+        deepest = (power * mass * speed**2 / (2 * k)) ** (1 / power)
+        whole = math.sqrt(math.pi) / power * math.gamma(1 / power) / math.gamma(1 / power + 0.5)
+        return 2 * whole * deepest / speed
+
+    def stored(self, gap):
+        """Return the energy in the spring."""
+        return self.k * sp.Max(0, -gap) ** (self.exponent + 1) / (self.exponent + 1)
+
+    @staticmethod
+    def restitution(cv):
+        """Return e for c times the approach speed v, exact: with y = c e v, y + ln(1 - y) = ln(1 + c v) - c v.
+
+        From m v dv/dd = -k d^n (1 + c v), which separates: the energy of the entry and of the exit reach the same
+        depth. Mass, stiffness and exponent cancel.
+
+        Examples
+        --------
+        >>> import hapticlab as hl
+        >>> round(hl.hunt_crossley.restitution(0.3), 9)
+        0.832869792
+        """
+        if cv < 1e-4:  # where the two sides cancel, their series
+            return 1.0 - 2.0 / 3.0 * cv + 4.0 / 9.0 * cv**2
+        target = math.log1p(cv) - cv
+        y = cv / (1.0 + cv)
+        for _ in range(60):
+            y -= (y + math.log1p(-y) - target) * (1.0 - y) / -y
+            y = min(max(y, 1e-16), 1.0 - 1e-16)
+        return y / cv
+
+
+def take(law, **words):
+    """Keep the constants of a law as expressions; refuse a negative number."""
+    for name, word in words.items():
+        expr = constant(getattr(law, name), name)
+        if expr.is_negative:
+            fed = "friction opposes the slip" if name == "mu" else "a negative one feeds energy to the user"
+            raise SceneError(f"{name} = {shown(expr)}; a contact needs a {word} {name} >= 0: {fed}")
+        object.__setattr__(law, name, expr)
+
+
+def constant(given, where):
+    """Return a constant of a law: an expression, or a text with a unit such as '1000 N/m'."""
+    if not isinstance(given, str):
+        return expression(given, where)
+    number, unit = quantity(given, where)
+    return Amount(number, unit) if number else sp.S.Zero
+
+
+def check_constant(expr, unit, where):
+    """Refuse a constant of another unit; of a bare number, say how it gets one."""
+    if expr.is_number and expr != 0 and unit != "1":
+        name = where.rpartition(", ")[2]
+        raise UnitsError(
+            f"{where} = {shown(expr)} has no unit; needs {unit}: '{shown(expr)} {unit}', or "
+            f"hl.parameters('{name}', units='{unit}', values={shown(expr)})"
+        )
+    agree_with(expr, unit, where)
+
+
+def shown(number):
+    """Return a number as a message has it."""
+    return f"{float(number):g}" if sp.sympify(number).is_real else str(number)

@@ -1,0 +1,197 @@
+"""The chapter's laws as scenes: virtual walls, the force filter, the virtual damper, the virtual coupler."""
+
+import math
+
+import sympy as sp
+
+from ...errors import SceneError
+from ..notation.symbols import T, delay, n, parameters, t, v, when, x
+from ..scene import Scene, check_scene
+from .estimators import VelocityEstimate
+from .taps import LEAD, TAPS
+
+UNILATERAL = ("gate", "clip", None)
+
+
+def wall(law="zoh", unilateral="gate", clamp=False, velocity=None):
+    """Virtual wall: a spring K that pushes back beyond x_o, and a virtual damper B beside it.
+
+    ======================  =======  ====================================================
+    law                     Eq.      spring force, with p = x - x_o
+    ======================  =======  ====================================================
+    ``zoh``                 (23.1)   k p(n)
+    ``half_sample``         (23.3)   k (p(n) + T/2 v(n)); v(n) is the paddle's velocity:
+                                     exact only in a simulated paddle without an encoder
+    ``backward_difference`` (23.5)   k (1.5 p(n) - 0.5 p(n-1))
+    ``ellis``               (23.7)   k (2 p(n) - 1.5 p(n-1) + 0.5 p(n-2))
+    ======================  =======  ====================================================
+
+    With an encoder, or on a board, v(n) is estimated from positions, and ``half_sample`` is ``backward_difference``
+    unless ``velocity`` names another estimate. Eq. (23.2) with x(n+1) = x(n) + T v(n) is Eq. (23.3) with the same v.
+
+    The law predicts for the spring alone. The damper is B (p(n) - p(n-1))/T, the backward difference of the sensed
+    position, whatever the law, unless ``velocity`` names another estimate.
+
+    Parameters
+    ----------
+    law : {"zoh", "half_sample", "backward_difference", "ellis"}
+    unilateral : {"gate", "clip", None}
+        ``"gate"``: spring and damper act on the raw past and are zero where x(n) < x_o, as Eq. (23.1) reads.
+        ``"clip"``: they act on max(p, 0), now and in the past, and so may act for two samples after leaving; a
+        ``half_sample`` wall takes the velocity as zero outside. ``None``: they always act; the linear law of the
+        bounds.
+    clamp : bool
+        Never pull: F is replaced by max(F, 0).
+    velocity : VelocityEstimate, optional
+        What damper and ``half_sample`` take for v(n): :func:`~hapticlab.scene.laws.estimators.filtered_velocity` and the
+        others beside it. With ``"clip"`` it counts inside only.
+
+    Returns
+    -------
+    Scene
+        With parameters k [N/m] >= 0, B [N s/m] of either sign (0 unless bound) and x_o [m] (0 unless bound).
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.wall("ellis")(k=150, x_o="10 mm").values
+    {'B': 0.0, 'x_o': 0.01, 'k': 150.0}
+    >>> hl.wall("half_sample", velocity=hl.filtered_velocity(tau="4 ms")).name
+    'half_sample wall, filtered difference'
+    """
+    if law not in TAPS:
+        raise SceneError(f"law = {law!r}; needs one of {', '.join(TAPS)}")
+    if unilateral not in UNILATERAL:
+        raise SceneError(f"unilateral = {unilateral!r}; needs 'gate', 'clip' or None (the spring always acts)")
+    k, x_o = parameters("k x_o", units="N/m m", values=(None, 0))
+    B = parameters("B", units="N*s/m", values=0, ranges=(-math.inf, math.inf))
+
+    def p(lag):
+        depth = x(n - lag) - x_o
+        return sp.Max(depth, 0) if unilateral == "clip" else depth
+
+    def inside(rate):
+        return when(x(n) >= x_o, rate) if unilateral == "clip" else rate
+
+    estimate = _checked(velocity)
+    spring = k * sp.Add(*(sp.Rational(c) * p(lag) for lag, c in enumerate(TAPS[law])))
+    if LEAD[law]:
+        spring = k * (p(0) + sp.Rational(LEAD[law]) * T * inside(estimate.velocity if estimate else v(n)))
+    force = spring + B * (inside(estimate.velocity) if estimate else (p(0) - p(1)) / T)
+    if unilateral == "gate":
+        force = when(x(n) >= x_o, force)
+    if clamp:
+        force = sp.Max(force, 0)
+    return _scene(force, f"{law} wall", estimate)
+
+
+def _checked(velocity):
+    if not (velocity is None or isinstance(velocity, VelocityEstimate)):
+        raise SceneError(
+            f"velocity = {velocity!r}; needs an estimate, as in velocity=hl.filtered_velocity(tau='4 ms'), or None"
+        )
+    return velocity
+
+
+def _scene(force, name, estimate):
+    """Return a scene that takes the equations of its velocity along."""
+    return Scene(force, estimate.eom, name=f"{name}, {estimate.name}") if estimate else Scene(force, name=name)
+
+
+def force_filter(scene, clamp=False):
+    """Predictor-corrector filter around the whole force of any scene, Eq. (23.8): 2 F(n) - 1.5 F(n-1) + 0.5 F(n-2).
+
+    On a plain wall without a switch it equals :func:`wall` with ``law="ellis"``, Eq. (23.7). Around a spring and damper
+    it filters both, which asks for more device damping than filtering the spring alone. It filters what is felt, and knows
+    nothing of boundaries: a force that jumps to F is felt as 2 F, F/2, F, and after leaving a wall as -1.5 F(n-1) +
+    0.5 F(n-2), a pull, and then as half the last force. ``clamp`` keeps a wall from pulling.
+
+    Parameters
+    ----------
+    scene : Scene
+    clamp : bool
+        Never pull: the filtered force is replaced by max(F, 0).
+
+    Returns
+    -------
+    Scene
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.force_filter(hl.wall(unilateral=None)).name
+    'filtered zoh wall'
+    """
+    check_scene(scene)
+    F = scene.force
+    # 2*F is kept whole: SymPy would multiply it out, and F would be computed twice
+    filtered = sp.Mul(2, F, evaluate=False) - sp.Rational(3, 2) * delay(F) + delay(delay(F)) / 2
+    filtered = sp.Max(filtered, 0) if clamp else filtered
+    return Scene(filtered, scene.eom, scene.watch, scene.values, f"filtered {scene.name}")
+
+
+def virtual_damper(velocity=None):
+    """Virtual damper: F = B v(n), B [N s/m] of either sign; a negative one compensates the device's own damping.
+
+    v(n) is the paddle's velocity: the backward difference of its position on a board, exact in a simulated paddle
+    without an encoder.
+
+    Parameters
+    ----------
+    velocity : VelocityEstimate, optional
+        What to take for v(n) instead, such as :func:`~hapticlab.scene.laws.estimators.filtered_velocity`.
+
+    Returns
+    -------
+    Scene
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.virtual_damper()(B=-0.02).values
+    {'B': -0.02}
+    """
+    B = parameters("B", units="N*s/m", ranges=(-math.inf, math.inf))
+    estimate = _checked(velocity)
+    return _scene(B * (estimate.velocity if estimate else v(n)), "virtual damper", estimate)
+
+
+def virtual_coupler(z, *, K, b):
+    """Virtual coupler of Fig. 23.4: the force K (x - z) + b (x' - z') of a spring and damper from handle to proxy.
+
+    It is at once the force on the environment and the force on the proxy z; it covers K and b, and sees the handle
+    between samples as ``hold`` says. As the force that is felt it takes v(t) = v(n), the plain backward difference on a
+    board, so the two sides differ by b a T/2, with a the acceleration of the handle: 0.036 % of K times 10 mm at
+    K = 500 N/m, b = 1 N s/m, T = 1 ms and 10 mm at 3 Hz. Looking ahead in the force as well would close that gap to
+    0.007 % and ask for b more damping from the device (:class:`~hapticlab.compiler.tick.handle_samples.Handle`).
+
+    Parameters
+    ----------
+    z : coordinate [m]
+    K : Parameter or expression [N/m]
+    b : Parameter or expression [N s/m]
+
+    Returns
+    -------
+    sympy expression [N]
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> z = hl.coordinate("z", unit="m"); K, b = hl.parameters("K b", units="N/m N*s/m")
+    >>> hl.virtual_coupler(z, K=K, b=b)
+    K*(-z(t) + x(t)) + b*(v(t) - Derivative(z(t), t))
+    """
+    return K * (x(t) - z) + b * (v(t) - z.diff(t))
+
+
+def predicted_sample(signal=x):
+    """Return the prediction of the next sample from the last two, 2 x(n) - x(n-1), Eq. (23.4).
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.predicted_sample()
+    2*x(n) - x(n - 1)
+    """
+    return 2 * signal(n) - signal(n - 1)

@@ -1,0 +1,88 @@
+"""Damping compensation: the device's own friction, viscous and dry, fed back with the other sign."""
+
+import math
+
+import sympy as sp
+
+from ...errors import SceneError
+from ..notation.amount import amount, number_of
+from ..notation.parameters import parameters
+from ..notation.symbols import n, v, when
+from ..scene import Scene
+from .estimators import VelocityEstimate
+
+SHAPES = ("smooth", "dead_zone")
+
+
+def damping_compensation(scene=None, *, b, coulomb=0, speed=None, shape="smooth", velocity=None):
+    """Cancel a part of a device's friction: F = -viscous b v(n) - dry coulomb s(v(n)), negative virtual damping.
+
+    The physical damper stays, and with it the passivity that it buys at all frequencies; the compensation acts where
+    the hand is slow. So Eq. (23.10) reads b > K T/2 + viscous b beside a wall K: of what is compensated nothing is left
+    for the wall. Beyond ``viscous`` = 1, or ``dry`` = 1, the paddle runs away, and sooner where its
+    friction is less than b and coulomb say: :func:`~hapticlab.rendering.compensation_limit.compensation_limit` tells how
+    much of an identified friction is safe.
+
+    Parameters
+    ----------
+    scene : Scene, optional
+        What is felt beside; nothing unless given.
+    b : float, text or Parameter
+        The device's viscous damping at the handle [N s/m], >= 0.
+    coulomb : float, text or Parameter
+        Its Coulomb friction [N], >= 0.
+    speed : float, text or Parameter
+        Width of s about v = 0 [m/s], > 0, needed with ``coulomb``: several times the noise of the velocity, and one
+        encoder count per period at least, lest it buzzes at rest.
+    shape : {"smooth", "dead_zone"}
+        s(v) = v/sqrt(v^2 + speed^2), or sign(v) beyond ``speed`` and nothing within: it leaves a handle at rest alone.
+    velocity : VelocityEstimate, optional
+        Instead of the paddle's v(n).
+
+    Returns
+    -------
+    Scene
+        With parameters viscous and dry [1], the parts that are cancelled, >= 0.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> free = hl.damping_compensation(b=0.1, coulomb=0.05, speed="5 mm/s")(viscous=0.9, dry=0.8)
+    >>> sorted(free.values)
+    ['dry', 'viscous']
+    >>> wall = hl.damping_compensation(hl.wall(), b=0.1)(k=20, viscous=0.9)
+    """
+    if shape not in SHAPES:
+        raise SceneError(f"shape = {shape!r}; needs one of {', '.join(SHAPES)}")
+    if not (velocity is None or isinstance(velocity, VelocityEstimate)):
+        raise SceneError(f"velocity = {velocity!r}; needs an estimate, as in velocity=hl.filtered_velocity(tau='4 ms')")
+    moving = v(n) if velocity is None else velocity.velocity
+    viscous, dry = parameters("viscous dry", units="1 1", ranges=((0, math.inf), (0, math.inf)))
+    force = -viscous * _at_least(b, "N*s/m", "b", 0) * moving
+    friction = _at_least(coulomb, "N", "coulomb", 0)
+    if friction != 0:
+        if speed is None:
+            raise SceneError(
+                "coulomb without speed: the sign of a measured velocity needs a width, such as speed='5 mm/s'"
+            )
+        force -= dry * friction * _sign(moving, _at_least(speed, "m/s", "speed", 0, above=True), shape)
+    eom = () if velocity is None else velocity.eom
+    if scene is None:
+        return Scene(force, eom, name="damping compensation")
+    fresh = tuple(e for e in eom if e not in scene.eom)
+    name = f"{scene.name} with damping compensation"
+    return Scene(scene.force + force, (*scene.eom, *fresh), scene.watch, scene.values, name)
+
+
+def _sign(moving, speed, shape):
+    if shape == "smooth":
+        return moving / sp.sqrt(moving**2 + speed**2)
+    return when(moving > speed, 1, when(moving < -speed, -1, 0))
+
+
+def _at_least(given, unit, name, low, above=False):
+    value = amount(given, unit, name)
+    number = number_of(value)
+    if number.is_number and not (number > low if above else number >= low):
+        raise SceneError(f"{name} = {float(number):g} {unit}; friction needs {name} {'>' if above else '>='} {low}")
+    return value

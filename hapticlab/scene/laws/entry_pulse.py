@@ -1,0 +1,168 @@
+"""Pulses on entering a wall: what meets the handle first is a brake, and the spring only has to hold it.
+
+A wall that stops a handle by its spring needs a stiffness that the sampling period cannot carry. A brake of a few periods
+takes the momentum instead, and the wall feels harder at the same K: Salcudean and Vlaar, *On the emulation of stiff walls
+and static friction with a magnetically levitated input/output device*, J. Dynamic Systems, Measurement, and Control 119
+(1997) 127-132.
+"""
+
+import sympy as sp
+
+from ...errors import SceneError
+from ..notation.amount import amount, number_of
+from ..notation.parameters import T
+from ..notation.symbols import n, signal, v, when, x
+from ..scene import Scene
+from .estimators import VelocityEstimate
+
+#: periods that a pulse may last
+LONGEST_PULSE = 1000
+
+
+def braking_pulse(
+    scene, *, impulse=None, part=None, mass=None, periods=1, force_max=None, velocity=None, x_o=None, name="brake"
+):
+    """Add a braking pulse on entry: so much impulse, or so much of the momentum that the handle comes in with.
+
+    The pulse begins at the first sample inside and lasts ``periods`` T. It ends sooner where the handle has stopped or
+    left, so that it brakes and does not throw. A free handle of this mass without friction comes out of it with the part
+    (1 - part) of its speed, exactly where v(n) is exact and the delay zero; a damper b takes less than b periods T/mass
+    more. A speed from an encoder of count D is known to D/T only: give a ``velocity`` that is better.
+
+    Parameters
+    ----------
+    scene : Scene
+        The wall, or anything else behind the boundary.
+    impulse : float, text or Parameter
+        [N s], > 0. Either this, or ``part`` and ``mass``.
+    part : float or Parameter
+        Of the momentum mass v(n) at the entry; 1 stops the handle.
+    mass : float, text or Parameter
+        Of handle and hand [kg], > 0.
+    periods : int
+        1 to 1000.
+    force_max : float, text or Parameter, optional
+        The pulse's greatest force [N]; what a motor cannot give is better left out than cut off.
+    velocity : VelocityEstimate, optional
+        Instead of the paddle's v(n).
+    x_o : float, text or Parameter, optional
+        Where the boundary is [m]; the scene's own x_o unless given.
+    name : str
+        Of the pulse's signals.
+
+    Returns
+    -------
+    Scene
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.braking_pulse(hl.wall(), part=0.8, mass="50 g", periods=2).name
+    'zoh wall with a braking pulse'
+    """
+    moving, eom = _speed(velocity)
+    periods = _whole(periods)
+    if (impulse is None) == (part is None) or (mass is None) != (part is None):
+        raise SceneError("a braking pulse needs impulse=..., in N s, or part=... of the momentum and mass=..., in kg")
+    if impulse is not None:
+        taken = _positive(impulse, "N*s", "impulse")
+    else:
+        taken = _part(part) * _positive(mass, "kg", "mass") * sp.Max(moving, 0)
+    force = taken / (periods * T)
+    force = force if force_max is None else sp.Min(force, _positive(force_max, "N", "force_max"))
+    entered, inside = _crossing(scene, x_o)
+    left, size = signal(f"{name}_left", unit="1"), signal(f"{name}_force", unit="N")
+    going = when(inside & (moving > 0), sp.Max(left(n - 1) - 1, 0))
+    eom += (
+        sp.Eq(left(n), when(entered, periods, going)),
+        sp.Eq(size(n), when(entered, force, size(n - 1)) if periods > 1 else force),
+    )
+    return _added(scene, when(left(n) > 0, size(n)), eom, "a braking pulse")
+
+
+def friction_pulse(scene, *, friction, mass, periods, velocity=None, x_o=None, name="friction"):
+    """Add dry friction for a while after entry: it opposes the motion, either way, and holds what has stopped.
+
+    For ``periods`` T from the first sample inside the force is ``friction`` against the motion, and never more than
+    stops this mass within the next period, mass v(n)/T: the part of Karnopp's friction that a sampled force can render.
+    A free handle decelerates by friction/mass and then stops within one period, exactly where v(n) is exact and there is
+    neither damper nor delay; ``periods`` must last for both, or some speed is left.
+
+    A wrong mass: where ``friction`` does not limit it, the part 1 - mass/m of the speed is left from one period to the next,
+    m the true one. So too small a mass only takes longer. One too large turns the handle at every period, and may throw
+    it back out, though below 2 m never faster than it was; from 2 m on it shakes ever more, up to ``friction``.
+
+    A delay of d whole periods: with the right mass it swings, from d = 1 on without end. Give the part
+    d^d/(d + 1)^(d + 1) of the mass, 1/4 for one period and 4/27 for two, and it stops without turning.
+
+    Parameters
+    ----------
+    scene : Scene
+    friction : float, text or Parameter
+        [N], > 0.
+    mass : float, text or Parameter
+        Of handle and hand [kg], > 0.
+    periods : int
+        1 to 1000.
+    velocity, x_o, name
+        As for :func:`braking_pulse`.
+
+    Returns
+    -------
+    Scene
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.friction_pulse(hl.wall(), friction=2.0, mass="50 g", periods=20).name
+    'zoh wall with a friction pulse'
+    """
+    moving, eom = _speed(velocity)
+    limit, mass = _positive(friction, "N", "friction"), _positive(mass, "kg", "mass")
+    entered, inside = _crossing(scene, x_o)
+    left = signal(f"{name}_left", unit="1")
+    eom += (sp.Eq(left(n), when(entered, _whole(periods), when(inside, sp.Max(left(n - 1) - 1, 0)))),)
+    force = sp.Max(-limit, sp.Min(limit, mass * moving / T))
+    return _added(scene, when(left(n) > 0, force), eom, "a friction pulse")
+
+
+def _speed(velocity):
+    if velocity is None:
+        return v(n), ()
+    if not isinstance(velocity, VelocityEstimate):
+        raise SceneError(f"velocity = {velocity!r}; needs an estimate, as in velocity=hl.filtered_velocity(tau='4 ms')")
+    return velocity.velocity, velocity.eom
+
+
+def _crossing(scene, x_o):
+    """Return the conditions that this sample is the first one inside, and that it is inside."""
+    if x_o is None and "x_o" not in scene.parameters:
+        raise SceneError(f"{scene.name} has no parameter x_o; say where its boundary is: x_o=0.01, in m")
+    boundary = scene.parameters["x_o"] if x_o is None else amount(x_o, "m", "x_o")
+    return (x(n) >= boundary) & (x(n - 1) < boundary), x(n) >= boundary
+
+
+def _added(scene, force, eom, what):
+    fresh = tuple(e for e in eom if e not in scene.eom)  # an estimate that the scene has already
+    return Scene(scene.force + force, (*scene.eom, *fresh), scene.watch, scene.values, f"{scene.name} with {what}")
+
+
+def _positive(given, unit, name):
+    value = amount(given, unit, name)
+    number = number_of(value)
+    if number.is_number and not number > 0:
+        raise SceneError(f"{name} = {float(number):g} {unit}; a pulse needs {name} > 0")
+    return value
+
+
+def _part(given):
+    part = _positive(given, "1", "part")
+    if part.is_number and part > 1:
+        raise SceneError(f"part = {float(part):g}; more than the whole momentum throws the handle back: needs part <= 1")
+    return part
+
+
+def _whole(periods):
+    if not (isinstance(periods, int) and 1 <= periods <= LONGEST_PULSE):
+        raise SceneError(f"periods = {periods!r}; a pulse needs a whole number of periods, 1 to {LONGEST_PULSE}")
+    return periods

@@ -1,0 +1,156 @@
+"""Velocity from sampled positions: the backward difference, and through a first-order filter.
+
+A board measures positions. Each estimator is a few difference equations, so that it runs wherever a scene does; windows
+that adapt and Kalman filters are in adaptive_window.py and kalman.py. What answers less to a count is later:
+
+=================  =========================  ============================
+estimator          lag of slow motion         first answer to one count D
+=================  =========================  ============================
+backward           T/2                        D/T
+filtered           T/2 + tau                  D/(T + tau)
+window             i T/2, over i periods      D/(i T)
+kalman             T (alpha/beta - 1/2)       beta D/T
+=================  =========================  ============================
+
+:func:`~hapticlab.rendering.velocity_errors.velocity_errors` compares them on a record.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from ...errors import SceneError
+from ..notation.amount import amount, number_of
+from ..notation.parameters import T
+from ..notation.symbols import n, signal, x
+
+
+@dataclass(frozen=True)
+class VelocityEstimate:
+    """An estimate of the handle's velocity, for :func:`~hapticlab.scene.laws.chapter_laws.wall` or any scene.
+
+    Attributes
+    ----------
+    velocity : sympy expression [m/s]
+    eom : tuple of sympy.Eq
+        Its difference equations; a scene that uses ``velocity`` takes them along: ``Scene(force, eom=estimate.eom)``.
+    name : str
+    cheaper : tuple of VelocityEstimate
+        Estimates of less work, dearest first, for a board that has no time for this one.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> estimate = hl.filtered_velocity(tau="4 ms")
+    >>> B = hl.parameters("B", units="N*s/m")
+    >>> damper = hl.Scene(force=B * estimate.velocity, eom=estimate.eom)
+    """
+
+    velocity: sp.Expr
+    eom: tuple = ()
+    name: str = "velocity"
+    cheaper: tuple = ()
+    _transfer: tuple = field(default=(), repr=False)
+
+    @property
+    def is_linear(self):
+        """Whether it has a transfer function."""
+        return bool(self._transfer)
+
+    def transfer(self, period):
+        """Return (numerator, denominator) in powers of 1/z, from positions [m] to the estimate [m/s], at T = period [s].
+
+        Raises
+        ------
+        SceneError
+            For an estimate that is not linear, or changes with time.
+
+        Examples
+        --------
+        >>> import hapticlab as hl
+        >>> hl.backward_velocity().transfer(1e-3)
+        ([1000.0, -1000.0], [1.0])
+        """
+        if not self._transfer:
+            raise SceneError(
+                f"{self.name} has no transfer function: it is not linear, or its gains change; use backward_velocity, "
+                "filtered_velocity or kalman_velocity(steady=True), or simulate it"
+            )
+        over, under = ([number_of(sp.sympify(c)).subs(T, period) for c in part] for part in self._transfer)
+        free = sorted({str(s) for c in (*over, *under) for s in c.free_symbols})
+        if free:
+            raise SceneError(
+                f"{self.name}: {', '.join(free)} has no number; make the estimate with one, as in tau='4 ms'"
+            )
+        return [float(c) for c in over], [float(c) for c in under]
+
+    def __str__(self):
+        lines = [f"{self.name}: v = {self.velocity}"]
+        return "\n".join([*lines, *(f"  {e.lhs} = {e.rhs}" for e in self.eom)])
+
+
+def backward_velocity():
+    """Backward difference (x(n) - x(n-1))/T, the estimate of Eq. (23.4), whatever the paddle measures.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> print(hl.backward_velocity())
+    backward difference: v = (x(n) - x(n - 1))/T
+    """
+    return VelocityEstimate(_difference(), (), "backward difference", (), ((1 / T, -1 / T), (1,)))
+
+
+def _difference():
+    return (x(n) - x(n - 1)) / T
+
+
+def filtered_velocity(*, tau, name="v_filtered"):
+    """Backward difference through a first-order filter, tau v' + v = x', mapped by s = (1 - 1/z)/T.
+
+    v(n) = (tau v(n-1) + x(n) - x(n-1))/(tau + T). For a virtual damper B behind it Eq. (23.10) becomes
+    b > K T/2 + B/(1 + 2 tau/T) for B >= 0, and stays b > K T/2 + \\|B\\| for B < 0 (after Brown 1995).
+
+    Parameters
+    ----------
+    tau : float, text or Parameter
+        Time constant [s], >= 0; its corner is at 1/(2 pi tau) Hz. A number is compiled in, a Parameter may be live.
+    name : str
+        Of its signal; a scene with two such estimates needs two names.
+
+    Returns
+    -------
+    VelocityEstimate
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> print(hl.filtered_velocity(tau="4 ms"))
+    filtered difference: v = v_filtered(n)
+      v_filtered(n) = (v_filtered(n - 1)*(0.004 s) + x(n) - x(n - 1))/(T + (0.004 s))
+    """
+    tau = at_least_zero(tau, "s", "tau", "a filter")
+    cheaper = (backward_velocity(),)
+    v = signal(name, unit="m/s", instead=cheaper)
+    step = sp.Eq(v(n), (tau * v(n - 1) + x(n) - x(n - 1)) / (tau + T))
+    transfer = (1 / (tau + T), -1 / (tau + T)), (1, -tau / (tau + T))
+    return VelocityEstimate(v(n), (step,), "filtered difference", cheaper, transfer)
+
+
+def positive(given, unit, name, owner):
+    """Return a number, a text with a unit or an expression as an expression > 0 in that unit, as far as it is known."""
+    value = amount(given, unit, name)
+    number = number_of(value)
+    if number.is_number and not number > 0:
+        raise SceneError(f"{name} = {float(number):g} {unit}; {owner} needs {name} > 0")
+    return value
+
+
+def at_least_zero(given, unit, name, owner):
+    """Return the same as an expression >= 0."""
+    value = amount(given, unit, name)
+    number = number_of(value)
+    if number.is_number and not (number >= 0 and math.isfinite(number)):
+        raise SceneError(f"{name} = {float(number):g} {unit}; {owner} needs {name} >= 0")
+    return value

@@ -1,0 +1,82 @@
+"""What a student wrote, taken as expressions, conditions and names, or refused in words."""
+
+from inspect import isfunction
+from keyword import iskeyword
+
+import sympy as sp
+from sympy.core.function import FunctionClass
+from sympy.core.relational import Relational
+from sympy.logic.boolalg import BooleanAtom, BooleanFunction
+
+from ...errors import SceneError
+
+#: SymPy counts every symbol as a Boolean too; these are conditions and nothing else
+CONDITIONS = (Relational, BooleanFunction, BooleanAtom)
+
+#: what a scene, a record of a run (hapticlab/records.py) and the loop around a scene call their own
+RESERVED = frozenset(
+    "n t T x v F x_true v_true F_applied x_switch tick intent noise unlocated "
+    "delay channels units paddle scene parameters fault saturated gap overrun every changes columns save load to_csv".split()
+)
+
+
+def check_name(name, what, error=SceneError):
+    """Return a name that nothing else uses in Python, in a scene or in a record of its run; refuse any other.
+
+    Examples
+    --------
+    >>> from hapticlab.scene.notation.written import check_name
+    >>> check_name("x", "coordinate")
+    Traceback (most recent call last):
+    hapticlab.errors.SceneError: 'x' cannot name a coordinate: a scene or its record has its own x; take x_1
+    """
+    if not (isinstance(name, str) and name.isidentifier()) or iskeyword(name) or name.startswith("__"):
+        raise error(f"{name!r} cannot name a {what}; needs one word of letters, digits and _, such as k_1")
+    if name in RESERVED:
+        raise error(f"{name!r} cannot name a {what}: a scene or its record has its own {name}; take {name}_1")
+    return name
+
+
+def expression(given, where):
+    """Return a number or expression as SymPy has it; refuse texts, lists, conditions and what is not applied."""
+    try:
+        expr = given if isinstance(given, sp.Basic) else sp.sympify(given, strict=True)
+    except (sp.SympifyError, TypeError):
+        expr = None
+    if isinstance(expr, sp.Eq):
+        raise SceneError(f"{where} = {expr} is an equation; an expression alone is needed here, such as its right side")
+    if isinstance(expr, CONDITIONS):
+        raise SceneError(f"{where}: a condition is not a number; write hl.when(condition, 1, 0)")
+    if isinstance(expr, sp.Expr):
+        return expr
+    if isinstance(given, FunctionClass):
+        raise SceneError(f"{where} = {given.__name__}; needs one of its values: write {given.__name__}(n)")
+    if hasattr(given, "generalized_force"):
+        raise SceneError(f"{where} is the contact or friction {given.name} itself; its force is {given.name}.force")
+    raise SceneError(f"{where} = {given!r}; needs a number, or an expression of parameters, x(n) and v(n)")
+
+
+def zero_of(given, where):
+    """Return what a constraint sets to zero, given as an equation or as that expression."""
+    if isinstance(given, bool):
+        raise SceneError(f"{where} is {given}: == is Python's own and compares at once; write sp.Eq(a, b)")
+    if given in (sp.true, sp.false):
+        raise SceneError(f"{where} is {given}: its sides are equal for every motion, or never; it constrains nothing")
+    return expression(given.lhs - given.rhs if isinstance(given, sp.Eq) else given, where)
+
+
+def no_scene(given, cure):
+    """Say that what was given is no scene, in few words; of a function, that it makes one."""
+    if isfunction(given) and given.__name__.isidentifier():
+        place = "hl.library." if given.__module__.startswith("hapticlab.library.") else ""
+        return f"{given.__name__} is a function, not a scene; call it: {place}{given.__name__}()"
+    text = repr(given)
+    return f"{text if len(text) <= 80 else type(given).__name__} is not a scene; {cure}"
+
+
+def condition(given):
+    """Return a condition; refuse what Python decided already, and what is no condition."""
+    if not isinstance(given, CONDITIONS):
+        cure = "== compares expressions; write sp.Eq(a, b)" if isinstance(given, bool) else "write one, such as x(n) >= x_o"
+        raise SceneError(f"{given!r} is not a condition; {cure}")
+    return given
