@@ -15,7 +15,7 @@ assert (package / "examples" / "mass_on_coupler.py").is_file()
 assert not (package.parent / "tests").exists(), "the wheel holds tests"
 assert len(list((package / "labs").glob("[0-9][0-9]_*/[0-9][0-9]_*.ipynb"))) == 11, "labs are missing in the wheel"
 assert not list(package.rglob("solution*")), "the wheel holds solutions"
-assert (package / "grading" / "pages.css").is_file()
+assert (package / "grading" / "pages" / "pages.css").is_file()
 assert {"view.js", "view.css"} <= {file.name for file in (package / "widgets" / "browser").iterdir()}
 assert (pathlib.Path(sys.prefix) / "etc/jupyter/jupyter_server_config.d/hapticlab.json").is_file()
 for bits in (8, 16):

@@ -11,11 +11,11 @@ from .course.notebook import write
 from .course.personal import personal_labs
 from .errors import CourseError
 from .grading.assignment import find_assignment
-from .grading.gradescope_zip import gradescope_files, write_zip
-from .grading.nbgrader_source import config, nbgrader_notebook
-from .grading.otter_source import otter_assign
-from .grading.prairielearn_question import dockerfile, prairielearn_files
-from .grading.roster import read_roster
+from .grading.export.gradescope_zip import gradescope_files, write_zip
+from .grading.export.nbgrader_source import config, nbgrader_notebook
+from .grading.export.otter_source import otter_assign
+from .grading.export.prairielearn_question import dockerfile, prairielearn_files
+from .grading.handed_in.roster import read_roster
 from .lab_commands import words_of
 from .options import SYSTEMS
 

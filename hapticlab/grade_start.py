@@ -4,7 +4,7 @@ import sys
 from contextlib import nullcontext
 from importlib import import_module
 
-from .grading.preloaded import Preloaded
+from .grading.sessions.preloaded import Preloaded
 
 
 def grade(parser, options):

@@ -10,7 +10,7 @@ import os
 from . import __version__
 from .compiler.boards.board_records import BOARDS
 from .grading.formats import FORMATS
-from .grading.limits import MIB, Limits
+from .grading.sessions.limits import MIB, Limits
 
 #: `hapticlab run --method`, `hapticlab tradeoff --targets`, `hapticlab calibrate --only`, `hapticlab grade --sandbox`: names that
 #: modules define which take long to import; a test compares them

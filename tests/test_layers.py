@@ -31,7 +31,7 @@ DOORS = {
     "IPython": {"widgets.show"},
     "tqdm": {"device.progress"},
     "distributed": {"grading.cluster"},
-    "nbgrader": {"grading.gradebook"},
+    "nbgrader": {"grading.export.gradebook"},
     "pytest": set(),
 }
 # modules that open their dependency at once, because nothing imports them but a function that has opened it already

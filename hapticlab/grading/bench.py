@@ -9,10 +9,10 @@ from ..errors import HapticlabError
 from .assignment import Assignment
 from .formats.gradescope import GRADER_FAILED
 from .grade import Deferred, grade
-from .limits import Limits
+from .handed_in.submission import Submission
 from .report import Report
-from .starter import start
-from .submission import Submission
+from .sessions.limits import Limits
+from .sessions.starter import start
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from pathlib import Path
 from ..errors import CourseError, EngineMissingError
 from .assignment import files_of, find_assignment
 from .bench import Bench, Reply, as_json
-from .limits import Limits
-from .starter import Walls, weakest
+from .sessions.limits import Limits
+from .sessions.starter import Walls, weakest
 from .workers import processor_seconds
 
 #: how many submissions a thread of the cluster may have waiting

@@ -16,10 +16,10 @@ import time
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 
+from .handed_in.replies import Garbage, line_of, outcomes_of
 from .marking import SHOWN, Found, ended_words, exercise_report
-from .replies import Garbage, line_of, outcomes_of
 from .report import Report
-from .starter import SessionEnded
+from .sessions.starter import SessionEnded
 
 #: what a session is charged for its start [s], and how much wall clock a submission has, in what it may be charged
 START, MOST_WALL = 0.05, 3

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from ..course.judge import Verdict, verdict
-from .replies import line_of, rounded, text_of
+from .handed_in.replies import line_of, rounded, text_of
 from .report import ExerciseReport, Failing
 
 #: characters kept of the sentence on a wrong case
@@ -59,7 +59,7 @@ def exercise_report(exercise, cases, found, limits, slips=None):
     --------
     >>> from hapticlab.course.evaluate import Outcome
     >>> from hapticlab.course.exercise import Case, Exercise
-    >>> from hapticlab.grading.limits import Limits
+    >>> from hapticlab.grading.sessions.limits import Limits
     >>> exercise, case = Exercise("k", "value", points=2), Case({}, 150.0, unit="N/m")
     >>> report = exercise_report(exercise, [(case, True)], Found((Outcome(-150.0),)), Limits())
     >>> report.earned, report.words

@@ -6,7 +6,7 @@ from pathlib import Path
 from ..course.labs import labs_folder
 from ..course.marks import SOLUTION
 from ..errors import CourseError
-from .naming import TREE, WORK
+from .handed_in.naming import TREE, WORK
 
 
 def check_places(submissions, *, judging=None, written=None, imported=()):

@@ -9,10 +9,10 @@ from ..device.progress import progress_bar
 from .bench import Task
 from .cluster import ClusterWorkers
 from .grade import refused
+from .handed_in.submission import find_submissions, read
 from .journal import Journal, key_of
-from .limits import Limits
-from .starter import Walls
-from .submission import find_submissions, read
+from .sessions.limits import Limits
+from .sessions.starter import Walls
 from .workers import Workers, processor_seconds
 
 

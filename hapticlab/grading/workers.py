@@ -12,12 +12,12 @@ from dataclasses import asdict
 from multiprocessing.connection import wait
 
 from ..errors import CourseError, HapticlabError
-from . import asking
 from .bench import Bench, Reply, as_json
 from .grade import MOST_WALL
 from .inside import linux
-from .preloaded import Preloaded
-from .starter import Walls, weakest
+from .sessions import asking
+from .sessions.preloaded import Preloaded
+from .sessions.starter import Walls, weakest
 
 #: how long to wait at a time [s]; on Windows Ctrl-C is heard in between only
 LOOK = 0.5

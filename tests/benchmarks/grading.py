@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "grading")]
 from attacks.arena import Arena  # noqa: E402
 from attacks.mixed import SECONDS, mixed  # noqa: E402
-from handed_in import INSTRUCTOR, LABS, WRONG, handed_in, start  # noqa: E402
+from hand_in import INSTRUCTOR, LABS, WRONG, handed_in, start  # noqa: E402
 
 from hapticlab.course.notebook import read, write  # noqa: E402
 

@@ -4,8 +4,8 @@ import pytest
 from class_reports import class_of
 from lab import picture
 
-from hapticlab.grading.page_text import file_name
-from hapticlab.grading.pages import write_pages
+from hapticlab.grading.pages.page_text import file_name
+from hapticlab.grading.pages.pages import write_pages
 
 #: of an A4 page within its margins [px]
 PAPER = 674

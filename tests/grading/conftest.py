@@ -6,7 +6,7 @@ import pytest
 
 from hapticlab.grading import bench, run
 from hapticlab.grading.bench import Bench, Reply, as_json
-from hapticlab.grading.starter import Walls, start
+from hapticlab.grading.sessions.starter import Walls, start
 
 
 @pytest.fixture(scope="session")

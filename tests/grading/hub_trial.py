@@ -15,7 +15,7 @@ import sys
 import time
 from pathlib import Path
 
-from handed_in import LABS, ROOT, WRONG, handed_in
+from hand_in import LABS, ROOT, WRONG, handed_in
 from hub_client import Person, wait_for
 
 PAGE = (ROOT / "docs" / "server.md").read_text("utf-8")

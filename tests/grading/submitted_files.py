@@ -4,7 +4,7 @@ import io
 import json
 import zipfile
 
-from hapticlab.grading.submission import find_submissions, read
+from hapticlab.grading.handed_in.submission import find_submissions, read
 
 LAB = "02_virtual_wall"
 

@@ -14,11 +14,11 @@ from hapticlab.grading.assignment import find_assignment
 from hapticlab.grading.bench import Bench, Reply, Task, as_json
 from hapticlab.grading.cluster import ClusterWorkers
 from hapticlab.grading.grade import refused
+from hapticlab.grading.handed_in.submission import Submission, find_submissions, read
 from hapticlab.grading.journal import Journal, key_of
-from hapticlab.grading.limits import Limits
 from hapticlab.grading.run import _Run
-from hapticlab.grading.starter import Walls
-from hapticlab.grading.submission import Submission, find_submissions, read
+from hapticlab.grading.sessions.limits import Limits
+from hapticlab.grading.sessions.starter import Walls
 
 INSTRUCTOR = Path(__file__).parents[1] / "instructor"
 

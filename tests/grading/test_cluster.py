@@ -7,8 +7,8 @@ from attacks.small_lab import HONEST, notebook, write_lab
 from hapticlab.errors import CourseError
 from hapticlab.grading import cluster
 from hapticlab.grading.assignment import find_assignment
-from hapticlab.grading.limits import Limits
 from hapticlab.grading.run import run
+from hapticlab.grading.sessions.limits import Limits
 
 distributed = pytest.importorskip("distributed")
 LIMITS = Limits(seconds=3.0)

@@ -11,7 +11,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from handed_in import INSTRUCTOR, LABS, ROOT, WRONG, earned, handed_in
+from hand_in import INSTRUCTOR, LABS, ROOT, WRONG, earned, handed_in
 
 from hapticlab import __version__, cli
 from hapticlab.course.marks import own_numbers

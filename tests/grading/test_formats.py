@@ -13,10 +13,10 @@ from hapticlab.course.evaluate import Outcome
 from hapticlab.course.exercise import Case, Exercise
 from hapticlab.errors import CourseError
 from hapticlab.grading.formats import FORMATS, write
-from hapticlab.grading.limits import Limits
+from hapticlab.grading.handed_in.roster import read_roster
 from hapticlab.grading.marking import Found, exercise_report
 from hapticlab.grading.report import ExerciseReport, Failing, Report
-from hapticlab.grading.roster import read_roster
+from hapticlab.grading.sessions.limits import Limits
 
 VISIBILITY = {"enum": ["hidden", "after_due_date", "after_published", "visible"]}
 TEXT_FORMAT = {"enum": ["text", "html", "simple_format", "md", "ansi"]}

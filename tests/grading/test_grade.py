@@ -13,11 +13,11 @@ from hapticlab.errors import CourseError
 from hapticlab.grading.assignment import find_assignment
 from hapticlab.grading.formats import write
 from hapticlab.grading.grade import Deferred, grade
-from hapticlab.grading.limits import Limits
+from hapticlab.grading.handed_in.replies import Garbage, outcomes_of, rounded, text_of
+from hapticlab.grading.handed_in.submission import Submission
 from hapticlab.grading.marking import Found, exercise_report
-from hapticlab.grading.replies import Garbage, outcomes_of, rounded, text_of
-from hapticlab.grading.starter import start
-from hapticlab.grading.submission import Submission
+from hapticlab.grading.sessions.limits import Limits
+from hapticlab.grading.sessions.starter import start
 
 LIMITS = Limits(seconds=4.0)
 ENDED = {"energy": "import os\ndef energy(x, k):\n    os._exit(0)"}

@@ -15,8 +15,8 @@ from hapticlab.course.labs import LabFolder, find_labs
 from hapticlab.course.notebook import code_of, run
 from hapticlab.course.personal import personal_notebook
 from hapticlab.grading.formats import FORMATS
-from hapticlab.grading.limits import MIB, Limits
-from hapticlab.grading.starter import LEVELS
+from hapticlab.grading.sessions.limits import MIB, Limits
+from hapticlab.grading.sessions.starter import LEVELS
 from hapticlab.options import parser
 
 ROOT = Path(__file__).parents[2]

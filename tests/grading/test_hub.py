@@ -16,7 +16,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from handed_in import INSTRUCTOR, ROOT, WRONG, earned, handed_in
+from hand_in import INSTRUCTOR, ROOT, WRONG, earned, handed_in
 from hub_trial import HUB, LAB, NOTEBOOK, PAGE, blocks, files
 
 from hapticlab.cli import main
@@ -98,7 +98,7 @@ def test_the_exchange_takes_labs_out_and_back_and_pages_to_students(exchange, tm
     from nbgrader.exchange import default
 
     course = tmp_path / "haptics"
-    shutil.copytree(LAB.path, course / "release" / LAB.name)  # what nbgrader makes of a source equals this, see test_nbgrader.py
+    shutil.copytree(LAB.path, course / "release" / LAB.name)  # what nbgrader makes of a source equals this, see export/test_nbgrader_source.py
     exchange(default.ExchangeReleaseAssignment, course).start()
     wrong = {"ada": None, "bob": WRONG["02"]}
     for student in wrong:

@@ -9,10 +9,10 @@ from types import SimpleNamespace
 import pytest
 
 from hapticlab.errors import CourseError
+from hapticlab.grading.handed_in.submission import Submission
 from hapticlab.grading.journal import Journal, key_of
-from hapticlab.grading.limits import Limits
 from hapticlab.grading.report import ExerciseReport, Failing, Report
-from hapticlab.grading.submission import Submission
+from hapticlab.grading.sessions.limits import Limits
 
 FAILING = Failing({"x": [0.1, -2e-3]}, "nan", 2.5, "N", True)
 EXERCISES = (ExerciseReport("k", "value", points=2.0, words="wé\n\u2603", failing=FAILING),)

@@ -16,9 +16,9 @@ from hapticlab.cli import main
 from hapticlab.errors import CourseError
 from hapticlab.grading import formats, workers
 from hapticlab.grading.assignment import find_assignment
-from hapticlab.grading.limits import Limits
-from hapticlab.grading.preloaded import Preloaded
 from hapticlab.grading.run import run
+from hapticlab.grading.sessions.limits import Limits
+from hapticlab.grading.sessions.preloaded import Preloaded
 
 LIMITS = Limits(seconds=2.0)
 CLASS = {

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from walls import ATTACKS
 
-from hapticlab.grading.starter import PACKAGE
+from hapticlab.grading.sessions.starter import PACKAGE
 
 EXPECTED = {name: expected for name, (_, expected) in ATTACKS.items()}
 NOBODY = 65534

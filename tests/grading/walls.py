@@ -16,8 +16,8 @@ import numpy as np
 
 from hapticlab.errors import CourseError
 from hapticlab.grading.inside import callfilter, linux, root, sandbox
-from hapticlab.grading.limits import MIB, Limits
-from hapticlab.grading.starter import PACKAGE, seen, start
+from hapticlab.grading.sessions.limits import MIB, Limits
+from hapticlab.grading.sessions.starter import PACKAGE, seen, start
 
 LIMITS = Limits(memory=300 * MIB, scratch=4 * MIB)
 BEFORE = """

@@ -15,8 +15,8 @@ import socket
 import sys
 from contextlib import suppress
 
-from ..watch import kill_descendants
 from . import linux, sandbox
+from .watch import kill_descendants
 
 #: beside what the package itself loads; by name, as all of it is needed only where the walls hold
 SESSION, SLICES = "hapticlab.grading.inside.session", "hapticlab.grading.inside.slices"

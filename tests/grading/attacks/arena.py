@@ -8,9 +8,9 @@ from pathlib import Path
 
 import hapticlab
 from hapticlab.grading.assignment import find_assignment
-from hapticlab.grading.limits import MIB, Limits
-from hapticlab.grading.naming import student_of
+from hapticlab.grading.handed_in.naming import student_of
 from hapticlab.grading.run import run
+from hapticlab.grading.sessions.limits import MIB, Limits
 
 from . import (
     broken,

@@ -22,9 +22,9 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from attacks import colluding, holding, kernel, package, python, replies, resubmitting
 from attacks.arena import ATTACKS, HONEST, LIMITS, TOKEN, Arena
 from hapticlab.grading.grade import Deferred, grade
+from hapticlab.grading.handed_in.submission import find_submissions, read
 from hapticlab.grading.inside import linux
-from hapticlab.grading.starter import LEVELS, start
-from hapticlab.grading.submission import find_submissions, read
+from hapticlab.grading.sessions.starter import LEVELS, start
 
 NEW = tuple(one for sort in (kernel, holding, python, package, replies, colluding, resubmitting) for one in sort.ATTACKS)
 NOBODY, PATIENCE, MOST_MEMORY = 65534, 180, 4 << 30

@@ -12,7 +12,7 @@ import pytest
 
 from hapticlab.course.labs import load_lab
 from hapticlab.grading import formats
-from hapticlab.grading.pages import write_pages
+from hapticlab.grading.pages.pages import write_pages
 
 pytestmark = [
     pytest.mark.wide,  # test_few.py has one of each sort
