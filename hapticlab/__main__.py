@@ -7,6 +7,6 @@ import sys
 if not sys.flags.safe_path and sys.path[0] != __file__.rpartition("hapticlab")[0][:-1]:
     del sys.path[0]
 
-from .cli import main
+from .cli.main import main
 
 sys.exit(main())

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import hapticlab as hl
-from hapticlab.cli import main
-from hapticlab.options import parser
+from hapticlab.cli.main import main
+from hapticlab.cli.options import parser
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text("utf-8")
@@ -73,7 +73,7 @@ def test_readme_commands_are_understood(line):
     program, *arguments = shlex.split(line)
     assert Path(program).name == "hapticlab"
     module, function = parser().parse_args(arguments).command.split(".")
-    assert callable(getattr(importlib.import_module(f"hapticlab.{module}"), function))
+    assert callable(getattr(importlib.import_module(f"hapticlab.cli.{module}"), function))
 
 
 def test_readme_runs_on_a_simulated_board(tmp_path, capsys):

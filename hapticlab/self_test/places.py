@@ -6,9 +6,9 @@ import os
 import shutil
 import sys
 
-from ..cli import main
+from ..cli.main import main
+from ..cli.scene_file import load_scene
 from ..course.labs import copy_labs, find_labs
-from ..scenefile import load_scene
 from .outcome import Attention, need
 
 #: characters beyond those of one alphabet, and spaces

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..analysis.records.plots import plot
 from ..analysis.sweeps.sweep import sweep
+from ..cli.scene_file import load_scene, report_of, run_scene
 from ..compiler.engines.engine import load
 from ..compiler.ir.program import Channel, Program
 from ..compiler.ir.trace import Builder, cos, exp, maximum, select, sin, tanh
@@ -20,7 +21,6 @@ from ..device.setup.doctor import doctor
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import EngineMissingError
 from ..scene.laws.chapter_laws import wall
-from ..scenefile import load_scene, report_of, run_scene
 from .outcome import Attention, need
 
 ENGINES = ("interpreter", "llvm", "vm")

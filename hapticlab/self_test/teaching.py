@@ -9,7 +9,7 @@ import zipfile
 from importlib.util import find_spec
 from pathlib import Path
 
-from ..cli import main
+from ..cli.main import main
 from .outcome import Attention, need
 
 NOTEBOOK = ("jupyterlab", "ipywidgets", "anywidget")

@@ -28,7 +28,7 @@ LINES = {
     "hapticlab -h": ["-m", "hapticlab", "-h"],
     "hapticlab grade -h": ["-m", "hapticlab", "grade", "-h"],
     "hapticlab run -h": ["-m", "hapticlab", "run", "-h"],
-    "what `hapticlab grade` imports": ["-c", "import hapticlab.grade_commands"],
+    "what `hapticlab grade` imports": ["-c", "import hapticlab.cli.grade"],
 }
 
 

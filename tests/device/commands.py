@@ -12,8 +12,8 @@ if sys.platform == "win32":
 else:
     _context = multiprocessing.get_context("forkserver")
     # what the commands import, which the command line does only when one runs
-    _commands = [f"hapticlab.{kind}_commands" for kind in ("scene", "board", "lab", "assign", "grade")]
-    _context.set_forkserver_preload(["hapticlab.cli", *_commands, "matplotlib.backends.backend_agg"])
+    _commands = [f"hapticlab.cli.{name}" for name in ("scenes", "board", "labs", "assign", "grade")]
+    _context.set_forkserver_preload(["hapticlab.cli.main", *_commands, "matplotlib.backends.backend_agg"])
 
 
 def run_command(arguments, folder):
@@ -31,7 +31,7 @@ def run_command(arguments, folder):
 
 
 def _child(arguments, folder, said, complained):
-    from hapticlab.cli import main
+    from hapticlab.cli.main import main
 
     os.chdir(folder)
     for path, number in ((said, 1), (complained, 2)):

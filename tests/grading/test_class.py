@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from attacks.small_lab import OPEN, notebook, write_lab
 
-from hapticlab.cli import main
+from hapticlab.cli.grade import _tell_walls
+from hapticlab.cli.main import main
 from hapticlab.device.progress import progress_bar
-from hapticlab.grade_commands import _tell_walls
 from hapticlab.grading.assignment import find_assignment
 from hapticlab.grading.bench import Bench, Reply, Task, as_json
 from hapticlab.grading.cluster import ClusterWorkers

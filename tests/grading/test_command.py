@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 from attacks.small_lab import HONEST, notebook, write_lab
 
-from hapticlab.cli import main
+from hapticlab.cli.grade import lab_asked
+from hapticlab.cli.main import main
 from hapticlab.course.instructor import solved_notebook
 from hapticlab.course.labs import find_labs
 from hapticlab.errors import CourseError
-from hapticlab.grade_commands import lab_asked
 
 INSTRUCTOR = Path(__file__).parents[1] / "instructor"
 

@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 from hand_in import INSTRUCTOR, LABS, ROOT, WRONG, earned, handed_in
 
-from hapticlab import __version__, cli
+from hapticlab import __version__
+from hapticlab.cli import main
 from hapticlab.course.marks import own_numbers
 from hapticlab.course.notebook import read, write
 
@@ -23,7 +24,7 @@ needs_bash = pytest.mark.skipif(shutil.which("bash") is None, reason="bash, in w
 
 def assigned(target, system, *more):
     asked = ["--for", system, "--lab", "02", "--instructor", str(INSTRUCTOR), "--seed", "4", *more]
-    assert cli.main(["assign", str(target), *asked]) == 0
+    assert main.main(["assign", str(target), *asked]) == 0
 
 
 def hand_in(folder, wrong):

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from hapticlab.cli import main
+from hapticlab.cli.main import main
+from hapticlab.cli.options import parser
 from hapticlab.course.exercise import JUDGED, NOTED
 from hapticlab.course.instructor import solved_notebook
 from hapticlab.course.labs import LabFolder, find_labs
@@ -17,7 +18,6 @@ from hapticlab.course.personal import personal_notebook
 from hapticlab.grading.formats import FORMATS
 from hapticlab.grading.sessions.limits import MIB, Limits
 from hapticlab.grading.sessions.starter import LEVELS
-from hapticlab.options import parser
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "grading.md").read_text("utf-8")

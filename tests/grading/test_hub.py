@@ -98,7 +98,7 @@ def test_the_exchange_takes_labs_out_and_back_and_pages_to_students(exchange, tm
     from nbgrader.exchange import default
 
     course = tmp_path / "haptics"
-    shutil.copytree(LAB.path, course / "release" / LAB.name)  # what nbgrader makes of a source equals this, see export/test_nbgrader_source.py
+    shutil.copytree(LAB.path, course / "release" / LAB.name)  # equals what nbgrader makes of a source
     exchange(default.ExchangeReleaseAssignment, course).start()
     wrong = {"ada": None, "bob": WRONG["02"]}
     for student in wrong:

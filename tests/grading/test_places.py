@@ -12,7 +12,7 @@ import pytest
 from attacks.small_lab import HONEST, notebook, write_lab
 from submitted_files import fill
 
-from hapticlab.cli import main
+from hapticlab.cli.main import main
 from hapticlab.course.labs import labs_folder
 from hapticlab.grading.places import is_inside
 
@@ -129,7 +129,7 @@ def run(words, cwd, **environment):
 
 
 def test_files_in_the_working_folder_are_not_imported(course, hostile):
-    started = "import sys; from hapticlab.cli import main; sys.exit(main(sys.argv[1:]))"
+    started = "import sys; from hapticlab.cli.main import main; sys.exit(main(sys.argv[1:]))"
     done = run(command(course, sys.executable, "-P", "-c", started), hostile)
     assert not (hostile / "ran").exists(), (hostile / "ran").read_text()
     assert "ada: 10 of 10 points" in done.stdout, done.stderr

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from attacks.small_lab import HONEST, OPEN, notebook, write_lab
 
-from hapticlab.cli import main
+from hapticlab.cli.main import main
 from hapticlab.errors import CourseError
 from hapticlab.grading import formats, workers
 from hapticlab.grading.assignment import find_assignment

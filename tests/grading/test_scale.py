@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from hapticlab.cli import main
+from hapticlab.cli.main import main
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the attackers among them need namespaces, which are Linux'")
 
@@ -27,7 +27,7 @@ RACING = (b"getppid", b"kill(-1", b"setitimer", b"set_blocking")
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from hapticlab.cli import main
+from hapticlab.cli.main import main
 from hapticlab.grading import journal, watch, workers
 
 def end():

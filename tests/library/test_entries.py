@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.cli import main
+from hapticlab.cli.main import main
 from hapticlab.compiler.boards.cost import cost
 from hapticlab.compiler.engines import engine
 from hapticlab.library.entries import CATALOGUE, NOMINAL

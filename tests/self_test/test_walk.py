@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import hapticlab
-from hapticlab import cli
+from hapticlab.cli import main
 from hapticlab.self_test import report
 from hapticlab.self_test.outcome import ATTENTION, FAULT, OK, Outcome
 from hapticlab.self_test.table import Check
@@ -88,11 +88,11 @@ def test_neither_a_crash_nor_the_end_of_the_time_ends_the_walk(broken):
 def test_the_file_says_what_was_found_and_the_last_lines_what_to_do(broken, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(report, "CHECKS", [broken(name) for name in ("fine", "notes", "fails")])
     file = tmp_path / "a folder" / "result.json"
-    assert cli.main(["doctor", "--self-test", "--out", str(file)]) == 1
+    assert main.main(["doctor", "--self-test", "--out", str(file)]) == 1
     told = capsys.readouterr()
     assert "choose another file with --out" in told.err and "checks;" not in told.out
     file.parent.mkdir()
-    assert cli.main(["doctor", "--self-test", "--out", str(file)]) == 1
+    assert main.main(["doctor", "--self-test", "--out", str(file)]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert "1 checks ok, 1 need attention, 1 found a fault." in lines
     assert str(file) in lines[-2] and "send this one file" in lines[-1]

@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 from hand_in import INSTRUCTOR, LABS, WRONG, earned, handed_in, run, start, text
 
-from hapticlab import cli
+from hapticlab.cli import main
 from hapticlab.course import notebook as notebooks
 from hapticlab.course.notebook import code_of, read, write
 from hapticlab.errors import CourseError, EngineMissingError
@@ -48,7 +48,7 @@ def released(course, lab):
 def course(tmp_path_factory):
     """A course with two labs released, handed in by bob, who is partly wrong, and marked."""
     course = tmp_path_factory.mktemp("nbgrader") / "haptics"
-    assert cli.main(["assign", str(course), "--for", "nbgrader", "--lab", *TWO, "--instructor", str(INSTRUCTOR)]) == 0
+    assert main.main(["assign", str(course), "--for", "nbgrader", "--lab", *TWO, "--instructor", str(INSTRUCTOR)]) == 0
     first, second = LABS["01"], LABS["02"]
     run("nbgrader", "generate_assignment", first.name, "--create", cwd=course)  # these two as the command says
     submit(course, first, bob=handed_in(released(course, first), first, WRONG["01"]))
@@ -161,7 +161,7 @@ def test_grade_puts_its_marks_into_the_gradebook(course, monkeypatch):
     push([marked("bob", "02", two_walls=2.0)], course / "gradebook.db")  # not what bob earned
     monkeypatch.chdir(course)
     asked = ["--lab", "02", "--instructor", str(INSTRUCTOR), "--gradebook", "gradebook.db", "--workers", "1"]
-    assert cli.main(["grade", "submitted", *asked]) == 0
+    assert main.main(["grade", "submitted", *asked]) == 0
     assert scores(course)["02", "bob"] == earned(LABS["02"], WRONG["02"])
 
 

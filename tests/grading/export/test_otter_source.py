@@ -9,7 +9,8 @@ import zipfile
 import pytest
 from hand_in import INSTRUCTOR, LABS, WRONG, earned, handed_in, start, text
 
-from hapticlab import __version__, cli
+from hapticlab import __version__
+from hapticlab.cli import main
 from hapticlab.course import notebook as notebooks
 from hapticlab.course.instructor import solved_notebook
 from hapticlab.course.notebook import code_of, read, write
@@ -50,7 +51,7 @@ def otter(tmp_path_factory):
 def made(otter, tmp_path_factory):
     """Folders of both labs: of one as our command has it made, of the other by otter, which need not run that solution."""
     target, scratch = tmp_path_factory.mktemp("made") / "labs", tmp_path_factory.mktemp("master")
-    assert cli.main(["assign", str(target), "--for", "otter", "--lab", "02", "--instructor", str(INSTRUCTOR)]) == 0
+    assert main.main(["assign", str(target), "--for", "otter", "--lab", "02", "--instructor", str(INSTRUCTOR)]) == 0
     lab, package = LABS["01"], f"hapticlab=={__version__}"
     shutil.copy(lab.path / "checks.py", scratch)
     write(scratch / lab.notebook.name, otter_notebook(lab, INSTRUCTOR / lab.name, ["checks.py"], package))

@@ -8,10 +8,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-from .course.instructor import check_tree, mark_notebook, solved_notebook
-from .course.labs import copy_labs, find_labs, incomplete_labs
-from .course.notebook import read, write
-from .errors import CourseError, EngineMissingError
+from ..course.instructor import check_tree, mark_notebook, solved_notebook
+from ..course.labs import copy_labs, find_labs, incomplete_labs
+from ..course.notebook import read, write
+from ..errors import CourseError, EngineMissingError
 
 
 def labs(parser, options):

@@ -6,14 +6,14 @@ from contextlib import nullcontext, redirect_stdout
 from datetime import date
 from functools import partial
 
-from .device.link.serial_ports import available_ports
-from .device.setup.calibrate import calibrate as calibrate_paddle
-from .device.setup.connect import connect
-from .device.setup.doctor import doctor as walk
-from .device.setup.flash import flash as write_firmware
-from .device.setup.person import Person, agrees
-from .device.simulated.simulated_paddle import SimulatedPaddle
-from .errors import PaddleError
+from ..device.link.serial_ports import available_ports
+from ..device.setup.calibrate import calibrate as calibrate_paddle
+from ..device.setup.connect import connect
+from ..device.setup.doctor import doctor as walk
+from ..device.setup.flash import flash as write_firmware
+from ..device.setup.person import Person, agrees
+from ..device.simulated.simulated_paddle import SimulatedPaddle
+from ..errors import PaddleError
 
 #: a simulated board has no motor that could hurt and no handle that a person could lead
 SIMULATED = "sim://"

@@ -6,20 +6,20 @@ from pathlib import Path
 
 import numpy as np
 
-from .analysis.sweeps.sweep import Sweep, sweep
-from .compiler.engines.engine import load
-from .device.hand.hand import Hand
-from .device.profiles import profile
-from .device.progress import progress_bar
-from .device.simulated.simulated_paddle import SimulatedPaddle
-from .drawing import STYLES, house_style, new_figure
-from .limits.limit import Limit
-from .limits.passivity import passivity_limit
-from .limits.stability import stability_limit
-from .scene.laws.chapter_laws import wall
-from .scenefile import SceneFile, describe, load_scene, report_of, run_scene
+from ..analysis.sweeps.sweep import Sweep, sweep
+from ..compiler.engines.engine import load
+from ..device.hand.hand import Hand
+from ..device.profiles import profile
+from ..device.progress import progress_bar
+from ..device.simulated.simulated_paddle import SimulatedPaddle
+from ..drawing import STYLES, house_style, new_figure
+from ..limits.limit import Limit
+from ..limits.passivity import passivity_limit
+from ..limits.stability import stability_limit
+from ..scene.laws.chapter_laws import wall
+from .scene_file import SceneFile, describe, load_scene, report_of, run_scene
 
-EXAMPLE = Path(__file__).with_name("examples") / "mass_on_coupler.py"
+EXAMPLE = Path(__file__).parents[1] / "examples" / "mass_on_coupler.py"
 PUSH = 2.0
 #: illustrative hands, measured on nobody: one that only pushes, one that also holds (mass, damping, stiffness of a pinch)
 HANDS = {
@@ -100,7 +100,7 @@ def study(*, quick=False, progress=True):
 def report(found):
     """Return the study's numbers as a dictionary for JSON.
 
-    A number's name ends in its unit, as in :func:`hapticlab.scenefile.report_of`; a count has none.
+    A number's name ends in its unit, as in :func:`hapticlab.cli.scene_file.report_of`; a count has none.
     """
     constants = found.felt[0].paddle.profile
     grid = found.felt[0].grid

@@ -7,17 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from hapticlab import cli, exits
+from hapticlab.cli import exits, main
 from hapticlab.course.labs import find_labs
 from hapticlab.course.notebook import code_of, read
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 INSTRUCTOR = str(ROOT / "tests" / "instructor")
 LAB = next(lab for lab in find_labs() if lab.number == "02")
 
 
 def assign(*asked):
-    return cli.main(["assign", *map(str, asked), "--instructor", INSTRUCTOR])
+    return main.main(["assign", *map(str, asked), "--instructor", INSTRUCTOR])
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_a_strange_lab_and_missing_answers_are_told(tmp_path, capsys):
     (tmp_path / "01_motion_to_force").mkdir()
     (tmp_path / "01_motion_to_force" / "solution.py").write_text("k = 1\n")
     asked = ["assign", str(tmp_path / "course"), "--for", "nbgrader", "--lab", "02", "--instructor", str(tmp_path)]
-    assert cli.main(asked) == exits.FAILED
+    assert main.main(asked) == exits.FAILED
     assert "holds no 02_virtual_wall" in capsys.readouterr().err
     assert not (tmp_path / "course").exists()
 
@@ -111,7 +111,7 @@ def test_an_own_lab_is_handed_out_as_those_of_the_package_are(tmp_path, own, ros
     asked = ["--lab", own, "--instructor", tmp_path / "answers"]
 
     def said(target, *more):
-        assert cli.main(["assign", str(tmp_path / target), *map(str, (*more, *asked))]) == 0
+        assert main.main(["assign", str(tmp_path / target), *map(str, (*more, *asked))]) == 0
         return capsys.readouterr().out
 
     assert f"--lab {own.resolve()} --instructor" in said("course", "--for", "nbgrader")

@@ -4,10 +4,10 @@ import sys
 from contextlib import nullcontext
 from importlib import import_module
 
-from .grading.sessions.preloaded import Preloaded
+from ..grading.sessions.preloaded import Preloaded
 
 
 def grade(parser, options):
-    """Grade submissions; see :func:`hapticlab.grade_commands.grade`."""
+    """Grade submissions; see :func:`hapticlab.cli.grade.grade`."""
     with Preloaded() if sys.platform == "linux" else nullcontext() as preloaded:
-        return import_module("hapticlab.grade_commands").grade(parser, options, preloaded)
+        return import_module("hapticlab.cli.grade").grade(parser, options, preloaded)

@@ -6,14 +6,14 @@ import traceback
 from dataclasses import replace
 from pathlib import Path
 
-from . import __version__
-from . import board_commands as board
+from .. import __version__
+from ..analysis.accuracy.tradeoff import tradeoff as measure_tradeoff
+from ..analysis.records.plots import plot
+from ..errors import HapticlabError, SceneError
+from . import board
 from . import demo as demonstration
-from .analysis.accuracy.tradeoff import tradeoff as measure_tradeoff
-from .analysis.records.plots import plot
-from .errors import HapticlabError, SceneError
 from .exits import INTERRUPTED, complain
-from .scenefile import describe, load_scene, report_of, run_scene
+from .scene_file import describe, load_scene, report_of, run_scene
 
 
 def demo(parser, options):

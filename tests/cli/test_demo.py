@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import tqdm
 
-from hapticlab import demo
 from hapticlab.analysis.sweeps.sweep import Sweep
+from hapticlab.cli import demo
 from hapticlab.limits.limit import Limit
 
 

@@ -14,15 +14,16 @@ import workbench
 from commands import run_command
 
 import hapticlab as hl
-from hapticlab import board_commands, cli, options, scene_commands
 from hapticlab.analysis.accuracy.tradeoff import PC
+from hapticlab.cli import board as board_command
+from hapticlab.cli import main, options, scenes
+from hapticlab.cli.scene_file import load_scene
 from hapticlab.compiler.events.taylor_method import Taylor
 from hapticlab.compiler.methods.exact_linear import EXACT
 from hapticlab.compiler.methods.method_table import METHODS
 from hapticlab.device.board.settings import nominal
 from hapticlab.device.link.serial_ports import Port
 from hapticlab.device.setup.calibrate import STEPS
-from hapticlab.scenefile import load_scene
 
 EXAMPLE = Path(hl.__file__).parent / "examples" / "mass_on_coupler.py"
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -299,13 +300,13 @@ def test_a_wrong_command_is_told_and_ends_with_2(tmp_path, arguments, words):
 @pytest.mark.parametrize("arguments", [("demo", "--quick"), ("run", str(EXAMPLE))])
 def test_a_folder_that_cannot_be_is_told_before_anything_is_computed(tmp_path, monkeypatch, capsys, arguments):
     (tmp_path / "taken").write_text("a file")
-    for owner, name in ((scene_commands.demonstration, "study"), (scene_commands, "run_scene")):
+    for owner, name in ((scenes.demonstration, "study"), (scenes, "run_scene")):
         monkeypatch.setattr(owner, name, lambda *_, **__: pytest.fail("computed"))
-    assert cli.main([*arguments, "--out", str(tmp_path / "taken")]) == 1
+    assert main.main([*arguments, "--out", str(tmp_path / "taken")]) == 1
     told = capsys.readouterr().err
     assert str(tmp_path / "taken") in told
     assert "--out" in told
-    assert cli.main([*arguments, "--out", str(tmp_path / "taken" / "below")]) == 1
+    assert main.main([*arguments, "--out", str(tmp_path / "taken" / "below")]) == 1
     assert "None" not in told + capsys.readouterr().err
 
 
@@ -318,8 +319,8 @@ def test_an_error_without_a_file_names_none(tmp_path, monkeypatch, capsys):
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(scene_commands, "run_scene", full)
-    assert cli.main(["run", str(EXAMPLE), "--out", str(tmp_path)]) == 1
+    monkeypatch.setattr(scenes, "run_scene", full)
+    assert main.main(["run", str(EXAMPLE), "--out", str(tmp_path)]) == 1
     assert capsys.readouterr().err == "hapticlab: No space left on device\n"
 
 
@@ -397,21 +398,21 @@ def test_the_files_own_paddle_is_what_a_simulated_board_moves(tmp_path, capsys):
         "paddle = hl.SimulatedPaddle(m=0.05, b=2.0, T=2e-3, hand=hl.Hand(push=2.0))\n"
     )
     there = ["--port", "sim://hapkit", "--out", str(tmp_path), "--json"]
-    assert cli.main(["run", str(file), *there]) == 0
+    assert main.main(["run", str(file), *there]) == 0
     facts = json.loads(capsys.readouterr().out)
     assert facts["program"]["T_s"] == 2e-3
     assert facts["chatter"]["rest_m"] == pytest.approx(0.02, rel=1e-3)
     assert facts["left_open"] == {}
-    assert cli.main(["run", str(file), *there, "--every", "5"]) == 0
+    assert main.main(["run", str(file), *there, "--every", "5"]) == 0
     facts = json.loads(capsys.readouterr().out)
     assert (facts["samples"], facts["duration_s"], facts["energy"]) == (200, 2.0, None)
     assert "one sample in 5" in facts["left_open"]["energy"]
 
 
 def test_on_another_board_the_files_paddle_is_not_used_and_that_is_said(tmp_path, monkeypatch, capsys):
-    simulated = board_commands.connect
-    monkeypatch.setattr(board_commands, "connect", lambda port, T, paddle: simulated("sim://hapkit", T=T, paddle=paddle))
-    assert cli.main(["run", str(EXAMPLE), "--port", "COM3", "--yes", "--duration", "0.1", "--out", str(tmp_path)]) == 0
+    simulated = board_command.connect
+    monkeypatch.setattr(board_command, "connect", lambda port, T, paddle: simulated("sim://hapkit", T=T, paddle=paddle))
+    assert main.main(["run", str(EXAMPLE), "--port", "COM3", "--yes", "--duration", "0.1", "--out", str(tmp_path)]) == 0
     told = "The scene file's paddle is not used, but for its T = 0.001 s: COM3 has its own.\n"
     assert told in capsys.readouterr().out
 
@@ -419,7 +420,7 @@ def test_on_another_board_the_files_paddle_is_not_used_and_that_is_said(tmp_path
 @pytest.mark.parametrize("option", [("--yes",), ("--every", "5")])
 def test_what_is_for_a_board_needs_one(capsys, option):
     with pytest.raises(SystemExit) as wrong:
-        cli.main(["run", str(EXAMPLE), *option])
+        main.main(["run", str(EXAMPLE), *option])
     assert wrong.value.code == 2
     assert f"{option[0]} is for a board; name its port with --port" in capsys.readouterr().err
 
@@ -427,7 +428,7 @@ def test_what_is_for_a_board_needs_one(capsys, option):
 def test_a_number_of_ticks_is_whole(capsys):
     for text in ("0", "-2", "1.5", "all"):
         with pytest.raises(SystemExit):
-            cli.main(["run", str(EXAMPLE), "--port", "sim://hapkit", f"--every={text}"])
+            main.main(["run", str(EXAMPLE), "--port", "sim://hapkit", f"--every={text}"])
         assert f"{text!r} is not a number of ticks" in capsys.readouterr().err
 
 
@@ -448,14 +449,14 @@ def test_a_board_that_is_not_there_is_one_sentence(tmp_path, url, words):
 
 
 def test_a_motor_is_not_moved_unasked(tmp_path, monkeypatch, capsys, answering):
-    monkeypatch.setattr(board_commands, "connect", lambda *_, **__: pytest.fail("connected"))
+    monkeypatch.setattr(board_command, "connect", lambda *_, **__: pytest.fail("connected"))
     monkeypatch.setattr(sys, "stdin", io.StringIO())
     there = ["--out", str(tmp_path), "--port", "/dev/ttyACM0"]
     for arguments in (["run", str(EXAMPLE), *there], ["calibrate"]):
-        assert cli.main(arguments) == 1
+        assert main.main(arguments) == 1
         assert "Nobody can be asked here: give --yes" in capsys.readouterr().err
     answering("no")
-    assert cli.main(["run", str(EXAMPLE), *there]) == 1
+    assert main.main(["run", str(EXAMPLE), *there]) == 1
     told = capsys.readouterr()
     assert "The motor of /dev/ttyACM0 will move the handle for 3 s" in told.out
     assert told.err == "hapticlab: nothing was done\n"
@@ -464,7 +465,7 @@ def test_a_motor_is_not_moved_unasked(tmp_path, monkeypatch, capsys, answering):
 def test_ctrl_c_leaves_the_motor_off_and_says_so(tmp_path, monkeypatch, capsys):
     file, boards = tmp_path / "constant.py", []
     file.write_text(CONSTANT)
-    connected = board_commands.connect
+    connected = board_command.connect
 
     def interrupted(*arguments, **options):
         paddle = connected(*arguments, **options)
@@ -479,8 +480,8 @@ def test_ctrl_c_leaves_the_motor_off_and_says_so(tmp_path, monkeypatch, capsys):
         paddle.exchange.wait = by_a_person
         return paddle
 
-    monkeypatch.setattr(board_commands, "connect", interrupted)
-    assert cli.main(["run", str(file), "--port", "sim://hapkit", "--out", str(tmp_path)]) == 130
+    monkeypatch.setattr(board_command, "connect", interrupted)
+    assert main.main(["run", str(file), "--port", "sim://hapkit", "--out", str(tmp_path)]) == 130
     told = capsys.readouterr().err
     assert told.startswith("hapticlab: interrupted; the motor is off. No samples are kept")
     ((board, duty),) = boards
@@ -490,70 +491,70 @@ def test_ctrl_c_leaves_the_motor_off_and_says_so(tmp_path, monkeypatch, capsys):
 
 def test_ports_says_which_are_asked(monkeypatch, capsys):
     found = [Port("COM3", known="Arduino Uno R3"), Port("COM9", "a mill")]
-    monkeypatch.setattr(board_commands, "available_ports", lambda: found)
-    assert cli.main(["ports"]) == 0
+    monkeypatch.setattr(board_command, "available_ports", lambda: found)
+    assert main.main(["ports"]) == 0
     uno, mill = capsys.readouterr().out.splitlines()
     assert "Arduino Uno R3" in uno and "asked by connect()" in uno
     assert "a mill" in mill and "left alone" in mill
-    assert cli.main(["ports", "--json"]) == 0
+    assert main.main(["ports", "--json"]) == 0
     assert [port["device"] for port in json.loads(capsys.readouterr().out)] == ["COM3", "COM9"]
 
 
 def test_doctor_walks_without_a_board_and_with_one(capsys):
-    assert cli.main(["doctor", "--port", "/dev/no-such-port"]) == 1
+    assert main.main(["doctor", "--port", "/dev/no-such-port"]) == 1
     assert "no such port" in capsys.readouterr().out
-    assert cli.main(["doctor", "--port", "sim://hapkit", "--no-person"]) == 0
+    assert main.main(["doctor", "--port", "sim://hapkit", "--no-person"]) == 0
     told = capsys.readouterr().out
     assert "ok         firmware" in told
     assert "what needs a person at the handle was skipped" in told
-    assert cli.main(["doctor", "--port", "sim://hapkit", "--json"]) == 0
+    assert main.main(["doctor", "--port", "sim://hapkit", "--json"]) == 0
     assert {check["state"] for check in json.loads(capsys.readouterr().out)} <= {"ok", "attention", "skipped"}
-    assert cli.main(["doctor", "--port", "sim://xx", "--json"]) == 1
+    assert main.main(["doctor", "--port", "sim://xx", "--json"]) == 1
     assert [check["state"] for check in json.loads(capsys.readouterr().out)][-2:] == ["ok", "fault"]
 
 
 def test_doctor_asks_nobody_to_move_a_simulated_handle(answering, capsys):
     answering()  # whoever is asked finds no line to type
-    assert cli.main(["doctor", "--port", "sim://hapkit"]) == 0
+    assert main.main(["doctor", "--port", "sim://hapkit"]) == 0
     assert "what needs a person at the handle was skipped" in capsys.readouterr().out
 
 
 def test_flash_takes_the_only_board_or_the_one_named(monkeypatch, capsys):
     written, found = [], [Port("COM3", known="Arduino Uno R3"), Port("COM9", "a mill")]
-    monkeypatch.setattr(board_commands, "available_ports", lambda: found)
+    monkeypatch.setattr(board_command, "available_ports", lambda: found)
 
     def writes(port, image, tell):
         tell(port)
         written.append((port, image))
         return "written"
 
-    monkeypatch.setattr(board_commands, "write_firmware", writes)
-    assert cli.main(["flash"]) == 0
-    assert cli.main(["flash", "--port", "COM9", "--image", "own.hex"]) == 0
+    monkeypatch.setattr(board_command, "write_firmware", writes)
+    assert main.main(["flash"]) == 0
+    assert main.main(["flash", "--port", "COM9", "--image", "own.hex"]) == 0
     assert written == [("COM3", None), ("COM9", "own.hex")]
     assert capsys.readouterr() == ("written\nwritten\n", "COM3\nCOM9\n")
     found.append(Port("COM4", known="Arduino Uno R3"))
-    assert cli.main(["flash"]) == 1
+    assert main.main(["flash"]) == 1
     assert "known boards: COM3, COM4; say which" in capsys.readouterr().err
 
 
 def test_calibrate_stores_what_the_person_agreed_to(monkeypatch, capsys):
     paddle = workbench.paddle(store=nominal("hapkit", ident=9).to_bytes())
     person = workbench.Scripted(paddle, workbench.STOPS | {"Store this": "yes", "Go on?": "yes"})
-    monkeypatch.setattr(board_commands, "connect", lambda port: paddle)
-    monkeypatch.setattr(board_commands, "Person", lambda: person)
+    monkeypatch.setattr(board_command, "connect", lambda port: paddle)
+    monkeypatch.setattr(board_command, "Person", lambda: person)
     monkeypatch.setattr(sys, "stdin", type("Terminal", (), {"isatty": staticmethod(lambda: True)})())
-    assert cli.main(["calibrate", "--only", "stops"]) == 0
+    assert main.main(["calibrate", "--only", "stops"]) == 0
     assert paddle.settings.date >= 20261121
     assert "The motor will pull the handle" in person.words
     with pytest.raises(SystemExit) as wrong:
-        cli.main(["calibrate", "--only", "mass"])
+        main.main(["calibrate", "--only", "mass"])
     assert wrong.value.code == 2
 
 
 def test_calibrate_refuses_a_simulated_board(answering, capsys):
     answering()
-    assert cli.main(["calibrate", "--port", "sim://hapkit", "--only", "stops"]) == 1
+    assert main.main(["calibrate", "--port", "sim://hapkit", "--only", "stops"]) == 1
     told = capsys.readouterr().err
     assert told == "hapticlab: sim://hapkit has no handle to lead; calibrate a board that is plugged in\n"
 
@@ -571,7 +572,7 @@ paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3, counts_per_metre=1e5)
 @pytest.mark.parametrize("given", [["--tolerance", "0"], ["--load", "nan"], ["--tolerance", "much"]])
 def test_tradeoff_wants_parts(given, capsys):
     with pytest.raises(SystemExit):
-        cli.main(["tradeoff", "spring.py", *given])
+        main.main(["tradeoff", "spring.py", *given])
     assert f"{given[1]!r} is not a fraction; give a number greater than 0" in capsys.readouterr().err
 
 
@@ -592,12 +593,12 @@ def test_tradeoff_says_as_json_what_to_relax(tmp_path, capsys):
     path = tmp_path / "stiff.py"
     path.write_text(SPRING.replace("150", "900"))
     there = ["--T", "1e-3", "--targets", "uno", "--json", "--out", str(tmp_path)]
-    assert cli.main(["tradeoff", str(path), *there]) == 0
+    assert main.main(["tradeoff", str(path), *there]) == 0
     facts = json.loads(capsys.readouterr().out)
     answer = facts["chosen"]["uno"]
     assert answer["feasible"] is False and facts["rows"] == 1
     assert "b >= 0.45 N s/m, this one has 0.3 N s/m" in answer["relax"][0]  # k T/2
-    assert cli.main(["tradeoff", str(path), "--any-hand", *there]) == 0
+    assert main.main(["tradeoff", str(path), "--any-hand", *there]) == 0
     assert json.loads(capsys.readouterr().out)["chosen"]["uno"]["options"]["T"] == 1e-3
 
 
@@ -612,6 +613,6 @@ def test_the_names_that_options_offer_are_those_that_the_modules_define():
 
 def test_every_command_is_a_function_that_is_there():
     commands = next(action for action in options.parser()._actions if action.dest == "==SUPPRESS==" and action.choices)
-    assert {name: callable(cli._command(one.get_default("command"))) for name, one in commands.choices.items()} == dict.fromkeys(
+    assert {name: callable(main._command(one.get_default("command"))) for name, one in commands.choices.items()} == dict.fromkeys(
         ["demo", "labs", "assign", "grade", "run", "tradeoff", "ports", "doctor", "flash", "calibrate"], True
     )

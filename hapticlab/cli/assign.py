@@ -4,19 +4,19 @@ import os
 import shutil
 from pathlib import Path
 
-from . import __version__
-from .course.instructor import check_tree
-from .course.labs import find_labs
-from .course.notebook import write
-from .course.personal import personal_labs
-from .errors import CourseError
-from .grading.assignment import find_assignment
-from .grading.export.gradescope_zip import gradescope_files, write_zip
-from .grading.export.nbgrader_source import config, nbgrader_notebook
-from .grading.export.otter_source import otter_assign
-from .grading.export.prairielearn_question import dockerfile, prairielearn_files
-from .grading.handed_in.roster import read_roster
-from .lab_commands import words_of
+from .. import __version__
+from ..course.instructor import check_tree
+from ..course.labs import find_labs
+from ..course.notebook import write
+from ..course.personal import personal_labs
+from ..errors import CourseError
+from ..grading.assignment import find_assignment
+from ..grading.export.gradescope_zip import gradescope_files, write_zip
+from ..grading.export.nbgrader_source import config, nbgrader_notebook
+from ..grading.export.otter_source import otter_assign
+from ..grading.export.prairielearn_question import dockerfile, prairielearn_files
+from ..grading.handed_in.roster import read_roster
+from .labs import words_of
 from .options import SYSTEMS
 
 #: columns of a roster by which submissions are usually named

@@ -6,18 +6,18 @@ import sys
 from contextlib import chdir
 from pathlib import Path
 
-from .errors import CourseError
-from .grading import formats
-from .grading.assignment import find_assignment
-from .grading.export.gradebook import push
-from .grading.formats.gradescope import GRADER_FAILED
-from .grading.formats.words import clean
-from .grading.handed_in.roster import read_roster
-from .grading.handed_in.submission import find_submissions, lab_of, left_aside, read
-from .grading.pages.pages import check_folder, write_pages
-from .grading.places import check_places, check_written
-from .grading.run import run
-from .grading.sessions.limits import MIB, Limits
+from ..errors import CourseError
+from ..grading import formats
+from ..grading.assignment import find_assignment
+from ..grading.export.gradebook import push
+from ..grading.formats.gradescope import GRADER_FAILED
+from ..grading.formats.words import clean
+from ..grading.handed_in.roster import read_roster
+from ..grading.handed_in.submission import find_submissions, lab_of, left_aside, read
+from ..grading.pages.pages import check_folder, write_pages
+from ..grading.places import check_places, check_written
+from ..grading.run import run
+from ..grading.sessions.limits import MIB, Limits
 
 #: where the cells of a submission say which lab they are of
 CHECKED = re.compile(r"""\bcheck\(\s*['"]([0-9]{2})\.""")

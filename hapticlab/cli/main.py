@@ -4,7 +4,7 @@ import os
 import sys
 from importlib import import_module
 
-from .errors import HapticlabError
+from ..errors import HapticlabError
 from .exits import BROKEN_PIPE, INTERRUPTED, USAGE, complain
 from .options import parser
 
@@ -40,4 +40,4 @@ def main(arguments=None):
 def _command(name):
     """Return the function of a command, "module.function"; only this command's module is imported."""
     module, _, function = name.rpartition(".")
-    return getattr(import_module(f"hapticlab.{module}"), function)
+    return getattr(import_module(f"hapticlab.cli.{module}"), function)

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from .analysis.records.chatter import chatter
-from .analysis.records.energy import energy
-from .compiler.ir.program import Program
-from .device.hand.hand import Hand
-from .device.paddle import Paddle
-from .device.simulated.simulated_paddle import SimulatedPaddle
-from .errors import AnalysisError, PaddleError, SceneError
-from .scene.scene import Scene
+from ..analysis.records.chatter import chatter
+from ..analysis.records.energy import energy
+from ..compiler.ir.program import Program
+from ..device.hand.hand import Hand
+from ..device.paddle import Paddle
+from ..device.simulated.simulated_paddle import SimulatedPaddle
+from ..errors import AnalysisError, PaddleError, SceneError
+from ..scene.scene import Scene
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from hapticlab.cli import main
+from hapticlab.cli.main import main
 from hapticlab.course import labs as course_labs
 from hapticlab.course.labs import RECORD
 from hapticlab.course.notebook import read, write
@@ -163,7 +163,7 @@ def all_ended(group):
 @pytest.mark.skipif(sys.platform == "win32", reason="no process groups here")
 @pytest.mark.wide
 def test_ctrl_c_is_answered_by_jupyterlab_alone(place):
-    code = "import sys; from hapticlab.course import labs; from hapticlab.cli import main; from pathlib import Path\n"
+    code = "import sys; from hapticlab.course import labs; from hapticlab.cli.main import main; from pathlib import Path\n"
     code += f"labs.PLACES = (Path({str(place / 'labs')!r}),); sys.exit(main(['labs']))"
     process = subprocess.Popen(
         [sys.executable, "-c", code], env={**os.environ, "STAY": "1"}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
