@@ -73,7 +73,7 @@ def test_readme_commands_are_understood(line):
     program, *arguments = shlex.split(line)
     assert Path(program).name == "hapticlab"
     module, function = parser().parse_args(arguments).command.split(".")
-    assert callable(getattr(importlib.import_module(f"hapticlab.cli.{module}"), function))
+    assert callable(getattr(importlib.import_module(f"hapticlab.{module}"), function))
 
 
 def test_readme_runs_on_a_simulated_board(tmp_path, capsys):

@@ -40,4 +40,4 @@ def main(arguments=None):
 def _command(name):
     """Return the function of a command, "module.function"; only this command's module is imported."""
     module, _, function = name.rpartition(".")
-    return getattr(import_module(f"hapticlab.cli.{module}"), function)
+    return getattr(import_module(f"hapticlab.{module}"), function)

@@ -58,14 +58,14 @@ def _add_out(made, folder):
 
 def _add_demo(commands, shared):
     text = "show where the chapter's wall begins to chatter, and run a student's own equation of motion"
-    made = _add_command(commands, "scenes.demo", text, [shared])
+    made = _add_command(commands, "cli.scenes.demo", text, [shared])
     made.add_argument("--quick", action="store_true", help="fewer stiffnesses, shorter runs")
     _add_out(made, "hapticlab-demo")
 
 
 def _add_run(commands, shared):
     text = "run a Python file that defines `scene`, and optionally `paddle` and `duration`"
-    made = _add_command(commands, "scenes.run", text, [shared])
+    made = _add_command(commands, "cli.scenes.run", text, [shared])
     made.add_argument("file", metavar="FILE.py")
     words = "run on the board at this port; a sim:// port simulates the paddle that the file defines"
     made.add_argument("--port", metavar="URL", help=words)
@@ -80,7 +80,7 @@ def _add_run(commands, shared):
 
 def _add_tradeoff(commands, shared):
     text = "measure speed against accuracy of a scene file, and choose what is good enough at the least load"
-    made = _add_command(commands, "scenes.tradeoff", text, [shared])
+    made = _add_command(commands, "cli.scenes.tradeoff", text, [shared])
     made.add_argument("file", metavar="FILE.py")
     made.add_argument("--tolerance", type=_part, default=1e-2, metavar="PART", help="of the greatest force (default: 0.01)")
     made.add_argument("--load", type=_part, default=0.5, metavar="PART", help="of the period at most (default: 0.5)")
@@ -97,7 +97,7 @@ def _add_tradeoff(commands, shared):
 
 def _add_labs(commands):
     text = "copy the labs into a folder without overwriting files that you have changed, and open them in JupyterLab"
-    made = _add_command(commands, "labs.labs", text)
+    made = _add_command(commands, "cli.labs.labs", text)
     made.add_argument("folder", metavar="DIR", nargs="?", default="hapticlab-labs", help="(default: %(default)s)")
     made.add_argument("--no-open", action="store_true", help="only copy, and say how to open them")
     words = "copy these labs; by default all, or those that are in the folder already"
@@ -109,7 +109,7 @@ def _add_labs(commands):
 
 def _add_assign(commands):
     text = "hand out labs: as nbgrader, otter, Gradescope or PrairieLearn take them, or with each student's own numbers"
-    made = _add_command(commands, "assign.assign", text)
+    made = _add_command(commands, "cli.assign.assign", text)
     made.add_argument("target", metavar="DIR", help="folder to write into; of gradescope a FILE.zip")
     made.add_argument("--for", dest="system", choices=SYSTEMS, help="what grades or collects")
     made.add_argument("--personal", action="store_true", help="numbers of their own for the students of --roster")
@@ -125,7 +125,7 @@ def _add_assign(commands):
 
 def _add_grade(commands):
     text = "grade submissions: run each in processes that know no answer, and judge what they give"
-    made = _add_command(commands, "grade_start.grade", text)
+    made = _add_command(commands, "cli.grade_start.grade", text)
     words = "notebooks, scripts, archives, folders of these, or nbgrader's submitted tree"
     made.add_argument("submissions", metavar="SUBMISSION", nargs="+", help=words)
     words = "lab number, or folder of a lab of your own (default: detected from the submissions)"
@@ -162,7 +162,7 @@ def _add_board_commands(commands, shared):
     }
     made = {}
     for name, text in words.items():
-        made[name] = _add_command(commands, f"board.{name}", text, [shared] if name in ("ports", "doctor") else [])
+        made[name] = _add_command(commands, f"cli.board.{name}", text, [shared] if name in ("ports", "doctor") else [])
         if name != "ports":
             made[name].add_argument("--port", metavar="URL", help="by default the one known board that is plugged in")
     made["doctor"].add_argument("--no-person", action="store_true", help="skip what needs somebody at the handle")
