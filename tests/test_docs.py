@@ -72,7 +72,7 @@ def test_readme_command_of_a_scene_file_runs(tmp_path, capsys):
 def test_readme_commands_are_understood(line):
     program, *arguments = shlex.split(line)
     assert Path(program).name == "hapticlab"
-    module, function = parser().parse_args(arguments).command.split(".")
+    module, _, function = parser().parse_args(arguments).command.rpartition(".")
     assert callable(getattr(importlib.import_module(f"hapticlab.{module}"), function))
 
 

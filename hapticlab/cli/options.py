@@ -47,7 +47,7 @@ def parser():
 
 def _add_command(commands, function, text, parents=()):
     """Return the parser of one command, which `cli.main` runs by calling ``function``, "module.name"."""
-    made = commands.add_parser(function.split(".")[1], parents=parents, help=text, description=text)
+    made = commands.add_parser(function.rpartition(".")[2], parents=parents, help=text, description=text)
     made.set_defaults(command=function, parser=made)
     return made
 

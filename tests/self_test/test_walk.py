@@ -104,7 +104,8 @@ def test_the_file_says_what_was_found_and_the_last_lines_what_to_do(broken, tmp_
 
 def test_on_a_console_that_is_not_utf_8_the_walk_goes_on(broken, tmp_path):
     code = (
-        "from hapticlab.cli.main import main; from hapticlab.self_test import report; from hapticlab.self_test.table import Check\n"
+        "from hapticlab.cli.main import main; from hapticlab.self_test import report\n"
+        "from hapticlab.self_test.table import Check\n"
         "report.CHECKS = [Check('fails', 'fails', 'broken_checks.fails')]\n"
         f"raise SystemExit(main(['doctor', '--self-test', '--out', {str(tmp_path / 'found.json')!r}]))"
     )
