@@ -19,9 +19,9 @@ import pytest
 from hand_in import INSTRUCTOR, ROOT, WRONG, earned, handed_in
 from hub_trial import HUB, LAB, NOTEBOOK, PAGE, blocks, files
 
-from hapticlab.cli import main
+from hapticlab.cli.main import main
+from hapticlab.cli.options import parser
 from hapticlab.course.notebook import read
-from hapticlab.options import parser
 
 NEEDED = ("unshare", "nsenter", "mount", "ip", "su", "useradd", "chpasswd", "node")
 PROXY = os.environ.get("HAPTICLAB_PROXY", "")
