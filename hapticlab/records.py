@@ -154,9 +154,7 @@ class Telemetry:
         if name == "plot":
             raise AttributeError("a record has no .plot(); draw it: hl.plot(log), or what you name, hl.plot(log, 'x', 'v')")
         recorded = ", ".join(("t", "x", "v", "F", *channels))
-        raise AttributeError(
-            f"{name!r} was not recorded; this log has {recorded}. Watch it: hl.Scene(..., watch=[{name}])"
-        )
+        raise AttributeError(f"{name!r} was not recorded; this log has {recorded}. Watch it: hl.Scene(..., watch=[{name}])")
 
     def __dir__(self):
         return [*super().__dir__(), *self.channels]

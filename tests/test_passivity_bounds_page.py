@@ -5,9 +5,7 @@ from pathlib import Path
 
 import pytest
 
-_SPEC = importlib.util.spec_from_file_location(
-    "passivity_bounds", Path(__file__).parent / "benchmarks" / "passivity_bounds.py"
-)
+_SPEC = importlib.util.spec_from_file_location("passivity_bounds", Path(__file__).parent / "benchmarks" / "passivity_bounds.py")
 script = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(script)
 

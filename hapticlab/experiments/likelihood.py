@@ -174,9 +174,9 @@ class Likelihood:
 def _step(gradient, information, damping, held):
     """Return the damped step of each set; a parameter held by its bound stays."""
     diagonal = np.einsum("...ii->...i", information)
-    matrix = information + (damping[:, None] * diagonal + 1e-12 * diagonal.max(-1, keepdims=True) + 1e-300)[
-        :, :, None
-    ] * np.eye(gradient.shape[-1])
+    matrix = information + (damping[:, None] * diagonal + 1e-12 * diagonal.max(-1, keepdims=True) + 1e-300)[:, :, None] * np.eye(
+        gradient.shape[-1]
+    )
     free = ~held
     matrix = np.where(free[:, :, None] & free[:, None, :], matrix, np.eye(gradient.shape[-1]))
     return np.linalg.solve(matrix, np.where(free, -gradient, 0.0)[..., None])[..., 0]

@@ -51,11 +51,7 @@ class Estimate:
         return self.value
 
     def __str__(self):
-        digits = (
-            3
-            if self.half_width == 0
-            else int(np.clip(np.ceil(np.log10(abs(self.value / self.half_width) + 1)) + 2, 3, 9))
-        )
+        digits = 3 if self.half_width == 0 else int(np.clip(np.ceil(np.log10(abs(self.value / self.half_width) + 1)) + 2, 3, 9))
         return f"{self.name} = {self.value:.{digits}g} {self.unit}, between {self.low:.{digits}g} and {self.high:.{digits}g}"
 
 
@@ -148,9 +144,7 @@ class Found:
             above.set(ylabel="handle position x [mm]", title="Positions, and what the fit leaves")
             above.legend(**FRAME)
             below.plot(t, 1e6 * (self.measured - self.fitted), ".", color="#000000", markersize=2)
-            below.axhspan(
-                -2e6 * self.sigma, 2e6 * self.sigma, color=COLD, alpha=0.15, label="2 standard deviations"
-            )
+            below.axhspan(-2e6 * self.sigma, 2e6 * self.sigma, color=COLD, alpha=0.15, label="2 standard deviations")
             below.set(xlabel="time, records one after the other [s]", ylabel="residual [um]")
             below.legend(loc="upper right", **FRAME)
         return figure
@@ -180,6 +174,4 @@ def told(made, y, fitted, names, *, quantum, T, confidence, beside=""):
     # neighbours that share a count without dither share its rounding: they say nothing about the model
     pairs = np.diff(y) != 0 if quantum and not counted else np.ones(len(y) - 1, bool)
     lag = float(np.sum((rest[1:] * rest[:-1])[pairs]) / max(np.sum(rest[1:][pairs] ** 2), 1e-300))
-    return made(
-        estimates, confidence, float(fitted.sigma[0]), counted, quantum, bool(fitted.converged[0]), lag, y, y - rest, T
-    )
+    return made(estimates, confidence, float(fitted.sigma[0]), counted, quantum, bool(fitted.converged[0]), lag, y, y - rest, T)

@@ -36,15 +36,11 @@ class HandFit(Found):
         m, b, k = (self[name].value for name in ("m", "b", "k"))
         lines = [super().__str__()]
         if m > 0 and k > 0:
-            lines.append(
-                f"  alone it swings at {np.sqrt(k / m) / 2 / np.pi:.3g} Hz, damping ratio {b / 2 / np.sqrt(k * m):.2g}"
-            )
+            lines.append(f"  alone it swings at {np.sqrt(k / m) / 2 / np.pi:.3g} Hz, damping ratio {b / 2 / np.sqrt(k * m):.2g}")
         return "\n".join(lines)
 
 
-def identify_hand(
-    source, device=None, *, window=WINDOW, force=FORCE, pushes=8, seed=0, counts_per_metre=None, confidence=0.95
-):
+def identify_hand(source, device=None, *, window=WINDOW, force=FORCE, pushes=8, seed=0, counts_per_metre=None, confidence=0.95):
     """Return the second-order hand on a handle from its answers to pushes, each before the hand can react.
 
     (m_device + m) x'' = -F - b_device x' - coulomb sign(x') - b x' - k (x - rest). Valid for some 30 to 60 ms after each

@@ -59,9 +59,7 @@ class HandleRecord:
         """Return its positions and forces from sample ``first`` on."""
         check_record(self.log, "identify")
         if self.log.fault:
-            raise AnalysisError(
-                f"identify: the record ends in a fault, {self.log.fault}; needs one that ran to its end"
-            )
+            raise AnalysisError(f"identify: the record ends in a fault, {self.log.fault}; needs one that ran to its end")
         if self.log.every > 1:
             raise AnalysisError(
                 f"identify: one sample in {self.log.every} was sent, and the forces between are not known; needs every one: "
@@ -135,9 +133,7 @@ def step_response(log, *, counts_per_metre=None, known=None, at_rest=True, confi
             f"step_response: the force changes {changes} times in {len(log)} samples; needs a few steps, each held for a while. "
             "For a force that always changes use chirp_response(log), for none spin_down(log)"
         )
-    return identify(
-        HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence
-    )
+    return identify(HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
 
 
 def chirp_response(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.95):
@@ -149,9 +145,7 @@ def chirp_response(log, *, counts_per_metre=None, known=None, at_rest=True, conf
             f"chirp_response: the force changes {changes} times in {len(log)} samples; needs one that always changes. For a "
             "few steps use step_response(log)"
         )
-    return identify(
-        HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence
-    )
+    return identify(HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
 
 
 def identify(*records, force_constant=False, counts_per_metre=None, known=None, confidence=0.95):

@@ -39,9 +39,7 @@ class Identified(PaddleFit):
         return tuple(replace(record, added=mass) for record in self.records)
 
 
-def identify_paddle(
-    paddle, *, force=None, travel=None, kinds=("kick", "steps", "chirp"), added=0.0, beside=(), confidence=0.95
-):
+def identify_paddle(paddle, *, force=None, travel=None, kinds=("kick", "steps", "chirp"), added=0.0, beside=(), confidence=0.95):
     """Move a free handle and return its mass, damping, Coulomb friction and delay, with confidence intervals.
 
     Nobody holds the handle. Forces grow from 1/64 of ``force`` until it moves; what that tells sizes a kick, steps and a
@@ -81,9 +79,7 @@ def identify_paddle(
     (True, True, True, True)
     """
     if beside and not added:
-        raise AnalysisError(
-            "beside= without added=: records with and without a known mass tell the force constant; give added="
-        )
+        raise AnalysisError("beside= without added=: records with and without a known mass tell the force constant; give added=")
     force, travel = _limits(paddle, force, travel)
     added = require("added", added, "kg", "an identification", low=0)
     pilot, size = _pilot(paddle, force, travel)
@@ -106,9 +102,7 @@ def _limits(paddle, force, travel):
     """Return the largest force [N] and travel [m]."""
     settings = getattr(paddle, "settings", None)
     if isinstance(paddle, SerialPaddle) and settings is None:
-        raise PaddleError(
-            "the board has no calibration, so its travel and force are not known: run `hapticlab calibrate` first."
-        )
+        raise PaddleError("the board has no calibration, so its travel and force are not known: run `hapticlab calibrate` first.")
     if settings is not None:
         usual = min(settings.force_continuous, settings.force_max), 0.8 * min(-settings.travel_min, settings.travel_max)
     else:

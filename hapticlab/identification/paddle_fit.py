@@ -24,9 +24,7 @@ class PaddleFit(Found):
             If the mass was not found: a spin-down alone tells ratios.
         """
         if "m" not in self.estimates:
-            raise AnalysisError(
-                "the mass was not found: a spin-down tells b/m and coulomb/m; add a step or a chirp, or give m="
-            )
+            raise AnalysisError("the mass was not found: a spin-down tells b/m and coulomb/m; add a step or a chirp, or give m=")
         told = {key: self[key].value for key in ("m", "b", "coulomb") if key in self.estimates}
         told |= {key: max(told[key], 0.0) for key in ("b", "coulomb") if key in told}
         return PaddleProfile(

@@ -45,9 +45,7 @@ def mass_spring_damper():
     z = coordinate("z", unit="m", initial=x(n))
     m, b, k = parameters("m b k", units="kg N*s/m N/m", values=(0.1, 0.1, 100))
     F_c = coupler(z)
-    return Scene(
-        force=F_c, eom=[sp.Eq(m * z.diff(t, 2), F_c - k * z - b * z.diff(t))], watch=[z], name="mass-spring-damper"
-    )
+    return Scene(force=F_c, eom=[sp.Eq(m * z.diff(t, 2), F_c - k * z - b * z.diff(t))], watch=[z], name="mass-spring-damper")
 
 
 def draw_mass_spring_damper(axes, *, x=0.015, z=0.01, **_):

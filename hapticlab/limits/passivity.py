@@ -127,9 +127,7 @@ def required_damping(*, K, T, B=0.0, delay=0.0, law="zoh"):
     >>> round(required_damping(K=200, T=1e-3, B=0.05), 12)
     0.15
     """
-    K = check_number(
-        "K", K, "N/m", "a wall needs K >= 0. A negative spring feeds energy to the user.", lambda v: v >= 0
-    )
+    K = check_number("K", K, "N/m", "a wall needs K >= 0. A negative spring feeds energy to the user.", lambda v: v >= 0)
     whole, fraction = _checked(T, B, delay, law)
     if LEAD[law] and K:
         return math.inf
@@ -185,9 +183,7 @@ def _checked(T, B, delay, law):
     check_law(law)
     T = check_period(T)
     check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
-    delay = check_number(
-        "delay", delay, "s", "needs delay >= 0: a force cannot come before its sample", lambda v: v >= 0
-    )
+    delay = check_number("delay", delay, "s", "needs delay >= 0: a force cannot come before its sample", lambda v: v >= 0)
     return whole_and_fraction(delay, T, most=MOST_PERIODS)
 
 

@@ -155,9 +155,7 @@ def tick_map(program):
     small = (np.vstack([run.states, run.outputs[0, :1]]) - still[:, :1]) / SMALL
     linear = np.allclose(small, rest + by_input[:, :1], rtol=0, atol=1e3 * scale)
     if not (linear and all(np.allclose(one, other, rtol=0, atol=scale) for one, other in pairs)):
-        raise AnalysisError(
-            f"{program.name} is not linear: its answer to two states is not the sum of its answers to each"
-        )
+        raise AnalysisError(f"{program.name} is not linear: its answer to two states is not the sum of its answers to each")
     return whole[:S], by_input[:S, 0], whole[S], by_input[S, 0]
 
 

@@ -122,9 +122,7 @@ def _drive(paddle, drive, simulated):
     if drive not in AMPLITUDE:
         raise AnalysisError(f"drive = {drive!r}; needs 'hand' or 'motor'")
     if drive == "hand" and not able:
-        raise PaddleError(
-            "drive='hand' needs a simulated hand with k or b to act through, Hand(k=200, b=1); or drive='motor'"
-        )
+        raise PaddleError("drive='hand' needs a simulated hand with k or b to act through, Hand(k=200, b=1); or drive='motor'")
     return drive
 
 
@@ -139,9 +137,7 @@ def _check(**values):
             good = False
         if not good or (value is not None and ((above and value <= 0) or (name == "settle" and value < 0))):
             needs = ("a whole number > 0" if whole else "a number > 0") if above else "a finite number"
-            raise AnalysisError(
-                f"measured_impedance: {name} = {value!r}; needs {needs if name != 'settle' else 'a number >= 0'}"
-            )
+            raise AnalysisError(f"measured_impedance: {name} = {value!r}; needs {needs if name != 'settle' else 'a number >= 0'}")
 
 
 def _runs(paddle, scene, drive, place, settle, limits, options):

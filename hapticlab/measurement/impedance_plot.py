@@ -17,9 +17,7 @@ def plot_impedance(found):
             axes[0].plot(f, abs(Z), **style_of(i + 1), label=label)
             axes[1].plot(f, Z.real, **style_of(i + 1))
         axes[0].plot(f, abs(found.rendered), "o", color="black", markersize=4, label="measured")
-        axes[1].errorbar(
-            f, found.rendered.real, np.nan_to_num(found.radius), fmt="o", color="black", markersize=4, capsize=2
-        )
+        axes[1].errorbar(f, found.rendered.real, np.nan_to_num(found.radius), fmt="o", color="black", markersize=4, capsize=2)
         axes[0].set(ylabel="|Z| [N s/m]", title="rendered impedance Z = F/v")
         log_scales(axes[0])
         axes[1].axhline(0, color="0.5", linewidth=0.8)

@@ -72,14 +72,10 @@ class LargestStiffness:
             head = f"{self.law}: {self.K:.5g} N/m stands, {self.chatters_at:.5g} N/m "
             head += "is undecided" if end is None else "chatters"
         rows = [f"  {name:<10} {limit.K:.5g} N/m: {limit.kind}" for name, limit in self.theory.items()]
-        return "\n".join(
-            [head, f"  simulated outcome of one start, {self.about}", *rows, *(f"  {t}" for t in self.trials)]
-        )
+        return "\n".join([head, f"  simulated outcome of one start, {self.about}", *rows, *(f"  {t}" for t in self.trials)])
 
     def __repr__(self):
-        return (
-            f"LargestStiffness(K={self.K:.6g} N/m, chatters_at={self.chatters_at:.6g} N/m, {len(self.trials)} trials)"
-        )
+        return f"LargestStiffness(K={self.K:.6g} N/m, chatters_at={self.chatters_at:.6g} N/m, {len(self.trials)} trials)"
 
 
 def largest_stiffness(
@@ -156,17 +152,13 @@ def largest_stiffness(
     scene = wall_of(law, parameter)
     name = law if isinstance(law, str) else scene.name
     if not (growth > 1 and tolerance > 0 and most > 0):
-        raise AnalysisError(
-            f"growth = {growth}, tolerance = {tolerance}, most = {most}; needs growth > 1 and the others > 0"
-        )
+        raise AnalysisError(f"growth = {growth}, tolerance = {tolerance}, most = {most}; needs growth > 1 and the others > 0")
     durations = durations_of(paddle, duration, longest)
     push, leaning = pushes_of(paddle, push, place, durations(most)[1])
     first = first_of(paddle, push + leaning, longest) if first is None else float(first)
     if not 0 < first < most:
         raise AnalysisError(f"first = {first:g} N/m, most = {most:g} N/m; needs 0 < first < most")
-    known = {
-        name: value for name, value in {"B": B, "x_o": place}.items() if name in scene.parameters and (B or name != "B")
-    }
+    known = {name: value for name, value in {"B": B, "x_o": place}.items() if name in scene.parameters and (B or name != "B")}
     if B and "B" not in scene.parameters:
         raise PaddleError(f"{scene.name} has no parameter B; leave B out, or give the scene one")
     theory = theory_of(paddle, law, B)

@@ -69,9 +69,7 @@ class MeasuredImpedance:
     def handle(self):
         """What the hand feels [N s/m], device included, as by a force sensor between them; where a simulated hand drives."""
         if self.drive != "hand":
-            raise AnalysisError(
-                "the motor drove, and a paddle has no force sensor: what the hand feels was not observed"
-            )
+            raise AnalysisError("the motor drove, and a paddle has no force sensor: what the hand feels was not observed")
         return self.other.value
 
     @property
@@ -98,9 +96,7 @@ class MeasuredImpedance:
 
     def _meant(self):
         if self.ideal is None:
-            raise AnalysisError(
-                "the ideal impedance is not known; give it: measured_impedance(..., ideal=lambda s: k/s + b)"
-            )
+            raise AnalysisError("the ideal impedance is not known; give it: measured_impedance(..., ideal=lambda s: k/s + b)")
         return self.ideal
 
     @property
@@ -136,9 +132,7 @@ class MeasuredImpedance:
         left, unsure = self.left_wall, np.nanmax(self.other.radius / abs(self.other.value), initial=0.0)
         lines = [f"the handle left the wall in {left} samples: press deeper or drive less"] if left else []
         if unsure > UNSURE:
-            lines.append(
-                f"blocks differ, |Z {self.drive}| by up to {100 * unsure:.0f} %: noise, or not settled; settle=... [s]"
-            )
+            lines.append(f"blocks differ, |Z {self.drive}| by up to {100 * unsure:.0f} %: noise, or not settled; settle=... [s]")
         return lines
 
     def __repr__(self):

@@ -35,9 +35,7 @@ def plot_border(width):
         axes = figure.add_subplot()
         top = np.where(np.isfinite(width.chatters_at), width.chatters_at, width.K)
         axes.fill_between(width.B, 0, width.K, color="0.92")
-        for i, (name, label) in enumerate(
-            (("stability", "exact stability"), ("passivity", "passivity, any passive hand"))
-        ):
+        for i, (name, label) in enumerate((("stability", "exact stability"), ("passivity", "passivity, any passive hand"))):
             known = np.isfinite(getattr(width, name))  # 0 too: no stiffness is promised there
             if known.any():
                 axes.plot(width.B[known], getattr(width, name)[known], **style_of(i + 1), marker=".", label=label)

@@ -193,7 +193,5 @@ def wall_of(law, parameter="k"):
     scene = law if isinstance(law, Scene) else wall(law)
     if parameter not in scene.parameters:
         known = ", ".join(scene.parameters) or "none"
-        raise PaddleError(
-            f"{scene.name} has no parameter {parameter} to search; it has {known}. Name one: parameter=..."
-        )
+        raise PaddleError(f"{scene.name} has no parameter {parameter} to search; it has {known}. Name one: parameter=...")
     return scene

@@ -95,9 +95,7 @@ def z_width(paddle, *, B, law="zoh", **options):
         raise AnalysisError(f"B = {B}; needs one or more finite numbers [N s/m], as in B=[0, 0.5, 1]")
     searches = []
     for b in B.tolist():
-        if (
-            searches and searches[-1].K > 0 and "first" not in options
-        ):  # the next damping's border is near: begin well below
+        if searches and searches[-1].K > 0 and "first" not in options:  # the next damping's border is near: begin well below
             searches.append(largest_stiffness(paddle, law=law, B=b, **options, first=searches[-1].K / BELOW))
         else:
             searches.append(largest_stiffness(paddle, law=law, B=b, **options))

@@ -117,9 +117,7 @@ class CompensationLimit:
 
     def _free(self, what):
         if self.k:
-            raise AnalysisError(
-                f"{what} needs a free handle; the hand's k = {self.k:g} N/m holds it: look at hunting()"
-            )
+            raise AnalysisError(f"{what} needs a free handle; the hand's k = {self.k:g} N/m holds it: look at hunting()")
 
     def __str__(self):
         at = f", turning at {self.frequency:.4g} Hz" if self.frequency else ", drifting off"

@@ -74,9 +74,7 @@ class Flight:
     def same(self, tag, p, w, side):
         """Name and return (p, w) one period on in the mode of now."""
         ends = [[self.end(wall, i, p, w) for i in (0, 1)] for wall in (True, False)]
-        return [
-            self.lines.let(f"{name}_same{tag}", when(side > 0, a, b)) for name, a, b in zip("pw", *ends, strict=True)
-        ]
+        return [self.lines.let(f"{name}_same{tag}", when(side > 0, a, b)) for name, a, b in zip("pw", *ends, strict=True)]
 
     def end(self, wall, i, p, w):
         """Return row i of the state a whole period on in one mode."""

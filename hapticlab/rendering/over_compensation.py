@@ -79,9 +79,7 @@ class OverCompensation:
         return figure
 
 
-def over_compensation(
-    paddle, *, speed, viscous=0.0, shape="dead_zone", velocity=None, up_to=None, duration=None, engine="auto"
-):
+def over_compensation(paddle, *, speed, viscous=0.0, shape="dead_zone", velocity=None, up_to=None, duration=None, engine="auto"):
     """Simulate a paddle whose dry friction is compensated more and more, until it keeps moving by itself.
 
     Each run begins with a kick: beyond the motion that the closed forms expect, from where it dies down or stays. A
@@ -119,15 +117,11 @@ def over_compensation(
     1.04
     """
     if not isinstance(paddle, SimulatedPaddle):
-        raise AnalysisError(
-            f"paddle is a {type(paddle).__name__}; what runs away is simulated: hl.SimulatedPaddle(...)"
-        )
+        raise AnalysisError(f"paddle is a {type(paddle).__name__}; what runs away is simulated: hl.SimulatedPaddle(...)")
     ideal = compensation_limit(paddle, velocity=velocity if velocity and velocity.is_linear else None)
     check_number("coulomb", paddle.coulomb, "N", "without dry friction there is none to compensate", lambda c: c > 0)
     if paddle.hand is not None and paddle.hand.moves:
-        raise AnalysisError(
-            "the hand's intent moves: what keeps moving would be the hand; give intent=None, or a place in m"
-        )
+        raise AnalysisError("the hand's intent moves: what keeps moving would be the hand; give intent=None, or a place in m")
     if not 0 <= viscous < ideal.viscous:
         raise AnalysisError(f"viscous = {viscous:g} runs away by itself; needs 0 <= viscous < {ideal.viscous:.4g}")
     speed = in_si(speed, "m/s", "speed")

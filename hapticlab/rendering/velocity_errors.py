@@ -148,9 +148,7 @@ def velocity_errors(log, estimates=(), *, board="uno"):
     estimates = [estimates] if isinstance(estimates, VelocityEstimate) else list(estimates)
     wrong = next((e for e in estimates if not isinstance(e, VelocityEstimate)), None)
     if wrong is not None:
-        raise AnalysisError(
-            f"{wrong!r} is no estimate of a velocity; needs those such as hl.filtered_velocity(tau='4 ms')"
-        )
+        raise AnalysisError(f"{wrong!r} is no estimate of a velocity; needs those such as hl.filtered_velocity(tau='4 ms')")
     rows = tuple(_row(estimate, log, board) for estimate in (backward_velocity(), *estimates))
     return VelocityErrors(rows, log.t, log.v_true, log.T, board)
 

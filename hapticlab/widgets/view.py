@@ -72,9 +72,7 @@ class MapView:
         self._picture = None
         spans = _default_sliders(paddle, maps.over) if sliders is None else sliders
         if not isinstance(spans, Mapping):
-            raise AnalysisError(
-                f'sliders = {sliders!r}; needs a dict of name to (low, high), as sliders={{"b": (0.05, 0.5)}}'
-            )
+            raise AnalysisError(f'sliders = {sliders!r}; needs a dict of name to (low, high), as sliders={{"b": (0.05, 0.5)}}')
         self.sliders = {name: _slider(widgets, paddle, maps.over, name, span) for name, span in spans.items()}
         self.image, self.text = widgets.Image(format="png"), widgets.HTML()
         self._around = _around()

@@ -3,27 +3,19 @@
 from hapticlab.course.exercise import Case, Exercise, Lab
 
 HELD = "Which force acts in this period, and does it change while the handle is on its way?"
-MEAN = (
-    "That is the work at the mean force, which is what a spring takes that is not sampled. "
-    "The motor holds the first force."
-)
+MEAN = "That is the work at the mean force, which is what a spring takes that is not sampled. The motor holds the first force."
 END = "That is the force of the end of the period. It is computed at the beginning, and held."
-FULL = (
-    "The square is right. What the held force leaves out is the corner below the spring line: a triangle, not a square."
-)
+FULL = "The square is right. What the held force leaves out is the corner below the spring line: a triangle, not a square."
 TAKEN = "That is what the held spring took less what the spring stored: the leak with its sign turned."
 WRONG_WAY = (
     "F(n) was paired with the way from x(n-1) to x(n). It is computed from x(n) and acts after "
     "it, while the handle goes on to "
     "x(n+1). Paired the wrong way round, a wall that generates energy looks like one that takes it."
 )
-MEAN_FORCE = (
-    "That is nearly zero: the mean of two forces is the spring that is not sampled. The motor holds F(n) all the way."
-)
+MEAN_FORCE = "That is nearly zero: the mean of two forces is the spring that is not sampled. The motor holds F(n) all the way."
 TAKES = "That is the work of the handle on the wall. What the wall generated is minus that."
 EVERYWHERE = (
-    "The wall acts outside too. F is zero where x < 0, and in the periods that cross the boundary the leak is less than "
-    "k D^2/2."
+    "The wall acts outside too. F is zero where x < 0, and in the periods that cross the boundary the leak is less than k D^2/2."
 )
 SECOND = (
     "That is the next order too, e^(pi w T/2) - 1, and nearer to what is measured. Asked "
@@ -140,8 +132,7 @@ LAB = Lab(
                         ),
                         (
                             (-3.5, -2.0, 0.0, 0.0, 1.0),
-                            "The left wall is at -x_o, so the handle is beyond it by x - (-x_o) "
-                            "= x + x_o, which is < 0.",
+                            "The left wall is at -x_o, so the handle is beyond it by x - (-x_o) = x + x_o, which is < 0.",
                         ),
                         ((-3.5, -2.0, 0.0, 1.0, 3.0), GATES),
                         (
@@ -169,8 +160,7 @@ LAB = Lab(
                     unit="N s/m",
                     slips={
                         0.5: "k T is a whole sample of delay; the hold is late by half a sample in the mean.",
-                        -0.25: "That is the damper the hold puts beside the spring. The device needs "
-                        "one that takes as much.",
+                        -0.25: "That is the damper the hold puts beside the spring. The device needs one that takes as much.",
                         250.0: "T = 1 ms is 0.001 s.",
                     },
                 ),
@@ -191,15 +181,12 @@ LAB = Lab(
                     slips={
                         "a": "The record says what the hand gave: the work on the way in. More than that came out.",
                         "b": "The sensor's supply never reaches the handle.",
-                        "c": "Before the contact the handle was outside and the wall's spring "
-                        "at rest: it held nothing.",
+                        "c": "Before the contact the handle was outside and the wall's spring at rest: it held nothing.",
                     },
                 ),
             ),
             hint="Who does work on the handle when it is thrown out?",
         ),
-        Exercise(
-            "discussion", kind="text", least_words=60, asks="the wrong pairing, and why a still hand meets chatter"
-        ),
+        Exercise("discussion", kind="text", least_words=60, asks="the wrong pairing, and why a still hand meets chatter"),
     ),
 )

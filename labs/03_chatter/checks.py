@@ -21,18 +21,13 @@ EULER = (
 OFF_ZERO = "It never crosses zero, for it swings about 2 mm. Subtract the mean first."
 NO_GAIN = "The sign is turned: k T/2 > b here, so the hold gives k T/2 - b beyond what the dampers take."
 BOTH_WAYS = "Twice too much: crossings of both directions were counted. A cycle has one upward crossing."
-PER_TIME = (
-    "Crossings over the whole time count a part of a cycle at both ends. Take whole cycles, from crossing to crossing."
-)
+PER_TIME = "Crossings over the whole time count a part of a cycle at both ends. Take whole cycles, from crossing to crossing."
 NO_PI = "The integral of cos^2 over a cycle brings a pi: the hold gives pi w X^2 (k T/2 - b)."
 ONE_QUARTER = "Friction acts along the whole way of a cycle, which is 4 X, and the integral brings a pi."
 HALF_WAY = "In a cycle of amplitude X the handle goes 4 X, not 2 X: from one end to the other and back."
 WHOLE_T = "The hold is a damper of -k T/2, half a period of delay, not a whole one."
 NO_DAMPER = "The damping b takes its part of what the hold gives: what is left is k T/2 - b."
-SUM = (
-    "The encoder's leak is not paid by b, and the hold's not by friction: each has to pay for "
-    "its own, so the smaller counts."
-)
+SUM = "The encoder's leak is not paid by b, and the hold's not by friction: each has to pay for its own, so the smaller counts."
 ENCODER_ALONE = "That is what friction pays for. The damper has to pay for the hold too: the smaller of the two counts."
 HOLD_ONLY = "That is what the damper pays for. Friction has to pay for the encoder too: the smaller of the two counts."
 HALF_COUNT = "Friction pays twice that: the work of friction over a count, there and back, is 2 f_c Delta."
@@ -48,9 +43,7 @@ LAB = Lab(
     title="Chatter",
     minutes=110,
     exercises=(
-        Exercise(
-            "prediction", kind="prediction", asks="the stiffness [N/m] from which the wall chatters in a pinching hand"
-        ),
+        Exercise("prediction", kind="prediction", asks="the stiffness [N/m] from which the wall chatters in a pinching hand"),
         Exercise(
             "stability_estimate",
             points=1,
@@ -134,8 +127,7 @@ LAB = Lab(
                         ((0.0, 0.0, 1.0, 2.0, 0.5, 0.0), "That is the wall without delay: x(n) everywhere."),
                         (
                             (0.0, -1.0, 0.0, 1.0, 2.0, 0.0),
-                            "The condition still looks at x(n): a late wall does not yet know that "
-                            "the handle is in, or out.",
+                            "The condition still looks at x(n): a late wall does not yet know that the handle is in, or out.",
                         ),
                         (
                             (0.0, 0.0, 1.0, 2.0, 0.5, -1.0),

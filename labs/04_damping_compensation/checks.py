@@ -19,18 +19,14 @@ ADAMS = (
     "samples. Ellis corrects a straight line."
 )
 SUM_OF_TAPS = (
-    "That sums the weights, which is what slow motion finds. At half the sampling rate the "
-    "samples alternate: signs +, -, +."
+    "That sums the weights, which is what slow motion finds. At half the sampling rate the samples alternate: signs +, -, +."
 )
 ABSOLUTE = (
-    "That sums the weights without their signs; a weight on x(n-1) meets a sample of the "
-    "other sign, so c_1 counts as -c_1."
+    "That sums the weights without their signs; a weight on x(n-1) meets a sample of the other sign, so c_1 counts as -c_1."
 )
 TWICE = "Twice too much: the damper's force b 2a/T acts along 2a, and that is 4 b a^2/T against 2 k a^2 h."
 ADDED = "A virtual damper of either sign costs: Eq. (23.10) has |B|. A negative one feeds slow motion."
-NEGATIVE_HELPS = (
-    "B < 0 was counted as if it helped: it takes away from what b gives, so it is b + b_added - |B| that is left."
-)
+NEGATIVE_HELPS = "B < 0 was counted as if it helped: it takes away from what b gives, so it is b + b_added - |B| that is left."
 NO_B = "Eq. (23.10) asks for K T/2 + |B|: the virtual damper has its share."
 HALF = "K T/2 is to be paid: K = 2 (...)/T."
 NEGATIVE = "Below zero there is no stiffness at all: return 0."
@@ -118,8 +114,7 @@ LAB = Lab(
         Exercise(
             "nyquist_damping",
             points=2,
-            asks="the device damping [N s/m] that pays for samples that alternate, of taps "
-            "c_0, c_1, ..., k [N/m], T [s]",
+            asks="the device damping [N s/m] that pays for samples that alternate, of taps c_0, c_1, ..., k [N/m], T [s]",
             cases=(
                 Case({"taps": [1.0], "k": 200.0, "T": 1e-3}, 0.1, unit="N s/m", slips={0.2: TWICE}),
                 Case(
@@ -196,8 +191,7 @@ LAB = Lab(
                     {},
                     "a",
                     slips={
-                        "b": "Ellis pays for the hold, and nobody pays for the period of delay: the "
-                        "second table of section 5.",
+                        "b": "Ellis pays for the hold, and nobody pays for the period of delay: the second table of section 5.",
                         "c": "With the plain law the two dampers cancel in slow motion: section 7, "
                         "and the row `damped` of section 5.",
                         "d": "Its forces follow the position with m/T^2, so each count of the "

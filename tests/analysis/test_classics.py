@@ -14,9 +14,7 @@ from hapticlab import t
 from hapticlab.compiler.engines.engine import load
 from hapticlab.compiler.methods.method_table import METHODS
 
-s, m, kg = hl.parameters(
-    "s m kg", units="s m kg", values=(1.0, 1.0, 1.0)
-)  # equations without units get them from these
+s, m, kg = hl.parameters("s m kg", units="s m kg", values=(1.0, 1.0, 1.0))  # equations without units get them from these
 k = hl.parameters("k", units="N/m", values=1.0)
 q = hl.coordinate("q", unit="m", initial="1 m")
 
@@ -113,9 +111,7 @@ def test_a_free_rigid_body_turns_by_elliptic_functions(method):
     """Euler's equations of a body 1 : 2 : 3 kg m^2; w = (cn, sn, dn) of parameter m, Landau and Lifshitz 37.10."""
     w = [hl.coordinate(f"w{i}", unit="1/s", initial=value) for i, value in ((1, 1.0), (2, 0.0), (3, 1.2))]
     I = (1.0, 2.0, 3.0)
-    equations = [
-        sp.Eq(s * w[i].diff(t), s * (I[j] - I[l]) / I[i] * w[j] * w[l]) for i, j, l in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-    ]
+    equations = [sp.Eq(s * w[i].diff(t), s * (I[j] - I[l]) / I[i] * w[j] * w[l]) for i, j, l in ((0, 1, 2), (1, 2, 0), (2, 0, 1))]
     E2, M2 = (
         sum(a * b**2 for a, b in zip(I, (1.0, 0.0, 1.2), strict=True)),
         sum((a * b) ** 2 for a, b in zip(I, (1, 0, 1.2), strict=True)),
@@ -181,9 +177,7 @@ def impacts(e, wall, F, w, until):
         if not beyond.any():
             break
         first = int(np.argmax(beyond))
-        when = brentq(
-            lambda moment, p=piece: at(p, moment)[0] - wall, grid[first] - 1e-3, grid[first], xtol=1e-15, rtol=1e-15
-        )
+        when = brentq(lambda moment, p=piece: at(p, moment)[0] - wall, grid[first] - 1e-3, grid[first], xtol=1e-15, rtol=1e-15)
         speed = -e * at(piece, when)[1]
         piece = (when, wall - a * math.cos(w * when), speed + a * w * math.sin(w * when))
     return pieces, at

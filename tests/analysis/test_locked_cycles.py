@@ -64,6 +64,4 @@ def test_a_cycle_with_coulomb_friction_closes_in_located_events():
         travel.append(state[0])
     size = np.ptp(travel)
     assert travel == pytest.approx(log.x[first + 1 : first + 1 + found.period], abs=1e-7 * size)
-    assert state[0] == pytest.approx(
-        log.x[first], abs=2e-4 * size
-    )  # the cycle repeats itself to what `period` promises
+    assert state[0] == pytest.approx(log.x[first], abs=2e-4 * size)  # the cycle repeats itself to what `period` promises

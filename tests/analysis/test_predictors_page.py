@@ -22,9 +22,7 @@ def cells(name):
     return {row[0]: dict(zip(head[1:], row[1:], strict=True)) for row in rows}
 
 
-@pytest.mark.parametrize(
-    ("condition", "law"), [("plain", "zoh"), ("delay T/2", "half_sample"), ("10 times K", "ellis")]
-)
+@pytest.mark.parametrize(("condition", "law"), [("plain", "zoh"), ("delay T/2", "half_sample"), ("10 times K", "ellis")])
 def test_energy_generated_is_what_the_page_says(condition, law):
     result = predictors.bounce(condition, laws=[law])
     made = result[law]
@@ -37,9 +35,7 @@ def test_energy_generated_is_what_the_page_says(condition, law):
 def test_a_limit_is_what_the_page_says():
     found = predictors.limit("delay T", laws=["half_sample"])["half_sample"].K
     assert float(cells("limits")["half_sample"]["delay T"]) == pytest.approx(found, rel=0.01)
-    assert found == pytest.approx(
-        0.1 / 1e-3, rel=0.04
-    )  # b/T: at low frequency a period of delay leaves K T/2 of -damping
+    assert found == pytest.approx(0.1 / 1e-3, rel=0.04)  # b/T: at low frequency a period of delay leaves K T/2 of -damping
 
 
 @pytest.mark.slow

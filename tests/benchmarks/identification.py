@@ -94,9 +94,7 @@ def cramer_rao(kind, sensor):
         if at[name] == 0 and name not in {"x", "v"}:  # no paddle has less than none
             zero, one, two = (positions(**{name: k * scale[name]}) for k in range(3))
             return (4 * one - 3 * zero - two) / (2 * scale[name])
-        return (positions(**{name: at[name] + scale[name]}) - positions(**{name: at[name] - scale[name]})) / (
-            2 * scale[name]
-        )
+        return (positions(**{name: at[name] + scale[name]}) - positions(**{name: at[name] - scale[name]})) / (2 * scale[name])
 
     slopes = np.array([slope(name) for name in names])
     told = sample_information(positions(), sensor)
@@ -117,11 +115,7 @@ def sample_information(x, sensor):
         for count in range(middle - 12, middle + 13):
             low, high = ((count + edge) * COUNT - position for edge in (0, 1))
             p = 0.5 * (math.erf(high / noise / 2**0.5) - math.erf(low / noise / 2**0.5))
-            slope = (
-                (math.exp(-((low / noise) ** 2) / 2) - math.exp(-((high / noise) ** 2) / 2))
-                / noise
-                / (2 * math.pi) ** 0.5
-            )
+            slope = (math.exp(-((low / noise) ** 2) / 2) - math.exp(-((high / noise) ** 2) / 2)) / noise / (2 * math.pi) ** 0.5
             told[n] += slope**2 / p if p > 1e-12 else 0.0
     return told
 

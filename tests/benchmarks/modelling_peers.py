@@ -368,9 +368,7 @@ def numba_made(rates, model, operations=None):
         return y
 
     y, values = np.concatenate(model.numbers()[-2:]), model.parameters
-    return Made(
-        lambda: rates(y, values)[len(y) // 2 :], lambda steps: loop(steps, y, values).reshape(2, -1), operations
-    )
+    return Made(lambda: rates(y, values)[len(y) // 2 :], lambda steps: loop(steps, y, values).reshape(2, -1), operations)
 
 
 # MuJoCo
@@ -386,10 +384,7 @@ def mujoco(model):
     body = ""
     for k in reversed(range(model.links)):
         at = l[k - 1] if k else 0.0
-        body = (
-            f'<body pos="{at} 0 0"><joint type="hinge" axis="0 0 1"/>'
-            f'<inertial mass="{m[k + x]}" {point(l[k])}/>{body}</body>'
-        )
+        body = f'<body pos="{at} 0 0"><joint type="hinge" axis="0 0 1"/><inertial mass="{m[k + x]}" {point(l[k])}/>{body}</body>'
     if x:
         body = f'<body><joint type="slide" axis="1 0 0"/><inertial mass="{m[0]}" {point(0)}/>{body}</body>'
     made = mj.MjModel.from_xml_string(

@@ -68,9 +68,7 @@ def named():
 
 def between():
     fractions = (0.1, 0.25, 0.5, 0.75, 0.9)
-    ratio = [
-        hl.diolaiti_limit(b=1, T=T, delay=f * T).K / hl.passivity_limit(b=1, T=T, delay=f * T).K for f in fractions
-    ]
+    ratio = [hl.diolaiti_limit(b=1, T=T, delay=f * T).K / hl.passivity_limit(b=1, T=T, delay=f * T).K for f in fractions]
     return table(["delay", *(f"{f:g} T" for f in fractions)], [["Diolaiti over exact", *(f"{r:.4f}" for r in ratio)]])
 
 

@@ -95,9 +95,7 @@ def details(result):
 
 
 def limits(results):
-    rows = [
-        [law, *(f"{r[law].K:.3g}" + ("+" if r[law].beyond == np.inf else "") for r in results.values())] for law in LAWS
-    ]
+    rows = [[law, *(f"{r[law].K:.3g}" + ("+" if r[law].beyond == np.inf else "") for r in results.values())] for law in LAWS]
     return table(["stands up to [N/m]", *results], rows)
 
 
@@ -129,12 +127,8 @@ def figure(results):
     with house_style():
         made = new_figure(height=5.2, width=11)
         axes = made.subplots()
-        image = axes.imshow(
-            np.log10(np.maximum(shares, 1e-3)), cmap=colour_map("cividis"), aspect="auto", vmin=-3, vmax=2
-        )
-        axes.set(
-            xticks=range(len(results)), yticks=range(len(LAWS)), yticklabels=[law.replace("_", " ") for law in LAWS]
-        )
+        image = axes.imshow(np.log10(np.maximum(shares, 1e-3)), cmap=colour_map("cividis"), aspect="auto", vmin=-3, vmax=2)
+        axes.set(xticks=range(len(results)), yticks=range(len(LAWS)), yticklabels=[law.replace("_", " ") for law in LAWS])
         axes.set_xticklabels(list(results), rotation=30, ha="right")
         axes.grid(False)
         for (row, column), value in np.ndenumerate(signed):

@@ -102,9 +102,7 @@ def compensated():
             paddle = hl.SimulatedPaddle(m=0.05, b=0.4, T=T, coulomb=0.02, delay=delay, hand=hand)
             ideal, found = hl.compensation_limit(paddle), hl.over_compensation(paddle, speed=2e-3)
             where = "held by 200 N/m" if hand else "free"
-            rows.append(
-                [f"{1e3 * delay:g} ms, {where}", f"{ideal.viscous:.4f}", f"{ideal.dry:.4f}", f"{found.limit:.3f}"]
-            )
+            rows.append([f"{1e3 * delay:g} ms, {where}", f"{ideal.viscous:.4f}", f"{ideal.dry:.4f}", f"{found.limit:.3f}"])
     return table(["delay, handle", "viscous part, exact", "dry part, ideal", "dry part, simulated"], rows)
 
 

@@ -89,9 +89,7 @@ def scipy(problem, method, tolerance, floor=1e-3):
         y, now, acts = start, 0.0, gap is not None and gap(start[:N], start[N:]) < 0
         while now < problem.duration:
             event.direction = 1.0 if acts else -1.0
-            found = solve_ivp(
-                touching if acts else free, (now, problem.duration), y, events=[event] if gap else None, **options
-            )
+            found = solve_ivp(touching if acts else free, (now, problem.duration), y, events=[event] if gap else None, **options)
             if not found.success:
                 raise ArithmeticError(found.message)
             y, now, acts = found.y[:, -1], found.t[-1], not acts

@@ -84,9 +84,7 @@ def _contact(K=0.0, b=0.0, g=0.0, wall=(0.0, 1e4, 0.0), m=0.1):
 
     def scene(q, w):
         names, units = "m g K_s b_s k_w b_w z_w K", "kg m/s^2 N/m N*s/m N/m N*s/m m N/m"
-        mass, gravity, K_s, b_s, k_w, b_w, z_w, one = hl.parameters(
-            names, units=units, values=(m, g, K, b, k, c, at, 1)
-        )
+        mass, gravity, K_s, b_s, k_w, b_w, z_w, one = hl.parameters(names, units=units, values=(m, g, K, b, k, c, at, 1))
         z = hl.coordinate("z", unit="m", initial=q[0], rate=w[0])
         rate = z.diff(t)
         push = hl.when(z <= z_w, -k_w * (z - z_w) - b_w * rate)

@@ -33,17 +33,13 @@ def random_program(seed, reals=("f32", "f64"), size=80, operations=PRIMITIVE):
     """Return a verified program with inputs, parameters, states and outputs of every type among ``reals``, bool and i32."""
     rng = np.random.default_rng(seed)
     types = (*reals, "bool", "i32", *reals)
-    channels = {
-        kind: tuple(Channel(f"{kind}{k}", "1", type) for k, type in enumerate(types)) for kind in ("x", "p", "s", "y")
-    }
+    channels = {kind: tuple(Channel(f"{kind}{k}", "1", type) for k, type in enumerate(types)) for kind in ("x", "p", "s", "y")}
     leaves = {"input": channels["x"], "param": channels["p"]}
     init = _random_block(rng, leaves, size // 4, reals, operations, states=types)
     tick = _random_block(rng, {**leaves, "state": channels["s"]}, size, reals, operations, states=types, outputs=types)
     values = random_rows(rng, channels["p"], 1)[:, 0]
     name = f"random{seed}"
-    return Program(
-        name, channels["x"], channels["p"], channels["s"], channels["y"], init, tick, 1e-3, tuple(values)
-    ).verify()
+    return Program(name, channels["x"], channels["p"], channels["s"], channels["y"], init, tick, 1e-3, tuple(values)).verify()
 
 
 def kept_finite(program):

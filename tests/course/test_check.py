@@ -204,7 +204,7 @@ def test_the_line_of_a_cell_is_named_where_it_raises():
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("97.force", '97.force: there is no lab 97; there are 00_'),
+        ("97.force", "97.force: there is no lab 97; there are 00_"),
         ("00.force", "00.force: lab 00 has no exercise force; it has "),
         ("force", 'force: needs lab and exercise first, such as hl.check("01.wall_force", wall_force)'),
         (right, "hl.check: needs lab and exercise first"),

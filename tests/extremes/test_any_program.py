@@ -32,17 +32,13 @@ MANY_DRAWS = settings(EVERY_DRAW, max_examples=1500)
 def blocks(draw, leaves, states, outputs, reals):
     """Return a block of up to 25 operations on what is there, the types of its results as asked."""
     code = [Instruction(op, (), c.type, index=i) for op, channels in leaves.items() for i, c in enumerate(channels)]
-    code += [
-        Instruction("const", (), type, value=draw(ANY[type])) for type in (*reals, "bool", "i32") for _ in range(2)
-    ]
+    code += [Instruction("const", (), type, value=draw(ANY[type])) for type in (*reals, "bool", "i32") for _ in range(2)]
     operations = [op for op in OPERATIONS if op != "cast" or len(reals) > 1]
     for op in draw(st.lists(st.sampled_from(operations), max_size=25)):
         kinds, result = OPERATIONS[op]
         real = draw(st.sampled_from(reals))
         of = {"R": real, "B": "bool", "I": "i32"}
-        args = tuple(
-            draw(st.sampled_from([k for k, i in enumerate(code) if i.type == of[kind]][-9:])) for kind in kinds
-        )
+        args = tuple(draw(st.sampled_from([k for k, i in enumerate(code) if i.type == of[kind]][-9:])) for kind in kinds)
         type = next(r for r in reals if r != real) if op == "cast" else of[result]
         code.append(Instruction(op, args, type))
     last = {type: [k for k, i in enumerate(code) if i.type == type][-4:] for type in (*reals, "bool", "i32")}
@@ -79,9 +75,7 @@ def traced(program):
         return builder.block(*builder.inline(block, **here))
 
     given = {"input": program.inputs, "param": program.parameters}
-    return replace(
-        program, init=again(program.init, **given), tick=again(program.tick, **given, state=program.states)
-    ).verify()
+    return replace(program, init=again(program.init, **given), tick=again(program.tick, **given, state=program.states)).verify()
 
 
 def starts_with_numbers(program, row):

@@ -78,17 +78,13 @@ def test_contacts_at_the_same_instant_do_not_depend_on_their_order(law, many):
     """Balls from one height, of masses 1 to 100, meet the handle in one instant, written in several orders."""
     names = ("h1", "h2", "h3")[:many]
     balls = [hl.coordinate(name, unit="m", initial="20 mm") for name in names]
-    masses = hl.parameters(
-        " ".join(f"m{i}" for i in range(many)), units=" ".join(["kg"] * many), values=[0.01, 0.1, 1.0][:many]
-    )
+    masses = hl.parameters(" ".join(f"m{i}" for i in range(many)), units=" ".join(["kg"] * many), values=[0.01, 0.1, 1.0][:many])
     tops = [hl.Contact(ball - x(t), law, name=f"top{i}") for i, ball in enumerate(balls)]
     L = sum(a * ball.diff(t) ** 2 / 2 - a * g * ball for a, ball in zip(masses, balls, strict=True))
     runs = []
     for order in list(permutations(range(many)))[:: 4 - 3 * (many == 2)]:
         eom = hl.lagrange(L, contacts=[tops[i] for i in order])
-        found = watched(
-            hl.Scene(force=0 * K * balls[0], eom=[eom], watch=balls), ticks=150, method=hl.Taylor(events=many)
-        )
+        found = watched(hl.Scene(force=0 * K * balls[0], eom=[eom], watch=balls), ticks=150, method=hl.Taylor(events=many))
         assert not found["unlocated"].any()
         runs.append(np.array([found[name] for name in names]))
     np.testing.assert_allclose(runs[1:], [runs[0]] * (len(runs) - 1), rtol=0, atol=1e-13)

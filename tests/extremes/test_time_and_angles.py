@@ -31,9 +31,7 @@ def from_tick(scene, start, ticks, engine="auto", T=1e-3, **options):
 @pytest.mark.parametrize("start", [10**9, 2**31 - 3, 2**32 - 3, 2**33 - 9])
 def test_a_vibration_goes_on_after_a_billion_ticks_and_past_every_counter(engine, start):
     """A quarter of a turn a tick: the turns of a tick are exact in float32, so what is left is the sine's own rounding."""
-    found = from_tick(
-        hl.Scene(force=F0 * sp.cos(2 * sp.pi * hl.parameters("f", units="Hz", values=250) * t)), start, 6, engine
-    )
+    found = from_tick(hl.Scene(force=F0 * sp.cos(2 * sp.pi * hl.parameters("f", units="Hz", values=250) * t)), start, 6, engine)
     np.testing.assert_allclose(found, np.cos(np.pi / 2 * ((start + np.arange(6)) % 4)), rtol=0, atol=1e-6)
 
 
@@ -49,9 +47,7 @@ def test_time_itself_never_turns_back(T):
 
 
 def test_a_billion_ticks_of_a_tenth_are_what_float64_says():
-    found = from_tick(
-        hl.Scene(force=F0 * t / hl.parameters("s", units="s", values=1.0)), 10**9, 3, T=0.1, dtype="float64"
-    )
+    found = from_tick(hl.Scene(force=F0 * t / hl.parameters("s", units="s", values=1.0)), 10**9, 3, T=0.1, dtype="float64")
     assert found.tolist() == [(10**9 + i) * 0.1 for i in range(3)]
 
 

@@ -35,9 +35,7 @@ def run(force, **options):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize(
-    "relation, on", [(sp.Ge, 1.0), (sp.Gt, 0.0), (sp.Le, 1.0), (sp.Lt, 0.0), (sp.Eq, 1.0), (sp.Ne, 0.0)]
-)
+@pytest.mark.parametrize("relation, on", [(sp.Ge, 1.0), (sp.Gt, 0.0), (sp.Le, 1.0), (sp.Lt, 0.0), (sp.Eq, 1.0), (sp.Ne, 0.0)])
 def test_a_boundary_hit_exactly_and_one_number_beside_it(engine, relation, on):
     edge = np.float32(0.01)
     below, above = np.nextafter(edge, np.float32(0)), np.nextafter(edge, np.float32(1))
@@ -169,9 +167,7 @@ def test_equations_that_leave_an_acceleration_open_are_refused(equations, words)
 
 def test_a_massless_link_is_refused_by_name():
     with pytest.raises(MassError, match="p"):
-        hl.compile(
-            hl.Scene(force=k * q, eom=[hl.lagrange(m * q.diff(t) ** 2 / 2 - k * (q - p) ** 2 / 2)], watch=[p]), T=1e-3
-        )
+        hl.compile(hl.Scene(force=k * q, eom=[hl.lagrange(m * q.diff(t) ** 2 / 2 - k * (q - p) ** 2 / 2)], watch=[p]), T=1e-3)
 
 
 def test_a_mass_that_is_gone_stops_the_motor():

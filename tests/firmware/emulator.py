@@ -39,9 +39,7 @@ def library():
     folder = tempfile.mkdtemp(prefix="simavr")
     target = Path(folder) / "shim.so"
     source = Path(__file__).with_name("simavr_shim.c")
-    subprocess.run(
-        ["cc", "-O2", "-shared", "-fPIC", "-I/usr/include/simavr", "-o", target, source, "-lsimavr"], check=True
-    )
+    subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-I/usr/include/simavr", "-o", target, source, "-lsimavr"], check=True)
     shim = ctypes.CDLL(str(target))
     shutil.rmtree(folder)
     shim.uno_adc.argtypes = (ctypes.c_void_p, ctypes.c_int, ctypes.c_uint16)

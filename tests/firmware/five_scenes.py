@@ -45,9 +45,7 @@ def pendulum(start=0.3):
     q = hl.coordinate("q", unit="rad", initial=start)
     m, l, g, K, r = hl.parameters("m l g K r", units="kg m m/s^2 N*m m")
     torque = K * (x(t) / r - q)
-    scene = hl.Scene(
-        force=torque / r, eom=[sp.Eq(m * l**2 * q.diff(t, 2), torque - m * g * l * sp.sin(q))], name="pendulum"
-    )
+    scene = hl.Scene(force=torque / r, eom=[sp.Eq(m * l**2 * q.diff(t, 2), torque - m * g * l * sp.sin(q))], name="pendulum")
     return scene(m=0.05, l=0.2, g=9.81, K=0.1, r=0.05), {"method": "rk4"}
 
 
@@ -59,9 +57,7 @@ def double_pendulum(start=0.3):
     cos, sin = sp.cos(a - b), sp.sin(a - b)
     first = 2 * a.diff(t, 2) + cos * b.diff(t, 2) + sin * b.diff(t) ** 2 + 2 * g / l * sp.sin(a)
     second = b.diff(t, 2) + cos * a.diff(t, 2) - sin * a.diff(t) ** 2 + g / l * sp.sin(b)
-    scene = hl.Scene(
-        force=torque / r, eom=[sp.Eq(m * l**2 * first, torque), sp.Eq(second, 0)], name="double pendulum"
-    )
+    scene = hl.Scene(force=torque / r, eom=[sp.Eq(m * l**2 * first, torque), sp.Eq(second, 0)], name="double pendulum")
     return scene(m=0.05, l=0.2, g=9.81, K=0.1, r=0.05), {"method": "rk4"}
 
 

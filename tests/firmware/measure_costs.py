@@ -27,9 +27,7 @@ from hapticlab.compiler.engines.bytecode import OPCODES  # noqa: E402
 from hapticlab.compiler.ir.program import OPERATIONS, Block, Channel, Instruction, Program  # noqa: E402
 
 TYPE = {"R": "f32", "B": "bool", "I": "i32"}
-MODELLED = (
-    "modelled, not measured: instructions under unicorn, cycles of the manuals, step and telemetry as on the Uno"
-)
+MODELLED = "modelled, not measured: instructions under unicorn, cycles of the manuals, step and telemetry as on the Uno"
 PROCESSORS = {
     "uno": (Avr, "measured in emulation"),
     "cortex-m0+": (lambda: Cortex("cortex-m0+"), MODELLED),

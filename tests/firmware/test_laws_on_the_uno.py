@@ -22,9 +22,7 @@ def scenes():
         "filter": hl.wall("half_sample", velocity=fast)(**WALL, B=0.3),
         "window": hl.virtual_damper(velocity=hl.window_velocity(band=COUNT, most=4))(B=0.4),
         "kalman": hl.wall("half_sample", velocity=hl.kalman_velocity(acceleration=20, noise=COUNT / 3))(**WALL),
-        "from_start": hl.virtual_damper(velocity=hl.kalman_velocity(acceleration=20, noise=COUNT / 3, steady=False))(
-            B=0.4
-        ),
+        "from_start": hl.virtual_damper(velocity=hl.kalman_velocity(acceleration=20, noise=COUNT / 3, steady=False))(B=0.4),
         "brake": hl.braking_pulse(hl.wall()(**WALL), part=0.5, mass=mass, periods=3, velocity=fast),
         "friction": hl.friction_pulse(hl.wall()(**WALL), friction=0.5, mass=mass, periods=15),
         "compensation": hl.damping_compensation(

@@ -40,9 +40,7 @@ def exercise_report(exercise, answer, hidden):
     told = exercise.kind not in ("value", "choice")
     failing = Failing(dict(case.given), outcome.value, case.expected if told else None, case.unit, public)
     printed = "".join(o.printed for o in outcomes)
-    return replace(
-        blank, words=verdicts[k].words, slip=verdicts[k].slip, hint=exercise.hint, failing=failing, printed=printed
-    )
+    return replace(blank, words=verdicts[k].words, slip=verdicts[k].slip, hint=exercise.hint, failing=failing, printed=printed)
 
 
 def class_of(number, many, seed=1):
@@ -69,17 +67,13 @@ def _report(k, lab, name, found, random):
     blank = Report(student, lab.number, lab.title, name, sha256=f"{k:064x}")
     none = tuple(several[1] for several in found.values())
     if k % 23 == 7:
-        return replace(
-            blank, submission="wall.docx", problem="wall.docx is no notebook, script, folder or zip", exercises=none
-        )
+        return replace(blank, submission="wall.docx", problem="wall.docx is no notebook, script, folder or zip", exercises=none)
     skill = random.uniform(0.35, 1.0)
     exercises = []
     for several in found.values():
         wrong = several[2:] or [several[1]]
         draw = random.random()
-        exercises.append(
-            several[0] if draw < skill else several[1] if draw > 0.9 else wrong[int(random.integers(len(wrong)))]
-        )
+        exercises.append(several[0] if draw < skill else several[1] if draw > 0.9 else wrong[int(random.integers(len(wrong)))])
     if k % 11 == 3:
         exercises[1] = replace(none[1], answered=True, ended="time", words="it ran out of time", printed="step 1\nstep 2\n")
     cells = ((4, "NameError in line 3: name 'k_wall' is not defined"),) if k % 5 == 2 else ()

@@ -32,9 +32,7 @@ class Person:
 
     def _at_hub(self, method, path, **given):
         crumb = next(one.value for one in self._session.cookies if one.name == "_xsrf" and one.path.endswith("/hub/"))
-        answer = self._session.request(
-            method, f"{self._hub}/api/{path}", headers={"X-XSRFToken": crumb}, timeout=LIMIT, **given
-        )
+        answer = self._session.request(method, f"{self._hub}/api/{path}", headers={"X-XSRFToken": crumb}, timeout=LIMIT, **given)
         assert answer.ok, f"{method} {path}: {answer.status_code} {answer.text[:500]}"
         return answer
 

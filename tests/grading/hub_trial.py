@@ -180,6 +180,7 @@ class Trial:
             self.facts[f"{name}_feedback"] = page.read_text("utf-8")
         assert self.left == []
 
+
 def main(scratch):
     began = time.monotonic()
     private_machine(Path(scratch))

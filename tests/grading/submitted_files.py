@@ -48,4 +48,6 @@ def whose(*paths, lab=LAB):
     found = handed(*paths, lab=lab)
     assert not any(problem for _, problem in found.values()), found
     return {student: cells[0] for student, (cells, _) in found.items()}
+
+
 ADA, BOB = notebook("ada"), notebook("bob")

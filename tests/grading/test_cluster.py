@@ -1,6 +1,5 @@
 """A class is graded on a Dask cluster one of whose workers is killed: the same bytes as in one process."""
 
-
 import pytest
 from attacks.small_lab import HONEST, notebook, write_lab
 

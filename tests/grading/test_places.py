@@ -114,7 +114,10 @@ FORGED = "import os\nopen(os.path.join(os.path.dirname(__file__), 'ran'), 'a').w
 @pytest.fixture
 def hostile(course, tmp_path):
     """The folder of a class in which a student's files have the names of modules."""
-    files = {f"{name}.py": FORGED for name in SHADOWS} | {"sitecustomize.py": FORGED, "matplotlibrc": "backend: module://random\n"}
+    files = {f"{name}.py": FORGED for name in SHADOWS} | {
+        "sitecustomize.py": FORGED,
+        "matplotlibrc": "backend: module://random\n",
+    }
     return fill(tmp_path / "class", files | {"ada.ipynb": notebook(HONEST.values())})
 
 

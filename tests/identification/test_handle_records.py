@@ -77,9 +77,7 @@ def weaker(log, scale):
 @pytest.mark.wide
 def test_a_known_mass_tells_the_force_constant(steps):
     heavy = weaker(run(STEPS, replace(PADDLE, m=0.05, seed=1)), 0.8)
-    found = hl.identify(
-        weaker(steps, 0.8), hl.HandleRecord(heavy, added=0.02), force_constant=True, counts_per_metre=COUNTS
-    )
+    found = hl.identify(weaker(steps, 0.8), hl.HandleRecord(heavy, added=0.02), force_constant=True, counts_per_metre=COUNTS)
     check(found, m=0.03, b=0.1, coulomb=0.05, scale=0.8)
 
 

@@ -26,9 +26,7 @@ def test_a_curve_is_what_scipy_finds():
     y = np.stack([2 * np.exp(-TIMES * rate) + 0.02 * draws.standard_normal(60) for rate in (3.0, 5.0)], axis=1)
     found = fit(lambda p: p[0] * np.exp(-p[1] * TIMES[:, None, None]), y, np.full((2, 1, 2), 1.0), np.ones((2, 2)))
     for lane in range(2):
-        expected, covariance = curve_fit(
-            lambda t, a, r: a * np.exp(-r * t), TIMES, y[:, lane], (1, 1), xtol=1e-14, ftol=1e-14
-        )
+        expected, covariance = curve_fit(lambda t, a, r: a * np.exp(-r * t), TIMES, y[:, lane], (1, 1), xtol=1e-14, ftol=1e-14)
         # both stop within a hundredth of a standard error
         np.testing.assert_allclose(found.values[:, lane], expected, atol=0.01 * found.error[:, lane].min())
         np.testing.assert_allclose(found.covariance[lane], covariance, rtol=0.02)

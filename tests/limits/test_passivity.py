@@ -32,9 +32,7 @@ def test_worst_frequencies():
     assert passivity_limit(b=b, T=T).frequency is None  # every frequency alike
     nyquist = 1 / (2 * T)
     assert passivity_limit(b=b, T=T, law="ellis").frequency == pytest.approx(nyquist, rel=1e-7)
-    assert passivity_limit(b=b, T=T, law="backward_difference", delay=T).frequency == pytest.approx(
-        nyquist / 3, rel=1e-6
-    )
+    assert passivity_limit(b=b, T=T, law="backward_difference", delay=T).frequency == pytest.approx(nyquist / 3, rel=1e-6)
     assert passivity_limit(b=b, T=T, law="ellis", delay=T).frequency == pytest.approx(0.53432 * nyquist, rel=1e-4)
 
 

@@ -21,9 +21,7 @@ def test_springs_with_a_memory(law, damper):
     """Eqs. (23.1), (23.5), (23.7) as springs that always act, against the closed form of their worst frequency."""
     taps = {"zoh": [1], "backward_difference": [1.5, -0.5], "ellis": [2, -1.5, 0.5]}[law]
     spring = hl.Scene(force=K * sum(a * x(n - k) for k, a in enumerate(taps)) + B * v(n))
-    assert port_damping(spring(K=300, B=damper)) == pytest.approx(
-        required_damping(K=300, T=T, B=damper, law=law), rel=1e-9
-    )
+    assert port_damping(spring(K=300, B=damper)) == pytest.approx(required_damping(K=300, T=T, B=damper, law=law), rel=1e-9)
 
 
 def coupler(**values):

@@ -220,9 +220,7 @@ def test_what_is_passive_is_stable():
         m = 10 ** rng.uniform(-3, 0)
         b = delta * m / T
         delay = rng.choice([0.0, T, rng.uniform(0, 3) * T, rng.integers(0, 30) * T])
-        grip = rng.choice(
-            [None, hand(m=rng.uniform(0, 2) * m, b=rng.uniform(0, 3) * b, k=rng.uniform(0, 1) * m / T**2)]
-        )
+        grip = rng.choice([None, hand(m=rng.uniform(0, 2) * m, b=rng.uniform(0, 3) * b, k=rng.uniform(0, 1) * m / T**2)])
         law, B = rng.choice(["zoh", "backward_difference", "ellis"]), rng.choice([0.0, rng.uniform(-0.9, 0.9) * b])
         passive = passivity_limit(b=b, T=T, B=B, delay=delay, law=law).K
         stable = stability_limit(paddle(m=m, b=b, T=T, delay=delay, hand=grip), law=law, B=B).K

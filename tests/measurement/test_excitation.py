@@ -40,7 +40,5 @@ def test_the_motor_adds_the_signal_and_a_pull(how, lines, dtype, off):
 def test_the_guard_fits_the_slowest_board_and_a_short_multisine_too_at_half_the_rate():
     wall = hl.wall("ellis")(k=100.0, x_o=0.0)
     assert cost(hl.compile(guarded(wall, energy_max=0.05, speed_max=1.0), T=T), board="uno").fits
-    short = Excitation("multisine", np.array([3, 9, 21]), 500, 2e-3, 0.3, seed=0).beside(
-        hl.wall()(k=100.0, x_o=0.0), 0.2
-    )
+    short = Excitation("multisine", np.array([3, 9, 21]), 500, 2e-3, 0.3, seed=0).beside(hl.wall()(k=100.0, x_o=0.0), 0.2)
     assert cost(hl.compile(short, T=2e-3), board="uno").fits

@@ -145,9 +145,7 @@ def test_the_hand_feels_friction_that_the_motor_does_not_make():
 def test_a_motion_that_has_not_settled_is_told():
     """Without a hand b - K T/2 = 0.05 N s/m is left to 0.05 kg: after 2 s a seventh of the beginning is there still."""
     free = hl.SimulatedPaddle(m=0.05, b=0.1, T=T)
-    early, late = (
-        measured_impedance(free, hl.wall()(k=100.0), frequency=[5.0, 51.0], settle=settle) for settle in (2.0, 20.0)
-    )
+    early, late = (measured_impedance(free, hl.wall()(k=100.0), frequency=[5.0, 51.0], settle=settle) for settle in (2.0, 20.0))
     assert "not settled; settle=" in str(early) and "not settled" not in str(late)
     assert late.mechanics[0] == pytest.approx((0.05 * 2j * np.pi * 5 + 0.1), rel=1e-2)
 

@@ -16,9 +16,7 @@ def paddle(**changes):
 
 def scene(k, **options):
     wall = hl.wall()(k=k, x_o=0.0)
-    return guarded(
-        hl.Scene(wall.force - hl.parameters("p", units="N", values=0.2), values=dict(wall.values)), **options
-    )
+    return guarded(hl.Scene(wall.force - hl.parameters("p", units="N", values=0.2), values=dict(wall.values)), **options)
 
 
 def trial(k, made=None, longest=4.0, **options):

@@ -36,9 +36,7 @@ def test_the_pair_of_an_entry_has_its_closed_form():
 
 
 @pytest.mark.wide
-@pytest.mark.parametrize(
-    ("delay", "x_o"), [(0.0, 0.0), pytest.param(0.01, 0.003, marks=pytest.mark.slow), (0.004, 0.003)]
-)
+@pytest.mark.parametrize(("delay", "x_o"), [(0.0, 0.0), pytest.param(0.01, 0.003, marks=pytest.mark.slow), (0.004, 0.003)])
 def test_the_test_bed_emulates_the_floor_for_two_seconds(delay, x_o):
     """After every pair the handle is where finger, handle and floor would be; so it does not chatter."""
     paddle = hl.SimulatedPaddle(m=0.35, b=0.0, T=0.01, delay=delay, hand=BED.hand)

@@ -20,9 +20,7 @@ def test_a_slower_rate_buys_a_better_wall():
 
 
 def test_where_nothing_fits_the_period_is_named():
-    with pytest.raises(
-        ProgramLimitError, match=r"no model-based wall of 500 N/m fits uno at T = 0.5 ms; .*needs T >= 0\.\d+ ms"
-    ):
+    with pytest.raises(ProgramLimitError, match=r"no model-based wall of 500 N/m fits uno at T = 0.5 ms; .*needs T >= 0\.\d+ ms"):
         hl.wall_for_board(paddle(5e-4), K=500)
 
 

@@ -200,7 +200,7 @@ def test_what_the_board_samples_is_recorded_whole(board):
     assert len(log) > 1400
     assert np.allclose(np.diff(log.t), board.T, atol=1e-12)
     assert not log.gap.any()
-    (since, set_), = log.changes
+    ((since, set_),) = log.changes
     assert set_ == {"k": 300.0}
     law = np.maximum(np.where(log.t < since - 1e-9, 150, 300) * (log.x - 0.002), 0)
     after = slice(10, None)

@@ -55,9 +55,7 @@ class HandleMotion:
         expr = sp.sympify(self.x)
         moving = any(hasattr(type(e), "role") for e in expr.atoms(sp.Function))
         if moving or expr.free_symbols - {t}:
-            raise AnalysisError(
-                f"{self.name}: x = {self.x}; a motion of the handle is an expression of hl.t and numbers"
-            )
+            raise AnalysisError(f"{self.name}: x = {self.x}; a motion of the handle is an expression of hl.t and numbers")
         if not (math.isfinite(self.duration) and self.duration > 0):
             raise AnalysisError(f"{self.name}: duration = {self.duration} s; needs a finite duration > 0 s")
 
@@ -150,9 +148,7 @@ def _onset():
 
 def _sinusoid(name, f, reach, duration, why):
     amplitude = min(reach, SPEED / (2 * math.pi * f))
-    return HandleMotion(
-        name, amplitude * sp.sin(2 * sp.pi * sp.Float(f) * t) * _onset(), duration, f"{f:.3g} Hz, {why}"
-    )
+    return HandleMotion(name, amplitude * sp.sin(2 * sp.pi * sp.Float(f) * t) * _onset(), duration, f"{f:.3g} Hz, {why}")
 
 
 def _hand(low, high, reach, seed):

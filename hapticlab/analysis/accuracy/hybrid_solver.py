@@ -41,9 +41,7 @@ class Field:
         self.guards, self.reactions = len(instant.kinds), len(instant.levels)
         self.sizes = n, m = instant.second, instant.first
         ends = np.cumsum([2, 2 * n + m, self.guards, self.reactions, sum(level == 1 for level in instant.levels)])
-        self.y_at, self.flags_at, self.extra_at, self.sides_at = (
-            slice(*pair) for pair in zip(ends, ends[1:], strict=False)
-        )
+        self.y_at, self.flags_at, self.extra_at, self.sides_at = (slice(*pair) for pair in zip(ends, ends[1:], strict=False))
         self.held_at, self.units = slice(ends[-1], None), np.eye(self.reactions)
         self.gaps = np.array(instant.levels, int) == 2
 
@@ -140,9 +138,7 @@ class Hybrid:
             solver.step()
             self.steps += 1
             if self.steps > MOST_STEPS * (1 + self.times[-1]):
-                raise AnalysisError(
-                    f"at t = {before:.6g} s scipy has taken {self.steps} steps: the motion is too stiff"
-                )
+                raise AnalysisError(f"at t = {before:.6g} s scipy has taken {self.steps} steps: the motion is too stiff")
             if solver.status == "failed":
                 raise AnalysisError(f"at t = {before:.6g} s the step became too small")
             dense = solver.dense_output()

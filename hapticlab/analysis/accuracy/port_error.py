@@ -131,9 +131,7 @@ def compared(F, reference, T, delay=0.0):
         )
     ticks = min(len(F), (len(reference.t) - 1) // per + 1, math.floor(reference.horizon / T * (1 + 1e-12)) + 1)
     if ticks < 2:
-        raise AnalysisError(
-            f"the reference is known up to {reference.horizon:g} s only; T = {T:g} s is too long for it"
-        )
+        raise AnalysisError(f"the reference is known up to {reference.horizon:g} s only; T = {T:g} s is too long for it")
     F, peak = F[:ticks], reference.peak
     wild = np.flatnonzero(~(np.abs(F) <= WILD * peak)) if peak else np.flatnonzero(~np.isfinite(F))
     unstable = T * float(wild[0]) if len(wild) else math.nan

@@ -174,8 +174,7 @@ def scene_of(network, name):
                     pull = parameter(_element(letter, i, j), unit, -matrix[i, j]) * (motion[i] - motion[j])
                     forces[i], forces[j] = forces[i] + pull, forces[j] - pull
     eom = [
-        sp.Eq(parameter(f"m_{i}", "kg", network.mass[i - 1, i - 1]) * places[i].diff(t, 2), -forces[i])
-        for i in range(1, N + 1)
+        sp.Eq(parameter(f"m_{i}", "kg", network.mass[i - 1, i - 1]) * places[i].diff(t, 2), -forces[i]) for i in range(1, N + 1)
     ]
     return Scene(force=forces[0], eom=eom, values=values, name=name)
 

@@ -249,7 +249,5 @@ def _wanted(scene, masses, N):
             raise AnalysisError(f"{scene.name} has {N} mass; there is none to spare")
         return range(1, N)
     if isinstance(masses, bool) or not (isinstance(masses, int) and 0 < masses < N):
-        raise AnalysisError(
-            f"masses = {masses!r}; {scene.name} has {N}, a reduction has at least 1 and fewer than that"
-        )
+        raise AnalysisError(f"masses = {masses!r}; {scene.name} has {N}, a reduction has at least 1 and fewer than that")
     return [masses]

@@ -61,9 +61,7 @@ def picture(name, **state):
                 drawing(axes, **{**bound.values, **moved})
         except FloatingPointError:
             given = ", ".join(f"{key} = {value}" for key, value in state.items())
-            raise AnalysisError(
-                f"{name} cannot be put together with {given}; take other lengths or another place"
-            ) from None
+            raise AnalysisError(f"{name} cannot be put together with {given}; take other lengths or another place") from None
         axes.set_title(scene.name, fontsize="small")
         (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
         figure.set_size_inches(7.2, 7.2 * (top - bottom) / (right - left) + 0.35)

@@ -127,9 +127,7 @@ def _rows(every, view, rows):
     except TypeError:
         count = 0
     if not 1 <= count <= max(1, rows - 1):
-        raise ProgramError(
-            f"every = {every!r}; needs a whole number of rows, from 1 to {max(1, rows - 1)} for this record"
-        )
+        raise ProgramError(f"every = {every!r}; needs a whole number of rows, from 1 to {max(1, rows - 1)} for this record")
     if count > 1:
         for expr in (*view.watch.values(), *(part for e in view.eom for part in getattr(e, "written", None) or e.args)):
             memory = _memory(expr)
@@ -154,9 +152,7 @@ def _run(view, log, every, engine, options):
     """Return the program and its watched channels at every so many rows, one tick past the record's end."""
     program = compile(view, T=log.T * every, **options)
     at = np.arange(0, len(log) - 1 + every, every)
-    over = (
-        np.maximum(at - (len(log) - 1), 0) * log.T
-    )  # the last tick may lie past the end: the handle goes on as it was
+    over = np.maximum(at - (len(log) - 1), 0) * log.T  # the last tick may lie past the end: the handle goes on as it was
     rows = np.minimum(at, len(log) - 1)
     inputs = np.column_stack([log.x[rows] + over * log.v[rows], log.v[rows]])[:, : len(program.inputs)]
     loaded, values, states, done = load(program, engine), list(program.values), None, []

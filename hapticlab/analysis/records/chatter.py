@@ -90,9 +90,7 @@ def _found(log, driven):
     size, quarter_before = 0.0, slice(-2 * quarter, -quarter)
 
     def still(state, scatter=0.0, amplitude=0.0, growth=0.0):
-        return Chatter(
-            state, amplitude, None, contacts, growth, False, False, rest, travel, None, size, math.nan, scatter
-        )
+        return Chatter(state, amplitude, None, contacts, growth, False, False, rest, travel, None, size, math.nan, scatter)
 
     whole = float(np.ptp(x))
     if driven is not None:
@@ -125,9 +123,7 @@ def _found(log, driven):
     growth, error = ratio / (quarter * log.T), uneven / (quarter * log.T)
     clipped = log.saturated is not None and np.any(log.saturated[-half:])
     slower = state == "decaying" and bool(clipped or levels_off(_amplitudes(x[-half:], y, len(crossings))))
-    return Chatter(
-        state, amplitude, frequency, contacts, growth, locked, dither, rest, travel, period, size, error, 0.0, slower
-    )
+    return Chatter(state, amplitude, frequency, contacts, growth, locked, dither, rest, travel, period, size, error, 0.0, slower)
 
 
 def _amplitudes(x, y, cycles):

@@ -17,9 +17,7 @@ def drive_of(log, driven):
     """Return what drives, one number a sample, from a Hand, a function of t [s], a watched channel's name or an array."""
     if isinstance(driven, Hand):
         if not driven.moves:
-            raise AnalysisError(
-                f"driven by a hand with {driven}: it does not move; needs a hand whose intent is a function of t"
-            )
+            raise AnalysisError(f"driven by a hand with {driven}: it does not move; needs a hand whose intent is a function of t")
         return driven.samples(len(log) - 1, log.T, first=round(log.t[0] / log.T))
     if isinstance(driven, str):
         return np.asarray(getattr(log, driven), float)

@@ -53,9 +53,7 @@ class PassivityTrace:
         least = int(np.argmin(self.W))
         held = "held" if self.passive else f"broken by {-1e3 * self.W[least]:.4g} mJ at t = {self.t[least]:.4g} s"
         lines = [f"W >= 0 {held}; {1e3 * self.W[-1]:.4g} mJ taken in the end"]
-        lines.append(
-            f"at most {1e3 * self.drained:.4g} mJ drained, from t = {self.active[0]:.4g} s to {self.active[1]:.4g} s"
-        )
+        lines.append(f"at most {1e3 * self.drained:.4g} mJ drained, from t = {self.active[0]:.4g} s to {self.active[1]:.4g} s")
         if self.error is not None:
             lines.append(f"the observer was wrong by {1e3 * abs(self.error).max():.2g} mJ at most")
         if self.dissipated is not None:

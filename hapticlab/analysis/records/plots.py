@@ -47,9 +47,7 @@ def plot(log, *names):
     missing = [name for name in names if name not in log.columns]
     if missing:
         recorded = ", ".join(log.columns)
-        raise AnalysisError(
-            f"{missing[0]} was not recorded; this log has {recorded}. Watch it: hl.Scene(..., watch=[...])"
-        )
+        raise AnalysisError(f"{missing[0]} was not recorded; this log has {recorded}. Watch it: hl.Scene(..., watch=[...])")
     with house_style():
         figure = new_figure(height=1.2 + 1.7 * len(names))
         rows = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
@@ -85,9 +83,7 @@ def plot_sweep(result, *, limits=None):
         For more than two axes, and for limits where no axis is a stiffness.
     """
     if len(result.axes) not in (1, 2):
-        raise AnalysisError(
-            f"the sweep has {len(result.axes)} axes; a plot shows 1 or 2: sweep fewer, or fix some values"
-        )
+        raise AnalysisError(f"the sweep has {len(result.axes)} axes; a plot shows 1 or 2: sweep fewer, or fix some values")
     with house_style():
         figure = new_figure(height=4.2)
         axes = figure.subplots()
@@ -109,9 +105,7 @@ def _lines(axes, result):
             factor, unit = SHOWN.get(result.units.get(names[short]), (1, result.units.get(names[short], "1")))
             text = f"{names[short]} = {factor * result.axes[names[short]][number]:.4g} {unit}"
         style = STYLES[number % len(STYLES)]
-        axes.plot(
-            x_scale * result.axes[over], scale * line, marker="." if len(line) <= 30 else None, label=text, **style
-        )
+        axes.plot(x_scale * result.axes[over], scale * line, marker="." if len(line) <= 30 else None, label=text, **style)
     axes.set_xlabel(x_label)
     axes.set_ylabel(label)
     scale_axis(axes, "x", x_scale * result.axes[over])

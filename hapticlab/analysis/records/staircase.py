@@ -205,6 +205,4 @@ def _contacts(on):
 
 def _bounce(first, last, depth, v, W):
     inside = slice(first, last + 1)
-    return Bounce(
-        first, last, float(depth[inside].max()), float(W[first] - W[last]), float(abs(v[first])), float(abs(v[last]))
-    )
+    return Bounce(first, last, float(depth[inside].max()), float(W[first] - W[last]), float(abs(v[first])), float(abs(v[last])))

@@ -71,8 +71,11 @@ class Storage:
             lines.insert(1, f"the damper paid at least {1e3 * self.paid.sum():.4g} mJ")
         if self.bound is not None:
             most = "no period leaked more than stiffness D^2/2"
-            lines.append(most if self.within_bound else "a period leaked more than stiffness D^2/2, by "
-                         f"{1e3 * (self.leak - self.bound).max():.4g} mJ")
+            lines.append(
+                most
+                if self.within_bound
+                else f"a period leaked more than stiffness D^2/2, by {1e3 * (self.leak - self.bound).max():.4g} mJ"
+            )
         return "\n".join(lines)
 
     def plot(self):

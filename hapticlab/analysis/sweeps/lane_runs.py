@@ -135,9 +135,7 @@ class Swings:
     not, and one program serves every length of run.
     """
 
-    states = f64(
-        ("x", "m"), ("v", "m/s"), ("heading", "m/s"), ("anchor", "m"), ("turns", "1"), ("largest", "m"), ("least", "m")
-    )
+    states = f64(("x", "m"), ("v", "m/s"), ("heading", "m/s"), ("anchor", "m"), ("turns", "1"), ("largest", "m"), ("least", "m"))
     outputs = f64(("largest", "m"), ("least", "m"), ("turns", "1"), ("heading", "m/s"), ("v", "m/s"))
 
     def __init__(self, T):

@@ -59,9 +59,7 @@ class Sweep:
         return f"Sweep({self.metric} [{self.unit}] over {grid}, {self.duration:g} s each)"
 
 
-def sweep(
-    scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progress=True, workers=1, resume=None, **values
-):
+def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progress=True, workers=1, resume=None, **values):
     """Simulate every combination of the named values and measure each, without storing a trace.
 
     Points that differ in values only are lanes of one program; every T, and every paddle of another structure, is a run
@@ -187,9 +185,7 @@ def _names(scene, values):
                 f"the start: {', '.join(START_AXES)}"
             )
         if name in own and name in {**PADDLE_AXES, **START_AXES}:
-            raise AnalysisError(
-                f"{name} is a parameter of the scene and of the paddle; rename the scene's to sweep one of them"
-            )
+            raise AnalysisError(f"{name} is a parameter of the scene and of the paddle; rename the scene's to sweep one of them")
         array = _in_si(given, known[name], name)
         if array.ndim > 1 or array.size == 0 or not np.isfinite(array).all():
             raise AnalysisError(f"{name} = {given}; an axis needs one or more finite numbers [{known[name]}]")

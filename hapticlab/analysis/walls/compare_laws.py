@@ -209,9 +209,7 @@ def _entry(log, exact, added):
     """Return (generated, rebound, path, pull) of one bounce beside the exact one; ``added`` is a damper put on the paddle."""
     x, v = log.channels.get("x_true", log.x), log.channels.get("v_true", log.v)
     F, part = log.channels.get("F_applied", log.F), log.delay / log.T % 1
-    before = (
-        np.r_[0.0, F[:-1]] if 1e-9 < part < 1 - 1e-9 else F
-    )  # under a fraction of a period the force before acts on
+    before = np.r_[0.0, F[:-1]] if 1e-9 < part < 1 - 1e-9 else F  # under a fraction of a period the force before acts on
     quiet = (F == 0) & (before == 0) if not added else np.ones(len(F), bool)
     out = np.flatnonzero(quiet & (x < 0) & (v < 0) & (np.arange(len(x)) > np.argmax(x >= 0)))
     leave = np.flatnonzero(exact.speeds < 0)

@@ -72,8 +72,7 @@ class LawLimits:
     def __str__(self):
         head = f"walls that stand under a push of {self.push:g} N, an outcome of one start: {self.duration:g} s from the boundary"
         rows = [
-            f"{m.law:<20} {m.why}" if math.isnan(m.K) else f"{m.law:<20} {m.K:>9.4g} N/m   beyond: {m.why}"
-            for m in self.limits
+            f"{m.law:<20} {m.why}" if math.isnan(m.K) else f"{m.law:<20} {m.K:>9.4g} N/m   beyond: {m.why}" for m in self.limits
         ]
         return "\n".join([head, *rows])
 

@@ -88,7 +88,7 @@ class WallMap:
         (K, k), (other, a) = self.axes.items()
         known = "passivity" in self.limits
         shares = ", ".join(f"{name} {100 * self.share(name):.1f} %" for name in REGIONS[0 if known else 1 :])
-        shares += "" if known else "; passive: not known of a scene (law=\"zoh\" and its like draw the theory too)"
+        shares += "" if known else '; passive: not known of a scene (law="zoh" and its like draw the theory too)'
         lines = [
             f"wall map over {K} = {k[0]:g} to {k[-1]:g} N/m and {other} = {a[0]:g} to {a[-1]:g} {self.units[other]}: {shares}",
             f"  {self.about}".replace("\n", "\n  "),

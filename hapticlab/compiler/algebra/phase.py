@@ -75,9 +75,7 @@ def frequency(angle):
     """
     driven, rest = [], []
     for term in sp.Add.make_args(sp.expand_mul(angle)):
-        rates = [
-            rate for rate in (term / t, term / (n * T)) if all(isinstance(s, Parameter) for s in rate.free_symbols)
-        ]
+        rates = [rate for rate in (term / t, term / (n * T)) if all(isinstance(s, Parameter) for s in rate.free_symbols)]
         driven += rates[:1]
         rest += [] if rates else [term]
     return sp.Add(*driven) / (2 * sp.pi), sp.Add(*rest)

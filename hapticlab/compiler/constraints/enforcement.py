@@ -118,8 +118,7 @@ class Unreduced:
     def J(self):
         """Gradients by the coordinates, or by their rates where a constraint holds rates."""
         return [
-            [self.translate(Partial(g, q if is_holonomic(g) else q.diff(t))) for q in self.coordinates]
-            for g in self.constraints
+            [self.translate(Partial(g, q if is_holonomic(g) else q.diff(t))) for q in self.coordinates] for g in self.constraints
         ]
 
     @property

@@ -53,9 +53,7 @@ class Engine:
         program = self.program
         ticks, every = _whole("ticks", ticks), _whole("every", every)
         if ticks < 1 or every < 1:
-            raise ProgramError(
-                f"ticks = {ticks}, every = {every}; a run needs at least one tick, kept every one or more"
-            )
+            raise ProgramError(f"ticks = {ticks}, every = {every}; a run needs at least one tick, kept every one or more")
         parameters = np.atleast_1d(self._real("parameters", program.values if parameters is None else parameters))
         if parameters.ndim == 1:
             parameters = parameters[:, None]

@@ -82,8 +82,7 @@ def open_llvmlite():
         from llvmlite import binding
     except (ImportError, OSError) as missing:  # OSError: installed, but its library does not load here
         raise EngineMissingError(
-            'engine = "llvm" needs llvmlite, which does not import here; '
-            'do: pip install llvmlite, or use engine="interpreter"'
+            'engine = "llvm" needs llvmlite, which does not import here; do: pip install llvmlite, or use engine="interpreter"'
         ) from missing
     if binding.llvm_version_info[0] < 20:  # newer ones do this by themselves
         binding.initialize()

@@ -89,9 +89,7 @@ def motion_of(builder, rates, second, first=0, events=None):
     leaves = [*q, *w, *s, tau, *(r.leaf for r in given), *(r.side for r in given if r.side is not None)]
     values, guards, found = freeze(builder, [*a, *ds, *parts], leaves, [*w, *s], new)
     parts = iter(values[len(a) + len(ds) :])
-    if any(
-        r.level == 2 and {leaf.id for leaf in s} & {*reachable(builder.instructions, [r.measure.id])} for r in given
-    ):
+    if any(r.level == 2 and {leaf.id for leaf in s} & {*reachable(builder.instructions, [r.measure.id])} for r in given):
         raise ProgramError(
             "the gap of a contact holds a coordinate of first order, whose acceleration no equation gives; a gap is made of "
             "coordinates with masses, the handle and time: give that coordinate a mass, or use a penalty law"
@@ -122,10 +120,7 @@ class Flow:
 
     def __init__(self, motion, tau, state, modes, h, number=None):
         self.motion, self.h = motion, h
-        leaves = [
-            [*zip(part, values, strict=True)]
-            for part, values in zip((motion.q, motion.w, motion.s), state, strict=True)
-        ]
+        leaves = [[*zip(part, values, strict=True)] for part, values in zip((motion.q, motion.w, motion.s), state, strict=True)]
         rows = {leaf.id: [value] for group in leaves for leaf, value in group}
         for leaf, w in zip(motion.q, state[1], strict=True):
             rows[leaf.id].append(times(h, w))
@@ -195,17 +190,12 @@ class Flow:
         Positions and rates change by as little as the masses allow: by what the reactions themselves push.
         """
         levels = [r.level for r in self.motion.reactions]
-        rates = [
-            self.of(r.measure, 1)[1] * (1 / self.h) if r.level == 2 else self.at(r.measure)
-            for r in self.motion.reactions
-        ]
+        rates = [self.of(r.measure, 1)[1] * (1 / self.h) if r.level == 2 else self.at(r.measure) for r in self.motion.reactions]
         gaps = [self.at(r.measure) for r in self.motion.reactions]
         p = self._masked(held, rates)
         r = self._masked([h if level == 2 else np.False_ for h, level in zip(held, levels, strict=True)], gaps)
         q, w, s = ([row[0] for row in part] for part in self.state())
-        moved = [
-            plus(value, dot(r, push)) for value, *push in zip(q, *(row[: len(q)] for row in self._pushes), strict=True)
-        ]
+        moved = [plus(value, dot(r, push)) for value, *push in zip(q, *(row[: len(q)] for row in self._pushes), strict=True)]
         moved = self._possible(moved, r, held, gaps)
         rates = [plus(value, dot(p, push)) for value, *push in zip([*w, *s], *self._pushes, strict=True)]
         return (moved, rates[: len(w)], rates[len(w) :]), p

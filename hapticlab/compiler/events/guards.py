@@ -280,7 +280,5 @@ class _Freezing:
         first, second = (self.rewritten(a, frozenset()) for a in key)
         leaf, side = self.new(), self.new("bool")
         one = self.builder.const(1.0)
-        self.reactions.append(
-            Reaction(leaf, first - second, 1, select(side, one, 0.0), leaf * (1.0 - leaf), leaf - 0.5, side)
-        )
+        self.reactions.append(Reaction(leaf, first - second, 1, select(side, one, 0.0), leaf * (1.0 - leaf), leaf - 0.5, side))
         return leaf

@@ -65,9 +65,7 @@ class Stepper:
         Where pieces are held to a length; one more than the events, otherwise.
     """
 
-    def __init__(
-        self, motion, h, order, events, impact=None, number=None, steps=None, remainder=None, longest=None, pieces=None
-    ):
+    def __init__(self, motion, h, order, events, impact=None, number=None, steps=None, remainder=None, longest=None, pieces=None):
         self.motion, self.h, self.order = motion, h, order
         self.pieces = pieces or 1 + (0 if motion.smooth else events)
         self.impact, self.number, self.steps, self.remainder = impact, number, steps, remainder
@@ -136,8 +134,7 @@ class Stepper:
         ]
         let_go = any_of(was & ~is_ for was, is_ in zip(now.held, held, strict=True))
         state = tuple(
-            [select(let_go, old, new) for old, new in zip(*parts, strict=True)]
-            for parts in zip(now.state, state, strict=True)
+            [select(let_go, old, new) for old, new in zip(*parts, strict=True)] for parts in zip(now.state, state, strict=True)
         )
         return replace(now, state=state, held=held)
 
@@ -276,8 +273,7 @@ class Stepper:
         """Let the contacts that closed act on the rates; modes that look at rates are looked up again."""
         motion, base = self.motion, len(self.motion.guards)
         closed = [
-            f & ~was if r.level == 2 else np.False_
-            for r, f, was in zip(motion.reactions, fired[base:], before.held, strict=True)
+            f & ~was if r.level == 2 else np.False_ for r, f, was in zip(motion.reactions, fired[base:], before.held, strict=True)
         ]
         struck = any_of(closed)
         w, held = self.impact(self._fresh(now).at, closed, now.held)
@@ -285,8 +281,7 @@ class Stepper:
         state = now.state[0], w, now.state[2]
         flags, sides = self._truths(now.tau, state)
         flags = [
-            self._chosen(g, struck & ~f, new, old)
-            for g, f, new, old in zip(motion.guards, fired, flags, now.flags, strict=False)
+            self._chosen(g, struck & ~f, new, old) for g, f, new, old in zip(motion.guards, fired, flags, now.flags, strict=False)
         ]
         after, speed = self._fresh(replace(now, state=state)), size(w)
         for i, r in enumerate(motion.reactions):

@@ -54,10 +54,7 @@ def _value(i, known, given):
 def _varied(motion, modes, at, number):
     """Return the series of values and their gradients by (q, w, s), as coefficients 0 and 1."""
     leaves, values = [*motion.q, *motion.w, *motion.s], [*at[0], *at[1], *at[2]]
-    rows = {
-        leaf.id: [np.float64(value), unit]
-        for leaf, value, unit in zip(leaves, values, np.eye(len(leaves)), strict=True)
-    }
+    rows = {leaf.id: [np.float64(value), unit] for leaf, value, unit in zip(leaves, values, np.eye(len(leaves)), strict=True)}
     # float zeros of numpy: what divides by them is inf, as on every engine
     rows[motion.tau.id] = [ZERO, ZERO]
     rows |= {leaf.id: [value, ZERO] for leaf, value in modes.items()}

@@ -183,9 +183,7 @@ class Maps:
         fast, room = self.over(state)
         slow, now, missed = stepper.step(self.motion.builder.const(0.0), state, held, jumped=True)
         sure = (0.0 < room) & ~any_of(held)
-        state = tuple(
-            [select(sure, *pair) for pair in zip(*parts, strict=True)] for parts in zip(fast, slow, strict=True)
-        )
+        state = tuple([select(sure, *pair) for pair in zip(*parts, strict=True)] for parts in zip(fast, slow, strict=True))
         held = [one_of(sure, np.False_, later) for later in now]
         if stepper.impact:
             stepper.impact.sums.update({of: select(sure, 0.0, amount) for of, amount in stepper.impact.sums.items()})

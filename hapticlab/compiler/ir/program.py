@@ -167,9 +167,7 @@ class Program:
     def __str__(self):
         from_leaf = {"param": self.parameters, "input": self.inputs, "state": self.states}
         made = ", ".join(f"{k} = {v}" for k, v in self.facts.items())
-        lines = [
-            f"program {self.name}: T = {self.T:g} s, {len(self)} instructions a tick" + (f", {made}" if made else "")
-        ]
+        lines = [f"program {self.name}: T = {self.T:g} s, {len(self)} instructions a tick" + (f", {made}" if made else "")]
         for title, channels in (("inputs", self.inputs), ("states", self.states), ("outputs", self.outputs)):
             lines.append(f"  {title:<10} " + (", ".join(f"{c.name} [{c.unit}] {c.type}" for c in channels) or "none"))
         values = dict(zip(self.parameters, self.values, strict=True))
@@ -247,11 +245,7 @@ def _problem_of_constant(value, type):
             rounded = (np.float32 if type == "f32" else np.float64)(value).item()
     except OverflowError:
         rounded = math.inf if value > 0 else -math.inf
-    return (
-        None
-        if rounded == value or value != value
-        else f"{repr(value)[:40]} is not a {type}; its nearest is {rounded!r}"
-    )
+    return None if rounded == value or value != value else f"{repr(value)[:40]} is not a {type}; its nearest is {rounded!r}"
 
 
 def _list_block(block, leaves, program):

@@ -165,10 +165,7 @@ class Exact:
             for k, value in enumerate(powers):
                 add(value, Psi[k] @ space.rest[:, row])
         values, table = [value for value, _ in effects.values()], [effect for _, effect in effects.values()]
-        return [
-            value + _sum(row, values)
-            for value, row in zip(self.now, np.reshape(table, (-1, len(self.now))).T, strict=True)
-        ]
+        return [value + _sum(row, values) for value, row in zip(self.now, np.reshape(table, (-1, len(self.now))).T, strict=True)]
 
 
 def _sum(row, values):

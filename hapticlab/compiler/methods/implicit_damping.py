@@ -45,9 +45,9 @@ def stiffened(M, f, coordinates, orders, translate, h, values):
         return 1.0 if alike else sqrt(M[i][i] / M[j][j])
 
     D = dissipative(slopes, scale)
-    return [
-        [minus(m, scaled(h, d)) for m, d in zip(*rows, strict=True)] for rows in zip(M, D, strict=True)
-    ], list(map(translate, f))
+    return [[minus(m, scaled(h, d)) for m, d in zip(*rows, strict=True)] for rows in zip(M, D, strict=True)], list(
+        map(translate, f)
+    )
 
 
 def dissipative(slopes, scale):

@@ -12,7 +12,6 @@ from .force_timing import IMPULSE
 KINKS = (sp.Piecewise, sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside, sp.floor, sp.ceiling)
 
 
-
 def check_suited(method, form, graph, exact=False):
     """Refuse a method that would lose its order, or its stability, on these equations, naming the term.
 

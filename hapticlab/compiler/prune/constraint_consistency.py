@@ -76,9 +76,7 @@ def check_start(assembly, constraints, positions, coordinates, start):
     if moved.any():
         off, _ = assembly.look(assembly.start[:, None])
         residuals = ", ".join(f"{value:.3g}" for value in off[:, 0])
-        wanted = ", ".join(
-            in_unit(p, value) for p, value, far in zip(coordinates, q, moved, strict=True) if far
-        )
+        wanted = ", ".join(in_unit(p, value) for p, value, far in zip(coordinates, q, moved, strict=True) if far)
         raise SceneError(
             f"the start {values(coordinates, start)} is off the constraints {shown(positions)}: the left sides are "
             f"{residuals}. The closest start on them is {wanted}"
@@ -97,9 +95,7 @@ def check_rates(assembly, constraints, coordinates, start, drivers=()):
     given = rates != 0 if drivers else np.full(len(rates), True)
     far = given & (np.abs(change) > AGREEING * np.maximum(assembly.scale, np.abs(rates)))
     if far.any():
-        wanted = ", ".join(
-            in_unit(p, rate, "/s") for p, rate, off in zip(coordinates, rates + change, far, strict=True) if off
-        )
+        wanted = ", ".join(in_unit(p, rate, "/s") for p, rate, off in zip(coordinates, rates + change, far, strict=True) if off)
         raise SceneError(
             f"the rates at the start break the constraints {shown(constraints)}: they change at "
             f"{', '.join(f'{s:.3g}' for s in slip)} a second. The closest rates that keep them are {wanted}"

@@ -199,9 +199,7 @@ def folded(scene, live):
         return {name: scene.values[name] for name in held(scene) if name in scene.values}
     strangers = set(live) - set(scene.parameters)
     if strangers:
-        raise ParameterError(
-            f"live: {', '.join(sorted(strangers))} is not a parameter; {', '.join(scene.parameters)} are"
-        )
+        raise ParameterError(f"live: {', '.join(sorted(strangers))} is not a parameter; {', '.join(scene.parameters)} are")
     check_live(scene, live)
     fixed = set(scene.parameters) - set(live)
     unbound = sorted(fixed - set(scene.values))

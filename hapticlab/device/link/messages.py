@@ -110,8 +110,11 @@ RESULTS = {
     "FAULT": (43, "a fault stands: read it, remove its cause, then paddle.clear()"),
     "NOT_CALIBRATED": (44, "the board has no calibration: run `hapticlab calibrate`"),
     "CHANNELS": (45, "more watched outputs, or inputs other than x, than the board passes on: watch fewer"),
-    "ALIAS": (47, "at this period the sensor's magnet could make half a turn unseen below the speed limit: a shorter T, "
-              "a lower speed_max (calibrate), or a quadrature encoder"),
+    "ALIAS": (
+        47,
+        "at this period the sensor's magnet could make half a turn unseen below the speed limit: a shorter T, "
+        "a lower speed_max (calibrate), or a quadrature encoder",
+    ),
     "HOT": (46, "the motor is hot from earlier forces: let it cool for some minutes"),
 }
 

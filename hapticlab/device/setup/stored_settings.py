@@ -48,4 +48,3 @@ def lead_home(paddle, person):
     if state_flag(paddle.exchange, "TRAVEL_MISMATCH"):
         raise PaddleError("the handle moved further than between the calibrated stops: calibrate the stops again")
     raise PaddleError("the handle did not reach both calibrated stops: free its way, or calibrate the stops again")
-

@@ -95,9 +95,7 @@ def _cells(cell, found):
     name, points = judged[0].name, sum(one.points for one in judged)
     before = [f"# BEGIN QUESTION\nname: {name}\npoints: {points:g}", "# BEGIN SOLUTION"]
     after = ["# END SOLUTION", "# BEGIN TESTS"]
-    tests = [
-        {**cell, "id": f"{one.name}-test", "source": TEST.format(lab=found.lab.number, name=one.name)} for one in judged
-    ]
+    tests = [{**cell, "id": f"{one.name}-test", "source": TEST.format(lab=found.lab.number, name=one.name)} for one in judged]
     ends = ["# END TESTS", "# END QUESTION"]
     return [
         *(_raw(f"{name}-{number}", text) for number, text in enumerate(before)),

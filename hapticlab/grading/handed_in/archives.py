@@ -192,9 +192,7 @@ def _bounded(file, most):
 def _zip(file):
     size = _contents_size(file)
     if size > MOST_CONTENTS:
-        raise CourseError(
-            f"its table of contents has {size} bytes, more than any class needs; hand in the notebook alone"
-        )
+        raise CourseError(f"its table of contents has {size} bytes, more than any class needs; hand in the notebook alone")
     file.seek(0)
     return zipfile.ZipFile(file)
 

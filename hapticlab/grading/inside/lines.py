@@ -8,9 +8,7 @@ PARTS = re.compile(
     re.DOTALL,
 )
 #: no statement of Python begins like these
-MAGIC = re.compile(
-    r"[ \t]*(?:[%!?]|(?:pip|conda)[ \t]+[a-z])(?:\\\n|[^\n])*\n?|[ \t]*[\w.*\[\]'\"]+\?\??[ \t]*(?:\n|\Z)"
-)
+MAGIC = re.compile(r"[ \t]*(?:[%!?]|(?:pip|conda)[ \t]+[a-z])(?:\\\n|[^\n])*\n?|[ \t]*[\w.*\[\]'\"]+\?\??[ \t]*(?:\n|\Z)")
 ASSIGNED_MAGIC = re.compile(r"[\w., \t]+=[ \t]*[%!](?:\\\n|[^\n])*\n?")
 #: never the continuation of a bracket: whoever left one open above loses no more than that statement
 NEW = re.compile(r"(?:async[ \t]+def|def|class|import|while|with|try|return)\b|@\w+[^\n]*\n(?:async|def|class|@)")

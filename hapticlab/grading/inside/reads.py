@@ -121,12 +121,7 @@ class _Unchecked(ast.NodeTransformer):
 
 def _is_check(node):
     name = node.func if isinstance(node, ast.Call) else None
-    return (
-        isinstance(name, ast.Attribute)
-        and name.attr == "check"
-        and isinstance(name.value, ast.Name)
-        and name.value.id == "hl"
-    )
+    return isinstance(name, ast.Attribute) and name.attr == "check" and isinstance(name.value, ast.Name) and name.value.id == "hl"
 
 
 def _read_code(code, found, later):
@@ -142,9 +137,7 @@ def _read_code(code, found, later):
                 found.later.add(step.argval)
                 found.sets.add(step.argval)
     for inner in filter(lambda constant: hasattr(constant, "co_code"), code.co_consts):
-        at_once = (
-            inner.co_name in ("<listcomp>", "<setcomp>", "<dictcomp>") or not inner.co_flags & 2
-        )  # CO_NEWLOCALS: no class
+        at_once = inner.co_name in ("<listcomp>", "<setcomp>", "<dictcomp>") or not inner.co_flags & 2  # CO_NEWLOCALS: no class
         _read_code(inner, found, later or not at_once)
 
 
@@ -175,11 +168,7 @@ def _rebound(node):
         return {node.name}
     if not isinstance(node, ast.Assign):
         return set()
-    parts = [
-        part
-        for target in node.targets
-        for part in (target.elts if isinstance(target, ast.Tuple | ast.List) else [target])
-    ]
+    parts = [part for target in node.targets for part in (target.elts if isinstance(target, ast.Tuple | ast.List) else [target])]
     return {part.id for part in parts if isinstance(part, ast.Name)}
 
 
@@ -188,9 +177,7 @@ def _is_harmless(node):
         defaults = [*node.args.defaults, *filter(None, node.args.kw_defaults)]
         arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs, node.args.vararg, node.args.kwarg]
         noted = [one for one in arguments if one is not None and one.annotation is not None]
-        return not (node.decorator_list or noted or node.returns) and all(
-            isinstance(one, ast.Constant) for one in defaults
-        )
+        return not (node.decorator_list or noted or node.returns) and all(isinstance(one, ast.Constant) for one in defaults)
     return isinstance(node, ast.Assign | ast.Expr) and isinstance(node.value, ast.Constant) and not _stores_inside(node)
 
 
@@ -200,8 +187,6 @@ def _stores_inside(node):
 
 def _only_shows(node, parts):
     """Whether an expression only prints what is there, and does nothing else for it."""
-    acts = [
-        part for part in parts if isinstance(part, ast.Call | ast.Await | ast.NamedExpr | ast.Yield | ast.Subscript)
-    ]
+    acts = [part for part in parts if isinstance(part, ast.Call | ast.Await | ast.NamedExpr | ast.Yield | ast.Subscript)]
     shows = isinstance(node.value, ast.Call) and isinstance(node.value.func, ast.Name) and node.value.func.id in SHOWING
     return not acts or (shows and acts == [node.value])

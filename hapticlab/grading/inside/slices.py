@@ -66,9 +66,7 @@ def needed(cells, names):
     found = [replace(one, now=one.now | _states(one, imports)) for one in found]
     last = _number(statements, found)
     for one in statements:
-        one.always |= any(
-            name in imports for name, _ in one.alters
-        )  # who sets a part of a module sets it for everybody
+        one.always |= any(name in imports for name, _ in one.alters)  # who sets a part of a module sets it for everybody
     belongs = _closure(statements, {(name, last.get(name, 0)) for name in names}, _changing(statements, imports))
     return [(one.cell, one.first, one.last) for place, one in enumerate(statements) if place in belongs]
 

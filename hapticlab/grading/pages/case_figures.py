@@ -40,11 +40,7 @@ def figures(one, unit):
     unit : callable
         Name, and a unit where nothing says one, to unit.
     """
-    found = [
-        panel
-        for panel in panels(one.name, one.failing.value, one.failing.expected)
-        if len(panel.expected) >= LEAST_DRAWN
-    ]
+    found = [panel for panel in panels(one.name, one.failing.value, one.failing.expected) if len(panel.expected) >= LEAST_DRAWN]
     return [_figure(one, panel, unit) for panel in found[:MOST_FIGURES]]
 
 

@@ -62,10 +62,7 @@ def _marks(graded):
     whole = max(report.points for _, report in graded) or 1.0
     bands = [int(max(0.0, min(10.0, 10 * report.earned / whole + 1e-9))) for _, report in graded]
     exact = all(10 * report.earned / whole % 1 == 0 for _, report in graded)
-    names = [
-        f"{k * whole / 10:g}" if exact or k == 10 else f"{k * whole / 10:g} to {(k + 1) * whole / 10:g}"
-        for k in range(11)
-    ]
+    names = [f"{k * whole / 10:g}" if exact or k == 10 else f"{k * whole / 10:g} to {(k + 1) * whole / 10:g}" for k in range(11)]
     counts = {name: bands.count(k) for k, name in enumerate(names)}
     told = ", ".join(f"{count} with {name}" for name, count in counts.items() if count)
     rows = [(name, count, f"{100 * count / len(graded):.0f} %") for name, count in counts.items()]
@@ -88,9 +85,7 @@ def _exercises(graded):
     told = f"{'Hardest' if part[hardest[0]] < 1 else 'Everybody is right in'}: "
     told += ", ".join(f"<strong><code>{clean(name, 60)}</code></strong>" for name in hardest)
     told += f", right in {rows[hardest[0]]['right']} of {sum(rows[hardest[0]].values())} submissions."
-    alt = "; ".join(
-        f"{name}: {', '.join(f'{n} {WORDS[word]}' for word, n in counts.items())}" for name, counts in rows.items()
-    )
+    alt = "; ".join(f"{name}: {', '.join(f'{n} {WORDS[word]}' for word, n in counts.items())}" for name, counts in rows.items())
     lines = [
         (f"<code>{clean(name, 60)}</code>", *(_share(count, sum(counts.values())) for count in counts.values()))
         for name, counts in rows.items()
@@ -126,9 +121,7 @@ def _mistakes(graded):
                 unknown[one.name] += 1
     ranked = sorted(found.items(), key=lambda item: (-len(item[1]), order.index(item[0][0]), item[0][1]))
     rows = [(len(who), f"<code>{clean(name, 60)}</code>", clean(slip), _named(who)) for (name, slip), who in ranked]
-    told = (
-        table(("how often", "exercise", "what it says", "who"), rows) if rows else "<p>No known mistake was found.</p>"
-    )
+    told = table(("how often", "exercise", "what it says", "who"), rows) if rows else "<p>No known mistake was found.</p>"
     if unknown:
         listed = ", ".join(f"{unknown[name]} in <code>{clean(name, 60)}</code>" for name in order if unknown[name])
         told += f"<p>Wrong in a way that no sentence knows: {listed}.</p>"

@@ -46,9 +46,7 @@ def chart(lines, labels, alt):
         return begin + (many - low) / (high - low) * (end - begin)
 
     grid = [_up_tick(place(tick, 1), text, left) for tick, text in marks]
-    grid += [
-        _across_tick(place(tick, 0), text) for tick, text in _ticks(*across, most=8, whole=labels[0] in (SAMPLE, POINT))
-    ]
+    grid += [_across_tick(place(tick, 0), text) for tick, text in _ticks(*across, most=8, whole=labels[0] in (SAMPLE, POINT))]
     grid.append(
         f'<text x="{(left + WIDTH) / 2:.0f}" y="{HEIGHT - 8}" text-anchor="middle">{clean(labels[0], 60)}</text>'
         f'<text x="14" y="{(ABOVE + HEIGHT - BELOW) / 2:.0f}" text-anchor="middle" '
@@ -64,9 +62,7 @@ def chart(lines, labels, alt):
 
 def picture(width, height, inside, alt):
     """Return an SVG element with the words that stand for it."""
-    return (
-        f'<svg role="img" aria-label="{clean(alt, 1000)}" viewBox="0 0 {width} {height}" width="{width}">{inside}</svg>'
-    )
+    return f'<svg role="img" aria-label="{clean(alt, 1000)}" viewBox="0 0 {width} {height}" width="{width}">{inside}</svg>'
 
 
 def bounded(many):
@@ -202,8 +198,6 @@ def shares(rows, alt):
         for part, count in counts.items():
             if count:
                 wide = count / whole * (WIDTH - left - 8)
-                inside.append(
-                    f'<rect x="{x:.1f}" y="{y}" width="{wide:.1f}" height="22" fill="{FILLS[part]}" stroke="{GREY}"/>'
-                )
+                inside.append(f'<rect x="{x:.1f}" y="{y}" width="{wide:.1f}" height="22" fill="{FILLS[part]}" stroke="{GREY}"/>')
                 x += wide
     return picture(WIDTH, 34 + row * len(rows), "".join(inside), alt)

@@ -87,9 +87,7 @@ def wall(law="zoh", unilateral="gate", clamp=False, velocity=None):
 
 def _checked(velocity):
     if not (velocity is None or isinstance(velocity, VelocityEstimate)):
-        raise SceneError(
-            f"velocity = {velocity!r}; needs an estimate, as in velocity=hl.filtered_velocity(tau='4 ms'), or None"
-        )
+        raise SceneError(f"velocity = {velocity!r}; needs an estimate, as in velocity=hl.filtered_velocity(tau='4 ms'), or None")
     return velocity
 
 

@@ -62,9 +62,7 @@ def damping_compensation(scene=None, *, b, coulomb=0, speed=None, shape="smooth"
     friction = _at_least(coulomb, "N", "coulomb", 0)
     if friction != 0:
         if speed is None:
-            raise SceneError(
-                "coulomb without speed: the sign of a measured velocity needs a width, such as speed='5 mm/s'"
-            )
+            raise SceneError("coulomb without speed: the sign of a measured velocity needs a width, such as speed='5 mm/s'")
         force -= dry * friction * _sign(moving, _at_least(speed, "m/s", "speed", 0, above=True), shape)
     eom = () if velocity is None else velocity.eom
     if scene is None:

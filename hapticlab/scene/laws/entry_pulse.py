@@ -19,9 +19,7 @@ from .estimators import VelocityEstimate
 LONGEST_PULSE = 1000
 
 
-def braking_pulse(
-    scene, *, impulse=None, part=None, mass=None, periods=1, force_max=None, velocity=None, x_o=None, name="brake"
-):
+def braking_pulse(scene, *, impulse=None, part=None, mass=None, periods=1, force_max=None, velocity=None, x_o=None, name="brake"):
     """Add a braking pulse on entry: so much impulse, or so much of the momentum that the handle comes in with.
 
     The pulse begins at the first sample inside and lasts ``periods`` T. It ends sooner where the handle has stopped or

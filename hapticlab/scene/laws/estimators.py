@@ -80,9 +80,7 @@ class VelocityEstimate:
         over, under = ([number_of(sp.sympify(c)).subs(T, period) for c in part] for part in self._transfer)
         free = sorted({str(s) for c in (*over, *under) for s in c.free_symbols})
         if free:
-            raise SceneError(
-                f"{self.name}: {', '.join(free)} has no number; make the estimate with one, as in tau='4 ms'"
-            )
+            raise SceneError(f"{self.name}: {', '.join(free)} has no number; make the estimate with one, as in tau='4 ms'")
         return [float(c) for c in over], [float(c) for c in under]
 
     def __str__(self):

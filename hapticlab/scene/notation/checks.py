@@ -56,9 +56,7 @@ def equations(eom):
                 f"eom holds {equation.name}, which is no equation; it goes to those of its bodies: hl.lagrange(L, contacts=[...])"
             )
         if not isinstance(equation, sp.Eq):
-            raise SceneError(
-                f"eom holds {equation!r}; needs equations, sp.Eq(left side, right side), or hl.lagrange(...)"
-            )
+            raise SceneError(f"eom holds {equation!r}; needs equations, sp.Eq(left side, right side), or hl.lagrange(...)")
         left = equation.lhs
         for side in equation.args:
             expression(side, "a side of an equation")

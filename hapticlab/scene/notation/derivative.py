@@ -114,4 +114,3 @@ def rates_of(expr):
     if t in expr.free_symbols:
         moving[t] = sp.S.One
     return moving
-

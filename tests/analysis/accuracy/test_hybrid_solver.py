@@ -72,9 +72,7 @@ def test_stick_and_slip_have_the_period_of_the_closed_form():
     z = hl.coordinate("z", unit="m")
     p = hl.parameters("m K F_s F_c", units="kg N/m N N", values=(m, K, F_s, F_c))
     F = p[1] * (x(t) - z)
-    drawn = hl.lagrange(
-        p[0] * z.diff(t) ** 2 / 2, forces={z: F}, contacts=[hl.friction(slip=z.diff(t), F_c=p[3], F_s=p[2])]
-    )
+    drawn = hl.lagrange(p[0] * z.diff(t) ** 2 / 2, forces={z: F}, contacts=[hl.friction(slip=z.diff(t), F_c=p[3], F_s=p[2])])
     scene, motion = hl.Scene(force=F, eom=[drawn]), HandleMotion("draw", sp.Float(u) * t, 3.0)
     times = np.linspace(0, 3.0, 30001)
     found = second(scene, motion, times)

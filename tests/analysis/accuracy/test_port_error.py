@@ -77,9 +77,7 @@ def test_an_error_below_the_doubt_of_the_reference_is_uncertified():
 
 def test_zero_order_hold_costs_rk4_ten_percent_of_the_force_and_half_a_period_of_lag():
     scene, T = coupled(), 1e-3
-    truth = reference(
-        scene, HandleMotion("sine", 0.01 * sp.sin(2 * sp.pi * 3.17 * t) * (1 - sp.exp(-((t / 0.05) ** 2))), 0.8)
-    )
+    truth = reference(scene, HandleMotion("sine", 0.01 * sp.sin(2 * sp.pi * 3.17 * t) * (1 - sp.exp(-((t / 0.05) ** 2))), 0.8))
     held, parabola = (force_error(hl.compile(scene, T=T, dtype="float64", hold=hold), truth) for hold in ("zoh", "soh"))
     assert 0.05 < held.relative < 0.15 and parabola.relative < 0.02
     finer = force_error(hl.compile(scene, T=T / 2, dtype="float64", hold="zoh"), truth)
@@ -92,9 +90,7 @@ def test_the_sensor_floor_of_a_spring_is_a_count(rounding, most):
     count = 1 / 2e4
     assert 0.97 * most * K * count < floor.max <= most * K * count * (1 + 1e-9)
     # an error spread evenly over a count: its mean square is 1/3 or 1/12 of a count squared
-    assert floor.rms == pytest.approx(
-        K * count * (np.sqrt(1 / 3) if rounding == "floor" else np.sqrt(1 / 12)), rel=0.05
-    )
+    assert floor.rms == pytest.approx(K * count * (np.sqrt(1 / 3) if rounding == "floor" else np.sqrt(1 / 12)), rel=0.05)
 
 
 def test_the_sensor_floor_of_a_damper_is_a_count_a_period():

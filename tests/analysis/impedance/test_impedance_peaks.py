@@ -43,9 +43,7 @@ def dense(offer, paddle, low, high):
     return float((np.abs(reduced - Z) / np.abs(Z + beside)).max())
 
 
-@pytest.mark.parametrize(
-    ("paddle", "damping", "true"), [(BARE, 0.01, 0.225), (HELD, 0.002, 1.126), (BARE, 0.001, 2.251)]
-)
+@pytest.mark.parametrize(("paddle", "damping", "true"), [(BARE, 0.01, 0.225), (HELD, 0.002, 1.126), (BARE, 0.001, 2.251)])
 @pytest.mark.always("paddle1-*")
 def test_the_peak_of_a_damped_resonance_is_seen(paddle, damping, true):
     """At 17.48 Hz, 0.005 to 0.0005 Hz wide; two masses put it 0.001 Hz beside, which half a percent beside does not show."""

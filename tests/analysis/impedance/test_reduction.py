@@ -127,9 +127,7 @@ def test_starts_are_carried_over():
     rigid = reduction(chain(4, start=x(n)), BARE, band=(0.1, 10), masses=2).scene
     log = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(rigid, duration=0.02, x=0.01, progress=False)
     assert abs(log.F).max() < 1e-5
-    moved = reduction(
-        chain(4, start=hl.parameters("z_0", units="m", values=0.002)), BARE, band=(0.1, 10), masses=1
-    ).scene
+    moved = reduction(chain(4, start=hl.parameters("z_0", units="m", values=0.002)), BARE, band=(0.1, 10), masses=1).scene
     assert moved.values["r_1_0"] == pytest.approx(0.002)
 
 
@@ -201,9 +199,7 @@ def test_scenes_that_are_no_network_of_masses():
     with pytest.raises(AnalysisError, match=r"bent: k.*size\*sin.* is not linear"):
         reduction(hl.Scene(force=k * (x(t) - turn), eom=bent, name="bent"), HELD)
     with pytest.raises(AnalysisError, match=r"bent: .*Piecewise.* in the force is not linear"):
-        reduction(
-            hl.Scene(force=hl.when(x(t) > z, pull), eom=[sp.Eq(m * z.diff(t, 2), pull), second], name="bent"), HELD
-        )
+        reduction(hl.Scene(force=hl.when(x(t) > z, pull), eom=[sp.Eq(m * z.diff(t, 2), pull), second], name="bent"), HELD)
     weight, drive = hl.parameters("weight", units="N", values=0.2), hl.parameters("f", units="Hz", values=3)
     for more, said in (
         (weight, "the equation of z holds 0.2 at rest; measure"),

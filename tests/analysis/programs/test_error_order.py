@@ -100,11 +100,7 @@ def is_taken(force, method, hold, force_at):
 
 @pytest.mark.parametrize(
     ("force", "method", "hold", "force_at"),
-    [
-        pytest.param(*one, marks=() if one in FEW else pytest.mark.slow)
-        for one in COMBINATIONS
-        if is_taken(*one)
-    ],
+    [pytest.param(*one, marks=() if one in FEW else pytest.mark.slow) for one in COMBINATIONS if is_taken(*one)],
 )
 @pytest.mark.always("damped-*", "coupler-exact-*", "spring-taylor-*")
 def test_the_order_measured_is_the_order_claimed(force, method, hold, force_at):
@@ -222,9 +218,7 @@ K_STOP = 400.0
 k_stop = hl.parameters("k_stop", units="N/m", values=K_STOP)
 #: the body of "damped", on its way by the handle into a stop
 PUSH = K * (x(t) - z)
-STOPPED = hl.Scene(
-    force=PUSH, eom=[sp.Eq(m * z.diff(t, 2), PUSH - c * z.diff(t) - k_stop * sp.Max(0, z - z_w))], name="stopped"
-)
+STOPPED = hl.Scene(force=PUSH, eom=[sp.Eq(m * z.diff(t, 2), PUSH - c * z.diff(t) - k_stop * sp.Max(0, z - z_w))], name="stopped")
 
 
 @lru_cache

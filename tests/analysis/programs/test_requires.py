@@ -254,12 +254,7 @@ def test_a_decision_on_a_coordinate_is_watched_over():
 
 def test_energies_of_several_bodies():
     """One Lagrangian of a mass that is felt and a pendulum that is not: the graph tells them apart, blocks of M included."""
-    L = (
-        m * z.diff(t) ** 2 / 2
-        + m * length**2 * th.diff(t) ** 2 / 2
-        + m * g * length * sp.cos(th)
-        - k * (x(t) - z) ** 2 / 2
-    )
+    L = m * z.diff(t) ** 2 / 2 + m * length**2 * th.diff(t) ** 2 / 2 + m * g * length * sp.cos(th) - k * (x(t) - z) ** 2 / 2
     scene = hl.Scene(force=k * (x(t) - z), eom=[hl.lagrange(L, dissipation=b * (v(t) - z.diff(t)) ** 2 / 2)])
     report = requires(scene, live="g l")
     assert found(report, "th").why == "no path to F or a watched channel" and found(report, "th").saves > 30
@@ -268,9 +263,7 @@ def test_energies_of_several_bodies():
     assert "th" in exact.notes[0]
     plain = hl.Scene(force=k * (x(t) - z), eom=[MASS])
     outputs = [
-        load(hl.compile(s, T=T, method="exact", live=(), dtype="float64"))
-        .run(50, np.linspace(0, 0.01, 50)[:, None])
-        .outputs
+        load(hl.compile(s, T=T, method="exact", live=(), dtype="float64")).run(50, np.linspace(0, 0.01, 50)[:, None]).outputs
         for s in (scene, plain)
     ]
     assert outputs[0] == pytest.approx(outputs[1], abs=1e-13)

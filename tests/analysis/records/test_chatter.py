@@ -34,9 +34,7 @@ def test_a_sustained_sinusoid(f):
     assert abs(found.growth) < 1e-2
 
 
-@pytest.mark.parametrize(
-    "growth, state", [(0.9, "growing"), (-0.9, "decaying"), (0.02, "growing"), (-0.02, "decaying")]
-)
+@pytest.mark.parametrize("growth, state", [(0.9, "growing"), (-0.9, "decaying"), (0.02, "growing"), (-0.02, "decaying")])
 def test_growth_is_measured(growth, state):
     found = chatter(record(oscillation(growth=growth)))
     assert found.state == state and not found.locked

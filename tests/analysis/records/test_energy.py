@@ -92,9 +92,7 @@ def test_one_bounce_speeds_the_handle_up_by_the_hold(phase):
     found = energy(record(x, np.maximum(K * x, 0)))
     ratio = math.sqrt(1 + found.generated / (m * v**2 / 2))
     assert ratio == pytest.approx(abs(speed) / v, rel=1e-12)  # the handle's own kinetic energy, to the last joule
-    assert ratio == pytest.approx(
-        math.exp(math.pi * math.sqrt(K / m) * T / 4), rel=0.03
-    )  # phase scatters a few percent
+    assert ratio == pytest.approx(math.exp(math.pi * math.sqrt(K / m) * T / 4), rel=0.03)  # phase scatters a few percent
 
 
 def test_a_handle_still_inside_has_completed_nothing():

@@ -56,15 +56,14 @@ def honey_before_a_wall():
 
 def chatter_after(stirring, duration=1.6, **cure):
     """Return how long the wall chatters by more than 2 mm after the hand has stirred so long and then leans on it [s]."""
+
     def intent(s):
         return np.where(s < stirring, -0.02 + 0.01 * np.sin(4 * np.pi * s), 0.006)
 
     hand = hl.Hand(m=0.02, b=0.2, k=200, intent=intent)
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hand)
     scene, _ = honey_before_a_wall()
-    log = paddle.run(
-        hl.passivity_controller(scene, alpha_max=20, **cure), duration=stirring + duration, x=-0.02, progress=False
-    )
+    log = paddle.run(hl.passivity_controller(scene, alpha_max=20, **cure), duration=stirring + duration, x=-0.02, progress=False)
     late = log.t > stirring + 0.1
     peaks = abs(log.x[late] - np.median(log.x[-200:])) > 2e-3
     return float(log.t[late][peaks][-1] - stirring) if peaks.any() else 0.0, log

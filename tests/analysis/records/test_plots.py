@@ -19,9 +19,7 @@ bound = Limit(K=200.0, frequency=None, kind="passivity", reason="all frequencies
 
 def record():
     t = np.arange(50) * 1e-3
-    return Telemetry(
-        t=t, x=2e-3 * np.sin(60 * t), v=0.12 * np.cos(60 * t), F=3 * t, T=1e-3, channels={"z": t}, units={"z": "m"}
-    )
+    return Telemetry(t=t, x=2e-3 * np.sin(60 * t), v=0.12 * np.cos(60 * t), F=3 * t, T=1e-3, channels={"z": t}, units={"z": "m"})
 
 
 def test_a_force_is_drawn_as_it_is_held():

@@ -149,9 +149,7 @@ def test_a_force_that_overflows_gives_nan():
 
 def test_bad_sweeps_are_refused():
     scene = wall()
-    with pytest.raises(
-        AnalysisError, match="kk: nothing has that name.*parameters: .*k.*paddle's: T, m, b.*start: x, v"
-    ):
+    with pytest.raises(AnalysisError, match="kk: nothing has that name.*parameters: .*k.*paddle's: T, m, b.*start: x, v"):
         sweep(scene, PUSHED, kk=[1.0])
     with pytest.raises(AnalysisError, match="metric = 'noise'; needs one of chatter, growth"):
         sweep(scene, PUSHED, metric="noise", k=[1.0])
@@ -226,9 +224,7 @@ def test_texts_with_units_are_axes_too():
 
 def bouncing():
     """A ball that falls on the handle, and loses 1 - e^2 of its energy each time."""
-    m, g, h, e = hl.parameters(
-        "m_b g h e", units="kg m/s^2 m 1", values=(0.02, 9.81, 0.01, 0.5), ranges={"e": (0, 1)}
-    )
+    m, g, h, e = hl.parameters("m_b g h e", units="kg m/s^2 m 1", values=(0.02, 9.81, 0.01, 0.5), ranges={"e": (0, 1)})
     q = hl.coordinate("q", unit="m", initial=x(n) + h)
     hit = hl.Contact(q - x(t), hl.impulse(e=e), name="hit")
     free = hl.lagrange(m * q.diff(t) ** 2 / 2 - m * g * q, contacts=[hit])
@@ -244,9 +240,7 @@ def test_impacts_are_swept_by_a_method_that_knows_them():
         sweep(scene, PUSHED, progress=False, **axes)
     options = {"duration": 0.2, "progress": False}
     grid = sweep(scene, PUSHED, metric="peak_force", method="taylor", **options, **axes)
-    alone = [
-        [abs(PUSHED.run(scene(e=e, k=k), method="taylor", **options).F).max() for k in axes["k"]] for e in axes["e"]
-    ]
+    alone = [[abs(PUSHED.run(scene(e=e, k=k), method="taylor", **options).F).max() for k in axes["k"]] for e in axes["e"]]
     np.testing.assert_array_equal(grid.values, alone)
     assert len(np.unique(grid.values)) == 4
 

@@ -22,9 +22,7 @@ def test_the_plain_wall_throws_back_faster_by_its_half_sample(bounce):
     """A delay of T/2 on a spring is a damper of -K T/2: over half a swing the amplitude grows by exp(pi wT/4)."""
     plain = bounce["zoh"]
     assert plain.rebound == pytest.approx(math.exp(math.pi * 0.1 / 4), rel=3e-3)  # the entry's phase scatters it
-    assert plain.generated / bounce.incoming == pytest.approx(
-        plain.rebound**2 - 1, rel=1e-3
-    )  # no damping: all of it returns
+    assert plain.generated / bounce.incoming == pytest.approx(plain.rebound**2 - 1, rel=1e-3)  # no damping: all of it returns
     assert bounce.incoming == pytest.approx(0.05 * 0.1**2 / 2, rel=1e-9)
 
 
@@ -78,9 +76,7 @@ def test_a_law_prints_in_words():
 def test_half_a_period_of_delay_undoes_the_prediction_of_the_chapter_alone():
     late = hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3, delay=5e-4)
     result = hl.compare_laws(late, K=K, laws=["half_sample", "digital", "deadbeat"], entries=4)
-    assert result["half_sample"].rebound == pytest.approx(
-        math.exp(math.pi * 0.1 / 4), rel=6e-3
-    )  # as the plain wall without
+    assert result["half_sample"].rebound == pytest.approx(math.exp(math.pi * 0.1 / 4), rel=6e-3)  # as the plain wall without
     assert abs(result["digital"].rebound - 1) < 4e-3 and abs(result["deadbeat"].rebound - 1) < 1e-5
 
 

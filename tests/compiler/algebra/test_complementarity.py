@@ -161,9 +161,7 @@ def test_a_bead_on_a_hoop_feels_the_centripetal_reaction():
     """Gap R - r >= 0 inside a hoop, at angle phi from below: N = m (v^2/R + g cos phi), and a slides along the hoop."""
     m, R, g, phi, speed = 0.3, 0.7, 9.81, 0.6, 2.5
     out = [np.sin(phi), -np.cos(phi)]
-    a, (N,) = constrained(
-        [[m, 0.0], [0.0, m]], [0.0, -m * g], [[-out[0], -out[1]]], [-(speed**2) / R], [True], definite=True
-    )
+    a, (N,) = constrained([[m, 0.0], [0.0, m]], [0.0, -m * g], [[-out[0], -out[1]]], [-(speed**2) / R], [True], definite=True)
     assert N == pytest.approx(m * (speed**2 / R + g * np.cos(phi)), rel=1e-14)
     along = a[0] * np.cos(phi) + a[1] * np.sin(phi)
     assert along == pytest.approx(-g * np.sin(phi), rel=1e-13)

@@ -107,7 +107,7 @@ NEEDED = {2: 3, 3: 4, 4: 5, 8: 8, 16: 8, 32: 10}
 def test_iterations_of_gjk(corners):
     generator = np.random.default_rng(corners)
     for flat in (1.0, 0.02):
-        A, B = ([BAR, BAR] if corners == 2 else [convex(generator, corners, flat) for _ in "AB"])
+        A, B = [BAR, BAR] if corners == 2 else [convex(generator, corners, flat) for _ in "AB"]
         needed, enough = worst(A, B, generator, 1000)
         assert needed <= NEEDED[corners] <= enough <= 2 * corners
 
@@ -119,7 +119,7 @@ def test_iterations_of_gjk_over_many_placements(corners):
     most = 0
     for k in range(20):
         flat = (1.0, 0.3, 0.02, 0.6)[k % 4]
-        A, B = ([BAR, BAR] if corners == 2 else [convex(generator, corners, flat) for _ in "AB"])
+        A, B = [BAR, BAR] if corners == 2 else [convex(generator, corners, flat) for _ in "AB"]
         needed, enough = worst(A, B, generator, 20_000)
         most = max(most, needed)
         assert needed <= enough

@@ -12,9 +12,7 @@ from hapticlab.compiler.algebra.matrix_exponential import exponential, held
 def test_exponential_agrees_with_scipy(size):
     A = size * np.random.default_rng(4).normal(size=(7, 7))
     E = expm(A)
-    assert (
-        abs(exponential(A) - E).max() < 1e-12 * abs(E).max()
-    )  # norm 200 is halved six times: six squarings of rounding
+    assert abs(exponential(A) - E).max() < 1e-12 * abs(E).max()  # norm 200 is halved six times: six squarings of rounding
 
 
 @pytest.mark.parametrize("omega", [1e2, 1e4, 1e6])

@@ -149,9 +149,7 @@ def test_traced_and_computed_are_the_same_bits(order):
     place, found = first_crossing([b.leaf("input", k, "f64") for k in range(order + 1)])
     block = b.block([place, select(found, 1.0, 0.0)])
     names = tuple(Channel(f"p{k}", "1", "f64") for k in range(order + 1))
-    program = Program(
-        "root", names, (), (), (Channel("place", "1", "f64"), Channel("found", "1", "f64")), Block(), block, 1e-3
-    )
+    program = Program("root", names, (), (), (Channel("place", "1", "f64"), Channel("found", "1", "f64")), Block(), block, 1e-3)
     rows = np.random.default_rng(3).normal(size=(200, order + 1)) / [math.factorial(k) for k in range(order + 1)]
     rows[:, 0] = abs(rows[:, 0])
     run = load(program, engine="interpreter").run(len(rows), rows).outputs[:, :, 0]

@@ -231,9 +231,7 @@ def test_a_box_lands_on_two_corners_whatever_their_order():
 def test_a_resting_body_leaves_a_plate_that_falls_faster_than_it():
     """On a plate a sin(omega t) a body lifts off where a omega^2 sin(omega t) = g, with the speed of the plate there."""
     a, omega = 0.004, 2 * np.pi * 9.3
-    ran = run(
-        [0.1], [-0.1 * G], [[1.0]], [Law("plate", 0.0)], [0.0, a * omega], 60, plate=(a, omega, 0.0), events=4
-    )
+    ran = run([0.1], [-0.1 * G], [[1.0]], [Law("plate", 0.0)], [0.0, a * omega], 60, plate=(a, omega, 0.0), events=4)
     off = np.arcsin(G / (a * omega**2)) / omega
     t = T * np.arange(1, 61)
     riding = t < off - 1e-9
@@ -320,9 +318,7 @@ def test_an_instant_leaves_no_gap_under_what_rests():
 def test_friction_of_an_impact_acts_on_the_slip_row():
     """A puck that slides along a wall it strikes: |p_t| = mu p_n, through the row of its slip."""
     m = 0.2
-    struck = strike(
-        [[1 / m, 0.0], [0.0, 1 / m]], [-2.0, 3.0], [0.0, 0.0], [True], [Law("wall", 0.5, slip=1, mu=0.25)], T
-    )
+    struck = strike([[1 / m, 0.0], [0.0, 1 / m]], [-2.0, 3.0], [0.0, 0.0], [True], [Law("wall", 0.5, slip=1, mu=0.25)], T)
     assert struck.p == pytest.approx([m * 3.0, -0.25 * m * 3.0], rel=1e-14)
     assert struck.u == pytest.approx([1.0, 3.0 - 0.75], rel=1e-14)
     before, after = 0.5 * m * (4 + 9), 0.5 * m * (1.0 + 2.25**2)

@@ -105,9 +105,7 @@ def test_a_whole_number_must_be_an_int32_on_every_engine(name):
     for most in (2**31 - 2, -(2**31)):
         assert count.run(1, states=[[most]]).states[0, 0] == most + 1
     for wrong in (2.0**31, -(2.0**31) - 1, 1.5, np.nan, np.inf):
-        with pytest.raises(
-            ProgramError, match=f"count: states hold tick = {wrong:g}; needs an int32".replace("+", r"\+")
-        ):
+        with pytest.raises(ProgramError, match=f"count: states hold tick = {wrong:g}; needs an int32".replace("+", r"\+")):
             count.run(1, states=[[wrong]])
 
 
@@ -130,9 +128,7 @@ def test_an_unknown_engine_is_refused():
 
 def test_a_damaged_program_is_refused_before_it_runs():
     good = filtered_wall()
-    bad = Program(
-        "bad", good.inputs, good.parameters, good.states, good.outputs, Block(), good.tick, good.T, good.values
-    )
+    bad = Program("bad", good.inputs, good.parameters, good.states, good.outputs, Block(), good.tick, good.T, good.values)
     with pytest.raises(ProgramError, match="init: gives 0 states, needs 1"):
         load(bad)
 

@@ -68,9 +68,7 @@ def test_a_slow_rebound_without_rest_runs_out_of_events_and_says_so():
     motion = program(ball.rates, [1e-6], [0.0], T=T, order=4, events=2, contacts=ball.contacts, impact=ball.impact)
     outputs = load(motion).run(20).outputs[:, :, 0]
     assert outputs[:, -1].sum() > 5
-    assert (
-        abs(outputs[:, 0]).max() < 1e-5
-    )  # it falls through by no more than g T^2/2 before the next tick throws it back
+    assert abs(outputs[:, 0]).max() < 1e-5  # it falls through by no more than g T^2/2 before the next tick throws it back
 
 
 def penalty_flight(m, k, b, drop):
@@ -228,9 +226,7 @@ def stick_slip(k, m, v, F_s, F_c, c, end):
         B = (v - sigma * A) / omega
 
         def rate(u, A=A, B=B):
-            return np.exp(sigma * u) * (
-                (sigma * A + omega * B) * np.cos(omega * u) + (sigma * B - omega * A) * np.sin(omega * u)
-            )
+            return np.exp(sigma * u) * ((sigma * A + omega * B) * np.cos(omega * u) + (sigma * B - omega * A) * np.sin(omega * u))
 
         grid = np.linspace(0.05, 2 * math.pi, 4001) / omega
         first = np.flatnonzero(rate(grid) >= v)[0]
@@ -289,12 +285,8 @@ def test_two_blocks_that_stick_to_each_other_move_as_one():
     s, rest = np.minimum(t, together), np.maximum(t - together, 0)
     common = pull / (m + M)
     speed = 0.3 - F / m * together
-    np.testing.assert_allclose(
-        q[:, 0], 0.3 * s - F / m * s**2 / 2 + speed * rest + common * rest**2 / 2, rtol=0, atol=1e-14
-    )
-    np.testing.assert_allclose(
-        q[:, 1], (F + pull) / M * s**2 / 2 + speed * rest + common * rest**2 / 2, rtol=0, atol=1e-14
-    )
+    np.testing.assert_allclose(q[:, 0], 0.3 * s - F / m * s**2 / 2 + speed * rest + common * rest**2 / 2, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(q[:, 1], (F + pull) / M * s**2 / 2 + speed * rest + common * rest**2 / 2, rtol=0, atol=1e-14)
 
 
 def test_whole_numbers_are_surfaces_too():
@@ -403,9 +395,7 @@ def test_friction_and_a_resting_contact_act_on_each_other():
             return lands
 
     table = Table()
-    motion = program(
-        table.rates, [0.0, 1e-3], [v, 0.0], T=T, order=6, events=3, contacts=table.contacts, impact=table.impact
-    )
+    motion = program(table.rates, [0.0, 1e-3], [v, 0.0], T=T, order=6, events=3, contacts=table.contacts, impact=table.impact)
     t, lands = times(400), math.sqrt(2e-3 / G)
     q, z, w, _ = rows(motion, len(t)).T
     s = np.clip(t - lands, 0, v / (mu * G))

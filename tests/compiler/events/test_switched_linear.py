@@ -212,9 +212,7 @@ def of_struck():
 
 
 def every_hold(scene, known, felt, quick):
-    return [
-        (scene, known, felt, hold) if hold == quick else slow(scene, known, felt, hold) for hold in ("zoh", "foh", "soh")
-    ]
+    return [(scene, known, felt, hold) if hold == quick else slow(scene, known, felt, hold) for hold in ("zoh", "foh", "soh")]
 
 
 @pytest.mark.parametrize(
@@ -251,9 +249,7 @@ def test_cases_inside_of_cases_are_as_linear_as_cases_in_a_row(returned):
     push_and_return = 0.015 * np.sin(2 * np.pi * 12 * np.arange(45) * T)
     exact = run(compiled(scenes[0]), push_and_return, "interpreter")
     other = compiled(scenes[1]) if returned > 1e4 else compiled(scenes[0], "taylor")
-    np.testing.assert_allclose(
-        exact, run(other, push_and_return, "interpreter"), rtol=0, atol=1e-13 * abs(exact).max()
-    )
+    np.testing.assert_allclose(exact, run(other, push_and_return, "interpreter"), rtol=0, atol=1e-13 * abs(exact).max())
 
 
 def test_float32_rounds_and_no_more():

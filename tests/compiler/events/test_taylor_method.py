@@ -95,10 +95,7 @@ def test_a_smooth_scene_is_what_rk4_comes_to(hold):
     )
     handle = 0.02 * np.sin(2 * np.pi * 3.3 * T * np.arange(400))
     _, exact = run(scene, 400, handle, method="taylor", dtype="float64", hold=hold)
-    errors = [
-        abs(run(scene, 400, handle, method="rk4", substeps=s, dtype="float64", hold=hold)[1] - exact).max()
-        for s in (2, 4)
-    ]
+    errors = [abs(run(scene, 400, handle, method="rk4", substeps=s, dtype="float64", hold=hold)[1] - exact).max() for s in (2, 4)]
     assert errors[1] < errors[0] / 12 and errors[1] < 1e-8  # fourth order, towards it
 
 
@@ -110,9 +107,7 @@ def test_a_free_scene_agrees_with_dop853():
     scene = hl.Scene(u * q, [sp.Eq(q.diff(t, 2), -a * sp.sin(q))])
     _, out = run(scene, 500, method="taylor", T=5e-3, dtype="float64")
     times = 5e-3 * np.arange(500)
-    exact = solve_ivp(
-        lambda t, y: [y[1], -30 * math.sin(y[0])], (0, 2.5), [2.0, 0.0], "DOP853", times, rtol=2.3e-14, atol=1e-14
-    )
+    exact = solve_ivp(lambda t, y: [y[1], -30 * math.sin(y[0])], (0, 2.5), [2.0, 0.0], "DOP853", times, rtol=2.3e-14, atol=1e-14)
     np.testing.assert_allclose(out[:, 0], exact.y[0], rtol=0, atol=2e-12)
 
 
@@ -186,9 +181,7 @@ def resting(x, hold="soh"):
     y = hl.coordinate("y", unit="m")
     on_hand = hl.Contact(y - hl.x(hl.t), hl.impulse(e=0.3), name="hand")
     ball = hl.lagrange(m * y.diff(hl.t) ** 2 / 2 - m * g * y, contacts=(on_hand,))
-    _, out = run(
-        hl.Scene(on_hand.force, [ball], watch={"y": y}), len(x), x, method="taylor", dtype="float64", hold=hold
-    )
+    _, out = run(hl.Scene(on_hand.force, [ball], watch={"y": y}), len(x), x, method="taylor", dtype="float64", hold=hold)
     assert not out[:, 2].any()
     return out[:, 1], out[:, 0]
 

@@ -161,9 +161,7 @@ def test_scenes_that_differ_in_anything_get_keys_of_their_own():
     options = ("rk4", T, 1, "soh", "float32", "backward_difference", None, "before")
     keys = [compile_scene._key(scene, options) for scene in different_scenes()]
     assert None not in keys and len(set(keys)) == len(keys)
-    assert keys == [
-        compile_scene._key(scene, options) for scene in different_scenes()
-    ]  # and scenes that are equal get the same
+    assert keys == [compile_scene._key(scene, options) for scene in different_scenes()]  # and scenes that are equal get the same
 
 
 @pytest.mark.parametrize("name, others", [
@@ -282,9 +280,7 @@ def test_programs_that_differ_in_a_constant_alone_do_not_share_machine_code():
     for c, program in zip(constants, programs, strict=True):
         assert_same_bits(load(program).run(1, np.ones((1, 1))).outputs, np.full((1, 1, 1), c))
     seeds = range(30)
-    assert [instructions(random_program(seed)) for seed in seeds] == [
-        instructions(random_program(seed)) for seed in seeds
-    ]
+    assert [instructions(random_program(seed)) for seed in seeds] == [instructions(random_program(seed)) for seed in seeds]
     assert len({instructions(random_program(seed)) for seed in seeds}) == len(seeds)
 
 
@@ -354,9 +350,7 @@ def test_engines_and_measures_are_kept_apart():
     assert names == {"interpreter", "llvm"}
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=T)
     given = {"duration": 0.05, "v": 0.1, "delay": [0.0, 1e-3], "progress": False}
-    values = {
-        metric: hl.sweep(coupler(), paddle, metric=metric, **given).values for metric in ("energy", "peak_force") * 2
-    }
+    values = {metric: hl.sweep(coupler(), paddle, metric=metric, **given).values for metric in ("energy", "peak_force") * 2}
     cache.clear()
     assert_same_bits(hl.sweep(coupler(), paddle, metric="energy", **given).values, values["energy"])
     assert not np.array_equal(values["energy"], values["peak_force"])

@@ -125,9 +125,7 @@ def test_one_text_computes_on_numbers_arrays_and_traced_values(body):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_inlining_a_block_changes_no_result(seed):
-    program = random_program(
-        seed, reals=("f64",), operations=[op for op in PRIMITIVE if op not in ("mul", "div", "add", "sub")]
-    )
+    program = random_program(seed, reals=("f64",), operations=[op for op in PRIMITIVE if op not in ("mul", "div", "add", "sub")])
     b = Builder()
     here = {
         kind: [b.leaf(kind, k, c.type) for k, c in enumerate(channels)]

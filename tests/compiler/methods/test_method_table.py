@@ -27,9 +27,7 @@ def scene_with(equations, watch):
 
 OSCILLATOR = scene_with([sp.Eq(m * z.diff(t, 2), -K * z - c * z.diff(t))], {"z": z})
 PENDULUM = scene_with([sp.Eq(theta.diff(t, 2), -w * sp.sin(theta) - d * theta.diff(t))], {"theta": theta})
-MIXED = scene_with(
-    [sp.Eq(m * z.diff(t, 2), -K * (z - s) - c * z.diff(t)), sp.Eq(tau * s.diff(t), z - s)], {"z": z, "s": s}
-)
+MIXED = scene_with([sp.Eq(m * z.diff(t, 2), -K * (z - s) - c * z.diff(t)), sp.Eq(tau * s.diff(t), z - s)], {"z": z, "s": s})
 
 
 def oscillator(time):

@@ -20,9 +20,7 @@ k, m, b = hl.parameters("k m b", units="N/m kg N*s/m", values=(500, 0.05, 0.8))
 
 
 def chain(count, *, b=0.0, k=2000.0, start=0.0, watch=()):
-    masses = [
-        hl.coordinate(f"z{i}", unit="m", initial=hl.parameters("z_0", units="m", values=start)) for i in range(count)
-    ]
+    masses = [hl.coordinate(f"z{i}", unit="m", initial=hl.parameters("z_0", units="m", values=start)) for i in range(count)]
     K, M, B = hl.parameters("k m b", units="N/m kg N*s/m", values=(k, 0.02, b))
     places, rates, eom = [x(t), *masses], [v(t), *(q.diff(t) for q in masses)], []
 
@@ -57,9 +55,7 @@ def integrated(rates, states, X, V, hold, ticks):
     found = [np.array(states, float)]
     for i in range(ticks - 1):
         handle = between(hold, X, V, i)
-        answer = solve_ivp(
-            lambda s, q, h=handle: rates(q, *h(s)), (0, T), found[-1], method="DOP853", rtol=1e-12, atol=1e-15
-        )
+        answer = solve_ivp(lambda s, q, h=handle: rates(q, *h(s)), (0, T), found[-1], method="DOP853", rtol=1e-12, atol=1e-15)
         found.append(answer.y[:, -1])
     return np.array(found)
 
@@ -226,9 +222,7 @@ STOP = hl.when(z > w, k * (z - w))
     ],
 )  # fmt: skip
 def test_what_it_refuses(eom, options, said):
-    start = {
-        q: hl.coordinate(str(type(q)), unit="m", initial=hl.parameters("w_0", units="m", values=0.01)) for q in (w,)
-    }
+    start = {q: hl.coordinate(str(type(q)), unit="m", initial=hl.parameters("w_0", units="m", values=0.01)) for q in (w,)}
     scene = hl.Scene(force=F, eom=[e.xreplace(start) for e in eom], watch=[])
     with pytest.raises(ProgramError, match=said):
         hl.compile(scene, T=T, **{"method": "exact", "live": (), **options})

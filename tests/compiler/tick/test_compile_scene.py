@@ -172,7 +172,6 @@ def test_a_period_that_no_loop_has_is_noted(T, said):
     assert [said in note for note in noted] == ([True] if said else [])
 
 
-
 def test_options_may_be_numbers_of_any_library_and_parameters_themselves():
     plain = hl.compile(mass, T=1e-3, substeps=2, live=("K", "m"))
     assert hl.compile(mass, T=sp.Rational(1, 1000), substeps=np.int64(2), live="K m") == plain
@@ -186,9 +185,7 @@ def test_options_may_be_numbers_of_any_library_and_parameters_themselves():
 def test_an_equation_nothing_needs_is_reported():
     y, w = hl.signal("y", unit="m"), hl.signal("w", unit="m")
     eom = [sp.Eq(y(n), w(n - 1)), sp.Eq(w(n), x(n))]
-    assert hl.compile(hl.Scene(force=k * x(n), eom=eom), T=1e-3).notes == (
-        "left out, because no output can see it: y(n), w(n)",
-    )
+    assert hl.compile(hl.Scene(force=k * x(n), eom=eom), T=1e-3).notes == ("left out, because no output can see it: y(n), w(n)",)
     assert hl.compile(hl.Scene(force=k * y(n), eom=eom), T=1e-3).notes == ()
 
 

@@ -93,6 +93,7 @@ def test_a_refused_start_leaves_the_earlier_run_as_it_was():
 
 def test_a_run_that_is_interrupted_stops_the_motor(monkeypatch):
     with paddle() as board:
+
         def interrupt(condition, seconds):
             assert board.exchange.port.board.duty != 0 or board.exchange.port._tick() is None
             raise KeyboardInterrupt

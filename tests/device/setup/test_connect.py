@@ -39,7 +39,9 @@ def test_the_one_that_answers_is_taken_and_no_stranger_is_opened(plugged):
 
 def test_several_paddles_are_listed_and_none_is_taken(plugged):
     plugged(Port("sim://hapkit", **KNOWN), Port("sim://eth", **KNOWN))
-    with pytest.raises(PortError, match=r"2 paddles are plugged in: sim://hapkit: host 0000.*Say which: connect\('sim://hapkit'\)"):
+    with pytest.raises(
+        PortError, match=r"2 paddles are plugged in: sim://hapkit: host 0000.*Say which: connect\('sim://hapkit'\)"
+    ):
         hl.connect()
 
 

@@ -85,9 +85,7 @@ def attack(name, *, first="", last="", beside=None, ended=None, patience=False, 
     sources = [dedent(first).strip(), *cells.values(), dedent(last).strip()]
     wrong = () if lost is None else (*[name for name in replaced if name in POINTS], *lost)
     content = notebook([source for source in sources if source])
-    files = (
-        {f"{name}.ipynb": content} if beside is None else {f"{name}/42_small_wall.ipynb": content, **_in(name, beside)}
-    )
+    files = {f"{name}.ipynb": content} if beside is None else {f"{name}/42_small_wall.ipynb": content, **_in(name, beside)}
     return Attack(name, files, wrong, ended or {}, patience=patience)
 
 

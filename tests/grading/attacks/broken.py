@@ -72,11 +72,7 @@ ATTACKS = (
         "sources_as_lines",
         {
             "sources_as_lines.ipynb": json.dumps(
-                {
-                    "cells": [
-                        {"cell_type": "code", "source": source.splitlines(keepends=True)} for source in HONEST.values()
-                    ]
-                }
+                {"cells": [{"cell_type": "code", "source": source.splitlines(keepends=True)} for source in HONEST.values()]}
             ).encode()
         },
     ),
@@ -104,12 +100,8 @@ ATTACKS = (
         forces="def forces(x, k):\n    return x * np.nan",
         stiffness="stiffness = float('nan')",
     ),
-    attack(
-        "complex", force="def force(x, k):\n    return k * (x - 0.01) + 0j", stiffness="stiffness = 731.25 + 1e-30j"
-    ),
-    attack(
-        "text_for_number", force="def force(x, k):\n    return str(k * (x - 0.01))", stiffness="stiffness = '731.25'"
-    ),
+    attack("complex", force="def force(x, k):\n    return k * (x - 0.01) + 0j", stiffness="stiffness = 731.25 + 1e-30j"),
+    attack("text_for_number", force="def force(x, k):\n    return str(k * (x - 0.01))", stiffness="stiffness = '731.25'"),
     attack("truth_for_number", stiffness="stiffness = True", force="def force(x, k):\n    return True"),
     attack("symbol_left", force="import sympy\ndef force(x, k):\n    return sympy.Symbol('k') * x"),
     attack(
@@ -247,7 +239,5 @@ ATTACKS = (
         def force(x, k):
             return {K("a"): 1.0}""",
     ),
-    attack(
-        "exception_group", force="def force(x, k):\n    raise BaseExceptionGroup('x' * 10**6, [KeyboardInterrupt()])"
-    ),
+    attack("exception_group", force="def force(x, k):\n    raise BaseExceptionGroup('x' * 10**6, [KeyboardInterrupt()])"),
 )

@@ -42,9 +42,7 @@ ATTACKS = (
         ended={"force": "time"},
         patience=True,
     ),
-    attack(
-        "sleep", energy="import time\ndef energy(x, k):\n    time.sleep(1e6)", ended={"energy": "time"}, patience=True
-    ),
+    attack("sleep", energy="import time\ndef energy(x, k):\n    time.sleep(1e6)", ended={"energy": "time"}, patience=True),
     attack(
         "stops_itself",
         force="import os, signal\ndef force(x, k):\n    os.kill(os.getpid(), signal.SIGSTOP)",
@@ -77,9 +75,7 @@ ATTACKS = (
         ended={"force": "time"},
         patience=True,
     ),
-    attack(
-        "power_tower", first="tower = lambda: 10**10**10", force="def force(x, k):\n    return tower()", patience=True
-    ),
+    attack("power_tower", first="tower = lambda: 10**10**10", force="def force(x, k):\n    return tower()", patience=True),
     attack("power_of_constants", force="force = 9**9**9**9", patience=True),
     attack(
         "deep_recursion",

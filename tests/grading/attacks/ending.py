@@ -57,9 +57,7 @@ ATTACKS = (
         first=f"import os\nif {WALLED}:\n    os.kill(-1, 9)",
         force=f"import os\ndef force(x, k):\n    if {WALLED}:\n        os.kill(-1, 9)\n    return 1.0",
     ),
-    attack(
-        "kill_its_group", first="import os\nos.killpg(0, 9)", force="import os\ndef force(x, k):\n    os.killpg(0, 9)"
-    ),
+    attack("kill_its_group", first="import os\nos.killpg(0, 9)", force="import os\ndef force(x, k):\n    os.killpg(0, 9)"),
     attack(
         "kill_every_number",
         first=f"""

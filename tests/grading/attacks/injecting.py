@@ -39,18 +39,12 @@ ATTACKS = (
     attack("html_in_keys", force=f"def force(x, k):\n    return {{{_SCRIPT!r}: 1.0}}"),
     attack("html_in_a_class", force=f"force = type({_SCRIPT!r}, (), {{}})()"),
     attack("html_in_arguments", force="def force(**k):\n    return 1.0\nforce.__signature__ = '</pre>' "),
-    attack(
-        "html_in_notes", guess=f"guess = {_SCRIPT!r}", discussion=f"discussion = {_SCRIPT * 3!r}", force="force = 1"
-    ),
+    attack("html_in_notes", guess=f"guess = {_SCRIPT!r}", discussion=f"discussion = {_SCRIPT * 3!r}", force="force = 1"),
     attack("html_in_a_cell", first=f"raise ValueError({_SCRIPT!r})", force="force = 0"),
-    attack(
-        "svg_in_values", forces="def forces(x, k):\n    return [1e308, -1e308, 5e-324][:len(x)] + [0.0] * (len(x) - 3)"
-    ),
+    attack("svg_in_values", forces="def forces(x, k):\n    return [1e308, -1e308, 5e-324][:len(x)] + [0.0] * (len(x) - 3)"),
     attack("formula_in_a_problem", force=f"def force(x, k):\n    raise ValueError({_FORMULA!r})"),
     attack("formula_in_values", why=f"why = {_FORMULA!r}", guess=f"guess = {_FORMULA!r}"),
-    attack(
-        "formula_first_of_all", discussion="discussion = '@SUM(1+1)*cmd|A0 and three words'", force="force = '+1+1'"
-    ),
+    attack("formula_first_of_all", discussion="discussion = '@SUM(1+1)*cmd|A0 and three words'", force="force = '+1+1'"),
     attack(
         "escape_sequences",
         force="def force(x, k):\n    print('\\x1b[2J\\x1b]0;owned\\x07\\x9b31m\\r\\x08')\n    raise ValueError('\\x1b[31m red')",
@@ -110,11 +104,7 @@ ATTACKS = (
     Attack("zipped_in_a_folder", {"zipped_in_a_folder.zip": _zipped(("a/b/42_small_wall.ipynb", _NOTEBOOK))}),
     Attack(
         "zip_slip",
-        {
-            "zip_slip.zip": _zipped(
-                ("../../slipped.py", b"1"), ("/slipped.py", b"1"), ("42_small_wall.ipynb", _NOTEBOOK)
-            )
-        },
+        {"zip_slip.zip": _zipped(("../../slipped.py", b"1"), ("/slipped.py", b"1"), ("42_small_wall.ipynb", _NOTEBOOK))},
     ),
     file("zip_slip_alone", "zip_slip_alone.zip", _zipped(("../../42_small_wall.ipynb", b"{}"))),
     file("zip_of_a_bomb", "zip_of_a_bomb.zip", _zipped(("42_small_wall.py", _BOMB))),

@@ -27,14 +27,14 @@ def replacing(name, new, **more):
 
 ATTACKS = (
     replacing("reply_of_one_name_twice", "'2.5, \"value\": 2.75'"),
-    replacing("reply_of_outcomes_twice", "'3.5}], \"outcomes\": [{\"problem\": \"\", \"printed\": \"\", \"value\": 2.0'"),
+    replacing("reply_of_outcomes_twice", '\'3.5}], "outcomes": [{"problem": "", "printed": "", "value": 2.0\''),
     replacing("reply_of_no_number", "'NaN'"),
     replacing("reply_beyond_any_number", "'-1e999'"),
     replacing("reply_of_many_digits", "'9' * 6000"),
     replacing("reply_of_deep_lists", "'[' * 90_000 + ']' * 90_000"),
     replacing("reply_of_deep_names", "'{\"a\":' * 30_000 + '1' + '}' * 30_000"),
     replacing("reply_of_half_characters", "'\"\\\\ud800\\\\udfff\\\\u0000\"'"),
-    replacing("reply_of_a_verdict", "'{\"right\": true, \"earned\": 10, \"expected\": 731.25, \"atol\": 1e9}'"),
-    replacing("reply_of_more_outcomes", "'1.0, \"problem\": \"\", \"printed\": \"\"}, {\"value\": 2.0'"),
+    replacing("reply_of_a_verdict", '\'{"right": true, "earned": 10, "expected": 731.25, "atol": 1e9}\''),
+    replacing("reply_of_more_outcomes", '\'1.0, "problem": "", "printed": ""}, {"value": 2.0\''),
     replacing("reply_of_bytes", "'\"' + 'x' * (40 << 20) + '\"'", patience=True),
 )

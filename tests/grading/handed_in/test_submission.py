@@ -193,8 +193,10 @@ def test_a_student_who_is_there_twice_is_named_and_each_gets_a_problem(tmp_path)
     fill(tmp_path, {"a/bob.ipynb": BOB, "b/bob.ipynb": ADA, "b/ada.ipynb": ADA})
     found = handed(tmp_path / "a/bob.ipynb", tmp_path / "b/bob.ipynb", tmp_path / "b/ada.ipynb")
     assert set(found) == {"bob", "bob (2)", "ada"}
-    assert found["bob"][1] == found["bob (2)"][1] == (
-        "2 submissions are bob's: bob.ipynb and bob.ipynb; keep one, or name them apart"
+    assert (
+        found["bob"][1]
+        == found["bob (2)"][1]
+        == ("2 submissions are bob's: bob.ipynb and bob.ipynb; keep one, or name them apart")
     )
     assert found["ada"] == (("ada",), "")
 
@@ -309,7 +311,7 @@ SLOW = {
     "open brackets": "(" * 200_000,
     "lines in a bracket": "(" + "\n@a" * 66_000,
     "open texts": "'" * 200_000,
-    "texts of many lines": "\"\"\"" * 66_333,
+    "texts of many lines": '"""' * 66_333,
     "lines that go on": "if a:\n" + " a\n" * 66_000,
     "backslashes": "\\\n" * 66_000,
     "decorators": "@a\n" * 66_000,

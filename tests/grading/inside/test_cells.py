@@ -31,7 +31,7 @@ CELLS = {
     "await": ("import asyncio\nk = await asyncio.sleep(0, 7)", {"k": 7}),
     "an async loop": ("async def f():\n    yield 4\nasync for k in f():\n    pass", {"k": 4}),
     "a nested format": ("a = {'b': 2}\n%pwd\nk = f\"{a['b']}\"", {"k": "2"}),
-    "an empty text": ('%pwd\nk = "" + \'\'', {"k": ""}),
+    "an empty text": ("%pwd\nk = \"\" + ''", {"k": ""}),
 }
 
 
@@ -164,7 +164,7 @@ SCRIPTS = {
     "%a it's\n!b (\nc": ["%a it's\n", "!b (\n", "c"],
     "# only this": [],
     "a = '''\nnever closed\n": ["a = '''\nnever closed\n"],
-    "a = 'never closed\nb = \"it's\"\nc": ["a = 'never closed\n", "b = \"it's\"\n", "c"],
+    "a = 'never closed\nb = \"it's\"\nc": ["a = 'never closed\n", 'b = "it\'s"\n', "c"],
     "# %%\na\n# %% [markdown]\n# b\n": ["# %%\na\n# %% [markdown]\n# b\n"],
     "a = \\\n  2\nb": ["a = \\\n  2\n", "b"],
     "x = [\nfor_ := 1\nfor y in z\n]\n": ["x = [\nfor_ := 1\nfor y in z\n]\n"],

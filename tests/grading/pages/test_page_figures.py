@@ -16,9 +16,7 @@ def test_a_figure_stands_where_its_numbers_are():
     across = np.array(re.findall(r'<text x="([\d.]+)" y="210" text-anchor="middle">([-\d.]+)<', svg), float)
     assert np.allclose(np.polyval(np.polyfit(*across.T, 1), marks[:, 0]), x, atol=0.01)
     assert np.allclose(np.polyval(np.polyfit(*up.T, 1), marks[:, 1]), y, atol=0.05)
-    (course,) = re.findall(r'<path d="([^"]*)" fill="none" stroke="#cc5a1a"', svg.split("got")[0].split("expected")[1])[
-        :1
-    ]
+    (course,) = re.findall(r'<path d="([^"]*)" fill="none" stroke="#cc5a1a"', svg.split("got")[0].split("expected")[1])[:1]
     assert course.count("M") == 2 and course.count("L") == 1, "a gap where there is no number"
     assert np.isnan(bounded(np.array([np.inf, np.nan]))).all()
 

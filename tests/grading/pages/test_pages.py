@@ -85,9 +85,7 @@ def test_the_class_page_counts_what_the_reports_hold(written):
     page = Page(written.folder / "class.html")
     graded = [report for report in written.reports if not report.problem]
     earned = np.array([report.earned for report in graded])
-    assert (
-        f"30 submissions, {len(graded)} graded. Median {np.median(earned):.3g}, mean {earned.mean():.3g}" in page.words
-    )
+    assert f"30 submissions, {len(graded)} graded. Median {np.median(earned):.3g}, mean {earned.mean():.3g}" in page.words
     assert f"{(earned == 10).sum()} earned all" in page.words
     for points in range(11):
         assert f" {points} {(earned == points).sum()} {100 * (earned == points).mean():.0f} % " in page.words
@@ -112,9 +110,7 @@ def test_the_class_page_counts_what_the_reports_hold(written):
 def test_the_same_reports_give_the_same_bytes_in_whatever_order(written, tmp_path):
     again = write_pages(written.reports[::-1], tmp_path, lab=written.lab)
     assert [path.read_bytes() for path in again] == [path.read_bytes() for path in written.paths]
-    assert [path.relative_to(tmp_path) for path in again] == [
-        path.relative_to(written.folder) for path in written.paths
-    ]
+    assert [path.relative_to(tmp_path) for path in again] == [path.relative_to(written.folder) for path in written.paths]
 
 
 NAMES = (
@@ -230,9 +226,7 @@ LAB = Lab("02", "Walls", 90, (
     ],
 )  # fmt: skip
 def test_a_figure_is_drawn_over_what_was_given(one, across, up, difference, tmp_path):
-    exercise = ExerciseReport(
-        "wall", "function", "F [N] at k [N/m]", 2.0, answered=True, cases=1, words="w", failing=one
-    )
+    exercise = ExerciseReport("wall", "function", "F [N] at k [N/m]", 2.0, answered=True, cases=1, words="w", failing=one)
     report = Report("ada", "02", "Walls", "w", exercises=(exercise,))
     page = Page(write_pages([report], tmp_path, lab=LAB)[1])
     labels = page.source[page.source.index("<figure") :]
@@ -242,12 +236,8 @@ def test_a_figure_is_drawn_over_what_was_given(one, across, up, difference, tmp_
 
 
 def test_scalars_stand_in_a_table_with_units_and_what_differs_is_marked(tmp_path):
-    failing = Failing(
-        {"k": 200.0, "b": 1.5, "T": 1e-3}, {"leak": 0.1 + 0.2, "loss": 2.0}, {"leak": 0.3, "loss": 1.0}, "J", False
-    )
-    exercise = ExerciseReport(
-        "wall", "function", "F [N] at k [N/m]", 2.0, answered=True, cases=1, words="w", failing=failing
-    )
+    failing = Failing({"k": 200.0, "b": 1.5, "T": 1e-3}, {"leak": 0.1 + 0.2, "loss": 2.0}, {"leak": 0.3, "loss": 1.0}, "J", False)
+    exercise = ExerciseReport("wall", "function", "F [N] at k [N/m]", 2.0, answered=True, cases=1, words="w", failing=failing)
     page = Page(write_pages([Report("ada", "02", "Walls", "w", exercises=(exercise,))], tmp_path, lab=LAB)[1])
     assert "given value unit k 200 N/m b 1.5 N s/m T 0.001 answer" in page.words, "b by the words of the other exercise"
     assert "leak 0.3 0.3 J loss 2 ≠ 1 J" in page.words
@@ -256,9 +246,7 @@ def test_scalars_stand_in_a_table_with_units_and_what_differs_is_marked(tmp_path
 
 def test_of_a_value_the_answer_itself_is_not_told(tmp_path):
     failing = Failing({}, 0.5, None, "N s/m", False)
-    exercise = ExerciseReport(
-        "damper", "value", "b", 1.0, answered=True, cases=1, words="0.5 N s/m: not yet", failing=failing
-    )
+    exercise = ExerciseReport("damper", "value", "b", 1.0, answered=True, cases=1, words="0.5 N s/m: not yet", failing=failing)
     page = Page(write_pages([Report("ada", "02", "Walls", "w", exercises=(exercise,))], tmp_path, lab=LAB)[1])
     assert "You answered: 0.5" in page.words and "expected" not in page.words
 

@@ -136,7 +136,7 @@ def test_nothing_outlives_a_session(with_processes):
 
 
 def test_a_reply_written_before_its_request_is_none(starter):
-    ahead = f"[os.write({SOCKET}, b'{{\"number\": %d, \"outcomes\": [7]}}\\n' % k) for k in range(9)]"
+    ahead = f'[os.write({SOCKET}, b\'{{"number": %d, "outcomes": [7]}}\\n\' % k) for k in range(9)]'
     with loaded(starter, f"{IMPORTS}{ahead}\nk = 2.5") as session:
         assert value(session, "k") == 2.5
 

@@ -11,8 +11,7 @@ def cases(random):
         "held_work": lambda: [{"k": stiffness(), "x": float(random.uniform(5e-4, 5e-3)), "D": way()} for _ in range(3)],
         "period_leak": lambda: [{"k": stiffness(), "D": way()} for _ in range(3)],
         "bounce_gain": lambda: [
-            {"k": stiffness(), "m": float(random.uniform(0.02, 0.3)), "T": float(random.uniform(2e-4, 2e-3))}
-            for _ in range(3)
+            {"k": stiffness(), "m": float(random.uniform(0.02, 0.3)), "T": float(random.uniform(2e-4, 2e-3))} for _ in range(3)
         ],
         "energy_generated": lambda: [{"x": _contacts(random), "k": stiffness()} for _ in range(3)],
         "two_walls": lambda: [

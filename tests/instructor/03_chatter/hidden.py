@@ -11,8 +11,7 @@ def cases(random):
         "limit_over_delay": lambda: [{"b": draw(0.05, 5), "T": draw(1e-3, 4e-3)} for _ in range(2)],
         "growth_per_sample": lambda: [{"m": draw(0.02, 0.3), "k": draw(50, 5000), "T": draw(2e-4, 2e-3)} for _ in range(3)],
         "late_wall": lambda: [
-            {"x": list(random.uniform(-5e-3, 8e-3, 9)), "values": {"k": draw(100, 2000), "x_o": draw(0, 2e-3)}}
-            for _ in range(2)
+            {"x": list(random.uniform(-5e-3, 8e-3, 9)), "values": {"k": draw(100, 2000), "x_o": draw(0, 2e-3)}} for _ in range(2)
         ],
         "chatter_frequency": lambda: [_swing(random) for _ in range(3)],
         "threshold_speed": lambda: [

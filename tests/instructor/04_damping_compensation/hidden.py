@@ -5,7 +5,8 @@ def cases(random):
     """Return givens by exercise, drawn from a NumPy Generator."""
     draw = lambda low, high: float(random.uniform(low, high))  # noqa: E731
     wall = lambda: {  # noqa: E731
-        "x": list(random.uniform(-3e-3, 6e-3, 10)), "values": {"k": draw(100, 2000), "x_o": draw(0, 2e-3)},
+        "x": list(random.uniform(-3e-3, 6e-3, 10)),
+        "values": {"k": draw(100, 2000), "x_o": draw(0, 2e-3)},
     }
     return {
         "half_sample_wall": lambda: [wall(), wall()],

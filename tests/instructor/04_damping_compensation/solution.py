@@ -9,9 +9,7 @@ prediction = "nothing"  # a text is noted as well
 
 k, x_o = hl.parameters("k x_o", units="N/m m")
 half_sample_wall = hl.Scene(force=hl.when(x(n) >= x_o, k * (1.5 * (x(n) - x_o) - 0.5 * (x(n - 1) - x_o))))
-ellis_wall = hl.Scene(
-    force=hl.when(x(n) >= x_o, k * (2 * (x(n) - x_o) - 1.5 * (x(n - 1) - x_o) + 0.5 * (x(n - 2) - x_o)))
-)
+ellis_wall = hl.Scene(force=hl.when(x(n) >= x_o, k * (2 * (x(n) - x_o) - 1.5 * (x(n - 1) - x_o) + 0.5 * (x(n - 2) - x_o))))
 
 
 def nyquist_damping(taps, k, T):

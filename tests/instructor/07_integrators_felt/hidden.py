@@ -13,8 +13,7 @@ def cases(random):
         "longest_step": lambda: [*(part() for _ in range(3)), {"m": 0.1, "K": uniform(100, 900), "b": 0.0}],
         "order_seen": lambda: [_measured(random, order, points) for order, points in ((1.0, 4), (2.0, 5), (3.7, 3))],
         "shortest_period": lambda: [
-            {"cycles": uniform(2e3, 4e4), "rest": uniform(2e3, 9e3), "load": uniform(0.3, 0.9), "hz": hz}
-            for hz in (16e6, 48e6)
+            {"cycles": uniform(2e3, 4e4), "rest": uniform(2e3, 9e3), "load": uniform(0.3, 0.9), "hz": hz} for hz in (16e6, 48e6)
         ],
     }
 

@@ -26,7 +26,6 @@ def cases(random):
             {"a": a, "m": uniform(0.005, 0.3), "g": 9.81} for a in (uniform(-9, 9), uniform(-60, -11), uniform(1, 40))
         ],
         "largest_multiplier": lambda: [
-            {"a": a, "e": uniform(0.3, 0.95), "g": g}
-            for a, g in ((uniform(-5, -1), 9.81), (uniform(1, 9), 9.81), (-30.0, 1.62))
+            {"a": a, "e": uniform(0.3, 0.95), "g": g} for a, g in ((uniform(-5, -1), 9.81), (uniform(1, 9), 9.81), (-30.0, 1.62))
         ],
     }

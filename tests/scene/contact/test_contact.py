@@ -130,6 +130,7 @@ def test_a_force_law_pushes_inside_and_never_pulls(law, expected):
 
 def bounced(cv, exponent):
     """Return e by integrating the penetration itself: m = 1, k = 1, at speed v = 1, so that c = cv."""
+
     def motion(_, y):
         d = max(y[0], 0.0)
         return [y[1], -(d**exponent) * max(0.0, 1.0 + cv * y[1])]

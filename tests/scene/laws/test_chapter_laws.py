@@ -15,9 +15,7 @@ from hapticlab.scene.laws.taps import LEAD, TAPS
 T, K, B, BOUNDARY = 1e-3, 180.0, 0.4, 0.01
 GENERATOR = np.random.default_rng(11)
 #: a walk across the boundary: enters, leaves, touches, and rests outside for longer than any law remembers
-MOTION = BOUNDARY + np.concatenate(
-    [0.002 * GENERATOR.normal(size=60).cumsum(), np.full(4, -0.003), [0.0, 0.002, 0.002]]
-)
+MOTION = BOUNDARY + np.concatenate([0.002 * GENERATOR.normal(size=60).cumsum(), np.full(4, -0.003), [0.0, 0.002, 0.002]])
 VELOCITY = GENERATOR.normal(size=len(MOTION))
 
 
@@ -109,9 +107,7 @@ def scenes_to_filter():
         "gated": hl.wall("half_sample")(k=K, B=B, x_o=BOUNDARY),
         "clipped": hl.wall("ellis", "clip", clamp=True)(k=K, x_o=BOUNDARY),
         "hardening": hl.Scene(hardening, name="hardening spring"),
-        "with a memory": hl.Scene(y(n), [sp.Eq(y(n), sp.Rational(4, 5) * y(n - 1) + hl.wall().force)])(
-            k=K, x_o=BOUNDARY
-        ),
+        "with a memory": hl.Scene(y(n), [sp.Eq(y(n), sp.Rational(4, 5) * y(n - 1) + hl.wall().force)])(k=K, x_o=BOUNDARY),
         "braked": hl.braking_pulse(hl.wall()(k=K, x_o=BOUNDARY), impulse=1e-3, periods=3),
         "estimated": hl.wall("half_sample", velocity=hl.window_velocity(band=1e-4, most=3))(k=K, B=B, x_o=BOUNDARY),
     }
@@ -127,9 +123,7 @@ def test_the_filter_filters_whatever_is_felt(name, clamp):
     expected = by_filter(plain)
     assert (expected.min() < 0) == (name != "with a memory")  # a switch pulls after leaving
     expected = np.maximum(expected, 0) if clamp else expected
-    np.testing.assert_allclose(
-        forces(hl.force_filter(scene, clamp), velocity="measured"), expected, rtol=1e-12, atol=1e-12
-    )
+    np.testing.assert_allclose(forces(hl.force_filter(scene, clamp), velocity="measured"), expected, rtol=1e-12, atol=1e-12)
 
 
 def test_a_gated_wall_is_filtered_and_not_an_ellis_wall():

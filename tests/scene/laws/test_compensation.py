@@ -37,9 +37,7 @@ def test_dry_friction_that_is_compensated_lets_the_handle_coast_on():
     paddle = hl.SimulatedPaddle(m=M, b=DAMPING, T=T, coulomb=COULOMB)
     scene = hl.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=WIDTH, shape="dead_zone")(viscous=1, dry=0.8)
     log = paddle.run(scene, duration=0.2, v=0.1, dtype="float64")
-    np.testing.assert_allclose(
-        log.v, 0.1 - 0.2 * COULOMB / DAMPING * -np.expm1(-DAMPING * T / M) * np.arange(200), rtol=1e-11
-    )
+    np.testing.assert_allclose(log.v, 0.1 - 0.2 * COULOMB / DAMPING * -np.expm1(-DAMPING * T / M) * np.arange(200), rtol=1e-11)
 
 
 def test_a_resting_handle_is_left_at_rest():

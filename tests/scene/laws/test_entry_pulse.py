@@ -67,9 +67,7 @@ def test_a_pulse_keeps_within_its_force():
 def test_a_handle_inside_is_not_braked_and_one_that_comes_again_is():
     """Started inside: nothing. On a stiff wall it bounces, and every entry has its pulse."""
     assert not run(hl.braking_pulse(OPEN, part=1, mass=M), x=0.02, duration=0.02).F.any()
-    log = run(
-        hl.braking_pulse(OPEN, impulse=1e-4), hl.SimulatedPaddle(m=M, b=0.0, T=T, hand=hl.Hand(k=300, intent=0.012))
-    )
+    log = run(hl.braking_pulse(OPEN, impulse=1e-4), hl.SimulatedPaddle(m=M, b=0.0, T=T, hand=hl.Hand(k=300, intent=0.012)))
     entries = np.count_nonzero((log.x[1:] >= BOUNDARY) & (log.x[:-1] < BOUNDARY))
     assert entries >= 2
     assert np.count_nonzero(log.F) == entries

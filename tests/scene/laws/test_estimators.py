@@ -236,9 +236,7 @@ def test_eq_23_2_with_an_estimate_is_eq_23_3():
 
 def test_the_plain_difference_is_the_wall_without_an_estimate():
     one, other = wall("half_sample", velocity=backward_velocity()), wall("half_sample")
-    forces = [
-        load(hl.compile(s(k=300, B=0.2), T=T, dtype="float64")).run(400, PATH[:, None]).outputs for s in (one, other)
-    ]
+    forces = [load(hl.compile(s(k=300, B=0.2), T=T, dtype="float64")).run(400, PATH[:, None]).outputs for s in (one, other)]
     np.testing.assert_allclose(*forces, rtol=1e-9, atol=1e-9)
 
 
@@ -293,9 +291,7 @@ OWN = hl.parameters("k B", units="N/m N*s/m", values=(300, 0.2))
 DEAR = [
     pytest.param(kalman_velocity(acceleration=30, noise=NOISE, steady=False), 0.8e-3, "Kalman filter"),
     pytest.param(window_velocity(band=BAND, most=12), 1e-3, "adaptive window of 3, end fit", marks=pytest.mark.slow),
-    pytest.param(
-        window_velocity(band=BAND, most=4, fit="best"), 1e-3, "adaptive window of 2, end fit", marks=pytest.mark.slow
-    ),
+    pytest.param(window_velocity(band=BAND, most=4, fit="best"), 1e-3, "adaptive window of 2, end fit", marks=pytest.mark.slow),
 ]
 
 

@@ -243,9 +243,7 @@ def test_a_reset_strikes_off_what_one_contact_left_for_the_next(form, bound):
 
 @pytest.mark.parametrize("form, bound", [("series", "alpha_max"), ("parallel", "beta_max")])
 def test_the_firmware_gives_the_same_bits(form, bound):
-    scene = hl.passivity_controller(
-        WALL, form, **{bound: 5.0}, stored=hl.wall_energy(), forget=0.1, credit_max=1e-3, force_max=2
-    )
+    scene = hl.passivity_controller(WALL, form, **{bound: 5.0}, stored=hl.wall_energy(), forget=0.1, credit_max=1e-3, force_max=2)
     (F, seen), (felt, there) = (played(scene, dtype="float32", engine=engine) for engine in ("interpreter", "vm"))
     assert abs(F).max() > 0.5
     np.testing.assert_array_equal(F, felt)

@@ -178,4 +178,3 @@ def test_pendulum_whose_support_is_shaken():
         return solve_ivp(rate, (0, at[-1]), [3.0, 0.2], "DOP853", at, rtol=1e-12, atol=1e-14).y[:1].T
 
     check(mech, {"phi": mech[phi]}, reference, 0.001, 0.05, 1e-6)
-

@@ -13,9 +13,7 @@ from hapticlab.compiler.algebra.graph import Graph
 from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import MassError, ProgramLimitError, SceneError, UnitsError
 
-m, M, l, g, k, c = hl.parameters(
-    "m M l g k c", units="kg kg m m/s^2 N/m N*s/m", values=(0.1, 0.5, 0.2, 9.81, 40.0, 0.0)
-)
+m, M, l, g, k, c = hl.parameters("m M l g k c", units="kg kg m m/s^2 N/m N*s/m", values=(0.1, 0.5, 0.2, 9.81, 40.0, 0.0))
 z, phi = hl.coordinate("z", unit="m", initial=x(hl.n)), hl.coordinate("phi", unit="rad")
 bob = (z + l * sp.sin(phi), -l * sp.cos(phi))
 KINETIC = M * z.diff(t) ** 2 / 2 + m * (bob[0].diff(t) ** 2 + bob[1].diff(t) ** 2) / 2

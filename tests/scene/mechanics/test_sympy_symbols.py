@@ -100,9 +100,7 @@ def test_an_input_that_nobody_gave_is_refused(method):
 def test_a_coupler_as_an_input(method):
     """F = K (x - q) felt at the handle: the same motion as the equation by hand."""
     K = hl.parameters("K", units="N/m", values=300.0)
-    mech = hl.from_mechanics(
-        method(F), replace={F: K * (x(t) - q)}, units={q: "m", m: "kg", k: "N/m"}, values={m: 0.1, k: 40.0}
-    )
+    mech = hl.from_mechanics(method(F), replace={F: K * (x(t) - q)}, units={q: "m", m: "kg", k: "N/m"}, values={m: 0.1, k: 40.0})
     z, M, c = hl.coordinate("z", unit="m"), *hl.parameters("M c", units="kg N/m", values=(0.1, 40.0))
     by_hand = sp.Eq(M * z.diff(t, 2), K * (x(t) - z) - c * z)
     lead = 0.01 * np.sin(np.arange(50) / 9)[:, None]

@@ -80,9 +80,7 @@ def test_an_unknown_unit_is_refused():
         hl.parameters("q", units="furlongs_per_paddle")
 
 
-@pytest.mark.parametrize(
-    ("text", "metres"), [("10 mm", 0.01), ("1 cm", 0.01), ("2 inch", 0.0508), ("0.25 m", 0.25)]
-)
+@pytest.mark.parametrize(("text", "metres"), [("10 mm", 0.01), ("1 cm", 0.01), ("2 inch", 0.0508), ("0.25 m", 0.25)])
 def test_a_value_with_its_unit_is_converted(text, metres):
     assert hl.wall()(x_o=text).values["x_o"] == pytest.approx(metres, rel=1e-15)
 

@@ -141,9 +141,7 @@ def test_features_of_the_sample_are_the_same_at_the_sample(one, other):
     assert max(np.abs(k - f).max() for k, f in zip(known, found, strict=True)) < 1e-13
 
 
-@pytest.mark.parametrize(
-    ("one", "other"), [("circle", "polygon"), ("box", "box"), ("capsule", "rounded"), ("box", "half-plane")]
-)
+@pytest.mark.parametrize(("one", "other"), [("circle", "polygon"), ("box", "box"), ("capsule", "rounded"), ("box", "half-plane")])
 def test_features_of_the_sample_have_the_same_derivatives(one, other):
     """Held, a corner's distance is taken to second order, so that a disc that rolls over one feels it turn."""
     at, (a, b) = placed(8, count=200), pair(one, other)
