@@ -12,6 +12,8 @@ import hapticlab as hl
 from hapticlab.cli.main import main
 from hapticlab.cli.options import parser
 
+pytestmark = pytest.mark.interpreter
+
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text("utf-8")
 

@@ -25,6 +25,8 @@ from hapticlab.device.board.settings import nominal
 from hapticlab.device.link.serial_ports import Port
 from hapticlab.device.setup.calibrate import STEPS
 
+pytestmark = pytest.mark.interpreter
+
 EXAMPLE = Path(hl.__file__).parent / "examples" / "mass_on_coupler.py"
 PNG = b"\x89PNG\r\n\x1a\n"
 

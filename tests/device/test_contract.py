@@ -19,6 +19,8 @@ from hapticlab.records import Telemetry
 from hapticlab.scene.notation.symbols import coordinate, n, parameters, t, v, when, x
 from hapticlab.scene.scene import Scene
 
+pytestmark = pytest.mark.interpreter
+
 HAND = Hand(m=0.02, b=1, k=200, push=0.5, intent=lambda t: 0.004 * np.sin(20 * t))
 PADDLES = {
     "ideal": lambda: SimulatedPaddle(m=0.05, b=0.1, T=1e-3),

@@ -21,6 +21,8 @@ from hapticlab.analysis.sweeps import workers as workers_module
 from hapticlab.analysis.sweeps.sweep_chunks import measured
 from hapticlab.analysis.sweeps.workers import number_of, spread
 
+pytestmark = pytest.mark.interpreter
+
 HELD = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, counts_per_metre=5e4, hand=hl.Hand(m=0.1, b=2.0, k=200.0, push=1.0))
 AXES = {"k": np.geomspace(50, 3000, 90), "delay": np.array([0.0, 4e-4, 1e-3]), "T": np.array([1e-3, 7e-4])}
 

@@ -11,6 +11,8 @@ from hapticlab.compiler.ir.program import Block, Channel, Program
 from hapticlab.compiler.ir.trace import Builder, select
 from hapticlab.errors import EngineMissingError, ProgramError
 
+pytestmark = pytest.mark.interpreter
+
 
 def filtered_wall():
     """Return a float64 wall with a first-order filter: s' = s + a (x - s), F = k s where s > 0."""

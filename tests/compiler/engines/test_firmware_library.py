@@ -17,6 +17,8 @@ from binaries import elf_sections, exports, mach_o_commands, target
 from hapticlab.compiler.engines import firmware_library, toolchain
 from hapticlab.errors import EngineMissingError
 
+pytestmark = pytest.mark.machine_code
+
 ROOT = Path(__file__).parents[3]
 HERE = toolchain.running_target()
 CALLED = {"hl_host_run", "hl_host_verify", "hl_host_new", "hl_host_tick"}

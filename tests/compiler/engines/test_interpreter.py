@@ -10,6 +10,8 @@ from hapticlab.compiler.engines.interpreter import Interpreter, evaluate
 from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program
 from hapticlab.compiler.ir.trace import NUMPY_TYPE, Builder, floor, select
 
+pytestmark = pytest.mark.interpreter
+
 
 def apply(op, type, *operands, result=None):
     """Evaluate one instruction on numbers of a type."""

@@ -19,6 +19,8 @@ from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program
 from hapticlab.compiler.ir.trace import Builder
 from hapticlab.errors import ProgramError
 
+pytestmark = pytest.mark.machine_code
+
 EVERY = tuple(OPCODES)
 WORDS = (8, 16)
 
