@@ -11,7 +11,7 @@ from .sketch import Sketch, clearance
 
 
 def coupler(z):
-    """Return the force K (x - z) + b_c (x' - z') of a virtual coupler from the handle to a body at z, Fig. 23.4.
+    """Force K (x - z) + b_c (x' - z') of a virtual coupler from the handle to a body at z, Fig. 23.4.
 
     K = 200 N/m and b_c = 0.1 N s/m: with T = 1 ms passive on a paddle with b >= K T/2 + b_c = 0.2 N s/m, and a few
     hundredths more for the estimated velocity that the body sees.

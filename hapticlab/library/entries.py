@@ -82,7 +82,7 @@ class Catalogue(Mapping):
 
 
 def unknown(name, known):
-    """Say that the library has no such scene, and which come near."""
+    """The sentence about a name that the library does not have, with the nearest ones."""
     near = get_close_matches(str(name), known, 3, 0.5) or list(known)
     return f"the library has no scene {name!r}; did you mean {' or '.join(near)}?"
 

@@ -35,7 +35,7 @@ class Sketch:
         axes.axis("off")
 
     def place(self, points, wide=1.0, high=1.0):
-        """Return xs and ys of points in the picture, which grows to show them and so many u around."""
+        """The xs and ys of points in the picture, which grows to show them with a margin in u."""
         placed = [(float(x), float(y)) for x, y in points]  # few points: plain floats are faster than arrays
         if self._turn:
             c, s = self._turn
@@ -126,7 +126,7 @@ class Sketch:
             self.text(at(0.5), label, right=right, up=up)
 
     def _along(self, start, end, height):
-        """Return a function: where is a part of the way from start to end, and heights [u] to its left; and the length."""
+        """(Function, length): the point at a fraction of the line from start to end and at heights [u] to its left."""
         (x, y), (x2, y2) = start, end
         dx, dy = x2 - x, y2 - y
         length = math.hypot(dx, dy) or 1.0
@@ -180,12 +180,12 @@ class Sketch:
 
 
 def clearance(x, z, spare=0.01):
-    """Return how much farther to the right [m] a body at z stands, so that the handle at x does not run into it."""
+    """Distance [m] by which a body at z is drawn farther to the right, so that the handle at x does not run into it."""
     return max(0.0, x - z - spare)
 
 
 def ring(centre, radius, sides):
-    """Return the corners of a polygon that stands for a circle; the last is the first."""
+    """Corners of a polygon that is drawn for a circle; the last is the first."""
     return [(centre[0] + radius * c, centre[1] + radius * s) for c, s in _turns(sides)]
 
 
@@ -197,7 +197,7 @@ def _turns(sides):
 
 @lru_cache(1000)
 def _letters(text):
-    """Return about how many letters a text has once it is set."""
+    """Approximate number of letters of a text once it is typeset."""
     return len(re.sub(r"\\\w+", "o", text).strip("$"))
 
 

@@ -11,7 +11,7 @@ from .notation.symbols import t, v, x
 
 
 def definitions(equations, coordinates):
-    """Return (coordinate -> what it is, the other equations), each definition free of defined coordinates.
+    """(Coordinate -> its definition, the other equations), each definition free of defined coordinates.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def definitions(equations, coordinates):
 
 
 def substituted(expr, known):
-    """Return an expression with every defined coordinate, and its rates, put in."""
+    """An expression with every defined coordinate, and its rates, put in."""
     if not known or not expr.has(*known):
         return expr
     put = dict(known)

@@ -55,7 +55,7 @@ class ExplicitForm:
 
 
 def explicit_form(scene):
-    """Return the scene's :class:`ExplicitForm`.
+    """The :class:`ExplicitForm` of a scene.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def explicit_form(scene):
 
 
 def _rows(equations, own, coordinates, orders):
-    """Return two dicts, coordinate -> row of M and coordinate -> right side, of the equations as written."""
+    """Two dicts, coordinate -> row of M and coordinate -> right side, of the equations as written."""
     unknowns = [q.diff(t, orders[q]) for q in coordinates]
     rows = [_affine(e.lhs - e.rhs, unknowns, e) for e in equations]
     M = [tuple(coefficients.get(a, sp.S.Zero) for a in unknowns) for coefficients, _ in rows]

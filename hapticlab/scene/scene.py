@@ -90,7 +90,7 @@ class Scene:
         _set(self, "values", Frozen({**defaults, **bound}))
 
     def __call__(self, /, **values):
-        """Return the scene with these parameters bound, each in SI or as a text with its unit."""
+        """The scene with these parameters bound, each in SI or as a text with its unit."""
         known, bound = self.parameters, copy(self)  # the equations are checked already
         _set(bound, "values", Frozen({**self.values, **{name: _bound(known, name, one) for name, one in values.items()}}))
         return bound
@@ -113,11 +113,11 @@ class Scene:
         return {name: _unit_shown(expr) for name, expr in self.watch.items()}
 
     def explicit(self):
-        """Return the equations solved for what they determine: ``M a = f`` and the difference equations."""
+        """The equations solved for the unknowns they determine: ``M a = f`` and the difference equations."""
         return explicit_form(self)
 
     def _expressions(self):
-        """Return everything written, and the starts of all that moves in it; a start may use what starts itself."""
+        """Every expression of the scene, and the starts of its coordinates and signals, whose own starts follow."""
         found = [self.force, *written_in(self.eom), *self.watch.values()]
         started, kinds = set(), {type(q) for q in applied(found, "coordinate", "signal")}
         while kinds - started:
@@ -141,7 +141,7 @@ class Scene:
 
 
 def _unit_shown(expr):
-    """Return the SI unit of what is watched; an angle and its rate keep the rad they were declared with."""
+    """SI unit of a watched expression; an angle and its rate keep the rad they were declared with."""
     unit, kind = unit_of(expr), type(expr.expr if isinstance(expr, sp.Derivative) else expr)
     return f"rad{unit[1:]}" if getattr(kind, "unit", "") == "rad" and unit[:1] == "1" else unit
 

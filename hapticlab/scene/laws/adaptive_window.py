@@ -58,7 +58,7 @@ def window_velocity(*, band, most=8, fit="end", name="v_window"):
 
 
 def _end_fit(band, most, name):
-    """Return the displacement per period and its equations.
+    """The displacement per period and its equations.
 
     With s_i = (x(n) - x(n-i))/i the line over i periods passes within band of every sample between where s_i lies within
     all s_j -+ band/j, j < i. These cones only narrow, so that the work grows with most alone; one that a line has left
@@ -84,7 +84,7 @@ def _end_fit(band, most, name):
 
 
 def _best_fit(band, most, name):
-    """Return the displacement per period and its equations; the line of least squares over each window."""
+    """The displacement per period and its equations, from the line of least squares over each window."""
     slope, longer, eom = x(n) - x(n - 1), None, []
 
     def kept(part, unit, value):

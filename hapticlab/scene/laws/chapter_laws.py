@@ -92,7 +92,7 @@ def _checked(velocity):
 
 
 def _scene(force, name, estimate):
-    """Return a scene that takes the equations of its velocity along."""
+    """A scene of a force and of the difference equations of its velocity estimate."""
     return Scene(force, estimate.eom, name=f"{name}, {estimate.name}") if estimate else Scene(force, name=name)
 
 
@@ -184,7 +184,7 @@ def virtual_coupler(z, *, K, b):
 
 
 def predicted_sample(signal=x):
-    """Return the prediction of the next sample from the last two, 2 x(n) - x(n-1), Eq. (23.4).
+    """The next sample predicted from the last two, 2 x(n) - x(n-1), Eq. (23.4).
 
     Examples
     --------

@@ -133,7 +133,7 @@ def _speed(velocity):
 
 
 def _crossing(scene, x_o):
-    """Return the conditions that this sample is the first one inside, and that it is inside."""
+    """Two conditions: this sample is the first one inside, and it is inside."""
     if x_o is None and "x_o" not in scene.parameters:
         raise SceneError(f"{scene.name} has no parameter x_o; say where its boundary is: x_o=0.01, in m")
     boundary = scene.parameters["x_o"] if x_o is None else amount(x_o, "m", "x_o")

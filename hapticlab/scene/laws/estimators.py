@@ -59,7 +59,7 @@ class VelocityEstimate:
         return bool(self._transfer)
 
     def transfer(self, period):
-        """Return (numerator, denominator) in powers of 1/z, from positions [m] to the estimate [m/s], at T = period [s].
+        """(Numerator, denominator) in powers of 1/z, from positions [m] to the estimate [m/s], at T = period [s].
 
         Raises
         ------
@@ -137,7 +137,7 @@ def filtered_velocity(*, tau, name="v_filtered"):
 
 
 def positive(given, unit, name, owner):
-    """Return a number, a text with a unit or an expression as an expression > 0 in that unit, as far as it is known."""
+    """An expression > 0 in a unit, as far as its sign is known, from a number, a text with a unit or an expression."""
     value = amount(given, unit, name)
     number = number_of(value)
     if number.is_number and not number > 0:
@@ -146,7 +146,7 @@ def positive(given, unit, name, owner):
 
 
 def at_least_zero(given, unit, name, owner):
-    """Return the same as an expression >= 0."""
+    """An expression >= 0 in a unit, from the same."""
     value = amount(given, unit, name)
     number = number_of(value)
     if number.is_number and not (number >= 0 and math.isfinite(number)):

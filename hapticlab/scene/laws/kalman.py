@@ -74,7 +74,7 @@ def _steady_gains(lead):
 
 
 def _gains(index, start, name):
-    """Return gains by the recursion of the covariance, in units of the noise and the period."""
+    """Kalman gains by the recursion of the covariance, in units of the noise and the period."""
     p = [signal(f"{name}_p{part}", unit="1", initial=first) for part, first in (("xx", 1), ("xv", 0), ("vv", start))]
     ahead = [signal(f"{name}_a{part}", unit="1") for part in ("xx", "xv", "vv")]
     gain = [signal(f"{name}_g{part}", unit="1") for part in ("x", "v")]

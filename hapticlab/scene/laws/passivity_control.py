@@ -189,7 +189,7 @@ def _parallel(scene, p, stored, predict, lag):
 
 
 def _slipped(scene, slip):
-    """Return the scene's force where it sees the handle less the slip."""
+    """The scene's force at the handle's position less the slip."""
     F = scene.force
     put = {a: a - slip(*a.args) for a in F.atoms(x)}
     put |= {a: a - (slip(*a.args) - slip(a.args[0] - 1)) / T for a in F.atoms(v)}
@@ -197,12 +197,12 @@ def _slipped(scene, slip):
 
 
 def _idle(raw, p):
-    """Return the equation of how long the scene's own force has been zero, where that is asked for."""
+    """The equation of the time since the scene's own force was last other than zero, where a limit on it is given."""
     return [_is(_IDLE(n), when(sp.Eq(raw(n), 0), _IDLE(n - 1) + T, 0))] if "reset" in p else []
 
 
 def _kept(credit, p):
-    """Return what is left of a credit a sample later; debt is never struck off."""
+    """The credit a sample later; a debt stays whole."""
     if "reset" in p:
         credit = when(_IDLE(n - 1) >= p["reset"], sp.Min(credit, 0), credit)
     if "credit_max" in p:

@@ -70,5 +70,5 @@ def device_image(constraint, *, name="image"):
 
 
 def _per(unit):
-    """Return the unit of a multiplier: of a force times metres, per unit of the constraint."""
+    """Unit of a multiplier: of a force times metres, per unit of the constraint."""
     return "N*m" if unit == "1" else f"N*m*({unit})"

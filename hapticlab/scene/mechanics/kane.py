@@ -21,7 +21,7 @@ REPEATED = 1e-9
 
 
 def of_kane(method, given, enforce):
-    """Return the :class:`Mechanics` of a KanesMethod; see :func:`~hapticlab.scene.mechanics.sympy_models.from_mechanics`."""
+    """The :class:`Mechanics` of a KanesMethod; see :func:`~hapticlab.scene.mechanics.sympy_models.from_mechanics`."""
     check_version(method, READ)
     _formed(method)
     still = dict.fromkeys(method._uaux, sp.S.Zero) | {u.diff(t): sp.S.Zero for u in method._uaux}
@@ -51,7 +51,7 @@ def _formed(method):
 
 
 def _kinematics(method):
-    """Return (q, u, K, rest) of the kinematic equations K u + rest = 0.
+    """(q, u, K, rest) of the kinematic equations K u + rest = 0.
 
     A speed that is in none of them, such as the spin of a wheel, is the rate of a coordinate of its own.
     """
@@ -66,7 +66,7 @@ def _kinematics(method):
 
 
 def _speeds(u, k_u, rest):
-    """Return speed -> expression of coordinates and rates, or None where the kinematic equations do not give them."""
+    """Speed -> expression of coordinates and rates, or None where the kinematic equations do not determine them."""
     if not k_u.rows == k_u.cols > 0:
         return None
     if k_u.is_diagonal() and all(entry != 0 for entry in k_u.diagonal()):
@@ -80,7 +80,7 @@ def _speeds(u, k_u, rest):
 
 
 def _unconstrained(method, q, u):
-    """Return Kane's equations of all speeds, as if none depended on another."""
+    """Kane's equations of all speeds, as if none depended on another."""
     _, _, K, rest = _kinematics(method)
     zero = list(K * sp.Matrix(u) + rest)
     extra = {"u_auxiliary": list(method._uaux)} if len(method._uaux) else {}
@@ -90,7 +90,7 @@ def _unconstrained(method, q, u):
 
 
 def _starts(given, speeds, still, method):
-    """Return the arguments of a vocabulary without speeds: their starts turned into starts of rates."""
+    """The arguments of a vocabulary without speeds: their starts turned into starts of rates."""
     names = {type(u).__name__: u for u in speeds}
     initial, units = (dict(given[what] or {}) for what in ("initial", "units"))
     units = {key: unit for key, unit in units.items() if names.get(key, key) not in speeds}
@@ -103,7 +103,7 @@ def _starts(given, speeds, still, method):
 
 
 def _independent(configuration, velocity, q, words):
-    """Return the velocity constraints that say more than the rates of the configuration constraints.
+    """The velocity constraints that are independent of the rates of the configuration constraints.
 
     KanesMethod asks for as many as there are dependent speeds, those rates among them.
     """
@@ -125,7 +125,7 @@ def _independent(configuration, velocity, q, words):
 
 
 def _numbers(J, words):
-    """Return symbol -> number: parameters' values and coordinates' starts, something where there are none; rates are 0."""
+    """Symbol -> number: parameters' values and coordinates' starts, an arbitrary number where there are none; rates are 0."""
     at = {t: sp.S.Zero}
     for k, (symbol, made) in enumerate(words.names):
         number = sp.sympify(getattr(made, "value", getattr(type(made), "initial", sp.nan))).evalf()
@@ -134,7 +134,7 @@ def _numbers(J, words):
 
 
 def _in_rates(method, q, speeds, plain, still, given, enforce):
-    """Return the model of second order: u are functions of q and q', so with u' = T q'' + b it is T'M T q'' = T'(f - M b)."""
+    """The model of second order: u are functions of q and q', so with u' = T q'' + b it is T'M T q'' = T'(f - M b)."""
     u = list(speeds)
     whole = _unconstrained(method, q, u) if len(method._f_h) or len(method._udep) else method
     velocity = list(method._k_nh * method.u + method._f_nh) if len(method._udep) else []
@@ -160,7 +160,7 @@ def _in_rates(method, q, speeds, plain, still, given, enforce):
 
 
 def _in_speeds(method, still, constrained, given, enforce):
-    """Return the model of first order: q' = G u, M u' = f."""
+    """The model of first order: q' = G u, M u' = f."""
     states, u = [*method.q, *method.u], list(method.u)
     M, f = method.mass_matrix.xreplace(still), method.forcing.xreplace(still)
     turning = [method.kindiffdict()[p.diff(t)].xreplace(still) for p in method.q]

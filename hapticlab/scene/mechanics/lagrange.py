@@ -78,7 +78,7 @@ class Mechanics:
             raise SceneError(f"two contacts are called {twice}; give each its own, hl.Contact(..., name='...')")
 
     def __getitem__(self, name):
-        """Return the coordinate of a name; of a symbol of SymPy, what it became."""
+        """The coordinate of a name; the coordinate or parameter that a symbol of SymPy became."""
         if isinstance(name, sp.Basic) and name in dict(self.names):
             return dict(self.names)[name]
         known = {type(q).__name__: q for q in self.coordinates}
@@ -176,7 +176,7 @@ def lagrange(L, *, dissipation=0, forces=None, constraints=(), contacts=(), enfo
 
 
 def of_energies(L, R, forces, coordinates, constraints, contacts=(), **facts):
-    """Return the :class:`Mechanics` of energies and forces that have been checked."""
+    """The :class:`Mechanics` of energies and forces that have been checked."""
     rates = [q.diff(t) for q in coordinates]
     momenta = [Partial(L, w) for w in rates]
     N = range(len(rates))  # entries above the diagonal are those below it, so that the compiler sees that M is symmetric
@@ -198,17 +198,17 @@ def _listed(given):
 
 
 def _touches(contact, q):
-    """Tell whether a contact acts on a coordinate: by its gap, or by friction along its slip."""
+    """Whether a contact acts on a coordinate: by its gap, or by friction along its slip."""
     return any(getattr(contact, part, sp.S.Zero).has(q) for part in ("gap", "slip"))
 
 
 def _parts(contact):
-    """Return the expressions of a contact or friction: what moves it first, then its force and its constants."""
+    """The expressions of a contact or friction: the gap or slip first, then its force and its constants."""
     return (contact.gap if isinstance(contact, Contact) else contact.slip, contact.force, *contact.constants)
 
 
 def _forces(given):
-    """Return forces as a dict; refuse what has no coordinates for keys."""
+    """Forces as a dict; its keys have to be coordinates."""
     if given is not None and not isinstance(given, Mapping):
         raise SceneError(f"forces = {given}; needs a dict that says on which coordinate each acts, such as forces={{z: F}}")
     for q in given or ():
@@ -218,7 +218,7 @@ def _forces(given):
 
 
 def _along(g, q):
-    """Return the gradient of a constraint by a coordinate, or by its rate where the constraint holds rates."""
+    """Gradient of a constraint by a coordinate, or by its rate where the constraint holds rates."""
     return Partial(g, q.diff(t) if g.atoms(sp.Derivative) else q).doit()
 
 

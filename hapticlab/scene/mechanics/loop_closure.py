@@ -39,7 +39,7 @@ def check_range(drivers, sources, start):
 
 
 def _closest(drivers, sources, start):
-    """Return (margin, number of the step, drivers) where a loop is closest to opening: a search that narrows."""
+    """(Margin, number of the step, drivers) where a loop is closest to opening, by a search that narrows."""
     generator = np.random.default_rng(23)
     centre, half = np.array([_box(q, start) for q in drivers]).reshape(-1, 2).T
     one = len(drivers) == 1
@@ -57,7 +57,7 @@ def _closest(drivers, sources, start):
 
 
 def _where_it_closes(drivers, sources, start):
-    """Return the range of a single driver, about the start, in which the loop closes."""
+    """Range of a single driver, about the start, in which the loop closes."""
     if len(drivers) > 1:
         return ""
     points = np.linspace(*_limits(drivers[0], start), 721)
@@ -76,7 +76,7 @@ def _box(q, start):
 
 
 def _margins(drivers, sources, start, points):
-    """Return the margin of each step at each point, shape (steps, points)."""
+    """Margin of each step at each point, shape (steps, points)."""
     at = {**start, **dict(zip(drivers, points.T, strict=True))}
     rows = []
     with np.errstate(all="ignore"):
@@ -89,7 +89,7 @@ def _margins(drivers, sources, start, points):
 
 
 def driven_over(drivers, start):
-    """Return driver -> many values over the range that is checked, for those that have one."""
+    """Driver -> many values over its checked range, for the drivers that have one."""
     generator = np.random.default_rng(17)
     ranged = [q for q in drivers if _limits(q, start) is not None]
     if len(ranged) == 1:
@@ -98,7 +98,7 @@ def driven_over(drivers, start):
 
 
 def wraps(drivers, sources, start):
-    """Return the dependent angles that jump when a driver goes through its range."""
+    """The dependent angles that jump when a driver goes through its range."""
     found = set()
     for q in drivers:
         if _limits(q, start) is None:
@@ -113,12 +113,12 @@ def wraps(drivers, sources, start):
 
 
 def declared_range(q):
-    """Return (low, high) of a coordinate, infinite where none was declared."""
+    """(Low, high) of a coordinate, infinite where none was declared."""
     return getattr(type(q), "low", -math.inf), getattr(type(q), "high", math.inf)
 
 
 def _limits(q, start):
-    """Return the range of a driver that is checked, or None."""
+    """The checked range of a driver, or None."""
     low, high = declared_range(q)
     if not math.isinf(low) and not math.isinf(high):
         return low, high
@@ -126,35 +126,35 @@ def _limits(q, start):
 
 
 def is_angle(q):
-    """Tell whether a coordinate is an angle, which may go round."""
+    """Whether a coordinate is an angle, which may go round."""
     return type(q).unit in ("rad", "1")
 
 
 def is_coordinate(symbol):
-    """Tell whether a symbol is a coordinate, as q(t)."""
+    """Whether a symbol is a coordinate, as q(t)."""
     return getattr(type(symbol), "role", None) == "coordinate"
 
 
 def name(q):
-    """Return what a coordinate is called, without its (t)."""
+    """Name of a coordinate, without its (t)."""
     return type(q).__name__
 
 
 def names(coordinates):
-    """Return the names of coordinates, for a message."""
+    """Names of coordinates, for a message."""
     return ", ".join(map(name, coordinates))
 
 
 def values(coordinates, at):
-    """Return "q = 0.1, z = 0.2" of coordinates, for a message."""
+    """The text "q = 0.1, z = 0.2" of coordinates, for a message."""
     return ", ".join(f"{name(q)} = {at[q]:.6g}" for q in coordinates)
 
 
 def in_unit(q, value, per=""):
-    """Return a start as it can be declared: every digit, and the unit a parameter for it needs."""
+    """A start as it can be declared: every digit, and the unit a parameter for it needs."""
     return f"{name(q)} = {float(value)!r} {type(q).unit}{per}".removesuffix(" 1")
 
 
 def shown(constraints):
-    """Return constraints as equations, for a message."""
+    """Constraints as equations, for a message."""
     return " and ".join(f"{c} = 0" for c in constraints)

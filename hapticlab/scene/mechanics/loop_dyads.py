@@ -39,7 +39,7 @@ class Equations(Terms):
     # one equation, one unknown
 
     def alone(self, expr, q):
-        """Return the step that solves ``expr = 0`` for q."""
+        """The step that solves ``expr = 0`` for q."""
         found = self.terms(expr, {q})
         if set(found) <= {(q,), ()} and (q,) in found:
             return self._linear(q, found[q,], found.get((), sp.S.Zero))
@@ -62,7 +62,7 @@ class Equations(Terms):
         return Step(q, (side * sp.sqrt(inside) - b) / (2 * a), inside / size)
 
     def _circle(self, angle, found):
-        """Return (cos, sin, margin) of an angle with A cos + B sin + C = 0."""
+        """(Cos, sin, margin) of an angle with A cos + B sin + C = 0."""
         cos, sin = sp.cos(angle), sp.sin(angle)
         if not set(found) <= {(cos,), (sin,), ()}:
             raise NotClosed(f"{angle} does not enter as A cos + B sin + C")
@@ -76,7 +76,7 @@ class Equations(Terms):
         return (B * root - A * C) / size, (-A * root - B * C) / size, inside / size
 
     def _of(self, angle, q, solution):
-        """Return the step of a coordinate from the cosine and sine of an angle, q or -q and what is known beside it."""
+        """The step of a coordinate from the cosine and sine of an angle, q or -q plus a known angle."""
         cos, sin, margin = solution
         sign = -1 if angle.coeff(q) == -1 else 1
         rest = sp.expand(angle - sign * q)
@@ -89,7 +89,7 @@ class Equations(Terms):
     # two equations, two unknowns
 
     def pair(self, first, second, p, q):
-        """Return the two steps that solve ``first = second = 0`` for p and q."""
+        """The two steps that solve ``first = second = 0`` for p and q."""
         angles = {}
         found = [self.terms(e, {p, q}, angles) for e in (first, second)]
         angles = list(angles.values())
@@ -132,7 +132,7 @@ class Equations(Terms):
         return self._of(first, p, self._circle(first, circle)), self._of(last, q, (*turned, sp.S.One))
 
     def _link(self, found, angle):
-        """Return the two coefficients (of x and y) of cos and of sin; they are those of a link that turns, or refused."""
+        """The coefficients (of x and y) of cos and of sin, which must be those of a link that turns."""
         c, s = ([f.get((kind(angle),), sp.S.Zero) for f in found] for kind in (sp.cos, sp.sin))
         if not (self.zero(c[0] ** 2 + c[1] ** 2 - s[0] ** 2 - s[1] ** 2) and self.zero(c[0] * s[0] + c[1] * s[1])):
             raise NotClosed(f"{angle} does not turn a rigid link")
@@ -174,7 +174,7 @@ class Equations(Terms):
 
 
 def _moves(expr):
-    """Tell whether an expression holds more than parameters."""
+    """Whether an expression holds more than parameters."""
     return bool(expr.atoms(sp.Function)) or any(s.name == "t" for s in expr.free_symbols)
 
 
@@ -186,7 +186,7 @@ def _angle_in(found):
 
 
 def _atan2(sin, cos, near):
-    """Return the angle with this sine and cosine that lies nearest a value; its cut is as far from there as it can be."""
+    """The angle of a sine and cosine that lies nearest a value; its branch cut is half a turn away."""
     quarter = round(near / (math.pi / 2))
     y, x = [(sin, cos), (-cos, sin), (-sin, -cos), (cos, -sin)][quarter % 4]
     # left as it is: SymPy would ask at length for the signs of its arguments

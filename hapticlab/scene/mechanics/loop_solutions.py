@@ -64,12 +64,12 @@ class Embedding:
 
 
 def is_holonomic(constraint):
-    """Tell whether a constraint holds positions and time alone."""
+    """Whether a constraint holds positions and time alone."""
     return not constraint.has(sp.Derivative, v)
 
 
 def embed(constraints, coordinates, start):
-    """Return the :class:`Embedding` of holonomic constraints.
+    """The :class:`Embedding` of holonomic constraints.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def _has_range(q):
 
 
 def _staged(equations, constraints, unknown):
-    """Return [(constraints, steps)]: one unknown of one constraint at a time, else two of two."""
+    """[(Constraints, steps)]: one unknown of one constraint at a time, else two of two."""
     left, open_, found = list(constraints), list(unknown), []
     while left:
         held = {c: [q for q in open_ if c.has(q)] for c in left}
@@ -208,6 +208,6 @@ def _agrees(constraint, start):
 
 
 def _generic(start):
-    """Return values that are nothing in particular."""
+    """Arbitrary values, for tests of identities."""
     generator = np.random.default_rng(5)
     return {s: float(value * generator.uniform(0.9, 1.1) + generator.uniform(0.01, 0.1)) for s, value in start.items()}

@@ -18,7 +18,7 @@ _EVALUATE = {
 
 
 def number(expr, at):
-    """Return an expression as a float or an array, ``at`` holding what its symbols and functions of time are."""
+    """An expression as a float or an array, at the values ``at`` of its symbols and functions of time."""
     if expr in at:
         return at[expr]
     if expr.is_number:
@@ -43,12 +43,12 @@ class Terms:
         self.start, self.generic = start, generic
 
     def zero(self, expr):
-        """Tell whether an expression vanishes identically."""
+        """Whether an expression vanishes identically."""
         parts = [abs(number(part, self.generic)) for part in sp.Add.make_args(sp.sympify(expr))]
         return abs(number(expr, self.generic)) <= 1e-11 * max(parts)
 
     def terms(self, expr, unknown, angles=None):
-        """Return {monomial: coefficient}; a monomial is a tuple of unknown lengths, cosines and sines.
+        """{Monomial: coefficient}; a monomial is a tuple of unknown lengths, cosines and sines.
 
         ``angles`` collects the unknown angles, so that several equations are written in the same ones.
         """
@@ -96,7 +96,7 @@ class Terms:
 
 
 def _of_angle(expr, unknown, angles):
-    """Return the terms of cos or sin of an unknown angle, in the first angle met that differs from it by known ones."""
+    """The terms of cos or sin of an unknown angle, in the first angle met that differs from it by known ones."""
     parts = sp.Add.make_args(sp.expand(expr.args[0]))
     own = sp.Add(*(part for part in parts if part.has(*unknown)))
     if any(not (part / u).is_number for part in sp.Add.make_args(own) for u in unknown if part.has(u)):

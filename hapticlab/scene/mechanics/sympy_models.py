@@ -105,7 +105,7 @@ def _of_lagrange(method, given, enforce):
 
 
 def _loads(method):
-    """Return pairs (component of a velocity, component of the force or torque along it)."""
+    """Pairs (component of a velocity, component of the force or torque along it)."""
     if not method.forcelist:
         return []
     if method.inertial is None:

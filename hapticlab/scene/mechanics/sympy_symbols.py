@@ -72,7 +72,7 @@ class Vocabulary:
                 self.table[u] = self.table[q].diff(t)
 
     def __call__(self, expr):
-        """Return an expression in the words of a scene."""
+        """An expression in the symbols of a scene."""
         expr = sp.sympify(expr)
         put = {**self.table, **self.inputs}
         for d in expr.atoms(sp.Derivative):
@@ -86,7 +86,7 @@ class Vocabulary:
         return tuple({**self.table, **self.inputs}.items())
 
     def _rate(self, d):
-        """Return the rate of an input; refuse one that would hold an acceleration."""
+        """The rate of an input; refuse one that would hold an acceleration."""
         given, order = self.inputs[d.expr], d.derivative_count
         most = {"coordinate": 1, x: 2, v: 1}
         for part in given.atoms(sp.Function, sp.Derivative):
@@ -101,7 +101,7 @@ class Vocabulary:
         return given
 
     def _keyed(self, given, what, rates=False):
-        """Return a dict symbol -> value of one whose keys are symbols or their names."""
+        """A dict symbol -> value from one whose keys are symbols or their names."""
         names = [_name(s) for s in self.symbols]
         known = dict(zip(names, self.symbols, strict=True)) | {s: s for s in self.symbols}
         if rates:
@@ -163,11 +163,11 @@ class Vocabulary:
             self.table[q] = coordinate(self._word(q), unit=unit, initial=start, rate=rate)
 
     def _plain(self, given):
-        """Return an initial value whose constants, if any, are parameters."""
+        """An initial value whose constants, if any, are parameters."""
         return given.xreplace(self.table) if isinstance(given, sp.Basic) else given
 
     def _word(self, symbol):
-        """Return a name that nothing has yet, and note it where it is another than the symbol's own."""
+        """A name that is still free; a note says so where it differs from the symbol's own."""
         own = _name(symbol)
         plain = own if own.isidentifier() else re.sub(r"[\W_]+", "_", own).strip("_") or "q"
         plain = f"q{plain}" if plain[0].isdigit() else plain
@@ -181,7 +181,7 @@ class Vocabulary:
 
 
 def gathered(constraint):
-    """Return a constraint with cos a cos b - sin a sin b as cos(a + b), as loops that are solved in closed form are written.
+    """A constraint with cos a cos b - sin a sin b as cos(a + b), the form in which loops are solved in closed form.
 
     Joints write each frame in the one before, so that a loop of SymPy holds products of cosines instead.
     """
@@ -201,7 +201,7 @@ def _name(symbol):
 
 
 def _symbols(expressions):
-    """Return (constants, functions of time) that expressions hold, each in the order of names."""
+    """(Constants, functions of time) that expressions hold, each in the order of names."""
     constants, functions = set(), set()
     for expr in map(sp.sympify, expressions):
         constants |= {s for s in expr.free_symbols if isinstance(s, sp.Symbol) and not isinstance(s, Parameter)} - {t, n}

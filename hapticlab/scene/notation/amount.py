@@ -61,7 +61,7 @@ class Amount(sp.Expr):
 
 
 def amount(given, unit, where):
-    """Return a number, a text such as '5 mm' or an expression as an expression in a unit; refuse any other unit."""
+    """An expression in a unit, from a number, a text such as '5 mm' or an expression; refuse any other unit."""
     if isinstance(given, str) or (isinstance(given, (int, float)) and not isinstance(given, bool)):
         number = in_si(given, unit, where)
         if not math.isfinite(number):
@@ -77,7 +77,7 @@ def amount(given, unit, where):
 
 
 def turned(angle):
-    """Return an angle [rad]; one within a rounding of a quarter turn as that quarter turn, whose sine is 0 or 1.
+    """An angle [rad]; one within a rounding of a quarter turn as that quarter turn, whose sine is 0 or 1.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def turned(angle):
 
 
 def number_of(expr):
-    """Return an expression with its amounts as plain numbers."""
+    """An expression with its amounts as plain numbers."""
     return expr.xreplace({a: a.value for a in expr.atoms(Amount)})
 
 

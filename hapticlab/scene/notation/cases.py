@@ -25,7 +25,7 @@ class Piecewise(sp.Piecewise):
 
 
 def when(condition, value, otherwise=0):
-    """Return value where condition holds, else otherwise, as the cases of Eq. (23.1).
+    """A value where a condition holds, else another, as the cases of Eq. (23.1).
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ _NOT_REAL = (sp.I, sp.zoo, sp.nan, sp.oo, -sp.oo)
 
 
 def applied(expressions, *roles):
-    """Return the applied functions of a role (coordinate, signal, handle), sorted by name."""
+    """The applied functions of a role (coordinate, signal, handle), sorted by name."""
     atoms = {a for e in expressions for a in _functions(e)}
     return sorted((a for a in atoms if getattr(type(a), "role", None) in roles), key=str)
 
@@ -44,7 +44,7 @@ def _functions(expr):
 
 
 def equations(eom):
-    """Return the equations and models as a tuple; refuse what is none, and a signal that is not defined once, at n."""
+    """The equations and models as a tuple; refuse anything else, and a signal that is not defined exactly once, at n."""
     is_one = isinstance(eom, (str, sp.Basic)) or is_model(eom) or not hasattr(eom, "__iter__")
     listed = (eom,) if is_one else tuple(eom)
     defined = set()
@@ -69,12 +69,12 @@ def equations(eom):
 
 
 def is_model(entry):
-    """Tell whether an entry of ``eom`` is a model, of :func:`~hapticlab.scene.mechanics.lagrange.lagrange`, and no equation."""
+    """Whether an entry of ``eom`` is a model, of :func:`~hapticlab.scene.mechanics.lagrange.lagrange`, and no equation."""
     return hasattr(entry, "written")
 
 
 def written_in(eom):
-    """Return every expression of equations of motion: the sides of equations, and what models are made of."""
+    """Every expression of equations of motion: the sides of equations, and the expressions of models."""
     return [expr for entry in eom for expr in (entry.written if is_model(entry) else entry.args)]
 
 
@@ -88,7 +88,7 @@ def _check_defines(left, equation):
 
 
 def named(watch, coordinates):
-    """Return what is watched as a dict name -> expression."""
+    """The watched channels as a dict name -> expression."""
     if isinstance(watch, Mapping):
         return {check_name(name, "watched channel"): expression(expr, f"watch {name}") for name, expr in watch.items()}
     if not isinstance(watch, (str, sp.Basic)) and not hasattr(watch, "__iter__"):
@@ -161,7 +161,7 @@ def _undeclared(symbol):
 
 
 def parameters_in(expressions):
-    """Return name -> Parameter in alphabetical order; refuse two declarations, of any kind, under one name."""
+    """Name -> Parameter in alphabetical order; refuse two declarations, of any kind, under one name."""
     found = {}
     for p in sorted({p for e in expressions for p in e.atoms(Parameter)} - {T}, key=sp.default_sort_key):
         if found.setdefault(p.name, p) != p:
@@ -184,7 +184,7 @@ def parameters_in(expressions):
 
 
 def _declared(kind):
-    """Return what tells a declaration from another of the same name."""
+    """The facts that differ between two declarations of the same name."""
     if isinstance(kind, Parameter):
         value = f" = {kind.value:g}" if kind.value == kind.value else ""
         return f"{kind.unit}{value}"

@@ -19,7 +19,7 @@ class _Unworked(sp.Expr):
     is_number = False
 
     def doit(self, **hints):
-        """Return the derivative in symbols."""
+        """The derivative in symbols."""
         return self._worked_out(self.args[0].doit(**hints))
 
     def _latex(self, printer):
@@ -103,7 +103,7 @@ class Rate(_Unworked):
 
 
 def rates_of(expr):
-    """Return variable -> rate for what moves in an expression; a rate q' is there only where its acceleration is not."""
+    """Variable -> rate of everything in an expression that moves; a rate q' is there only where its acceleration is not."""
     moving = {}
     for f in sorted(expr.atoms(sp.Function), key=str):
         role = getattr(type(f), "role", None)

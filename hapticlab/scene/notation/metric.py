@@ -34,7 +34,7 @@ _JOINED = re.compile(r"\s*((?<!\*)\*(?!\*)|/)\s*|\s+")
 
 @lru_cache(maxsize=1024)
 def metric(unit):
-    """Return (size in SI units, SI exponents) of a unit, or None for one that only pint knows.
+    """(Size in SI units, SI exponents) of a unit, or None for one that only pint knows.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ class Parameter(sp.Symbol):
         return (*super()._hashable_content(), self.unit, self.low, self.high, str(self.value))
 
     def check(self, value):
-        """Return the value as a float in SI, or raise ParameterError saying what is needed."""
+        """The value as a float in SI, within the parameter's range."""
         number = in_si(value, self.unit, self.name)
         kind, word = kind_of(self.unit)
         if not math.isfinite(number):

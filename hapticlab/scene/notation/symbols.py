@@ -146,7 +146,7 @@ def signal(name, *, unit, initial=0, instead=()):
 
 
 def lag_of(applied):
-    """Return k of a sample y(n-k), or None for y(t); raise SignalError for any other argument."""
+    """The lag k of a sample y(n-k), or None for y(t); any other argument is a SignalError."""
     (argument,) = applied.args
     if argument == t:
         return None

@@ -31,7 +31,7 @@ def _registry():
 
 
 def _parsed(number, unit):
-    """Return a pint quantity, or raise ValueError with pint's reason."""
+    """A pint quantity; a ValueError has pint's reason."""
     if not _UNIT.fullmatch(unit):
         raise ValueError("a unit is made of names, numbers and * / ^ ( )")
     try:
@@ -41,7 +41,7 @@ def _parsed(number, unit):
 
 
 def dimension(unit):
-    """Return the SI exponents of a unit as a sorted tuple, ("[length]", 1), ...; refuse units that are not SI.
+    """SI exponents of a unit as a sorted tuple, ("[length]", 1), ...; refuse units that are not SI.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def _dimension(unit):
 
 
 def _read(unit):
-    """Return (value in SI, SI exponents) of one of a unit; metric units without pint, the others by pint."""
+    """(Value in SI, SI exponents) of one of a unit; metric units without pint, the others by pint."""
     known = metric(unit)
     if known is not None:
         return known
@@ -79,7 +79,7 @@ def _exponents(quantity):
 
 
 def si_name(dimensions):
-    """Return a readable unit for SI exponents."""
+    """A readable unit for SI exponents."""
     for name in _NAMES:
         if dimension(name) == dimensions:
             return name
@@ -92,7 +92,7 @@ def _exponent(p):
 
 
 def in_si(value, unit, name):
-    """Return a bound value as a float in its declared unit; a text such as '10 mm' is converted."""
+    """A bound value as a float in its declared unit; a text such as '10 mm' is converted."""
     if isinstance(value, str):
         return _converted(value, unit, name)
     try:
@@ -121,7 +121,7 @@ def _converted(text, unit, name):
 
 
 def quantity(text, name):
-    """Return (number, SI unit) of a text such as '5 N/mm'."""
+    """(Number, SI unit) of a text such as '5 N/mm'."""
     written = _QUANTITY.fullmatch(text)
     number, own = written.groups() if written else ("", "")
     if not own:
@@ -138,7 +138,7 @@ def quantity(text, name):
 
 
 def kind_of(unit):
-    """Return ("inertia" | "passive" | None, its name) for a parameter's unit."""
+    """("inertia" | "passive" | None, its name) of a parameter's unit."""
     for names, kind in ((_INERTIA, "inertia"), (_PASSIVE, "passive")):
         for name, word in names.items():
             if dimension(unit) == dimension(name) and unit != "rad":
@@ -162,7 +162,7 @@ def _power(dimensions, exponent):
 
 
 def fixed(exponent):
-    """Return a float exponent as the fraction it stands for, 2.0 as 2 and 1.5 as 3/2; any other as it is.
+    """A float exponent as the fraction it stands for, 2.0 as 2 and 1.5 as 3/2; any other as it is.
 
     Examples
     --------
@@ -179,7 +179,7 @@ def fixed(exponent):
 
 
 def dimension_of(expr, where):
-    """Return the SI exponents of an expression; None for zero, which fits every unit.
+    """SI exponents of an expression; None for zero, which fits every unit.
 
     Parameters
     ----------
@@ -220,12 +220,12 @@ def dimension_of(expr, where):
 
 
 def unit_of(expr):
-    """Return the SI unit of an expression whose units have been checked."""
+    """SI unit of an expression whose units have been checked."""
     return si_name(dimension_of(expr, str(expr)) or ())
 
 
 def agree(terms, where):
-    """Return the one dimension of several terms, or raise naming two that differ."""
+    """The one dimension of several terms; the error names two that differ."""
     known = [(term, d) for term in terms if (d := dimension_of(term, where)) is not None]
     for term, d in known[1:]:
         if d != known[0][1]:

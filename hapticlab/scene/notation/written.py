@@ -21,7 +21,7 @@ RESERVED = frozenset(
 
 
 def check_name(name, what, error=SceneError):
-    """Return a name that nothing else uses in Python, in a scene or in a record of its run; refuse any other.
+    """A name that is free in Python, in a scene and in the record of its run; refuse any other.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def check_name(name, what, error=SceneError):
 
 
 def expression(given, where):
-    """Return a number or expression as SymPy has it; refuse texts, lists, conditions and what is not applied."""
+    """A number or expression as SymPy has it; refuse texts, lists, conditions and functions that are not applied."""
     try:
         expr = given if isinstance(given, sp.Basic) else sp.sympify(given, strict=True)
     except (sp.SympifyError, TypeError):
@@ -57,7 +57,7 @@ def expression(given, where):
 
 
 def zero_of(given, where):
-    """Return what a constraint sets to zero, given as an equation or as that expression."""
+    """The expression that a constraint sets to zero, from an equation or that expression."""
     if isinstance(given, bool):
         raise SceneError(f"{where} is {given}: == is Python's own and compares at once; write sp.Eq(a, b)")
     if given in (sp.true, sp.false):
@@ -66,7 +66,7 @@ def zero_of(given, where):
 
 
 def no_scene(given, cure):
-    """Say that what was given is no scene, in few words; of a function, that it makes one."""
+    """The sentence about an argument that is not a scene; a function that makes one has to be called."""
     if isfunction(given) and given.__name__.isidentifier():
         place = "hl.library." if given.__module__.startswith("hapticlab.library.") else ""
         return f"{given.__name__} is a function, not a scene; call it: {place}{given.__name__}()"
@@ -75,7 +75,7 @@ def no_scene(given, cure):
 
 
 def condition(given):
-    """Return a condition; refuse what Python decided already, and what is no condition."""
+    """A condition; refuse one that Python has decided already, and everything else."""
     if not isinstance(given, CONDITIONS):
         cure = "== compares expressions; write sp.Eq(a, b)" if isinstance(given, bool) else "write one, such as x(n) >= x_o"
         raise SceneError(f"{given!r} is not a condition; {cure}")

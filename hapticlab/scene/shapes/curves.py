@@ -67,7 +67,7 @@ class Curve(Shape):
         return f"Curve({self.x}, {self.y})"
 
     def derivative(self, u, order):
-        """Return the point (x, y) [m] at u, or its derivative of an order."""
+        """The point (x, y) [m] at u, or its derivative of an order."""
         return tuple(sp.diff(p, self.u, order).xreplace({self.u: u}) for p in (self.x, self.y))
 
 
@@ -100,11 +100,11 @@ class Tracked:
     slip: sp.Expr
 
     def force(self, law):
-        """Return the normal force [N] of a law such as :class:`~hapticlab.scene.contact.penalty_laws.penalty`, an expression."""
+        """Normal force [N] of a law such as :class:`~hapticlab.scene.contact.penalty_laws.penalty`, an expression."""
         return when(self.gap <= 0, law.force(self.gap, self.rate))
 
     def generalized_force(self, law, q):
-        """Return what the force does to a coordinate q, for ``forces={q: ...}`` of :func:`hapticlab.lagrange`, or to x(t).
+        """Generalized force along a coordinate q, for ``forces={q: ...}`` of :func:`hapticlab.lagrange`, or along x(t).
 
         The closest points stay where they are on their curves: the distance is stationary there.
         """
@@ -173,7 +173,7 @@ def _checked(a, b):
 
 
 def _placed(body, u, order=0):
-    """Return a point of a body's curve at u, or its derivative to u, along the axes of the plane."""
+    """A point of a body's curve at u, or its derivative to u, along the axes of the plane."""
     if not isinstance(body.shape, Curve):
         return body.x, body.y
     of_shape = body.shape.derivative(u, order)
@@ -181,7 +181,7 @@ def _placed(body, u, order=0):
 
 
 def _stationary(a, b, at):
-    """Return (F, J, dF/dt): what is zero where the distance is stationary, its derivative to the places and to time."""
+    """(F, J, dF/dt): residuals, zero where the distance is stationary, and their derivatives to the coordinates and time."""
     D = less(_placed(b, at[-1]), _placed(a, at[0]))
     A, A2 = _placed(a, at[0], 1), _placed(a, at[0], 2)
     dD = less(b.velocity(_placed(b, at[-1])), a.velocity(_placed(a, at[0])))
@@ -198,7 +198,7 @@ def _stationary(a, b, at):
 
 
 def _facts(a, b, at):
-    """Return (gap, rate, normal, point, slip) at the closest points."""
+    """(Gap, rate, normal, point, slip) at the closest points."""
     p, q, A = _placed(a, at[0]), _placed(b, at[-1]), _placed(a, at[0], 1)
     speed = sp.sqrt(dot(A, A))
     normal = A[1] / speed, -A[0] / speed
@@ -210,7 +210,7 @@ def _facts(a, b, at):
 
 
 def _start(a, b, at, F, J, start, values):
-    """Return where the distance is least at the first sample."""
+    """Coordinates of the closest points at the first sample."""
     D = less(_placed(b, at[-1]), _placed(a, at[0]))
     at_start = _first_sample([*D, _facts(a, b, at)[0], *F, *(entry for row in J for entry in row)], values)
     if at_start is None:
@@ -230,7 +230,7 @@ def _start(a, b, at, F, J, start, values):
 
 
 def _minimum(a, b, of, place, given):
-    """Return the minimum next to a place, or refuse it; a given place must be the minimum itself."""
+    """The minimum of the distance next to a starting point by Newton's method; a given start must be the minimum itself."""
     N = len(place)
     for _ in range(50):
         facts = np.array([float(f) for f in of(*place)])
@@ -261,7 +261,7 @@ def _minimum(a, b, of, place, given):
 
 
 def _first_sample(expressions, values):
-    """Return expressions with all but the places at the first sample, or None where a parameter has no value."""
+    """Expressions of the closest points' coordinates alone, at the first sample; None where a parameter has no value."""
     known = {}
     for expr in expressions:
         for leaf in expr.atoms(Parameter, sp.Function):

@@ -46,13 +46,13 @@ class Closest:
         return self.normal[0] * (b_y - a_y) - self.normal[1] * (b_x - a_x)
 
     def force(self, normal_force, friction=0):
-        """Return ((F_x, F_y), point): what a normal force and a friction along the slip do to the second body."""
+        """((F_x, F_y), point) of a normal force, and a friction along the slip, on the second body."""
         n_x, n_y = self.normal
         return (normal_force * n_x - friction * n_y, normal_force * n_y + friction * n_x), self.point
 
 
 def gap(a, b, *, method="faces"):
-    """Return the signed distance [m] of two placed shapes: positive apart, 0 in touch, negative in overlap.
+    """Signed distance [m] of two placed shapes: positive apart, 0 in touch, negative in overlap.
 
     Its depth in overlap is the shortest way apart. Of a nonconvex polygon it is the least over its convex parts, so it
     is right up to touch and as deep as the nearest seam between two parts.
@@ -84,7 +84,7 @@ def gap(a, b, *, method="faces"):
 
 
 def closest(a, b, *, method="faces"):
-    """Return the :class:`Closest` of two placed shapes: gap, normal and point; see :func:`gap`.
+    """The :class:`Closest` of two placed shapes: gap, normal and point; see :func:`gap`.
 
     Examples
     --------
@@ -117,14 +117,14 @@ def check_placed(body):
 
 
 def corners(a, b):
-    """Return a :class:`Closest` for each corner of b above the half-plane a: what holds a box that lies flat."""
+    """A :class:`Closest` for each corner of b above the half-plane a, which together hold a box that lies flat."""
     if not isinstance(a.shape, HalfPlane):
         raise SceneError(f"{a.name} is a {type(a.shape).__name__}; each corner has a gap of its own above a HalfPlane only")
     return tuple(Closest(a, b, *found) for found in _above(a, b))
 
 
 def _closest(a, b, method):
-    """Return (distance, normal, point); a half-plane comes first, and a disc second."""
+    """(Distance, normal, point) of a pair; a half-plane comes first, and a disc second."""
     if isinstance(a.shape, Circle):
         return _discs(a, b)
     above = _above(a, b) if isinstance(a.shape, HalfPlane) else ()
@@ -158,7 +158,7 @@ def _extreme(kind, values):
 
 
 def _above(a, b):
-    """Return (height, normal, point) of each corner above a half-plane."""
+    """(Height, normal, point) of each corner above a half-plane."""
     normal, r = a.direction(sp.S.Zero, sp.S.One), b.shape.radius
     found = []
     for u, v in dict.fromkeys(p for core in b.shape.cores for p in core):
@@ -176,7 +176,7 @@ def _discs(a, b):
 
 
 def _from_disc(a, b):
-    """Return the distance of a disc b from a bar or a box, in the frame of that one (Voronoi regions)."""
+    """Distance of a disc b from a bar or a box, in the frame of the bar or box (Voronoi regions)."""
     x, y, c, s = b.x - a.x, b.y - a.y, sp.cos(a.angle), sp.sin(a.angle)
     u, v = c * x + s * y, c * y - s * x
     if isinstance(a.shape, Box):

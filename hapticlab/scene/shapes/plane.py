@@ -2,15 +2,15 @@
 
 
 def dot(a, b):
-    """Return the scalar product of two vectors."""
+    """Scalar product of two vectors."""
     return a[0] * b[0] + a[1] * b[1]
 
 
 def less(a, b):
-    """Return a - b."""
+    """The difference a - b."""
     return a[0] - b[0], a[1] - b[1]
 
 
 def minus(a):
-    """Return -a."""
+    """The vector turned round, -a."""
     return -a[0], -a[1]

@@ -13,7 +13,7 @@ NEARLY = 1e-9
 
 
 def outline(points):
-    """Return the corners counter-clockwise, without repeated and collinear points; refuse what bounds no area.
+    """The corners of a polygon counter-clockwise, without repeated and collinear points.
 
     Parameters
     ----------
@@ -62,13 +62,13 @@ def convex_parts(corners):
 
 
 def width(corners):
-    """Return the least width [m] of a convex polygon: between an edge and the corner furthest from it."""
+    """Least width [m] of a convex polygon: between an edge and the corner furthest from it."""
     edges = zip(corners, corners[1:] + corners[:1], strict=True)
     return min(max(_cross(a, b, p) for p in corners) / math.dist(a, b) for a, b in edges)
 
 
 def _cross(a, b, c):
-    """Return twice the area of the triangle a, b, c; positive for a turn to the left."""
+    """Twice the area of the triangle a, b, c; positive for a turn to the left."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
@@ -110,7 +110,7 @@ def _named(edge):
 
 
 def _touch(a, b, c, d):
-    """Tell whether two segments share a point."""
+    """Whether two segments share a point."""
     sides = _cross(a, b, c), _cross(a, b, d), _cross(c, d, a), _cross(c, d, b)
     if sides[0] * sides[1] < 0 and sides[2] * sides[3] < 0:
         return True
@@ -119,7 +119,7 @@ def _touch(a, b, c, d):
 
 
 def _between(p, a, b):
-    """Tell whether p, on the line through a and b, lies between them."""
+    """Whether p, on the line through a and b, lies between them."""
     return all(min(a[k], b[k]) <= p[k] <= max(a[k], b[k]) for k in (0, 1))
 
 
@@ -143,7 +143,7 @@ def _is_ear(left, k, corners):
 
 
 def _merge_two(parts, corners):
-    """Join two parts whose common edge may go; tell whether there were such."""
+    """Join the first two parts that stay convex without their common edge; False where there are none."""
     for i, one in enumerate(parts):
         for j in range(i + 1, len(parts)):
             joined = _joined(one, parts[j])
@@ -155,7 +155,7 @@ def _merge_two(parts, corners):
 
 
 def _joined(one, other):
-    """Return two parts as one without their common edge, or None where they have none."""
+    """Two parts joined without their common edge, or None where they have none."""
     for k, a in enumerate(one):
         b = one[(k + 1) % len(one)]
         if a in other and b in other and other[(other.index(b) + 1) % len(other)] == a:

@@ -217,7 +217,7 @@ class HalfPlane(Shape):
 
 
 def ground(y=0, *, name="ground"):
-    """Return the floor below a height y [m]: a :class:`HalfPlane` in its place.
+    """The floor below a height y [m]: a :class:`HalfPlane` in its place.
 
     Examples
     --------
@@ -242,17 +242,17 @@ class Placed:
         return f"{self.name}: {self.shape} at ({self.x}, {self.y}), turned by {self.angle}"
 
     def direction(self, u, v):
-        """Return a vector of the shape's frame along the axes of the plane."""
+        """A vector of the shape's frame along the axes of the plane."""
         c, s = sp.cos(self.angle), sp.sin(self.angle)
         return c * u - s * v, s * u + c * v
 
     def point(self, u, v):
-        """Return where a point (u, v) [m] of the shape's frame is."""
+        """Position (x, y) [m] in the plane of a point (u, v) [m] of the shape's frame."""
         across, up = self.direction(u, v)
         return self.x + across, self.y + up
 
     def velocity(self, point):
-        """Return the velocity [m/s] of the body's material at a point (x, y) of the plane."""
+        """Velocity [m/s] of the body's material at a point (x, y) of the plane."""
         dx, dy = _rate(self.x), _rate(self.y)
         return dx - self.turning * (point[1] - self.y), dy + self.turning * (point[0] - self.x)
 
@@ -263,7 +263,7 @@ class Placed:
 
 
 def replacement(body, forces):
-    """Return the force and couple that replace several forces on a body, as chapter section 23.5.2 has it.
+    """The force and couple that replace several forces on a body; chapter section 23.5.2.
 
     Parameters
     ----------
@@ -289,7 +289,7 @@ def replacement(body, forces):
 
 
 def generalized(body, F_x, F_y, couple, q):
-    """Return what a force at a body's origin and a couple do to a coordinate q, or to x(t): force times dx/dq, ..."""
+    """Generalized force along a coordinate q, or x(t), of a force at a body's origin and a couple: force times dx/dq, ..."""
     return F_x * Partial(body.x, q) + F_y * Partial(body.y, q) + couple * Partial(body.angle, q)
 
 
