@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+import sympy as sp
 
 from ...compiler.algebra.linear_solve import solve
 from ...compiler.algebra.phase import TICKS, digit
@@ -18,7 +19,6 @@ from ...compiler.events.taylor_series import Series
 from ...compiler.ir.program import Channel, Program
 from ...compiler.ir.trace import Builder, Value, select
 from ...errors import ProgramError
-from ...scene.contact.contact_laws import rigid
 from ...scene.notation.symbols import acceleration, t
 from .continuous_handle import DEGREE, Followed, lowering_of
 
@@ -124,10 +124,9 @@ def _check(contacts):
 
 
 def _bounce(contact, constant):
-    e, speed = contact.law.e, contact.law.rest_speed
-    if isinstance(contact.law, rigid):
-        return Bounce(0.0, np.inf)
-    return Bounce(constant(e).constant, 0.0 if speed is None else constant(speed).constant)
+    speed = contact.law.rest_speed
+    least = 0.0 if speed is None else np.inf if speed == sp.oo else constant(speed).constant
+    return Bounce(constant(contact.law.e).constant, least)
 
 
 def _derivatives(motion):

@@ -18,20 +18,6 @@ from ..algebra.first_sample import numbers
 from ..algebra.graph import Graph
 from ..algebra.ranges import Ranges
 
-_FEEDS = "a negative one feeds energy to the user"
-_OPPOSES = "friction opposes the slip"
-_BOUNCES = "above 1 every bounce would feed energy to the user, below 0 bodies would pass through each other"
-_LENGTH = "the distance at which bodies count as in contact is above 0"
-#: constant of a law -> lowest, highest, why; what has to be above its lowest is in _ABOVE
-ALLOWED = {
-    "k": (0.0, math.inf, _FEEDS), "b": (0.0, math.inf, _FEEDS), "c": (0.0, math.inf, _FEEDS),
-    "e": (0.0, 1.0, _BOUNCES), "mu": (0.0, math.inf, _OPPOSES),
-    "F_c": (0.0, math.inf, _OPPOSES), "F_s": (0.0, math.inf, _OPPOSES),
-    "stick_speed": (0.0, math.inf, "the speed up to which the line goes is above 0"),
-    "rest_speed": (0.0, math.inf, "the speed below which a contact rests is above 0"),
-    "envelope": (0.0, math.inf, _LENGTH),
-}  # fmt: skip
-_ABOVE = ("stick_speed", "rest_speed", "envelope")
 #: of a range, the rounding of interval arithmetic
 _ROUNDING = 1e-12
 
@@ -58,10 +44,11 @@ def limits(form, values, folded, period):
     pushing = {c.force: Parameter(f"{c.name}.force", c.unit, 0.0, value=1.0) for c in elements if isinstance(c, Contact)}
     found = {}
     for element in elements:
-        for part, expr in vars(getattr(element, "law", element)).items():
-            if part not in ALLOWED or not isinstance(expr, sp.Expr):
+        law = getattr(element, "law", element)
+        for part, expr in vars(law).items():
+            if part not in law.allowed or not isinstance(expr, sp.Expr):
                 continue
-            constant = _Constant(element.name, part, expr, expr.xreplace(pushing))
+            constant = _Constant(element.name, part, law.allowed[part], expr, expr.xreplace(pushing))
             constant.check({**values, T.name: period})
             for name, (low, high) in constant.narrowed(values, folded, period, {*pushing.values(), T}).items():
                 ends = found.get(name, (-math.inf, math.inf))
@@ -81,15 +68,15 @@ def bounded(program, limits):
 class _Constant:
     """One constant of one contact or friction; ``meant`` is the expression as it is looked at."""
 
-    def __init__(self, where, part, written, meant):
+    def __init__(self, where, part, allowed, written, meant):
         self.where, self.part, self.written, self.meant = where, part, written, meant
-        self.low, self.high, self.why = ALLOWED[part]
+        self.low, self.high, self.why, self.above = allowed.low, allowed.high, allowed.why, allowed.above
         self.variables = Graph().variables_of([meant])
 
     def check(self, values):
         """Refuse a value at the first sample that is out of the range."""
         (value,) = numbers([self.meant], values) or (math.nan,)
-        if value < self.low or value > self.high or (self.part in _ABOVE and value == self.low):
+        if value < self.low or value > self.high or (self.above and value == self.low):
             shown = "" if self.written == value else f" = {self.written}"
             unit = f" {getattr(self.written, 'unit', None) or unit_of(self.written)}".removesuffix(" 1")
             raise SceneError(f"{self.where}: {self.part}{shown} is {value:g}{unit} at the start; {self.why}: {self._needs()}")
@@ -135,4 +122,4 @@ class _Constant:
     def _needs(self):
         if self.high < math.inf:
             return f"needs {self.low:g} <= {self.part} <= {self.high:g}"
-        return f"needs {self.part} {'>' if self.part in _ABOVE else '>='} {self.low:g}"
+        return f"needs {self.part} {'>' if self.above else '>='} {self.low:g}"

@@ -7,8 +7,6 @@ import sympy as sp
 
 from ...errors import SceneError
 from ...scene.contact.contact import Contact
-from ...scene.contact.contact_laws import impulse
-from ...scene.contact.penalty_laws import hunt_crossley
 from ...scene.notation.derivative import Partial, Rate
 from ...scene.notation.parameters import Parameter
 from ..algebra.first_sample import numbers
@@ -60,7 +58,7 @@ def check_contacts(form, values, h, T, method):
             if k is not None:
                 check_contact_steps(c, k[0], float(column @ J), h, T, method=method.name)
                 largest[c] = max(k[0], _largest(c.law, float(column @ J), h))
-        elif isinstance(c.law, impulse) and c.law.rest_speed is not None:
+        elif c.is_located and c.law.rest_speed not in (None, sp.oo):
             _check_rest(c, form, column, values, T)
     return largest
 
@@ -127,7 +125,7 @@ def check_contact_steps(contact, k, W, h, T, speed=1.0, method="rk4"):
     if lasts >= STEPS_PER_CONTACT * h:
         return
     more = proposed(STEPS_PER_CONTACT * T / lasts, "a shorter T")
-    at = f" at {speed:g} m/s" if isinstance(contact.law, hunt_crossley) else ""
+    at = f" at {speed:g} m/s" if contact.law.speed_matters else ""
     raise SceneError(
         f"{contact.name}: the contact{at} lasts {1e3 * lasts:.3g} ms (k = {k:g}, effective mass {1 / W:.3g}), which is "
         f"{lasts / h:.1f} steps of {1e3 * h:g} ms; {method} needs {STEPS_PER_CONTACT}. Take {more}, "

@@ -4,7 +4,7 @@ import sympy as sp
 
 from ...errors import ProgramError, SceneError
 from ...scene.contact.contact import friction
-from ...scene.contact.contact_laws import impulse, micro_impulse, rigid
+from ...scene.contact.contact_law import law_names
 from ...scene.notation.derivative import Partial, Rate
 from ...scene.notation.symbols import t, x
 from ..algebra.complementarity import response
@@ -40,8 +40,8 @@ class Contacts:
         _check_names(elements)
         self.frictions = [e for e in elements if isinstance(e, friction)]
         contacts = [e for e in elements if not isinstance(e, friction)]
-        self.hovering = [c for c in contacts if isinstance(c.law, micro_impulse)]
-        self.contacts = [c for c in contacts if not isinstance(c.law, micro_impulse)]
+        self.hovering = [c for c in contacts if not c.is_located]
+        self.contacts = [c for c in contacts if c.is_located]
         self.tracing, self.constant, self.at = tracing, constant, at
         self.order = _order(self.contacts)
         # a contact that hovers has no reaction inside a step
@@ -60,7 +60,7 @@ class Contacts:
             needs = "need" if len(names) > 1 else "needs"
             at_the_end = ["every impact is late by up to a step"] * bool(self.contacts)
             at_the_end += ["a friction never comes to rest"] * bool(self.frictions)
-            others = ["penalty, hunt_crossley or micro_impulse"] * bool(self.contacts)
+            others = [law_names(lambda law: not law.is_located)] * bool(self.contacts)
             others += ["a friction with a stick_speed"] * bool(self.frictions)
             raise ProgramError(
                 f"method = {method.name!r}: {', '.join(names)} {needs} events located inside the step, which is "
@@ -101,8 +101,8 @@ class Contacts:
         k, rubbing, laws = len(self.contacts), [c for c in self.contacts if c.law.mu != 0], []
         for c in self.contacts:
             slip = k + rubbing.index(c) if c in rubbing else None
-            speed = float("inf") if isinstance(c.law, rigid) else c.law.rest_speed
-            speed = self.constant(speed) if speed is not None and not isinstance(speed, float) else speed
+            speed = c.law.rest_speed
+            speed = float("inf") if speed == sp.oo else None if speed is None else self.constant(speed)
             laws.append(Law(c.name, self.constant(c.law.e), speed, slip, self.constant(c.law.mu)))
         self.impacts = impacts_of(motion, laws, list(range(k)), self.tracing.T, self.order, self.slips, self.rubs)
         return self.impacts
@@ -166,15 +166,14 @@ class Contacts:
 
 def located(elements):
     """Tell whether any of contacts and frictions has events that a method must locate inside its step."""
-    return any(not (e.is_force or isinstance(getattr(e, "law", None), micro_impulse)) for e in elements)
+    return any(e.is_located for e in elements)
 
 
 def unfelt(form):
     """Yield a note on each contact with the handle whose impacts move the bodies, and nothing that is felt holds."""
     read = {leaf for e in (form.force, *form.updates.values()) for leaf in e.atoms(sp.Function)}
-    for c in (c for model in form.models for c in model.contacts):
-        strikes = isinstance(getattr(c, "law", None), (impulse, rigid))
-        if strikes and c.gap.has(x(t)) and c.impulse not in read:
+    for c in (c for model in form.models for c in model.contacts if not isinstance(c, friction)):
+        if c.is_located and c.gap.has(x(t)) and c.impulse not in read:
             pulse = f"hl.felt_impulse({c.name}, tau='5 ms') makes them felt"
             yield f"{c.name} acts by impulses, which {c.name}.force does not hold; {pulse}"
 
@@ -187,9 +186,9 @@ def _check_names(elements):
 
 
 def _order(contacts):
-    orders = {c.law.order for c in contacts if not isinstance(c.law, rigid)} or {"simultaneous"}
+    orders = {c.law.order for c in contacts if c.law.order} or {"simultaneous"}
     if len(orders) > 1:
-        named = "; ".join(f"{c.name}: {c.law.order}" for c in contacts if not isinstance(c.law, rigid))
+        named = "; ".join(f"{c.name}: {c.law.order}" for c in contacts if c.law.order)
         raise SceneError(f"{named}: the impacts of a scene are all sequential, or all simultaneous; choose one order")
     (order,) = orders
     rubbing = [c.name for c in contacts if c.law.mu != 0]

@@ -5,7 +5,6 @@ from dataclasses import replace
 import sympy as sp
 
 from ...errors import ProgramError
-from ...scene.contact.contact_laws import micro_impulse
 from ...scene.notation.symbols import T, t, v, x
 from ..algebra.graph import driven
 
@@ -26,7 +25,7 @@ def averaged(form, graph):
     if not any(map(_moves, variables)):
         return form
     for c in (c for model in form.models for c in model.contacts if getattr(c, "force", None) in variables):
-        if isinstance(getattr(c, "law", None), micro_impulse):
+        if not (c.is_force or c.is_located):
             raise ProgramError(
                 f"force_at = 'mean': {c.force} acts in an instant at the end of a step, between which it is nothing; take "
                 "force_at='before', which holds the force of its impulse over the period"

@@ -1,6 +1,8 @@
 """Contacts of a scene: a gap, the law that acts where it closes, and Coulomb friction."""
 
+import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import sympy as sp
 
@@ -12,8 +14,8 @@ from ..notation.derivative import Partial, Rate
 from ..notation.symbols import lag_of, t, v, x
 from ..notation.units import dimension_of, si_name
 from ..notation.written import check_name, expression
-from .contact_laws import EVENT_LAWS, FORCE_LAWS
-from .penalty_laws import check_constant, constant, gap_units, written_out
+from . import contact_laws, penalty_laws  # noqa: F401 (law_names needs every law there is)
+from .contact_law import OPPOSING, Allowed, ContactLaw, check_constant, constant, gap_units, law_names, written_out
 
 
 class _InASum:
@@ -74,8 +76,8 @@ class Contact(_InASum):
         gap, slip = expression(self.gap, f"{self.name}: gap"), expression(self.slip, f"{self.name}: slip")
         object.__setattr__(self, "gap", gap)
         object.__setattr__(self, "slip", slip)
-        if not isinstance(self.law, FORCE_LAWS + EVENT_LAWS):
-            raise SceneError(f"{self.name}: law = {self.law!r}; needs penalty, hunt_crossley, impulse, micro_impulse or rigid")
+        if not isinstance(self.law, ContactLaw):
+            raise SceneError(f"{self.name}: law = {self.law!r}; needs {law_names()}")
         _check_gap(gap, self.name)
         gap_units(gap, f"{self.name}: gap")
         if not self.is_force and not applied([gap], "coordinate"):
@@ -96,7 +98,12 @@ class Contact(_InASum):
     @property
     def is_force(self):
         """True for a law that is an expression of the state; False for one of impulses and reactions."""
-        return isinstance(self.law, FORCE_LAWS)
+        return self.law.is_force
+
+    @property
+    def is_located(self):
+        """True for a law whose events a method must locate inside its step."""
+        return self.law.is_located
 
     @property
     def constants(self):
@@ -136,7 +143,7 @@ class Contact(_InASum):
         return sp.Function(f"{self.name}_rub", real=True, unit=self.unit, role="rub", contact=self.name)(t)
 
     def _met(self, role, unit):
-        """Return the leaf of what impacts add up to."""
+        """The leaf of a sum over impacts; zero of a force law."""
         if self.is_force:
             return sp.S.Zero
         return sp.Function(f"{self.name}_{role}", real=True, unit=unit, role=role, contact=self.name)(t)
@@ -147,7 +154,7 @@ class Contact(_InASum):
         return -self.generalized_force(x(t))
 
     def generalized_force(self, q):
-        """Return what the contact does to a coordinate q, or to the handle x(t): force times dgap/dq.
+        """Generalized force of the contact along a coordinate q, or the handle x(t): force times dgap/dq.
 
         With friction in its impacts, the leaf ``rub`` along dslip/dq' too, zero at all other times.
         """
@@ -193,6 +200,11 @@ class friction(_InASum):
     stick_speed: sp.Expr = None
     name: str = "friction"
 
+    allowed: ClassVar = {
+        "F_c": OPPOSING,
+        "F_s": OPPOSING,
+        "stick_speed": Allowed(0.0, math.inf, "the speed up to which the line goes is above 0", above=True),
+    }
     __repr__ = written_out
 
     def __post_init__(self):
@@ -226,6 +238,11 @@ class friction(_InASum):
         return self.stick_speed is not None
 
     @property
+    def is_located(self):
+        """True without a ``stick_speed``: sticking and breaking away are events."""
+        return not self.is_force
+
+    @property
     def constants(self):
         """The expressions of the law."""
         return tuple(part for part in (self.F_c, self.F_s, self.stick_speed) if part is not None)
@@ -243,12 +260,12 @@ class friction(_InASum):
         return self.F_c * sp.Max(-1, sp.Min(1, self.slip / self.stick_speed))
 
     def generalized_force(self, q):
-        """Return what the friction does to a coordinate q, or to the handle x(t): -force times dslip/dq'."""
+        """Generalized force of the friction along a coordinate q, or the handle x(t): -force times dslip/dq'."""
         return -self.force * Partial(self.slip, v(t) if q == x(t) else q.diff(t))
 
 
 def reaction(name, unit, letter="N"):
-    """Return the leaf that stands for a reaction found while the scene runs; a contact's name may be a function's, floor."""
+    """The leaf of a reaction that is found while the scene runs; a contact may have the name of a function, floor."""
     printed = {"letter": letter, "_sympystr": _as_text, "_latex": _as_latex}
     return sp.Function(name, real=True, unit=unit, role="reaction", contact=name, **printed)(t)
 

@@ -1,6 +1,8 @@
 """Contact laws that act in an instant, or as the reaction that keeps a gap closed; chapter section 23.5.2."""
 
+import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import sympy as sp
 
@@ -10,13 +12,13 @@ from ..notation.checks import agree_with
 from ..notation.symbols import Parameter
 from ..notation.units import agree
 from ..notation.written import expression
-from .penalty_laws import hunt_crossley, penalty, shown, take, written_out
+from .contact_law import OPPOSING, RESTITUTION, Allowed, ContactLaw, shown, take, written_out
 
 ORDERS = ("sequential", "simultaneous")
 
 
 @dataclass(frozen=True, kw_only=True)
-class impulse:
+class impulse(ContactLaw):
     """Impact with restitution: in the instant of touch, u+ = -e u- for the rates u of the gap (Newton).
 
     For one frictionless contact Newton's law and Poisson's (release impulse = e times compression impulse) agree. For
@@ -54,6 +56,12 @@ class impulse:
     order: str = "sequential"
     mu: sp.Expr = 0
 
+    is_located = True
+    allowed: ClassVar = {
+        "e": RESTITUTION,
+        "mu": OPPOSING,
+        "rest_speed": Allowed(0.0, math.inf, "the speed below which a contact rests is above 0", above=True),
+    }
     __repr__ = written_out
 
     def __post_init__(self):
@@ -72,7 +80,7 @@ class impulse:
 
 
 @dataclass(frozen=True, kw_only=True)
-class micro_impulse:
+class micro_impulse(ContactLaw):
     """Repeated impulses at the end of each step, for lasting contact too.
 
     Mirtich and Canny, *Impulse-based simulation of rigid bodies*, Symp. Interactive 3D Graphics (1995) 181-188: no
@@ -98,6 +106,10 @@ class micro_impulse:
     e: sp.Expr
     envelope: sp.Expr = "0.1 mm"
 
+    allowed: ClassVar = {
+        "e": RESTITUTION,
+        "envelope": Allowed(0.0, math.inf, "the distance at which bodies count as in contact is above 0", above=True),
+    }
     __repr__ = written_out
 
     def __post_init__(self):
@@ -112,7 +124,7 @@ class micro_impulse:
 
 
 @dataclass(frozen=True, kw_only=True)
-class rigid:
+class rigid(ContactLaw):
     """Rigid contact without rebound: the reaction keeps the gap closed while it pushes, and lets go when it would pull.
 
     The reactions solve the linear complementarity problem 0 <= N, 0 <= d2gap/dt2, N d2gap/dt2 = 0 (Baraff, *Fast contact
@@ -136,10 +148,13 @@ class rigid:
 
     mu: sp.Expr = 0
 
+    is_located = True
+    allowed: ClassVar = {"mu": OPPOSING}
     __repr__ = written_out
     e = sp.S.Zero
     rest_speed = sp.oo
-    order = "simultaneous"
+    #: it leaves the order to the other contacts of the scene
+    order = None
 
     def __post_init__(self):
         take(self, mu="friction coefficient")
@@ -147,10 +162,6 @@ class rigid:
     def check(self, gap, where):
         """Refuse constants with a unit of their own."""
         agree_with(self.mu, "1", f"{where}, mu")
-
-
-FORCE_LAWS = (penalty, hunt_crossley)
-EVENT_LAWS = (impulse, micro_impulse, rigid)
 
 
 def _take_restitution(law):
@@ -168,7 +179,7 @@ def _take_restitution(law):
 
 
 def _positive(given, name, unit, what):
-    """Return an amount above 0: SI number, text with its unit, Parameter or expression."""
+    """An amount above 0: SI number, text with its unit, Parameter or expression."""
     expr = amount(given, unit, name)
     if expr == 0 or expr.is_negative:
         raise SceneError(f"{name} = {expr}; needs {what}, > 0 {unit}")

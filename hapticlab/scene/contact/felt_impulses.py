@@ -95,7 +95,7 @@ def felt_impulse(contact, *, tau, F_max=None):
 
 
 def pulse_time(*, impulse, F_max):
-    """Return the tau [s] with which an impulse peaks at F_max: p/(e F_max).
+    """The tau [s] with which an impulse peaks at F_max: p/(e F_max).
 
     Parameters
     ----------

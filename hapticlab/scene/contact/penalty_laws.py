@@ -1,42 +1,23 @@
 """Contact laws that are forces over a time: the penalty spring and damper, and Hunt and Crossley's; chapter section 23.5.2."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import ClassVar
 
 import sympy as sp
 
-from ...errors import SceneError, UnitsError
-from ..notation.amount import Amount
+from ...errors import SceneError
 from ..notation.checks import agree_with
-from ..notation.units import dimension, dimension_of, fixed, quantity
+from ..notation.units import fixed
 from ..notation.written import expression
+from .contact_law import PASSIVE, ContactLaw, check_constant, gap_units, take, written_out
 
 #: exponent of two spheres, or a sphere on a plane
 HERTZ = sp.Rational(3, 2)
-#: what a gap is measured in -> units of force, stiffness, damping and speed
-_OF_GAP = {
-    dimension("m"): ("N", "N/m", "N*s/m", "m/s"),
-    (): ("N*m", "N*m/rad", "N*m*s/rad", "rad/s"),
-}
-
-
-def written_out(law):
-    """Return a law, contact or friction as it is written, its numbers in few digits."""
-    values = {f.name: getattr(law, f.name) for f in fields(law)}
-    text = {k: sp.sstr(value, full_prec=False) if isinstance(value, sp.Basic) else repr(value) for k, value in values.items()}
-    return f"{type(law).__name__}({', '.join(f'{name}={value}' for name, value in text.items())})"
-
-
-def gap_units(gap, where):
-    """Return the units of force, stiffness, damping and speed that belong to a gap in m, or in rad."""
-    units = _OF_GAP.get(dimension_of(gap, where))
-    if units is None:
-        raise SceneError(f"{where}: a gap is a distance in m, or an angle in rad; {gap} is neither")
-    return units
 
 
 @dataclass(frozen=True, kw_only=True)
-class penalty:
+class penalty(ContactLaw):
     """Penalty contact: a spring and a damper act on the penetration, and never pull.
 
     N = max(0, k d - b dgap/dt) where the gap is closed, with the penetration d = -gap. With b > 0 the force jumps at
@@ -59,6 +40,8 @@ class penalty:
     k: sp.Expr
     b: sp.Expr = 0
 
+    is_force = True
+    allowed: ClassVar = {"k": PASSIVE, "b": PASSIVE}
     __repr__ = written_out
 
     def __post_init__(self):
@@ -71,17 +54,17 @@ class penalty:
         check_constant(self.b, damping, f"{where}, b")
 
     def force(self, gap, rate):
-        """Return the normal force of a gap, <= 0, that changes at a rate."""
+        """Normal force of a gap, <= 0, that changes at a rate."""
         # a spring alone never pulls while the gap is closed, and a case less is half the work of method="taylor"
         return sp.Max(0, -self.k * gap - self.b * rate) if self.b != 0 else -self.k * gap
 
     def stored(self, gap):
-        """Return the energy in the spring."""
+        """Energy in the spring."""
         return self.k * sp.Max(0, -gap) ** 2 / 2
 
     @staticmethod
     def duration(k, mass, speed=None):
-        """Return how long a contact lasts [s]: half a period, pi sqrt(m/k), whatever the speed.
+        """Duration of a contact [s]: half a period, pi sqrt(m/k), whatever the speed.
 
         ``mass`` is the effective one of the contact, 1/W. A damper below critical makes it somewhat longer or shorter.
         """
@@ -89,7 +72,7 @@ class penalty:
 
 
 @dataclass(frozen=True, kw_only=True)
-class hunt_crossley:
+class hunt_crossley(ContactLaw):
     """Hunt-Crossley contact: N = k d^n (1 + c dd/dt), never pulling, with the penetration d = -gap.
 
     Hunt and Crossley, *Coefficient of restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42 (1975)
@@ -116,6 +99,8 @@ class hunt_crossley:
     c: sp.Expr
     exponent: sp.Rational = HERTZ
 
+    is_force = speed_matters = True
+    allowed: ClassVar = {"k": PASSIVE, "c": PASSIVE}
     __repr__ = written_out
 
     def __post_init__(self):
@@ -136,12 +121,12 @@ class hunt_crossley:
         agree_with(1 / self.c if self.c != 0 else 0, speed, f"{where}, 1/c")
 
     def force(self, gap, rate):
-        """Return the normal force of a gap that changes at a rate."""
+        """Normal force of a gap that changes at a rate."""
         # the factor alone is held at zero: where it is negative the contact would pull
         return self.k * sp.Max(0, -gap) ** self.exponent * sp.Max(0, 1 - self.c * rate)
 
     def duration(self, k, mass, speed):
-        """Return how long an undamped contact at a speed lasts [s]: 2 d/v int_0^1 dx/sqrt(1 - x^(n+1)), deepest at d.
+        """Duration of an undamped contact at a speed [s]: 2 d/v int_0^1 dx/sqrt(1 - x^(n+1)), deepest at d.
 
         For n = 3/2, 2.943 d/v (Hertz; Johnson, *Contact Mechanics*, 1985, section 11.4): the faster the shorter.
 
@@ -158,12 +143,12 @@ class hunt_crossley:
         return 2 * whole * deepest / speed
 
     def stored(self, gap):
-        """Return the energy in the spring."""
+        """Energy in the spring."""
         return self.k * sp.Max(0, -gap) ** (self.exponent + 1) / (self.exponent + 1)
 
     @staticmethod
     def restitution(cv):
-        """Return e for c times the approach speed v, exact: with y = c e v, y + ln(1 - y) = ln(1 + c v) - c v.
+        """Restitution e for c times the approach speed v, exact: with y = c e v, y + ln(1 - y) = ln(1 + c v) - c v.
 
         From m v dv/dd = -k d^n (1 + c v), which separates: the energy of the entry and of the exit reach the same
         depth. Mass, stiffness and exponent cancel.
@@ -182,37 +167,3 @@ class hunt_crossley:
             y -= (y + math.log1p(-y) - target) * (1.0 - y) / -y
             y = min(max(y, 1e-16), 1.0 - 1e-16)
         return y / cv
-
-
-def take(law, **words):
-    """Keep the constants of a law as expressions; refuse a negative number."""
-    for name, word in words.items():
-        expr = constant(getattr(law, name), name)
-        if expr.is_negative:
-            fed = "friction opposes the slip" if name == "mu" else "a negative one feeds energy to the user"
-            raise SceneError(f"{name} = {shown(expr)}; a contact needs a {word} {name} >= 0: {fed}")
-        object.__setattr__(law, name, expr)
-
-
-def constant(given, where):
-    """Return a constant of a law: an expression, or a text with a unit such as '1000 N/m'."""
-    if not isinstance(given, str):
-        return expression(given, where)
-    number, unit = quantity(given, where)
-    return Amount(number, unit) if number else sp.S.Zero
-
-
-def check_constant(expr, unit, where):
-    """Refuse a constant of another unit; of a bare number, say how it gets one."""
-    if expr.is_number and expr != 0 and unit != "1":
-        name = where.rpartition(", ")[2]
-        raise UnitsError(
-            f"{where} = {shown(expr)} has no unit; needs {unit}: '{shown(expr)} {unit}', or "
-            f"hl.parameters('{name}', units='{unit}', values={shown(expr)})"
-        )
-    agree_with(expr, unit, where)
-
-
-def shown(number):
-    """Return a number as a message has it."""
-    return f"{float(number):g}" if sp.sympify(number).is_real else str(number)
