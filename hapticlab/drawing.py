@@ -9,6 +9,7 @@ import html
 import io
 import re
 import sys
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ import numpy as np
 WARM, COLD = "#cc5a1a", "#1a4b84"
 #: readable on a projector and in grey print: neighbours differ in dash and by a fifth of the way from black to white at
 #: least; each has a contrast of 3 on white
-STYLES = [
+STYLES: list[dict[str, Any]] = [
     {"color": "#000000", "linestyle": "-"},
     {"color": WARM, "linestyle": "--"},
     {"color": COLD, "linestyle": "-."},
@@ -24,7 +25,7 @@ STYLES = [
     {"color": "#553077", "linestyle": (0, (5, 1, 1, 1, 1, 1))},
     {"color": "#8a8a8a", "linestyle": (0, (8, 3))},
 ]
-HOUSE = {
+HOUSE: dict[str, Any] = {
     "font.size": 11, "axes.grid": True, "grid.alpha": 0.35, "axes.spines.top": False, "axes.spines.right": False,
     "axes.axisbelow": True, "lines.linewidth": 1.6, "legend.frameon": False, "savefig.dpi": 150,
 }  # fmt: skip
@@ -36,7 +37,7 @@ NAMES = {
     "x_o": "wall boundary x_o", "chatter": "chatter amplitude", "growth": "growth of the oscillation", "contacts": "contacts",
     "energy": "energy drawn from the environment", "peak_force": "peak force",
 }  # fmt: skip
-FRAME = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}
+FRAME: dict[str, Any] = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}
 
 
 def style_of(number):

@@ -20,8 +20,11 @@ with the environment at rest it is a wall of stiffness k_s and damper b_s, Eq. (
 delay. A paddle has no force sensor: it is simulated only.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,6 +34,11 @@ from .loop import Loop
 from .passivity import required_damping
 from .plots import plot_admittance
 from .two_port import TwoPort, frequencies, stopped
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from .limit import Device
 
 KIND = "continuous approximation below the Nyquist frequency; exact for the servo alone"
 #: w T of motion so slow that a ton of coupler is no resistance
@@ -61,7 +69,7 @@ class AdmittanceDesign:
     two_port: TwoPort
     kind: str = KIND
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the criterion against frequency, and the least that a hand can be made to feel."""
         return plot_admittance(self)
 
@@ -72,7 +80,7 @@ class AdmittanceDesign:
         )
 
 
-def admittance_design(paddle, *, servo, servo_stiffness=0.0, b_a=0.0):
+def admittance_design(paddle: Device, *, servo: float, servo_stiffness: float = 0.0, b_a: float = 0.0) -> AdmittanceDesign:
     """Design the virtual coupler of an admittance display by Llewellyn's criterion (after Adams and Hannaford 1999).
 
     The servo alone is held to Eq. (23.10), exactly: stable in every passive hand with the environment at rest. The coupler
@@ -142,7 +150,9 @@ def _needed(display, theta):
     return -display.criterion(theta) / (2 * display.h(theta)[:, 0, 0].real)
 
 
-def admittance_display(*, m, b, T, b_s, k_s=0.0, m_a=0.0, b_a=0.0, delay=0.0):
+def admittance_display(
+    *, m: float, b: float, T: float, b_s: float, k_s: float = 0.0, m_a: float = 0.0, b_a: float = 0.0, delay: float = 0.0
+) -> TwoPort:
     """Return the two-port of a device under a servo that shows an environment beside a body m_a on a damper b_a."""
 
     def g(theta):

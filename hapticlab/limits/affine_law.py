@@ -1,6 +1,10 @@
 """A linear law whose force is affine in its stiffness, F = F0 + K F1: what a limit over K and a root locus are taken of."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -9,12 +13,18 @@ from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
 from ..scene.scene import Scene
-from .limit import check_law
+from .limit import LawName, check_law
 from .linear_law import LinearLaw
 from .port import SMALL, tick_map
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
 #: part of the largest entry below which a difference between laws is rounding; a scene's tick is measured to 1e-9
 ROUNDING = 1e-8
+
+#: a law whose stiffness is sought
+StiffnessLaw = LawName | Scene | Callable[[float], LinearLaw]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,21 +41,28 @@ class AffineLaw:
     name : str
     """
 
-    A: np.ndarray
-    B0: np.ndarray
-    B1: np.ndarray
-    C0: np.ndarray
-    C1: np.ndarray
-    D0: np.ndarray
-    D1: np.ndarray
+    A: NDArray[np.float64]
+    B0: NDArray[np.float64]
+    B1: NDArray[np.float64]
+    C0: NDArray[np.float64]
+    C1: NDArray[np.float64]
+    D0: NDArray[np.float64]
+    D1: NDArray[np.float64]
     name: str
 
-    def at(self, K):
+    def at(self, K: float) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Return B, C, D at a stiffness [N/m]."""
         return self.B0 + K * self.B1, self.C0 + K * self.C1, self.D0 + K * self.D1
 
 
-def affine_law(law, *, T, B=0.0, parameter="k", velocity="backward_difference"):
+def affine_law(
+    law: StiffnessLaw | LinearLaw | AffineLaw,
+    *,
+    T: float,
+    B: float = 0.0,
+    parameter: str | None = "k",
+    velocity: Literal["backward_difference", "measured"] = "backward_difference",
+) -> AffineLaw:
     """Return what was given as a law, affine in K.
 
     Parameters
@@ -76,7 +93,7 @@ def affine_law(law, *, T, B=0.0, parameter="k", velocity="backward_difference"):
     if isinstance(law, LinearLaw):
         _check_period(law, T)
         parts = _parts(law)
-        return AffineLaw(parts[0], *(a for part in parts[1:] for a in (part, 0 * part)), law.name)
+        return AffineLaw(parts[0], *(a for part in parts[1:] for a in (part, 0 * part)), name=law.name)
     if isinstance(law, Scene):
         return _fitted(_of_scene(law, T, parameter, velocity), law.name)
     if not callable(law):

@@ -1,7 +1,10 @@
 """The bounds of the field by their authors' names: what each promises, what it assumes, and an error where that fails."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD
@@ -10,6 +13,11 @@ from .passivity import passivity_limit
 from .plots import plot_bounds
 from .stability import stability_limit
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from .limit import LawName, Plant
+
 #: what e of :func:`gil_limit` may be at most for Gil's formula
 SLOW_ENOUGH = 0.1
 PASSIVITY = "passivity: any hand, sufficient"
@@ -17,7 +25,9 @@ SINUSOIDS = "of slow sinusoids alone: no passivity, which ends sooner"
 STABILITY = "stability of this plant, to first order in the delay"
 
 
-def abbott_okamura_limit(*, b, T, coulomb=0.0, resolution=0.0, B=0.0, delay=0.0, law="zoh"):
+def abbott_okamura_limit(
+    *, b: float, T: float, coulomb: float = 0.0, resolution: float = 0.0, B: float = 0.0, delay: float = 0.0, law: LawName = "zoh"
+) -> Limit:
     """Largest stiffness that is passive with a quantised position: K <= min(2 b/T, 2 f_c/Delta) (Abbott and Okamura 2005).
 
     Two modes of their own: the hold, paid for by viscous damping, and the encoder, paid for by Coulomb friction alone.
@@ -55,7 +65,9 @@ def abbott_okamura_limit(*, b, T, coulomb=0.0, resolution=0.0, B=0.0, delay=0.0,
     return _two_modes(b, T, coulomb, resolution, 0.5, "Abbott and Okamura 2005")
 
 
-def diolaiti_limit(*, b, T, coulomb=0.0, resolution=0.0, delay=0.0, B=0.0, law="zoh"):
+def diolaiti_limit(
+    *, b: float, T: float, coulomb: float = 0.0, resolution: float = 0.0, delay: float = 0.0, B: float = 0.0, law: LawName = "zoh"
+) -> Limit:
     """Largest stiffness of the passive region of Diolaiti et al. (2006): b/(K T) >= 1/2 + delay/T and f_c/(K Delta) >= 1/2.
 
     With a whole number of periods of delay the first is exact. With a fraction it is what slow sinusoids ask for, and up
@@ -84,7 +96,7 @@ def diolaiti_limit(*, b, T, coulomb=0.0, resolution=0.0, delay=0.0, B=0.0, law="
     return replace(found, kind=SINUSOIDS, assumptions=(*found.assumptions, note))
 
 
-def gil_limit(paddle, *, B=0.0, law="zoh"):
+def gil_limit(paddle: Plant, *, B: float = 0.0, law: LawName = "zoh") -> Limit:
     """Largest stable stiffness to first order in the delay, K < (b + B)/(T/2 + delay) (Gil et al. 2004, 2009).
 
     A stability claim for one plant, not a passivity claim; damping of the hand counts with the device's. It holds where
@@ -136,11 +148,11 @@ class Bounds:
     ``law`` is the one the bounds are of: "backward_difference" where "half_sample" was asked for on an estimated velocity.
     """
 
-    law: str
+    law: LawName
     B: float
-    found: dict
+    found: dict[str, Limit | str]
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Limit | str:
         return self.found[name]
 
     def __str__(self):
@@ -150,12 +162,12 @@ class Bounds:
             lines.append(f"  {name:<20}{K}")
         return "\n".join(lines)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the bounds side by side, those of passivity told apart from the others."""
         return plot_bounds(self)
 
 
-def bounds(paddle, *, law="zoh", B=0.0):
+def bounds(paddle: Plant, *, law: LawName = "zoh", B: float = 0.0) -> Bounds:
     """Return every named bound on the stiffness of a wall beside the exact limit of this paddle's stability.
 
     Parameters
@@ -182,9 +194,9 @@ def bounds(paddle, *, law="zoh", B=0.0):
     check_paddle(paddle, "m", "b", "T", "delay", "hand")
     if LEAD[law] and getattr(paddle, "velocity", "measured") == "backward_difference":
         law = "backward_difference"  # Eq. (23.3) with the estimate is Eq. (23.5)
-    device = {"b": paddle.b, "T": paddle.T, "B": B, "delay": paddle.delay, "law": law}
+    device: dict[str, Any] = {"b": paddle.b, "T": paddle.T, "B": B, "delay": paddle.delay, "law": law}
     counts = getattr(paddle, "counts_per_metre", None)
-    quantised = {"coulomb": getattr(paddle, "coulomb", 0.0), "resolution": 1 / counts if counts else 0.0}
+    quantised: dict[str, Any] = {"coulomb": getattr(paddle, "coulomb", 0.0), "resolution": 1 / counts if counts else 0.0}
     asked = {
         "Colgate, Schenkel": lambda: passivity_limit(**device),
         "Abbott, Okamura": lambda: abbott_okamura_limit(**device, **quantised),
@@ -192,7 +204,7 @@ def bounds(paddle, *, law="zoh", B=0.0):
         "Gil": lambda: gil_limit(paddle, B=B, law=law),
         "exact stability": lambda: stability_limit(paddle, law=law, B=B),
     }
-    found = {}
+    found: dict[str, Limit | str] = {}
     for name, limit in asked.items():
         try:
             found[name] = limit()

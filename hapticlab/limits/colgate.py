@@ -17,8 +17,11 @@ every delay of whole periods: of ``z^-k`` it is Dirichlet's kernel, whose mean i
 for more elsewhere, so none is passive with K > 2 b/T, and without delay nothing is better than the plain spring, Eq. (23.1).
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,6 +30,12 @@ from .limit import MOST_PERIODS, check_number, check_period, whole_and_fraction
 from .linear_law import LinearLaw
 from .plots import plot_passivity_margin
 from .port import ALIKE, SLOWEST, asked, negative, required, unstable_pole
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
 
 #: a stiffness beside which the next cut has nothing to add
 SETTLED = 1e-13
@@ -56,29 +65,29 @@ class PassivityMargin:
     frequency: float
 
     @property
-    def margin(self):
+    def margin(self) -> float:
         """Damping of the device that is left over [N s/m]."""
         return self.b - self.required
 
     @property
-    def passive(self):
+    def passive(self) -> bool:
         return self.b >= self.required
 
-    def asked(self, theta):
+    def asked(self, theta: ArrayLike) -> NDArray[np.float64]:
         """Return the damping [N s/m] that motion at theta = w T asks of the device, 0 < theta <= pi; shape (P,)."""
         law = self.law
         return asked(law.A, law.B, law.C, law.D, law.T, np.atleast_1d(np.asarray(theta, dtype=float)), self.delay)
 
-    def equivalent_damper(self, theta):
+    def equivalent_damper(self, theta: ArrayLike) -> NDArray[np.float64]:
         """Return the damper [N s/m] as which a sinusoid of theta = w T feels the law; negative: it draws energy."""
         return equivalent_damper(self.law, theta, delay=self.delay)
 
     @property
-    def flat(self):
+    def flat(self) -> bool:
         """Whether every frequency asks for the same."""
         return _flat(self.law, self.required, self.delay)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw what each frequency asks for, what a pure sinusoid asks for, and what the device has."""
         return plot_passivity_margin(self)
 
@@ -91,7 +100,7 @@ class PassivityMargin:
         )
 
 
-def passivity_margin(law, *, b, delay=0.0):
+def passivity_margin(law: LinearLaw, *, b: float, delay: float = 0.0) -> PassivityMargin:
     """Passivity of a linear law on a device of damping b, frequency by frequency (Colgate and Schenkel 1997).
 
     Necessary and sufficient for a law that always acts; for a unilateral wall it says nothing about the switching, except
@@ -135,7 +144,7 @@ def passivity_margin(law, *, b, delay=0.0):
     return PassivityMargin(law, b, delay, most, theta / (2 * math.pi * law.T))
 
 
-def equivalent_damper(law, theta, *, delay=0.0):
+def equivalent_damper(law: LinearLaw, theta: ArrayLike, *, delay: float = 0.0) -> NDArray[np.float64]:
     """Return the damper [N s/m] as which a sinusoid x of theta = w T > 0 feels a held law, past Nyquist too.
 
     The part of the held force in phase with the velocity, over the velocity: at whole multiples of theta = pi averaged
@@ -152,7 +161,7 @@ def equivalent_damper(law, theta, *, delay=0.0):
     return -law.T / theta**2 * ((1 - np.exp(-1j * theta)) * law.at(theta) * late).real
 
 
-def wall_damping(*, K, T, B=0.0, velocity_filter=0.0):
+def wall_damping(*, K: float, T: float, B: float = 0.0, velocity_filter: float = 0.0) -> float:
     """Least device damping [N s/m] of a wall with a damper on a filtered velocity: Eq. (23.10) and its extension.
 
     ``K T/2 + |B|`` for a damper on the plain backward difference. A first-order filter of time constant tau leaves
@@ -171,7 +180,7 @@ def wall_damping(*, K, T, B=0.0, velocity_filter=0.0):
     return K * T / 2 + (B / (1 + 2 * tau / T) if B >= 0 else -B)
 
 
-def largest_passive_stiffness(law, *, b, delay=0.0):
+def largest_passive_stiffness(law: Callable[[float], LinearLaw], *, b: float, delay: float = 0.0) -> tuple[float, float | None]:
     """Return (K, frequency [Hz]): the largest K for which a law affine in K is passive on a device of damping b.
 
     ``frequency`` is 0.0 for slow motion and None where every frequency asks alike.
@@ -207,7 +216,7 @@ def largest_passive_stiffness(law, *, b, delay=0.0):
     return K, None if _flat(law(K), most, delay) else theta / (2 * math.pi * T)
 
 
-def least_passive_stiffness(law):
+def least_passive_stiffness(law: Callable[[float], LinearLaw]) -> float:
     """Return the K from which on the stiffness at rest is not negative, for a law as above; mostly 0.
 
     Examples

@@ -17,8 +17,11 @@ because ``|A|^2 + 2 f (1-f) (1 - cos theta) = 1``. At each frequency this is a c
 of it is ``k_c T/2 + b_c <= b``, which is Eq. (23.10) again.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,6 +29,12 @@ from ..errors import AnalysisError
 from .limit import MOST_PERIODS, check_number, check_paddle, whole_and_fraction
 from .plots import plot_coupler
 from .two_port import TwoPort, frequencies, hertz, stopped
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from .limit import Device
 
 #: part of the damping to which the best pair is searched
 NARROW = 1e-10
@@ -56,16 +65,16 @@ class CouplerDesign:
     delay: float
 
     @property
-    def two_port(self):
+    def two_port(self) -> TwoPort:
         """The display with this coupler, as a TwoPort between hand and environment."""
         return impedance_display(k_c=self.k_c, b_c=self.b_c, b=self.b, T=self.T, delay=self.delay)
 
-    def border(self, points=60):
+    def border(self, points: int = 60) -> NDArray[np.float64]:
         """Return (b_c, k_c) of shape (2, points): the stiffest spring beside every damper the device can carry."""
         dampers = np.linspace(0.0, _most_damping(self.b, self.T, self.delay), points)
         return np.array([dampers, [_stiffest(b_c, self.b, self.T, self.delay)[0] for b_c in dampers]])
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the pairs that are absolutely stable, and the criterion of this pair against frequency."""
         return plot_coupler(self)
 
@@ -78,7 +87,7 @@ class CouplerDesign:
         )
 
 
-def coupler_design(paddle, *, b_c=None):
+def coupler_design(paddle: Device, *, b_c: float | None = None) -> CouplerDesign:
     """Design a virtual coupler for an impedance display by Llewellyn's criterion (after Adams and Hannaford 1999).
 
     Exact for the sampled device in any passive hand; the environment must be passive at the sample rate, which explicit
@@ -121,7 +130,7 @@ def coupler_design(paddle, *, b_c=None):
     return CouplerDesign(k_c, b_c, hertz(_stops(b_c, b, T, delay), theta, T), b, T, delay)
 
 
-def impedance_display(*, k_c, b_c, b, T, delay=0.0):
+def impedance_display(*, k_c: float, b_c: float, b: float, T: float, delay: float = 0.0) -> TwoPort:
     """Return the two-port of a device of damping b that shows an environment through a coupler.
 
     Examples

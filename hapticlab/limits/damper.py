@@ -1,5 +1,7 @@
 """The largest sampled damper: what a virtual damper, or a passivity controller's, may be at most."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
@@ -7,7 +9,7 @@ import numpy as np
 from .limit import MOST_PERIODS, check_number, check_period, whole_and_fraction
 
 
-def damper_limit(*, m, b, T, delay=0.0):
+def damper_limit(*, m: float, b: float, T: float, delay: float = 0.0) -> float:
     """Largest B [N s/m] at which a handle with the damper F = B (x[n] - x[n-1])/T alone is stable; exact, linear.
 
     Without device damping and delay it is 2 m/T. A hand adds mass, which raises it, and may add stiffness, which lowers

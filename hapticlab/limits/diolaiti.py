@@ -6,13 +6,19 @@ large motions die away and with sigma >= 1/2 small ones do; the four combination
 sinusoids: with a fraction of a period of delay a wall in the first may still not be passive, and is then not called so.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from .bounds import diolaiti_limit
 from .limit import check_number
 from .passivity import required_damping
 from .plots import plot_diolaiti
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 REGIONS = {
     (True, True): "passive: comes to rest from anywhere",
@@ -47,7 +53,7 @@ class DiolaitiPoint:
     region: str
     amplitude: float
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the four regions and the point."""
         return plot_diolaiti(self)
 
@@ -56,7 +62,9 @@ class DiolaitiPoint:
         return f"beta = b/(K T) = {self.beta:.4g}, sigma = f_c/(K Delta) = {self.sigma:.4g}: {self.region}{grow}"
 
 
-def diolaiti(*, K, b, T, coulomb=0.0, resolution=0.0, delay=0.0, m=None):
+def diolaiti(
+    *, K: float, b: float, T: float, coulomb: float = 0.0, resolution: float = 0.0, delay: float = 0.0, m: float | None = None
+) -> DiolaitiPoint:
     """Return where a plain wall of stiffness K lies in the beta-sigma plane (Diolaiti, Niemeyer, Barbagli, Salisbury 2006).
 
     Parameters

@@ -18,12 +18,20 @@ and delay together is ``T (a + sqrt(a^2 + f (1-f) k^2))/2`` with a = k_max/2 + k
 For a linear spring it is exact, and :func:`~hapticlab.limits.passivity.required_damping` finds it another way.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ..drawing import STYLES, house_style, new_figure
 from ..errors import AnalysisError
 from .limit import check_number, check_period, whole_and_fraction
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -50,22 +58,22 @@ class Ledger:
         Whether the environment's energy is bounded below, without which nothing is proved.
     """
 
-    entries: tuple
-    assumptions: tuple = ()
+    entries: tuple[Entry, ...]
+    assumptions: tuple[str, ...] = ()
     bounded: bool = True
 
     @property
-    def index(self):
+    def index(self) -> float:
         """What is left [N s/m]; the rendered handle is output-strictly passive with it where positive."""
         return sum(entry.index for entry in self.entries)
 
     @property
-    def passive(self):
+    def passive(self) -> bool:
         """Whether the ledger proves the handle passive in every passive hand; it is sufficient, not necessary."""
         return self.bounded and self.index >= 0
 
     @property
-    def gain(self):
+    def gain(self) -> float:
         """Most that the hand's force is amplified into velocity, in the mean of squares [m/(N s)]: 1/index."""
         return 1 / self.index if self.bounded and self.index > 0 else float("inf")
 
@@ -76,7 +84,7 @@ class Ledger:
         rows = [str(entry) for entry in self.entries]
         return "\n".join([*rows, f"{'left':<12}{self.index:+12.6g} N s/m   {told}", *(f"  {a}" for a in self.assumptions)])
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the parts as bars, one below the other, and what is left."""
         with house_style():
             figure = new_figure(height=1.2 + 0.45 * (len(self.entries) + 1))
@@ -97,7 +105,17 @@ class Ledger:
         return figure
 
 
-def passivity_ledger(*, b, T, K=0.0, B=0.0, delay=0.0, delayed=False, bounded=False, parts=()):
+def passivity_ledger(
+    *,
+    b: float,
+    T: float,
+    K: float | tuple[float, float] | list[float] = 0.0,
+    B: float | tuple[float, float] | list[float] = 0.0,
+    delay: float = 0.0,
+    delayed: bool = False,
+    bounded: bool = False,
+    parts: Iterable[tuple[str, float, str]] = (),
+) -> Ledger:
     """Excess of passivity of the device, and what hold, delay and environment take of it: Eq. (23.10) as a ledger.
 
     For linear and nonlinear environments, with springs whose local stiffness and dampers whose local damping stay within

@@ -16,6 +16,8 @@ energy all the same, and no dashpot, which yields to a force alone, pays. Unless
 K (1 + 1/z) at Nyquist; then eps is finite there.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 
@@ -73,7 +75,7 @@ def _told(frequency):
     return "every frequency" if frequency is None else f"{frequency:.4g} Hz"
 
 
-def passivity_indices(law):
+def passivity_indices(law: LinearLaw) -> PassivityIndices:
     """Input-strict and output-strict passivity indices of a linear law that is sampled and held.
 
     Parameters

@@ -1,14 +1,44 @@
 """A stiffness limit that always says which limit it is."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol
 
 from ..errors import AnalysisError
 from ..scene.laws.taps import TAPS
 from .plots import plot_limit
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..device.hand.hand import Hand
+
 #: a limit's polynomials have a degree for each period of delay; past this their roots lose their digits
 MOST_PERIODS = 200
+
+LawName = Literal["zoh", "half_sample", "backward_difference", "ellis"]
+
+
+class Device(Protocol):
+    """The constants that a limit reads of a paddle, in SI units; every :class:`hapticlab.SimulatedPaddle` has them."""
+
+    @property
+    def m(self) -> float: ...
+    @property
+    def b(self) -> float: ...
+    @property
+    def T(self) -> float: ...
+    @property
+    def delay(self) -> float: ...
+
+
+class Plant(Device, Protocol):
+    """A device, and the hand that holds it."""
+
+    @property
+    def hand(self) -> Hand | None: ...
 
 
 @dataclass(frozen=True)
@@ -40,7 +70,7 @@ class Limit:
     reason: str
     assumptions: tuple[str, ...] = ()
 
-    def __float__(self):
+    def __float__(self) -> float:
         return float(self.K)
 
     def __str__(self):
@@ -48,7 +78,7 @@ class Limit:
         notes = "".join(f"\n  {a}" for a in self.assumptions)
         return f"{self.K:.6g} N/m{at}: {self.kind}; {self.reason}{notes}"
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Return a figure: which stiffnesses the limit promises and which not, and what it leaves out."""
         return plot_limit(self)
 
@@ -57,7 +87,7 @@ class Limit:
         return f"Limit(K={self.K:.9g} N/m, frequency={at}, kind={self.kind!r}, reason={self.reason!r})"
 
 
-def check_law(law):
+def check_law(law: str) -> None:
     """Refuse a law that has no name in the chapter."""
     if law not in TAPS:
         raise AnalysisError(f"law = {law!r}; needs one of {', '.join(TAPS)}")
@@ -81,12 +111,12 @@ def check_paddle(paddle, *names):
         raise AnalysisError(f"a {type(paddle).__name__} has no {lacking[0]}; needs a paddle, as hl.SimulatedPaddle(...)")
 
 
-def check_period(T):
+def check_period(T: float) -> float:
     """Return a sampling period [s] as a float, or say what it has to be."""
     return check_number("T", T, "s", "a sampling period needs T > 0", lambda seconds: seconds > 0)
 
 
-def whole_and_fraction(delay, T, most=math.inf):
+def whole_and_fraction(delay: float, T: float, most: float = math.inf) -> tuple[int, float]:
     """Split a delay [s] into whole periods and a fraction of one; 1e-9 of a period is rounding, not delay."""
     periods = delay / T
     if periods > most:

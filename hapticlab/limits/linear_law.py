@@ -1,7 +1,10 @@
 """A linear position law of any memory, as the one thing that every exact bound reads: s' = A s + B x, F = C s + D x."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +14,13 @@ from ..scene.laws.taps import LEAD, TAPS
 from .limit import check_law, check_number, check_period
 from .plots import plot_law
 from .port import static_stiffness, tick_map
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from ..scene.scene import Scene
+    from .limit import LawName
 
 #: Eq. (23.8), the force filter, on F[n], F[n-1], F[n-2]
 FORCE_FILTER = (2.0, -1.5, 0.5)
@@ -43,9 +53,9 @@ class LinearLaw:
     ellis, K = 100 N/m: F[n] = 200 x[n] - 150 x[n-1] + 50 x[n-2], T = 1 ms
     """
 
-    A: np.ndarray
-    B: np.ndarray
-    C: np.ndarray
+    A: NDArray[np.float64]
+    B: NDArray[np.float64]
+    C: NDArray[np.float64]
     D: float
     T: float
     name: str
@@ -59,7 +69,16 @@ class LinearLaw:
         object.__setattr__(self, "D", float(self.D))
 
     @classmethod
-    def of(cls, law="zoh", *, K, T, B=0.0, velocity_filter=None, filtered=False):
+    def of(
+        cls,
+        law: LawName = "zoh",
+        *,
+        K: float,
+        T: float,
+        B: float = 0.0,
+        velocity_filter: float | None = None,
+        filtered: bool = False,
+    ) -> LinearLaw:
         """Return a law of the chapter with a virtual damper beside it.
 
         Parameters
@@ -102,14 +121,14 @@ class LinearLaw:
         return found.named(name)
 
     @classmethod
-    def of_taps(cls, taps, *, T, name="taps"):
+    def of_taps(cls, taps: ArrayLike, *, T: float, name: str = "taps") -> LinearLaw:
         """Return the law F[n] = taps[0] x[n] + taps[1] x[n-1] + ..., one or more finite weights in N/m."""
         taps = _numbers(name, "taps", taps, (max(np.size(taps), 1),))
         n = len(taps) - 1
         return cls(np.eye(n, k=-1), np.eye(n, 1)[:, 0], taps[1:].copy(), float(taps[0]), float(T), name)
 
     @classmethod
-    def of_scene(cls, scene, *, T=1e-3, **options):
+    def of_scene(cls, scene: Scene, *, T: float = 1e-3, **options: Any) -> LinearLaw:
         """Return the law that a linear scene compiles to: hold, method and estimator of velocity included.
 
         Parameters
@@ -135,15 +154,15 @@ class LinearLaw:
         """
         return cls(*tick_map(compile(scene, T=T, live=(), dtype="float64", **options)), float(T), scene.name)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Return a figure: the spring and the damper as which slow and fast sinusoids feel the law, the hold included."""
         return plot_law(self)
 
-    def named(self, name):
+    def named(self, name: str) -> LinearLaw:
         """Return the same law under another name."""
         return LinearLaw(self.A, self.B, self.C, self.D, self.T, name)
 
-    def __add__(self, other):
+    def __add__(self, other: LinearLaw) -> LinearLaw:
         """Return both forces side by side."""
         if not isinstance(other, LinearLaw):
             raise AnalysisError(f"{self.name} + {other!r}; needs a second LinearLaw, as LinearLaw.of_taps([1.0], T=1e-3)")
@@ -153,18 +172,18 @@ class LinearLaw:
         both = (np.r_[self.B, other.B], np.r_[self.C, other.C], self.D + other.D)
         return LinearLaw(A, *both, self.T, f"{self.name} + {other.name}")
 
-    def __rmul__(self, gain):
+    def __rmul__(self, gain: float) -> LinearLaw:
         """Return the force times a number."""
         return LinearLaw(self.A, self.B, gain * self.C, gain * self.D, self.T, f"{gain:g} x {self.name}")
 
-    def then(self, taps):
+    def then(self, taps: ArrayLike) -> LinearLaw:
         """Return the law whose force is taps[0] F[n] + taps[1] F[n-1] + ..., as a delay or the filter of Eq. (23.8)."""
         after = LinearLaw.of_taps(taps, T=self.T)
         A = np.block([[self.A, np.zeros((len(self.A), len(after.A)))], [np.outer(after.B, self.C), after.A]])
         ends = (np.r_[self.B, after.B * self.D], np.r_[after.D * self.C, after.C], after.D * self.D)
         return LinearLaw(A, *ends, self.T, f"{self.name}, filtered")
 
-    def at(self, theta):
+    def at(self, theta: ArrayLike) -> NDArray[np.complex128]:
         """Return H(e^(j theta)) [N/m], theta = w T of any shape; complex array of that shape.
 
         At a pole on the unit circle, as an integrator's at theta = 0, there is no value: inf.
@@ -179,7 +198,7 @@ class LinearLaw:
         inside = np.linalg.solve(gap, np.broadcast_to(self.B[:, None], (*theta.shape, len(self.B), 1)))[..., 0]
         return np.where(on_pole, np.inf, inside @ self.C + self.D)
 
-    def impulse(self, count):
+    def impulse(self, count: int) -> NDArray[np.float64]:
         """Return the first ``count`` forces [N/m] of a handle that was at one metre at the first sample alone."""
         forces, state = [self.D], self.B
         for _ in range(count - 1):
@@ -188,13 +207,13 @@ class LinearLaw:
         return np.array(forces[:count])
 
     @property
-    def finite(self):
+    def finite(self) -> bool:
         """Whether the force forgets a position after some samples."""
         n = len(self.A)
         response = np.abs(self.impulse(2 * n + 1))  # n + 1 terms of zero in a row: all that follow are (Cayley, Hamilton)
         return bool(response[n + 1 :].max(initial=0.0) <= ROUNDING * response.max())
 
-    def taps(self):
+    def taps(self) -> NDArray[np.float64]:
         """Return the weights [N/m] on x[n], x[n-1], ... of a law with a finite memory, array of shape (m,), m >= 1.
 
         Raises
@@ -209,12 +228,12 @@ class LinearLaw:
         return response[: kept[-1] + 1] if len(kept) else response[:1]
 
     @property
-    def stiffness(self):
+    def stiffness(self) -> float:
         """Force per displacement at rest [N/m], H(1); nan where a handle at rest feels no one force."""
         return static_stiffness(self.A, self.B, self.C, self.D)
 
     @property
-    def radius(self):
+    def radius(self) -> float:
         """Largest |pole| with the handle held; 0 for a law of finite memory."""
         return float(np.abs(np.linalg.eigvals(self.A)).max()) if len(self.A) and not self.finite else 0.0
 
@@ -244,7 +263,7 @@ def _numbers(name, part, given, shape):
     return array
 
 
-def filtered_damper(B, T, tau=0.0):
+def filtered_damper(B: float, T: float, tau: float = 0.0) -> LinearLaw:
     """Return the virtual damper B [N s/m] on the backward difference, filtered over tau [s] by backward mapping."""
     if not B:
         return LinearLaw.of_taps([0.0], T=T)

@@ -1,11 +1,18 @@
 """The range of a scene's local stiffness dF/dx, for the bounds of nonlinear environments."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 import sympy as sp
 
 from ..errors import AnalysisError
 from ..scene.notation.symbols import n, x
 from .limit import check_number
+
+if TYPE_CHECKING:
+    from ..scene.scene import Scene
 
 #: places looked at; secants between them are the slopes to some 1e-8 of their curvature
 PLACES = 40_000
@@ -15,7 +22,7 @@ HALVINGS = 20
 UNSETTLED = 4.0
 
 
-def local_stiffness(scene, low, high):
+def local_stiffness(scene: Scene, low: float, high: float) -> tuple[float, float]:
     """Return the least and the largest local stiffness dF/dx [N/m] of a force law F(x(n)) between two positions.
 
     Parameters

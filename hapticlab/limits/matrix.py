@@ -1,9 +1,16 @@
 """Exact motion of a linear plant under a held force; the only place of the limits where scipy opens."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
-def held(A, duration):
+
+def held(A: NDArray[np.float64], duration: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return Phi = e^(A h) and Psi, the integral of e^(A s) over 0 <= s <= h, with Phi = I + A Psi.
 
     Parameters

@@ -11,8 +11,11 @@ line in f, and c = (r/(2b)) ((1-f) + f/z) / z^d, with the same radius. The loop 
 |M| < 1, M = H rho/(1 + H c): the small gain theorem after a linear fractional map, which here loses nothing.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +25,10 @@ from .limit import check_number, whole_and_fraction
 from .linear_law import LinearLaw
 from .plots import plot_nyquist_disk
 from .two_port import SLOW
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
 
 #: |M| past which 1 + H c is rounding
 INFINITE = 1e9
@@ -51,24 +58,24 @@ class NyquistDisk:
     worst: float
     passive: bool
 
-    def centre(self, theta):
+    def centre(self, theta: ArrayLike) -> NDArray[np.complex128]:
         """Return the centre [m/N] of the disk of G(e^(j theta))."""
         whole, f = whole_and_fraction(self.delay, self.law.T)
         z = np.exp(1j * np.asarray(theta, dtype=float))
         return self._hold(theta) * ((1 - f) + f / z) * z ** -float(whole)
 
-    def radius(self, theta):
+    def radius(self, theta: ArrayLike) -> NDArray[np.float64]:
         """Return the radius [m/N] of that disk."""
         return np.abs(self._hold(theta))
 
-    def mapped(self, theta):
+    def mapped(self, theta: ArrayLike) -> NDArray[np.complex128]:
         """Return the law M(theta) after the map that makes the disk the unit disk; a passive rendering has |M| < 1."""
         H = self.law.at(theta)
         with np.errstate(divide="ignore", invalid="ignore"):
             return H * self._hold(theta) / (1 + H * self.centre(theta))
 
     @property
-    def size(self):
+    def size(self) -> str:
         """The worst |M| in words: "= 0.857143", or "infinite" where the map divides by nothing but rounding."""
         worst = float(np.abs(self.mapped(self.worst)))
         return f"= {worst:.6g}" if worst < INFINITE else "infinite"
@@ -76,7 +83,7 @@ class NyquistDisk:
     def _hold(self, theta):
         return -self.law.T / (4 * self.b) * (1 + 1j / np.tan(np.asarray(theta, dtype=float) / 2))  # r/(2b)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw both planes."""
         return plot_nyquist_disk(self)
 
@@ -88,7 +95,7 @@ class NyquistDisk:
         return f"{self.law.name} on b = {self.b:g} N s/m: |M| {self.size} {at}, {inside}"
 
 
-def nyquist_disk(law, *, b, delay=0.0):
+def nyquist_disk(law: LinearLaw, *, b: float, delay: float = 0.0) -> NyquistDisk:
     """Return the disk of passive hands and the law against it (Colgate and Schenkel 1997; Eq. 23.10 is its result).
 
     Parameters

@@ -14,7 +14,10 @@ with R Colgate's expression for the averaged law ``((1-f) + f/z) H``. It is line
 at the worst u of one K gives the next K, and that sequence falls to the limit faster than linearly.
 """
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -27,12 +30,25 @@ from .limit import MOST_PERIODS, Limit, check_law, check_number, check_period, w
 from .linear_law import LinearLaw
 from .port import unstable_pole
 
+if TYPE_CHECKING:
+    from .affine_law import StiffnessLaw
+    from .limit import LawName
+
 KIND = "passivity: any passive hand, sufficient"
 NO_DAMPING = "b = 0: without device damping nothing pays for the hold"
 NO_VELOCITY = "its exact velocity jumps at the samples: a hand that moves only there draws energy at any stiffness"
 
 
-def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0, parameter="k"):
+def passivity_limit(
+    *,
+    b: float,
+    T: float,
+    B: float = 0.0,
+    delay: float = 0.0,
+    law: StiffnessLaw = "zoh",
+    velocity_filter: float = 0.0,
+    parameter: str = "k",
+) -> Limit:
     """Largest stiffness that a passive hand of any kind cannot set chattering, Eq. (23.10) and its general form.
 
     Necessary and sufficient where the spring always acts. For the unilateral wall sufficient with law "zoh" and no delay;
@@ -109,7 +125,7 @@ def passivity_limit(*, b, T, B=0.0, delay=0.0, law="zoh", velocity_filter=0.0, p
     return Limit(float(kappa * b / T), frequency, KIND, reason, (*notes, _unilateral(law, delay)))
 
 
-def required_damping(*, K, T, B=0.0, delay=0.0, law="zoh"):
+def required_damping(*, K: float, T: float, B: float = 0.0, delay: float = 0.0, law: LawName = "zoh") -> float:
     """Least device damping b [N s/m] that makes a wall passive: Eq. (23.10) read as a design directive.
 
     Parameters

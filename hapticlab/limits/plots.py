@@ -1,13 +1,29 @@
 """Figures of the limits: one limit, bounds side by side, damping asked for by frequency, disks of passive hands, couplers."""
 
+from __future__ import annotations
+
 import textwrap
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..drawing import COLD, FRAME, STYLES, WARM, house_style, new_figure, style_of
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def plot_limit(limit):
+    from .admittance import AdmittanceDesign
+    from .bounds import Bounds
+    from .colgate import PassivityMargin
+    from .coupler import CouplerDesign
+    from .diolaiti import DiolaitiPoint
+    from .limit import Limit
+    from .linear_law import LinearLaw
+    from .nyquist_disk import NyquistDisk
+    from .two_port import TwoPort
+
+
+def plot_limit(limit: Limit) -> Figure:
     """Draw the stiffnesses that a limit promises, filled, and those of which it promises nothing, hatched.
 
     Parameters
@@ -38,7 +54,7 @@ def plot_limit(limit):
     return figure
 
 
-def plot_passivity_margin(margin):
+def plot_passivity_margin(margin: PassivityMargin) -> Figure:
     """Draw what each frequency asks of the device's damping, and what a pure sinusoid asks for.
 
     Parameters
@@ -69,7 +85,7 @@ def plot_passivity_margin(margin):
     return figure
 
 
-def plot_nyquist_disk(disk):
+def plot_nyquist_disk(disk: NyquistDisk) -> Figure:
     """Draw the disks in which a device in a passive hand lies with -1/H, and the unit disk with the mapped law.
 
     Parameters
@@ -114,7 +130,7 @@ def plot_nyquist_disk(disk):
     return figure
 
 
-def plot_coupler(design):
+def plot_coupler(design: CouplerDesign) -> Figure:
     """Draw the pairs of a coupler that are absolutely stable, and the criterion of the chosen one.
 
     Parameters
@@ -144,7 +160,7 @@ def plot_coupler(design):
     return figure
 
 
-def plot_admittance(design):
+def plot_admittance(design: AdmittanceDesign) -> Figure:
     """Draw the criterion of an admittance display, and the least mobility that a hand can be made to feel.
 
     Parameters
@@ -173,7 +189,7 @@ def plot_admittance(design):
     return figure
 
 
-def plot_bounds(bounds):
+def plot_bounds(bounds: Bounds) -> Figure:
     """Draw the named bounds as bars, those of passivity told apart from the others.
 
     Parameters
@@ -204,7 +220,7 @@ def plot_bounds(bounds):
     return figure
 
 
-def plot_diolaiti(point):
+def plot_diolaiti(point: DiolaitiPoint) -> Figure:
     """Draw the four regions of Diolaiti's plane and one wall in it; along a ray from the origin K falls.
 
     Parameters
@@ -236,7 +252,7 @@ def plot_diolaiti(point):
     return figure
 
 
-def plot_law(law):
+def plot_law(law: LinearLaw) -> Figure:
     """Draw the spring and the damper as which slow and fast sinusoids feel a law that is sampled and held.
 
     Parameters
@@ -267,7 +283,7 @@ def plot_law(law):
     return figure
 
 
-def plot_two_port(port):
+def plot_two_port(port: TwoPort) -> Figure:
     """Draw Llewellyn's criterion over frequency.
 
     Parameters

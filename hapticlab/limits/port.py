@@ -5,6 +5,10 @@ Colgate and Schenkel (1997): a force F = H(z) x held over each period is passive
 of velocity included: it is run once from every unit state and unit input.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from ..compiler.algebra.phase import is_timed
@@ -12,6 +16,12 @@ from ..compiler.engines.engine import load
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
 from .limit import whole_and_fraction
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..compiler.ir.program import Program
+    from ..scene.scene import Scene
 
 #: a pole nearer to the unit circle does not decay, and its resonance has no bound
 LOSSLESS = 1e-9
@@ -27,7 +37,7 @@ POINTS = 1000
 SLOWEST, ALIKE = 1e-5, 1e-9
 
 
-def port_damping(scene, *, T=1e-3, **options):
+def port_damping(scene: Scene, *, T: float = 1e-3, **options: Any) -> float:
     """Least damping b [N s/m] of a device with which a linear scene is passive in every passive hand.
 
     Necessary and sufficient for the sampled scene as compiled, without delay and encoder. A wall k x needs k T/2, and
@@ -132,7 +142,7 @@ def asked(A, B, C, D, T, theta, delay=0.0):
     return (linear + np.sqrt(linear**2 + T**2 * fraction * (1 - fraction) * abs(H) ** 2)) / 2 if fraction else linear
 
 
-def tick_map(program):
+def tick_map(program: Program) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float]:
     """Return A, B, C, D of one tick: states' = A states + B x, F = C states + D x, measured on unit states.
 
     Raises

@@ -1,7 +1,10 @@
 """Root locus of the sampled loop: where its poles go as the stiffness grows, and where the first one leaves."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +13,13 @@ from ..errors import AnalysisError
 from .limit import Limit
 from .loop import Loop
 from .stability import crossings, stability_limit
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from .affine_law import StiffnessLaw
+    from .limit import Plant
 
 #: damping ratios of the grid; and natural frequencies, in parts of the Nyquist frequency
 GRID_DAMPING, GRID_FREQUENCY = (0.1, 0.3, 0.5, 0.7, 0.9), (0.2, 0.4, 0.6, 0.8)
@@ -40,20 +50,20 @@ class RootLocus:
         The law.
     """
 
-    K: np.ndarray
-    poles: np.ndarray
-    zeros: np.ndarray
+    K: NDArray[np.float64]
+    poles: NDArray[np.complex128]
+    zeros: NDArray[np.complex128]
     limit: Limit
-    crossings: tuple
+    crossings: tuple[tuple[float, float], ...]
     T: float
     name: str
 
     @property
-    def radius(self):
+    def radius(self) -> NDArray[np.float64]:
         """Largest |pole| at each stiffness, array of shape (P,)."""
         return np.abs(self.poles).max(axis=1)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the locus in the z-plane, with the unit circle and lines of equal damping and frequency."""
         return plot_root_locus(self)
 
@@ -68,7 +78,9 @@ class RootLocus:
     __repr__ = __str__
 
 
-def root_locus(paddle, *, law="zoh", K=None, B=0.0, parameter="k"):
+def root_locus(
+    paddle: Plant, *, law: StiffnessLaw = "zoh", K: ArrayLike | None = None, B: float = 0.0, parameter: str = "k"
+) -> RootLocus:
     """Root locus of a paddle in a hand under a law against the stiffness K, in the z-plane.
 
     Parameters
@@ -176,7 +188,7 @@ def _zeros(loop):
     return np.roots(kept[::-1])
 
 
-def plot_root_locus(locus):
+def plot_root_locus(locus: RootLocus) -> Figure:
     """Draw a root locus; see :meth:`RootLocus.plot`."""
     with house_style():
         figure = new_figure(height=6.8)

@@ -6,7 +6,10 @@ the roots of a polynomial in cos(theta), and of slow ones, which rounding hides 
 sign along a logarithmic scale; each gives one K, and the poles between two of them say which one counts.
 """
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -18,6 +21,12 @@ from .limit import Limit, check_number
 from .linear_law import LinearLaw
 from .loop import Loop
 from .port import static_stiffness
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .affine_law import StiffnessLaw
+    from .limit import Plant
 
 KIND = "exact linear stability of this plant"
 NOTES = (
@@ -31,7 +40,7 @@ ON_CIRCLE = 1e-6
 SLOW_ANGLES = np.geomspace(1e-11, 0.05, 400)
 
 
-def stability_limit(paddle, *, law="zoh", B=0.0, parameter="k"):
+def stability_limit(paddle: Plant, *, law: StiffnessLaw = "zoh", B: float = 0.0, parameter: str = "k") -> Limit:
     """Largest stiffness at which this paddle in this hand is stable: the eigenvalues of the sampled loop.
 
     Linear, with the spring always acting: it ignores encoder, noise, Coulomb friction, force saturation and the hand's
@@ -109,7 +118,9 @@ def _intervals(loop):
     return edges, [not loop.unstable(k) for k in between]
 
 
-def closed_loop_matrix(paddle, *, K=None, law="zoh", B=0.0, parameter="k"):
+def closed_loop_matrix(
+    paddle: Plant, *, K: float | None = None, law: StiffnessLaw | LinearLaw = "zoh", B: float = 0.0, parameter: str = "k"
+) -> NDArray[np.float64]:
     """One period of handle, hand and law as a matrix on [x, v, past forces, states of the law]; SI units.
 
     Parameters
@@ -135,7 +146,9 @@ def closed_loop_matrix(paddle, *, K=None, law="zoh", B=0.0, parameter="k"):
     return loop.matrix(K)
 
 
-def closed_loop_poles(paddle, *, K=None, law="zoh", B=0.0, parameter="k"):
+def closed_loop_poles(
+    paddle: Plant, *, K: float | None = None, law: StiffnessLaw | LinearLaw = "zoh", B: float = 0.0, parameter: str = "k"
+) -> NDArray[np.complex128]:
     """Eigenvalues of :func:`closed_loop_matrix`, largest magnitude first: complex array of shape (n,)."""
     loop, K = _loop_at(paddle, K, law, B, parameter)
     poles = 1 + loop.poles(K)

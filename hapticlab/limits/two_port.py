@@ -12,13 +12,20 @@ same. It is stable with every pair of passive terminations where, at every frequ
 and where h itself is stable. That is no matter of its values at frequencies, so who builds a two-port has to say it.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .plots import plot_two_port
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
 
 #: relative rounding of the criterion
 ROUNDING = 1e-9
@@ -28,12 +35,12 @@ SLOW = 1e-5
 ALIKE = 1e-9
 
 
-def frequencies(points=2000):
+def frequencies(points: int = 2000) -> NDArray[np.float64]:
     """Return theta = w T, close together at both ends, shape (P,)."""
     return np.unique(np.r_[np.geomspace(SLOW, np.pi, points), np.linspace(SLOW, np.pi, points)])
 
 
-def hertz(curve, theta, T, size=0.0):
+def hertz(curve: Callable[[NDArray[np.float64]], NDArray[np.float64]], theta: float, T: float, size: float = 0.0) -> float | None:
     """Return in Hz where a function of w T is least, from the theta that was found: None where flat, 0.0 for slow motion."""
     values = curve(np.r_[theta, frequencies()])
     alike = np.abs(values - values[0]) <= ALIKE * max(abs(values[0]), size)
@@ -42,7 +49,7 @@ def hertz(curve, theta, T, size=0.0):
     return 0.0 if alike[1] else float(theta / (2 * math.pi * T))
 
 
-def stopped(frequency):
+def stopped(frequency: float | None) -> str:
     """Return in words what stops a coupler."""
     if frequency is None:
         return "by all frequencies alike"
@@ -72,12 +79,12 @@ class TwoPort:
     True
     """
 
-    h: Callable = field(repr=False)
+    h: Callable[[NDArray[np.float64]], NDArray[np.complex128]] = field(repr=False)
     T: float
     name: str
     stable: bool
 
-    def criterion(self, theta):
+    def criterion(self, theta: ArrayLike) -> NDArray[np.float64]:
         """Return 2 Re h11 Re h22 - |h12 h21| - Re(h12 h21), a number without unit that has to be >= 0; theta of shape (P,)."""
         h = self.h(np.atleast_1d(np.asarray(theta, dtype=float)))
         product = h[:, 0, 1] * h[:, 1, 0]
@@ -85,7 +92,7 @@ class TwoPort:
         return 2 * h[:, 0, 0].real * h[:, 1, 1].real - 2 * np.abs(product) * np.sin(np.angle(-product) / 2) ** 2
 
     @property
-    def absolutely_stable(self):
+    def absolutely_stable(self) -> bool:
         """Whether every pair of passive terminations is stable."""
         if not self.stable:
             return False
@@ -94,20 +101,20 @@ class TwoPort:
         return bool(own.min() >= -ROUNDING and self.criterion(theta).min() >= -ROUNDING)
 
     @property
-    def worst(self):
+    def worst(self) -> float | None:
         """Frequency [Hz] at which the criterion is least; 0 where slow motion is as bad to 1e-9, None where all are."""
         return hertz(self.criterion, frequencies()[self.criterion(frequencies()).argmin()], self.T, size=1.0)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Return a figure: Llewellyn's criterion over frequency."""
         return plot_two_port(self)
 
-    def felt(self, theta, environment):
+    def felt(self, theta: ArrayLike, environment: ArrayLike) -> NDArray[np.complex128]:
         """Return F_1/v_1 at theta of shape (P,) with ``F_2 = environment v_2`` at the other port, complex (P,)."""
         h, Z = self.h(np.atleast_1d(np.asarray(theta, dtype=float))), np.asarray(environment)
         return h[:, 0, 0] - h[:, 0, 1] * h[:, 1, 0] * Z / (1 + h[:, 1, 1] * Z)
 
-    def least_resistance(self, theta):
+    def least_resistance(self, theta: ArrayLike) -> NDArray[np.float64]:
         """Return the least Re F_1/v_1 that a passive environment can make the hand feel, theta of shape (P,).
 
         A passive environment fills a half plane, which the fractional map of the two-port turns into a disk.

@@ -1,9 +1,16 @@
 """A limit converts to its number and prints with its units and its kind."""
 
+from typing import get_args
+
 import pytest
 
 from hapticlab.errors import AnalysisError
-from hapticlab.limits.limit import MOST_PERIODS, Limit, whole_and_fraction
+from hapticlab.limits.limit import MOST_PERIODS, LawName, Limit, whole_and_fraction
+from hapticlab.scene.laws.taps import TAPS
+
+
+def test_the_type_of_a_law_has_the_names_of_the_laws():
+    assert set(get_args(LawName)) == set(TAPS)
 
 
 def test_number_words_and_units():
