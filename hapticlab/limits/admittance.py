@@ -73,7 +73,7 @@ class AdmittanceDesign:
         """Draw the criterion against frequency, and the least that a hand can be made to feel."""
         return plot_admittance(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         return (
             f"admittance coupler m_a = {self.m_a:.6g} kg, b_a = {self.b_a:.6g} N s/m: Llewellyn's criterion in a "
             f"{self.kind}; stopped {stopped(self.frequency)}"

@@ -92,8 +92,8 @@ def affine_law(
         return law
     if isinstance(law, LinearLaw):
         _check_period(law, T)
-        parts = _parts(law)
-        return AffineLaw(parts[0], *(a for part in parts[1:] for a in (part, 0 * part)), name=law.name)
+        A, B0, C0, D0 = _parts(law)
+        return AffineLaw(A, B0, 0 * B0, C0, 0 * C0, D0, 0 * D0, law.name)
     if isinstance(law, Scene):
         return _fitted(_of_scene(law, T, parameter, velocity), law.name)
     if not callable(law):

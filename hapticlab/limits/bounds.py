@@ -155,7 +155,7 @@ class Bounds:
     def __getitem__(self, name: str) -> Limit | str:
         return self.found[name]
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [f"largest stiffness K, law {self.law}, B = {self.B:g} N s/m"]
         for name, limit in self.found.items():
             K = f"{limit.K:12.6g} N/m  {limit.kind}; {limit.reason}" if isinstance(limit, Limit) else f"           -      {limit}"

@@ -91,7 +91,7 @@ class PassivityMargin:
         """Draw what each frequency asks for, what a pure sinusoid asks for, and what the device has."""
         return plot_passivity_margin(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         verdict = "passive in every passive hand" if self.passive else "not passive"
         at = f"at {self.frequency:.4g} Hz" if self.frequency else "at every frequency alike" if self.flat else "for slow motion"
         return (

@@ -78,7 +78,7 @@ class CouplerDesign:
         """Draw the pairs that are absolutely stable, and the criterion of this pair against frequency."""
         return plot_coupler(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         late = f", delay {1e3 * self.delay:g} ms" if self.delay else ""
         at = stopped(self.frequency)
         return (

@@ -57,7 +57,7 @@ class DiolaitiPoint:
         """Draw the four regions and the point."""
         return plot_diolaiti(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         grow = f"; motions above {1e3 * self.amplitude:.4g} mm grow" if 0 < self.amplitude < math.inf else ""
         return f"beta = b/(K T) = {self.beta:.4g}, sigma = f_c/(K Delta) = {self.sigma:.4g}: {self.region}{grow}"
 

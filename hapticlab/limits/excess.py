@@ -42,7 +42,7 @@ class Entry:
     index: float
     reason: str
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.name:<12}{self.index:+12.6g} N s/m   {self.reason}"
 
 
@@ -77,7 +77,7 @@ class Ledger:
         """Most that the hand's force is amplified into velocity, in the mean of squares [m/(N s)]: 1/index."""
         return 1 / self.index if self.bounded and self.index > 0 else float("inf")
 
-    def __str__(self):
+    def __str__(self) -> str:
         told = "passive in every passive hand" if self.passive else "nothing proved: more is spent than there is"
         if not self.bounded and self.index >= 0:
             told = "nothing proved: is the energy bounded below? If it is, say bounded=True"

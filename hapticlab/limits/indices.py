@@ -60,7 +60,7 @@ class PassivityIndices:
     eps: float
     eps_frequency: float
 
-    def __str__(self):
+    def __str__(self) -> str:
         nu = f"short, a damper of {-self.nu:.6g} N s/m beside it pays" if self.nu < 0 else "in excess"
         eps = f"short, a dashpot in line that yields {-self.eps:.6g} m/s a newton pays" if self.eps < 0 else "in excess"
         eps = eps if math.isfinite(self.eps) else "motion there makes no force, and no dashpot in line is enough"

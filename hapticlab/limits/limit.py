@@ -73,7 +73,7 @@ class Limit:
     def __float__(self) -> float:
         return float(self.K)
 
-    def __str__(self):
+    def __str__(self) -> str:
         at = "" if self.frequency is None else f" at {self.frequency:.4g} Hz"
         notes = "".join(f"\n  {a}" for a in self.assumptions)
         return f"{self.K:.6g} N/m{at}: {self.kind}; {self.reason}{notes}"
@@ -82,7 +82,7 @@ class Limit:
         """Return a figure: which stiffnesses the limit promises and which not, and what it leaves out."""
         return plot_limit(self)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         at = "None" if self.frequency is None else f"{self.frequency:.6g} Hz"
         return f"Limit(K={self.K:.9g} N/m, frequency={at}, kind={self.kind!r}, reason={self.reason!r})"
 

@@ -60,7 +60,7 @@ class LinearLaw:
     T: float
     name: str
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         T = check_number("T", self.T, "s", "a law is sampled: needs T > 0", lambda v: v > 0)
         n = len(np.atleast_1d(self.B))
         for part, shape in (("A", (n, n)), ("B", (n,)), ("C", (n,)), ("D", ())):
@@ -123,9 +123,9 @@ class LinearLaw:
     @classmethod
     def of_taps(cls, taps: ArrayLike, *, T: float, name: str = "taps") -> LinearLaw:
         """Return the law F[n] = taps[0] x[n] + taps[1] x[n-1] + ..., one or more finite weights in N/m."""
-        taps = _numbers(name, "taps", taps, (max(np.size(taps), 1),))
-        n = len(taps) - 1
-        return cls(np.eye(n, k=-1), np.eye(n, 1)[:, 0], taps[1:].copy(), float(taps[0]), float(T), name)
+        weights = _numbers(name, "taps", taps, (max(np.size(taps), 1),))
+        n = len(weights) - 1
+        return cls(np.eye(n, k=-1), np.eye(n, 1)[:, 0], weights[1:].copy(), float(weights[0]), float(T), name)
 
     @classmethod
     def of_scene(cls, scene: Scene, *, T: float = 1e-3, **options: Any) -> LinearLaw:
@@ -237,7 +237,7 @@ class LinearLaw:
         """Largest |pole| with the handle held; 0 for a law of finite memory."""
         return float(np.abs(np.linalg.eigvals(self.A)).max()) if len(self.A) and not self.finite else 0.0
 
-    def __str__(self):
+    def __str__(self) -> str:
         if self.finite and len(taps := self.taps()) <= 6:
             terms = [f"{abs(a):.6g} x[n{'' if k == 0 else f'-{k}'}]" for k, a in enumerate(taps)]
             signs = [" - " if a < 0 else " + " for a in taps]

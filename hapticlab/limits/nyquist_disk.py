@@ -87,7 +87,7 @@ class NyquistDisk:
         """Draw both planes."""
         return plot_nyquist_disk(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         at = "for slow motion" if self.worst < 2 * SLOW else f"at {self.worst / (2 * math.pi * self.law.T):.4g} Hz"
         inside = "inside the unit circle: passive in every passive hand" if self.passive else (
             "outside the unit circle: some passive hand closes an unstable loop"

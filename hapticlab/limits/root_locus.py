@@ -67,7 +67,7 @@ class RootLocus:
         """Draw the locus in the z-plane, with the unit circle and lines of equal damping and frequency."""
         return plot_root_locus(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [
             f"root locus of law {self.name}: {self.poles.shape[1]} poles, K from {self.K[0]:g} to {self.K[-1]:g} N/m",
             f"  stable up to {self.limit}",
