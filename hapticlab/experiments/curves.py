@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import AnalysisError
-from .fit import normal_cdf
+from ..statistics import normal
 
 SHAPES = ("d_prime", "weibull", "normal")
 ROOT_2, ROOT_PI = math.sqrt(2), math.sqrt(math.pi)
@@ -90,12 +90,12 @@ def rise(shape, levels, place, log_slope):
     if shape == "normal":
         z = (levels - place) * slope
         density = np.exp(-z * z / 2) / (ROOT_2 * ROOT_PI)
-        return normal_cdf(z), -density * slope, density * z
+        return normal(z), -density * slope, density * z
     with np.errstate(divide="ignore"):  # a level of zero: u = 0 whatever the slope
         log_u = slope * (np.log(levels) - place)
     u = np.exp(np.minimum(log_u, 50.0))
     if shape == "d_prime":
-        F, dF = 2 * normal_cdf(u / ROOT_2) - 1, np.exp(-u * u / 4) / ROOT_PI
+        F, dF = 2 * normal(u / ROOT_2) - 1, np.exp(-u * u / 4) / ROOT_PI
     else:
         F, dF = -np.expm1(-u), np.exp(-u)
     weight = dF * u

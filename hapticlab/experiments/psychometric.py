@@ -7,8 +7,8 @@ import numpy as np
 
 from ..drawing import COLD, WARM, house_style, new_figure, scale_axis, style_of
 from ..errors import AnalysisError
+from ..statistics import chi_squared
 from .curves import SHAPES, Psychometric
-from .fit import chi_squared
 from .likelihood import MOST_LAPSES, Likelihood
 
 #: samples from which on they say how much less likely than the best an interval's end may be
@@ -161,7 +161,7 @@ def psychometric(
 
 
 def _left_open(q, ends, fitting):
-    """Return what the answers leave open."""
+    """Notes on a threshold or a slope that these levels do not bound."""
     notes = []
     for name, at, (low, high), least, most in zip(("threshold", "slope"), q, ends, fitting.low, fitting.high, strict=False):
         near = 1e-6 * (most - least)

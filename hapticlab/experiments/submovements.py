@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..errors import AnalysisError
-from .fit import normal_cdf
+from ..statistics import normal
 
 #: shortest and longest submovement thought of [s], and how many between; distances between half a width and the longest
 SHORTEST, LONGEST, DURATIONS, DISTANCES = 0.08, 3.0, 80, 80
@@ -56,8 +56,8 @@ class Submovements:
         spread = self.scatter * self.distances[:, None] / durations
         edges = np.r_[self.distances[0], np.sqrt(self.distances[1:] * self.distances[:-1]), np.inf]
         # missing by a distance near each point of the grid; whatever lies beyond the last counts as that
-        part = 2 * np.diff(normal_cdf(edges / spread[:, :, None]), axis=-1)
-        missed = 2 * (1 - normal_cdf(self.distances[0] / spread))
+        part = 2 * np.diff(normal(edges / spread[:, :, None]), axis=-1)
+        missed = 2 * (1 - normal(self.distances[0] / spread))
         times = np.full(DISTANCES, LONGEST)
         for _ in range(1000):
             cost = durations + missed * pause + part @ times
@@ -72,5 +72,5 @@ class Submovements:
         return float(np.interp(math.log(distance), np.log(self.distances), self.times))
 
     def duration(self, distance):
-        """Return how long the next submovement should take [s]."""
+        """Best duration of the next submovement [s]."""
         return float(np.interp(math.log(max(distance, self.distances[0])), np.log(self.distances), self.durations))

@@ -4,12 +4,18 @@ A sample is y = x + e, e Gaussian and independent, or the count in which that li
 Gaussian sensor it is Gauss and Newton's. Intervals come from the information at the estimate.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .fit import student
+from ..statistics import student
 from .sensor import DITHERED, information, log_likelihood, run_weights, spread
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 #: of a parameter's scale: the step of central differences
 STEP = 1e-5
@@ -56,21 +62,21 @@ class Fitted:
         The direction, over the parameters' scales, in which nothing changes; zeros where there is none.
     """
 
-    values: np.ndarray
-    covariance: np.ndarray
-    sigma: np.ndarray
-    residuals: np.ndarray
-    freedom: np.ndarray
-    counted: np.ndarray
-    converged: np.ndarray
-    blind: np.ndarray
+    values: NDArray[np.float64]
+    covariance: NDArray[np.float64]
+    sigma: NDArray[np.float64]
+    residuals: NDArray[np.float64]
+    freedom: NDArray[np.float64]
+    counted: NDArray[np.bool_]
+    converged: NDArray[np.bool_]
+    blind: NDArray[np.float64]
 
     @property
-    def error(self):
+    def error(self) -> NDArray[np.float64]:
         """Standard errors, shape (P, L)."""
         return np.sqrt(np.maximum(np.diagonal(self.covariance, axis1=1, axis2=2), 0.0)).T
 
-    def half_width(self, confidence=0.95):
+    def half_width(self, confidence: float = 0.95) -> NDArray[np.float64]:
         """Half the width of the confidence intervals, shape (P, L)."""
         return self.error * student(confidence, self.freedom)
 

@@ -5,7 +5,7 @@ A residual r is the middle of a count less the position, so the count is where r
 
 import numpy as np
 
-from .fit import normal
+from ..statistics import normal
 
 #: of a count: noise from which on counts are dithered, each telling something of its own
 DITHERED = 0.2
@@ -84,7 +84,7 @@ def spread(rest, quantum):
 
 
 def run_weights(y, quantum):
-    """Return what each sample tells where no noise dithers its count: a run of equal counts as much as one."""
+    """Weights of the samples where no noise dithers the counts: a run of equal counts weighs as much as one sample."""
     if not quantum:
         return np.ones_like(y)
     counts = np.round(y / quantum)

@@ -4,7 +4,6 @@ import numpy as np
 from scipy.optimize import curve_fit
 from scipy.stats import t as student_t
 
-from hapticlab.identification.fit import normal, student
 from hapticlab.identification.scoring import fit
 
 TIMES = np.linspace(0, 1, 60)
@@ -42,8 +41,3 @@ def test_what_moves_nothing_apart_is_named():
     y = 2 * TIMES[:, None] + 0.01 * np.random.default_rng(1).standard_normal((60, 1))
     found = fit(lambda p: p[0] * p[1] * TIMES[:, None, None], y, np.ones((2, 1, 1)), np.ones((2, 1)))
     assert (np.abs(found.blind[0]) > 0.1).all()
-
-
-def test_distributions():
-    assert abs(normal(1.3) - 0.9031995154143897) < 1e-15
-    assert abs(float(student(0.95, 58)) - student_t.ppf(0.975, 58)) < 1e-12
