@@ -112,11 +112,10 @@ def sensed(hand, now, before, intent, T):
 
 
 def growth(paddle, display):
-    """Return how much the slowest motion of display, handle and hand in contact grows in one period, at rest inside the wall.
+    """Largest eigenvalue, in magnitude, of one period of display, handle and hand in contact with the wall.
 
-    The largest magnitude of the eigenvalues of one period; at least 1 is unstable. Friction, which only helps, and the
-    force limit are left out. One period is linear in place and velocity of handle and body, and those of the handle before, so
-    the steps along each of these are its columns.
+    From 1 on the contact is unstable. Friction, which only helps, and the force limit are left out. One period is linear in
+    place and velocity of handle and body, and those of the handle before, so the steps along each of these are its columns.
 
     Parameters
     ----------

@@ -167,7 +167,7 @@ def bounces(log):
 
 
 def multipliers(acceleration, *, e, g=9.81, m=0.0, M=math.inf):
-    """Return what becomes of a small error from one flight to the next if a stroke takes no notice of it.
+    """Factors by which a small error grows from one flight to the next if the stroke takes no notice of it.
 
     The eigenvalues of the map from one impact to the next, for a plate that passes the place of impact each period with
     this acceleration. Below one in magnitude, the juggle is stable without looking: for

@@ -64,7 +64,7 @@ class Task:
         return paddle.run(self.scene(**{self.parameter: value}), duration=self.duration, progress=False, **options)
 
     def presenter(self, paddle, **options):
-        """Return what presents a value and returns the record; a simulated paddle's program is compiled once for all."""
+        """A function that presents a value and returns the record; a simulated paddle's program is compiled once for all."""
         if not isinstance(paddle, SimulatedPaddle) or isinstance(paddle.hand.intent, Reacting):
             return lambda value: self.present(paddle, value, **options)
         engine = options.pop("engine", "auto")

@@ -1,7 +1,10 @@
 """Forces that make a free handle tell its constants: a kick and coasting, steps, a chirp, each within a stated travel."""
 
+from __future__ import annotations
+
 from bisect import bisect_left
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import sympy as sp
@@ -13,6 +16,9 @@ from ..scene.notation.parameters import parameters
 from ..scene.notation.symbols import n, when, x
 from ..scene.scene import Scene
 from .motion import positions
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 #: samples of rest before a force begins
 LEAD = 20
@@ -38,19 +44,19 @@ class Excitation:
     [0.0, 0.2, -0.2, -0.2, 0.2, 0.2, 0.0]
     """
 
-    kind: str
+    kind: Literal["kick", "steps", "chirp"]
     size: float
     length: int
     samples: int
 
-    def forces(self, T):
+    def forces(self, T: float) -> NDArray[np.float64]:
         """Return the force at each sample, without the guard of :meth:`scene` [N]."""
         at = np.arange(self.samples) - LEAD
         if self.kind == "chirp":
             return np.where(at >= 0, self.size * np.cos(self._phase(np.maximum(at, 0))), 0.0)
         return self.size * sum(by * (at >= start * self.length) for start, by in self._changes())
 
-    def scene(self, travel):
+    def scene(self, travel: float) -> Scene:
         """Return it as a scene whose force ends, for good, further than ``travel`` [m] from where the handle began."""
         A = parameters("A", units="N", values=self.size)
         at = n - LEAD
@@ -101,7 +107,7 @@ def designed(kind, size, T, travel, constants):
 
 
 def _samples(kind, length, size, T, constants):
-    """Return how many samples an excitation lasts: steps end, a chirp has its swings, a kicked handle comes to rest."""
+    """Samples of an excitation: steps end, a chirp has its swings, a kicked handle comes to rest."""
     if kind == "steps":
         return LEAD + 8 * length + LEAD
     if kind == "chirp":

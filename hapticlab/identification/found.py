@@ -1,12 +1,19 @@
-"""What a fit found: constants, each with a confidence interval, and how well they explain the record."""
+"""The outcome of a fit: constants, each with a confidence interval, and how well they explain the record."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from ..drawing import COLD, FRAME, STYLES, house_style, new_figure
 from ..errors import AnalysisError
 from .sensor import DITHERED
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
 #: constant -> what it is called
 CALLED = {
@@ -40,17 +47,17 @@ class Estimate:
     unit: str
 
     @property
-    def half_width(self):
+    def half_width(self) -> float:
         """Half the width of the interval."""
         return (self.high - self.low) / 2
 
-    def __contains__(self, value):
+    def __contains__(self, value: float) -> bool:
         return self.low <= value <= self.high
 
-    def __float__(self):
+    def __float__(self) -> float:
         return self.value
 
-    def __str__(self):
+    def __str__(self) -> str:
         digits = 3 if self.half_width == 0 else int(np.clip(np.ceil(np.log10(abs(self.value / self.half_width) + 1)) + 2, 3, 9))
         return f"{self.name} = {self.value:.{digits}g} {self.unit}, between {self.low:.{digits}g} and {self.high:.{digits}g}"
 
@@ -82,35 +89,37 @@ class Found:
     T : float
     """
 
-    estimates: dict
+    about: ClassVar[str]
+    lacking: ClassVar[str]
+    estimates: dict[str, Estimate]
     confidence: float
     sigma: float
     counted: bool
     quantum: float
     converged: bool
     correlation: float
-    measured: np.ndarray
-    fitted: np.ndarray
+    measured: NDArray[np.float64]
+    fitted: NDArray[np.float64]
     T: float
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Estimate:
         if name not in self.estimates:
             raise AnalysisError(f"{name!r} was not sought; found are {', '.join(self.estimates)}")
         return self.estimates[name]
 
     @property
-    def dithered(self):
+    def dithered(self) -> bool:
         """Whether noise dithers the counts, if positions are counted."""
         return self.counted or not self.quantum
 
     @property
-    def explained(self):
+    def explained(self) -> bool:
         """Whether what is left looks like noise; without dither, like counting: less than a count does not show."""
         if not self.dithered:
             return bool(np.sqrt(np.mean((self.measured - self.fitted) ** 2)) < ROUNDED * self.quantum)
         return bool(abs(self.correlation) * np.sqrt(len(self.measured)) < UNEXPLAINED)
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [f"{self.about} identified from {len(self.measured)} samples, {self.confidence:.0%} confidence:"]
         lines += [f"  {CALLED[name]:<20}{found}" for name, found in self.estimates.items()]
         how = "noise" if self.dithered else "noise and counting"
@@ -133,7 +142,7 @@ class Found:
             )
         return "\n".join(lines)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Return a figure: positions measured and fitted, and what is left."""
         t = np.arange(len(self.measured)) * self.T
         with house_style():
@@ -151,7 +160,7 @@ class Found:
 
 
 def told(made, y, fitted, names, *, quantum, T, confidence, beside=""):
-    """Return what a fit of one lane found, as ``made``, a class of Found.
+    """Constants that a fit of one record found, as ``made``, a class of Found.
 
     Raises
     ------

@@ -1,6 +1,9 @@
 """Identify the hand that holds the handle, as a mass, a damper and a spring, from how it yields to pushes."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +18,9 @@ from .paddle import counts_per_metre_of
 from .pushes import FORCE, push_hand
 from .scoring import fit
 
+if TYPE_CHECKING:
+    from ..records import PaddleProfile
+
 #: s that a hand is taken not to react; a stretch reflex begins after 25 to 50 ms, the will after 100 and more
 WINDOW = 0.06
 #: s of rest before a push that a window takes in
@@ -28,11 +34,11 @@ class HandFit(Found):
     about = "hand"
     lacking = "a reflex within the window, tremor, a grip that changes or does not follow"
 
-    def hand(self, **changes):
+    def hand(self, **changes: Any) -> Hand:
         """Return a Hand with what was found; a value below zero within its interval becomes zero."""
         return Hand(**{**{name: max(self[name].value, 0.0) for name in ("m", "b", "k")}, **changes})
 
-    def __str__(self):
+    def __str__(self) -> str:
         m, b, k = (self[name].value for name in ("m", "b", "k"))
         lines = [super().__str__()]
         if m > 0 and k > 0:
@@ -40,7 +46,17 @@ class HandFit(Found):
         return "\n".join(lines)
 
 
-def identify_hand(source, device=None, *, window=WINDOW, force=FORCE, pushes=8, seed=0, counts_per_metre=None, confidence=0.95):
+def identify_hand(
+    source: Telemetry | SimulatedPaddle | SerialPaddle,
+    device: PaddleProfile | SimulatedPaddle | SerialPaddle | None = None,
+    *,
+    window: float = WINDOW,
+    force: float = FORCE,
+    pushes: int = 8,
+    seed: int = 0,
+    counts_per_metre: float | None = None,
+    confidence: float = 0.95,
+) -> HandFit:
     """Return the second-order hand on a handle from its answers to pushes, each before the hand can react.
 
     (m_device + m) x'' = -F - b_device x' - coulomb sign(x') - b x' - k (x - rest). Valid for some 30 to 60 ms after each

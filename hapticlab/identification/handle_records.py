@@ -1,6 +1,9 @@
 """Constants of a paddle from what it recorded: coasting, steps, chirps, and several of them together."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,6 +12,9 @@ from ..records import Telemetry, check_record
 from .found import told
 from .paddle_fit import PaddleFit
 from .problem import UNITS, Problem, Trace
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 #: standard gravity [m/s^2]
 GRAVITY = 9.80665
@@ -51,11 +57,11 @@ class HandleRecord:
     at_rest: bool = True
 
     @classmethod
-    def hanging(cls, log, mass, *, at_rest=True):
+    def hanging(cls, log: Telemetry, mass: float, *, at_rest: bool = True) -> HandleRecord:
         """Return the record of a handle that a weight pulls into the wall: it adds its force and its mass."""
         return cls(log, mass, mass * GRAVITY, at_rest)
 
-    def trace(self, first=0):
+    def trace(self, first: int = 0) -> Trace:
         """Return its positions and forces from sample ``first`` on."""
         check_record(self.log, "identify")
         if self.log.fault:
@@ -68,7 +74,9 @@ class HandleRecord:
         return Trace(self.log.x[first:, None], self.log.F[first:], self.log.T, self.added, self.push, self.at_rest)
 
 
-def spin_down(log, *, m=None, counts_per_metre=None, confidence=0.95):
+def spin_down(
+    log: Telemetry, *, m: float | None = None, counts_per_metre: float | None = None, confidence: float = 0.95
+) -> PaddleFit:
     """Return damping and Coulomb friction of a handle that coasts to rest with the motor off.
 
     m x'' = -b x' - coulomb sign(x'), from the last stretch without force. It tells ratios to the mass only.
@@ -108,7 +116,14 @@ def spin_down(log, *, m=None, counts_per_metre=None, confidence=0.95):
     return _found(Problem((trace,), ("b", "coulomb"), known, _quantum(counts_per_metre)), names, confidence)
 
 
-def step_response(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.95):
+def step_response(
+    log: Telemetry,
+    *,
+    counts_per_metre: float | None = None,
+    known: Mapping[str, float] | None = None,
+    at_rest: bool = True,
+    confidence: float = 0.95,
+) -> PaddleFit:
     """Return mass, damping, Coulomb friction and delay from steps of force on a free handle.
 
     Parameters
@@ -136,7 +151,14 @@ def step_response(log, *, counts_per_metre=None, known=None, at_rest=True, confi
     return identify(HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
 
 
-def chirp_response(log, *, counts_per_metre=None, known=None, at_rest=True, confidence=0.95):
+def chirp_response(
+    log: Telemetry,
+    *,
+    counts_per_metre: float | None = None,
+    known: Mapping[str, float] | None = None,
+    at_rest: bool = True,
+    confidence: float = 0.95,
+) -> PaddleFit:
     """Return mass, damping, Coulomb friction and delay from a force that swings faster and faster; as :func:`step_response`."""
     check_record(log, "chirp_response")
     changes = np.count_nonzero(np.diff(log.F))
@@ -148,7 +170,13 @@ def chirp_response(log, *, counts_per_metre=None, known=None, at_rest=True, conf
     return identify(HandleRecord(log, at_rest=at_rest), counts_per_metre=counts_per_metre, known=known, confidence=confidence)
 
 
-def identify(*records, force_constant=False, counts_per_metre=None, known=None, confidence=0.95):
+def identify(
+    *records: HandleRecord | Telemetry,
+    force_constant: bool = False,
+    counts_per_metre: float | None = None,
+    known: Mapping[str, float] | None = None,
+    confidence: float = 0.95,
+) -> PaddleFit:
     """Return a paddle's constants from records of its free handle, all of them together, by maximum likelihood.
 
     (m + added) x'' = push - scale F - b x' - coulomb sign(x'), F[n] held over [n T + delay, (n+1) T + delay).
@@ -179,13 +207,13 @@ def identify(*records, force_constant=False, counts_per_metre=None, known=None, 
     known = dict(known or {})
     if unknown := set(known) - set(UNITS):
         raise AnalysisError(f"known = {sorted(unknown)}; needs constants of {', '.join(UNITS)}")
-    records = [one if isinstance(one, HandleRecord) else HandleRecord(one) for one in records]
-    if not records:
+    given = [one if isinstance(one, HandleRecord) else HandleRecord(one) for one in records]
+    if not given:
         raise AnalysisError("identify() of no record; needs one or more, log = paddle.run(...)")
-    if force_constant and "m" not in known and not any(one.added or one.push for one in records):
+    if force_constant and "m" not in known and not any(one.added or one.push for one in given):
         raise AnalysisError(FORCE_CONSTANT)
     sought = tuple(name for name in UNITS if name not in known and (force_constant or name != "scale"))
-    problem = Problem(tuple(one.trace() for one in records), sought, known, _quantum(counts_per_metre))
+    problem = Problem(tuple(one.trace() for one in given), sought, known, _quantum(counts_per_metre))
     return _found(problem, sought, confidence)
 
 

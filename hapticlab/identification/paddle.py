@@ -1,6 +1,9 @@
 """Identify a paddle by moving it: from small forces up, within a stated travel, on a simulated paddle or a board."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -12,6 +15,11 @@ from ..errors import AnalysisError, PaddleError
 from .excitation import LEAD, Excitation, centring, designed
 from .handle_records import HandleRecord, identify
 from .paddle_fit import PaddleFit
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 #: of the largest force: where the search begins, and by what it grows until the handle moves
 FIRST, GROWS = 1 / 64, 2**0.5
@@ -32,14 +40,23 @@ class Identified(PaddleFit):
     records : tuple of HandleRecord
     """
 
-    records: tuple = ()
+    records: tuple[HandleRecord, ...] = ()
 
-    def loaded(self, mass):
+    def loaded(self, mass: float) -> tuple[HandleRecord, ...]:
         """Return the records as those of a handle with a known mass [kg] fixed to it; see :func:`identify`."""
         return tuple(replace(record, added=mass) for record in self.records)
 
 
-def identify_paddle(paddle, *, force=None, travel=None, kinds=("kick", "steps", "chirp"), added=0.0, beside=(), confidence=0.95):
+def identify_paddle(
+    paddle: SimulatedPaddle | SerialPaddle,
+    *,
+    force: float | None = None,
+    travel: float | None = None,
+    kinds: Iterable[Literal["kick", "steps", "chirp"]] = ("kick", "steps", "chirp"),
+    added: float = 0.0,
+    beside: Sequence[HandleRecord] = (),
+    confidence: float = 0.95,
+) -> Identified:
     """Move a free handle and return its mass, damping, Coulomb friction and delay, with confidence intervals.
 
     Nobody holds the handle. Forces grow from 1/64 of ``force`` until it moves; what that tells sizes a kick, steps and a

@@ -1,6 +1,9 @@
 """What was found out about a paddle, as a profile and as a paddle to simulate."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Any, Literal
 
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
@@ -15,7 +18,14 @@ class PaddleFit(Found):
     about = "paddle"
     lacking = "a stop, a hand, backlash, friction that is not constant"
 
-    def profile(self, name="identified", *, T=None, force_max=None, rounding="floor"):
+    def profile(
+        self,
+        name: str = "identified",
+        *,
+        T: float | None = None,
+        force_max: float | None = None,
+        rounding: Literal["floor", "nearest"] = "floor",
+    ) -> PaddleProfile:
         """Return a PaddleProfile of what was found, marked as measured.
 
         Raises
@@ -33,7 +43,7 @@ class PaddleFit(Found):
             source=f"identified from {len(self.measured)} samples, {self.confidence:.0%} intervals",
         )  # fmt: skip
 
-    def paddle(self, **changes):
+    def paddle(self, **changes: Any) -> SimulatedPaddle:
         """Return a SimulatedPaddle with what was found."""
         delay = {"delay": max(self["delay"].value, 0.0)} if "delay" in self.estimates else {}
         return SimulatedPaddle.from_profile(self.profile(), **{**delay, **changes})

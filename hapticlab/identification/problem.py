@@ -1,12 +1,22 @@
 """Records of one paddle and what of it is sought, made into a fit; many records of a kind run side by side."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .motion import positions
 from .scoring import fit, noise_of
 from .start import begin
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from .scoring import Fitted
 
 #: what a paddle has, with units; scale is newtons at the handle for each commanded
 UNITS = {"m": "kg", "b": "N s/m", "coulomb": "N", "delay": "s", "scale": "1"}
@@ -33,8 +43,8 @@ class Trace:
     ``rests`` says that the handle is at rest at the first sample.
     """
 
-    y: np.ndarray
-    F: np.ndarray
+    y: NDArray[np.float64]
+    F: NDArray[np.float64]
     T: float
     added: float = 0.0
     push: float = 0.0
@@ -60,13 +70,13 @@ class Problem:
     0.05
     """
 
-    traces: tuple
-    free: tuple
-    known: dict
+    traces: tuple[Trace, ...]
+    free: tuple[str, ...]
+    known: Mapping[str, float]
     quantum: float = 0.0
 
     @property
-    def lanes(self):
+    def lanes(self) -> int:
         return self.traces[0].y.shape[1]
 
     def motion(self, p):
@@ -93,7 +103,7 @@ class Problem:
             for trace in self.traces
         ])  # fmt: skip
 
-    def solve(self):
+    def solve(self) -> Fitted:
         """Return the Fitted of all lanes."""
         ways = [{"noise": noise, "without": without} for noise in sorted({0.0, self.quantum}) for without in WITHOUT]
         y = np.concatenate([trace.y for trace in self.traces])

@@ -1,6 +1,9 @@
 """Pushes of the motor against a hand that holds the handle: weak ones first, to see that somebody does."""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import sympy as sp
@@ -15,6 +18,10 @@ from ..scene.notation.symbols import n, when
 from ..scene.scene import Scene
 from .paddle import after, given
 
+if TYPE_CHECKING:
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
+    from ..records import Telemetry
+
 #: s that a push lasts, and s from one push to the next: least and most
 LASTS, APART = 0.015, (0.45, 0.75)
 #: N, how far from where it began the handle may go [m], and how fast [m/s]
@@ -27,7 +34,7 @@ BACK = 0.5
 STILL, QUIET = 2.5, 0.4
 
 
-def push_hand(paddle, *, force=FORCE, pushes=8, seed=0):
+def push_hand(paddle: SimulatedPaddle | SerialPaddle, *, force: float = FORCE, pushes: int = 8, seed: int = 0) -> Telemetry:
     """Push a hand that holds the handle, at times and in directions it cannot foresee, and return the record.
 
     Further than 30 mm from where it began, or faster than 1 m/s, the motor is off for good. On a board an eighth, a

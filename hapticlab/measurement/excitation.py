@@ -1,8 +1,11 @@
 """What moves the handle while its impedance is measured: the simulated hand, or the motor itself."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import sympy as sp
@@ -11,6 +14,13 @@ from ..device.hand.hand import Hand
 from ..scene.notation.cases import when
 from ..scene.notation.symbols import n, parameters, signal
 from .signals import chirp, multisine
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..scene.scene import Scene
+
+How = Literal["multisine", "swept_sine"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,21 +42,21 @@ class Excitation:
         Of a multisine's phases.
     """
 
-    how: str
-    lines: np.ndarray
+    how: How
+    lines: NDArray[np.int_]
     samples: int
     T: float
     amplitude: float
     seed: int
 
     @cached_property
-    def period(self):
+    def period(self) -> NDArray[np.float64]:
         """One period, peak ``amplitude``."""
         if self.how == "swept_sine":
             return self.amplitude * chirp(self.samples, self.lines)
         return self.amplitude * multisine(self.samples, self.lines, phases="low_crest", seed=self.seed)
 
-    def hand(self, hand, place, pull):
+    def hand(self, hand: Hand, place: float, pull: float) -> Hand:
         """Return the hand with an intent that moves as the signal does, and holds the handle at a place [m] against a pull.
 
         A hand without a spring holds it by a push.
@@ -59,7 +69,7 @@ class Excitation:
         push = hand.push if hand.k else hand.push + pull
         return Hand(m=hand.m, b=hand.b, k=hand.k, push=push, noise=hand.noise, intent=intent)
 
-    def beside(self, scene, pull=0.0):
+    def beside(self, scene: Scene, pull: float = 0.0) -> Scene:
         """Return the scene with the signal as a force of the motor beside its own, and watch the scene's own as ``own`` [N].
 
         ``pull`` [N] is a constant force into the wall, which holds the handle where the scene gives as much.

@@ -1,13 +1,19 @@
 """A scene that cuts its own force: at the tick at which it moves too fast, or has given too much energy, the motor is off."""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from ..scene.notation.symbols import n, parameters, signal, v, when, x
 
+if TYPE_CHECKING:
+    from ..scene.scene import Scene
 
-def guarded(scene, *, energy_max, speed_max, periods=0):
+
+def guarded(scene: Scene, *, energy_max: float, speed_max: float, periods: int = 0) -> Scene:
     """Return the scene with a guard around its force: past a limit the force is zero, and stays so.
 
     The guard is part of the scene, so it acts at the sample that passes a limit, on a board as in simulation, and waits

@@ -1,7 +1,10 @@
 """Measure the impedance that a paddle renders: the hand or the motor shakes the handle in whole periods."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
@@ -9,14 +12,22 @@ from ..analysis.impedance.impedance import impedance as impedance_of
 from ..compiler.tick.compile_scene import compile
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
-from .excitation import Excitation
+from .excitation import Excitation, How
 from .measured import MeasuredImpedance
 from .shaking import bearable, most_force, shake_board
 from .signals import lines_of
 from .small_signal import force_at_rest, law_at
 from .spectrum import held_transfer, lines_in, ramp_transfer, response
 
-HOW = ("multisine", "swept_sine")
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from ..device.board.serial_paddle import SerialPaddle
+    from ..scene.scene import Scene
+    from .measured import Drive
+
 #: options of a run that are the compiler's
 COMPILED = ("method", "substeps", "hold", "force_at", "dtype")
 #: default amplitudes: of a hand's intent [m], and of the motor's force [N]
@@ -30,9 +41,25 @@ IMAGES = 200
 
 
 def measured_impedance(
-    paddle, scene, *, how="multisine", drive=None, frequency=None, amplitude=None, place=None, period=1.0, blocks=4,
-    realizations=2, settle=2.0, ideal=None, seed=0, force_max=None, reach=0.02, speed_max=1.0, **options,
-):  # fmt: skip
+    paddle: SimulatedPaddle | SerialPaddle,
+    scene: Scene,
+    *,
+    how: How = "multisine",
+    drive: Drive | None = None,
+    frequency: ArrayLike | None = None,
+    amplitude: float | None = None,
+    place: float | None = None,
+    period: float = 1.0,
+    blocks: int = 4,
+    realizations: int = 2,
+    settle: float = 2.0,
+    ideal: Scene | Callable[[NDArray[np.complex128]], ArrayLike] | None = None,
+    seed: int = 0,
+    force_max: float | None = None,
+    reach: float = 0.02,
+    speed_max: float = 1.0,
+    **options: Any,
+) -> MeasuredImpedance:
     """Measure the impedance that a scene renders at the handle, by a periodic excitation in whole periods.
 
     ``drive="hand"``: a simulated hand moves its intent and the handle follows through its spring and damper; what it feels
@@ -92,8 +119,8 @@ def measured_impedance(
     >>> bool((abs(found.rendered / found.law - 1) < 1e-3).all()), round(float(found.damping[0]), 4)     # -K T/2
     (True, -0.075)
     """
-    if how not in HOW:
-        raise AnalysisError(f"how = {how!r}; needs one of {', '.join(HOW)}")
+    if how not in get_args(How):
+        raise AnalysisError(f"how = {how!r}; needs one of {', '.join(get_args(How))}")
     _check(period=period, blocks=blocks, realizations=realizations, amplitude=amplitude, settle=settle, place=place)
     limits = {"force": force_max, "reach": reach, "speed_max": speed_max}
     _check(**limits)
@@ -217,7 +244,7 @@ def _evaluated(kept, lines, drive, paddle, exact, place, scene, ideal, simulated
 
 
 def _images(paddle, F, intent, lines, samples):
-    """Return what a record of samples folds onto its lines: the handle's motion at the lines' images, from its equation.
+    """Motion of the handle at the images of the lines, which sampling folds onto them; from the equation of motion.
 
     Between samples the held force and the straight piece of intent have all the images of a line, k + m N; the handle's
     inertia lets through little of them, as 1/m^3. Coulomb friction is left out.

@@ -1,11 +1,20 @@
 """A measured impedance as a picture: what was rendered, what the law says, what was meant."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..drawing import FRAME, WARM, house_style, log_scales, new_figure, style_of
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def plot_impedance(found):
+    from .measured import MeasuredImpedance
+
+
+def plot_impedance(found: MeasuredImpedance) -> Figure:
     """Draw |Z| and Re Z over frequency, and transparency where the ideal is known."""
     panels = 3 if found.ideal is not None else 2
     with house_style():

@@ -1,8 +1,11 @@
 """The largest stiffness that does not chatter, searched on the paddle itself: the same call in simulation and on a board."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 from ..device.live import named_values
 from ..device.simulated.simulated_paddle import SimulatedPaddle
@@ -18,13 +21,19 @@ from .search_plot import plot_search
 from .search_start import durations_of, first_of, hopeless, pushes_of
 from .trials import Trial, speed_limit, try_wall, wall_of
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..device.board.serial_paddle import SerialPaddle
+    from ..limits.limit import LawName
+
 #: parts of the first stiffness tried before none is said to stand
 SOFTER = 1e-2
 
 
 @dataclass(frozen=True, eq=False)
 class LargestStiffness:
-    """What a search found, and every trial it made; ``float(found)`` is the stiffness [N/m].
+    """Outcome of a search, with every trial it made; ``float(found)`` is the stiffness [N/m].
 
     Attributes
     ----------
@@ -51,14 +60,14 @@ class LargestStiffness:
     theory: dict[str, Limit] = field(default_factory=dict)
     about: str = ""
 
-    def __float__(self):
+    def __float__(self) -> float:
         return self.K
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw every trial in the order it was made, with the limits of theory."""
         return plot_search(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         end = {t.K: t.stands for t in self.trials}.get(self.chatters_at)
         if not self.trials:
             head = f"{self.law}: no trial was made, as no stiffness helps: {self.theory['stability'].reason}"
@@ -74,14 +83,28 @@ class LargestStiffness:
         rows = [f"  {name:<10} {limit.K:.5g} N/m: {limit.kind}" for name, limit in self.theory.items()]
         return "\n".join([head, f"  simulated outcome of one start, {self.about}", *rows, *(f"  {t}" for t in self.trials)])
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"LargestStiffness(K={self.K:.6g} N/m, chatters_at={self.chatters_at:.6g} N/m, {len(self.trials)} trials)"
 
 
 def largest_stiffness(
-    paddle, *, law="zoh", B=0.0, parameter="k", push=None, first=None, most=1e5, growth=1.5, tolerance=0.02,
-    duration=None, longest=None, energy_max=0.05, speed_max=1.0, buzz_max=0.05, place=0.0,
-):  # fmt: skip
+    paddle: SimulatedPaddle | SerialPaddle,
+    *,
+    law: LawName | Scene = "zoh",
+    B: float = 0.0,
+    parameter: str = "k",
+    push: float | None = None,
+    first: float | None = None,
+    most: float = 1e5,
+    growth: float = 1.5,
+    tolerance: float = 0.02,
+    duration: float | None = None,
+    longest: float | None = None,
+    energy_max: float = 0.05,
+    speed_max: float = 1.0,
+    buzz_max: float = 0.05,
+    place: float = 0.0,
+) -> LargestStiffness:
     """Search the largest stiffness of a wall that comes to rest under a push: trials on the paddle, from soft to stiff.
 
     Every trial lets the handle fall from rest at the wall's boundary under a constant push, and looks whether the

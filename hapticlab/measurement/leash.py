@@ -1,17 +1,23 @@
 """A scene on a leash: the motor is off for good from the tick on at which the handle is too far from where it began."""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from ..scene.notation.symbols import n, parameters, signal, v, when, x
 from .guard import guarded
 
+if TYPE_CHECKING:
+    from ..scene.scene import Scene
+
 #: [J] that a guarded scene may give beside what its excitation does
 SPARE = 0.05
 
 
-def leashed(scene, reach, speed_max=None):
+def leashed(scene: Scene, reach: float, speed_max: float | None = None) -> Scene:
     """Return the scene with no force from the tick on at which the handle is further than ``reach`` from where it began.
 
     Counted from the handle's place at the first tick, wherever that is, and for good: a handle that comes back past the
@@ -35,7 +41,7 @@ def leashed(scene, reach, speed_max=None):
     return replace(scene, force=force, eom=(*scene.eom, *rules), watch={**scene.watch, "cut": strayed(n)})
 
 
-def held_back(scene, reach, *, speed_max, work, periods=0):
+def held_back(scene: Scene, reach: float, *, speed_max: float, work: float, periods: int = 0) -> Scene:
     """Return the scene on a leash and guarded: ``cut`` is 1 from the tick on at which either switched the motor off.
 
     Parameters

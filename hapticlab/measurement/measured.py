@@ -1,6 +1,9 @@
 """A measured impedance: force over velocity at the handle, beside the law's own and the ideal."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -8,8 +11,13 @@ from ..errors import AnalysisError
 from .impedance_plot import plot_impedance
 from .spectrum import Response
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
 #: part of an impedance by which blocks may differ without a word
 UNSURE = 0.02
+Drive = Literal["hand", "motor"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,59 +47,60 @@ class MeasuredImpedance:
         What drove, and what was not observable.
     """
 
-    frequency: np.ndarray
+    frequency: NDArray[np.float64]
     measured: Response
-    law: np.ndarray
-    ideal: np.ndarray | None
+    law: NDArray[np.complex128]
+    ideal: NDArray[np.complex128] | None
     other: Response
-    drive: str
-    device: np.ndarray | None
+    drive: Drive
+    device: NDArray[np.complex128] | None
     left_wall: int
     distortion: float
     about: str
 
     @property
-    def rendered(self):
+    def rendered(self) -> NDArray[np.complex128]:
         """Z = F/v of the environment as rendered [N s/m]."""
         return self.measured.value
 
     @property
-    def radius(self):
-        """Of the circle around ``rendered`` that holds the truth with 95 % confidence [N s/m]."""
+    def radius(self) -> NDArray[np.float64]:
+        """Radius of the circle around ``rendered`` that holds the truth with 95 % confidence [N s/m]."""
         return self.measured.radius
 
     @property
-    def coherence(self):
-        """Of motion and force over the blocks."""
+    def coherence(self) -> NDArray[np.float64]:
+        """Coherence of motion and force over the blocks."""
         return self.measured.coherence
 
     @property
-    def handle(self):
-        """What the hand feels [N s/m], device included, as by a force sensor between them; where a simulated hand drives."""
+    def handle(self) -> NDArray[np.complex128]:
+        """Impedance that a simulated hand feels where it drives [N s/m], device included, as by a force sensor between them."""
         if self.drive != "hand":
             raise AnalysisError("the motor drove, and a paddle has no force sensor: what the hand feels was not observed")
         return self.other.value
 
     @property
-    def felt(self):
-        """What the hand feels beyond the device's own m s + b [N s/m]: the rendered impedance by another way."""
+    def felt(self) -> NDArray[np.complex128]:
+        """Impedance that the hand feels beyond the device's own m s + b [N s/m]: the rendered one, measured another way."""
+        assert self.device is not None  # a hand drives in simulation alone, where the device is known
         return self.handle - self.device
 
     @property
-    def mechanics(self):
-        """What the motor moves [N s/m], device and hand together, if its force is what was computed; where it drives."""
+    def mechanics(self) -> NDArray[np.complex128]:
+        """Impedance of device and hand together, where the motor drives [N s/m]; true if its force is the computed one."""
         if self.drive != "motor":
             raise AnalysisError("the hand drove; measure the mechanics that the motor moves with drive='motor'")
         return self.other.value
 
     @property
-    def transparency(self):
+    def transparency(self) -> NDArray[np.complex128]:
         """Rendered over ideal impedance, 1 where the environment is rendered as it is meant."""
         return self.rendered / self._meant()
 
     @property
-    def transparency_at_handle(self):
-        """What the hand feels over the ideal: the device's own mass and damping are in the way too."""
+    def transparency_at_handle(self) -> NDArray[np.complex128]:
+        """Impedance that the hand feels over the ideal one: the device's own mass and damping count too."""
         return self.handle / self._meant()
 
     def _meant(self):
@@ -100,20 +109,20 @@ class MeasuredImpedance:
         return self.ideal
 
     @property
-    def stiffness(self):
+    def stiffness(self) -> NDArray[np.float64]:
         """Real part of s Z, rendered [N/m]."""
         return (2j * np.pi * self.frequency * self.rendered).real
 
     @property
-    def damping(self):
+    def damping(self) -> NDArray[np.float64]:
         """Real part of Z, rendered [N s/m]: below zero the environment gives energy at that frequency."""
         return self.rendered.real
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw magnitude, and real part: measured, the law's own, the ideal."""
         return plot_impedance(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         """Print a table: rendered, and what the driver feels, each with its 95 % circle."""
         driver = "hand" if self.drive == "hand" else "motor"
         head = f"{'f [Hz]':>8} {'|Z| [N s/m]':>12} {'+-':>8} {'Re Z':>9} {'|Z/law|':>8} {'|Z/ideal|':>10} {'angle':>8} "
@@ -135,6 +144,6 @@ class MeasuredImpedance:
             lines.append(f"blocks differ, |Z {self.drive}| by up to {100 * unsure:.0f} %: noise, or not settled; settle=... [s]")
         return lines
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         span = f"{self.frequency[0]:.4g} to {self.frequency[-1]:.4g} Hz"
         return f"MeasuredImpedance({len(self.frequency)} frequencies, {span})"

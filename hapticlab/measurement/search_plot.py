@@ -1,11 +1,21 @@
 """Pictures of what was searched: the trials of a stiffness, the border of the Z-width."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..drawing import FRAME, WARM, house_style, new_figure, style_of
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def plot_search(found):
+    from .largest_stiffness import LargestStiffness
+    from .z_width import ZWidth
+
+
+def plot_search(found: LargestStiffness) -> Figure:
     """Draw a search's trials over their number, stood or chattered, and the limits of theory as lines."""
     with house_style():
         figure = new_figure(height=3.6)
@@ -21,14 +31,14 @@ def plot_search(found):
         for i, (name, limit) in enumerate(found.theory.items()):
             if 0 < limit.K < 1e9:
                 axes.axhline(limit.K, **style_of(i + 2), label=f"{name}: {limit.K:.4g} N/m")
-        outcome = f"{found.K:.4g} N/m stands" if found.K > 0 else "undecided" if np.isnan(found.K) else "none stands"
-        axes.set(yscale="log", xlabel="trial", ylabel="stiffness K [N/m]", title=f"{found.law}: {outcome}")
+        answer = f"{found.K:.4g} N/m stands" if found.K > 0 else "undecided" if np.isnan(found.K) else "none stands"
+        axes.set(yscale="log", xlabel="trial", ylabel="stiffness K [N/m]", title=f"{found.law}: {answer}")
         axes.xaxis.get_major_locator().set_params(integer=True)
         axes.legend(loc="lower right" if found.K > 0 else "upper right", **FRAME)
     return figure
 
 
-def plot_border(width):
+def plot_border(width: ZWidth) -> Figure:
     """Draw the border of a Z-width: what stood, what chattered, and the lines of theory."""
     with house_style():
         figure = new_figure(height=4.2)

@@ -71,7 +71,7 @@ def first_of(paddle, pressing, longest):
 
 
 def hopeless(paddle, theory):
-    """Return whether theory knows the wall to be unstable at every stiffness; friction may hold what is."""
+    """Whether theory predicts instability at every stiffness and the paddle has no Coulomb friction to prevent it."""
     limit = theory.get("stability")
     known = limit is not None and limit.K == 0 and "stable again" not in limit.reason
     return known and not getattr(paddle, "coulomb", 0.0)

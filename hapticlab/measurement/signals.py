@@ -4,15 +4,24 @@ Random-phase multisines after Pintelon and Schoukens, *System Identification: A 
 phases (1970); peaks lowered by clipping and restoring the amplitudes (van der Ouderaa, Schoukens and Renneboog 1988).
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
 import numpy as np
 
 from ..errors import AnalysisError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
 
 #: rounds of clipping; most of the gain comes in the first hundred
 ROUNDS = 150
 
 
-def multisine(samples, lines, *, phases="schroeder", seed=0):
+def multisine(
+    samples: int, lines: ArrayLike, *, phases: Literal["schroeder", "random", "low_crest"] = "schroeder", seed: int = 0
+) -> NDArray[np.float64]:
     """Return one period of a sum of cosines of equal amplitude, peak 1.
 
     Parameters
@@ -51,7 +60,7 @@ def multisine(samples, lines, *, phases="schroeder", seed=0):
     return signal / abs(signal).max()
 
 
-def chirp(samples, lines):
+def chirp(samples: int, lines: ArrayLike) -> NDArray[np.float64]:
     """Return one period of a swept sine from the first to the last line, peak 1: sin of a phase that grows as t^2.
 
     A line of every cycle number between first and last gets much the same power, a little leaks beyond the ends.
@@ -62,7 +71,7 @@ def chirp(samples, lines):
     return np.sin(2 * np.pi * (first * part + (last - first) / 2 * part**2))
 
 
-def crest_factor(signal):
+def crest_factor(signal: NDArray[np.float64]) -> float:
     """Return peak over rms."""
     return float(abs(signal).max() / np.sqrt(np.mean(np.square(signal))))
 
@@ -85,7 +94,7 @@ def lines_of(frequency, T, period):
     return samples, np.unique(odd[odd < samples / 2])
 
 
-def checked_lines(samples, lines):
+def checked_lines(samples: int, lines: ArrayLike) -> NDArray[np.int_]:
     """Return lines as whole numbers of cycles in a period of so many samples, or say what they have to be."""
     lines = np.asarray(lines, int)
     if lines.ndim != 1 or not lines.size or lines.min() < 1 or lines.max() >= samples / 2:

@@ -1,15 +1,26 @@
 """A scene's own law at a place: force per small motion, from its program's answer to one sample that is off."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..compiler.engines.engine import load
 from ..errors import AnalysisError
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..compiler.ir.program import Program
+
 #: of the motion [m], and samples of the answer that are followed
 SMALL, LONGEST = 1e-6, 20_000
 
 
-def law_at(program, place, theta, *, small=SMALL):
+def law_at(
+    program: Program, place: float, theta: NDArray[np.float64], *, small: float = SMALL
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
     """Return H(e^(j theta)) of F to x, and of F to a measured v, complex arrays, linearised at a place [m].
 
     The program runs at rest there until it has settled; then x is off by a micrometre for one sample, and what the force
@@ -40,7 +51,7 @@ def law_at(program, place, theta, *, small=SMALL):
     return found["x"], found["v"]
 
 
-def force_at_rest(program, place):
+def force_at_rest(program: Program, place: float) -> float:
     """Return the force with the handle at rest at a place, settled [N]."""
     names = [c.name for c in program.inputs]
     rest = np.zeros((LONGEST, len(names)))

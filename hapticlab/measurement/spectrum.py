@@ -1,8 +1,14 @@
 """A response from whole periods: the ratio of two spectra against a known excitation, and how sure it is."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 #: of the circle that is stated around every number
 CONFIDENCE = 0.95
@@ -21,17 +27,17 @@ class Response:
         Of x and y over the blocks; 1 where every block repeats.
     """
 
-    value: np.ndarray
-    radius: np.ndarray
-    coherence: np.ndarray
+    value: NDArray[np.complex128]
+    radius: NDArray[np.float64]
+    coherence: NDArray[np.float64]
 
 
-def lines_in(blocks, lines):
+def lines_in(blocks: NDArray[np.float64], lines: NDArray[np.int_]) -> NDArray[np.complex128]:
     """Return the Fourier coefficients of real blocks, shape (B, N), at their lines, shape (B, L)."""
     return 2 / blocks.shape[1] * np.fft.rfft(blocks, axis=1)[:, lines]
 
 
-def response(y, x, reference):
+def response(y: NDArray[np.complex128], x: NDArray[np.complex128], reference: NDArray[np.complex128]) -> Response:
     """Return y/x, each of shape (B, L), through what both have of the reference.
 
     Noise on x that comes round through the loop would pull a plain ratio of y and x towards the loop's inverse; the
@@ -52,11 +58,11 @@ def response(y, x, reference):
     return Response(value, radius, coherence)
 
 
-def held_transfer(s, T, delay=0.0):
-    """Return what a hold of T [s] and a delay [s] do to a force at s = 2 pi j f: (1 - e^(-sT))/(sT) e^(-s delay)."""
+def held_transfer(s: NDArray[np.complex128], T: float, delay: float = 0.0) -> NDArray[np.complex128]:
+    """Transfer function of a hold of T [s] and a delay [s] at s = 2 pi j f: (1 - e^(-sT))/(sT) e^(-s delay)."""
     return -np.expm1(-s * T) / (s * T) * np.exp(-s * delay)
 
 
-def ramp_transfer(s, T):
-    """Return the line of a path that is straight between its samples, over that of the samples: sinc^2(f T)."""
+def ramp_transfer(s: NDArray[np.complex128], T: float) -> NDArray[np.float64]:
+    """Spectrum of a path that is straight between its samples, over the spectrum of the samples: sinc^2(f T)."""
     return np.sinc(s.imag * T / (2 * np.pi)) ** 2

@@ -1,7 +1,10 @@
 """One wall tried on a paddle, simulated or real: what became of it, with the motor cut the moment it goes wrong."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +14,9 @@ from ..errors import PaddleError
 from ..scene.laws.chapter_laws import wall
 from ..scene.scene import Scene
 from .guard import guarded
+
+if TYPE_CHECKING:
+    pass
 
 #: a spring and damper that lead a handle back, soft enough for any paddle [N/m], and how long they take [s]
 LEADS_BACK, TAKES = 20.0, 0.5
@@ -34,7 +40,7 @@ COUNTS = 3
 
 @dataclass(frozen=True)
 class Trial:
-    """What one stiffness did.
+    """Outcome of one stiffness.
 
     Attributes
     ----------
@@ -65,7 +71,7 @@ class Trial:
     duration: float
     scatter: float = 0.0
 
-    def __str__(self):
+    def __str__(self) -> str:
         tone = "" if self.frequency is None else f" at {self.frequency:.4g} Hz"
         swing = f", {1e3 * self.amplitude:.3g} mm{tone}" if self.amplitude else ""
         outcome = {True: "stands   ", False: "chatters ", None: "undecided"}[self.stands]
@@ -188,7 +194,7 @@ def speed_limit(paddle, speed):
     return max(speed, COUNTS * count_of(paddle) / paddle.T)
 
 
-def wall_of(law, parameter="k"):
+def wall_of(law: str | Scene, parameter: str = "k") -> Scene:
     """Return the scene of a law by its name, or a scene of one's own that has the parameter."""
     scene = law if isinstance(law, Scene) else wall(law)
     if parameter not in scene.parameters:

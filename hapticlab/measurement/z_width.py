@@ -1,6 +1,9 @@
 """Z-width: the border of stiffness and virtual damping that a paddle renders, measured, beside what theory promises."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -8,6 +11,14 @@ from ..errors import AnalysisError
 from ..scene.scene import Scene
 from .largest_stiffness import LargestStiffness, largest_stiffness
 from .search_plot import plot_border
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from ..device.board.serial_paddle import SerialPaddle
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
+    from ..limits.limit import LawName
 
 #: part of the last damping's border at which the search for the next one begins
 BELOW = 5.0
@@ -37,31 +48,31 @@ class ZWidth:
     border of what comes to rest after one entry, in one hand.
     """
 
-    B: np.ndarray
-    K: np.ndarray
-    chatters_at: np.ndarray
-    passivity: np.ndarray
-    stability: np.ndarray
+    B: NDArray[np.float64]
+    K: NDArray[np.float64]
+    chatters_at: NDArray[np.float64]
+    passivity: NDArray[np.float64]
+    stability: NDArray[np.float64]
     searches: tuple[LargestStiffness, ...]
     law: str
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the border with passivity and exact stability."""
         return plot_border(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         about = next((s.about for s in self.searches if s.trials), "no trial made")
         rows = [f"{b:10.4g} {k:12.5g} {top:12.5g} {p:12.5g} {s:12.5g}" for b, k, top, p, s in zip(
             self.B, self.K, self.chatters_at, self.passivity, self.stability, strict=True)]  # fmt: skip
         head = f"{'B [N s/m]':>10} {'K stands':>12} {'K does not':>12} {'passivity':>12} {'stability':>12}  K in N/m"
         return "\n".join([f"Z-width, law {self.law}: {about}", head, *rows])
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         least, most = np.nanmin([*self.K, np.inf]), np.nanmax([*self.K, 0.0])
         return f"ZWidth({self.law}, {len(self.B)} dampings, K = {least:.4g} to {most:.4g} N/m)"
 
 
-def z_width(paddle, *, B, law="zoh", **options):
+def z_width(paddle: SimulatedPaddle | SerialPaddle, *, B: ArrayLike, law: LawName | Scene = "zoh", **options: Any) -> ZWidth:
     """Measure the K-B border of a wall on a paddle: a search of the largest stiffness at every virtual damping.
 
     Parameters
@@ -93,17 +104,16 @@ def z_width(paddle, *, B, law="zoh", **options):
     B = np.atleast_1d(np.asarray(B, float))
     if B.ndim != 1 or not B.size or not np.isfinite(B).all():
         raise AnalysisError(f"B = {B}; needs one or more finite numbers [N s/m], as in B=[0, 0.5, 1]")
-    searches = []
+    searches: list[LargestStiffness] = []
     for b in B.tolist():
         if searches and searches[-1].K > 0 and "first" not in options:  # the next damping's border is near: begin well below
             searches.append(largest_stiffness(paddle, law=law, B=b, **options, first=searches[-1].K / BELOW))
         else:
             searches.append(largest_stiffness(paddle, law=law, B=b, **options))
-    searches = tuple(searches)
 
     def column(name):
         return np.array([s.theory[name].K if name in s.theory else np.nan for s in searches])
 
     K, top = np.array([s.K for s in searches]), np.array([s.chatters_at for s in searches])
     name = law.name if isinstance(law, Scene) else law
-    return ZWidth(B, K, top, column("passivity"), column("stability"), searches, name)
+    return ZWidth(B, K, top, column("passivity"), column("stability"), tuple(searches), name)
