@@ -28,9 +28,10 @@ what is written by hand. Nothing is solved in symbols.
 
 **ExplicitForm -> Dynamics.** ``compile_scene`` checks what was asked for, ``lowering`` is the tick, in the order it
 runs: sample (``handle_samples``), force, outputs, and one period of motion; ``force_timing`` has the force after it, or
-on average. Expressions become values of a ``trace`` by ``expressions`` (``phase`` and ``constants`` look after angles
-and numbers, ``simplify`` after every operation). Whatever must be differentiated, evaluated in numbers or shared is in
-``graph`` (``differentiate``, ``derivative_builder``). ``dynamics`` answers one question: in this state at this instant,
+on average. Expressions become ``values`` of a ``trace`` by ``expressions`` (``phase`` and ``constants`` look after
+angles and numbers). Each does one of the ``operations``: a record of each says how it is computed, simplified and
+differentiated, here and on a board. Whatever must be differentiated, evaluated in numbers or shared is in ``graph``
+(``differentiate``, ``derivative_builder``). ``dynamics`` answers one question: in this state at this instant,
 what are the accelerations? For M a = f alone that is ``linear_solve``; ``mass_matrix`` has looked whether there is an
 answer, ``first_sample`` where it starts, ``structural_zeros`` leaves out what is structurally zero.
 
@@ -49,7 +50,7 @@ worth. ``exact_linear`` (of the parts that ``linear_parts`` and ``constant_coeff
 ``matrix_exponential``) takes what is linear, ``switched_linear`` what is linear between switches, by a map a mode where
 none can be reached, else as "taylor" does. "taylor" is ``taylor_method``: ``series_checks`` checks the motion and
 chooses the order; ``guards`` turns every comparison into a mode and the instant it ends; ``flow`` makes the polynomial
-of a piece in given modes by the recurrences of ``taylor_series``; ``polynomial_crossing`` finds its first root;
+of a piece in given modes by ``taylor_series`` and its ``recurrences``; ``polynomial_crossing`` finds its first root;
 ``located_step`` steps from one to the next. At a touch ``impacts`` differentiates what is needed once, ``touch`` says
 what happens in that instant (which contacts strike, rest, lose energy), ``impulses`` has the laws of one blow, and
 ``complementarity`` solves for several.

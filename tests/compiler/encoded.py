@@ -4,7 +4,7 @@ import struct
 import zlib
 
 from hapticlab.compiler.engines.bytecode import OPCODES, TYPE_CODES, layout, words_of
-from hapticlab.compiler.ir.program import OPERATIONS
+from hapticlab.compiler.ir.operations import OPERATIONS
 
 KIND = {"R": TYPE_CODES["f32"], "B": TYPE_CODES["bool"], "I": TYPE_CODES["i32"]}
 NAME = {number: name for name, number in OPCODES.items()}
@@ -37,7 +37,7 @@ def operand_positions(data, block):
     words = words_of(data, positions.start, positions.stop, at.word)
     k, found = 0, []
     while words[k]:
-        count = len(OPERATIONS[NAME[words[k]]][0])
+        count = len(OPERATIONS[NAME[words[k]]].operands)
         found += [(positions[k + 2 + n], NAME[words[k]], n) for n in range(count)]
         k += 2 + count
     return found
@@ -74,7 +74,7 @@ def _code(words, types, fixed, registers):
         op = NAME.get(words[0])
         if op is None:
             return False
-        kinds, result = OPERATIONS[op]
+        kinds, result = OPERATIONS[op].operands, OPERATIONS[op].result
         if len(words) < 3 + len(kinds):
             return False
         to, operands = words[1], words[2 : 2 + len(kinds)]

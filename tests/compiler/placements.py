@@ -5,9 +5,8 @@ import shapely
 
 from hapticlab.compiler.algebra.expressions import Translator
 from hapticlab.compiler.engines.interpreter import evaluate
-from hapticlab.compiler.ir.elementary import expand
 from hapticlab.compiler.ir.program import Block, Program
-from hapticlab.compiler.ir.trace import Builder
+from hapticlab.compiler.ir.trace import Builder, expand
 
 BOX = [(-0.5, -0.3), (0.5, -0.3), (0.5, 0.3), (-0.5, 0.3)]
 BAR = [(-0.5, 0.0), (0.5, 0.0)]

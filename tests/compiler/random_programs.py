@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from hapticlab.compiler.ir.program import ELEMENTARY, OPERATIONS, Block, Channel, Instruction, Program
+from hapticlab.compiler.ir.operations import ELEMENTARY, OPERATIONS
+from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program
 
 #: what breaks arithmetic that is not IEEE: signed zeros, denormals, halves, the ends of the range, infinities and nan
 HARD = (
@@ -106,7 +107,7 @@ def _constant(rng, type):
 
 
 def _random_instruction(rng, code, reals, op):
-    kinds, result = OPERATIONS[op]
+    kinds, result = OPERATIONS[op].operands, OPERATIONS[op].result
     real = str(rng.choice(reals))
     if op == "cast" and len(reals) == 1:
         return None

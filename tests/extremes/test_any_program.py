@@ -15,7 +15,8 @@ from random_programs import assert_same_bits
 
 import hapticlab as hl
 from hapticlab.compiler.engines.engine import load
-from hapticlab.compiler.ir.program import LEAVES, OPERATIONS, Block, Channel, Instruction, Program
+from hapticlab.compiler.ir.operations import OPERATIONS
+from hapticlab.compiler.ir.program import LEAVES, Block, Channel, Instruction, Program
 from hapticlab.compiler.ir.trace import Builder
 from hapticlab.errors import ProgramError
 
@@ -35,7 +36,7 @@ def blocks(draw, leaves, states, outputs, reals):
     code += [Instruction("const", (), type, value=draw(ANY[type])) for type in (*reals, "bool", "i32") for _ in range(2)]
     operations = [op for op in OPERATIONS if op != "cast" or len(reals) > 1]
     for op in draw(st.lists(st.sampled_from(operations), max_size=25)):
-        kinds, result = OPERATIONS[op]
+        kinds, result = OPERATIONS[op].operands, OPERATIONS[op].result
         real = draw(st.sampled_from(reals))
         of = {"R": real, "B": "bool", "I": "i32"}
         args = tuple(draw(st.sampled_from([k for k, i in enumerate(code) if i.type == of[kind]][-9:])) for kind in kinds)

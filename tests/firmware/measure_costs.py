@@ -24,7 +24,8 @@ from whole_step import measure_step  # noqa: E402
 
 from hapticlab.compiler.boards.cost import COSTS  # noqa: E402
 from hapticlab.compiler.engines.bytecode import OPCODES  # noqa: E402
-from hapticlab.compiler.ir.program import OPERATIONS, Block, Channel, Instruction, Program  # noqa: E402
+from hapticlab.compiler.ir.operations import OPERATIONS  # noqa: E402
+from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program  # noqa: E402
 
 TYPE = {"R": "f32", "B": "bool", "I": "i32"}
 MODELLED = "modelled, not measured: instructions under unicorn, cycles of the manuals, step and telemetry as on the Uno"
@@ -38,7 +39,7 @@ EFFORT = {"uno": (4000, 20_000, 3000, 60), "cortex-m0+": (400, 1500, 200, 12), "
 
 
 def interface(op):
-    kinds, result = OPERATIONS[op]
+    kinds, result = OPERATIONS[op].operands, OPERATIONS[op].result
     channels = tuple(Channel(f"a{k}", "1", TYPE[kind]) for k, kind in enumerate(kinds))
     return channels, TYPE[result]
 

@@ -10,7 +10,8 @@ from measure_costs import awkward_bits
 from test_golden import GOLDEN, NAMES, array, program_of
 
 from hapticlab.compiler.engines.interpreter import Interpreter
-from hapticlab.compiler.ir.program import OPERATIONS, Block, Channel, Instruction, Program
+from hapticlab.compiler.ir.operations import OPERATIONS
+from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program
 
 BOARDS = ("uno", *PROCESSORS)
 NUMPY = {
@@ -34,7 +35,7 @@ def all_at_once(operations):
     inputs = Channel("a"), Channel("b")
     code = [Instruction("input", (), "f32", index=k) for k in range(2)]
     for op in operations:
-        kinds, result = OPERATIONS[op]
+        kinds, result = OPERATIONS[op].operands, OPERATIONS[op].result
         code.append(Instruction(op, tuple(range(len(kinds))), {"R": "f32", "B": "bool"}[result]))
     outputs = tuple(Channel(op, "1", i.type) for op, i in zip(operations, code[2:], strict=True))
     return Program("all", inputs, (), (), outputs, Block(), Block(tuple(code), tuple(range(2, len(code)))), 1e-3)

@@ -17,7 +17,8 @@ from random_programs import kept_finite, random_program, random_rows  # noqa: E4
 
 from hapticlab.compiler.engines.bytecode import OPCODES, encode  # noqa: E402
 from hapticlab.compiler.engines.engine import load  # noqa: E402
-from hapticlab.compiler.ir.program import OPERATIONS, Block, Channel, Instruction, Program  # noqa: E402
+from hapticlab.compiler.ir.operations import OPERATIONS  # noqa: E402
+from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program  # noqa: E402
 from hapticlab.compiler.ir.trace import Builder, cos, exp, maximum, select, sin, tanh  # noqa: E402
 
 TICKS = 8
@@ -60,7 +61,7 @@ def operations():
     code = [Instruction("input", (), c.type, index=k) for k, c in enumerate(inputs)]
     kinds = {"R": (0, 1), "B": (2, 2), "I": (3, 3)}
     for op in OPCODES:
-        operands, result = OPERATIONS[op]
+        operands, result = OPERATIONS[op].operands, OPERATIONS[op].result
         reals = iter(kinds["R"])
         args = tuple(next(reals) if kind == "R" else kinds[kind][0] for kind in operands)
         code.append(Instruction(op, args, {"R": "f32", "B": "bool", "I": "i32"}[result]))

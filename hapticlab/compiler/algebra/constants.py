@@ -10,7 +10,7 @@ import numpy as np
 import sympy as sp
 
 from ...errors import ProgramError
-from ..ir.simplify import NUMPY_TYPE
+from ..ir.program import NUMPY_TYPE
 
 DTYPE = {"f32": "float32", "f64": "float64"}
 

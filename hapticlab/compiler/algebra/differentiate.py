@@ -4,8 +4,9 @@ Griewank and Walther, *Evaluating Derivatives*, ch. 3. New instructions go into 
 shares the parts of what it is the derivative of. Comparisons have no derivative: a select is differentiated arm by arm.
 """
 
-from ..ir.program import LEAVES, OPERATIONS
-from ..ir.trace import Value, cos, select, sin
+from ..ir.operations import OPERATIONS
+from ..ir.program import LEAVES
+from ..ir.trace import Value
 
 
 class Tangent:
@@ -37,7 +38,7 @@ class Tangent:
 
     def _moving(self, k):
         i = self.builder.instructions[k]
-        return [a for a in i.args if OPERATIONS[i.op][1] == "R" and self.builder.instructions[a].type != "bool"]
+        return [a for a in i.args if OPERATIONS[i.op].result == "R" and self.builder.instructions[a].type != "bool"]
 
     def _value(self, number):
         return number if isinstance(number, Value) else self.builder.const(number)
@@ -93,16 +94,13 @@ class Gradient:
 
 
 def partials(builder, k):
-    """Return (operand, function) for each operand of instruction k; the function multiplies by the partial derivative."""
+    """(operand, function) for each operand of instruction k; the function multiplies by the partial derivative."""
     i = builder.instructions[k]
     r, operands = builder.result(k), [builder.result(a) for a in i.args]
     if i.op == "mul" and i.args[0] == i.args[1]:
         return [(i.args[0], lambda d: _twice(d) * operands[0])]
-    if i.op == "select":
-        c, zero = operands[0], builder.const(0.0)
-        return [(i.args[1], lambda d: select(c, d, zero)), (i.args[2], lambda d: select(c, zero, d))]
-    rule = _RULES.get(i.op)
-    return list(zip(i.args, rule(r, *operands), strict=True)) if rule else []
+    rules = zip(i.args, OPERATIONS[i.op].derivative, strict=False)  # a step function has none
+    return [(a, lambda d, rule=rule: rule(d, r, *operands)) for a, rule in rules if rule]
 
 
 def _twice(d):
@@ -113,21 +111,3 @@ def _twice(d):
             if d.builder.instructions[a].op == "const":
                 return d.builder.const(2.0 * d.builder.instructions[a].value) * d.builder.result(b)
     return 2.0 * d
-
-
-#: operation -> the products with its partial derivatives, one function an operand; r is its own result
-_RULES = {
-    "neg": lambda r, a: [lambda d: -d],
-    "abs": lambda r, a: [lambda d: select(a < 0.0, -d, d)],
-    "add": lambda r, a, b: [lambda d: d, lambda d: d],
-    "sub": lambda r, a, b: [lambda d: d, lambda d: -d],
-    "mul": lambda r, a, b: [lambda d: d * b, lambda d: a * d],
-    "div": lambda r, a, b: [lambda d: d / b, lambda d: -(d * r) / b],
-    "sqrt": lambda r, a: [lambda d: (0.5 * d) / r],
-    "sin": lambda r, a: [lambda d: d * cos(a)],
-    "cos": lambda r, a: [lambda d: -(d * sin(a))],
-    "exp": lambda r, a: [lambda d: d * r],
-    "log": lambda r, a: [lambda d: d / a],
-    "atan": lambda r, a: [lambda d: d / (1.0 + a * a)],
-    "tanh": lambda r, a: [lambda d: d * (1.0 - r * r)],
-}

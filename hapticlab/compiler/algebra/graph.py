@@ -12,16 +12,11 @@ import sympy as sp
 from ...scene.notation.derivative import Partial, Rate
 from ...scene.notation.symbols import Parameter, acceleration, t, v, x
 from ...scene.shapes.closest_points import sampled
-from ..ir.simplify import EVALUATE
-from ..ir.trace import reachable
+from ..ir.trace import computed, reachable
 from .constants import entering
 from .derivative_builder import Algebra
 from .differentiate import Gradient, Tangent
 from .expressions import Translator
-
-NUMPY = EVALUATE | {
-    "sin": np.sin, "cos": np.cos, "exp": np.exp, "log": np.log, "atan": np.arctan, "tanh": np.tanh,
-}  # fmt: skip
 
 
 class driven(sp.Function):
@@ -141,16 +136,8 @@ class Graph:
             A variable that is missing is an error.
         """
         wanted = [self(expr).id for expr in exprs]
-        variables, done = list(self.variables), {}
-        with np.errstate(all="ignore"):
-            for k in reachable(self.builder.instructions, wanted):
-                i = self.builder.instructions[k]
-                if i.op == "const":
-                    done[k] = i.value
-                elif i.op == "input":
-                    done[k] = self._number(variables[i.index], at)
-                else:
-                    done[k] = NUMPY[i.op](*(done[a] for a in i.args))
+        variables = list(self.variables)
+        done = computed(self.builder.instructions, wanted, lambda i: self._number(variables[i.index], at))
         return [np.asarray(done[k], float) for k in wanted]
 
     def _number(self, variable, at):

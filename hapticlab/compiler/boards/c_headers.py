@@ -8,20 +8,13 @@ import struct
 import sys
 from pathlib import Path
 
-from ..engines.bytecode import COUNTS, END, HEADER, KIND_CODES, MAGIC, OPCODES, RESULTS, TYPE_CODES, VERSION, table_hash
-from ..ir.elementary import DEFINITIONS
-from ..ir.program import LEAVES, OPERATIONS
+from ..engines.bytecode import COUNTS, END, HEADER, KIND_CODES, MAGIC, RESULTS, TYPE_CODES, VERSION, table_hash
+from ..ir.operations import ELEMENTARY, OPERATIONS
+from ..ir.program import LEAVES
 from ..ir.trace import Builder
 
 NOTICE = "/* Written by hapticlab/compiler/boards/c_headers.py: change the Python tables, not this file. */\n"
 _C_TYPE = {"f32": "float", "bool": "int"}
-_C_FORM = {
-    "neg": "-{0}", "abs": "hl_absf({0})", "floor": "hl_floorf({0})",
-    "add": "{0} + {1}", "sub": "{0} - {1}", "mul": "{0} * {1}", "div": "{0} / {1}",
-    "lt": "{0} < {1}", "le": "{0} <= {1}", "eq": "{0} == {1}",
-    "and": "{0} & {1}", "or": "{0} | {1}", "not": "!{0}", "select": "{0} ? {1} : {2}",
-    "exp2i": "hl_exp2if({0})", "exponent": "hl_exponentf({0})",
-}  # fmt: skip
 
 
 def generate():
@@ -47,20 +40,20 @@ def _opcodes():
 
 
 def _rows():
-    for name, number in OPCODES.items():
-        kinds, result = OPERATIONS[name]
-        operands = [KIND_CODES[k] for k in kinds] + [0] * (3 - len(kinds))
-        yield [name.upper(), number, len(kinds), KIND_CODES[result], *operands]
+    for o in OPERATIONS.values():
+        if o.opcode:
+            operands = [KIND_CODES[k] for k in o.operands] + [0] * (3 - len(o.operands))
+            yield [o.name.upper(), o.opcode, len(o.operands), KIND_CODES[o.result], *operands]
 
 
 def _elementary_header():
     lines = [NOTICE, "#ifndef HL_ELEMENTARY_H", "#define HL_ELEMENTARY_H", ""]
-    lines += [f"float hl_{name}f(float x);" for name in DEFINITIONS]
+    lines += [f"float hl_{name}f(float x);" for name in ELEMENTARY]
     return "\n".join(lines) + "\n\n#endif\n"
 
 
 def _elementary_source():
-    functions = "\n".join(_function(name, define) for name, define in DEFINITIONS.items())
+    functions = "\n".join(_function(name, define) for name, define in ELEMENTARY.items())
     return f'{NOTICE}\n#include "elementary.h"\n#include "mathf.h"\n\nHL_NO_CONTRACTION\n\n{functions}'
 
 
@@ -137,7 +130,7 @@ def _expression(k, code, names):
         return f"hl_is_zero({names[within[0]]})"
     if within:
         return "hl_bits_within({}, 0x{:08x}UL, 0x{:08x}UL)".format(names[within[0]], *within[1:])
-    return _C_FORM[i.op].format(*(names[a] for a in i.args))
+    return OPERATIONS[i.op].c.format(*(names[a] for a in i.args))
 
 
 def _remainder_of_4(code, k):

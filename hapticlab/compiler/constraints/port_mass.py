@@ -5,8 +5,8 @@ import numpy as np
 from ...scene.mechanics.loop_closure import driven_over
 from ...scene.notation.symbols import acceleration, t
 from ..algebra.expressions import Translator
-from ..algebra.graph import NUMPY, Graph
-from ..ir.trace import Builder, reachable
+from ..algebra.graph import Graph
+from ..ir.trace import Builder, computed
 
 
 def port_mass(enforced, force, M, f, start):
@@ -50,9 +50,4 @@ class _Stopped:
 def _evaluated(value, inputs, variables, a):
     """Return a traced value in numbers, with the handle's acceleration a."""
     inputs = [a if variable == acceleration(t) else number for variable, number in zip(variables, inputs, strict=True)]
-    done, instructions = {}, value.builder.instructions
-    with np.errstate(all="ignore"):
-        for k in reachable(instructions, [value.id]):
-            i = instructions[k]
-            done[k] = i.value if i.op == "const" else inputs[i.index] if i.op == "input" else NUMPY[i.op](*map(done.get, i.args))
-    return done[value.id]
+    return computed(value.builder.instructions, [value.id], lambda i: inputs[i.index])[value.id]

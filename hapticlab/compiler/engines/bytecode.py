@@ -19,14 +19,10 @@ import zlib
 from dataclasses import dataclass
 
 from ...errors import ProgramError, ProgramLimitError
-from ..ir.program import LEAVES, OPERATIONS
+from ..ir.operations import OPERATIONS
+from ..ir.program import LEAVES
 
-#: the numbers are a contract with boards already flashed: add at the end, never renumber
-OPCODES = {
-    "neg": 1, "abs": 2, "add": 3, "sub": 4, "mul": 5, "div": 6, "sqrt": 7, "floor": 8, "lt": 9, "le": 10, "eq": 11,
-    "and": 12, "or": 13, "not": 14, "select": 15, "sin": 16, "cos": 17, "exp": 18, "log": 19, "atan": 20, "tanh": 21,
-    "exp2i": 22, "exponent": 23, "iadd": 24, "itof": 25,
-}  # fmt: skip
+OPCODES = {name: operation.opcode for name, operation in OPERATIONS.items() if operation.opcode}
 END = 0
 TYPE_CODES = {"f32": 1, "bool": 2, "i32": 3}
 KIND_CODES = {"R": 1, "B": 2, "I": 3}
@@ -57,7 +53,7 @@ COUNTS += ("init_words", "tick_words", "init_moves", "tick_moves")
 
 def table_hash():
     """Return the CRC-32 of every number that a board and this package must agree on."""
-    signatures = [(name, number, *OPERATIONS[name]) for name, number in OPCODES.items()]
+    signatures = [(o.name, o.opcode, o.operands, o.result) for o in OPERATIONS.values() if o.opcode]
     results = [(name, number) for name, (number, _) in RESULTS.items()]
     return zlib.crc32(repr((VERSION, HEADER.format, signatures, TYPE_CODES, results)).encode())
 
@@ -252,7 +248,7 @@ def instructions_of(words):
     k = 0
     while words[k] != END:
         name = names[words[k]]
-        length = 2 + len(OPERATIONS[name][0])
+        length = 2 + len(OPERATIONS[name].operands)
         yield k, name, words[k + 1 : k + length]
         k += length
 

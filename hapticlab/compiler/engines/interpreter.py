@@ -5,12 +5,9 @@ It is the definition the other engines are tested against, and what runs where l
 
 import numpy as np
 
-from ..ir.elementary import expand
-from ..ir.program import LEAVES
-from ..ir.simplify import EVALUATE, NUMPY_TYPE
-
-#: exponent bias, mantissa bits and the integer of the same width
-LAYOUT = {"f32": (127, 23, np.int32), "f64": (1023, 52, np.int64)}
+from ..ir.operations import OPERATIONS
+from ..ir.program import NUMPY_TYPE
+from ..ir.trace import expand
 
 
 class Interpreter:
@@ -43,27 +40,15 @@ def evaluate(block, **leaves):
     """Return the outputs and next states of a block, as two lists of arrays."""
     done = []
     for i in block.instructions:
-        if i.op == "const":
+        if i.args:
+            operation = OPERATIONS[i.op]
+            result = operation.compute(*map(done.__getitem__, i.args))
+            done.append(result.astype(NUMPY_TYPE[i.type]) if operation.converts else result)
+        elif i.op == "const":
             done.append(NUMPY_TYPE[i.type](i.value))
-        elif i.op in LEAVES:
-            done.append(leaves[i.op][i.index])
         else:
-            done.append(_operate(i, [done[a] for a in i.args]))
+            done.append(leaves[i.op][i.index])
     return [done[k] for k in block.outputs], [done[k] for k in block.states]
-
-
-def _operate(i, operands):
-    if i.op in EVALUATE:
-        return EVALUATE[i.op](*operands)
-    if i.op in ("cast", "itof"):
-        return operands[0].astype(NUMPY_TYPE[i.type])
-    bias, bits, integer = LAYOUT[i.type]
-    if i.op == "exp2i":
-        k = np.clip(np.where(np.isnan(operands[0]), 0, operands[0]), 1 - bias, bias)
-        return ((k.astype(integer) + integer(bias)) << integer(bits)).view(NUMPY_TYPE[i.type])
-    # exponent: the field itself, whatever the sign
-    field = (np.asarray(operands[0]).view(integer) >> integer(bits)) & integer(2 * bias + 1)
-    return (field - integer(bias)).astype(NUMPY_TYPE[i.type])
 
 
 class _Lanes(tuple):

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import EngineMissingError
 from ..ir.cache import Shared
-from ..ir.elementary import expand
+from ..ir.trace import expand
 from .llvm_emit import emit
 
 #: Lanes stepped together in a program of at most so many instructions; 8 in a longer one. Several vectors a value hide

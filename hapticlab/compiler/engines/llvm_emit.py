@@ -8,7 +8,8 @@ of the interpreter.
 
 import struct
 
-from ..ir.program import ELEMENTARY, LEAVES
+from ..ir.operations import ELEMENTARY, OPERATIONS
+from ..ir.program import LEAVES
 from ..ir.trace import reachable
 from .llvm_branches import Branches
 from .side_by_side import functions, in_order
@@ -17,17 +18,6 @@ from .skipped_arms import Demand, in_lazy_order
 SCALAR = {"f32": "float", "f64": "double", "bool": "i1", "i32": "i32"}
 #: of a real type: bits of the whole, bits of the mantissa, exponent bias
 LAYOUT = {"f32": (32, 23, 127), "f64": (64, 52, 1023)}
-
-#: operation -> LLVM. {t} type of the result, {a} of the first operand, {s} suffix of an intrinsic
-LINES = {
-    "neg": "fneg {t} {0}", "abs": "call {t} @llvm.fabs.{s}({t} {0})",
-    "add": "fadd {t} {0}, {1}", "sub": "fsub {t} {0}, {1}", "mul": "fmul {t} {0}, {1}", "div": "fdiv {t} {0}, {1}",
-    "sqrt": "call {t} @llvm.sqrt.{s}({t} {0})", "floor": "call {t} @llvm.floor.{s}({t} {0})",
-    "lt": "fcmp olt {a} {0}, {1}", "le": "fcmp ole {a} {0}, {1}", "eq": "fcmp oeq {a} {0}, {1}",
-    "and": "select {a} {0}, {t} {1}, {t} {false}", "or": "select {a} {0}, {t} {true}, {t} {1}", "not": "xor {t} {0}, {true}",
-    "select": "select {a} {0}, {t} {1}, {t} {2}",
-    "iadd": "add {t} {0}, {1}", "itof": "sitofp {a} {0} to {t}",
-}  # fmt: skip
 
 FUNCTION = """
 define void @run(i64 %ticks, i64 %every, i64 %first, i64 %last, i64 %stride, i64 %resumed,
@@ -114,20 +104,24 @@ class Writer:
         return self.splat(SCALAR[type], text)
 
     def operation(self, result, i, operands, operand_type):
-        """Return the lines that compute one instruction."""
+        """The lines that compute one instruction."""
+        line = OPERATIONS[i.op].llvm
+        if not line:
+            return getattr(self, i.op)(result, i.type, operands[0], operand_type)
         t, a = self.types[i.type], self.types[operand_type]
-        if i.op == "cast":
-            return f"{result} = {'fpext' if i.type == 'f64' else 'fptrunc'} {a} {operands[0]} to {t}"
-        if i.op in ("exp2i", "exponent"):
-            return getattr(self, i.op)(result, i.type, operands[0])
-        suffix = self.suffix + i.type
-        if "@" in LINES[i.op]:
-            name = {"abs": "fabs"}.get(i.op, i.op)
-            self.intrinsics.add(f"declare {t} @llvm.{name}.{suffix}({t})")
         true, false = self.const(True, "bool"), self.const(False, "bool")
-        return f"{result} = " + LINES[i.op].format(*operands, t=t, a=a, s=suffix, true=true, false=false)
+        line = line.format(*operands, t=t, a=a, s=self.suffix + i.type, true=true, false=false)
+        if "@" in line:
+            name = line[line.index("@") : line.index("(")]
+            self.intrinsics.add(f"declare {t} {name}({', '.join([a] * len(operands))})")
+        return f"{result} = {line}"
 
-    def exp2i(self, r, type, a):
+    def cast(self, r, type, a, operand_type):
+        """From one real type to the other."""
+        extend = "fpext" if type == "f64" else "fptrunc"
+        return f"{r} = {extend} {self.types[operand_type]} {a} to {self.types[type]}"
+
+    def exp2i(self, r, type, a, _):
         """2**a by way of the exponent field. The clamp comes first, so the conversion to an integer is defined."""
         bits, mantissa, bias = LAYOUT[type]
         t, c, k, w = self.types[type], self.types["bool"], self.types["i32"], self.vector(f"i{bits}")
@@ -142,7 +136,7 @@ class Writer:
             f"{r} = bitcast {w} {r}.j to {t}",
         ])  # fmt: skip
 
-    def exponent(self, r, type, a):
+    def exponent(self, r, type, a, _):
         """The exponent field less its bias, whatever the sign."""
         bits, mantissa, bias = LAYOUT[type]
         t, k, w = self.types[type], self.types["i32"], self.vector(f"i{bits}")

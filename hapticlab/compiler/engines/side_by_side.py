@@ -7,12 +7,9 @@ and to run; lane by lane the arithmetic is that of elementary.py, so the bits ar
 import functools
 from itertools import groupby
 
-from ..ir.elementary import DEFINITIONS
-from ..ir.program import ELEMENTARY
+from ..ir.operations import ELEMENTARY, OPERATIONS
 from ..ir.trace import Builder
 
-#: functions that share their reduction are computed together
-FAMILY = {"sin": "angle", "cos": "angle"}
 #: of a vector of 512 bits; a machine with less takes it in parts
 LANES = {"f64": 8, "f32": 16}
 
@@ -29,7 +26,7 @@ def in_order(block, positions):
     def key(k):
         i = instructions[k]
         function = i.op in ELEMENTARY
-        return depth[k], not function, (FAMILY.get(i.op, i.op), i.type) if function else ()
+        return depth[k], not function, (OPERATIONS[i.op].family or i.op, i.type) if function else ()
 
     for (_, plain, _), alike in groupby(sorted(sorted(positions), key=key), key):
         if plain:
@@ -43,7 +40,7 @@ def arithmetic(ops, type):
     """Return the block that computes elementary functions ``ops`` of its one input."""
     builder = Builder(type)
     argument = builder.leaf("input", 0, type)
-    return builder.block([DEFINITIONS[op](argument) for op in ops])
+    return builder.block([ELEMENTARY[op](argument) for op in ops])
 
 
 def functions(writer, block, names, alike):

@@ -9,13 +9,13 @@ import functools
 import heapq
 from dataclasses import dataclass
 
-from ..ir.program import ELEMENTARY, LEAVES
+from ..ir.operations import OPERATIONS
+from ..ir.program import LEAVES
 
 #: least work, in additions, of an arm that is worth a branch: what a branch foretold wrongly costs, on x86-64
 WORTH = 24
 #: most choices that one result waits for
 DEEPEST = 40
-_WORK = {"div": 5, "sqrt": 6} | dict.fromkeys(ELEMENTARY, 20)
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Arm:
 
 def work(instruction):
     """Return about how long an instruction takes, in additions."""
-    return 0 if instruction.op in LEAVES else _WORK.get(instruction.op, 1)
+    return 0 if instruction.op in LEAVES else OPERATIONS[instruction.op].work
 
 
 def in_lazy_order(instructions, i):

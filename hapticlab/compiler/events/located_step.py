@@ -14,11 +14,11 @@ import numpy as np
 from ..algebra.polynomial_crossing import departing, first_crossing, horner, scaled
 from ..ir import trace
 from ..ir.conditions import any_of, either, one_of, signed, size
+from ..ir.recurrences import product
 from ..ir.structural_zeros import is_zero, plus, times
 from ..ir.trace import select
 from .flow import Flow
 from .series_error import exceeded
-from .taylor_series import product
 
 #: two crossings closer than this part of a piece happen at once
 TOGETHER = {"f64": 1e-14, "f32": 1e-6}

@@ -6,11 +6,12 @@ import math
 import numpy as np
 
 from ...errors import ProgramError, ProgramLimitError
+from ..ir.operations import OPERATIONS
 from ..ir.options import proposed
 from ..ir.program import LEAVES
 from ..ir.structural_zeros import ZERO
 from ..ir.trace import reachable
-from .taylor_series import AT_ONCE, Series
+from .taylor_series import Series
 
 #: orders of the series: for linear motions what the truncation asks for, else what also serves products and functions
 ORDERS = {"f64": (6, 16), "f32": (4, 9)}
@@ -45,10 +46,8 @@ def _value(i, known, given):
         return np.bool_(i.value) if i.type == "bool" else np.float64(i.value)
     if i.op in LEAVES:
         return np.float64(given.get((i.op, i.index), math.nan))
-    if i.op in ("itof", "cast"):
-        return known[i.args[0]]
     with np.errstate(all="ignore"):
-        return AT_ONCE[i.op](*(known[a] for a in i.args))
+        return OPERATIONS[i.op].compute(*(known[a] for a in i.args))
 
 
 def _varied(motion, modes, at, number):

@@ -5,32 +5,9 @@ motion is linear the series is the matrix exponential to rounding; where it ends
 since a structural zero is never computed. Coefficients are of theta = tau/h, so that none leaves float32.
 """
 
-from ..ir import trace
-from ..ir.structural_zeros import ZERO, dot, is_zero, minus, plus, times
-from ..ir.trace import select
-
-#: operation -> its value from the values of its operands
-AT_ONCE = {
-    "neg": lambda a: -a, "abs": abs, "add": lambda a, b: a + b, "sub": lambda a, b: a - b, "mul": lambda a, b: a * b,
-    "div": lambda a, b: a / b, "lt": lambda a, b: a < b, "le": lambda a, b: a <= b, "eq": trace.equal,
-    "and": lambda a, b: a & b, "or": lambda a, b: a | b, "not": lambda a: ~a,
-    "select": select, "sqrt": trace.sqrt, "floor": trace.floor, "sin": trace.sin, "cos": trace.cos, "exp": trace.exp,
-    "log": trace.log, "atan": trace.atan, "tanh": trace.tanh,
-}  # fmt: skip
-
-
-def product(a, b, k):
-    """Return coefficient k of a product of two series; of a square at half the work."""
-    if a is not b:
-        return dot(a[: k + 1], b[k::-1])
-    half = (k + 1) // 2
-    twice = times(2.0, dot(a[:half], a[k : k - half : -1] if half else []))
-    return twice if k % 2 else plus(twice, times(a[k // 2], a[k // 2]))
-
-
-def slope(a, k):
-    """Return the coefficients k a_k, ..., 1 a_1 of the derivative, highest first."""
-    return [times(float(j), a[j]) for j in range(k, 0, -1)]
+from ..ir.operations import OPERATIONS
+from ..ir.structural_zeros import ZERO
+from ..ir.trace import reachable
 
 
 class Series:
@@ -89,7 +66,7 @@ class Series:
         """Return the positions asked for and what they need, operands first; of what does not move only the results."""
         if positions not in self._orders:
             moving, needed = set(self.leaves), set(positions)
-            reached = trace.reachable(self.instructions, positions)
+            reached = reachable(self.instructions, positions)
             for p in reached:
                 if not moving.isdisjoint(self.instructions[p].args):
                     moving.add(p)
@@ -104,69 +81,8 @@ class Series:
         if p not in self.moving:
             return self.number(p) if k == 0 else ZERO
         i = self.instructions[p]
-        operands = [self.known[a] for a in i.args]
+        operation, operands = OPERATIONS[i.op], [self.known[a] for a in i.args]
         if k == 0:
-            return AT_ONCE[i.op](*(o[0] for o in operands))
-        return getattr(self, f"_{i.op}", _none)(k, row, *operands)
-
-    # coefficient k > 0 of each operation: w is its own row so far, u and v are those of its operands
-
-    def _neg(self, k, w, u):
-        return ZERO if is_zero(u[k]) else -u[k]
-
-    def _add(self, k, w, u, v):
-        return plus(u[k], v[k])
-
-    def _sub(self, k, w, u, v):
-        return minus(u[k], v[k])
-
-    def _mul(self, k, w, u, v):
-        return product(u, v, k)
-
-    def _div(self, k, w, u, v):
-        return times(minus(u[k], dot(v[1 : k + 1], w[k - 1 :: -1])), 1.0 / v[0])
-
-    def _select(self, k, w, condition, u, v):
-        return ZERO if is_zero(u[k]) and is_zero(v[k]) else select(condition[0], u[k], v[k])
-
-    def _sqrt(self, k, w, u):
-        return times(minus(u[k], dot(w[1:k], w[k - 1 : 0 : -1])), 0.5 / w[0])
-
-    def _exp(self, k, w, u):
-        return times(dot(slope(u, k), w[:k]), 1.0 / k)
-
-    def _log(self, k, w, u):
-        return times(minus(u[k], times(dot(slope(w, k - 1), u[1:k]), 1.0 / k)), 1.0 / u[0])
-
-    def _sin(self, k, w, u):
-        return self._turned(k, u)[0]
-
-    def _cos(self, k, w, u):
-        return self._turned(k, u)[1]
-
-    def _turned(self, k, u):
-        """Return coefficient k of the sine and the cosine of u, which need each other."""
-        sines = self.known.setdefault(("sin", id(u)), [trace.sin(u[0])])
-        cosines = self.known.setdefault(("cos", id(u)), [trace.cos(u[0])])
-        for j in range(len(sines), k + 1):
-            rate = slope(u, j)
-            sines.append(times(dot(rate, cosines[:j]), 1.0 / j))
-            cosines.append(times(dot(rate, sines[:j]), -1.0 / j))
-        return sines[k], cosines[k]
-
-    def _atan(self, k, w, u):
-        above = self.known.setdefault(("1 + u^2", id(u)), [1.0 + u[0] * u[0]])
-        for j in range(len(above), k):
-            above.append(product(u, u, j))
-        return times(minus(u[k], times(dot(slope(w, k - 1), above[1:k]), 1.0 / k)), 1.0 / above[0])
-
-    def _tanh(self, k, w, u):
-        below = self.known.setdefault(("1 - w^2", id(w)), [1.0 - w[0] * w[0]])
-        for j in range(len(below), k):
-            below.append(times(-1.0, product(w, w, j)))
-        return times(dot(slope(u, k), below[:k]), 1.0 / k)
-
-
-def _none(k, w, *operands):
-    """The later coefficients of a condition, and of what is a step function (abs and floor are frozen as modes)."""
-    return ZERO
+            return operation.compute(*(o[0] for o in operands))
+        # a condition is constant over the step, and so is a step function: abs and floor are frozen as modes
+        return operation.series(self.known, k, row, *operands) if operation.series else ZERO

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .structural_zeros import ZERO, is_zero
-from .trace import Value, select
+from .values import Value, select
 
 
 def signed(negative, c):

@@ -1,19 +1,18 @@
 """sin, cos, exp, log, atan, tanh as straight-line arithmetic, defined once for every engine.
 
-The six functions below are traced, never called in a loop. Engines on this computer run the arithmetic that
-:func:`expand` puts in their place, firmware/generated/elementary.c is the same trace printed as C: the same bits
-everywhere, with no C library. Measured against mpmath (tests/compiler/ir/test_elementary.py): within 1.5 units in the last
-place, in both types, for |x| <= 100 (sin, cos; 2.5 up to the limit of the angle) and everywhere (the others).
+The six functions below are traced, never called in a loop. Engines on this computer run the arithmetic that ``expand`` of
+:mod:`~hapticlab.compiler.ir.trace` puts in their place, firmware/generated/elementary.c is the same trace printed as C: the
+same bits everywhere, with no C library. Measured against mpmath (tests/compiler/ir/test_elementary.py): within 1.5 units in
+the last place, in both types, for |x| <= 100 (sin, cos; 2.5 up to the limit of the angle) and everywhere (the others).
 
 Reductions after W. J. Cody and W. Waite, Software Manual for the Elementary Functions (1980); the form of log after
 P. T. P. Tang (1990). The polynomials interpolate at Chebyshev nodes; a test computes them again at 50 digits.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from .program import COMMUTATIVE, ELEMENTARY, LEAVES, Instruction
-from .trace import Builder, equal, floor, select
+from .values import equal, exp2i, exponent, floor, select
 
 
 @dataclass(frozen=True)
@@ -103,40 +102,6 @@ TABLES = {
 }  # fmt: skip
 
 
-def expand(program):
-    """Return the program with every elementary function replaced by its arithmetic.
-
-    Nothing else is touched; sin and cos of one angle share their reduction.
-
-    Examples
-    --------
-    >>> from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program
-    >>> x, y = Instruction("input", (), "f32"), Instruction("sin", (0,), "f32")
-    >>> p = Program("p", (Channel("x"),), (), (), (Channel("F"),), Block(), Block((x, y), outputs=(1,)), T=1e-3)
-    >>> len(p), len(expand(p)) > 20
-    (1, True)
-    """
-    return replace(program, init=_expand_block(program.init), tick=_expand_block(program.tick))
-
-
-def _expand_block(block):
-    if not any(i.op in ELEMENTARY for i in block.instructions):
-        return block
-    builder, here = Builder(), []
-    for i in block.instructions:
-        if i.op in ELEMENTARY:
-            here.append(DEFINITIONS[i.op](here[i.args[0]]))
-        elif i.op == "const":
-            here.append(builder.const(i.value, i.type))
-        elif i.op in LEAVES:
-            here.append(builder.leaf(i.op, i.index, i.type))
-        else:  # as it stands: an expansion is not the place to simplify
-            ids = tuple(here[a].id for a in i.args)
-            ids = tuple(sorted(ids)) if i.op in COMMUTATIVE else ids
-            here.append(builder._number((i.op, ids, i.type), Instruction(i.op, ids, i.type)))
-    return builder.block([here[k] for k in block.outputs], [here[k] for k in block.states])
-
-
 def _table(x):
     return TABLES[x.type]
 
@@ -152,19 +117,6 @@ def _polynomial(coefficients, z):
     for c in coefficients[-2::-1]:
         total = total * z + c
     return total
-
-
-def _exp2i(k):
-    if k.constant is None:
-        return k.builder.emit("exp2i", k)
-    most = 127 if k.type == "f32" else 1023
-    return _const(k, 2.0 ** min(max(k.constant, 1 - most), most))
-
-
-def _exponent(x):
-    if x.constant is None:
-        return x.builder.emit("exponent", x)
-    return _const(x, math.frexp(x.constant)[1] - 1)
 
 
 def _odd(x, y):
@@ -189,21 +141,21 @@ def _within_angle_limit(x, y):
     return select(abs(x) <= _table(x).angle_limit, y, _const(x, math.nan))
 
 
-def _sin(x):
+def sin(x):
     s, c, quarter = _quarter_turns(x)
     y = select(equal(quarter, 1.0) | equal(quarter, 3.0), c, s)
     y = select(1.5 < quarter, -y, y)
     return _within_angle_limit(x, select(equal(x, 0.0), x, y))
 
 
-def _cos(x):
+def cos(x):
     s, c, quarter = _quarter_turns(x)
     first, third = equal(quarter, 1.0), equal(quarter, 3.0)
     y = select(first | third, s, c)
     return _within_angle_limit(x, select(first | equal(quarter, 2.0), -y, y))
 
 
-def _exp(x):
+def exp(x):
     table = _table(x)
     low, high = table.exp_range
     held = select(x < low, _const(x, low), x)  # in this order nan stays nan
@@ -212,16 +164,16 @@ def _exp(x):
     r = (held - k * table.ln2[0]) - k * table.ln2[1]
     y = 1.0 + (r + r * r * _polynomial(table.exp, r))
     half = floor(k * 0.5)  # in two steps: 2**k itself may be denormal or past the largest number
-    return (y * _exp2i(half)) * _exp2i(k - half)
+    return (y * exp2i(half)) * exp2i(k - half)
 
 
-def _log(x):
+def log(x):
     table = _table(x)
     shift = table.normal_shift
     small = x < 1.0
     normal = x * select(small, _const(x, 2.0**shift), _const(x, 0.5))
-    e = _exponent(normal)
-    m = normal * _exp2i(-e)
+    e = exponent(normal)
+    m = normal * exp2i(-e)
     e = e + select(small, _const(x, -shift), _const(x, 1.0))
     above = math.sqrt(2) < m
     f = select(above, m * 0.5, m) - 1.0
@@ -235,7 +187,7 @@ def _log(x):
     return select(0.0 < x, y, at_most_0)
 
 
-def _atan(x):
+def atan(x):
     table = _table(x)
     a = abs(x)
     middle, far = 0.5 < a, 1 + math.sqrt(2) < a
@@ -248,19 +200,16 @@ def _atan(x):
     return _odd(x, y)
 
 
-def _tanh(x):
+def tanh(x):
     table = _table(x)
     twice = abs(x) * 2.0
     twice = select(table.tanh_limit < twice, _const(x, table.tanh_limit), twice)
     k = floor(twice * (1 / math.log(2)))
     r = (twice - k * table.ln2[0]) - k * table.ln2[1]
     q = r * r * _polynomial(table.expm1, r)
-    scale = _exp2i(k)
+    scale = exp2i(k)
     e = scale * (r + q) + (scale - 1.0)  # exp(2|x|) - 1
     near = equal(k, 0.0)  # there r = 2|x| exactly, and e/(e + 2) = |x| + (q - |x| e)/(e + 2)
     a = abs(x)
     y = select(near, a, _const(x, 0.0)) + select(near, q - a * e, e) / (e + 2.0)
     return _odd(x, y)
-
-
-DEFINITIONS = {"sin": _sin, "cos": _cos, "exp": _exp, "log": _log, "atan": _atan, "tanh": _tanh}

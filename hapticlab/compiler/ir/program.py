@@ -15,26 +15,12 @@ import numpy as np
 
 from ...errors import ProgramError
 from ...scene.frozen import Frozen
+from .operations import OPERATIONS
 
-#: operation -> operand kinds, result kind. R: real (f32 or f64, all alike), B: bool, I: i32.
-OPERATIONS = {
-    "neg": ("R", "R"), "abs": ("R", "R"), "add": ("RR", "R"), "sub": ("RR", "R"), "mul": ("RR", "R"), "div": ("RR", "R"),
-    "sqrt": ("R", "R"), "floor": ("R", "R"),
-    "lt": ("RR", "B"), "le": ("RR", "B"), "eq": ("RR", "B"),
-    "and": ("BB", "B"), "or": ("BB", "B"), "not": ("B", "B"),
-    "select": ("BRR", "R"),
-    "sin": ("R", "R"), "cos": ("R", "R"), "exp": ("R", "R"), "log": ("R", "R"), "atan": ("R", "R"), "tanh": ("R", "R"),
-    "exp2i": ("R", "R"),      # 2**k for an integral k, clamped to the normal exponents of the type
-    "exponent": ("R", "R"),   # the exponent field of a positive normal number, as a real: floor(log2(a))
-    "iadd": ("II", "I"), "itof": ("I", "R"),
-    "cast": ("R", "R"),       # f32 <-> f64, only in programs that link a scene to a simulated paddle
-}  # fmt: skip
 LEAVES = ("const", "param", "input", "state")
-#: operations that elementary.py defines over the others; the VM has them as single instructions
-ELEMENTARY = ("sin", "cos", "exp", "log", "atan", "tanh")
 REAL_TYPES = ("f32", "f64")
 TYPES = (*REAL_TYPES, "bool", "i32")
-COMMUTATIVE = frozenset({"add", "mul", "eq", "and", "or", "iadd"})
+NUMPY_TYPE = {"f32": np.float32, "f64": np.float64, "bool": np.bool_, "i32": np.int32}
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,7 +197,8 @@ def _problem(i, position, instructions, leaves):
         return None if leaves[i.op][i.index].type == i.type else f"{i.op} {i.index} is not {i.type}"
     if i.op not in OPERATIONS:
         return "no such operation"
-    kinds, result = OPERATIONS[i.op]
+    operation = OPERATIONS[i.op]
+    kinds, result = operation.operands, operation.result
     if len(i.args) != len(kinds):
         return f"needs {len(kinds)} operands, has {len(i.args)}"
     for a in i.args:

@@ -6,7 +6,7 @@ factors, the products and the series of it cost what is there, and no more.
 
 import numpy as np
 
-from .trace import Value
+from .values import Value
 
 #: a structural zero, which divides without an exception, as every engine does
 ZERO = np.float64(0.0)

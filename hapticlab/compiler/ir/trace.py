@@ -1,14 +1,38 @@
 """Trace ordinary arithmetic into a block: values are numbered, constants folded and identities removed as they appear.
 
-The lines of a method, a wall law or a paddle are written once, in plain arithmetic. Given floats or NumPy arrays they
-compute; given :class:`Value` they record. Value numbering: Cocke and Schwartz (1970), as hash-consing.
+The lines of a method, a wall law or a paddle are written once, in the arithmetic of :mod:`hapticlab.compiler.ir.values`.
+A :class:`Builder` collects what they record. Value numbering: Cocke and Schwartz (1970), as hash-consing.
 """
+
+from dataclasses import replace
 
 import numpy as np
 
 from ...errors import ProgramError
-from .program import COMMUTATIVE, LEAVES, OPERATIONS, REAL_TYPES, Block, Instruction
-from .simplify import NUMPY_TYPE, simplify
+from .operations import ELEMENTARY, OPERATIONS
+from .program import LEAVES, NUMPY_TYPE, REAL_TYPES, Block, Instruction
+from .values import (
+    Value,
+    atan,
+    cast,
+    clip,
+    cos,
+    equal,
+    exp,
+    floor,
+    log,
+    maximum,
+    minimum,
+    select,
+    sin,
+    sqrt,
+    tanh,
+)
+
+__all__ = [
+    "Builder", "Value", "atan", "cast", "clip", "computed", "cos", "equal", "exp", "expand", "floor", "log", "maximum", "minimum",
+    "reachable", "select", "sin", "sqrt", "tanh",
+]  # fmt: skip
 
 
 class Builder:
@@ -36,14 +60,10 @@ class Builder:
 
     def emit(self, op, *operands, type=None):
         """Record one operation and return its value; ``type`` is needed by cast and itof alone."""
-        type = type or self._result_type(op, operands)
-        simpler = simplify(self, op, operands, type)
-        if simpler is not None:
-            return simpler
-        ids = tuple([o.id for o in operands])
-        if op in COMMUTATIVE and ids[0] > ids[1]:
-            ids = ids[::-1]
-        return self._number((op, ids, type), Instruction(op, ids, type))
+        operation = OPERATIONS[op]
+        type = type or self._result_type(operation, operands)
+        simpler = self._simpler(operation, operands, type)
+        return self._record(operation, operands, type) if simpler is None else simpler
 
     def identify(self, op, operand, value):
         """From now on take ``value`` for ``op(operand)``: a result that is known already, at less cost."""
@@ -85,14 +105,63 @@ class Builder:
             self.instructions.append(instruction)
         return Value(self, number, self.instructions[number].type)
 
-    def _result_type(self, op, operands):
-        result = OPERATIONS[op][1]
-        if result == "R":
+    def _record(self, operation, operands, type):
+        ids = tuple([o.id for o in operands])
+        if operation.commutes and ids[0] > ids[1]:
+            ids = ids[::-1]
+        return self._number((operation.name, ids, type), Instruction(operation.name, ids, type))
+
+    def _simpler(self, operation, operands, type):
+        """Return a value that is the same number at less cost, or None."""
+        constants = [o.constant for o in operands]
+        # an elementary function is folded where it is expanded, in the arithmetic of every engine
+        if None not in constants and not operation.definition:
+            with np.errstate(all="ignore"):
+                numbers = [NUMPY_TYPE[o.type](c) for o, c in zip(operands, constants, strict=True)]
+                return self.const(operation.compute(*numbers).item(), type)
+        return operation.simpler(self, operands, constants, type) if operation.simpler else None
+
+    def _result_type(self, operation, operands):
+        if operation.result == "R":
             reals = {o.type for o in operands}.intersection(REAL_TYPES)
             if len(reals) != 1:
-                raise ProgramError(f"{op} of {', '.join(o.type for o in operands)}: cast one of them first")
+                raise ProgramError(f"{operation.name} of {', '.join(o.type for o in operands)}: cast one of them first")
             return reals.pop()
-        return {"B": "bool", "I": "i32"}[result]
+        return {"B": "bool", "I": "i32"}[operation.result]
+
+    def _expand(self, block):
+        """Record a block with its elementary functions as their arithmetic, and return what it became."""
+        here = []
+        for i in block.instructions:
+            if i.op in ELEMENTARY:
+                here.append(ELEMENTARY[i.op](here[i.args[0]]))
+            elif i.op == "const":
+                here.append(self.const(i.value, i.type))
+            elif i.op in LEAVES:
+                here.append(self.leaf(i.op, i.index, i.type))
+            else:  # as it stands: an expansion is not the place to simplify
+                here.append(self._record(OPERATIONS[i.op], [here[a] for a in i.args], i.type))
+        return self.block([here[k] for k in block.outputs], [here[k] for k in block.states])
+
+
+def expand(program):
+    """The program with every elementary function replaced by its arithmetic.
+
+    Nothing else is touched; sin and cos of one angle share their reduction.
+
+    Examples
+    --------
+    >>> from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program
+    >>> x, y = Instruction("input", (), "f32"), Instruction("sin", (0,), "f32")
+    >>> p = Program("p", (Channel("x"),), (), (), (Channel("F"),), Block(), Block((x, y), outputs=(1,)), T=1e-3)
+    >>> len(p), len(expand(p)) > 20
+    (1, True)
+    """
+    init, tick = (
+        Builder()._expand(block) if any(i.op in ELEMENTARY for i in block.instructions) else block
+        for block in (program.init, program.tick)
+    )
+    return replace(program, init=init, tick=tick)
 
 
 def reachable(instructions, wanted, known=()):
@@ -106,130 +175,22 @@ def reachable(instructions, wanted, known=()):
     return sorted(seen)
 
 
-class Value:
-    """A result inside a builder; arithmetic on it records instructions."""
+def computed(instructions, wanted, leaf):
+    """The numbers of some positions, and of what they need: a dict position -> number or array.
 
-    __slots__ = ("builder", "id", "type")
-    __array_ufunc__ = None  # numpy scalars on the left must defer to us
-
-    def __init__(self, builder, id, type):
-        self.builder, self.id, self.type = builder, id, type
-
-    @property
-    def constant(self):
-        """The number this value is, or None."""
-        i = self.builder.instructions[self.id]
-        return i.value if i.op == "const" else None
-
-    def _with(self, op, other, swap=False):
-        if not isinstance(other, Value):
-            other = self.builder.const(other, self.type)
-        return self.builder.emit(op, *((other, self) if swap else (self, other)))
-
-    def __add__(self, other):
-        return self._with("add", other)
-
-    def __radd__(self, other):
-        return self._with("add", other, True)
-
-    def __sub__(self, other):
-        return self._with("sub", other)
-
-    def __rsub__(self, other):
-        return self._with("sub", other, True)
-
-    def __mul__(self, other):
-        return self._with("mul", other)
-
-    def __rmul__(self, other):
-        return self._with("mul", other, True)
-
-    def __truediv__(self, other):
-        return self._with("div", other)
-
-    def __rtruediv__(self, other):
-        return self._with("div", other, True)
-
-    def __neg__(self):
-        return self.builder.emit("neg", self)
-
-    def __abs__(self):
-        return self.builder.emit("abs", self)
-
-    def __lt__(self, other):
-        return self._with("lt", other)
-
-    def __le__(self, other):
-        return self._with("le", other)
-
-    def __gt__(self, other):
-        return self._with("lt", other, True)
-
-    def __ge__(self, other):
-        return self._with("le", other, True)
-
-    def __and__(self, other):
-        return self._with("and", other)
-
-    def __or__(self, other):
-        return self._with("or", other)
-
-    __rand__, __ror__ = __and__, __or__  # of a plain bool on the left
-
-    def __invert__(self):
-        return self.builder.emit("not", self)
-
-    def __bool__(self):
-        raise ProgramError("a traced condition has no truth value yet: write select(condition, a, b) instead of if")
-
-    def __repr__(self):
-        return f"Value({self.type} %{self.id})"
-
-
-def select(condition, a, b):
-    """Return a where condition holds, else b; both are evaluated."""
-    if not isinstance(condition, Value):
-        return np.where(condition, a, b) if isinstance(condition, np.ndarray) else (a if condition else b)
-    builder = condition.builder
-    type = next((o.type for o in (a, b) if isinstance(o, Value)), builder.real)
-    a, b = (o if isinstance(o, Value) else builder.const(o, type) for o in (a, b))
-    return builder.emit("select", condition, a, b)
-
-
-def minimum(a, b):
-    """Return a if a < b else b, in that order of evaluation on every engine."""
-    return select(a < b, a, b)
-
-
-def maximum(a, b):
-    """Return a if b < a else b."""
-    return select(b < a, a, b)
-
-
-def clip(a, low, high):
-    """Return a held within [low, high]."""
-    return minimum(maximum(a, low), high)
-
-
-def equal(a, b):
-    """Compare for equality (``==`` on values compares the values themselves, not their numbers)."""
-    return a._with("eq", b) if isinstance(a, Value) else a == b
-
-
-def cast(a, type):
-    """Return a in another real type."""
-    return a if not isinstance(a, Value) or a.type == type else a.builder.emit("cast", a, type=type)
-
-
-def _function(name, of_numbers):
-    def apply(a):
-        return a.builder.emit(name, a) if isinstance(a, Value) else of_numbers(a)
-
-    apply.__name__ = name
-    apply.__doc__ = f"Return {name}(a) of a traced value, a float or an array."
-    return apply
-
-
-sqrt, floor = _function("sqrt", np.sqrt), _function("floor", np.floor)
-sin, cos, atan = _function("sin", np.sin), _function("cos", np.cos), _function("atan", np.arctan)
-exp, log, tanh = _function("exp", np.exp), _function("log", np.log), _function("tanh", np.tanh)
+    Parameters
+    ----------
+    instructions : sequence of Instruction
+    wanted : sequence of int
+    leaf : callable Instruction -> number or array
+        What an input, a state or a parameter is.
+    """
+    done = {}
+    with np.errstate(all="ignore"):
+        for k in reachable(instructions, wanted):
+            i = instructions[k]
+            if i.args:
+                done[k] = OPERATIONS[i.op].compute(*[done[a] for a in i.args])
+            else:
+                done[k] = NUMPY_TYPE[i.type](i.value) if i.op == "const" else np.asarray(leaf(i), float)
+    return done

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from hapticlab.compiler.algebra.derivative_builder import Algebra
+from hapticlab.compiler.ir.operations import OPERATIONS
 from hapticlab.compiler.ir.program import LEAVES
-from hapticlab.compiler.ir.simplify import EVALUATE
 from hapticlab.compiler.ir.trace import Builder, cos, sin
 
 RULES = (
@@ -32,7 +32,7 @@ def numbers(block, at):
     done = []
     for i in block.instructions:
         known = i.value if i.op == "const" else at[i.index] if i.op == "input" else None
-        done.append(EVALUATE[i.op](*(done[a] for a in i.args)) if known is None else known)
+        done.append(OPERATIONS[i.op].compute(*(done[a] for a in i.args)) if known is None else known)
     return [float(done[k]) for k in block.outputs]
 
 

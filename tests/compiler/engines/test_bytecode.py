@@ -10,7 +10,8 @@ from random_programs import random_program
 
 from hapticlab.compiler.boards.c_headers import generate
 from hapticlab.compiler.engines.bytecode import OPCODES, RESULTS, _in_sequence, disassemble, encode, layout
-from hapticlab.compiler.ir.program import OPERATIONS, Block, Channel, Instruction, Program
+from hapticlab.compiler.ir.operations import OPERATIONS
+from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program
 from hapticlab.compiler.ir.trace import Builder
 from hapticlab.errors import ProgramError, ProgramLimitError
 

@@ -9,7 +9,8 @@ import pytest
 from random_programs import PRIMITIVE, assert_same_bits, random_program, random_rows
 
 from hapticlab.compiler.engines.engine import load
-from hapticlab.compiler.ir.program import OPERATIONS, Block, Channel, Program
+from hapticlab.compiler.ir.operations import OPERATIONS
+from hapticlab.compiler.ir.program import Block, Channel, Program
 from hapticlab.compiler.ir.trace import Builder, cos, exp, floor, select, sin, sqrt
 
 pytest.importorskip("llvmlite")

@@ -8,7 +8,8 @@ from hapticlab.compiler.engines import skipped_arms
 from hapticlab.compiler.engines.engine import load
 from hapticlab.compiler.engines.llvm_emit import emit
 from hapticlab.compiler.engines.skipped_arms import Arm, Demand, in_lazy_order
-from hapticlab.compiler.ir.program import OPERATIONS, Block, Channel, Program
+from hapticlab.compiler.ir.operations import OPERATIONS
+from hapticlab.compiler.ir.program import Block, Channel, Program
 from hapticlab.compiler.ir.trace import Builder, select, sqrt
 
 MANY_SELECTS = (*PRIMITIVE, *["select"] * 6)

@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 from hapticlab.compiler.engines.interpreter import evaluate
-from hapticlab.compiler.ir.elementary import DEFINITIONS, TABLES, expand
-from hapticlab.compiler.ir.program import ELEMENTARY, Block, Channel, Instruction, Program
-from hapticlab.compiler.ir.trace import NUMPY_TYPE, Builder, cos, sin
+from hapticlab.compiler.ir.elementary import TABLES
+from hapticlab.compiler.ir.operations import ELEMENTARY
+from hapticlab.compiler.ir.program import Block, Channel, Instruction, Program
+from hapticlab.compiler.ir.trace import NUMPY_TYPE, Builder, cos, expand, sin
 
 REFERENCE = {"sin": mp.sin, "cos": mp.cos, "exp": mp.exp, "log": mp.log, "atan": mp.atan, "tanh": mp.tanh}
 BITS = {"f32": 24, "f64": 53}
@@ -34,7 +35,7 @@ def program_of(body, type):
 def call(name, type, x):
     """Evaluate one function on an array of its type."""
     b = Builder(type)
-    block = b.block([DEFINITIONS[name](b.leaf("input", 0, type))])
+    block = b.block([ELEMENTARY[name](b.leaf("input", 0, type))])
     with np.errstate(all="ignore"):
         return evaluate(block, input=[np.asarray(x, NUMPY_TYPE[type])])[0][0]
 
