@@ -28,8 +28,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arguments import having, number
 from ..errors import AnalysisError
-from .limit import check_number, check_paddle
+from .limit import A_PADDLE
 from .loop import Loop
 from .passivity import required_damping
 from .plots import plot_admittance
@@ -113,11 +114,11 @@ def admittance_design(paddle: Device, *, servo: float, servo_stiffness: float = 
     >>> design.two_port.absolutely_stable
     True
     """
-    check_paddle(paddle, "m", "b", "T", "delay")
+    having(paddle, A_PADDLE, "m", "b", "T", "delay")
     values = {"m": paddle.m, "b": paddle.b, "T": paddle.T, "delay": paddle.delay}
-    b_s = check_number("servo", servo, "N s/m", "a device that follows needs a servo > 0", lambda v: v > 0)
-    k_s = check_number("servo_stiffness", servo_stiffness, "N/m", "needs >= 0", lambda v: v >= 0)
-    b_a = check_number("b_a", b_a, "N s/m", "a coupler's damper needs b_a >= 0", lambda v: v >= 0)
+    b_s = number("servo", servo, "N s/m", "a device that follows", above=0)
+    k_s = number("servo_stiffness", servo_stiffness, "N/m", least=0)
+    b_a = number("b_a", b_a, "N s/m", "a coupler's damper", least=0)
     bare = admittance_display(**values, b_s=b_s, k_s=k_s, m_a=0.0, b_a=0.0)
     _servo_passive(bare, b_s, k_s, **values)
     theta = frequencies()

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ..arguments import choice
 from ..compiler.engines.engine import load
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
 from ..scene.scene import Scene
-from .limit import LawName, check_law
+from .limit import LawName
 from .linear_law import LinearLaw
 from .port import SMALL, tick_map
 
@@ -112,7 +113,7 @@ def affine_law(
 
 
 def _named(law, T, B, velocity):
-    check_law(law)
+    choice("law", law, TAPS)
     taps, lead = np.array(TAPS[law]), LEAD[law]
     if lead and velocity == "backward_difference":
         taps, lead = np.array([taps[0] + lead, -lead]), 0.0

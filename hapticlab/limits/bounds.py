@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from ..arguments import choice, having, number, period
 from ..errors import AnalysisError
-from ..scene.laws.taps import LEAD
-from .limit import Limit, check_law, check_number, check_paddle, check_period, whole_and_fraction
+from ..scene.laws.taps import LEAD, TAPS
+from .limit import A_PADDLE, Limit, whole_and_fraction
 from .passivity import passivity_limit
 from .plots import plot_bounds
 from .stability import stability_limit
@@ -85,7 +86,7 @@ def diolaiti_limit(
     100.0
     """
     b, T, coulomb, resolution = _device(b, T, coulomb, resolution)
-    delay = check_number("delay", delay, "s", "a force cannot come before its sample: delay >= 0", lambda v: v >= 0)
+    delay = number("delay", delay, "s", least=0, why="a force cannot come before its sample")
     if B:
         raise AnalysisError(f"B = {B:g} N s/m; Diolaiti's regions are for a plain spring without virtual damping")
     _plain(law, "Diolaiti")
@@ -121,12 +122,12 @@ def gil_limit(paddle: Plant, *, B: float = 0.0, law: LawName = "zoh") -> Limit:
     >>> print(round(gil_limit(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), B=0.05).K, 6))
     300.0
     """
-    check_paddle(paddle, "m", "b", "T", "delay", "hand")
+    having(paddle, A_PADDLE, "m", "b", "T", "delay", "hand")
     hand = paddle.hand
     _plain(law, "Gil")
     tau = paddle.T / 2 + paddle.delay
     b = paddle.b + (hand.b if hand else 0.0)
-    M = check_number("m", paddle.m + (hand.m if hand else 0.0), "kg", "the handle needs a mass m > 0", lambda v: v > 0)
+    M = number("m", paddle.m + (hand.m if hand else 0.0), "kg", "the handle", above=0, what="a mass m")
     K = max((b + B) / tau, 0.0)
     small = ((K + (hand.k if hand else 0.0)) * tau**2 / M + abs(B) * tau / M) * (b + abs(B))
     if small > SLOW_ENOUGH * (b + B):
@@ -190,8 +191,8 @@ def bounds(paddle: Plant, *, law: LawName = "zoh", B: float = 0.0) -> Bounds:
     >>> {name: round(limit.K, 2) for name, limit in found.found.items()}["exact stability"]
     200.07
     """
-    check_law(law)
-    check_paddle(paddle, "m", "b", "T", "delay", "hand")
+    choice("law", law, TAPS)
+    having(paddle, A_PADDLE, "m", "b", "T", "delay", "hand")
     if LEAD[law] and getattr(paddle, "velocity", "measured") == "backward_difference":
         law = "backward_difference"  # Eq. (23.3) with the estimate is Eq. (23.5)
     device: dict[str, Any] = {"b": paddle.b, "T": paddle.T, "B": B, "delay": paddle.delay, "law": law}
@@ -215,15 +216,15 @@ def bounds(paddle: Plant, *, law: LawName = "zoh", B: float = 0.0) -> Bounds:
 
 def _device(b, T, coulomb, resolution):
     return (
-        check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda v: v >= 0),
-        check_period(T),
-        check_number("coulomb", coulomb, "N", "friction opposes motion: needs coulomb >= 0", lambda v: v >= 0),
-        check_number("resolution", resolution, "m", "an encoder count needs a size >= 0", lambda v: v >= 0),
+        number("b", b, "N s/m", "a device", least=0, why="its damping pays for the hold"),
+        period(T),
+        number("coulomb", coulomb, "N", least=0, why="friction opposes motion"),
+        number("resolution", resolution, "m", "an encoder count", least=0, what="a size"),
     )
 
 
 def _plain(law, author):
-    check_law(law)
+    choice("law", law, TAPS)
     if law != "zoh":
         eq = "looks at a velocity, so it is no position law" if law == "half_sample" else "looks ahead by its memory"
         raise AnalysisError(f"law {law} {eq}; {author}'s formula is for the plain spring, Eq. (23.1): law zoh")

@@ -25,8 +25,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arguments import number, period
 from ..errors import AnalysisError
-from .limit import MOST_PERIODS, check_number, check_period, whole_and_fraction
+from .limit import MOST_PERIODS, whole_and_fraction
 from .linear_law import LinearLaw
 from .plots import plot_passivity_margin
 from .port import ALIKE, SLOWEST, asked, negative, required, unstable_pole
@@ -130,8 +131,8 @@ def passivity_margin(law: LinearLaw, *, b: float, delay: float = 0.0) -> Passivi
     >>> round(margin.required, 9), round(margin.frequency, 3), round(margin.margin, 9)
     (0.1, 500.0, 0.05)
     """
-    b = check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda v: v >= 0)
-    delay = check_number("delay", delay, "s", "a force cannot come before its sample: delay >= 0", lambda v: v >= 0)
+    b = number("b", b, "N s/m", "a device", least=0, why="its damping pays for the hold")
+    delay = number("delay", delay, "s", least=0, why="a force cannot come before its sample")
     if not isinstance(law, LinearLaw):
         raise AnalysisError(f"law = {law!r}; needs a LinearLaw: hl.LinearLaw.of('zoh', K=200, T=1e-3) or .of_scene(scene)")
     whole_and_fraction(delay, law.T, most=MOST_PERIODS)
@@ -173,10 +174,10 @@ def wall_damping(*, K: float, T: float, B: float = 0.0, velocity_filter: float =
     >>> round(wall_damping(K=100, T=1e-3, B=0.3, velocity_filter=1e-3), 9)
     0.15
     """
-    K = check_number("K", K, "N/m", "a wall needs K >= 0. A negative spring feeds energy to the user.", lambda v: v >= 0)
-    T = check_period(T)
-    tau = check_number("velocity_filter", velocity_filter, "s", "needs a time constant >= 0", lambda v: v >= 0)
-    B = check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
+    K = number("K", K, "N/m", "a wall", least=0, why="A negative spring feeds energy to the user.")
+    T = period(T)
+    tau = number("velocity_filter", velocity_filter, "s", least=0, what="a time constant")
+    B = number("B", B, "N s/m", "a virtual damper")
     return K * T / 2 + (B / (1 + 2 * tau / T) if B >= 0 else -B)
 
 

@@ -25,8 +25,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arguments import having, number
 from ..errors import AnalysisError
-from .limit import MOST_PERIODS, check_number, check_paddle, whole_and_fraction
+from .limit import A_PADDLE, MOST_PERIODS, whole_and_fraction
 from .plots import plot_coupler
 from .two_port import TwoPort, frequencies, hertz, stopped
 
@@ -117,13 +118,13 @@ def coupler_design(paddle: Device, *, b_c: float | None = None) -> CouplerDesign
     >>> round(design.k_c, 6)  # 2 (b - b_c)/T
     300.0
     """
-    check_paddle(paddle, "b", "T", "delay")
-    b = check_number("b", paddle.b, "N s/m", "a coupler needs a device of b > 0, which pays for the hold", lambda v: v > 0)
+    having(paddle, A_PADDLE, "b", "T", "delay")
+    b = number("b", paddle.b, "N s/m", "a coupler", above=0, what="a device of b", why="it pays for the hold")
     T, delay = float(paddle.T), float(paddle.delay)
     most = _most_damping(b, T, delay)
     if b_c is None:
         b_c = _best_damping(b, T, delay, most)
-    b_c = check_number("b_c", b_c, "N s/m", "a coupler's damper needs b_c >= 0", lambda v: v >= 0)
+    b_c = number("b_c", b_c, "N s/m", "a coupler's damper", least=0)
     if b_c > most:
         raise AnalysisError(f"b_c = {b_c:g} N s/m; a device of b = {b:g} N s/m carries at most {most:.6g}: its own pays for it")
     k_c, theta = _stiffest(b_c, b, T, delay)

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from .limit import MOST_PERIODS, check_number, check_period, whole_and_fraction
+from ..arguments import number, period
+from .limit import MOST_PERIODS, whole_and_fraction
 
 
 def damper_limit(*, m: float, b: float, T: float, delay: float = 0.0) -> float:
@@ -35,10 +36,10 @@ def damper_limit(*, m: float, b: float, T: float, delay: float = 0.0) -> float:
     >>> round(damper_limit(m=0.05, b=0.0, T=1e-3), 9)
     100.0
     """
-    m = check_number("m", m, "kg", "a handle needs m > 0", lambda a: a > 0)
-    b = check_number("b", b, "N s/m", "a device needs b >= 0", lambda a: a >= 0)
-    T = check_period(T)
-    delay = check_number("delay", delay, "s", "a force cannot come before its sample", lambda a: a >= 0)
+    m = number("m", m, "kg", "a handle", above=0)
+    b = number("b", b, "N s/m", "a device", least=0)
+    T = period(T)
+    delay = number("delay", delay, "s", least=0, why="a force cannot come before its sample")
     whole, fraction = whole_and_fraction(delay, T, most=MOST_PERIODS)
     plant, force = _loop(m, b, T, fraction)
 

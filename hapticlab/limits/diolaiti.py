@@ -12,8 +12,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..arguments import number
 from .bounds import diolaiti_limit
-from .limit import check_number
 from .passivity import required_damping
 from .plots import plot_diolaiti
 
@@ -87,9 +87,9 @@ def diolaiti(
 motions above 16.44 mm grow
     """
     diolaiti_limit(b=b, T=T, coulomb=coulomb, resolution=resolution, delay=delay)  # refuses what is no device
-    K = check_number("K", K, "N/m", "a wall needs K > 0", lambda v: v > 0)
+    K = number("K", K, "N/m", "a wall", above=0)
     if m is not None:
-        m = check_number("m", m, "kg", "handle and hand need a mass m > 0", lambda v: v > 0)
+        m = number("m", m, "kg", "the handle and hand", above=0, what="a mass m")
     beta, sigma = b / (K * T), coulomb / (K * resolution) if resolution else math.inf
     tau = delay / T
     calm, settled = beta >= 0.5 + tau, sigma >= 0.5

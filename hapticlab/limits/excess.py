@@ -24,9 +24,10 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..arguments import number, period
 from ..drawing import STYLES, house_style, new_figure
 from ..errors import AnalysisError
-from .limit import check_number, check_period, whole_and_fraction
+from .limit import whole_and_fraction
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -162,9 +163,9 @@ def passivity_ledger(
     left               +0.05 N s/m   passive in every passive hand
       device damping b alone: no encoder, no Coulomb friction
     """
-    b = check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda a: a >= 0)
-    T = check_period(T)
-    delay = check_number("delay", delay, "s", "a force cannot come before its sample", lambda a: a >= 0)
+    b = number("b", b, "N s/m", "a device", least=0, why="its damping pays for the hold")
+    T = period(T)
+    delay = number("delay", delay, "s", least=0, why="a force cannot come before its sample")
     (k_min, k_max), (B_min, B_max) = _range("K", K, "N/m"), _range("B", B, "N s/m")
     stiff, damped = max(abs(k_min), abs(k_max)), max(abs(B_min), abs(B_max))
     if k_max <= 0 > k_min:
@@ -182,7 +183,7 @@ def passivity_ledger(
     if damped:
         reason = f"local damping at most {damped:g} N s/m in magnitude, held: |B|"
         entries.append(Entry("damper", -damped, reason))
-    entries += [Entry(str(name), check_number(name, index, "N s/m", "needs a finite index", lambda _: True), str(reason))
+    entries += [Entry(str(name), number(name, index, "N s/m", what="index"), str(reason))
                 for name, index, reason in parts]  # fmt: skip
     notes = ["device damping b alone: no encoder, no Coulomb friction"]
     if k_min < 0:
@@ -200,7 +201,7 @@ def _range(name, given, unit):
     pair = given if isinstance(given, (tuple, list)) else (given, given)
     if len(pair) != 2:
         raise AnalysisError(f"{name} = {given}; needs a number in {unit}, or (least, most)")
-    low, high = (check_number(name, a, unit, "needs a finite number, or (least, most)", lambda _: True) for a in pair)
+    low, high = (number(name, a, unit, what="number, or (least, most)") for a in pair)
     if low > high:
         raise AnalysisError(f"{name} = {given}; needs (least, most), least <= most")
     return (low, high) if isinstance(given, (tuple, list)) else (min(low, 0.0), max(high, 0.0))

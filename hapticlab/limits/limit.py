@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from ..errors import AnalysisError
-from ..scene.laws.taps import TAPS
 from .plots import plot_limit
 
 if TYPE_CHECKING:
@@ -17,6 +16,8 @@ if TYPE_CHECKING:
 
 #: a limit's polynomials have a degree for each period of delay; past this their roots lose their digits
 MOST_PERIODS = 200
+
+A_PADDLE = "a paddle, as hl.SimulatedPaddle(...)"
 
 LawName = Literal["zoh", "half_sample", "backward_difference", "ellis"]
 
@@ -87,12 +88,6 @@ class Limit:
         return f"Limit(K={self.K:.9g} N/m, frequency={at}, kind={self.kind!r}, reason={self.reason!r})"
 
 
-def check_law(law: str) -> None:
-    """Refuse a law that has no name in the chapter."""
-    if law not in TAPS:
-        raise AnalysisError(f"law = {law!r}; needs one of {', '.join(TAPS)}")
-
-
 def check_number(name, value, unit, need, allowed):
     """Return the value as a float, or say what it has to be."""
     try:
@@ -102,18 +97,6 @@ def check_number(name, value, unit, need, allowed):
     if not (math.isfinite(number) and allowed(number)):
         raise AnalysisError(f"{name} = {value} {unit}; {need}")
     return number
-
-
-def check_paddle(paddle, *names):
-    """Refuse what lacks one of these values of a paddle."""
-    lacking = [name for name in names if not hasattr(paddle, name)]
-    if lacking:
-        raise AnalysisError(f"a {type(paddle).__name__} has no {lacking[0]}; needs a paddle, as hl.SimulatedPaddle(...)")
-
-
-def check_period(T: float) -> float:
-    """Return a sampling period [s] as a float, or say what it has to be."""
-    return check_number("T", T, "s", "a sampling period needs T > 0", lambda seconds: seconds > 0)
 
 
 def whole_and_fraction(delay: float, T: float, most: float = math.inf) -> tuple[int, float]:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arguments import choice, number, period
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
-from .limit import check_law, check_number, check_period
 from .plots import plot_law
 from .port import static_stiffness, tick_map
 
@@ -61,7 +61,7 @@ class LinearLaw:
     name: str
 
     def __post_init__(self) -> None:
-        T = check_number("T", self.T, "s", "a law is sampled: needs T > 0", lambda v: v > 0)
+        T = number("T", self.T, "s", "a sampled law", above=0)
         n = len(np.atleast_1d(self.B))
         for part, shape in (("A", (n, n)), ("B", (n,)), ("C", (n,)), ("D", ())):
             object.__setattr__(self, part, _numbers(self.name, part, getattr(self, part), shape))
@@ -102,16 +102,16 @@ class LinearLaw:
         AnalysisError
             For "half_sample", which is no position law, an unknown law and values out of range.
         """
-        check_law(law)
+        choice("law", law, TAPS)
         if LEAD[law]:
             raise AnalysisError(
                 f"law {law}, Eq. (23.3), looks at the exact velocity: it is no position law and has no H(z). "
                 "With a velocity estimated by backward difference it is the law backward_difference"
             )
-        K = check_number("K", K, "N/m", "needs a finite stiffness", lambda v: True)
-        T = check_period(T)
-        B = check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
-        tau = check_number("velocity_filter", velocity_filter or 0.0, "s", "needs a time constant >= 0", lambda v: v >= 0)
+        K = number("K", K, "N/m", what="stiffness")
+        T = period(T)
+        B = number("B", B, "N s/m", "a virtual damper")
+        tau = number("velocity_filter", velocity_filter or 0.0, "s", least=0, what="a time constant")
         name = f"{law}, K = {K:g} N/m" + (f", B = {B:g} N s/m" if B else "")
         found = cls.of_taps(K * np.array(TAPS[law]), T=T) + filtered_damper(B, T, tau)
         if tau and B:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
+from ..arguments import number
 from ..errors import AnalysisError
 from ..scene.notation.symbols import n, x
-from .limit import check_number
 
 if TYPE_CHECKING:
     from ..scene.scene import Scene
@@ -49,7 +49,7 @@ def local_stiffness(scene: Scene, low: float, high: float) -> tuple[float, float
     >>> round(k_min, 6), round(k_max, 6)
     (0.0, 300.0)
     """
-    low, high = (check_number("a position", a, "m", "needs low < high, in metres", lambda _: True) for a in (low, high))
+    low, high = (number(name, a, "m", what="low < high") for name, a in (("low", low), ("high", high)))
     if not low < high:
         raise AnalysisError(f"low = {low}, high = {high} m; needs low < high")
     F = scene.force.xreplace({p: sp.Float(scene.values[name]) for name, p in scene.parameters.items() if name in scene.values})

@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ..errors import AnalysisError
+from ..arguments import having, number, period
 from .affine_law import AffineLaw, affine_law
-from .limit import MOST_PERIODS, check_number, check_period, whole_and_fraction
+from .limit import A_PADDLE, MOST_PERIODS, whole_and_fraction
 from .matrix import held
 
 #: |w| below which an eigenvalue's absolute rounding would show, so that it is moved onto the characteristic equation
@@ -56,20 +56,18 @@ class Loop:
     @classmethod
     def of(cls, paddle, law, B=0.0, parameter="k"):
         """Return the loop of any object with m [kg], b [N s/m], T [s], delay [s] and hand."""
-        lacking = [name for name in ("m", "b", "T", "delay", "hand") if not hasattr(paddle, name)]
-        if lacking:
-            raise AnalysisError(f"a {type(paddle).__name__} has no {lacking[0]}; needs a paddle, as hl.SimulatedPaddle(...)")
-        B = check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
-        T = check_period(paddle.T)
+        having(paddle, A_PADDLE, "m", "b", "T", "delay", "hand")
+        B = number("B", B, "N s/m", "a virtual damper")
+        T = period(paddle.T)
         law = affine_law(law, T=T, B=B, parameter=parameter, velocity=getattr(paddle, "velocity", "measured"))
         hand = paddle.hand
         sums = {}
         for name, unit in (("m", "kg"), ("b", "N s/m")):
             own, added = getattr(paddle, name), 0.0 if hand is None else getattr(hand, name)
-            sums[name] = check_number(name, own + added, unit, f"handle and hand need {name} >= 0", lambda v: v >= 0)
-        M = check_number("m", sums["m"], "kg", "the handle needs a mass m > 0", lambda v: v > 0)
-        k = 0.0 if hand is None else check_number("hand k", hand.k, "N/m", "needs k >= 0", lambda v: v >= 0)
-        delay = check_number("delay", paddle.delay, "s", "needs delay >= 0", lambda v: v >= 0)
+            sums[name] = number(name, own + added, unit, "a handle with its hand", least=0)
+        M = number("m", sums["m"], "kg", "the handle", above=0, what="a mass m")
+        k = 0.0 if hand is None else number("hand k", hand.k, "N/m", least=0, what="k")
+        delay = number("delay", paddle.delay, "s", least=0)
         whole, f = whole_and_fraction(delay, T, most=MOST_PERIODS)
         A = np.array([[0.0, 1.0], [-k * T**2 / M, -sums["b"] * T / M]])
         force = np.array([0.0, T**2 / M])

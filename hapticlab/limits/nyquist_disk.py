@@ -19,9 +19,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arguments import number
 from ..errors import AnalysisError
 from .colgate import passivity_margin
-from .limit import check_number, whole_and_fraction
+from .limit import whole_and_fraction
 from .linear_law import LinearLaw
 from .plots import plot_nyquist_disk
 from .two_port import SLOW
@@ -121,7 +122,7 @@ def nyquist_disk(law: LinearLaw, *, b: float, delay: float = 0.0) -> NyquistDisk
     >>> disk.passive, round(abs(complex(disk.mapped(3.141592653589793))), 9)
     (True, 0.333333333)
     """
-    check_number("b", b, "N s/m", "a disk of finite size needs b > 0", lambda v: v > 0)
+    number("b", b, "N s/m", "a disk of finite size", above=0)
     margin = passivity_margin(law, b=b, delay=delay)
     if math.isinf(margin.required):
         raise AnalysisError(f"{law.name}: a resonance without damping reaches every circle; needs a law that damps its own")

@@ -22,11 +22,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..arguments import choice, number, period
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
 from .affine_law import affine_law
 from .colgate import largest_passive_stiffness, least_passive_stiffness
-from .limit import MOST_PERIODS, Limit, check_law, check_number, check_period, whole_and_fraction
+from .limit import MOST_PERIODS, Limit, whole_and_fraction
 from .linear_law import LinearLaw
 from .port import unstable_pole
 
@@ -93,8 +94,8 @@ def passivity_limit(
     >>> passivity_limit(b=0.1, T=1e-3, law="half_sample").K
     0.0
     """
-    b = check_number("b", b, "N s/m", "a device needs b >= 0: its damping pays for the hold", lambda v: v >= 0)
-    tau = check_number("velocity_filter", velocity_filter, "s", "needs a time constant >= 0", lambda v: v >= 0)
+    b = number("b", b, "N s/m", "a device", least=0, why="its damping pays for the hold")
+    tau = number("velocity_filter", velocity_filter, "s", least=0, what="a time constant")
     notes = ("device damping b alone: no encoder, no Coulomb friction",)
     if not isinstance(law, str):
         if tau:
@@ -143,7 +144,7 @@ def required_damping(*, K: float, T: float, B: float = 0.0, delay: float = 0.0, 
     >>> round(required_damping(K=200, T=1e-3, B=0.05), 12)
     0.15
     """
-    K = check_number("K", K, "N/m", "a wall needs K >= 0. A negative spring feeds energy to the user.", lambda v: v >= 0)
+    K = number("K", K, "N/m", "a wall", least=0, why="A negative spring feeds energy to the user.")
     whole, fraction = _checked(T, B, delay, law)
     if LEAD[law] and K:
         return math.inf
@@ -196,10 +197,10 @@ def _of_own_law(law, b, T, B, delay, parameter, notes):
 
 
 def _checked(T, B, delay, law):
-    check_law(law)
-    T = check_period(T)
-    check_number("B", B, "N s/m", "a virtual damper needs a finite B", lambda v: True)
-    delay = check_number("delay", delay, "s", "needs delay >= 0: a force cannot come before its sample", lambda v: v >= 0)
+    choice("law", law, TAPS)
+    T = period(T)
+    number("B", B, "N s/m", "a virtual damper")
+    delay = number("delay", delay, "s", least=0, why="a force cannot come before its sample")
     return whole_and_fraction(delay, T, most=MOST_PERIODS)
 
 

@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..arguments import number
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD
 from ..scene.scene import Scene
-from .limit import Limit, check_number
+from .limit import Limit
 from .linear_law import LinearLaw
 from .loop import Loop
 from .port import static_stiffness
@@ -161,7 +162,7 @@ def _loop_at(paddle, K, law, B, parameter):
         return Loop.of(paddle, law, B, None), 0.0  # what holds its own is the same at every K
     if K is None:
         raise AnalysisError("K = None, and the law holds no stiffness; needs one in N/m: closed_loop_poles(..., K=100)")
-    K = check_number("K", K, "N/m", "needs a finite stiffness", lambda v: True)
+    K = number("K", K, "N/m", what="stiffness")
     if isinstance(law, LinearLaw):
         raise AnalysisError(f"K = {K:g} N/m beside {law.name}, which holds its own stiffness; leave K out")
     if isinstance(law, Scene) and parameter in law.values:

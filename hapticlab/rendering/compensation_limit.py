@@ -6,9 +6,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from ..arguments import number
 from ..drawing import house_style, new_figure
 from ..errors import AnalysisError
-from ..limits.limit import check_number
 from ..limits.loop import Loop
 from ..limits.stability import crossings, stability_limit
 from ..scene.laws.compensation import damping_compensation
@@ -229,7 +229,7 @@ def compensation_limit(paddle, *, velocity=None, b_least=None, coulomb_least=Non
             f"a {type(paddle).__name__} has no {lacking[0]}; needs one whose constants are known, as "
             "hl.SimulatedPaddle.from_profile(...)"
         )
-    b = check_number("b", paddle.b, "N s/m", "without damping there is nothing to compensate", lambda b: b > 0)
+    b = number("b", paddle.b, "N s/m", above=0, why="without damping there is nothing to compensate")
     if velocity is not None:
         velocity.transfer(paddle.T)  # refuses, in words, what has no poles
     coulomb = getattr(paddle, "coulomb", 0.0)
@@ -252,10 +252,9 @@ def _least(b, b_least, coulomb, coulomb_least):
     """Return the least damping and Coulomb friction that the device may have."""
     b_least = b if b_least is None else b_least
     coulomb_least = coulomb if coulomb_least is None else coulomb_least
-    why = f"no part of a damping that may be zero is safe to cancel; identify it better: needs 0 < b_least <= {b:g}"
-    need = f"needs coulomb_least <= {coulomb:g}, the paddle's"
-    b_least = check_number("b_least", b_least, "N s/m", why, lambda a: 0 < a <= b)
-    return b_least, max(check_number("coulomb_least", coulomb_least, "N", need, lambda a: a <= coulomb), 0.0)
+    why = "no part of a damping that may be zero is safe to cancel; identify it better"
+    b_least = number("b_least", b_least, "N s/m", above=0, most=b, why=why)
+    return b_least, max(number("coulomb_least", coulomb_least, "N", most=coulomb, why="the paddle has no more"), 0.0)
 
 
 def _of_a_free_handle(paddle, scene, drifting):

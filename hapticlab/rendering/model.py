@@ -10,10 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import number, period
 from ..device.hand.hand import Hand
 from ..device.simulated.transition import transition
 from ..errors import AnalysisError
-from ..limits.limit import MOST_PERIODS, check_number, check_period, whole_and_fraction
+from ..limits.limit import MOST_PERIODS, whole_and_fraction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,14 +70,14 @@ class WallModel:
                 )
         intent = 0.0 if hand is None or hand.intent is None else hand.intent
         return cls(
-            M=check_number("m", paddle.m + of_hand["m"], "kg", "the handle needs a mass m > 0", lambda a: a > 0),
-            b=check_number("b", paddle.b + of_hand["b"], "N s/m", "handle and hand need b >= 0", lambda a: a >= 0),
-            k=check_number("hand k", of_hand["k"], "N/m", "needs k >= 0", lambda a: a >= 0),
+            M=number("m", paddle.m + of_hand["m"], "kg", "the handle", above=0, what="a mass m"),
+            b=number("b", paddle.b + of_hand["b"], "N s/m", "a handle with its hand", least=0),
+            k=number("hand k", of_hand["k"], "N/m", least=0, what="k"),
             push=of_hand["push"] + of_hand["k"] * intent,
-            K=check_number("K", K, "N/m", "a wall needs K > 0", lambda a: a > 0),
-            B=check_number("B", B, "N s/m", "the wall that is meant needs B >= 0", lambda a: a >= 0),
-            T=check_period(paddle.T),
-            delay=check_number("delay", paddle.delay, "s", "needs delay >= 0", lambda a: a >= 0),
+            K=number("K", K, "N/m", "a wall", above=0),
+            B=number("B", B, "N s/m", "the wall that is meant", least=0),
+            T=period(paddle.T),
+            delay=number("delay", paddle.delay, "s", least=0),
         )
 
     @property

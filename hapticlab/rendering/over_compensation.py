@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import number
 from ..device.simulated.closed_loop import link, load_linked
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..drawing import WARM, house_style, new_figure
 from ..errors import AnalysisError
-from ..limits.limit import check_number
 from ..scene.laws.compensation import damping_compensation
 from ..scene.notation.units import in_si
 from .compensation_limit import CompensationLimit, compensation_limit
@@ -119,7 +119,7 @@ def over_compensation(paddle, *, speed, viscous=0.0, shape="dead_zone", velocity
     if not isinstance(paddle, SimulatedPaddle):
         raise AnalysisError(f"paddle is a {type(paddle).__name__}; what runs away is simulated: hl.SimulatedPaddle(...)")
     ideal = compensation_limit(paddle, velocity=velocity if velocity and velocity.is_linear else None)
-    check_number("coulomb", paddle.coulomb, "N", "without dry friction there is none to compensate", lambda c: c > 0)
+    number("coulomb", paddle.coulomb, "N", above=0, why="without dry friction there is none to compensate")
     if paddle.hand is not None and paddle.hand.moves:
         raise AnalysisError("the hand's intent moves: what keeps moving would be the hand; give intent=None, or a place in m")
     if not 0 <= viscous < ideal.viscous:

@@ -1,0 +1,125 @@
+"""What an argument must be: a number in a range, a whole number, one of several names, of one class.
+
+Each function takes the argument's name and what was given, and returns it as it is used from there on. A refusal says
+what was given, who needs what, and why: ``b = -1 N s/m; a device needs b >= 0: its damping pays for the hold``.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Iterable
+from typing import Any
+
+from .errors import AnalysisError, HapticlabError
+
+
+def number(
+    name: str,
+    given: Any,
+    unit: str = "",
+    owner: str = "",
+    *,
+    least: float | None = None,
+    above: float | None = None,
+    most: float | None = None,
+    what: str | None = None,
+    why: str = "",
+    error: type[HapticlabError] = AnalysisError,
+) -> float:
+    """The finite number given, as a float: ``least`` or more, ``above`` a limit, ``most`` or less.
+
+    ``what`` is what an error calls the number besides its name, and ``why`` gives the reason for its limits.
+
+    Examples
+    --------
+    >>> from hapticlab.arguments import number
+    >>> number("b", 1, "N s/m", "a device", least=0)
+    1.0
+    >>> number("b", -1, "N s/m", "a device", least=0, why="its damping pays for the hold")
+    Traceback (most recent call last):
+    hapticlab.errors.AnalysisError: b = -1 N s/m; a device needs b >= 0: its damping pays for the hold
+    """
+    try:
+        value = None if isinstance(given, bool) else float(given)
+    except (TypeError, ValueError, OverflowError):
+        value = None
+    finite = value is not None and math.isfinite(value)
+    if finite and all((least is None or value >= least, above is None or value > above, most is None or value <= most)):
+        return value
+    need = _needs(owner, _range(what or name, least, above, most, value is None or finite))
+    reason = why and (f". {why}" if why[0].isupper() else f": {why}")
+    if value is None:
+        raise error(f"{name} = {given!r}; {need}{reason}, as a number{unit and f' in {unit}'}")
+    raise error(f"{name} = {given}{unit and f' {unit}'}; {need}{reason}")
+
+
+def period(T: Any, error: type[HapticlabError] = AnalysisError) -> float:
+    """A sampling period [s] as a float."""
+    return number("T", T, "s", "a sampling period", above=0, error=error)
+
+
+def count(
+    name: str,
+    given: Any,
+    owner: str = "",
+    *,
+    least: int = 1,
+    most: int | None = None,
+    of: str = "",
+    error: type[HapticlabError] = AnalysisError,
+) -> int:
+    """The whole number given, of any library, as an int.
+
+    Examples
+    --------
+    >>> from hapticlab.arguments import count
+    >>> count("periods", 2.5, "a pulse", most=9, of="periods")
+    Traceback (most recent call last):
+    hapticlab.errors.AnalysisError: periods = 2.5; a pulse needs a whole number of periods, 1 to 9
+    """
+    try:
+        value = None if isinstance(given, bool) else operator.index(given)
+    except TypeError:
+        value = None
+    if value is not None and least <= value and (most is None or value <= most):
+        return value
+    span = f" >= {least}" if most is None else f", {least} to {most}"
+    raise error(f"{name} = {given!r}; {_needs(owner, 'a whole number')}{of and f' of {of}'}{span}")
+
+
+def choice(
+    name: str, given: Any, known: Iterable, *, need: str | None = None, error: type[HapticlabError] = AnalysisError
+) -> Any:
+    """The name given, one of those known; ``need`` tells them apart where names alone do not."""
+    if isinstance(given, str | None) and given in known:
+        return given
+    need = need or f"one of {', '.join(known)}"
+    raise error(f"{name} = {given!r}; needs {need}")
+
+
+def instance(
+    name: str, given: Any, kind: type | tuple[type, ...], need: str, *, error: type[HapticlabError] = AnalysisError
+) -> Any:
+    """The object given, of a class or of one of several; ``need`` says how to make one."""
+    if isinstance(given, kind):
+        return given
+    raise error(f"{name} = {given!r}; needs {need}")
+
+
+def having(given: Any, need: str, *names: str, error: type[HapticlabError] = AnalysisError) -> Any:
+    """The object given, which has these attributes."""
+    lacking = [name for name in names if not hasattr(given, name)]
+    if lacking:
+        raise error(f"a {type(given).__name__} has no {lacking[0]}; needs {need}")
+    return given
+
+
+def _needs(owner, what):
+    return f"{owner} needs {what}" if owner else f"needs {what}"
+
+
+def _range(name, least, above, most, finite):
+    given = {">=": least, ">": above, "<=": most}
+    limits = [f"{sign} {limit:g}" for sign, limit in given.items() if limit is not None]
+    return f"{name} {' and '.join(limits + ['finite'] * (not finite))}" if limits else f"a finite {name}"
