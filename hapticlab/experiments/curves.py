@@ -1,14 +1,21 @@
 """Psychometric functions: how often an answer is right, over the level of what is asked."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
 from ..errors import AnalysisError
 from ..statistics import normal
 
-SHAPES = ("d_prime", "weibull", "normal")
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+Shape = Literal["d_prime", "weibull", "normal"]
+SHAPES: tuple[Shape, ...] = get_args(Shape)
 ROOT_2, ROOT_PI = math.sqrt(2), math.sqrt(math.pi)
 
 
@@ -49,9 +56,9 @@ class Psychometric:
     slope: float
     guess: float = 0.5
     lapse: float = 0.0
-    shape: str = "d_prime"
+    shape: Shape = "d_prime"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.shape not in SHAPES:
             raise AnalysisError(f"shape = {self.shape!r}; needs one of {', '.join(SHAPES)}")
         if not (self.slope > 0 and math.isfinite(self.slope) and (self.threshold > 0 or self.shape == "normal")):
@@ -61,12 +68,12 @@ class Psychometric:
         if not (0 <= self.guess and 0 <= self.lapse and self.guess + self.lapse < 1):
             raise AnalysisError(f"guess = {self.guess:g}, lapse = {self.lapse:g}; needs both >= 0 and guess + lapse < 1")
 
-    def __call__(self, levels):
+    def __call__(self, levels: ArrayLike) -> NDArray[np.float64]:
         """Return the part of right answers at each level."""
         q = (self.threshold if self.shape == "normal" else math.log(self.threshold), math.log(self.slope))
         return self.guess + (1 - self.guess - self.lapse) * rise(self.shape, np.asarray(levels, float), *q)[0]
 
-    def level_at(self, part):
+    def level_at(self, part: float) -> float:
         """Return the level at which this part of the answers is right, by bisection."""
         top = 1 - self.lapse
         if not self.guess < part < top:

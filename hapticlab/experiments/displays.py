@@ -1,7 +1,10 @@
 """Impedance against admittance display, one hand and one wall: which renders what. Simulated: a paddle measures no force."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -11,6 +14,14 @@ from ..drawing import house_style, new_figure, scale_axis, style_of
 from ..errors import AnalysisError
 from .display_laws import Admittance, Impedance, display_motion, largest_stiffness
 from .paddle_needs import check_simulated
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 #: the hand moves freely, presses, and holds until [s]
 FREE, PRESSED, HELD = 1.0, 1.4, 2.0
@@ -46,12 +57,12 @@ class Rendered:
     friction: float
     misfit: float
     wanted: float
-    state: str
-    t: np.ndarray = field(repr=False)
-    x: np.ndarray = field(repr=False)
-    f_h: np.ndarray = field(repr=False)
+    state: Literal["at rest", "moving", "unstable"]
+    t: NDArray[np.float64] = field(repr=False)
+    x: NDArray[np.float64] = field(repr=False)
+    f_h: NDArray[np.float64] = field(repr=False)
 
-    def __str__(self):
+    def __str__(self) -> str:
         if self.state == "unstable":
             return f"{self.display:<11} {self.wanted:8.4g} N/m: unstable"
         ringing = " while it rings" if self.state == "moving" else ""
@@ -118,14 +129,14 @@ class Displays:
         The largest stable stiffness of each display, in contact, by its eigenvalues without friction [N/m].
     """
 
-    rows: tuple
-    limits: dict
+    rows: tuple[Rendered, ...]
+    limits: dict[str, float]
 
-    def __str__(self):
+    def __str__(self) -> str:
         limits = ", ".join(f"{name} {limit:.4g} N/m" for name, limit in self.limits.items())
         return "\n".join([*map(str, self.rows), f"largest stable stiffness in contact: {limits}"])
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw felt over wanted stiffness for both displays, and where each becomes unstable; return the figure."""
         with house_style():
             figure = new_figure(height=3.8)
@@ -145,7 +156,17 @@ class Displays:
         return figure
 
 
-def compare_displays(paddle, stiffnesses, *, m_v=0.2, b=0.0, k_p=None, k_d=None, ahead=1.0, sensor_delay=0):
+def compare_displays(
+    paddle: SimulatedPaddle,
+    stiffnesses: Iterable[float],
+    *,
+    m_v: float = 0.2,
+    b: float = 0.0,
+    k_p: float | None = None,
+    k_d: float | None = None,
+    ahead: float = 1.0,
+    sensor_delay: int = 0,
+) -> Displays:
     """Render the same walls to the same hand by impedance and by admittance display, Section 23.4.
 
     An impedance display lets device mass and friction be felt, and has a largest stiffness that its damping sets. An
@@ -188,7 +209,7 @@ def compare_displays(paddle, stiffnesses, *, m_v=0.2, b=0.0, k_p=None, k_d=None,
     paddle = replace(paddle, hand=paddle.hand or named_hand("grip"))
     k_p = 0.03 * paddle.m / paddle.T**2 if k_p is None else k_p
     k_d = 2 * math.sqrt(k_p * paddle.m) if k_d is None else k_d
-    makes = {
+    makes: dict[str, Callable[[float], Impedance | Admittance]] = {
         "impedance": lambda k: Impedance(k=k, b=b),
         "admittance": lambda k: Admittance(k=k, b=b, m_v=m_v, k_p=k_p, k_d=k_d, ahead=ahead),
     }

@@ -1,9 +1,12 @@
 """Fitts' targets: how fast a hand reaches targets of several distances and widths, with any scene on the handle."""
 
+from __future__ import annotations
+
 import csv
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +19,15 @@ from ..scene.scene import Scene
 from .arm import Arm, along, quintic
 from .paddle_needs import check_held
 from .submovements import Submovements
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+    from os import PathLike
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 #: in the target for so long, it is selected [s]
 DWELL = 0.1
@@ -41,26 +53,26 @@ class Targets:
 
     distance: float
     width: float
-    times: tuple
-    ends: tuple
+    times: tuple[float, ...]
+    ends: tuple[float, ...]
 
     @property
-    def time(self):
+    def time(self) -> float:
         """Mean movement time [s]."""
         return float(np.mean(self.times))
 
     @property
-    def difficulty(self):
+    def difficulty(self) -> float:
         """Index of difficulty, log2(distance/width + 1) [bit]."""
         return math.log2(self.distance / self.width + 1)
 
     @property
-    def effective_difficulty(self):
+    def effective_difficulty(self) -> float:
         """The same of the mean distance moved and of 4.133 standard deviations of the ends [bit]."""
         return math.log2((self.distance + float(np.mean(self.ends))) / (EFFECTIVE * float(np.std(self.ends, ddof=1))) + 1)
 
     @property
-    def throughput(self):
+    def throughput(self) -> float:
         """Effective difficulty over movement time [bit/s]."""
         return self.effective_difficulty / self.time
 
@@ -75,22 +87,22 @@ class Fitts:
     scene : str
     """
 
-    targets: tuple
+    targets: tuple[Targets, ...]
     scene: str = ""
 
     @property
-    def law(self):
+    def law(self) -> tuple[float, float, float]:
         """Intercept [s], slope [s/bit] and squared correlation of mean time over index of difficulty."""
         difficulty, time = np.array([(a.difficulty, a.time) for a in self.targets]).T
         slope, intercept = np.polyfit(difficulty, time, 1)
         return float(intercept), float(slope), float(np.corrcoef(difficulty, time)[0, 1] ** 2)
 
     @property
-    def throughput(self):
+    def throughput(self) -> float:
         """Mean over the targets [bit/s], as ISO 9241-411 has it."""
         return float(np.mean([a.throughput for a in self.targets]))
 
-    def __str__(self):
+    def __str__(self) -> str:
         intercept, slope, fit = self.law
         rows = [
             f"  {1e3 * a.distance:8.4g} mm {1e3 * a.width:8.4g} mm {a.difficulty:7.2f} bit {1e3 * a.time:8.4g} ms "
@@ -101,7 +113,7 @@ class Fitts:
         return "\n".join([f"{head}, throughput {self.throughput:.2f} bit/s",
                           "  distance    width       index        time       effective   throughput", *rows])  # fmt: skip
 
-    def to_csv(self, path):
+    def to_csv(self, path: str | PathLike[str]) -> Path:
         """Write one row a movement and return the path."""
         with open(path, "w", newline="", encoding="utf-8") as file:
             table = csv.writer(file, lineterminator="\n")
@@ -110,7 +122,7 @@ class Fitts:
                 table.writerows((a.distance, a.width, time, end) for time, end in zip(a.times, a.ends, strict=True))
         return Path(path)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw mean movement time over index of difficulty, with the line through it."""
         with house_style():
             figure = new_figure(height=3.6)
@@ -126,8 +138,17 @@ class Fitts:
         return figure
 
 
-def fitts(paddle, scene=None, *, distances=(0.02, 0.04, 0.08), widths=(0.004, 0.008), movements=16, scatter=0.04,
-          reaction=REACTION, seed=0):  # fmt: skip
+def fitts(
+    paddle: SimulatedPaddle,
+    scene: Scene | Callable[[float, float], Scene] | None = None,
+    *,
+    distances: Iterable[float] = (0.02, 0.04, 0.08),
+    widths: Sequence[float] | NDArray[np.float64] = (0.004, 0.008),
+    movements: int = 16,
+    scatter: float = 0.04,
+    reaction: float = REACTION,
+    seed: int = 0,
+) -> Fitts:
     """Let a simulated hand move to and fro between targets at x = 0 and x = distance, with a scene on the handle.
 
     The hand makes :class:`~hapticlab.experiments.submovements.Submovements`: it aims, sees a reaction time later where it
@@ -170,11 +191,10 @@ def fitts(paddle, scene=None, *, distances=(0.02, 0.04, 0.08), widths=(0.004, 0.
     pairs = [(float(d), float(w)) for d in distances for w in widths if d > w > 0]
     if len(pairs) < 2 or movements < 3:
         raise AnalysisError(f"{len(pairs)} pairs with distance > width > 0, {movements} movements; needs 2 and 3 at least")
-    free = parameters("k_0", units="N/m", values=0) * x(n)
+    empty = Scene(parameters("k_0", units="N/m", values=0) * x(n), name="empty handle")
     done = []
     for number, (distance, width) in enumerate(pairs):
-        felt = scene(distance, width) if callable(scene) and not isinstance(scene, Scene) else scene
-        felt = felt or Scene(free, name="empty handle")
+        felt = (scene(distance, width) if callable(scene) and not isinstance(scene, Scene) else scene) or empty
         done.append(_between(paddle, felt, distance, width, movements, scatter, reaction, [seed, number]))
     return Fitts(tuple(done), felt.name)
 

@@ -1,11 +1,14 @@
 """Two-alternative forced choice on a paddle: which of two presentations was stronger?"""
 
+from __future__ import annotations
+
 import csv
 import json
 import math
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +20,17 @@ from .psychometric import psychometric
 from .tasks import Task
 from .up_down import UpDown
 
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from matplotlib.figure import Figure
+
+    from ..device.board.serial_paddle import SerialPaddle
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
+    from .observers import Answer
+    from .psi import ConstantLevels, Psi
+    from .psychometric import PsychometricFit
+
 
 @dataclass(frozen=True)
 class Trial:
@@ -25,7 +39,7 @@ class Trial:
     level: float
     first: float
     second: float
-    answer: str
+    answer: Answer
     right: bool
 
 
@@ -50,7 +64,7 @@ class ForcedChoice:
     parameter: str
     unit: str
     standard: float
-    trials: tuple
+    trials: tuple[Trial, ...]
     estimate: float | None
     procedure: str
     observer: str
@@ -58,16 +72,17 @@ class ForcedChoice:
     seed: int
     stopped: str | None = None
 
-    def fit(self, **options):
+    def fit(self, **options: Any) -> PsychometricFit:
         """Fit the psychometric function of all answers; options of :func:`hapticlab.psychometric`."""
         return psychometric([t.level for t in self.trials], [t.right for t in self.trials], **options)
 
-    def weber(self, **options):
+    def weber(self, **options: Any) -> tuple[float, float, float]:
         """Return the Weber fraction at d' = 1 and its interval, from the fit with slope and lapses."""
         found = self.fit(**options)
-        return tuple(math.expm1(a) for a in (found.curve.threshold, *found.interval["threshold"]))
+        low, high = found.interval["threshold"]
+        return math.expm1(found.curve.threshold), math.expm1(low), math.expm1(high)
 
-    def __str__(self):
+    def __str__(self) -> str:
         right = sum(t.right for t in self.trials)
         head = f"{self.task}, standard {self.standard:g} {self.unit}: {len(self.trials)} trials, {right} right, {self.procedure}"
         lines = [head, f"  {self.observer}"]
@@ -76,7 +91,7 @@ class ForcedChoice:
             lines.append(f"  difference threshold {part:.3g} % of the standard, by the procedure's own rule")
         return "\n".join(lines + ([f"  ended early: {self.stopped}"] if self.stopped else []))
 
-    def to_csv(self, path):
+    def to_csv(self, path: str | PathLike[str]) -> Path:
         """Write one row a trial and return the path."""
         with open(path, "w", newline="", encoding="utf-8") as file:
             table = csv.writer(file, lineterminator="\n")
@@ -84,13 +99,13 @@ class ForcedChoice:
             table.writerows(_row(trial) for trial in self.trials)
         return Path(path)
 
-    def save(self, path):
+    def save(self, path: str | PathLike[str]) -> Path:
         """Write everything as JSON and return the path."""
         Path(path).write_text(json.dumps(asdict(self), indent=1), encoding="utf-8")
         return Path(path)
 
     @classmethod
-    def load(cls, path):
+    def load(cls, path: str | PathLike[str]) -> ForcedChoice:
         """Read what :meth:`save` wrote."""
         try:
             held = json.loads(Path(path).read_text(encoding="utf-8"))
@@ -98,7 +113,7 @@ class ForcedChoice:
         except (KeyError, TypeError, ValueError) as problem:
             raise AnalysisError(f"{path} is no experiment ({problem}); needs a file of result.save()") from None
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the level of each trial, filled where the answer was right, and the threshold."""
         if not self.trials:
             raise AnalysisError(f"no trial was answered, so there is nothing to plot; it ended early: {self.stopped}")
@@ -121,7 +136,16 @@ class ForcedChoice:
         return figure
 
 
-def forced_choice(paddle, task, observer=None, procedure=None, *, seed=0, keep=None, **options):
+def forced_choice(
+    paddle: SimulatedPaddle | SerialPaddle,
+    task: Task,
+    observer: SimulatedObserver | PersonObserver | Person | None = None,
+    procedure: UpDown | Psi | ConstantLevels | None = None,
+    *,
+    seed: int = 0,
+    keep: str | PathLike[str] | None = None,
+    **options: Any,
+) -> ForcedChoice:
     """Measure a difference threshold by two-alternative forced choice, on a simulated paddle or a board.
 
     Each trial shows the standard and a comparison exp(level) times as strong, in an order drawn from the seed, with the
@@ -166,7 +190,7 @@ def forced_choice(paddle, task, observer=None, procedure=None, *, seed=0, keep=N
     procedure = procedure or UpDown(start=math.log(2))
     if procedure.done:
         raise AnalysisError("the procedure has had all its answers already; make a fresh one")
-    paddle, rng, trials, stopped = task.on(paddle), np.random.default_rng(seed), [], None
+    paddle, rng, trials, stopped = task.on(paddle), np.random.default_rng(seed), list[Trial](), None
     show = task.presenter(paddle, **options)
     with _table(keep, task) as row:
         while not procedure.done and stopped is None:
@@ -180,7 +204,7 @@ def forced_choice(paddle, task, observer=None, procedure=None, *, seed=0, keep=N
                 except AnalysisError as nothing:
                     stopped = f"no answer to {task.parameter} = {shown[0]:.4g} and {shown[1]:.4g} {task.unit}: {nothing}"
                     break
-                trial = Trial(level, *shown, answer, answer == ("first" if reverse else "second"))
+                trial = Trial(level, shown[0], shown[1], answer, answer == ("first" if reverse else "second"))
                 observer.told(trial.right)
                 procedure.answer(trial.right)
                 trials.append(trial)

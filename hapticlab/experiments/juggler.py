@@ -1,12 +1,14 @@
 """What a simulated juggler knows of the ball, and the strokes it plans from it."""
 
 import math
+from typing import Literal, get_args
 
 import numpy as np
 
 from .arm import along, quintic
 
-SENSES = ("vision", "touch", "both", "none")
+Senses = Literal["vision", "touch", "both", "none"]
+SENSES: tuple[Senses, ...] = get_args(Senses)
 #: sights a second
 FRAME_RATE = 60.0
 #: a felt impulse is taken from the force over so long [s]

@@ -1,7 +1,10 @@
 """Juggling a ball on the paddle, with and without felt feedback, Section 23.3.1."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,8 +15,14 @@ from ..errors import AnalysisError
 from ..library.contacts import ball_on_the_paddle
 from ..records import Telemetry
 from .arm import Arm
-from .juggler import SENSES, Juggler
+from .juggler import SENSES, Juggler, Senses
 from .paddle_needs import check_held
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 WORDS = {"vision": "sight", "touch": "touch", "both": "sight and touch", "none": "neither sight nor touch"}
 
@@ -34,30 +43,30 @@ class Juggle:
     log : Telemetry
     """
 
-    senses: str
+    senses: Senses
     height: float
-    impacts: np.ndarray
-    heights: np.ndarray
+    impacts: NDArray[np.float64]
+    heights: NDArray[np.float64]
     log: Telemetry
 
     @property
-    def error(self):
+    def error(self) -> float:
         """Root mean square of the heights' error, as a part of the height aimed at; the first three flights left out."""
         return float(np.sqrt(np.mean((self.heights[3:] / self.height - 1) ** 2)))
 
     @property
-    def irregularity(self):
+    def irregularity(self) -> float:
         """Standard deviation of the time between impacts over its mean."""
         between = np.diff(self.impacts)[3:]
         return float(between.std(ddof=1) / between.mean())
 
     @property
-    def growth(self):
+    def growth(self) -> float:
         """What is left of a height's error one flight later: its correlation with the next; below 1 errors die out."""
         e = self.heights[3:] - self.heights[3:].mean()
         return float(e[1:] @ e[:-1] / (e[:-1] @ e[:-1]))
 
-    def __str__(self):
+    def __str__(self) -> str:
         head = f"by {WORDS[self.senses]}: {len(self.impacts)} impacts in {self.log.t[-1]:.3g} s"
         if len(self.heights) < 6:
             return f"{head}; the ball was lost"
@@ -66,7 +75,7 @@ class Juggle:
             f"{100 * self.irregularity:.3g} %, {self.growth:+.2f} of an error left a flight later"
         )
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw ball and handle against time."""
         with house_style():
             figure = new_figure(height=3.4)
@@ -79,8 +88,19 @@ class Juggle:
         return figure
 
 
-def juggle(paddle, *, senses="both", height=0.2, duration=12.0, vision=0.02, touch=0.07, acceleration=-5.0,
-           reaction=REACTION, seed=0, **values):  # fmt: skip
+def juggle(
+    paddle: SimulatedPaddle,
+    *,
+    senses: Senses = "both",
+    height: float = 0.2,
+    duration: float = 12.0,
+    vision: float = 0.02,
+    touch: float = 0.07,
+    acceleration: float = -5.0,
+    reaction: float = REACTION,
+    seed: int = 0,
+    **values: float,
+) -> Juggle:
     """Let a simulated juggler keep a ball up on a simulated paddle, by sight, by touch, by both, or by neither.
 
     The juggler strikes once a flight, slowing down at impact, and plans each stroke from where and when the ball will
@@ -140,8 +160,7 @@ def juggle(paddle, *, senses="both", height=0.2, duration=12.0, vision=0.02, tou
     >>> len(found.impacts)
     2
     """
-    check_held(paddle, "juggle")
-    hand = paddle.hand
+    hand = check_held(paddle, "juggle")
     if senses not in SENSES:
         raise AnalysisError(f"senses = {senses!r}; needs one of {', '.join(SENSES)}")
     height = require("height", height, "m", "a juggler", above=0)
@@ -158,7 +177,7 @@ def juggle(paddle, *, senses="both", height=0.2, duration=12.0, vision=0.02, tou
     return Juggle(senses, height, impacts, heights, log)
 
 
-def bounces(log):
+def bounces(log: Telemetry) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return when the ball was struck [s], and how high it rose above those places in between [m]."""
     y, t = log.y, log.t
     low = np.flatnonzero((y[1:-1] < y[:-2]) & (y[1:-1] <= y[2:])) + 1
@@ -166,7 +185,7 @@ def bounces(log):
     return t[low], np.array(heights)
 
 
-def multipliers(acceleration, *, e, g=9.81, m=0.0, M=math.inf):
+def multipliers(acceleration: float, *, e: float, g: float = 9.81, m: float = 0.0, M: float = math.inf) -> NDArray[np.complex128]:
     """Factors by which a small error grows from one flight to the next if the stroke takes no notice of it.
 
     The eigenvalues of the map from one impact to the next, for a plate that passes the place of impact each period with
@@ -197,4 +216,4 @@ def multipliers(acceleration, *, e, g=9.81, m=0.0, M=math.inf):
     """
     e = (1 + e) / (1 + m / M) - 1
     lead = (1 + e) ** 2 * acceleration / g
-    return np.linalg.eigvals([[1, (1 + e) / g], [(1 + e) * acceleration, lead + e * e]])
+    return np.linalg.eigvals([[1, (1 + e) / g], [(1 + e) * acceleration, lead + e * e]]).astype(complex)

@@ -1,7 +1,10 @@
 """Who answers: an observer of signal detection theory, or a person."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -9,7 +12,14 @@ from ..device.setup.person import Person
 from ..errors import AnalysisError
 from .curves import Psychometric
 
-INTERVALS = {"first": "the first one", "second": "the second one"}
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..records import Telemetry
+    from .tasks import Task
+
+Answer = Literal["first", "second"]
+INTERVALS: dict[Answer, str] = {"first": "the first one", "second": "the second one"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,25 +52,25 @@ class SimulatedObserver:
     bias: float = 0.0
     seed: int = 0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (self.weber > 0 and 0 <= self.lapse < 1 and math.isfinite(self.weber) and math.isfinite(self.bias)):
             raise AnalysisError(
                 f"weber = {self.weber:g}, lapse = {self.lapse:g}, bias = {self.bias:g}; an observer needs weber > 0, "
                 "0 <= lapse < 1 and a finite bias"
             )
 
-    def curve(self):
+    def curve(self) -> Psychometric:
         """Return the psychometric function over ln(comparison/standard) that follows, for no bias."""
         return Psychometric(math.log1p(self.weber), 1.0, 0.5, self.lapse / 2)
 
-    def ready(self, task, which):
+    def ready(self, task: Task, which: Answer) -> None:
         """Be told that the first or second presentation comes."""
 
-    def compare(self, task, logs, trial):
+    def compare(self, task: Task, logs: Sequence[Telemetry], trial: int) -> Answer:
         """Return "first" or "second", whichever felt stronger in these two records."""
         return self.decide([task.felt(log) for log in logs], trial)
 
-    def decide(self, felt, trial):
+    def decide(self, felt: Sequence[float], trial: int) -> Answer:
         """Return the answer to two felt magnitudes > 0; the trial's number draws the noise."""
         rng = np.random.default_rng([self.seed, trial])
         if rng.random() < self.lapse:
@@ -70,10 +80,10 @@ class SimulatedObserver:
         first, second = np.log(felt) + math.log1p(self.weber) * rng.standard_normal(2)
         return "first" if first > second + self.bias else "second"
 
-    def told(self, right):
+    def told(self, right: bool) -> None:
         """Hear whether the answer was right."""
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"simulated observer, Weber fraction {100 * self.weber:g} %, {100 * self.lapse:g} % lapses, seed {self.seed}"
 
 
@@ -91,15 +101,15 @@ class PersonObserver:
     person: Person
     feedback: bool = False
 
-    def ready(self, task, which):
+    def ready(self, task: Task, which: Answer) -> None:
         self.person.ask(f"{which.capitalize()} one: hold the handle and press Enter, then feel it for {task.duration:g} s.")
 
-    def compare(self, task, logs, trial):
+    def compare(self, task: Task, logs: Sequence[Telemetry], trial: int) -> Answer:
         return self.person.choose(task.question, INTERVALS)
 
-    def told(self, right):
+    def told(self, right: bool) -> None:
         if self.feedback:
             self.person.say("right" if right else "wrong")
 
-    def __str__(self):
+    def __str__(self) -> str:
         return "a person"

@@ -1,10 +1,19 @@
 """The psi method: each trial asks where the answer is expected to tell most of threshold and slope."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
 import numpy as np
 
 from ..errors import AnalysisError
 from .curves import rise
 from .likelihood import CERTAIN
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
 
 
 class Psi:
@@ -45,8 +54,19 @@ class Psi:
     (True, True)
     """
 
-    def __init__(self, *, low, high, levels=40, thresholds=60, slopes=(0.5, 0.71, 1.0, 1.41, 2.0, 2.83), lapse=0.02,
-                 guess=0.5, shape="d_prime", trials=60):  # fmt: skip
+    def __init__(
+        self,
+        *,
+        low: float,
+        high: float,
+        levels: int = 40,
+        thresholds: int = 60,
+        slopes: Sequence[float] | NDArray[np.float64] = (0.5, 0.71, 1.0, 1.41, 2.0, 2.83),
+        lapse: float = 0.02,
+        guess: float = 0.5,
+        shape: Literal["d_prime", "weibull"] = "d_prime",
+        trials: int = 60,
+    ) -> None:
         if not (0 < low < high and trials >= 1 and levels >= 2 and thresholds >= 2 and all(s > 0 for s in slopes)):
             raise AnalysisError(
                 f"low = {low:g}, high = {high:g}, trials = {trials}, {levels} levels, {thresholds} thresholds; psi needs "
@@ -64,14 +84,14 @@ class Psi:
         self.belief = np.full((thresholds, len(self.slopes)), 1.0 / (thresholds * len(self.slopes)))
 
     @property
-    def done(self):
+    def done(self) -> bool:
         return self.told >= self.trials
 
     @property
-    def level(self):
+    def level(self) -> float:
         return float(self.levels[np.argmin(self.expected_entropy())])
 
-    def expected_entropy(self):
+    def expected_entropy(self) -> NDArray[np.float64]:
         """Return the entropy [nat] that an answer at each level is expected to leave."""
         total = np.zeros(len(self.levels))
         for chance in (self._right, 1 - self._right):
@@ -80,24 +100,24 @@ class Psi:
             total += some * np.log(some) - np.where(joint > 0, joint * np.log(np.maximum(joint, 1e-300)), 0.0).sum((0, 1))
         return total
 
-    def answer(self, right):
+    def answer(self, right: bool) -> None:
         """Take an answer at :attr:`level`."""
         chance = self._right[:, :, np.argmin(self.expected_entropy())]
         belief = self.belief * (chance if right else 1 - chance)
         self.belief, self.told = belief / belief.sum(), self.told + 1
 
-    def estimate(self):
+    def estimate(self) -> float:
         """Return the threshold: the mean of its logarithm over what is believed."""
         return float(np.exp(self.belief.sum(1) @ np.log(self.thresholds)))
 
-    def interval(self, confidence=0.95):
+    def interval(self, confidence: float = 0.95) -> tuple[float, float]:
         """Return thresholds between which this part of the belief lies, as much of the rest on either side."""
         mass = np.cumsum(self.belief.sum(1)) - self.belief.sum(1) / 2
         tail = (1 - confidence) / 2
         low, high = np.interp([tail, 1 - tail], mass, np.log(self.thresholds))
         return float(np.exp(low)), float(np.exp(high))
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"psi, {self.trials} trials at levels from {self.levels[0]:.3g} to {self.levels[-1]:.3g}"
 
 
@@ -111,7 +131,7 @@ class ConstantLevels:
     [0.1, 0.1, 0.2, 0.2]
     """
 
-    def __init__(self, levels, *, repeats, seed=0):
+    def __init__(self, levels: Sequence[float] | NDArray[np.float64], *, repeats: int, seed: int = 0) -> None:
         if not (len(levels) and repeats >= 1):
             raise AnalysisError(f"{len(levels)} levels, {repeats} times; needs one of each at least")
         levels = [float(a) for a in levels]
@@ -119,16 +139,16 @@ class ConstantLevels:
         self.told, self._words = 0, f"{len(levels)} levels, {repeats} times each"
 
     @property
-    def done(self):
+    def done(self) -> bool:
         return self.told >= len(self.order)
 
     @property
-    def level(self):
+    def level(self) -> float:
         return self.order[self.told]
 
-    def answer(self, right):
+    def answer(self, right: bool) -> None:
         """Take an answer; it changes nothing of what comes next."""
         self.told += 1
 
-    def __str__(self):
+    def __str__(self) -> str:
         return self._words

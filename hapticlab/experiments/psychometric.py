@@ -1,7 +1,10 @@
 """Fit a psychometric function by maximum likelihood, with its lapses, its intervals and whether it fits at all."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,6 +13,12 @@ from ..errors import AnalysisError
 from ..statistics import chi_squared
 from .curves import SHAPES, Psychometric
 from .likelihood import MOST_LAPSES, Likelihood
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from .curves import Shape
 
 #: samples from which on they say how much less likely than the best an interval's end may be
 ENOUGH = 100
@@ -36,16 +45,16 @@ class PsychometricFit:
     """
 
     curve: Psychometric
-    levels: np.ndarray
-    right: np.ndarray
-    trials: np.ndarray
-    interval: dict
+    levels: NDArray[np.float64]
+    right: NDArray[np.float64]
+    trials: NDArray[np.float64]
+    interval: dict[str, tuple[float, float]]
     confidence: float
     deviance: float
     p_deviance: float
-    notes: tuple = ()
+    notes: tuple[str, ...] = ()
 
-    def __str__(self):
+    def __str__(self) -> str:
         shown = []
         for name in ("threshold", "slope"):
             low, high = self.interval[name]
@@ -54,7 +63,7 @@ class PsychometricFit:
         tail = f"  lapses {self.curve.lapse:.2g}; deviance {self.deviance:.3g}, p = {self.p_deviance:.2f}"
         return "\n".join([f"{head}; {100 * self.confidence:g} % intervals", tail, *(f"  {note}" for note in self.notes)])
 
-    def plot(self, unit="1"):
+    def plot(self, unit: str = "1") -> Figure:
         """Draw the proportions, larger where more trials stand behind them, the curve and the threshold's interval."""
         with house_style():
             figure = new_figure(height=4.0)
@@ -77,8 +86,18 @@ class PsychometricFit:
 
 
 def psychometric(
-    levels, right, trials=None, *, shape="d_prime", guess=0.5, lapse=None, slope=None, bootstrap=400, confidence=0.95, seed=0
-):
+    levels: ArrayLike,
+    right: ArrayLike,
+    trials: ArrayLike | None = None,
+    *,
+    shape: Shape = "d_prime",
+    guess: float | None = 0.5,
+    lapse: float | None = None,
+    slope: float | None = None,
+    bootstrap: int = 400,
+    confidence: float = 0.95,
+    seed: int = 0,
+) -> PsychometricFit:
     """Fit a psychometric function by maximum likelihood to answers at several levels.
 
     F. A. Wichmann and N. J. Hill, *Perception & Psychophysics* 63 (2001) 1293 and 1314: the lapses are fitted beside
@@ -173,7 +192,7 @@ def _left_open(q, ends, fitting):
     return tuple(notes)
 
 
-def _counts(levels, right, trials):
+def _counts(levels: ArrayLike, right: ArrayLike, trials: ArrayLike | None) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
     levels, right = np.atleast_1d(np.asarray(levels, float)), np.atleast_1d(np.asarray(right, float))
     trials = np.ones_like(levels) if trials is None else np.atleast_1d(np.asarray(trials, float))
     if not (levels.shape == right.shape == trials.shape and levels.ndim == 1 and len(levels)):

@@ -3,8 +3,11 @@
 Section 23.3.3: an open loop needs a model of hand, handle and load; a closed one waits for a reaction time.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 import numpy as np
 
@@ -17,9 +20,26 @@ from ..records import Telemetry
 from .arm import Arm
 from .paddle_needs import check_held
 
-HOW = ("anticipatory", "feedback", "both")
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from ..compiler.ir.program import Program
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
+    from ..scene.scene import Scene
+
+How = Literal["anticipatory", "feedback", "both"]
+HOW: tuple[How, ...] = get_args(How)
 #: of the distance: so near, a reach has arrived
 ARRIVED = 0.05
+
+
+class Path(Protocol):
+    """A path of time: (position [m], velocity [m/s], acceleration [m/s^2]) at times [s]."""
+
+    def at(self, times, /): ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +66,7 @@ class Load:
     b: float = 0.0
     k: float = 0.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ("m", "b", "k"):
             object.__setattr__(self, name, require(name, getattr(self, name), UNITS[name], "a load", low=0))
 
@@ -69,18 +89,18 @@ class Reach:
         Root mean square of x - wanted, over the whole record [m].
     """
 
-    how: str
+    how: How
     log: Telemetry
-    wanted: np.ndarray
+    wanted: NDArray[np.float64]
     settled: float | None
     overshoot: float
     error: float
 
-    def __str__(self):
+    def __str__(self) -> str:
         there = "never stayed near the target" if self.settled is None else f"there after {self.settled:.3g} s"
         return f"{self.how}: {there}, overshoot {100 * self.overshoot:.3g} %, rms error {1e3 * self.error:.3g} mm"
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw handle and wanted path against time; return the figure."""
         with house_style():
             figure = new_figure(height=3.2)
@@ -92,12 +112,21 @@ class Reach:
         return figure
 
 
-def handle(log):
+def handle(log: Telemetry) -> NDArray[np.float64]:
     """Return where the handle was [m], also where an encoder hid it."""
     return np.asarray(log.channels.get("x_true", log.x), float)
 
 
-def reach(paddle, scene, *, end, duration=0.4, begin=0.1, record=2.0, **how):
+def reach(
+    paddle: SimulatedPaddle,
+    scene: Scene | Program,
+    *,
+    end: float,
+    duration: float = 0.4,
+    begin: float = 0.1,
+    record: float = 2.0,
+    **how: Any,
+) -> Reach:
     """Let the hand of a simulated paddle reach for a target, smoothly, from x = 0.
 
     "anticipatory" sends the intent that would move hand and expected load along a path of minimum jerk, and looks at
@@ -161,8 +190,18 @@ def reach(paddle, scene, *, end, duration=0.4, begin=0.1, record=2.0, **how):
 
 
 def follow(
-    paddle, scene, path, *, how="anticipatory", expects=None, gain=None, reaction=REACTION, tremor=None, record=2.0, **options
-):
+    paddle: SimulatedPaddle,
+    scene: Scene | Program,
+    path: Path,
+    *,
+    how: How = "anticipatory",
+    expects: Load | None = None,
+    gain: float | None = None,
+    reaction: float = REACTION,
+    tremor: Callable[[NDArray[np.float64]], ArrayLike] | None = None,
+    record: float = 2.0,
+    **options: Any,
+) -> tuple[Telemetry, NDArray[np.float64]]:
     """Let the hand of a simulated paddle follow a path; return (Telemetry, where the handle was meant to be [m]).
 
     Parameters
@@ -171,9 +210,8 @@ def follow(
         ``hl.MinimumJerk`` or an :class:`~hapticlab.analysis.accuracy.handle_motions.HandleMotion`. The others are those
         of :func:`reach`.
     """
-    check_held(paddle, "reach")
+    hand = check_held(paddle, "reach")
     check_path(path)
-    hand = paddle.hand
     if how not in HOW:
         raise PaddleError(f"how = {how!r}; needs one of {', '.join(HOW)}")
     every = max(round(0.01 / paddle.T), 1) * paddle.T
@@ -201,11 +239,11 @@ def follow(
 class Anticipated(Intent):
     """An intent computed beforehand, at so many times, linear in between."""
 
-    times: np.ndarray
-    places: np.ndarray
+    times: NDArray[np.float64]
+    places: NDArray[np.float64]
 
-    def __call__(self, t):
-        return np.interp(t, self.times, self.places)
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+        return np.interp(np.asarray(t, float), self.times, self.places)
 
 
 def check_path(path):

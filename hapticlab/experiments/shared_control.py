@@ -1,6 +1,9 @@
 """Shared control: a hand follows a path, alone and with an automatic controller on the same handle; what each way costs."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +17,15 @@ from ..scene.notation.symbols import n, parameters, x
 from ..scene.scene import Scene
 from .paddle_needs import check_held
 from .reaching import Anticipated, Load, check_path, handle, inverse_dynamics
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
+    from .reaching import Path
 
 #: what is in this band of a handle's motion is tremor [Hz]
 BAND = (6.0, 14.0)
@@ -50,9 +62,9 @@ class Assistance:
     """The same hand, tremor and path with several scenes; the first row is the hand alone."""
 
     rows: tuple[Assisted, ...]
-    wanted: np.ndarray
+    wanted: NDArray[np.float64]
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [f"{'':<24}{'error [mm]':>12}{'tremor [mm]':>13}{'peak force [N]':>16}{'work taken [mJ]':>17}"]
         for row in self.rows:
             lines.append(
@@ -60,7 +72,7 @@ class Assistance:
             )
         return "\n".join(lines)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw where the handle was with each scene, against time; return the figure."""
         with house_style():
             figure = new_figure(height=3.4)
@@ -73,7 +85,16 @@ class Assistance:
         return figure
 
 
-def assistance(paddle, scenes, path, *, tremor=None, record=4.0, band=BAND, **options):
+def assistance(
+    paddle: SimulatedPaddle,
+    scenes: Scene | Iterable[Scene],
+    path: Path,
+    *,
+    tremor: Callable[[NDArray[np.float64]], ArrayLike] | None = None,
+    record: float = 4.0,
+    band: tuple[float, float] = BAND,
+    **options: Any,
+) -> Assistance:
     """Let a hand follow a path alone and with every scene, its intent the same throughout, and measure.
 
     The intent is the one that would move hand and bare handle along the path (:func:`~hapticlab.experiments.reaching.follow`),
@@ -110,7 +131,7 @@ def assistance(paddle, scenes, path, *, tremor=None, record=4.0, band=BAND, **op
     >>> bool(filtered.tremor < 0.4 * alone.tremor), bool(filtered.error < 0.0003)
     (True, True)
     """
-    check_held(paddle, "assistance")
+    hand = check_held(paddle, "assistance")
     check_path(path)
     scenes = (scenes,) if isinstance(scenes, Scene) else scenes
     if not (tremor is None or callable(tremor)):
@@ -118,9 +139,9 @@ def assistance(paddle, scenes, path, *, tremor=None, record=4.0, band=BAND, **op
     low, high = (require("band", edge, "Hz", "a tremor", above=0) for edge in band)
     tremor = Tremor(rms=3e-4) if tremor is None else tremor
     times = np.arange(paddle.ticks(record) + 1) * paddle.T
-    intent = Anticipated(times, inverse_dynamics(paddle.hand, Load(m=paddle.m, b=paddle.b), path, times)) + tremor
-    here = replace(paddle, hand=replace(paddle.hand, intent=intent))
-    wanted, rows = path.at(times[:-1])[0], []
+    intent = Anticipated(times, inverse_dynamics(hand, Load(m=paddle.m, b=paddle.b), path, times)) + tremor
+    here = replace(paddle, hand=replace(hand, intent=intent))
+    wanted, rows = path.at(times[:-1])[0], list[Assisted]()
     for scene in (_alone(), *scenes):
         log = here.run(scene, duration=record, progress=False, **options)
         away = np.fft.rfft(handle(log) - wanted)

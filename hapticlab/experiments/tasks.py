@@ -1,8 +1,11 @@
 """What is to be told apart: stiffness, damping or texture, how a hand explores it, and what it feels of it."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +17,10 @@ from ..errors import AnalysisError
 from ..library.surfaces import texture
 from ..scene.laws.chapter_laws import virtual_damper, wall
 from ..scene.scene import Scene
+
+if TYPE_CHECKING:
+    from ..device.board.serial_paddle import SerialPaddle
+    from ..records import Telemetry
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,25 +54,25 @@ class Task:
     parameter: str
     unit: str
     standard: float
-    felt: Callable
+    felt: Callable[[Telemetry], float]
     hand: Hand
     duration: float
     weber: float
     source: str
 
-    def on(self, paddle):
+    def on(self, paddle: SimulatedPaddle | SerialPaddle) -> SimulatedPaddle | SerialPaddle:
         """Return a simulated paddle with the exploring hand on it, unless it has a hand already; a board as it is."""
         if isinstance(paddle, SimulatedPaddle) and paddle.hand is None:
             return replace(paddle, hand=self.hand)
         return paddle
 
-    def present(self, paddle, value, **options):
+    def present(self, paddle: SimulatedPaddle | SerialPaddle, value: float, **options: Any) -> Telemetry:
         """Render the scene with this value for one presentation and return the record; the motor is off after it."""
         return paddle.run(self.scene(**{self.parameter: value}), duration=self.duration, progress=False, **options)
 
-    def presenter(self, paddle, **options):
+    def presenter(self, paddle: SimulatedPaddle | SerialPaddle, **options: Any) -> Callable[[float], Telemetry]:
         """A function that presents a value and returns the record; a simulated paddle's program is compiled once for all."""
-        if not isinstance(paddle, SimulatedPaddle) or isinstance(paddle.hand.intent, Reacting):
+        if not isinstance(paddle, SimulatedPaddle) or isinstance(getattr(paddle.hand, "intent", None), Reacting):
             return lambda value: self.present(paddle, value, **options)
         engine = options.pop("engine", "auto")
         program = paddle.program(self.scene(**{self.parameter: self.standard}), **options)
@@ -81,7 +88,7 @@ class Task:
         return show
 
 
-def stiffness_task(*, standard=200.0, press=0.015, force=None):
+def stiffness_task(*, standard: float = 200.0, press: float = 0.015, force: None = None) -> Task:
     """Tell two walls apart by their stiffness, pressed twice a second.
 
     Parameters
@@ -104,7 +111,7 @@ def stiffness_task(*, standard=200.0, press=0.015, force=None):
     )  # fmt: skip
 
 
-def damping_task(*, standard=5.0, stroke=0.02):
+def damping_task(*, standard: float = 5.0, stroke: float = 0.02) -> Task:
     """Tell two viscous media apart, moved through to and fro.
 
     Parameters
@@ -122,7 +129,7 @@ def damping_task(*, standard=5.0, stroke=0.02):
     )  # fmt: skip
 
 
-def texture_task(*, standard=0.15, pitch=0.003, stroke=0.02):
+def texture_task(*, standard: float = 0.15, pitch: float = 0.003, stroke: float = 0.02) -> Task:
     """Tell two gratings apart by their roughness, stroked to and fro.
 
     Parameters
@@ -142,7 +149,7 @@ def texture_task(*, standard=0.15, pitch=0.003, stroke=0.02):
     )  # fmt: skip
 
 
-def felt_stiffness(log):
+def felt_stiffness(log: Telemetry) -> float:
     """Return the slope of force over penetration while there is contact, by least squares [N/m].
 
     Examples
@@ -158,7 +165,7 @@ def felt_stiffness(log):
     return _slope(x[touching], F[touching], "the hand never touched the wall")
 
 
-def felt_damping(log):
+def felt_damping(log: Telemetry) -> float:
     """Return the damping [N s/m] that takes as much work as was done on the environment: int F dx over int v^2 dt.
 
     A difference over a hundredth of a second stands for the velocity, as an encoder's single steps say little.
@@ -170,7 +177,7 @@ def felt_damping(log):
     return _slope(v, mean, "the hand did not move")
 
 
-def felt_roughness(log):
+def felt_roughness(log: Telemetry) -> float:
     """Return the force's quick part, root mean square over the presentation [N].
 
     Quick is what is left beside a mean over a tenth of a second.

@@ -1,10 +1,16 @@
 """Adaptive up-down staircases: harder after right answers, easier after a wrong one."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import AnalysisError
+
+if TYPE_CHECKING:
+    from .curves import Psychometric
 
 #: as many answers in a row, all right at the lowest level or all wrong at the highest, and it ends: 1 in a million by guessing
 ENOUGH = 20
@@ -56,8 +62,19 @@ class UpDown:
     0.7071
     """
 
-    def __init__(self, *, start, factor=1.25, down=2, weight=1.0, reversals=12, skip=4, low=1e-3, high=2.0,
-                 most=300):  # fmt: skip
+    def __init__(
+        self,
+        *,
+        start: float,
+        factor: float = 1.25,
+        down: int = 2,
+        weight: float = 1.0,
+        reversals: int = 12,
+        skip: int = 4,
+        low: float = 1e-3,
+        high: float = 2.0,
+        most: int = 300,
+    ) -> None:
         if not (1 < factor < math.inf and 0 < weight < math.inf and 0 < low < high < math.inf and low <= start <= high):
             raise AnalysisError(
                 f"start = {start:g}, factor = {factor:g}, weight = {weight:g}, low = {low:g}, high = {high:g}; a staircase "
@@ -70,19 +87,21 @@ class UpDown:
             )
         self.start, self.factor, self.down, self.weight = float(start), float(factor), int(down), float(weight)
         self.reversals, self.skip, self.low, self.high = int(reversals), int(skip), float(low), float(high)
-        self.level, self.turned, self._row, self._heading = float(start), [], 0, 0
-        self.most, self.told, self._at_end, self.gave_up = int(most), 0, 0, None
+        self.level, self._row, self._heading = float(start), 0, 0
+        self.most, self.told, self._at_end = int(most), 0, 0
+        self.turned: list[float] = []
+        self.gave_up: str | None = None
 
     @property
-    def target(self):
+    def target(self) -> float:
         """The part of right answers it goes towards."""
         return (self.weight / (1 + self.weight)) ** (1 / self.down)
 
     @property
-    def done(self):
+    def done(self) -> bool:
         return len(self.turned) >= self.reversals or self.gave_up is not None
 
-    def answer(self, right):
+    def answer(self, right: bool) -> None:
         """Take an answer at this level and set the next."""
         self.told += 1
         self._at_end = self._at_end + 1 if self.level == (self.low if right else self.high) else 0
@@ -104,7 +123,7 @@ class UpDown:
         step = (self.weight if heading > 0 else 1.0) * (2 if len(self.turned) < self.skip else 1)
         self.level = min(max(self.level * self.factor ** (heading * step), self.low), self.high)
 
-    def estimate(self):
+    def estimate(self) -> float:
         """Return the geometric mean of the levels at the turning points, an even number of them, after the first ones."""
         if self.gave_up:
             raise AnalysisError(f"no estimate: {self.gave_up}; ask again with other low, high or most")
@@ -114,7 +133,7 @@ class UpDown:
             raise AnalysisError(f"{len(self.turned)} turning points; the estimate needs {self.skip + 2}: ask on")
         return math.exp(float(np.mean(np.log(used))))
 
-    def settles(self, curve, per_step=1, most=400):
+    def settles(self, curve: Psychometric, per_step: int = 1, most: int = 400) -> float:
         """Return the level a long staircase turns about for an observer of this psychometric function.
 
         The staircase is a Markov chain over levels and right answers in a row; this is the geometric mean of the levels
@@ -137,7 +156,7 @@ class UpDown:
         levels = self.start * np.exp(grid * np.arange(-below, above + 1))
         return _turning_mean(levels, curve(levels), self.down, per_step, round(up))
 
-    def __str__(self):
+    def __str__(self) -> str:
         return (
             f"{self.down} down, 1 up from {self.start:g}: steps of {self.factor:g} down and {self.factor**self.weight:.4g} up, "
             f"{self.reversals} turning points, towards {100 * self.target:.1f} % right"
