@@ -9,11 +9,16 @@ from pathlib import Path
 from .. import __version__
 from ..analysis.accuracy.tradeoff import tradeoff as measure_tradeoff
 from ..analysis.records.plots import plot
+from ..compiler.events.taylor_method import Taylor
+from ..compiler.methods.exact_linear import EXACT
+from ..compiler.methods.method_table import METHODS
 from ..errors import HapticlabError, SceneError
 from . import board
 from . import demo as demonstration
 from .exits import INTERRUPTED, complain
 from .scene_file import describe, load_scene, report_of, run_scene
+
+_METHODS = (*sorted(METHODS), Taylor.name, EXACT)
 
 
 def demo(parser, options):
@@ -29,6 +34,8 @@ def run(parser, options):
     """Run a scene file, on its own paddle or on a board."""
     if options.port is None and (options.yes or options.every):
         parser.error(f"{'--yes' if options.yes else '--every'} is for a board; name its port with --port")
+    if options.method not in (None, *_METHODS):
+        parser.error(f"argument --method: invalid choice: {options.method!r} (choose from {', '.join(_METHODS)})")
     file, path = _opened(parser, options), Path(options.file)
     folder = _folder(options)
     compiling = {"method": options.method} if options.method else {}

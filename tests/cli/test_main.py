@@ -18,9 +18,6 @@ from hapticlab.analysis.accuracy.tradeoff import PC
 from hapticlab.cli import board as board_command
 from hapticlab.cli import main, options, scenes
 from hapticlab.cli.scene_file import load_scene
-from hapticlab.compiler.events.taylor_method import Taylor
-from hapticlab.compiler.methods.exact_linear import EXACT
-from hapticlab.compiler.methods.method_table import METHODS
 from hapticlab.device.board.settings import nominal
 from hapticlab.device.link.serial_ports import Port
 from hapticlab.device.setup.calibrate import STEPS
@@ -297,6 +294,13 @@ def test_a_wrong_command_is_told_and_ends_with_2(tmp_path, arguments, words):
     assert done.returncode == 2
     assert words in done.stdout + done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_a_wrong_method_lists_all_that_there_are(capsys):
+    with pytest.raises(SystemExit, match="2"):
+        main.main(["run", str(EXAMPLE), "--method", "magic"])
+    told = capsys.readouterr().err
+    assert [name for name in hl.methods() if name not in told] == []
 
 
 @pytest.mark.parametrize("arguments", [("demo", "--quick"), ("run", str(EXAMPLE))])
@@ -608,7 +612,6 @@ def test_tradeoff_says_as_json_what_to_relax(tmp_path, capsys):
 
 
 def test_the_names_that_options_offer_are_those_that_the_modules_define():
-    assert options.METHODS == (*sorted(METHODS), Taylor.name, EXACT)
     assert options.TARGETS[0] == PC
     assert options.STEPS == STEPS
 
