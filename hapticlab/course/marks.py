@@ -24,6 +24,8 @@ from .exercise import Case
 from .judge import judge, verdict
 
 SOLUTION, HIDDEN = "solution.py", "hidden.py"
+#: beside them, wrong answers that test a lab's sentences; no grader reads it
+WRONG = "wrong.py"
 #: what a student's own numbers are drawn by: no exercise can have this name
 NUMBERS = "numbers()"
 

@@ -9,11 +9,10 @@ import numpy as np
 from hapticlab.course.evaluate import evaluate
 from hapticlab.course.judge import verdict
 from hapticlab.course.labs import find_labs
-from hapticlab.course.marks import SOLUTION, hidden_cases, instructor_names
+from hapticlab.course.marks import SOLUTION, WRONG, hidden_cases, instructor_names
 from hapticlab.grading.report import ExerciseReport, Failing, Report
 
 TESTS = Path(__file__).parents[1]
-WRONG = runpy.run_path(str(TESTS / "labs" / "wrong_answers.py"))["WRONG"]
 NAMES = ("ada", "Blaise", "Émilie du Châtelet", "زينب", "kovalevskaya", "o'neill", "sophie.germain", "Zoë")
 
 
@@ -48,13 +47,14 @@ def class_of(number, many, seed=1):
     folder, answers = folder_of(number)
     lab, random = folder.lab(), np.random.default_rng(seed)
     right, hidden = instructor_names(answers / SOLUTION), hidden_cases(lab, answers)
+    written = runpy.run_path(str(answers / WRONG))["WRONG"]
     found = {
         exercise.name: [
             exercise_report(exercise, answer, hidden.get(exercise.name, ()))
             for answer in (
                 right[exercise.name],
                 None,
-                *(wrong for name, wrong in WRONG[number] if name == exercise.name),
+                *(wrong for name, wrong in written if name == exercise.name),
             )
         ]
         for exercise in lab.exercises

@@ -1,6 +1,6 @@
 """Every lab: well formed; untouched it runs and earns nothing; solved it earns all; wrong answers earn nothing and are taught.
 
-Beside labs/NN_name stand the answers in tests/instructor/NN_name; wrong_answers.py holds wrong ones that students write.
+Beside labs/NN_name stand the answers in tests/instructor/NN_name, where wrong.py holds wrong ones that students write.
 """
 
 import ast
@@ -19,12 +19,10 @@ from hapticlab.course.exercise import JUDGED, Exercise
 from hapticlab.course.instructor import mark_notebook, solved_notebook
 from hapticlab.course.judge import judge
 from hapticlab.course.labs import find_labs
-from hapticlab.course.marks import SOLUTION, hidden_cases, instructor_names, marks
+from hapticlab.course.marks import SOLUTION, WRONG, hidden_cases, instructor_names, marks
 from hapticlab.course.notebook import code_of, read
 
 ROOT = Path(__file__).parents[2]
-_ROWS = runpy.run_path(str(Path(__file__).with_name("wrong_answers.py")))
-WRONG, ANYWHERE = _ROWS["WRONG"], _ROWS["ANYWHERE"]
 LABS, INSTRUCTOR = find_labs(ROOT / "labs"), ROOT / "tests" / "instructor"
 LAST = """
 import json as _json
@@ -119,7 +117,7 @@ def test_wrong_answers_earn_nothing_and_are_taught(folder):
 
 def test_what_students_write_is_taught(folder):
     lab, hidden = folder.lab(), hidden_cases(folder.lab(), INSTRUCTOR / folder.name)
-    tried = WRONG.get(folder.number, [])
+    tried = written_wrong(folder)["WRONG"]
     for name, answer in tried:
         exercise = lab.exercise(name)
         sentences = [sentence for case in exercise.cases for _, sentence in case.slips]
@@ -131,9 +129,13 @@ def test_what_students_write_is_taught(folder):
 
 def test_what_goes_wrong_in_any_lab_is_taught_as_well(folder):
     lab, hidden = folder.lab(), hidden_cases(folder.lab(), INSTRUCTOR / folder.name)
-    for name, answer, sentence in ANYWHERE.get(folder.number, []):
+    for name, answer, sentence in written_wrong(folder).get("ANYWHERE", []):
         assert sentence in checked(f"{lab.number}.{name}", lab.exercise(name), answer).text
         assert {m.earned for m in marks(lab, {name: answer}, hidden)} == {0}
+
+
+def written_wrong(folder):
+    return runpy.run_path(str(INSTRUCTOR / folder.name / WRONG))
 
 
 def wrong_answers(exercise, right):

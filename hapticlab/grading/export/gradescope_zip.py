@@ -7,7 +7,7 @@ import zipfile
 from pathlib import Path
 
 from ...course.labs import CHECKS
-from ...course.marks import HIDDEN, SOLUTION
+from ...course.marks import HIDDEN, SOLUTION, WRONG
 from ...errors import CourseError
 
 #: Gradescope's system may bring an older Python than hapticlab needs: uv finds one or brings it, where every user may read
@@ -78,7 +78,8 @@ def bundle(folder, answers):
     missing = [name for name in (SOLUTION, HIDDEN) if not (answers / name).is_file()]
     if missing:
         raise CourseError(f"{answers} has no {' and no '.join(missing)}; an instructor's folder of a lab needs both")
-    return {**_files(folder.path, f"labs/{folder.name}"), **_files(answers, f"answers/{folder.name}")}
+    files = {**_files(folder.path, f"labs/{folder.name}"), **_files(answers, f"answers/{folder.name}")}
+    return {name: content for name, content in files.items() if name != f"answers/{folder.name}/{WRONG}"}
 
 
 def gradescope_files(folder, answers, package, seed=0, wheel=None, personal=False):
