@@ -1,8 +1,11 @@
 """How much of a paddle's friction may be compensated before the paddle runs away, and what it then does."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +15,12 @@ from ..errors import AnalysisError
 from ..limits.loop import Loop
 from ..limits.stability import crossings, stability_limit
 from ..scene.laws.compensation import damping_compensation
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..limits.limit import Plant
+    from ..scene.laws.estimators import VelocityEstimate
 
 #: relative distance from a crossing at which the poles say whether it counts
 NEAR = 1e-6
@@ -51,14 +60,14 @@ class CompensationLimit:
     coulomb_least: float
 
     @property
-    def dry(self):
+    def dry(self) -> float:
         return self.hunts_from(0.0)
 
-    def left(self, viscous):
+    def left(self, viscous: float) -> float:
         """Return the damping that is left [N s/m], negative where the handle is driven."""
         return self.b - viscous * self.b_device
 
-    def hunts_from(self, viscous):
+    def hunts_from(self, viscous: float) -> float:
         """Return the part of the Coulomb friction from which on the paddle, once kicked, keeps moving for ever.
 
         Without a hand's spring that is 1. About a spring the handle must break away at every turn, so that more is
@@ -69,7 +78,7 @@ class CompensationLimit:
         sure = self.coulomb_least / self.coulomb if self.coulomb else 1.0
         return 2 / (1 + kept) * sure if self.k and kept < 1 else sure
 
-    def speed(self, viscous, dry):
+    def speed(self, viscous: float, dry: float) -> float:
         """Return the steady speed [m/s] of a free handle that is over-compensated: (dry coulomb - coulomb_least)/(damping left).
 
         0 where it comes to rest, infinite where nothing holds it. Exact for the sampled loop and any estimate of v,
@@ -80,7 +89,7 @@ class CompensationLimit:
             return math.inf
         return max(self._excess(dry) / self.left(viscous), 0.0)
 
-    def kick(self, viscous, dry):
+    def kick(self, viscous: float, dry: float) -> float:
         """Return the speed [m/s] beyond which a free handle runs away though its Coulomb friction holds it at rest.
 
         (coulomb_least - dry coulomb)/(-damping left) where more than all viscous damping is compensated; infinite where
@@ -91,7 +100,7 @@ class CompensationLimit:
             return math.inf
         return max(self._excess(dry) / self.left(viscous), 0.0)
 
-    def hunting(self, viscous, dry):
+    def hunting(self, viscous: float, dry: float) -> float:
         """Return the amplitude [m] of the limit cycle about the hand's spring; 0 where the paddle comes to rest.
 
         g/k (1 + r)/(1 - r) with g = dry coulomb - coulomb_least the force left over: over half a period the handle swings about
@@ -119,7 +128,7 @@ class CompensationLimit:
         if self.k:
             raise AnalysisError(f"{what} needs a free handle; the hand's k = {self.k:g} N/m holds it: look at hunting()")
 
-    def __str__(self):
+    def __str__(self) -> str:
         at = f", turning at {self.frequency:.4g} Hz" if self.frequency else ", drifting off"
         lines = [
             f"damping compensation: m = {self.m:g} kg, b = {self.b:g} N s/m, k = {self.k:g} N/m, T = {self.T:g} s",
@@ -133,7 +142,7 @@ class CompensationLimit:
             lines.append(f"  for every device of b from {self.b_least:.6g} N s/m{friction} up to that")
         return "\n".join(lines)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw what the paddle does over the two parts, or over the one that it has; return the figure."""
         if not self.coulomb:
             return self._plot_viscous()
@@ -175,7 +184,9 @@ class CompensationLimit:
         return figure
 
 
-def compensation_limit(paddle, *, velocity=None, b_least=None, coulomb_least=None):
+def compensation_limit(
+    paddle: Plant, *, velocity: VelocityEstimate | None = None, b_least: float | None = None, coulomb_least: float | None = None
+) -> CompensationLimit:
     """Largest part of a paddle's friction that :func:`~hapticlab.scene.laws.compensation.damping_compensation` may cancel.
 
     The viscous part is a pole on the unit circle of the sampled loop, with hand, delay and the lag of the velocity. A free

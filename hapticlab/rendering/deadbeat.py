@@ -1,6 +1,9 @@
 """Two held forces that bring the handle, after a crossing of the boundary, where handle, hand and wall would be by themselves."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import sympy as sp
@@ -13,6 +16,12 @@ from .lines import Lines, number
 from .model import WallModel
 from .predictive import half_sample_force
 
+if TYPE_CHECKING:
+    from ..device.hand.hand import Hand
+    from ..limits.limit import Plant
+    from ..scene.laws.estimators import VelocityEstimate
+    from ..scene.scene import Scene
+
 #: when the pair of forces begins
 BEGINS = ("predictive", "reactive")
 #: the force inside the wall while no pair acts
@@ -20,9 +29,18 @@ BETWEEN = {"pairs": None, "half_sample": half_sample_force, "digital": digital_f
 
 
 def deadbeat_wall(
-    paddle, *, K, B=0.0, hand=None, begins="predictive", between="pairs", velocity="handle", force_max=None,
-    accuracy=1e-10, crossings=2,
-):  # fmt: skip
+    paddle: Plant,
+    *,
+    K: float,
+    B: float = 0.0,
+    hand: Hand | None = None,
+    begins: Literal["predictive", "reactive"] = "predictive",
+    between: Literal["pairs", "half_sample", "digital"] = "pairs",
+    velocity: Literal["handle", "model"] | VelocityEstimate = "handle",
+    force_max: float | None = None,
+    accuracy: float = 1e-10,
+    crossings: Literal[1, 2] = 2,
+) -> Scene:
     """Virtual wall that emulates handle, hand and wall across its boundary (Section 23.4.1): dead-beat in two steps.
 
     Where the boundary is crossed the law computes the state that handle, hand and wall would have two periods on, crossing
@@ -87,7 +105,8 @@ def deadbeat_wall(
     lines.let(due, when(due(n - 1) > 0.5, 0, when(begin, 1, 0)))
     one, two = pair_forces(lines, p, w, goal)
     lines.let(second, two)
-    alone = when(p >= 0, BETWEEN[between](lines, p, w), 0) if BETWEEN[between] else 0
+    inside = BETWEEN[between]
+    alone = when(p >= 0, inside(lines, p, w), 0) if inside else 0
     force = when(due(n - 1) > 0.5, second(n - 1), when(due(n) > 0.5, one, alone))
     watch = {"pair": when(due(n - 1) > 0.5, 2, due(n))}
     return lines.scene(force, f"{begins} dead-beat wall", watch, motor_limit(paddle, force_max))
@@ -135,12 +154,12 @@ class DeadbeatGains:
         [N]
     """
 
-    position: tuple
-    velocity: tuple
+    position: tuple[float, float]
+    velocity: tuple[float, float]
     count: float | None
     force_max: float | None
 
-    def __str__(self):
+    def __str__(self) -> str:
         text = (
             f"the pair's forces change by {self.position[0]:.4g} and {self.position[1]:.4g} N per metre, "
             f"{self.velocity[0]:.4g} and {self.velocity[1]:.4g} N per m/s"
@@ -151,7 +170,7 @@ class DeadbeatGains:
         return f"{text};\none encoder count changes them by {self.count:.3g} N{most}"
 
 
-def deadbeat_gains(paddle, *, hand=None):
+def deadbeat_gains(paddle: Plant, *, hand: Hand | None = None) -> DeadbeatGains:
     """Gains from the sensed state to the two forces of a dead-beat pair: some M/T^2, so they blow up as T goes to 0.
 
     The error of a crossing that is located shrinks as T^3, faster than the gains grow; the errors of an encoder and of
@@ -169,6 +188,5 @@ def deadbeat_gains(paddle, *, hand=None):
     rows = _inverse(model) @ two
     count, T = getattr(paddle, "counts_per_metre", None), model.T
     change = None if count is None else float(abs(rows.sum(axis=1)).max() / count)
-    return DeadbeatGains(
-        tuple(map(float, rows[:, 0])), tuple(map(float, rows[:, 1] * T)), change, getattr(paddle, "force_max", None)
-    )
+    (p0, v0), (p1, v1) = (rows * (1.0, T)).tolist()
+    return DeadbeatGains((p0, p1), (v0, v1), change, getattr(paddle, "force_max", None))

@@ -1,12 +1,21 @@
 """A wall designed in the digital domain: the sampled loop has the poles that the wall itself would have."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from ..scene.notation.symbols import when
 from .lines import Lines, number
 from .model import WallModel
+
+if TYPE_CHECKING:
+    from ..device.hand.hand import Hand
+    from ..limits.limit import Plant
+    from ..scene.laws.estimators import VelocityEstimate
+    from ..scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -24,10 +33,10 @@ class DigitalGains:
 
     k1: float
     k2: float
-    poles: tuple
+    poles: tuple[complex, ...]
     model: WallModel
 
-    def __str__(self):
+    def __str__(self) -> str:
         shown = ", ".join(f"{z:.4g}" for z in self.poles)
         return (
             f"k1 = {self.k1:.6g} N/m ({self.k1 / self.model.K:.3%} of K), k2 = {self.k2:.6g} N s/m "
@@ -35,7 +44,7 @@ class DigitalGains:
         )
 
 
-def digital_gains(paddle, *, K, B=0.0, hand=None):
+def digital_gains(paddle: Plant, *, K: float, B: float = 0.0, hand: Hand | None = None) -> DigitalGains:
     """Gains of :func:`digital_wall`: those of a held force that give the poles of handle, hand and wall in continuous time.
 
     For a handle without damping in no hand, with w^2 = K/m: k1 = K sinc^2(wT/2) and k2 = k1 T/2, which is Eq. (23.3) on a
@@ -75,7 +84,16 @@ def _row(model):
     return np.linalg.solve(np.column_stack([gamma, Phi @ gamma]), wanted)[1]
 
 
-def digital_wall(paddle, *, K, B=0.0, hand=None, velocity="handle", clamp=False, force_max=None):
+def digital_wall(
+    paddle: Plant,
+    *,
+    K: float,
+    B: float = 0.0,
+    hand: Hand | None = None,
+    velocity: Literal["handle", "model"] | VelocityEstimate = "handle",
+    clamp: bool = False,
+    force_max: float | None = None,
+) -> Scene:
     """Virtual wall designed in the digital domain (Section 23.4.1): F = k1 p + k2 v where p >= 0, else 0.
 
     The gains are :func:`digital_gains`. Under a delay the law looks at the handle where its force begins to act, predicted

@@ -1,8 +1,12 @@
 """Which wall of Section 23.4.1 a board has time and memory for, at the paddle's period."""
 
-from dataclasses import dataclass
+from __future__ import annotations
 
-from ..compiler.boards.cost import Cost, cost
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ..compiler.boards.cost import Board, Cost, cost
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError, ProgramLimitError
 from ..scene.scene import Scene
@@ -11,8 +15,11 @@ from .digital import digital_wall
 from .model import WallModel
 from .predictive import predictive_wall
 
+if TYPE_CHECKING:
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
+
 #: dearest first: what it is, what makes it, with what
-CANDIDATES = (
+CANDIDATES: tuple[tuple[str, Callable, dict], ...] = (
     ("dead-beat pairs, crossings to 1e-6", deadbeat_wall, {"accuracy": 1e-6}),
     ("dead-beat pairs, crossings to 1 %", deadbeat_wall, {"accuracy": 1e-2}),
     ("dead-beat pairs, crossings to 5 %", deadbeat_wall, {"accuracy": 5e-2}),
@@ -43,14 +50,14 @@ class BoardWall:
     scene: Scene
     name: str
     cost: Cost
-    passed_over: dict
+    passed_over: dict[str, str]
 
-    def __str__(self):
+    def __str__(self) -> str:
         over = "".join(f"\n  not {name}: {why}" for name, why in self.passed_over.items())
         return f"{self.name}: {self.cost.share:.0%} of {1e3 * self.cost.T:g} ms on {self.cost.board.name}{over}"
 
 
-def wall_for_board(paddle, *, K, board="uno", **options):
+def wall_for_board(paddle: SimulatedPaddle, *, K: float, board: str | Board = "uno", **options: Any) -> BoardWall:
     """Return the best model-based wall that a board runs at the paddle's period, and why it is none of the better ones.
 
     Parameters

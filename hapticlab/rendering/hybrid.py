@@ -1,13 +1,24 @@
 """The wall that the laws mean: handle, hand and unilateral wall in continuous time, every crossing located."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..drawing import axis_label, house_style, new_figure, style_of
 from ..errors import AnalysisError
 from .model import WallModel
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ..device.hand.hand import Hand
+    from ..limits.limit import Plant
+    from ..records import Telemetry
 
 #: of a mode's own time, how long a piece of the motion is: it turns round once at most, and few terms are all its digits
 PART = math.pi / 8
@@ -33,29 +44,29 @@ class HybridMotion:
     model : WallModel
     """
 
-    t: np.ndarray
-    x: np.ndarray
-    v: np.ndarray
-    F: np.ndarray
-    crossings: np.ndarray
-    speeds: np.ndarray
+    t: NDArray[np.float64]
+    x: NDArray[np.float64]
+    v: NDArray[np.float64]
+    F: NDArray[np.float64]
+    crossings: NDArray[np.float64]
+    speeds: NDArray[np.float64]
     x_o: float
     model: WallModel
 
     @property
-    def energy(self):
+    def energy(self) -> NDArray[np.float64]:
         """Kinetic energy and what the hand's and the wall's springs and the push hold [J], shape (N,)."""
         m, inside = self.model, self.F != 0
         depth = np.where(inside, (self.F - m.B * self.v) / m.K, 0.0)
         return m.M * self.v**2 / 2 + m.k * self.x**2 / 2 - m.push * self.x + m.K * depth**2 / 2
 
     @property
-    def begins_inside(self):
+    def begins_inside(self) -> bool:
         """Whether the start lies inside the wall, or on its boundary and going in."""
         depth, v = self.x[0] - self.x_o, self.v[0]
         return bool(depth > 0 or (depth == 0 and (v > 0 or (v == 0 and self.x[1] > self.x_o))))
 
-    def plot(self, *logs):
+    def plot(self, *logs: Telemetry) -> Figure:
         """Draw the motion, where it crosses the boundary, and runs of rendered walls beside it, from one start."""
         with house_style():
             figure = new_figure(height=3.6)
@@ -71,7 +82,7 @@ class HybridMotion:
             axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, fontsize="small")
         return figure
 
-    def __str__(self):
+    def __str__(self) -> str:
         entered = self.speeds > 0
         begins, times = self.begins_inside, int(np.count_nonzero(entered)) + self.begins_inside
         return (
@@ -86,7 +97,17 @@ class HybridMotion:
         )
 
 
-def hybrid_wall(paddle, *, K, B=0.0, duration, x=0.0, v=0.0, x_o=0.0, hand=None):
+def hybrid_wall(
+    paddle: Plant,
+    *,
+    K: float,
+    B: float = 0.0,
+    duration: float,
+    x: float = 0.0,
+    v: float = 0.0,
+    x_o: float = 0.0,
+    hand: Hand | None = None,
+) -> HybridMotion:
     """Exact motion of handle and hand against the wall itself, unsampled: what a rendered wall should feel like.
 
     F = K p + B p' where p = x - x_o >= 0, else 0, in continuous time. In each mode the motion is a power series of all its
@@ -125,7 +146,8 @@ def hybrid_wall(paddle, *, K, B=0.0, duration, x=0.0, v=0.0, x_o=0.0, hand=None)
     rate = w / model.T
     F = np.where(inside, model.K * p + model.B * rate, 0.0)
     when, speed = np.array(path.crossings).reshape(-1, 2).T
-    return HybridMotion(np.arange(count + 1) * model.T, p + x_o, rate, F, when * model.T, speed / model.T, x_o, model)
+    t: NDArray[Any] = np.arange(count + 1) * model.T
+    return HybridMotion(t, p + x_o, rate, F, when * model.T, speed / model.T, x_o, model)
 
 
 class _Path:

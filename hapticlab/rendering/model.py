@@ -6,7 +6,10 @@ with M, b, k of handle and hand together, and push the constant force of the han
 force in metres of the wall's spring: ``w = T v`` and ``f = F/K`` are lengths like p, and every coefficient is a number.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +18,11 @@ from ..device.hand.hand import Hand
 from ..device.simulated.transition import transition
 from ..errors import AnalysisError
 from ..limits.limit import MOST_PERIODS, whole_and_fraction
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..limits.limit import Plant
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +58,7 @@ class WallModel:
     delay: float
 
     @classmethod
-    def of(cls, paddle, *, K, B=0.0, hand=None):
+    def of(cls, paddle: Plant, *, K: float, B: float = 0.0, hand: Hand | None = None) -> WallModel:
         """Return the model of a paddle in a hand; without one, of the hand the paddle has."""
         lacking = [name for name in ("m", "b", "T", "delay", "hand") if not hasattr(paddle, name)]
         if lacking:
@@ -68,7 +76,7 @@ class WallModel:
                     "the hand's intent moves; a law predicts with a hand at one place: give hand=hl.Hand(..., intent=place), "
                     "and bind push to its force"
                 )
-        intent = 0.0 if hand is None or hand.intent is None else hand.intent
+        intent = getattr(hand, "intent", None) or 0.0
         return cls(
             M=number("m", paddle.m + of_hand["m"], "kg", "the handle", above=0, what="a mass m"),
             b=number("b", paddle.b + of_hand["b"], "N s/m", "a handle with its hand", least=0),
@@ -81,11 +89,11 @@ class WallModel:
         )
 
     @property
-    def lag(self):
+    def lag(self) -> tuple[int, float]:
         """Whole periods of the delay and the fraction that is left."""
         return whole_and_fraction(self.delay, self.T, most=MOST_PERIODS)
 
-    def flow(self, periods, wall=False):
+    def flow(self, periods: float, wall: bool = False) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the exact motion over a time in periods, inside the wall or outside.
 
         Returns
@@ -101,17 +109,17 @@ class WallModel:
         Phi = np.array([[phi["xx"], phi["xv"] / T], [phi["vx"] * T, phi["vv"]]])
         return Phi, np.array([phi["xu"] * K, phi["vu"] * K * T])
 
-    def rates(self, wall):
+    def rates(self, wall: bool) -> tuple[float, float, float]:
         """Return beta, kappa and mu of p'' = -beta p' - kappa p + mu f, time in periods."""
         T, M = self.T, self.M
         return (self.b + wall * self.B) * T / M, (self.k + wall * self.K) * T**2 / M, self.K * T**2 / M
 
     @property
-    def rest(self):
+    def rest(self) -> float:
         """What a push of one metre of the spring makes the handle rest at, inside the wall [m]."""
         return self.K / (self.K + self.k)
 
-    def __str__(self):
+    def __str__(self) -> str:
         return (
             f"M = {self.M:g} kg, b = {self.b:g} N s/m, k = {self.k:g} N/m, push = {self.push:g} N; wall K = {self.K:g} N/m, "
             f"B = {self.B:g} N s/m, T = {self.T:g} s, delay = {self.delay:g} s"

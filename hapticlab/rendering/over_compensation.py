@@ -1,7 +1,10 @@
 """Dry friction compensated beyond its limit, in simulation: with this period, delay, encoder and width of the sign."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -13,6 +16,12 @@ from ..errors import AnalysisError
 from ..scene.laws.compensation import damping_compensation
 from ..scene.notation.units import in_si
 from .compensation_limit import CompensationLimit, compensation_limit
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ..scene.laws.estimators import VelocityEstimate
 
 #: parts of the Coulomb friction looked at side by side, and how often the gap around the limit is divided again
 LANES, ROUNDS = 33, 3
@@ -48,19 +57,19 @@ class OverCompensation:
     ideal: CompensationLimit
     viscous: float
     speed: float
-    dry: np.ndarray
-    motion: np.ndarray
-    expected: np.ndarray
+    dry: NDArray[np.float64]
+    motion: NDArray[np.float64]
+    expected: NDArray[np.float64]
     duration: float
 
-    def __str__(self):
+    def __str__(self) -> str:
         moves = "hunts about the hand's spring" if self.ideal.k else "keeps moving, once kicked,"
         return (
             f"{moves} from dry = {self.limit:.5g} on at viscous = {self.viscous:g}, in simulations of {self.duration:.3g} s; "
             f"{self.ideal.hunts_from(self.viscous):.5g} for a short period and a narrow sign"
         )
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the motion that stays over the part that is compensated, simulated and by its closed form; a figure."""
         spring = self.ideal.k > 0
         scale, name = (1e3, "amplitude that stays [mm]") if spring else (1.0, "speed that stays [m/s]")
@@ -79,7 +88,17 @@ class OverCompensation:
         return figure
 
 
-def over_compensation(paddle, *, speed, viscous=0.0, shape="dead_zone", velocity=None, up_to=None, duration=None, engine="auto"):
+def over_compensation(
+    paddle: SimulatedPaddle,
+    *,
+    speed: float | str,
+    viscous: float = 0.0,
+    shape: Literal["smooth", "dead_zone"] = "dead_zone",
+    velocity: VelocityEstimate | None = None,
+    up_to: float | None = None,
+    duration: float | None = None,
+    engine: Literal["auto", "llvm", "interpreter"] = "auto",
+) -> OverCompensation:
     """Simulate a paddle whose dry friction is compensated more and more, until it keeps moving by itself.
 
     Each run begins with a kick: beyond the motion that the closed forms expect, from where it dies down or stays. A
@@ -124,16 +143,16 @@ def over_compensation(paddle, *, speed, viscous=0.0, shape="dead_zone", velocity
         raise AnalysisError("the hand's intent moves: what keeps moving would be the hand; give intent=None, or a place in m")
     if not 0 <= viscous < ideal.viscous:
         raise AnalysisError(f"viscous = {viscous:g} runs away by itself; needs 0 <= viscous < {ideal.viscous:.4g}")
-    speed = in_si(speed, "m/s", "speed")
-    scene = damping_compensation(b=paddle.b, coulomb=paddle.coulomb, speed=speed, shape=shape, velocity=velocity)
+    width = in_si(speed, "m/s", "speed")
+    scene = damping_compensation(b=paddle.b, coulomb=paddle.coulomb, speed=width, shape=shape, velocity=velocity)
     first = ideal.hunts_from(viscous)
     settling = (2 if ideal.k else 1) * ideal.m / ideal.left(viscous)
     duration = duration or min(max(SETTLED * settling, SHORTEST), LONGEST)
-    runs = _Runs(paddle, scene(viscous=viscous, dry=1.0), ideal, viscous, speed, duration, engine)
+    runs = _Runs(paddle, scene(viscous=viscous, dry=1.0), ideal, viscous, width, duration, engine)
     dry = np.linspace(0.5, up_to or 1.5 * first, LANES)
     motion = runs(dry)
     limit = _first_moving(runs, dry, motion)
-    return OverCompensation(limit, ideal, viscous, speed, dry, motion, _expected(ideal, viscous, dry), duration)
+    return OverCompensation(limit, ideal, viscous, width, dry, motion, _expected(ideal, viscous, dry), duration)
 
 
 def _first_moving(runs, dry, motion):

@@ -1,12 +1,31 @@
 """A wall that looks half a period ahead with the exact motion of handle, hand and wall, Section 23.4.1."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
 from ..scene.notation.symbols import when
 from .digital import motor_limit
 from .lines import Lines, number
 from .model import WallModel
 
+if TYPE_CHECKING:
+    from ..device.hand.hand import Hand
+    from ..limits.limit import Plant
+    from ..scene.laws.estimators import VelocityEstimate
+    from ..scene.scene import Scene
 
-def predictive_wall(paddle, *, K, B=0.0, hand=None, velocity="handle", clamp=False, force_max=None):
+
+def predictive_wall(
+    paddle: Plant,
+    *,
+    K: float,
+    B: float = 0.0,
+    hand: Hand | None = None,
+    velocity: Literal["handle", "model"] | VelocityEstimate = "handle",
+    clamp: bool = False,
+    force_max: float | None = None,
+) -> Scene:
     """Virtual wall by model-based half-sample prediction: F = K p(n + 1/2) + B v(n + 1/2) where p(n) >= 0, else 0.
 
     The half sample is predicted by the analytic solution of handle, hand and wall, where Eq. (23.3) goes on at constant

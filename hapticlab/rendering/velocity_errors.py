@@ -1,6 +1,9 @@
 """Velocity estimators side by side on one record: how late, how rough, and how dear."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +15,12 @@ from ..errors import AnalysisError
 from ..records import Telemetry
 from ..scene.laws.chapter_laws import virtual_damper
 from ..scene.laws.estimators import VelocityEstimate, backward_velocity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
 MARKERS = "osD^v*P"
 
@@ -43,9 +52,9 @@ class VelocityError:
     noise: float
     cycles: int
     fits: bool
-    v: np.ndarray = field(repr=False, compare=False)
+    v: NDArray[np.float64] = field(repr=False, compare=False)
 
-    def __str__(self):
+    def __str__(self) -> str:
         fits = "fits" if self.fits else "does not fit"
         return f"{self.name:<34} {1e3 * self.rms:>9.3g} {1e3 * self.lag:>9.3g} {1e3 * self.noise:>9.3g} {self.cycles:>9}  {fits}"
 
@@ -64,21 +73,21 @@ class VelocityErrors:
     board : str
     """
 
-    rows: tuple
-    t: np.ndarray = field(repr=False)
-    v_true: np.ndarray = field(repr=False)
+    rows: tuple[VelocityError, ...]
+    t: NDArray[np.float64] = field(repr=False)
+    v_true: NDArray[np.float64] = field(repr=False)
     T: float
     board: str
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> VelocityError:
         return next(row for row in self.rows if row.name == name)
 
-    def __str__(self):
+    def __str__(self) -> str:
         titles = f"{'velocity':<34} {'rms mm/s':>9} {'lag ms':>9} {'noise mm/s':>10} {'cycles':>8}"
         head = f"{titles}  {self.board}, T = {1e3 * self.T:g} ms"
         return "\n".join([head, *map(str, self.rows)])
 
-    def plot(self, begin=0.0, end=None):
+    def plot(self, begin: float = 0.0, end: float | None = None) -> Figure:
         """Draw the estimates from ``begin`` to ``end`` [s], and noise over lag; return the figure."""
         shown = (self.t >= begin) & (self.t <= (self.t[-1] if end is None else end))
         with house_style():
@@ -105,7 +114,9 @@ class VelocityErrors:
         return figure
 
 
-def velocity_errors(log, estimates=(), *, board="uno"):
+def velocity_errors(
+    log: Telemetry, estimates: VelocityEstimate | Iterable[VelocityEstimate] = (), *, board: str = "uno"
+) -> VelocityErrors:
     """Compare velocity estimators on the sensed positions of a record whose true velocity is known.
 
     Each runs in float32 as a board runs it. A longer memory is smoother and later; the backward difference, which is in

@@ -1,8 +1,11 @@
 """Every law that renders one and the same wall, by name: of the chapter, of its model-based section, and of a real damper."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
 
 import sympy as sp
 
@@ -14,6 +17,9 @@ from ..scene.scene import Scene
 from .deadbeat import deadbeat_wall
 from .digital import digital_wall
 from .predictive import predictive_wall
+
+if TYPE_CHECKING:
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 
 @dataclass(frozen=True)
@@ -30,9 +36,9 @@ class WallLaw:
 
     name: str
     scene: Scene
-    paddle: object
+    paddle: SimulatedPaddle
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.name}: {LAWS[self.name]}\n  {self.scene.name} on {self.paddle}"
 
 
@@ -79,7 +85,16 @@ def checked_laws(laws):
     return names
 
 
-def wall_law(name, paddle, *, K, model=None, unilateral="gate", clamp=False, velocity="handle"):
+def wall_law(
+    name: str,
+    paddle: SimulatedPaddle,
+    *,
+    K: float,
+    model: SimulatedPaddle | None = None,
+    unilateral: Literal["gate", "clip"] = "gate",
+    clamp: bool = False,
+    velocity: Literal["handle", "model"] = "handle",
+) -> WallLaw:
     """Return a wall of stiffness K as one of :data:`LAWS` renders it.
 
     Parameters
