@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Iterable
+from types import UnionType
 from typing import Any
 
 from .errors import AnalysisError, HapticlabError
@@ -49,9 +50,10 @@ def number(
         return value
     need = _needs(owner, _range(what or name, least, above, most, value is None or finite))
     reason = why and (f". {why}" if why[0].isupper() else f": {why}")
+    has_unit = unit not in ("", "1")
     if value is None:
-        raise error(f"{name} = {given!r}; {need}{reason}, as a number{unit and f' in {unit}'}")
-    raise error(f"{name} = {given}{unit and f' {unit}'}; {need}{reason}")
+        raise error(f"{name} = {given!r}; {need}{reason}, as a number{f' in {unit}' if has_unit else ''}")
+    raise error(f"{name} = {given}{f' {unit}' if has_unit else ''}; {need}{reason}")
 
 
 def period(T: Any, error: type[HapticlabError] = AnalysisError) -> float:
@@ -99,7 +101,7 @@ def choice(
 
 
 def instance(
-    name: str, given: Any, kind: type | tuple[type, ...], need: str, *, error: type[HapticlabError] = AnalysisError
+    name: str, given: Any, kind: type | tuple[type, ...] | UnionType, need: str, *, error: type[HapticlabError] = AnalysisError
 ) -> Any:
     """The object given, of a class or of one of several; ``need`` says how to make one."""
     if isinstance(given, kind):

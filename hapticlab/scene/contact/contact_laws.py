@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import sympy as sp
 
+from ...arguments import choice
 from ...errors import SceneError
 from ..notation.amount import amount
 from ..notation.checks import agree_with
@@ -67,8 +68,9 @@ class impulse(ContactLaw):
     def __post_init__(self):
         _take_restitution(self)
         take(self, mu="friction coefficient")
-        if self.order not in ORDERS:
-            raise SceneError(f"order = {self.order!r}; needs 'sequential' (one after the other) or 'simultaneous' (at once)")
+        choice(
+            "order", self.order, ORDERS, need="'sequential' (one after the other) or 'simultaneous' (at once)", error=SceneError
+        )
         if self.rest_speed is not None:
             speed = _positive(self.rest_speed, "rest_speed", "m/s", "the speed below which a contact rests")
             object.__setattr__(self, "rest_speed", speed)

@@ -2,11 +2,12 @@
 
 import sympy as sp
 
+from ...arguments import choice, count
 from ...errors import SceneError
-from ..notation.amount import Amount
+from ..notation.amount import Amount, amount
 from ..notation.parameters import T
 from ..notation.symbols import n, signal, when, x
-from .estimators import VelocityEstimate, at_least_zero, backward_velocity
+from .estimators import VelocityEstimate, backward_velocity
 
 #: samples back that a window may reach: each takes a dozen instructions of every tick
 LONGEST_WINDOW = 32
@@ -43,11 +44,11 @@ def window_velocity(*, band, most=8, fit="end", name="v_window"):
     >>> hl.window_velocity(band="20 um", most=3).name
     'adaptive window of 3, end fit'
     """
-    if not (isinstance(most, int) and 1 <= most <= LONGEST_WINDOW):
-        raise SceneError(f"most = {most!r}; a window needs a whole number of periods, 1 to {LONGEST_WINDOW}")
-    if fit not in ("end", "best"):
-        raise SceneError(f"fit = {fit!r}; needs 'end' (the newest and the oldest sample) or 'best' (least squares)")
-    band = at_least_zero(band, "m", "band", "a window")
+    most = count("most", most, "a window", of="periods", most=LONGEST_WINDOW, error=SceneError)
+    choice(
+        "fit", fit, ("end", "best"), need="'end' (the newest and the oldest sample) or 'best' (least squares)", error=SceneError
+    )
+    band = amount(band, "m", "band", "a window", least=0)
     half = window_velocity(band=band, most=most // 2, name=name) if most > 3 else backward_velocity()
     cheaper = (half, *half.cheaper)
     if fit == "best":

@@ -4,10 +4,11 @@ import math
 
 import sympy as sp
 
+from ...arguments import choice, instance
 from ...errors import SceneError
 from ..notation.symbols import T, delay, n, parameters, t, v, when, x
 from ..scene import Scene, check_scene
-from .estimators import VelocityEstimate
+from .estimators import AN_ESTIMATE, VelocityEstimate
 from .taps import LEAD, TAPS
 
 UNILATERAL = ("gate", "clip", None)
@@ -59,10 +60,8 @@ def wall(law="zoh", unilateral="gate", clamp=False, velocity=None):
     >>> hl.wall("half_sample", velocity=hl.filtered_velocity(tau="4 ms")).name
     'half_sample wall, filtered difference'
     """
-    if law not in TAPS:
-        raise SceneError(f"law = {law!r}; needs one of {', '.join(TAPS)}")
-    if unilateral not in UNILATERAL:
-        raise SceneError(f"unilateral = {unilateral!r}; needs 'gate', 'clip' or None (the spring always acts)")
+    choice("law", law, TAPS, error=SceneError)
+    choice("unilateral", unilateral, UNILATERAL, need="'gate', 'clip' or None (the spring always acts)", error=SceneError)
     k, x_o = parameters("k x_o", units="N/m m", values=(None, 0))
     B = parameters("B", units="N*s/m", values=0, ranges=(-math.inf, math.inf))
 
@@ -86,9 +85,7 @@ def wall(law="zoh", unilateral="gate", clamp=False, velocity=None):
 
 
 def _checked(velocity):
-    if not (velocity is None or isinstance(velocity, VelocityEstimate)):
-        raise SceneError(f"velocity = {velocity!r}; needs an estimate, as in velocity=hl.filtered_velocity(tau='4 ms'), or None")
-    return velocity
+    return instance("velocity", velocity, VelocityEstimate | None, f"{AN_ESTIMATE}, or None", error=SceneError)
 
 
 def _scene(force, name, estimate):

@@ -4,12 +4,13 @@ import math
 
 import sympy as sp
 
+from ...arguments import choice, instance
 from ...errors import SceneError
-from ..notation.amount import amount, number_of
+from ..notation.amount import amount
 from ..notation.parameters import parameters
 from ..notation.symbols import n, v, when
 from ..scene import Scene
-from .estimators import VelocityEstimate
+from .estimators import AN_ESTIMATE, VelocityEstimate
 
 SHAPES = ("smooth", "dead_zone")
 
@@ -52,18 +53,16 @@ def damping_compensation(scene=None, *, b, coulomb=0, speed=None, shape="smooth"
     ['dry', 'viscous']
     >>> wall = hl.damping_compensation(hl.wall(), b=0.1)(k=20, viscous=0.9)
     """
-    if shape not in SHAPES:
-        raise SceneError(f"shape = {shape!r}; needs one of {', '.join(SHAPES)}")
-    if not (velocity is None or isinstance(velocity, VelocityEstimate)):
-        raise SceneError(f"velocity = {velocity!r}; needs an estimate, as in velocity=hl.filtered_velocity(tau='4 ms')")
+    choice("shape", shape, SHAPES, error=SceneError)
+    instance("velocity", velocity, VelocityEstimate | None, AN_ESTIMATE, error=SceneError)
     moving = v(n) if velocity is None else velocity.velocity
     viscous, dry = parameters("viscous dry", units="1 1", ranges=((0, math.inf), (0, math.inf)))
-    force = -viscous * _at_least(b, "N*s/m", "b", 0) * moving
-    friction = _at_least(coulomb, "N", "coulomb", 0)
+    force = -viscous * amount(b, "N*s/m", "b", "friction", least=0) * moving
+    friction = amount(coulomb, "N", "coulomb", "friction", least=0)
     if friction != 0:
         if speed is None:
             raise SceneError("coulomb without speed: the sign of a measured velocity needs a width, such as speed='5 mm/s'")
-        force -= dry * friction * _sign(moving, _at_least(speed, "m/s", "speed", 0, above=True), shape)
+        force -= dry * friction * _sign(moving, amount(speed, "m/s", "speed", "friction", above=0), shape)
     eom = () if velocity is None else velocity.eom
     if scene is None:
         return Scene(force, eom, name="damping compensation")
@@ -76,11 +75,3 @@ def _sign(moving, speed, shape):
     if shape == "smooth":
         return moving / sp.sqrt(moving**2 + speed**2)
     return when(moving > speed, 1, when(moving < -speed, -1, 0))
-
-
-def _at_least(given, unit, name, low, above=False):
-    value = amount(given, unit, name)
-    number = number_of(value)
-    if number.is_number and not (number > low if above else number >= low):
-        raise SceneError(f"{name} = {float(number):g} {unit}; friction needs {name} {'>' if above else '>='} {low}")
-    return value

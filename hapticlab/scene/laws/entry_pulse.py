@@ -8,12 +8,13 @@ and static friction with a magnetically levitated input/output device*, J. Dynam
 
 import sympy as sp
 
+from ...arguments import count, instance
 from ...errors import SceneError
-from ..notation.amount import amount, number_of
+from ..notation.amount import amount
 from ..notation.parameters import T
 from ..notation.symbols import n, signal, v, when, x
 from ..scene import Scene
-from .estimators import VelocityEstimate
+from .estimators import AN_ESTIMATE, VelocityEstimate
 
 #: periods that a pulse may last
 LONGEST_PULSE = 1000
@@ -59,15 +60,17 @@ def braking_pulse(scene, *, impulse=None, part=None, mass=None, periods=1, force
     'zoh wall with a braking pulse'
     """
     moving, eom = _speed(velocity)
-    periods = _whole(periods)
+    periods = count("periods", periods, "a pulse", of="periods", most=LONGEST_PULSE, error=SceneError)
     if (impulse is None) == (part is None) or (mass is None) != (part is None):
         raise SceneError("a braking pulse needs impulse=..., in N s, or part=... of the momentum and mass=..., in kg")
     if impulse is not None:
-        taken = _positive(impulse, "N*s", "impulse")
+        taken = amount(impulse, "N*s", "impulse", "a pulse", above=0)
     else:
-        taken = _part(part) * _positive(mass, "kg", "mass") * sp.Max(moving, 0)
+        part = amount(part, "1", "part", "a pulse", above=0)
+        amount(part, "1", "part", "more than the whole momentum throws the handle back:", most=1)
+        taken = part * amount(mass, "kg", "mass", "a pulse", above=0) * sp.Max(moving, 0)
     force = taken / (periods * T)
-    force = force if force_max is None else sp.Min(force, _positive(force_max, "N", "force_max"))
+    force = force if force_max is None else sp.Min(force, amount(force_max, "N", "force_max", "a pulse", above=0))
     entered, inside = _crossing(scene, x_o)
     left, size = signal(f"{name}_left", unit="1"), signal(f"{name}_force", unit="N")
     going = when(inside & (moving > 0), sp.Max(left(n - 1) - 1, 0))
@@ -116,10 +119,11 @@ def friction_pulse(scene, *, friction, mass, periods, velocity=None, x_o=None, n
     'zoh wall with a friction pulse'
     """
     moving, eom = _speed(velocity)
-    limit, mass = _positive(friction, "N", "friction"), _positive(mass, "kg", "mass")
+    periods = count("periods", periods, "a pulse", of="periods", most=LONGEST_PULSE, error=SceneError)
+    limit, mass = amount(friction, "N", "friction", "a pulse", above=0), amount(mass, "kg", "mass", "a pulse", above=0)
     entered, inside = _crossing(scene, x_o)
     left = signal(f"{name}_left", unit="1")
-    eom += (sp.Eq(left(n), when(entered, _whole(periods), when(inside, sp.Max(left(n - 1) - 1, 0)))),)
+    eom += (sp.Eq(left(n), when(entered, periods, when(inside, sp.Max(left(n - 1) - 1, 0)))),)
     force = sp.Max(-limit, sp.Min(limit, mass * moving / T))
     return _added(scene, when(left(n) > 0, force), eom, "a friction pulse")
 
@@ -127,8 +131,7 @@ def friction_pulse(scene, *, friction, mass, periods, velocity=None, x_o=None, n
 def _speed(velocity):
     if velocity is None:
         return v(n), ()
-    if not isinstance(velocity, VelocityEstimate):
-        raise SceneError(f"velocity = {velocity!r}; needs an estimate, as in velocity=hl.filtered_velocity(tau='4 ms')")
+    instance("velocity", velocity, VelocityEstimate, AN_ESTIMATE, error=SceneError)
     return velocity.velocity, velocity.eom
 
 
@@ -143,24 +146,3 @@ def _crossing(scene, x_o):
 def _added(scene, force, eom, what):
     fresh = tuple(e for e in eom if e not in scene.eom)  # an estimate that the scene has already
     return Scene(scene.force + force, (*scene.eom, *fresh), scene.watch, scene.values, f"{scene.name} with {what}")
-
-
-def _positive(given, unit, name):
-    value = amount(given, unit, name)
-    number = number_of(value)
-    if number.is_number and not number > 0:
-        raise SceneError(f"{name} = {float(number):g} {unit}; a pulse needs {name} > 0")
-    return value
-
-
-def _part(given):
-    part = _positive(given, "1", "part")
-    if part.is_number and part > 1:
-        raise SceneError(f"part = {float(part):g}; more than the whole momentum throws the handle back: needs part <= 1")
-    return part
-
-
-def _whole(periods):
-    if not (isinstance(periods, int) and 1 <= periods <= LONGEST_PULSE):
-        raise SceneError(f"periods = {periods!r}; a pulse needs a whole number of periods, 1 to {LONGEST_PULSE}")
-    return periods

@@ -15,7 +15,6 @@ kalman             T (alpha/beta - 1/2)       beta D/T
 :func:`~hapticlab.rendering.velocity_errors.velocity_errors` compares them on a record.
 """
 
-import math
 from dataclasses import dataclass, field
 
 import sympy as sp
@@ -24,6 +23,8 @@ from ...errors import SceneError
 from ..notation.amount import amount, number_of
 from ..notation.parameters import T
 from ..notation.symbols import n, signal, x
+
+AN_ESTIMATE = "an estimate, as in velocity=hl.filtered_velocity(tau='4 ms')"
 
 
 @dataclass(frozen=True)
@@ -128,27 +129,9 @@ def filtered_velocity(*, tau, name="v_filtered"):
     filtered difference: v = v_filtered(n)
       v_filtered(n) = (v_filtered(n - 1)*(0.004 s) + x(n) - x(n - 1))/(T + (0.004 s))
     """
-    tau = at_least_zero(tau, "s", "tau", "a filter")
+    tau = amount(tau, "s", "tau", "a filter", least=0)
     cheaper = (backward_velocity(),)
     v = signal(name, unit="m/s", instead=cheaper)
     step = sp.Eq(v(n), (tau * v(n - 1) + x(n) - x(n - 1)) / (tau + T))
     transfer = (1 / (tau + T), -1 / (tau + T)), (1, -tau / (tau + T))
     return VelocityEstimate(v(n), (step,), "filtered difference", cheaper, transfer)
-
-
-def positive(given, unit, name, owner):
-    """An expression > 0 in a unit, as far as its sign is known, from a number, a text with a unit or an expression."""
-    value = amount(given, unit, name)
-    number = number_of(value)
-    if number.is_number and not number > 0:
-        raise SceneError(f"{name} = {float(number):g} {unit}; {owner} needs {name} > 0")
-    return value
-
-
-def at_least_zero(given, unit, name, owner):
-    """An expression >= 0 in a unit, from the same."""
-    value = amount(given, unit, name)
-    number = number_of(value)
-    if number.is_number and not (number >= 0 and math.isfinite(number)):
-        raise SceneError(f"{name} = {float(number):g} {unit}; {owner} needs {name} >= 0")
-    return value

@@ -4,6 +4,7 @@ import math
 
 import sympy as sp
 
+from ...arguments import instance, number
 from ...errors import SceneError
 from ..notation.amount import Amount
 from ..notation.parameters import T
@@ -39,8 +40,8 @@ def guidance(path):
     >>> bool(abs(log.x[2000:] - 0.01 * np.sin(2 * log.t[2000:])).max() < 1e-4)
     True
     """
-    if not isinstance(path, sp.Expr | int | float):
-        raise SceneError(f"path = {path!r}; needs an expression of hl.t and parameters, such as A*sympy.sin(w*hl.t)")
+    need = "an expression of hl.t and parameters, such as A*sympy.sin(w*hl.t)"
+    instance("path", path, (sp.Expr, int, float), need, error=SceneError)
     k, b, most = parameters("k b F_max", units="N/m N*s/m N")
     force = k * (x(n) - path) + b * (v(n) - sp.diff(path, t))
     return Scene(force=sp.Max(sp.Min(force, most), -most), name="guidance")
@@ -87,7 +88,5 @@ def tremor_filter(centre="10 Hz", bandwidth="6 Hz"):
 
 
 def _frequency(name, given):
-    number = in_si(given, "Hz", name) if isinstance(given, str) else float(given)
-    if not (math.isfinite(number) and number > 0):
-        raise SceneError(f"{name} = {given}; a band needs a frequency > 0 Hz")
-    return number
+    value = in_si(given, "Hz", name) if isinstance(given, str) else given
+    return number(name, value, "Hz", "a band", above=0, what="a frequency", error=SceneError)

@@ -2,9 +2,10 @@
 
 import sympy as sp
 
+from ..notation.amount import amount
 from ..notation.parameters import T
 from ..notation.symbols import n, signal, when, x
-from .estimators import VelocityEstimate, backward_velocity, positive
+from .estimators import VelocityEstimate, backward_velocity
 
 
 def kalman_velocity(*, acceleration, noise, steady=True, speed=1.0, name="kalman"):
@@ -40,7 +41,7 @@ def kalman_velocity(*, acceleration, noise, steady=True, speed=1.0, name="kalman
     >>> [round(c, 6) for c in estimate.transfer(1e-3)[1]]
     [1.0, 0.117218, 0.05496]
     """
-    sigma = positive(acceleration, "m/s^2", "acceleration", "the handle"), positive(noise, "m", "noise", "a sensor")
+    sigma = amount(acceleration, "m/s^2", "acceleration", "the handle", above=0), amount(noise, "m", "noise", "a sensor", above=0)
     index = sigma[0] * T**2 / sigma[1]
     cheaper = () if steady else (kalman_velocity(acceleration=acceleration, noise=noise, name=name),)
     cheaper += (backward_velocity(),)
@@ -50,7 +51,7 @@ def kalman_velocity(*, acceleration, noise, steady=True, speed=1.0, name="kalman
         eom = (sp.Eq(lead(n), _lead(index)),)
         alpha, beta = _steady_gains(lead(n))
     else:
-        start = (positive(speed, "m/s", "speed", "the handle") * T / sigma[1]) ** 2
+        start = (amount(speed, "m/s", "speed", "the handle", above=0) * T / sigma[1]) ** 2
         (alpha, beta), eom = _gains(index, start, name)
     missed, pull = signal(f"{name}_missed", unit="m"), signal(f"{name}_pull", unit="1/s")
     eom += (

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import sympy as sp
 
+from ...arguments import choice
 from ...errors import SceneError
 from ..notation.symbols import T, delay, n, parameters, signal, v, when, x
 from ..notation.written import expression
@@ -143,7 +144,8 @@ def passivity_controller(
     [True, False]
     """
     check_scene(scene)
-    lag, stored = _whole(lag), expression(stored, "stored")
+    stored = expression(stored, "stored")
+    lag = _whole(lag)
     _check(form, scene, stored, predict, lag)
     given = {"alpha_max": alpha_max, "beta_max": beta_max, "force_max": force_max, "forget": forget}
     given |= {"credit_max": credit_max, "reset": reset}
@@ -243,8 +245,7 @@ def _whole(lag):
 
 
 def _check(form, scene, stored, predict, lag):
-    if form not in FORMS:
-        raise SceneError(f"form = {form!r}; needs 'series' (a damper beside the scene) or 'parallel' (a slip before it)")
+    choice("form", form, FORMS, need="'series' (a damper beside the scene) or 'parallel' (a slip before it)", error=SceneError)
     alone = {a for a in stored.atoms(sp.Function) if hasattr(type(a), "role")} <= {x(n)} and not stored.has(delay)
     if form == "parallel" and (stored == 0 or not alone):
         raise SceneError(

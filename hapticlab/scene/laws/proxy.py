@@ -2,6 +2,7 @@
 
 import sympy as sp
 
+from ...arguments import choice, count
 from ...errors import SceneError
 from ..notation.amount import amount
 from ..notation.cases import when
@@ -36,8 +37,7 @@ def proxy_wall(sides="one"):
     >>> hl.proxy_wall("both")(K=500, x_o="10 mm").values
     {'B': 0.0, 'x_o': 0.01, 'K': 500.0}
     """
-    if sides not in ("one", "both"):
-        raise SceneError(f"sides = {sides!r}; needs 'one' (solid beyond x_o) or 'both' (a plate at x_o)")
+    choice("sides", sides, ("one", "both"), need="'one' (solid beyond x_o) or 'both' (a plate at x_o)", error=SceneError)
     K, x_o = parameters("K x_o", units="N/m m", values=(None, 0))
     B = parameters("B", units="N*s/m", values=0)
     z = signal("z", unit="m", initial=x(n))
@@ -96,8 +96,7 @@ def proxy_curve(height, *, load, mu=0, steps=2):
         raise SceneError(f"load = {P}; needs the force > 0 N with which the finger rests on the curve")
     if friction.is_negative:
         raise SceneError(f"mu = {float(friction):g}; friction opposes the slip: needs mu >= 0")
-    if not (isinstance(steps, int) and steps >= 1):
-        raise SceneError(f"steps = {steps!r}; needs a whole number of Newton steps >= 1")
+    count("steps", steps, of="Newton steps", error=SceneError)
     z = signal("z", unit="m", initial=x(n))
     along = sp.Dummy("z", real=True)
     curve = expression(height(along), "height")

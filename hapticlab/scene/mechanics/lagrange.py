@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ...arguments import choice
 from ...errors import MassError, SceneError
 from ..contact.contact import Contact, friction
 from ..notation.checks import agree_with, applied
@@ -65,8 +66,7 @@ class Mechanics:
     names: tuple = ()
 
     def __post_init__(self):
-        if self.enforce not in ENFORCE:
-            raise SceneError(f"enforce = {self.enforce!r}; needs one of {', '.join(ENFORCE)}")
+        choice("enforce", self.enforce, ENFORCE, error=SceneError)
         if self.alpha is not None and self.enforce != "baumgarte":
             raise SceneError(
                 f"alpha = {self.alpha} is the feedback of Baumgarte's stabilisation, and enforce = {self.enforce!r} has none; "

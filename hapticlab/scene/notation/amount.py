@@ -4,6 +4,7 @@ import math
 
 import sympy as sp
 
+from ...arguments import number
 from ...errors import SceneError
 from .checks import agree_with
 from .parameters import Parameter
@@ -60,18 +61,28 @@ class Amount(sp.Expr):
         return rf"{float(self.value):g}\,\mathrm{{{self.unit}}}"
 
 
-def amount(given, unit, where):
-    """An expression in a unit, from a number, a text such as '5 mm' or an expression; refuse any other unit."""
+def amount(given, unit, where, owner="", **limits):
+    """An expression in a unit, from a number, a text such as '5 mm' or an expression; refuse any other unit.
+
+    A value that is known is held to the ``limits`` of :func:`hapticlab.arguments.number`.
+    """
+    expr = _in_unit(given, unit, where)
+    known = number_of(expr)
+    if limits and known.is_number:
+        value = float(known)
+        number(where, int(value) if value.is_integer() else value, unit, owner, error=SceneError, **limits)
+    return expr
+
+
+def _in_unit(given, unit, where):
     if isinstance(given, str) or (isinstance(given, (int, float)) and not isinstance(given, bool)):
-        number = in_si(given, unit, where)
-        if not math.isfinite(number):
-            raise SceneError(f"{where} = {number}; needs a finite number in {unit}")
-        return sp.S.Zero if number == 0 else Amount(number, unit) if unit not in ("1", "rad") else turned(number)
+        value = number(where, in_si(given, unit, where), unit, what="number", error=SceneError)
+        return sp.S.Zero if value == 0 else Amount(value, unit) if unit not in ("1", "rad") else turned(value)
     expr = expression(given, where)
     if expr.is_number and not expr.is_real:
         raise SceneError(f"{where} = {expr}; needs a finite real number in {unit}")
     if expr.is_number and unit not in ("1", "rad"):
-        return amount(float(expr), unit, where)
+        return _in_unit(float(expr), unit, where)
     agree_with(expr, unit, where)
     return expr
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.core.symbol import Str
 
+from ...arguments import choice
 from ...errors import SceneError
 from ..notation.cases import when
 from .closest_points import PARTS, ClosestPoints
@@ -96,8 +97,7 @@ def closest(a, b, *, method="faces"):
     """
     for body in (a, b):
         check_placed(body)
-    if method not in METHODS:
-        raise SceneError(f"method = {method!r}; needs one of {', '.join(METHODS)}")
+    choice("method", method, METHODS, error=SceneError)
     if isinstance(b.shape, HalfPlane) or (isinstance(a.shape, Circle) and not isinstance(b.shape, Circle)):
         if isinstance(a.shape, HalfPlane):
             raise SceneError(f"{a.name} and {b.name} are two half-planes, which always overlap; bound one of them: hl.Box")
