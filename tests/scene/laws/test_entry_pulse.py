@@ -175,7 +175,7 @@ def test_pulses_fit_the_uno_at_1_khz(scene):
         (lambda: hl.braking_pulse(OPEN, impulse=1, part=1, mass=1), SceneError, "impulse=.*or part="),
         (lambda: hl.braking_pulse(OPEN, part=1), SceneError, "and mass="),
         (lambda: hl.braking_pulse(OPEN, impulse="1 N"), UnitsError, "impulse = '1 N'"),
-        (lambda: hl.braking_pulse(OPEN, part=-0.1, mass=M), SceneError, "part = -0.1 1; a pulse needs part > 0"),
+        (lambda: hl.braking_pulse(OPEN, part=-0.1, mass=M), SceneError, "part = -0.1; a pulse needs part > 0"),
         (lambda: hl.braking_pulse(OPEN, part=1.5, mass=M), SceneError, "throws the handle back: needs part <= 1"),
         (lambda: hl.braking_pulse(OPEN, impulse=1, periods=0), SceneError, "whole number of periods, 1 to 1000"),
         (lambda: hl.braking_pulse(OPEN, impulse=1, velocity="window"), SceneError, "needs an estimate"),
