@@ -47,7 +47,7 @@ def _check(parser, options):
     """Refuse what cannot be meant, before anything is read."""
     if options.fresh and not options.output:
         parser.error("--fresh forgets what is beside the results; it needs -o FILE")
-    if formats.WRITERS[options.format][1] and not options.roster:
+    if formats.FORMATS[options.format].needs_roster and not options.roster:
         parser.error(f"{options.format} knows students by its own ids; name a CSV file that it gave out: --roster FILE.csv")
     if options.gradebook and not options.gradebook.is_file():
         parser.error(f"{options.gradebook}: no such file; name the gradebook.db of a course of nbgrader")

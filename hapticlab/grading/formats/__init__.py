@@ -1,21 +1,13 @@
 """Reports as others read them: a terminal, a spreadsheet, a learning management system, an autograder's platform."""
 
-from ...errors import CourseError
-from . import canvas, class_csv, gradescope, moodle, nbgrader_csv, plain, prairielearn
+from importlib import import_module
+from pkgutil import iter_modules
 
-#: format to what writes it, and whether it needs a roster
-WRITERS = {
-    "text": (plain.text, False),
-    "json": (plain.whole, False),
-    "csv": (class_csv.wide, False),
-    "csv-long": (class_csv.long, False),
-    "nbgrader": (nbgrader_csv.grades, False),
-    "gradescope": (gradescope.results, False),
-    "prairielearn": (prairielearn.results, False),
-    "canvas": (canvas.gradebook, True),
-    "moodle": (moodle.grades, True),
-}
-FORMATS = tuple(WRITERS)
+from ...errors import CourseError
+
+_MODULES = [import_module(f".{found.name}", __name__) for found in iter_modules(__path__)]
+#: name -> Format, of all modules in this folder
+FORMATS = {one.name: one for one in sorted((f for m in _MODULES for f in getattr(m, "FORMATS", ())), key=lambda one: one.rank)}
 
 
 def write(name, reports, roster=None, assignment="", folder=""):
@@ -51,9 +43,9 @@ def write(name, reports, roster=None, assignment="", folder=""):
     ada: 2 of 2 points, lab 02 Walls, wall.ipynb
       right      k (2)
     """
-    if name not in WRITERS:
+    if name not in FORMATS:
         raise CourseError(f"format {name!r}: needs one of {', '.join(FORMATS)}")
-    writer, needs_roster = WRITERS[name]
-    if needs_roster and roster is None:
+    made = FORMATS[name]
+    if made.needs_roster and roster is None:
         raise CourseError(f"{name} knows students by its own ids; name a CSV file that it gave out: --roster FILE.csv")
-    return writer(tuple(reports), roster, assignment or (folder if name == "nbgrader" else ""))
+    return made.write(tuple(reports), roster, assignment or (folder if made.folder_is_assignment else ""))

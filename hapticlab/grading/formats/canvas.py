@@ -5,6 +5,7 @@ https://teaching.resources.osu.edu/toolsets/carmencanvas/guides/calculating-fina
 """
 
 from ...errors import CourseError
+from .format import Format
 from .table import by_student, table
 
 COLUMNS = {"student": "Student", "id": "ID", "sis_user_id": "SIS User ID", "sis_login_id": "SIS Login ID", "section": "Section"}
@@ -38,3 +39,6 @@ def gradebook(reports, roster, assignment=""):
 
 def _info(person):
     return {name: person[key] for key, name in COLUMNS.items() if key in person}
+
+
+FORMATS = (Format("canvas", gradebook, "table", needs_roster=True),)

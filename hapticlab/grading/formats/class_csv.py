@@ -1,5 +1,6 @@
 """A class as a table: a row for each submission, or one for each exercise of each."""
 
+from .format import Format
 from .table import table
 from .words import judged, points, state
 
@@ -47,3 +48,6 @@ def long(reports, roster=None, assignment=""):
         for one in report.exercises
     )
     return table([*columns, "words", "slip", "ended"], rows)
+
+
+FORMATS = (Format("csv", wide, "table"), Format("csv-long", long, "table"))

@@ -3,6 +3,7 @@
 import json
 
 from ...errors import CourseError
+from .format import Format
 from .words import clean, failed_cells, for_student, judged, only, points, printed, state
 
 #: how a problem begins that is no fault of the student
@@ -50,3 +51,6 @@ def _test(number, one):
         "output": for_student(one) + (f"\nIt printed:\n{out}" if out else ""),
         "visibility": "visible",
     }
+
+
+FORMATS = (Format("gradescope", results, "result"),)

@@ -1,6 +1,7 @@
 """A file for "Import grades, CSV file" of Moodle: https://docs.moodle.org/en/Grade_import."""
 
 from ...errors import CourseError
+from .format import Format
 from .table import by_student, table
 
 #: key in the roster to the field that is chosen at "Map to"
@@ -31,3 +32,6 @@ def grades(reports, roster, assignment=""):
         )
     rows = ({KEYS[key]: person[key], **earned[student]} for student, person in people.items() if earned[student])
     return table([KEYS[key], *columns], rows)
+
+
+FORMATS = (Format("moodle", grades, "table", needs_roster=True),)

@@ -1,5 +1,6 @@
 """The grades.csv that nbgrader exports."""
 
+from .format import Format
 from .table import best, table
 from .words import points, title
 
@@ -31,3 +32,6 @@ def _row(report, person, assignment):
         "email": person.get("email", "") or person.get("email_address", ""),
         **score,
     }
+
+
+FORMATS = (Format("nbgrader", grades, "table", folder_is_assignment=True),)

@@ -4,6 +4,7 @@ import json
 import math
 from dataclasses import asdict
 
+from .format import Format
 from .words import clean, failed_cells, judged, points, state
 
 
@@ -61,3 +62,6 @@ def _finite(value):
     if isinstance(value, list | tuple):
         return [_finite(part) for part in value]
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+
+
+FORMATS = (Format("text", text, "words"), Format("json", whole, "json"))
