@@ -10,7 +10,7 @@ from .. import __version__
 from ..analysis.accuracy.tradeoff import tradeoff as measure_tradeoff
 from ..analysis.records.plots import plot
 from ..compiler.events.taylor_method import Taylor
-from ..compiler.methods.exact_linear import EXACT
+from ..compiler.methods.chosen_method import EXACT
 from ..compiler.methods.method_table import METHODS
 from ..errors import HapticlabError, SceneError
 from . import board

@@ -26,14 +26,18 @@ what is written by hand. Nothing is solved in symbols.
 ``analysis.programs.requires`` leaves out what the force does not need (``dependence``,
 ``analysis.programs.requirement_report``), for ``analysis.programs.replay`` to run after the fact.
 
-**ExplicitForm -> Dynamics.** ``compile_scene`` checks what was asked for, ``lowering`` is the tick, in the order it
-runs: sample (``handle_samples``), force, outputs, and one period of motion; ``force_timing`` has the force after it, or
-on average. Expressions become ``values`` of a ``trace`` by ``expressions`` (``phase`` and ``constants`` look after
+**ExplicitForm -> tick.** ``compile_scene`` checks what was asked for (``chosen_method`` reads ``method=``,
+``options`` the rest). A scene without coordinates is a ``force_program``: the sample is taken (``handle_samples``),
+its leaves get their values (``samples``), the force follows, and that is the tick. Any other is a ``motion_program``,
+in the order the tick runs: sample, force, outputs, and one period of motion; ``force_timing`` has the force on
+average. Expressions become ``values`` of a ``trace`` by ``expressions`` (``phase`` and ``constants`` look after
 angles and numbers). Each does one of the ``operations``: a record of each says how it is computed, simplified and
 differentiated, here and on a board. Whatever must be differentiated, evaluated in numbers or shared is in ``graph``
-(``differentiate``, ``derivative_builder``). ``dynamics`` answers one question: in this state at this instant,
-what are the accelerations? For M a = f alone that is ``linear_solve``; ``mass_matrix`` has looked whether there is an
-answer, ``first_sample`` where it starts, ``structural_zeros`` leaves out what is structurally zero.
+(``differentiate``, ``derivative_builder``).
+
+**Tick -> Dynamics.** ``dynamics`` answers one question: in this state at this instant, what are the accelerations? For
+M a = f alone that is ``linear_solve``; ``mass_matrix`` has looked whether there is an answer, ``first_sample`` where it
+starts, ``structural_zeros`` leaves out what is structurally zero.
 
 - A constraint: ``enforcement_choice`` chooses how it is kept, and refuses one that cannot be:
   ``constraint_consistency`` says why, ``constraint_assembly`` has walked the configurations. ``enforcement`` does what
@@ -59,7 +63,7 @@ A motion without samples, to compare a program's force with: ``analysis.accuracy
 follow a given path inside the step, ``analysis.accuracy.accelerations_at`` leaves the stepping to whoever asks.
 
 **Method -> Program.** ``program_builder`` gathers states and inputs, named by ``channels``, and leaves out what no
-output sees; ``options`` has checked what was asked for. How long a step may be, and what live parameters may be set to,
+output sees. How long a step may be, and what live parameters may be set to,
 is known before it runs: ``tangents`` differentiates the instructions in numbers (``analysis.stability.slopes``, of the
 motion), ``step_matrix`` takes a method's step of what comes out, ``live_stability`` tells at which values it is stable,
 and ``live_limits`` how far each may go. The result is a ``program``:

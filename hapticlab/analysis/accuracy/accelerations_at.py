@@ -18,9 +18,11 @@ from ...compiler.events.series_checks import numbers
 from ...compiler.events.taylor_series import Series
 from ...compiler.ir.program import Channel, Program
 from ...compiler.ir.trace import Builder, Value, select
+from ...compiler.prune.mass_matrix import start_of
+from ...compiler.tick.motion_program import moving_scene
 from ...errors import ProgramError
 from ...scene.notation.symbols import acceleration, t
-from .continuous_handle import DEGREE, Followed, lowering_of
+from .continuous_handle import DEGREE, Followed, between_samples
 
 #: what is known of every reaction
 ROWS = ("measure", "d1", "d2", "free", "inside", "lean")
@@ -96,22 +98,27 @@ def instant(scene, *, T):
     ProgramError
         The scene has a part that no state determines: a past sample, a micro-impulse, friction in an impact.
     """
-    lowering, _ = lowering_of(scene, T, 1, None, AtInstant)
-    dynamics, tick = lowering.dynamics, lowering.tracing.tick
-    contacts = dynamics.contacts
+    *between, _ = between_samples(scene, T)
+    moving = moving_scene(*between, AtInstant)
+    dynamics, tick = moving.dynamics, moving.tick.tracing.tick
+    contacts, equations, touching = dynamics.contacts, dynamics.equations, dynamics.touching()
     _check(contacts)
-    events = contacts.reactions if contacts.located else None
-    motion = motion_of(tick, dynamics.rates, len(dynamics.second), len(dynamics.first), events)
-    F = dynamics.at(lowering.handle.tau, motion.q, motion.w, motion.s)(lowering.form.force)
+    unknowns = touching.unknowns if touching else {}
+
+    def rates(tau, q, w, s):
+        return dynamics.rates(tau, q, w, s, unknowns)
+
+    motion = motion_of(tick, rates, len(equations.second), len(equations.first), touching and touching.reactions)
+    F = dynamics.at(moving.tick.handle.tau, motion.q, motion.w, motion.s, unknowns).translate(moving.form.force)
     outputs = [F, *motion.a, *motion.ds, *(g.measure for g in motion.guards)]
     for r, derivatives in zip(motion.reactions, _derivatives(motion), strict=True):
         lean = r.lean if r.lean is not None else tick.const(0.0)
         outputs += [r.measure, *derivatives, r.free, r.inside, lean]
-    bounces = [_bounce(c, contacts.constant) for c in contacts.contacts]
+    bounces = [_bounce(c, moving.sample) for c in contacts.contacts]
     return Instant(
-        _program(scene.name, lowering, motion, outputs), len(motion.w), len(motion.s), tuple(g.kind for g in motion.guards),
+        _program(scene.name, moving, motion, outputs), len(motion.w), len(motion.s), tuple(g.kind for g in motion.guards),
         tuple(r.level for r in motion.reactions), (*bounces, *[None] * (len(motion.reactions) - len(bounces))),
-        _start_of(lowering), digit("f64"),
+        _start_of(moving), digit("f64"),
     )  # fmt: skip
 
 
@@ -130,7 +137,7 @@ def _bounce(contact, constant):
 
 
 def _derivatives(motion):
-    """Return the first and second derivative of each reaction's measure along the motion."""
+    """The first and second derivative of each reaction's measure along the motion."""
     rows = {p.id: [p, w, a * 0.5] for p, w, a in zip(motion.q, motion.w, motion.a, strict=True)}
     rows |= {w.id: [w, a] for w, a in zip((*motion.w, *motion.s), (*motion.a, *motion.ds), strict=True)}
     rows[motion.tau.id] = [motion.tau, 1.0, 0.0]
@@ -147,13 +154,13 @@ def _derivatives(motion):
         yield value(c[1]), value(2.0 * c[2] if r.level == 2 else 0.0)
 
 
-def _program(name, lowering, motion, outputs):
-    """Return the program with every leaf of the motion a state, its reactions found."""
-    tracing, builder = lowering.tracing, Builder("f64")
+def _program(name, moving, motion, outputs):
+    """The program with every leaf of the motion a state, its reactions found."""
+    tracing, builder = moving.tick.tracing, Builder("f64")
     held = len(motion.reactions)
     leaves = [*motion.q, *motion.w, *motion.s, *(g.leaf for g in motion.guards), *(r.leaf for r in motion.reactions)]
     leaves += [r.side for r in motion.reactions if r.side is not None]
-    raw = _block(lowering, motion, outputs, leaves)
+    raw = _block(tracing, moving.dynamics, motion, outputs, leaves)
     types = [*["f64"] * len(TICKS), *(leaf.type for leaf in leaves), *["bool"] * held]
     states = [builder.leaf("state", k, type) for k, type in enumerate(types)]
     inputs = [builder.leaf("input", k, "f64") for k in range(DEGREE + 2)]
@@ -173,9 +180,8 @@ def _program(name, lowering, motion, outputs):
     return Program(name, tuple(tracing.inputs[3:]), (), channels, named, zero, tick, tracing.T).verify()
 
 
-def _block(lowering, motion, outputs, leaves):
-    """Return the block of the outputs, each leaf of the motion a state: the period's number, then ``leaves``."""
-    tracing, dynamics = lowering.tracing, lowering.dynamics
+def _block(tracing, dynamics, motion, outputs, leaves):
+    """The block of the outputs, each leaf of the motion a state: the period's number, then ``leaves``."""
     place = {("input", 3 + k): ("input", k) for k in range(DEGREE + 2)}
     place[_key(motion.tau)] = ("input", DEGREE + 1)
     place |= {_key(leaf): ("state", len(TICKS) + k) for k, leaf in enumerate(leaves)}
@@ -183,8 +189,8 @@ def _block(lowering, motion, outputs, leaves):
     for k, key in enumerate(tracing.keys):
         if key in TICKS:
             place["state", k] = ("state", TICKS.index(key))
-        elif key in dynamics.states:
-            place["state", k] = ("state", len(TICKS) + dynamics.states.index(key))
+        elif key in dynamics.equations.states:
+            place["state", k] = ("state", len(TICKS) + dynamics.equations.states.index(key))
         elif key in reactions:
             place["state", k] = place[_key(motion.reactions[reactions.index(key)].leaf)]
     block = tracing.tick.block(outputs)
@@ -192,7 +198,7 @@ def _block(lowering, motion, outputs, leaves):
 
 
 def _balanced(reactions, evaluated, extra, held):
-    """Return the outputs with the reactions that keep the measures of those held, and what is given to the others."""
+    """The outputs with the reactions that keep the measures of those held, and what is given to the others."""
     if not reactions:
         return evaluated([])
     count, every = len(reactions), range(len(reactions))
@@ -229,11 +235,11 @@ def _placed(i, place):
     return replace(i, op=op, index=index)
 
 
-def _start_of(lowering):
-    firsts = [lowering.first_of(state).id for state in lowering.dynamics.states]
+def _start_of(moving):
+    firsts = [moving.start(start_of(state)).id for state in moving.dynamics.equations.states]
 
     def start(x, v):
-        number = numbers(lowering.tracing.init.instructions, {("input", 0): x, ("input", 1): v})
+        number = numbers(moving.tick.tracing.init.instructions, {("input", 0): x, ("input", 1): v})
         return np.array([float(number(p)) for p in firsts])
 
     return start

@@ -5,11 +5,14 @@ from dataclasses import replace
 import numpy as np
 import sympy as sp
 
+from ...compiler.algebra.graph import Graph
 from ...compiler.events.taylor_method import Taylor
 from ...compiler.ir.program import Channel
-from ...compiler.prune.excluded_modes import excluded, rests_on
+from ...compiler.methods.chosen_method import chosen_method
+from ...compiler.prune.excluded_modes import excluded, folded, rests_on
+from ...compiler.tick.compile_scene import Options
 from ...compiler.tick.handle_samples import Handle
-from ...compiler.tick.lowering import Lowering
+from ...compiler.tick.motion_program import motion_program
 from ...errors import ProgramError
 from ...scene.notation.symbols import T, acceleration, delay, lag_of, n, t, v, x
 
@@ -54,7 +57,7 @@ def _polynomial(c, theta):
 
 
 def coefficients(derivatives, T):
-    """Return the coefficients of x(t) in (tau - T/2)/T from its derivatives in the middle of the periods.
+    """The coefficients of x(t) in (tau - T/2)/T from its derivatives in the middle of the periods.
 
     Parameters
     ----------
@@ -95,12 +98,12 @@ def driven(scene, *, T, substeps=1, order=None):
     ProgramError
         The scene has a part that lives at the samples alone: a signal, or the rate of a delay.
     """
-    lowering, ranges = lowering_of(scene, T, substeps, order, Followed)
-    return lowering.program(ranges)
+    *between, decisions = between_samples(scene, T, substeps, order)
+    return motion_program(*between, rests_on(between[1], decisions), Followed)
 
 
-def lowering_of(scene, T, substeps, order, handle):
-    """Return (lowering, ranges) of a scene without samples under a handle of a class, all its values constants."""
+def between_samples(scene, T, substeps=1, order=None):
+    """(scene, form, options, fixed, graph, decisions) of a scene without samples, by "taylor", all its values constants."""
     form, decisions = excluded(replace(scene, watch={}), T, ())
     if form.updates:
         signal = next(iter(form.updates))
@@ -109,16 +112,13 @@ def lowering_of(scene, T, substeps, order, handle):
         form, force=without_samples(form.force), f=tuple(map(without_samples, form.f)),
         M=tuple(tuple(map(without_samples, row)) for row in form.M),
     )  # fmt: skip
-    lowering = Lowering(
-        scene, form, exact=False, method=Taylor(order=order), T=T, substeps=substeps, hold="soh", dtype="float64",
-        velocity="measured", live=(), force_at="before",
-    )  # fmt: skip
-    lowering.handle = handle(lowering.tracing)
-    return lowering, rests_on(form, decisions)
+    options = Options(chosen_method(Taylor(order=order)), T, substeps, dtype="float64", velocity="measured", live=())
+    fixed = folded(scene, ())
+    return scene, form, options, fixed, Graph(fixed), decisions
 
 
 def without_samples(expr):
-    """Return what an expression of present and past samples becomes as the sampling period goes to zero.
+    """The limit of an expression of present and past samples as the sampling period goes to zero.
 
     A past sample is x(n) - k T v(n), so that a backward difference is the velocity and a predictor the position; n T is t.
 

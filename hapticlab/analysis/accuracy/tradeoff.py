@@ -9,7 +9,7 @@ from numbers import Real
 
 from ...compiler.boards.cost import BOARDS
 from ...compiler.ir.options import choice, period, steps
-from ...compiler.methods.exact_linear import EXACT
+from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.methods.force_timing import FORCE_AT
 from ...compiler.methods.method_table import METHODS
 from ...compiler.tick.handle_samples import HOLDS
@@ -149,11 +149,6 @@ def _motions(given, scene, paddle, T):
     return motions
 
 
-def _known(method):
-    """Return whether a method has a meaning."""
-    return method in (*METHODS, EXACT, "taylor") or str(method).removeprefix("exact+") in METHODS or not isinstance(method, str)
-
-
 def _references(common, motions):
     scene, step = common
     return references(scene, motions, step=step) if motions else []
@@ -168,8 +163,7 @@ def _settings(scene, methods, T, substeps, holds, force_at, precision):
         if isinstance(several, str) or not tuple(several):
             raise AnalysisError(f"{name} = {several!r}; needs a sequence of at least one, such as {name}=[{several!r}]")
     for method in methods:
-        if not _known(method):
-            choice("method", method, (*METHODS, EXACT, "taylor"))
+        chosen_method(method)
     for hold, when, real in itertools.product(holds, force_at, precision):
         choice("hold", hold, HOLDS), choice("force_at", when, FORCE_AT), choice("precision", real, PRECISIONS)
     substeps = sorted(map(steps, substeps))

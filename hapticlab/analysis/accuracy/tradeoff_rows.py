@@ -5,7 +5,7 @@ import itertools
 import math
 from dataclasses import asdict, astuple, dataclass, fields, replace
 
-from ...compiler.methods.method_table import METHODS
+from ...compiler.methods.chosen_method import chosen_method
 
 OK, TOO_LARGE, NOT_TRIED = "ok", "does not fit", "not tried"
 #: percentages below this are not told apart
@@ -172,9 +172,9 @@ def _plain(number, form):
 
 
 def exactness(method):
-    """Return a number that is larger for a method whose own error is less."""
-    exact = {"taylor": 10, "exact": 11}
-    return exact[method] if method in exact else METHODS[method.removeprefix("exact+")].order
+    """A number that is larger for a method whose own error is less."""
+    chosen = chosen_method(method)
+    return (10 if chosen.rest else 11) if chosen.locates else chosen.rest.order
 
 
 def percent(part):

@@ -4,6 +4,7 @@ import math
 import statistics
 from dataclasses import replace
 
+from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.methods.method_table import METHODS
 from .tradeoff_choice import MARGIN, STEPS_PER_CONTACT
 from .tradeoff_rows import NOT_TRIED, OK, exactness, percent
@@ -105,8 +106,9 @@ def _can_be_least(trial, others, b_device):
 
 
 def evaluations(method):
-    """Return how often a method evaluates the equations of motion in a step, or what its cost comes to."""
-    return {"exact": 2, "taylor": 20}.get(method) or METHODS[method.removeprefix("exact+")].evaluations
+    """The evaluations of the equations of motion in a step, or what the cost of a method comes to."""
+    chosen = chosen_method(method)
+    return (20 if chosen.rest else 2) if chosen.locates else chosen.rest.evaluations
 
 
 def _early(method):

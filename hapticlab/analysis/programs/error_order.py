@@ -10,11 +10,9 @@ import sympy as sp
 
 from ...compiler.algebra.first_sample import numbers
 from ...compiler.algebra.graph import Graph, driven
-from ...compiler.events.taylor_method import Taylor
 from ...compiler.ir.channels import short
-from ...compiler.methods.exact_linear import exact_and_rest
+from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.methods.method_checks import KINKS
-from ...compiler.methods.method_table import METHODS
 from ...compiler.prune.dependence import Dependence, part_of
 from ...compiler.prune.excluded_modes import excluded
 from ...compiler.prune.mass_matrix import start_of
@@ -87,31 +85,30 @@ def order_of(scene, method="rk4", *, hold="soh", velocity="backward_difference",
     form = part_of(form, Dependence(form, graph).needed)
     moving = graph.variables_of([*form.f, *sum(form.M, ()), *(g for model in form.models for g in model.constraints)])
     felt = graph.variables_of([form.force])
-    exact, rest = exact_and_rest(method)
+    method = chosen_method(method)
     seen = _seen(hold, velocity, at_samples=_at_samples(method, options))
-    locates = isinstance(method, Taylor) or method == Taylor.name or (exact and rest is None)
     limits = {}
     if form.coordinates:
-        limits |= _of_method(method, exact, rest, form)
+        limits |= _of_method(method)
         limits |= _of_hold(moving, seen)
-        if exact and any(a == t or isinstance(a, driven) for a in moving):
+        if method.exact and any(a == t or isinstance(a, driven) for a in moving):
             limits["t followed by a parabola"] = 4
-        if not locates:
+        if not method.locates:
             limits |= _of_cases(form, graph, scene.values)
     limits |= _of_force(felt, seen, velocity, force_at)
     return Order(limits)
 
 
-def _of_method(method, exact, rest, form):
-    if isinstance(method, Taylor):
-        return {f"a series of order {method.order}": method.order} if method.order else {"method taylor": math.inf}
-    name = rest if exact else method
-    return {f"method {method}": METHODS[name].order if name in METHODS else math.inf}
+def _of_method(method):
+    order = method.rest.order if method.rest else None
+    if method.locates and order:
+        return {f"a series of order {order}": order}
+    return {f"method {method}": order or math.inf}
 
 
 def _at_samples(method, options):
-    """Tell whether a method looks at the handle at samples alone: with steps before it, and no substeps between."""
-    return method in METHODS and METHODS[method].steps > 1 and options.get("substeps", 1) == 1
+    """Whether a method looks at the handle at samples alone: with steps before it, and no substeps between."""
+    return not method.exact and not method.locates and method.rest.steps > 1 and options.get("substeps", 1) == 1
 
 
 def _seen(hold, velocity, at_samples):

@@ -8,7 +8,7 @@ import sympy as sp
 
 from ...compiler.ir.channels import short
 from ...compiler.ir.options import live_names
-from ...compiler.methods.exact_linear import EXACT
+from ...compiler.methods.chosen_method import ChosenMethod, chosen_method
 from ...compiler.prune.constant_coefficients import Coefficients, linear_rows
 from ...compiler.prune.constraint_lengths import held
 from ...compiler.prune.dependence import FORCE, Dependence, part_of
@@ -193,7 +193,7 @@ class _Report:
         """Return the instructions with nothing left out."""
         names = (*self.graph.coordinates, *self.graph.signals)
         all_of_it = self._seeing([*(s for name in names for s in self._states(name)), v(n)])
-        live = {} if self.options["method"].startswith(EXACT) else {"live": None}
+        live = {} if chosen_method(self.options["method"]).exact else {"live": None}
         more = self._more(all_of_it, undecided=tuple(self.decisions), **live)
         return len(self.program) + (more or 0)
 
@@ -238,7 +238,7 @@ class _Report:
             more = self._more(felt)
             why = "only a view shows it: run .felt on the board, and hl.replay(.view, log) beside the record"
             offered.append(Item("view", ", ".join(names), why, None if more is None else -more))
-        if self.form.coordinates and not self.options["method"].startswith(EXACT):
+        if self.form.coordinates and not chosen_method(self.options["method"]).exact:
             linear, declined = self._linear()
             offered += linear
         return tuple(offered), declined
@@ -254,7 +254,7 @@ class _Report:
         settable = [name for name in self.scene.parameters if name not in held(self.scene)] if live is None else live
         kept = [name for name in settable if name not in found.live(rows)]
         method = self.options["method"]
-        exact = f"{EXACT}+{method}" if reasons else EXACT
+        exact = str(ChosenMethod(True, chosen_method(method).rest if reasons else None))
         before, after = (self._more(live=kept, method=m) for m in (method, exact))
         names = ", ".join(type(form.coordinates[k]).__name__ for k in rows)
         why = f"method={exact!r}, live={' '.join(kept)!r}: no step error at any stiffness"

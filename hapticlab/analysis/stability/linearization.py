@@ -5,31 +5,33 @@ Nothing is differenced: slopes come from the instructions, over all points at on
 
 import numpy as np
 
+from ...compiler.algebra.graph import Graph
 from ...compiler.algebra.phase import TICKS
 from ...compiler.algebra.tangents import tangents
 from ...compiler.events.taylor_method import Taylor
-from ...compiler.methods.exact_linear import EXACT
-from ...compiler.tick.compile_scene import compile
-from ...compiler.tick.lowering import Lowering
+from ...compiler.methods.chosen_method import ChosenMethod, chosen_method
+from ...compiler.prune.excluded_modes import folded
+from ...compiler.tick.compile_scene import Options, compile
+from ...compiler.tick.motion_program import moving_scene
 from ...errors import AnalysisError
 from .slopes import Slopes
 
 
-def slopes_of(scene, T, method=None, exact=False):
-    """Return the :class:`Slopes` of a switched scene's equations of motion; with ``exact``, of those that are not linear."""
+def slopes_of(scene, T, damped=False, exact=False):
+    """The :class:`Slopes` of a switched scene's equations of motion; with ``exact``, of those that are not linear."""
     live = () if exact else None
-    lowering = Lowering(scene, scene.form, exact, Taylor(), T, 1, "zoh", "float64", "backward_difference", live, "before")
-    return Slopes(lowering, method)
+    options, fixed = Options(ChosenMethod(exact, Taylor()), T, hold="zoh", dtype="float64", live=live), folded(scene, live)
+    return Slopes(moving_scene(scene, scene.form, options, fixed, Graph(fixed)), damped)
 
 
 def motion_at(scene, points, T):
-    """Return (J, n): y' = J y of a switched scene at P points, shape (P, S, S), of n positions, their rates, and the rest."""
+    """(J, n): y' = J y of a switched scene at P points, shape (P, S, S), of n positions, their rates, and the rest."""
     slopes = slopes_of(scene, T)
     return slopes.jacobian(_states(points), points=len(points), **_modes(scene, points)), slopes.seconds
 
 
 def tick_at(scene, points, T, **options):
-    """Return (maps, handle): the tick of a switched scene's program at each point, its cases held in their modes.
+    """(maps, handle): the tick of a switched scene's program at each point, its cases held in their modes.
 
     A map is (A, B, C, D) with states' = A states + B x, F = C states + D x for small changes; ``handle`` are the numbers of
     the states that remember samples of the handle alone.
@@ -47,9 +49,8 @@ def tick_at(scene, points, T, **options):
 
 
 def forces_and_ticks_at(scene, points, T, **options):
-    """Return (forces [N] of shape (P,), maps, handle): what :func:`tick_at` returns, and the force at each point."""
-    method = options.get("method", "rk4")
-    if not (isinstance(method, str) and method.startswith(EXACT)) or not scene.switches:
+    """(forces [N] of shape (P,), maps, handle): what :func:`tick_at` returns, and the force at each point."""
+    if not (chosen_method(options.get("method", "rk4")).exact and scene.switches):
         live = tuple(s.name for s in scene.switches)
         return forces_and_ticks_of(compile(scene, T=T, live=live, dtype="float64", **options), scene, points)
     forces, maps = np.zeros(len(points)), [None] * len(points)
@@ -63,7 +64,7 @@ def forces_and_ticks_at(scene, points, T, **options):
 
 
 def forces_and_ticks_of(program, scene, points):
-    """Return the same of a program that is compiled: of a Switched scene, or of one without switches."""
+    """The same of a program that is compiled: of a Switched scene, or of one without switches."""
     if len(program.inputs) != 1:
         raise AnalysisError(f"{program.name}: needs a program of x alone; leave velocity='measured' out")
     P, modes = len(points), _modes(scene, points)
@@ -92,10 +93,10 @@ def _handle(points):
 
 
 def _states(points):
-    """Return name -> array over points."""
+    """name -> array over points."""
     return {name: _column(points, name) for name in points[0].values}
 
 
 def _modes(scene, points):
-    """Return name -> array over points of the switches."""
+    """name -> array over points of the switches."""
     return {s.name: np.array([float(p.mode[k]) for p in points]) for k, s in enumerate(scene.switches)}

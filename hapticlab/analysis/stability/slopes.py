@@ -14,10 +14,10 @@ class Slopes:
 
     Parameters
     ----------
-    lowering : Lowering
-        Of which the motion is traced once more, over leaves of its own; a program made of it stays the same.
-    method : Method, optional
-        One with implicit damping, whose rates depend on the step.
+    moving : Moving
+        The scene, ready to be traced: here over leaves of its own.
+    damped : bool
+        Take dampers implicitly, so that the rates depend on the step.
 
     Attributes
     ----------
@@ -27,19 +27,17 @@ class Slopes:
         How many are positions.
     """
 
-    def __init__(self, lowering, method=None):
-        dynamics, self.tracing = lowering.dynamics, lowering.tracing
-        self.values, self.seconds = lowering.scene.values, len(dynamics.second)
-        self.names = [channel_of(state, "f64").name for state in dynamics.states]
-        new, n, m = Leaves(self.tracing.tick), len(dynamics.second), len(dynamics.first)
+    def __init__(self, moving, damped=False):
+        dynamics, equations, self.tracing = moving.dynamics, moving.dynamics.equations, moving.tick.tracing
+        self.values, self.seconds = moving.tick.values, len(equations.second)
+        self.names = [channel_of(state, "f64").name for state in equations.states]
+        new, n, m = Leaves(self.tracing.tick), len(equations.second), len(equations.first)
         q, w, s = ([new() for _ in range(count)] for count in (n, n, m))
         tau, self.h = new(), new()
-        given = dynamics.contacts.reactions(tau, q, w, s, new) if dynamics.contacts.located else []
-        kept = dynamics.method, dynamics.h
-        if method is not None:
-            dynamics.method, dynamics.h = method, self.h
-        rates = dynamics.rates(tau, q, w, s) if dynamics.states else ([], [])
-        dynamics.method, dynamics.h = kept
+        touching = dynamics.touching()
+        given = touching.reactions(tau, q, w, s, new) if touching else []
+        unknowns, step = touching.unknowns if touching else {}, self.h if damped else None
+        rates = dynamics.rates(tau, q, w, s, unknowns, step) if equations.states else ([], [])
         self.rates = [r.id if isinstance(r, Value) else self.tracing.tick.const(r).id for part in rates for r in part]
         self.moving = [_leaf(value) for value in (*q, *w, *s)]
         # contacts of an instant are apart, and friction slips
@@ -47,7 +45,7 @@ class Slopes:
         self.still |= {_leaf(tau): 0.0}
 
     def jacobian(self, states, h=0.0, points=1, **parameters):
-        """Return J at points, shape (P, S, S).
+        """J at points, shape (P, S, S).
 
         Parameters
         ----------

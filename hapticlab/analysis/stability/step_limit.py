@@ -7,10 +7,8 @@ import sympy as sp
 
 from ...compiler.algebra.matrix_exponential import exponential
 from ...compiler.contacts.contact_steps import STEPS_PER_CONTACT
-from ...compiler.events.taylor_method import Taylor
-from ...compiler.ir.options import choice, period, steps
-from ...compiler.methods.exact_linear import EXACT
-from ...compiler.methods.method_table import METHODS
+from ...compiler.ir.options import period, steps
+from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.methods.step_matrix import GRID, GROWS, longest_step, rising, step_matrix
 from ...errors import AnalysisError
 from ...scene.notation.symbols import delay
@@ -195,7 +193,7 @@ def step_limit(scene, method="rk4", *, T, substeps=1, hold="soh", at=None, **opt
     if not isinstance(scene, Scene):
         raise AnalysisError(no_scene(scene, "needs hl.step_limit(hl.Scene(force=...), T=1e-3)"))
     T, h = period(T), period(T) / steps(substeps)
-    name = _method(method)
+    chosen = chosen_method(method)
     known = switched(scene)
     points = operating_points(known, at, T, TRAVEL, far=True)
     probes = probes_of(points)
@@ -205,11 +203,11 @@ def step_limit(scene, method="rk4", *, T, substeps=1, hold="soh", at=None, **opt
     found = {}
     for k in closer:
         p = points[k]
-        step = _step_at(known, p, name, T, J[k], seconds)
-        found[k] = _mode_limit(name, J[k], step, h, known.named(p.mode), p.words, p.sampled)
+        step = _step_at(known, p, chosen, T, J[k], seconds)
+        found[k] = _mode_limit(chosen, J[k], step, h, known.named(p.mode), p.words, p.sampled)
     held = _held(known, [points[k] for k in closer], J[closer], T, method, substeps, hold)
     modes = tuple(found[k] for k in _told(points, found))
-    return StepLimit(scene.name, name, T, h, modes, kind, at is not None, held)
+    return StepLimit(scene.name, str(chosen), T, h, modes, kind, at is not None, held)
 
 
 def _told(points, found):
@@ -234,27 +232,17 @@ def _held(scene, points, J, T, method, substeps, hold):
     return max(float(one[int(rising(slopes)) :].max(initial=0.0)) for one, slopes in zip(sizes, J, strict=True))
 
 
-def _method(method):
-    """Return the name of a method, refusing one that is not known."""
-    if isinstance(method, Taylor):
-        return Taylor.name
-    rest = method.removeprefix(f"{EXACT}+") if isinstance(method, str) else method
-    choice("method", rest, (*METHODS, Taylor.name, EXACT))
-    return method
-
-
 def _step_at(scene, point, method, T, J, seconds):
-    """Return ``h -> step matrices`` of a method at a point; of what is exact, none."""
-    if method in (EXACT, Taylor.name):
+    """``h -> step matrices`` of a method at a point; of what is exact, none."""
+    if method.locates:
         return lambda h: np.array([exponential(J * one) for one in h])
-    if method.startswith(EXACT):  # what is not linear is driven by what is, and drives nothing of it
+    if method.exact:  # what is not linear is driven by what is, and drives nothing of it
         rest = slopes_of(scene.set(point.mode), T, exact=True)
         J, seconds = rest.jacobian(point.values)[0], rest.seconds
-        method = method.removeprefix(f"{EXACT}+")
-    known = METHODS[method]
+    known = method.rest
     if not known.implicit_damping:
         return lambda h: step_matrix(known, J, seconds, h)
-    damped, switches = slopes_of(scene, T, known), scene.values_of(point.mode)
+    damped, switches = slopes_of(scene, T, damped=True), scene.values_of(point.mode)
     known = replace(known, implicit_damping=False)  # its rates have it already
     return lambda h: step_matrix(known, damped.jacobian(point.values, h, len(h), **switches), seconds, h)
 
@@ -265,11 +253,11 @@ def _mode_limit(method, J, step, h, mode, point, quick=False):
         raise AnalysisError(f"the motion has no finite slope at {point}, {mode}; name places where it has, at={{...}}")
     values = np.linalg.eigvals(J)
     largest, fastest = np.abs(values).max(initial=0.0), np.abs(values.imag).max(initial=0.0)
-    if method == Taylor.name:
+    if method.locates and method.rest:
         h_max = 1.0 / largest if largest else np.inf
     else:
         few = (GRID[::3], (17, 17)) if quick or len(J) > MANY else ()
-        h_max = np.inf if method == EXACT else longest_step(step, J, *few)
+        h_max = np.inf if method.locates else longest_step(step, J, *few)
     gain = energy_gain(values, np.linalg.eigvals(step(np.array([h]))[0]), h)
     per_contact = np.pi / (fastest * h) if fastest else np.inf
     return ModeLimit(mode, point, values, float(h_max), float(h_max / h), gain, float(per_contact), step)

@@ -3,7 +3,7 @@
 import functools
 import math
 
-from ...compiler.methods.exact_linear import EXACT
+from ...compiler.methods.chosen_method import chosen_method
 from ...errors import HapticlabError
 from ...limits.port import negative
 from ..programs.error_order import order_of
@@ -45,8 +45,7 @@ class Limits:
             found = step_limit(self.scene, method, T=T)
         except HapticlabError:
             return None
-        located = method in ("taylor", EXACT)
-        return found.h_max, math.inf if located else found.steps_per_contact * T
+        return found.h_max, math.inf if chosen_method(method).locates else found.steps_per_contact * T
 
     @functools.lru_cache(maxsize=256)  # noqa: B019
     def order(self, method, hold, force_at, velocity):

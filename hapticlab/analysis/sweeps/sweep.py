@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...compiler.methods.exact_linear import exact_and_rest
+from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.prune.constraint_lengths import held
 from ...device.progress import progress_bar
 from ...errors import AnalysisError
@@ -132,7 +132,7 @@ def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progr
     scene = scene(**{name: a for name, a in fixed.items() if name in scene.parameters})
     for end in (np.min, np.max):  # the scene itself refuses what lies outside a parameter's range
         bound = scene(**{name: float(end(a)) for name, a in axes.items() if name in own})
-    if exact_and_rest(options.get("method"))[0]:
+    if chosen_method(options.get("method", "rk4")).exact:
         options["live"] = [name for name in axes if name in own]
     paddle_here = replace(paddle, **{name: a for name, a in fixed.items() if name in PADDLE_AXES})
     starts = {name: fixed.get(name, 0.0) for name in START_AXES}

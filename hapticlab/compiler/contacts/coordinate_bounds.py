@@ -13,46 +13,36 @@ BEYOND = "F is nan where "
 SLACK = 1e-6
 
 
-def guarded(lowering, outputs, ranges):
-    """Return (outputs, ranges): the force is no number where a coordinate that the program keeps is past its range.
+def guarded(force, declared, ranges, values, translate):
+    """(force, ranges): the force is no number where a coordinate that the program keeps is past its range.
 
     Parameters
     ----------
-    lowering : the scene's lowering
-        Its tick traced.
-    outputs : list of (Channel, Value)
-        The force first.
+    force : Value
+    declared : iterable of coordinates
+        Those that the program keeps.
     ranges : dict coordinate -> (low, high)
         Those that are guarded already, since something was decided over them.
+    values : dict name -> float
+        Of parameters.
+    translate : Translator
+        What expressions are at the sample.
 
     Raises
     ------
     SceneError
         A coordinate starts outside of its range.
     """
-    kept = lowering.tracing.observed([value for _, value in outputs])
-    found = {q: (type(q).low, type(q).high) for q in _with_range(lowering, kept) if q not in ranges}
-    _check_starts({**ranges, **found}, lowering.scene.values)
-    wider = {q: _wider(*ends) for q, ends in found.items()}
-    (channel, force), *others = outputs
-    outputs = [(channel, within(force, wider, lowering.at_sample)), *others]
-    lowering.tracing.complete()
-    return outputs, {**ranges, **found}
+    ends = {q: (type(q).low, type(q).high) for q in declared if q not in ranges}
+    found = {q: pair for q, pair in ends.items() if any(map(math.isfinite, pair))}
+    _check_starts({**ranges, **found}, values)
+    return within(force, {q: _wider(*pair) for q, pair in found.items()}, translate), {**ranges, **found}
 
 
 def notes_of(ranges):
-    """Yield what a listing of a program says of the ranges it holds over."""
+    """The notes of a program on the ranges it holds over."""
     for q, ends in ranges.items():
         yield f"{BEYOND}{type(q).__name__} left {_shown(q, ends)}"
-
-
-def _with_range(lowering, kept):
-    """Return the coordinates with a finite range that are states of a program, or follow from one by a constraint."""
-    enforced, exact = lowering.dynamics.enforced, lowering.exact
-    tied = enforced.coordinates if enforced and kept & {*enforced.second, *enforced.first} else ()
-    moved = exact.states if exact and kept & set(exact.keys) else ()
-    held = {*kept, *tied, *moved}
-    return [q for q in lowering.scene.coordinates if q in held and any(map(math.isfinite, (type(q).low, type(q).high)))]
 
 
 def _wider(low, high):

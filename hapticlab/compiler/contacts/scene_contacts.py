@@ -21,32 +21,30 @@ from .touch import Law, micro_impulses
 SUMS = {"impulse": False, "impact_loss": True, "impact_work": True}
 
 
-class Contacts:
-    """The contacts with laws of an instant and the frictions that stick, of one program.
+class InstantContacts:
+    """The contacts with laws of an instant and the frictions that stick, of one scene.
 
     Parameters
     ----------
     elements : sequence of Contact and friction
         Those whose force is an expression are left out: they are in the equations of motion.
-    tracing : Tracing
-    constant : callable expression -> Value
-        Of parameters alone.
-    at : callable (tau, q, w, s) -> translator
-        What expressions are inside a step. It asks :attr:`leaves` for the reactions.
+
+    Attributes
+    ----------
+    contacts, frictions : list
+        Those whose events a stepper locates.
+    hovering : list of Contact
+        Those with micro-impulses, at the end of a step of any method.
     """
 
-    def __init__(self, elements, tracing, constant, at):
+    def __init__(self, elements):
         elements = [e for e in elements if not e.is_force]
         _check_names(elements)
         self.frictions = [e for e in elements if isinstance(e, friction)]
         contacts = [e for e in elements if not isinstance(e, friction)]
         self.hovering = [c for c in contacts if not c.is_located]
         self.contacts = [c for c in contacts if c.is_located]
-        self.tracing, self.constant, self.at = tracing, constant, at
         self.order = _order(self.contacts)
-        # a contact that hovers has no reaction inside a step
-        self.leaves = {c.force: tracing.tick.const(0.0) for c in self.hovering}
-        self.impacts, self.sums = None, {}
 
     @property
     def located(self):
@@ -79,93 +77,121 @@ class Contacts:
             "against something that does not give; use penalty, or a coupler between handle and body",
         )
 
-    # the two callables of a stepper
+    def knows(self, expr):
+        """Whether a reaction, or what impacts add up to, is that of one of these contacts and frictions."""
+        return type(expr).contact in [e.name for e in (*self.contacts, *self.hovering, *self.frictions)]
 
-    def reactions(self, tau, q, w, s, new):
-        """Return the Reactions of a motion, in the order contacts, then frictions."""
-        self.leaves |= {e.force: new() for e in (*self.contacts, *self.frictions)}
-        rubbing = [c for c in self.contacts if c.law.mu != 0]
-        self.rubs = [new() for _ in rubbing]
-        self.leaves |= {c.rub: rub for c, rub in zip(rubbing, self.rubs, strict=True)}
-        translate = self.at(tau, q, w, s)
-        self.slips = [translate(c.slip) for c in rubbing]
-        made = [contact(translate(c.gap), self.leaves[c.force]) for c in self.contacts]
-        for f in self.frictions:
-            made.append(coulomb(new, translate(f.slip), translate(f.F_c), translate(f.F_s), self.leaves[f.force]))
-        return made
+    def hover(self, translate, w, M, f, coordinates, h, definite, constant):
+        """(rates after the micro-impulses at the end of a step, {(contact, role): amount}); M and f as they are there.
 
-    def impact(self, motion):
-        """Return the Impacts of a motion, or None where nothing strikes."""
-        if not self.contacts:
-            return None
-        k, rubbing, laws = len(self.contacts), [c for c in self.contacts if c.law.mu != 0], []
-        for c in self.contacts:
-            slip = k + rubbing.index(c) if c in rubbing else None
-            speed = c.law.rest_speed
-            speed = float("inf") if speed == sp.oo else None if speed is None else self.constant(speed)
-            laws.append(Law(c.name, self.constant(c.law.e), speed, slip, self.constant(c.law.mu)))
-        self.impacts = impacts_of(motion, laws, list(range(k)), self.tracing.T, self.order, self.slips, self.rubs)
-        return self.impacts
-
-    # micro-impulses, at the end of a step of any method
-
-    def hover(self, tau, state, M, f, coordinates, h, definite):
-        """Return the rates after the micro-impulses at the end of a step; M and f as they are there.
-
-        ``coordinates`` are those of the rates w, in order.
+        Parameters
+        ----------
+        translate : Translator
+            What expressions are at the end of the step.
+        w : list of Value
+            Rates of the ``coordinates``, before.
+        constant : callable expression -> Value
+            Of parameters alone.
         """
-        q, w, s = state
-        translate, contacts = self.at(tau, q, w, s), self.hovering
+        contacts = self.hovering
         J = [[translate(Partial(c.gap, coordinate)) for coordinate in coordinates] for c in contacts]
         W, P = response(M, J, definite)
         u, gaps = ([translate(part) for part in parts] for parts in zip(*((Rate(c.gap), c.gap) for c in contacts), strict=True))
         b = [dot(f, column) + translate(Rate(Rate(c.gap))) for column, c in zip(P, contacts, strict=True)]
-        laws = [Law(c.name, self.constant(c.law.e)) for c in contacts]
-        envelopes = [self.constant(c.law.envelope) for c in contacts]
+        laws = [Law(c.name, constant(c.law.e)) for c in contacts]
+        envelopes = [constant(c.law.envelope) for c in contacts]
         p, after = micro_impulses(W, u, b, gaps, laws, envelopes, h)
         driven = [rate - dot(row, w) for rate, row in zip(u, J, strict=True)]
         work = [-(blow * rate) for blow, rate in zip(p, driven, strict=True)]
-        for role, amounts in zip(SUMS, (p, dissipated(u, after, p), work), strict=True):
-            for c, amount in zip(contacts, amounts, strict=True):
-                self.sums[c, role] = self.sums[c, role] + amount if (c, role) in self.sums else amount
-        return [rate + dot(p, [column[i] for column in P]) for i, rate in enumerate(w)]
+        amounts = {
+            (c, role): amount
+            for role, found in zip(SUMS, (p, dissipated(u, after, p), work), strict=True)
+            for c, amount in zip(contacts, found, strict=True)
+        }
+        return [rate + dot(p, [column[i] for column in P]) for i, rate in enumerate(w)], amounts
 
-    # what the force, the difference equations and the watched channels may know at a sample
+    def finish(self, tracing, reactions, sums):
+        """Set the states that :func:`reaction_at_sample` gave.
 
-    def at_sample(self, expr):
-        """Return a reaction, or what impacts added up to, as a state that the step before this sample has set."""
-        kind, tracing = type(expr), self.tracing
-        name = kind.contact
-        if name not in [e.name for e in (*self.contacts, *self.hovering, *self.frictions)]:
-            raise SceneError(f"{name} is used but no model has it: hl.lagrange(..., contacts=[{name}])")
-        if kind.role == "rub":
-            return tracing.tick.const(0.0)
-        channel = Channel(kind.__name__, kind.unit, tracing.real)
-        return tracing.state(expr, channel, tracing.init.const(0.0))
-
-    def at_the_end(self, expr):
-        """Return a reaction, or what impacts added up to, at the end of the period."""
-        self.at_sample(expr)
-        return self.tracing.next_of(expr)
-
-    def finish(self, reactions=()):
-        """Set the states that :meth:`at_sample` gave: ``reactions`` are those at the end of the period, if any are located."""
+        Parameters
+        ----------
+        reactions : sequence of Value
+            At the end of the period, of the contacts, then of the frictions; none where nothing is located.
+        sums : dict (contact, role) -> Value
+            What impacts and micro-impulses added up to in the period.
+        """
         known = dict(zip((e.force for e in (*self.contacts, *self.frictions)), reactions, strict=True))
-        if self.impacts:
-            self.sums |= {(self.contacts[i], role): amount for (role, i), amount in self.impacts.sums.items()}
         for c in (*self.contacts, *self.hovering):
             for role, adds_up in SUMS.items():
-                leaf, amount = getattr(c, role), self.sums.get((c, role), self.tracing.tick.const(0.0))
-                known[leaf] = self.at_sample(leaf) + amount if adds_up else amount
+                leaf, amount = getattr(c, role), sums.get((c, role), tracing.tick.const(0.0))
+                known[leaf] = reaction_at_sample(leaf, tracing) + amount if adds_up else amount
         for c in self.hovering:
-            known[c.force] = self.sums[c, "impulse"] * (1 / self.tracing.T)
+            known[c.force] = sums[c, "impulse"] * (1 / tracing.T)
         for leaf, value in known.items():
-            self.at_sample(leaf)
-            self.tracing.set_next(leaf, value)
+            reaction_at_sample(leaf, tracing)
+            tracing.set_next(leaf, value)
+
+
+def reaction_at_sample(expr, tracing):
+    """A reaction, or what impacts added up to, as a state that the step before this sample has set."""
+    kind = type(expr)
+    if kind.role == "rub":
+        return tracing.tick.const(0.0)
+    channel = Channel(kind.__name__, kind.unit, tracing.real)
+    return tracing.state(expr, channel, tracing.init.const(0.0))
+
+
+class Touching:
+    """The located contacts and frictions of one motion, over leaves of its own.
+
+    Parameters
+    ----------
+    contacts : InstantContacts
+    at : callable (tau, q, w, s, unknowns) -> Translator
+        What expressions are inside a step; ``unknowns`` are the leaves that stand for reactions.
+    constant : callable expression -> Value
+        Of parameters alone.
+    period : float
+        T [s].
+
+    Attributes
+    ----------
+    unknowns : dict expression -> Value
+        The leaf of each reaction, once :meth:`reactions` has made them.
+    """
+
+    def __init__(self, contacts, at, constant, period):
+        self.of, self.at, self.constant, self.period = contacts, at, constant, period
+        self.rubbing = [c for c in contacts.contacts if c.law.mu != 0]
+        self.unknowns, self.rubs, self.slips = {}, [], []
+
+    def reactions(self, tau, q, w, s, new):
+        """The Reactions of the motion, in the order contacts, then frictions."""
+        self.unknowns |= {e.force: new() for e in (*self.of.contacts, *self.of.frictions)}
+        self.rubs += [new() for _ in self.rubbing]
+        self.unknowns |= {c.rub: rub for c, rub in zip(self.rubbing, self.rubs, strict=True)}
+        translate = self.at(tau, q, w, s, self.unknowns)
+        self.slips += [translate(c.slip) for c in self.rubbing]
+        made = [contact(translate(c.gap), self.unknowns[c.force]) for c in self.of.contacts]
+        for f in self.of.frictions:
+            made.append(coulomb(new, translate(f.slip), translate(f.F_c), translate(f.F_s), self.unknowns[f.force]))
+        return made
+
+    def impact(self, motion):
+        """The Impacts of the motion, or None where nothing strikes."""
+        if not self.of.contacts:
+            return None
+        k, laws = len(self.of.contacts), []
+        for c in self.of.contacts:
+            slip = k + self.rubbing.index(c) if c in self.rubbing else None
+            speed = c.law.rest_speed
+            speed = float("inf") if speed == sp.oo else None if speed is None else self.constant(speed)
+            laws.append(Law(c.name, self.constant(c.law.e), speed, slip, self.constant(c.law.mu)))
+        return impacts_of(motion, laws, list(range(k)), self.period, self.of.order, self.slips, self.rubs)
 
 
 def located(elements):
-    """Tell whether any of contacts and frictions has events that a method must locate inside its step."""
+    """Whether any of contacts and frictions has events that a method must locate inside its step."""
     return any(e.is_located for e in elements)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from ...errors import ProgramError, ProgramLimitError
 from ..algebra.polynomial_crossing import FEWER_STEPS, STEPS
 from ..ir.program import Channel
-from ..ir.trace import select
+from ..ir.trace import Value, select
 from .flow import motion_of
 from .located_step import Stepper
 from .series_checks import (
@@ -86,11 +86,35 @@ class Switched(Taylor):
     name = "exact"
 
 
+@dataclass(frozen=True)
+class Advanced:
+    """One period of a motion, traced.
+
+    Attributes
+    ----------
+    groups : (q, w, s)
+        The state after it.
+    facts : dict
+        Order, events, omega, and the part of a state past which the last term of its series makes it nan, for the listing.
+    unlocated : Value or None
+        Steps of this period that left an event out, or whose series had not converged; None where there is no event.
+    reactions : list of Value
+        Of the contacts and frictions, at its end.
+    sums : dict (role, number of the contact) -> Value
+        What impacts added up to.
+    """
+
+    groups: tuple
+    facts: dict
+    unlocated: Value | None
+    reactions: list
+    sums: dict
+
+
 def advance(
-    method, tracing, rates, groups, h, substeps, values, name, contacts=None, impact=None, after=None, ranges=(),
-    bound=False,
+    method, tracing, rates, groups, h, substeps, values, name, contacts=None, ranges=(), bound=False,
 ):  # fmt: skip
-    """Trace one period of a motion; return (groups, facts, unlocated) with the state after it.
+    """Trace one period of a motion.
 
     Parameters
     ----------
@@ -106,12 +130,9 @@ def advance(
         Of parameters, for the order and the longest step.
     name : str
         Of the scene, for messages.
-    contacts : callable, optional
-        See :func:`~hapticlab.compiler.events.flow.motion_of`.
-    impact : callable ``(motion) -> impact``, optional
-        Makes the impact of :class:`~hapticlab.compiler.events.located_step.Stepper` for the motion.
-    after : callable ``(reactions)``, optional
-        Is given the values of the motion's reactions at the end of the period.
+    contacts : Touching, optional
+        What the motion touches: its reactions, see :func:`~hapticlab.compiler.events.flow.motion_of`, and its impacts, see
+        :class:`~hapticlab.compiler.events.located_step.Stepper`.
     ranges : sequence of (low, high), optional
         Declared for each q: where one is finite, a motion that is not linear is looked at within it too.
     bound : bool
@@ -119,18 +140,14 @@ def advance(
 
     Returns
     -------
-    groups : (q, w, s)
-    facts : dict
-        Order, events, omega, and the part of a state past which the last term of its series makes it nan, for the listing.
-    unlocated : Value or None
-        Steps of this period that left an event out, or whose series had not converged; None where there is no event.
+    Advanced
     """
     builder, real = tracing.tick, tracing.real
-    motion = motion_of(builder, rates, len(groups[0]), len(groups[2]), contacts)
+    motion = motion_of(builder, rates, len(groups[0]), len(groups[2]), contacts and contacts.reactions)
     check_smooth(motion, name)
     if isinstance(method, Switched):
         number = numbers(builder.instructions, tracing.at_start(values))
-        return switched(method, tracing, motion, groups, h, name, impact and impact(motion), after, number)
+        return switched(method, tracing, motion, groups, h, name, contacts and contacts.impact(motion), number)
     linear = is_linear(motion)
 
     def fastest(values):
@@ -148,7 +165,8 @@ def advance(
     events = method.events or _EVENTS[surfaces > 2]
     steps = FEWER_STEPS if omega * h <= 0.05 and linear else STEPS
     remainder = remainder_for(order, real, linear)
-    stepper = Stepper(motion, h, order, events, impact and impact(motion), steps=steps, remainder=remainder)
+    impact = contacts and contacts.impact(motion)
+    stepper = Stepper(motion, h, order, events, impact, steps=steps, remainder=remainder)
     now, missed = [held_state(tracing, k) for k in range(len(motion.reactions))], None
     for step in range(substeps):
         groups, now, left_out = stepper.step(builder.const(step * h), groups, now, jumped=step == 0)
@@ -157,23 +175,22 @@ def advance(
         missed = count if missed is None else missed + count
     for k, value in enumerate(now):
         tracing.set_next(("held", k), value)
-    if after:
-        after(stepper.reactions(builder.const(substeps * h), groups, now)[: motion.given])
+    reactions = stepper.reactions(builder.const(substeps * h), groups, now)[: motion.given]
     facts = (
         {"order": order}
         | ({} if motion.smooth else {"events": events})
         | ({"remainder": remainder[1]} if remainder else {})
         | ({"omega": float(f"{omega:.4g}")} if omega > 0 else {})
     )
-    return groups, facts, None if motion.smooth else missed
+    return Advanced(groups, facts, None if motion.smooth else missed, reactions, impact.sums if impact else {})
 
 
 def held_state(tracing, k):
-    """Return whether reaction k is held: sticking, or at rest; a motion starts free."""
+    """Whether reaction k is held: sticking, or at rest; a motion starts free."""
     return tracing.state(("held", k), Channel(f"held({k})", "1", "bool"), tracing.init.const(False))
 
 
-def switched(method, tracing, motion, groups, h, name, impact, after, number):
+def switched(method, tracing, motion, groups, h, name, impact, number):
     """Trace one period of a motion that is linear between switches; see :func:`advance`."""
     start = [number(value.id) for part in groups for value in part]
     maps = Maps(motion, h, (method.reason, method.cure), tracing.parameters, start, number)
@@ -192,14 +209,14 @@ def switched(method, tracing, motion, groups, h, name, impact, after, number):
     check_size(motion, tracing.tick, name, method.name)
     for k, value in enumerate(held):
         tracing.set_next(("held", k), value)
-    if after:
-        after(stepper.reactions(tracing.tick.const(h), groups, held)[: motion.given])
+    reactions = stepper.reactions(tracing.tick.const(h), groups, held)[: motion.given]
     facts = {"maps": len(maps.modes), "order": stepper.order, "events": events, "pieces": stepper.pieces}
-    return groups, facts | ({"omega": float(f"{maps.omega:.4g}")} if turns else {}), missed
+    facts |= {"omega": float(f"{maps.omega:.4g}")} if turns else {}
+    return Advanced(groups, facts, missed, reactions, impact.sums if impact else {})
 
 
 def _pieces(surfaces, turns, real):
-    """Return (order, events, pieces) of a period that turns by so many radians; the events of one contact each half turn."""
+    """(order, events, pieces) of a period that turns by so many radians; the events of one contact each half turn."""
     events = _EVENTS[surfaces > 2] + int(2 * turns / math.pi)
     return order_for(min(turns, 1.0) / 2, real, True), events, events + max(1, math.ceil(turns))
 

@@ -11,20 +11,11 @@ from ..ir.channels import channel_of, short
 from ..ir.program import Channel
 from ..prune.constant_coefficients import HANDLE, JUMPS, Coefficients, leaves, linear_rows
 from ..prune.dependence import Dependence, coupled, part_of
+from ..prune.mass_matrix import start_of
 from .force_timing import IMPULSE
 
-#: what a method's name begins with, where its linear parts are taken exactly; the rest follows a plus sign
-EXACT = "exact"
 #: of a state by another [1/s, 1/s^2], in the matrix exponential
 _LARGEST_RATE = 1e150
-
-
-def exact_and_rest(method):
-    """Split "exact" or "exact+rk4" into (True, the other method's name or None), any other into (False, itself)."""
-    if not isinstance(method, str) or method.split("+")[0] != EXACT:
-        return False, method
-    _, plus, rest = method.partition("+")
-    return True, rest if plus else None
 
 
 class _NotLinear(ProgramError):
@@ -35,26 +26,29 @@ class _NotLinear(ProgramError):
         self.reason = reason
 
 
-def exact_or_switched(lowering, form, method):
-    """Return (Exact, method), or (None, Switched) for what may be linear between switches and has no other method."""
+def exact_or_switched(scene, form, tick, start, rest):
+    """(Exact, rest), or (None, Switched) for what may be linear between switches and has no other method.
+
+    Parameters
+    ----------
+    scene : Scene
+    form : ExplicitForm
+    tick : Tick
+    start : Translator
+        What expressions are at the first sample.
+    rest : Method or Taylor, optional
+        The method for what is not linear.
+    """
     try:
-        return Exact(lowering, form, method and method.name), method
+        return Exact(scene, form, tick, start, rest), rest
     except _NotLinear as why:
-        if method is not None or any(model.constraints for model in form.models):
+        if rest is not None or any(model.constraints for model in form.models):
             raise
         return None, Switched(reason=why.reason, cure=str(why).removeprefix(why.reason))
 
 
 class Exact:
-    """The linear equations of a scene on their way into a program.
-
-    Parameters
-    ----------
-    lowering : the scene's lowering
-        Its tracing, its handle, and what translates expressions.
-    form : ExplicitForm
-    rest : str or None
-        The method for what is not linear.
+    """The linear equations of a scene at a sample; arguments of :func:`exact_or_switched`.
 
     Attributes
     ----------
@@ -66,10 +60,10 @@ class Exact:
         Switches of time that are sampled instead of located.
     """
 
-    def __init__(self, lowering, form, rest):
-        self.lowering, self.tracing, constants = lowering, lowering.tracing, lowering.folded
-        linear, self.others = linear_part(lowering.scene, form, constants, self.tracing.T, rest, lowering.graph)
-        _check_size(linear, lowering.scene.name)
+    def __init__(self, scene, form, tick, start, rest):
+        self.graph, tracing = tick.graph, tick.tracing
+        linear, self.others = linear_part(scene, form, tick.fixed, tracing.T, rest, tick.graph)
+        _check_size(linear, scene.name)
         self.constant_parts = [form.f[form.coordinates.index(q)] for q in linear.coordinates]
         self.notes = tuple(self._switches(linear.coordinates))
         kept = {*linear.coordinates, *self.others.coordinates}
@@ -79,45 +73,44 @@ class Exact:
         read = set().union(*map(leaves, other))
         averaged = IMPULSE in self.states  # which starts anew at each sample, alone
         seen = [k for s, k in self.states.items() if s in read]
-        self.space = linear.space if averaged else _cheaper(linear, seen, self.tracing.T)
-        first, back = [lowering.first_of(s) for s in self.states], np.linalg.inv(self.space.V)
-        plain, real = self.space.is_plain, self.tracing.real
+        self.space = linear.space if averaged else _cheaper(linear, seen, tracing.T)
+        first, back = [start(start_of(s)) for s in self.states], np.linalg.inv(self.space.V)
+        plain, real = self.space.is_plain, tracing.real
         self.keys = list(self.states) if plain else [f"mode {k}" for k in range(1, 1 + len(self.states))]
         channels = [channel_of(key, real) if plain else Channel(key, "1", real) for key in self.keys]
         self.now = [
-            self.tracing.tick.const(0.0) if key == IMPULSE else self.tracing.state(key, channel, _sum(row, first))
+            tracing.tick.const(0.0) if key == IMPULSE else tracing.state(key, channel, _sum(row, first))
             for key, channel, row in zip(self.keys, channels, back, strict=True)
         ]
-        self._at = {}
 
     def state(self, s):
-        """Return a state at the sample."""
+        """A state at the sample."""
         return _sum(self.space.V[self.states[s]], self.now)
 
-    def advance(self):
-        """Give every state its value at the next sample; return {state: value}."""
-        self.rest = list(map(self._rest_of, self.constant_parts))
-        self.motion = self.lowering.handle.polynomial()
-        for key, value in zip(self.keys, self._moved(self.tracing.T), strict=True):
-            if key != IMPULSE:
-                self.tracing.set_next(key, value)
-        return self.at(self.tracing.T)
+    def at_sample(self, tau):
+        """{state: value} at the sample, whatever the time ``tau``: for what is looked at without a period."""
+        return {s: self.state(s) for s in self.states}
 
-    def _rest_of(self, f):
-        """Return what an equation holds beside states and handle, over the period: value, rate, second rate.
+    def period(self, tick, sample):
+        """The :class:`ExactPeriod` from this sample on; ``sample`` translates expressions at it."""
+        rest = [self._rest_of(f, tick, sample) for f in self.constant_parts]
+        return ExactPeriod(self.space, self.now, tuple(self.states), tick.handle.polynomial(), rest)
+
+    def _rest_of(self, f, tick, sample):
+        """What an equation holds beside states and handle, over the period: value, rate, second rate.
 
         It stays as it is at the sample, but for what t drives: a parabola through its values at both ends and midway.
         """
-        T, lowering = self.tracing.T, self.lowering
-        still = dict.fromkeys((*self.states, *HANDLE), self.tracing.tick.const(0.0))
+        T = tick.tracing.T
+        still = dict.fromkeys((*self.states, *HANDLE), tick.tracing.tick.const(0.0))
 
         def at(tau):
             def leaf(expr):
                 if expr in still:
                     return still[expr]
-                return lowering.at_sample(expr) + tau if expr == t and tau else lowering.at_sample(expr)
+                return sample(expr) + tau if expr == t and tau else sample(expr)
 
-            return lowering.translator(leaf, tau)(f)
+            return tick.translator(leaf, tau, sample)(f)
 
         if not self._has_time([f]):
             return [at(0.0)]
@@ -125,7 +118,7 @@ class Exact:
         return [first, (4 * middle - 3 * first - last) * (1 / T), (first - 2 * middle + last) * (4 / T**2)]
 
     def _has_time(self, exprs):
-        return any(a == t or isinstance(a, driven) for a in self.lowering.graph.variables_of(exprs))
+        return any(a == t or isinstance(a, driven) for a in self.graph.variables_of(exprs))
 
     def _switches(self, coordinates):
         """Yield a note for each jump in time of an equation: of the parabola, a switch is up to T/3 early or late."""
@@ -137,15 +130,33 @@ class Exact:
                         "each period, so that it switches up to T/3 early or late; method='taylor' locates it"
                     )
 
+
+class ExactPeriod:
+    """The exact motion over one period, y(tau) = Phi(tau) y(n) and what handle and time add.
+
+    Parameters
+    ----------
+    space : Space
+    now : list of Value
+        What the program keeps, at the sample.
+    states : sequence of coordinates and rates
+    motion, rest : lists of lists of Value
+        The handle's x and v, and what else drives each equation: value, rate, second rate at the sample.
+    """
+
+    def __init__(self, space, now, states, motion, rest):
+        self.space, self.now, self.states, self.motion, self.rest = space, now, states, motion, rest
+        self._at = {}
+
     def at(self, tau):
-        """Return {state: value} at tau [s] after the sample."""
-        if tau not in self._at:
-            moved = self._moved(tau) if tau else self.now
+        """{state: value} at tau [s] after the sample."""
+        if tau not in self._at:  # several stages of a method look at one instant
+            moved = self.moved(tau) if tau else self.now
             self._at[tau] = {s: _sum(row, moved) for s, row in zip(self.states, self.space.V, strict=True)}
         return self._at[tau]
 
-    def _moved(self, tau):
-        """Return what the program keeps, at tau [s] after the sample."""
+    def moved(self, tau):
+        """What the program keeps, at tau [s] after the sample."""
         if not self.now:
             return []
         space, effects = self.space, {}  # value -> its effect on all of them
@@ -169,7 +180,7 @@ class Exact:
 
 
 def _sum(row, values):
-    """Return the sum of row[k] * values[k], without what is zero."""
+    """The sum of row[k] * values[k], without what is zero."""
     total = None
     for factor, value in zip(row, values, strict=True):
         if factor:
@@ -190,7 +201,7 @@ def _check_size(linear, name):
 
 
 def _cheaper(linear, read, T):
-    """Return the Space that takes fewer products a period, where the states of these numbers are read."""
+    """The Space that takes fewer products a period, where the states of these numbers are read."""
     plain, modes = linear.space, linear.modes
     if modes is None or not read:
         return plain
@@ -199,7 +210,7 @@ def _cheaper(linear, read, T):
 
 
 def linear_part(scene, form, constants, T, rest, graph):
-    """Return (Linear, the form of the other equations); refuse what ``method="exact"`` cannot take, with the reason.
+    """(Linear, the form of the other equations); refuse what ``method="exact"`` cannot take, with the reason.
 
     Equations that neither the force nor a channel depends on are in neither.
 
@@ -207,7 +218,7 @@ def linear_part(scene, form, constants, T, rest, graph):
     ----------
     constants : dict name -> float
         Parameters that are constants of the program.
-    rest : str or None
+    rest : Method or Taylor, optional
         The method for what is not linear.
     graph : Graph
         Of the form's expressions, with these constants.

@@ -16,7 +16,7 @@ IMPULSE = sp.Function("impulse of F", real=True, unit="N*s", role="coordinate", 
 
 
 def averaged(form, graph):
-    """Return a form whose force is the mean over the period, the integral of F since the sample divided by T.
+    """A form whose force is the mean over the period, the integral of F since the sample divided by T.
 
     The integral is one more state of the same method, so that the impulse which is felt is the impulse that the bodies
     are given. A force of samples alone is its own mean.
@@ -41,44 +41,22 @@ def averaged(form, graph):
 
 
 def _moves(variable):
-    """Tell whether a variable of a graph changes between two samples."""
+    """Whether a variable of a graph changes between two samples."""
     role = getattr(type(variable.expr if variable.is_Derivative else variable), "role", None)
     return variable in (t, x(t), v(t)) or isinstance(variable, driven) or role in ("coordinate", "reaction")
 
 
-def hints(lowering, hold):
-    """Return notes on a hold that goes badly with the instant of the force, or with substeps."""
-    form, substeps = lowering.form, lowering.substeps
-    led = [a for a in lowering.graph.variables_of(form.f) if a in (x(t), v(t))]
-    if not led:
+def hints(form, graph, options):
+    """Yield notes on a hold that goes badly with the instant of the force, or with substeps."""
+    if not any(a in (x(t), v(t)) for a in graph.variables_of(form.f)):
         return
-    if lowering.force_at == "after" and hold != "zoh":
+    if options.force_at == "after" and options.hold != "zoh":
         yield (
-            f"force_at = 'after' with hold = {hold!r}: lightly damped bodies ask a device for more damping than with 'before', "
-            "or with hold='zoh'; hl.port_passivity tells how much"
+            f"force_at = 'after' with hold = {options.hold!r}: lightly damped bodies ask a device for more damping than with "
+            "'before', or with hold='zoh'; hl.port_passivity tells how much"
         )
-    if substeps > 1 and hold == "zoh" and lowering.method is not None:
+    if options.substeps > 1 and options.hold == "zoh" and options.method.rest is not None:
         yield (
-            f"hold = 'zoh' sets the error, of order 1: {substeps} substeps shorten the step for stability and contacts, not the "
-            "error, which hold='foh' or 'soh' makes smaller"
+            f"hold = 'zoh' sets the error, of order 1: {options.substeps} substeps shorten the step for stability and contacts, "
+            "not the error, which hold='foh' or 'soh' makes smaller"
         )
-
-
-def at_the_end(lowering):
-    """Return what translates the force once the period is traced: states at its end, all else as at the sample."""
-    dynamics = lowering.dynamics
-
-    def leaf(expr):
-        if expr in lowering.moved:
-            return lowering.moved[expr]
-        if hasattr(type(expr), "contact"):
-            return dynamics.contacts.at_the_end(expr)
-        if hasattr(type(expr), "constraint"):
-            return dynamics.reaction(expr, translate, instant)
-        follows = instant.leaf(expr) if instant else None
-        return lowering.at_sample(expr) if follows is None else follows
-
-    translate = lowering.translator(leaf)
-    instant = dynamics.enforced.instant(translate) if dynamics.enforced else None
-    translate.instant = instant
-    return translate

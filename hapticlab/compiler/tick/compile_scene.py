@@ -1,20 +1,21 @@
 """Lower a scene to a program: the sample is taken, the force computed from it, then the equations of motion advance."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ...errors import ProgramError, SceneError
 from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
+from ..algebra.graph import Graph
 from ..contacts.broad_phase import Contacts
-from ..events.taylor_method import Taylor
 from ..ir.cache import Shared, content
 from ..ir.options import choice, live_names, period, steps, unusual
-from ..methods.exact_linear import EXACT, exact_and_rest
-from ..methods.force_timing import FORCE_AT
-from ..methods.method_table import METHODS
-from ..prune.excluded_modes import excluded, rests_on
+from ..methods.chosen_method import ChosenMethod, chosen_method
+from ..methods.force_timing import FORCE_AT, averaged
+from ..prune.excluded_modes import excluded, folded, rests_on
+from .force_program import force_program
 from .handle_samples import HOLDS, VELOCITIES
-from .lowering import REAL_OF, Lowering
+from .motion_program import motion_program
+from .samples import REAL_OF
 
 #: compiled scenes that are kept: instructions, of which each takes 0.4 kB, and as many again for what else a program has
 PROGRAMS = Shared(60_000, lambda program: 200 + program.size)
@@ -97,32 +98,53 @@ def compile(
 
 
 def _key(scene, options):
-    """Return what a program depends on: all that the scene holds, and the options as they were given."""
+    """What a program depends on: all that the scene holds, and the options as they were given."""
     return content(type(scene), {**vars(scene), "_parameters": scene.parameters}, options)
 
 
-def lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at, undecided=()):
-    """Return the program of a scene; of the conditions in ``undecided``, declared ranges decide nothing."""
-    exact, other = exact_and_rest(method)
-    if not isinstance(other, Taylor) and (not exact or other is not None):
-        choice("method", other, (*METHODS, *([] if exact else [Taylor.name, EXACT, f"{EXACT}+rk4"])))
+@dataclass(frozen=True)
+class Options:
+    """What a scene is compiled with, as :func:`compile` describes it, each option checked."""
+
+    method: ChosenMethod
+    T: float
+    substeps: int = 1
+    hold: str = "soh"
+    dtype: str = "float32"
+    velocity: str = "backward_difference"
+    live: tuple | None = None
+    force_at: str = "before"
+
+
+def _checked(method, T, substeps, hold, dtype, velocity, live, force_at):
+    """The :class:`Options` of what was asked for, or a refusal that names what is known."""
+    method = chosen_method(method)
     choice("hold", hold, HOLDS)
     choice("dtype", dtype, REAL_OF)
     choice("velocity", velocity, VELOCITIES)
     choice("force_at", force_at, FORCE_AT)
-    T, substeps, live = period(T), steps(substeps), live_names(live)
-    if exact and other is None and substeps > 1:
-        raise ProgramError(f"substeps = {substeps}: method='exact' takes the whole period at once; leave substeps out")
+    options = Options(method, period(T), steps(substeps), hold, dtype, velocity, live_names(live), force_at)
+    if method.exact and method.rest is None and options.substeps > 1:
+        raise ProgramError(f"substeps = {options.substeps}: method='exact' takes the whole period at once; leave substeps out")
+    return options
+
+
+def lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at, undecided=()):
+    """The program of a scene; of the conditions in ``undecided``, declared ranges decide nothing."""
+    options = _checked(method, T, substeps, hold, dtype, velocity, live, force_at)
     try:
-        form, decisions = excluded(scene, T, live, undecided)
+        form, decisions = excluded(scene, options.T, options.live, undecided)
         for model in form.models:
             if isinstance(model.contacts, Contacts):
                 model.contacts.check(scene.values)
-        other = Taylor() if other == Taylor.name else other
-        other = other if isinstance(other, Taylor) else METHODS.get(other)
-        lowering = Lowering(scene, form, exact, other, T, substeps, hold, dtype, velocity, live, force_at)
-        program = lowering.program(rests_on(form, decisions))
-        return replace(program, notes=(*program.notes, *unusual(T, len(program))))
+        fixed = folded(scene, options.live)
+        graph = Graph(fixed)
+        form = averaged(form, graph) if options.force_at == "mean" else form
+        if form.coordinates:
+            program = motion_program(scene, form, options, fixed, graph, rests_on(form, decisions))
+        else:
+            program = force_program(scene, form, options, fixed, graph)
+        return replace(program, notes=(*program.notes, *unusual(options.T, len(program))))
     except RecursionError:
         raise ProgramError(
             f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals, "

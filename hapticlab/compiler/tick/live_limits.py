@@ -42,22 +42,22 @@ class Limits(Frozen):
     Parameters
     ----------
     found : dict
-    lowering : Lowering, optional
+    stepped : SteppedMotion, optional
         Of which the steps are made when they are asked for.
     """
 
-    def __init__(self, found=(), lowering=None):
+    def __init__(self, found=(), stepped=None):
         super().__init__(found)
-        self.lowering, self._made = lowering, Shared(math.inf)
+        self.stepped, self._made = stepped, Shared(math.inf)
 
     @property
     def steps(self):
         """The :class:`StableValues`, or None."""
-        return None if self.lowering is None else self._made.get("steps", lambda: StableValues(self.lowering))
+        return None if self.stepped is None else self._made.get("steps", lambda: StableValues(self.stepped))
 
     def found(self, limits):
-        """Return these limits of the same steps."""
-        more = Limits(limits, self.lowering)
+        """These limits of the same steps."""
+        more = Limits(limits, self.stepped)
         more._made = self._made
         return more
 
@@ -65,22 +65,29 @@ class Limits(Frozen):
         return Frozen, (_apart(self.steps, self),)
 
 
-def kept_stable(program, lowering):
-    """Return a program whose live parameters keep its steps stable, with notes, and its margin among the facts.
+def kept_stable(program, stepped, form, graph):
+    """A program whose live parameters keep its steps stable, with notes, and its margin among the facts.
 
     Nothing is said of methods that have no longest step ("exact"), nor where the motion sees its own past samples. "taylor"
     refuses itself what is too fast as bound, so that it is looked at where a value is set.
+
+    Parameters
+    ----------
+    program : Program
+    stepped : SteppedMotion
+    form : ExplicitForm
+        Of its equations of motion.
+    graph : Graph
     """
-    dynamics, values = lowering.dynamics, lowering.scene.values
-    method = dynamics.method
-    if not dynamics.states or dynamics.at_the_sample is None or isinstance(method, Switched):
+    method, values, states = stepped.method, stepped.values, sum(map(len, stepped.start))
+    if isinstance(method, Switched):
         return program
-    fed_back = _fed_back(lowering)
+    fed_back = _fed_back(form, graph.variables_of)
     if fed_back is not None:
         note = f"{UNKNOWN}its motion is fed back by {fed_back}, of samples; simulate it"
         return replace(program, notes=(*program.notes, note), limits=Limits())
-    limits = Limits({}, lowering)
-    if isinstance(method, Taylor) or len(dynamics.states) > MOST_STATES:
+    limits = Limits({}, stepped)
+    if isinstance(method, Taylor) or states > MOST_STATES:
         return replace(program, limits=limits) if program.parameters else program
     steps = limits.steps
     if not steps.known_at(values):
@@ -102,9 +109,8 @@ def kept_stable(program, lowering):
     return replace(program, notes=(*program.notes, *([f"{said}; more substeps allow more"] if ends else [])))
 
 
-def _fed_back(lowering):
-    """Return what of past samples the motion depends on that depends on the motion, or None."""
-    form, variables_of = lowering.form, lowering.graph.variables_of
+def _fed_back(form, variables_of):
+    """What the motion depends on through past samples that depends on the motion, or None."""
     waiting, seen = [(leaf, None) for leaf in variables_of([*form.f, *(m for row in form.M for m in row)])], set()
     while waiting:
         leaf, through = waiting.pop()
@@ -120,7 +126,7 @@ def _fed_back(lowering):
 
 
 def _told(program, steps):
-    """Return a program with its margin, and in what time it grows where it is unstable as bound."""
+    """A program with its margin, and in what time it grows where it is unstable as bound."""
     margin, growth = steps.margin(), float(steps.growths()[0])
     facts = {**program.facts, **({"margin": float(f"{margin:.3g}")} if math.isfinite(margin) else {})}
     if margin >= 1 and growth <= steps.allowed:
@@ -134,7 +140,7 @@ def _told(program, steps):
 
 
 def _limits(program, steps):
-    """Return name -> (low, value, high) of the live parameters that have a limit."""
+    """name -> (low, value, high) of the live parameters that have a limit."""
     settable, values = {c.name: c for c in program.parameters}, steps.values
     ends = [(name, side, settable[name]) for name in steps.live if name in settable for side in (0, 1)]
     limits = _alone(steps, ends, values)
@@ -146,10 +152,10 @@ def _limits(program, steps):
 
 
 def _alone(steps, ends, values):
-    """Return (name, side) -> how far a parameter may go alone, of those that have a limit before their declared end."""
+    """(name, side) -> how far a parameter may go alone, of those that have a limit before their declared end."""
 
     def unstable(numbers, places):
-        """Tell of places of each of some ends, shape (ends, places), which are unstable."""
+        """Which of the places are unstable, shape (ends, places): a row of places for each of some ends."""
         given = {name: np.full(places.size, values[name]) for name, _, _ in ends}
         for row, k in enumerate(numbers):
             given[ends[k][0]][row * places.shape[1] : (row + 1) * places.shape[1]] = places[row]
@@ -174,14 +180,14 @@ def _alone(steps, ends, values):
 
 
 def _far(value, end, side):
-    """Return an end to look at: the declared one, or one of float32."""
+    """An end to look at: the declared one, or one of float32."""
     if math.isfinite(end):
         return end
     return (1.0 if side else -1.0) * LARGEST
 
 
 def _first(value, end, channel, count):
-    """Return the places of the first look: geometric, and half of them even where a range is declared; in order."""
+    """The places of the first look: geometric, and half of them even where a range is declared; in order."""
     if math.isfinite(channel.low) and math.isfinite(channel.high):
         places = np.r_[_between(value, end, count // 2), np.linspace(value, end, count // 2)]
         return np.sort(places) if end > value else np.sort(places)[::-1]
@@ -189,7 +195,7 @@ def _first(value, end, channel, count):
 
 
 def _between(value, end, count):
-    """Return places from a value to an end: geometric with one sign, else down to zero and up again."""
+    """Places from a value to an end: geometric with one sign, else down to zero and up again."""
     if value * end > 0:
         return np.geomspace(value, end, count)
     if value == 0:
@@ -202,7 +208,7 @@ def _between(value, end, count):
 
 
 def _apart(steps, found):
-    """Return name -> (low, value, high), closer where a place between several limits is unstable."""
+    """name -> (low, value, high), closer where a place between several limits is unstable."""
     values = {name: value for name, (_, value, _) in found.items()}
     ends = [((name, side), end) for name, (low, _, high) in found.items() for side, end in ((0, low), (1, high))]
     limits = {key: end for key, end in ends if math.isfinite(end)}
@@ -217,7 +223,7 @@ def _apart(steps, found):
 
 
 def _places(limits, values, parts):
-    """Return name -> places, each parameter the part of the way to the limit that it is nearer to, shape (places,)."""
+    """name -> places, each parameter the part of the way to the limit that it is nearer to, shape (places,)."""
     found, farthest = {}, {}
     for part, ((name, _), end) in zip(parts.T, limits.items(), strict=True):
         ahead = part > farthest.get(name, 0.0)
@@ -227,18 +233,18 @@ def _places(limits, values, parts):
 
 
 def origin(value, end):
-    """Return where the way to a limit begins: at the value bound, or a thousandth of the way past zero."""
+    """The start of the way to a limit: at the value bound, or a thousandth of the way past zero."""
     return value if value * end > 0 else end / 1e3
 
 
 def _along(value, end, part):
-    """Return a place a part of the way from a value to its limit."""
+    """A place a part of the way from a value to its limit."""
     start = origin(value, end)
     return start * (end / start) ** part
 
 
 def part_of_the_way(now, value, end):
-    """Return how far a parameter is on the way to its limit: 0 at the value bound, 1 at the limit, negative away from it.
+    """How far a parameter is on the way to its limit: 0 at the value bound, 1 at the limit, negative away from it.
 
     Examples
     --------

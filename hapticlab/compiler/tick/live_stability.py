@@ -6,7 +6,8 @@ and stepped as the program steps it. Where it is not linear, that holds for smal
 
 import itertools
 import math
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +17,9 @@ from ..events.guards import Leaves, freeze
 from ..events.series_checks import around, is_linear, live_in, modes_of, numbers, onto_surfaces, within
 from ..events.taylor_method import Taylor
 from ..ir.trace import Value, reachable
+from ..methods.method_table import Method
 from ..methods.step_matrix import excess, longest_step, step_matrix
+from .program_builder import Tracing
 
 #: looked at: modes; cases at a value that is set, and at each of many values
 MOST_MODES, AT_ONE, AT_MANY = 64, 64, 7
@@ -30,13 +33,51 @@ STEPS, CLOSING = np.geomspace(1e-2, 1e2, 30), (17, 17)
 SMALL_MOTIONS = "for small motions about the places looked at"
 
 
+@dataclass(frozen=True)
+class SteppedMotion:
+    """The motion of a program at the sample, as its method sees it, and how it is stepped.
+
+    Attributes
+    ----------
+    tracing : Tracing
+        Complete.
+    values : dict name -> float
+        Of the parameters that are bound.
+    method : Method or Taylor
+    h : float
+        Step [s].
+    positions : tuple of coordinates
+        Those with rates.
+    start : (q, w, s)
+        The states at the sample.
+    state : (q, w, s)
+        What the method took for them, where it asked for accelerations first.
+    rates : (a, ds)
+        There, without implicit damping.
+    damped : callable step -> (a, ds)
+        The same with the implicit damping of a step [s], a Value.
+    bound : bool
+        Constraints tie the positions.
+    """
+
+    tracing: Tracing
+    values: dict
+    method: Method | Taylor
+    h: float
+    positions: tuple
+    start: tuple
+    state: tuple
+    rates: tuple
+    damped: Callable
+    bound: bool
+
+
 class StableValues:
     """The step of a program as a function of its live parameters.
 
     Parameters
     ----------
-    lowering : Lowering
-        Its tick traced.
+    stepped : SteppedMotion
 
     Attributes
     ----------
@@ -48,21 +89,21 @@ class StableValues:
         Whether the motion is, in every mode.
     """
 
-    def __init__(self, lowering):
-        dynamics, self.tracing, self.values = lowering.dynamics, lowering.tracing, lowering.scene.values
-        self.instructions, self.h, self.name = self.tracing.tick.instructions, dynamics.h, dynamics.method.name
-        self.taylor = isinstance(dynamics.method, Taylor)
-        self.damped = not self.taylor and dynamics.method.implicit_damping
-        self.method = replace(dynamics.method, implicit_damping=False) if self.damped else dynamics.method
+    def __init__(self, stepped):
+        self.tracing, self.values, method = stepped.tracing, stepped.values, stepped.method
+        self.instructions, self.h, self.name = self.tracing.tick.instructions, stepped.h, method.name
+        self.taylor = isinstance(method, Taylor)
+        self.damped = not self.taylor and method.implicit_damping
+        self.method = replace(method, implicit_damping=False) if self.damped else method
         self.allowed = 1.0 if self.taylor else math.exp(self.h * math.log(2.0) / SLOW)
-        self.step, self.motion = _at_the_sample(dynamics, self.tracing.tick, self.damped)
+        self.step, self.motion = _in_modes(stepped, self.damped)
         self.number = {p.name: k for k, p in enumerate(self.tracing.parameters)}
         self.live = [p.name for p in live_in(self.motion, self.tracing.parameters)]
         self.moving = [_leaf(v) for v in (*self.motion.q, *self.motion.w, *self.motion.s)]
         self.wanted = [rate.id for rate in (*self.motion.a, *self.motion.ds)]
-        self.start = [[lowering.state(s).id for s in group] for group in _groups(dynamics)]
+        self.start = [[value.id for value in group] for group in stepped.start]
         self.linear = is_linear(self.motion)
-        self.ranges, self.bound = [(type(q).low, type(q).high) for q in dynamics.second], bool(dynamics.enforced)
+        self.ranges, self.bound = [(type(q).low, type(q).high) for q in stepped.positions], stepped.bound
         # contacts of an instant are apart, and friction slips
         leaves = {_leaf(self.tracing.tick.result(p)): self.instructions[p].type for p in reachable(self.instructions, self.wanted)
                   if self.instructions[p].op == "input" and self.instructions[p].index > 1}  # fmt: skip
@@ -70,12 +111,12 @@ class StableValues:
         self.known = None
 
     def known_at(self, values):
-        """Tell whether all live parameters of the motion have a value, one of these or that bound."""
+        """Whether all live parameters of the motion have a value, one of these or that bound."""
         known = {**self.values, **values}
         return all(math.isfinite(known.get(name, math.nan)) for name in self.live)
 
     def cases(self, values):
-        """Return leaf -> values, one for each mode and place that is looked at: all, with parameters bound to ``values``."""
+        """Leaf -> values, one for each mode and place that is looked at: all, with parameters bound to ``values``."""
         motion, given = self.motion, self.tracing.at_start(values)
         number = numbers(self.instructions, given)
         start = tuple([number(k) for k in group] for group in self.start)
@@ -94,7 +135,7 @@ class StableValues:
         return given | {leaf: np.array([case[leaf] for case in found]) for leaf in found[0]}, count
 
     def jacobians(self, cases, lanes=1, h=0.0, **values):
-        """Return J of every case, shape (cases, lanes, S, S), with parameters of shape (lanes,); of a damped step h."""
+        """J of every case, shape (cases, lanes, S, S), with parameters of shape (lanes,); of a damped step h."""
         (given, count), n, S = cases, len(self.motion.q), len(self.moving)
         points = count * lanes
         given = {leaf: np.repeat(column, lanes) if np.ndim(column) else column for leaf, column in given.items()}
@@ -108,14 +149,14 @@ class StableValues:
         return J.reshape(count, lanes, S, S)
 
     def few(self):
-        """Return the first case at the values bound and the stiffest that differ, those without a finite slope left out."""
+        """The first case at the values bound and the stiffest that differ, those without a finite slope left out."""
         if self.known is None:
             cases = self.cases(self.values)
             self.known = _chosen(cases, self._telling(cases, AT_MANY if len(self.moving) <= SMALL else 2))
         return self.known
 
     def _telling(self, cases, most):
-        """Return the numbers of the first case and of the stiffest that differ."""
+        """The numbers of the first case and of the stiffest that differ."""
         different = {}
         for k, (J,) in enumerate(self.jacobians(cases, h=self.h)):
             if np.isfinite(J).all():
@@ -124,7 +165,7 @@ class StableValues:
         return [*first, *(k for _, k in sorted([*different.values()][1:], reverse=True)[:most])]
 
     def growths(self, lanes=1, **values):
-        """Return by how much a step multiplies what only steps make grow, shape (lanes,); of Taylor's, omega h.
+        """The factor by which a step multiplies what only steps make grow, shape (lanes,); of Taylor's, omega h.
 
         Parameters
         ----------
@@ -134,7 +175,7 @@ class StableValues:
         return self._growths(self.few(), lanes, values)
 
     def growth(self, values):
-        """Return the same at one set of values, in every mode and place that there is with them; inf where it has no slope."""
+        """The same at one set of values, in every mode and place that there is with them; inf where it has no slope."""
         cases = self.cases({**self.values, **values})
         telling = self._telling(cases, AT_ONE if len(self.moving) <= SMALL else 8)
         if not telling:
@@ -157,11 +198,11 @@ class StableValues:
         return np.where(known, found, np.inf).reshape(count, lanes).max(axis=0, initial=0.0)
 
     def unstable(self, lanes=1, **values):
-        """Tell for each lane whether in some case steps make grow what doubles within SLOW, or there is no finite slope."""
+        """For each lane, whether in some case steps make grow what doubles within SLOW, or there is no finite slope."""
         return self.growths(lanes, **values) > self.allowed
 
     def margin(self):
-        """Return h_max/h at the values bound, the least over the cases where it is known; inf without a limit."""
+        """h_max/h at the values bound, the least over the cases where it is known; inf without a limit."""
         n, least, cases = len(self.motion.q), np.inf, self.few()
         places = (STEPS, CLOSING) if len(self.moving) <= 2 * SMALL else (STEPS[::2], (9,))
         for k, (J,) in enumerate(self.jacobians(cases)):
@@ -175,38 +216,31 @@ class StableValues:
         return least
 
     def doubles(self, growth):
-        """Return the time [s] in which what a step multiplies by ``growth`` doubles; inf where it does not grow."""
+        """The time [s] in which what a step multiplies by ``growth`` doubles; inf where it does not grow."""
         if not math.isfinite(growth):
             return 0.0
         return self.h * math.log(2.0) / math.log(growth) if growth > 1.0 else math.inf
 
 
 def _chosen(cases, kept):
-    """Return some of the cases."""
+    """Some of the cases."""
     given, _ = cases
     return {leaf: column[kept] if np.ndim(column) else column for leaf, column in given.items()}, len(kept)
 
 
-def _at_the_sample(dynamics, builder, damped):
-    """Return a leaf for the step, and the motion at the sample, where the first stage is, its comparisons replaced by modes."""
-    (q, w, s), (a, ds) = dynamics.at_the_sample
+def _in_modes(stepped, damped):
+    """A leaf for the step, and the :class:`Motion` at the sample, its comparisons replaced by modes."""
+    builder, (q, w, s), (a, ds) = stepped.tracing.tick, stepped.state, stepped.rates
     new = Leaves(builder)
-    step, state, moving, n = new(), (q, w, s), [*q, *w, *s], len(a)
+    step, moving, n = new(), [*q, *w, *s], len(a)
     true = [v if isinstance(v, Value) else builder.const(v) for v in (*a, *ds)]
     rates = true
     if damped:
-        kept, dynamics.h = dynamics.h, step
-        a, ds = dynamics.rates(0.0, *state, at=dynamics.at)
-        dynamics.h = kept
+        a, ds = stepped.damped(step)
         rates = [v if isinstance(v, Value) else builder.const(v) for v in (*a, *ds)]
     # the comparisons of implicit damping are those of the place
     found, guards, slides = freeze(builder, [*rates, *true], moving, [*w, *s], new, true)
     return _leaf(step), Motion(builder, q, w, s, new(), found[:n], found[n : len(rates)], guards, slides)
-
-
-def _groups(dynamics):
-    n = len(dynamics.second)
-    return dynamics.states[:n], dynamics.states[n : 2 * n], dynamics.states[2 * n :]
 
 
 def _leaf(value):
