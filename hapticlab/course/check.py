@@ -1,12 +1,18 @@
 """hl.check: an answer is judged at once, in the notebook, by the public cases of its exercise."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..errors import CourseError
 from .evaluate import evaluate
 from .judge import verdict
 from .labs import find_lab
+
+if TYPE_CHECKING:
+    from .judge import Verdict
 
 #: of what a student's code prints while it is checked
 MOST_LINES, MOST_CHARACTERS = 10, 200
@@ -31,22 +37,22 @@ class CheckResult:
     name: str
     passed: bool
     answered: bool
-    verdicts: tuple
+    verdicts: tuple[Verdict, ...]
     text: str
 
-    def require(self):
+    def require(self) -> None:
         """Raise AssertionError with the text unless the check passed: for a test cell of nbgrader."""
         if not self.passed:
             raise AssertionError(self.text)
 
-    def __str__(self):
+    def __str__(self) -> str:
         return self.text
 
-    def _ipython_display_(self):
+    def _ipython_display_(self) -> None:
         """Show nothing: the check has printed it."""
 
 
-def check(name, answer):
+def check(name: str, answer: object) -> CheckResult:
     """Check an answer by the public cases of its exercise; prints, and never raises.
 
     Parameters

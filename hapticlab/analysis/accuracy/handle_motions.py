@@ -1,7 +1,10 @@
 """Motions of a handle as functions of time, for questions about accuracy: what a hand does, with every derivative known."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import sympy as sp
@@ -11,6 +14,10 @@ from ...drawing import STYLES, house_style, new_figure
 from ...errors import AnalysisError
 from ...scene.notation.derivative import Partial
 from ...scene.notation.symbols import t
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
 
 #: band of a hand's voluntary motion [Hz]; irrational, so that no period is a whole number of samples
 BAND = (math.sqrt(0.5), 5 * math.sqrt(2))
@@ -49,9 +56,9 @@ class HandleMotion:
     x: sp.Expr
     duration: float
     why: str = ""
-    breaks: tuple = ()
+    breaks: tuple[float, ...] = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         expr = sp.sympify(self.x)
         moving = any(hasattr(type(e), "role") for e in expr.atoms(sp.Function))
         if moving or expr.free_symbols - {t}:
@@ -59,11 +66,11 @@ class HandleMotion:
         if not (math.isfinite(self.duration) and self.duration > 0):
             raise AnalysisError(f"{self.name}: duration = {self.duration} s; needs a finite duration > 0 s")
 
-    def at(self, times):
+    def at(self, times: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Return (x, v, a) at an array of times [s]: three arrays, in m, m/s, m/s^2."""
         return tuple(self.derivatives(times, 2))
 
-    def derivatives(self, times, order):
+    def derivatives(self, times: ArrayLike, order: int) -> NDArray[np.float64]:
         """Return x and its derivatives up to an order at an array of times: array (order + 1, times)."""
         times, graph, wanted = np.atleast_1d(np.asarray(times, float)), Graph(), [sp.sympify(self.x)]
         for _ in range(order):
@@ -73,7 +80,7 @@ class HandleMotion:
         found = graph.evaluate(wanted, {t: times} | angles)
         return np.array([np.broadcast_to(part, times.shape) for part in found])
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Return a figure: position and velocity over time."""
         t = np.linspace(0.0, self.duration, 1000)
         position, velocity, _ = self.at(t)
@@ -87,15 +94,17 @@ class HandleMotion:
             panels[1].set(xlabel="time t [s]", ylabel="velocity v [mm/s]")
         return figure
 
-    def scaled(self, factor):
+    def scaled(self, factor: float) -> HandleMotion:
         """Return the same motion, so many times as large."""
         return HandleMotion(self.name, factor * self.x, self.duration, self.why, self.breaks)
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.name}: {self.duration:g} s" + (f", {self.why}" if self.why else "")
 
 
-def handle_motions(scene=None, paddle=None, *, band=BAND, travel=TRAVEL, seed=0):
+def handle_motions(
+    scene: object = None, paddle: object = None, *, band: tuple[float, float] = BAND, travel: float = TRAVEL, seed: int = 0
+) -> tuple[HandleMotion, ...]:
     """Motions that together show how accurate a scene is: what a hand does at its slowest, its quickest and in between.
 
     Parameters

@@ -1,14 +1,24 @@
 """How wrong the force of a program is at the handle: at the samples, held between them, and by what an encoder takes away."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from ...compiler.engines.engine import load
 from ...compiler.events.taylor_method import Taylor
+from ...compiler.ir.program import Program
 from ...compiler.tick.compile_scene import compile
 from ...errors import AnalysisError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ...scene.scene import Scene
+    from .reference import Reference
 
 #: of the Taylor series that a sensor floor is measured with
 ORDER = 8
@@ -43,23 +53,30 @@ class ForceError:
     certified: bool = True
 
     @property
-    def relative(self):
+    def relative(self) -> float:
         """``max`` as a part of the peak; likewise :attr:`relative_hold`."""
         return self.max / self.peak if self.peak else math.inf if self.max else 0.0
 
     @property
-    def relative_hold(self):
+    def relative_hold(self) -> float:
         """``hold`` as a part of the peak."""
         return self.hold / self.peak if self.peak else math.inf if self.hold else 0.0
 
-    def __str__(self):
+    def __str__(self) -> str:
         text = f"{self.max:.3g} N at the samples ({self.relative:.2%} of {self.peak:.3g} N), rms {self.rms:.3g} N, "
         text += f"{self.hold:.3g} N with the hold"
         text += "" if math.isnan(self.unstable_at) else f"; unstable at t = {self.unstable_at:.3g} s"
         return text + ("" if self.certified else "; uncertified")
 
 
-def force_error(program, reference, T=None, *, delay=0.0, engine="auto"):
+def force_error(
+    program: Program | ArrayLike,
+    reference: Reference,
+    T: float | None = None,
+    *,
+    delay: float = 0.0,
+    engine: Literal["auto", "llvm", "interpreter", "vm"] = "auto",
+) -> ForceError:
     """Compare the force of a program with a reference, under the reference's motion of the handle.
 
     Parameters
@@ -93,7 +110,7 @@ def force_error(program, reference, T=None, *, delay=0.0, engine="auto"):
     >>> force_error(good, truth).max < 0.02 * force_error(poor, truth).max
     True
     """
-    if hasattr(program, "tick"):
+    if isinstance(program, Program):
         F, T = recorded(program, reference.motion, engine=engine), program.T
     else:
         F = np.asarray(program, float)
@@ -163,15 +180,23 @@ class SensorFloor:
     peak: float
 
     @property
-    def relative(self):
+    def relative(self) -> float:
         """``max`` as a part of the peak."""
         return self.max / self.peak if self.peak else math.inf if self.max else 0.0
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.max:.3g} N ({self.relative:.2%} of {self.peak:.3g} N), rms {self.rms:.3g} N"
 
 
-def sensor_floor(scene, reference, counts_per_metre, T, *, rounding="floor", **options):
+def sensor_floor(
+    scene: Scene | Program,
+    reference: Reference,
+    counts_per_metre: float,
+    T: float,
+    *,
+    rounding: Literal["floor", "nearest"] = "floor",
+    **options: Any,
+) -> SensorFloor:
     """Error that an encoder alone causes: the force of counted positions against that of true ones, by one program.
 
     Its own error is in both forces and cancels; what is left no method takes away. Velocities are backward differences in
@@ -207,9 +232,8 @@ def sensor_floor(scene, reference, counts_per_metre, T, *, rounding="floor", **o
     """
     if not (math.isfinite(counts_per_metre) and counts_per_metre > 0):
         raise AnalysisError(f"counts_per_metre = {counts_per_metre}; needs a finite number > 0 of counts a metre")
-    program = scene
-    if not hasattr(scene, "tick"):
-        program = compile(scene, T=T, live=(), **({"method": Taylor(order=ORDER), "dtype": "float64"} | options))
+    options = {"method": Taylor(order=ORDER), "dtype": "float64"} | options
+    program = scene if isinstance(scene, Program) else compile(scene, T=T, live=(), **options)
     true = recorded(program, reference.motion)
     counted_ = recorded(program, reference.motion, counts_per_metre=counts_per_metre, rounding=rounding)
     error = np.abs(counted_ - true)[: math.floor(reference.horizon / program.T * (1 + 1e-12)) + 1]

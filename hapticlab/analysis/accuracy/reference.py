@@ -1,7 +1,10 @@
 """The force that a scene would give without samples: two solvers that share no step, and how far they agree."""
 
+from __future__ import annotations
+
 import re
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +18,15 @@ from .continuous_handle import DEGREE, coefficients, driven, without_samples
 from .handle_motions import HandleMotion
 from .hybrid_solver import Field, Hybrid
 from .reference_plot import plot_reference
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...compiler.ir.program import Program
+    from ...scene.scene import Scene
 
 #: between two values of F [s]: 2 ms, 1 ms and 0.5 ms are whole numbers of it, and so are their quarters
 STEP = 1.25e-4
@@ -54,8 +66,8 @@ class Reference:
     """
 
     motion: HandleMotion
-    t: np.ndarray
-    F: np.ndarray
+    t: NDArray[np.float64]
+    F: NDArray[np.float64]
     agreement: float
     how: str
     horizon: float
@@ -64,25 +76,25 @@ class Reference:
     allowed: float = 0.0
 
     @property
-    def peak(self):
+    def peak(self) -> float:
         """Largest force up to the horizon [N]."""
         return float(np.abs(self.F[self.t <= self.horizon]).max(initial=0.0))
 
     @property
-    def faulted(self):
+    def faulted(self) -> bool:
         """Whether the force stops being a number before the motion ends."""
         return not np.isfinite(self.F).all()
 
     @property
-    def certified(self):
+    def certified(self) -> bool:
         """Whether two solvers agree to the tolerance, as a part of the largest force of all motions asked for."""
         return self.agreement <= self.allowed
 
-    def certifies(self, error):
+    def certifies(self, error: float) -> bool:
         """Tell whether the solvers agree ten times better than an error [N] that is to be reported."""
         return self.agreement <= 0.1 * error
 
-    def at(self, times):
+    def at(self, times: ArrayLike) -> NDArray[np.float64]:
         """Return F [N] at times [s] that are whole numbers of the step, nan past the horizon."""
         times = np.asarray(times, float)
         k = np.rint(times / self.step)
@@ -93,11 +105,11 @@ class Reference:
             )
         return np.where(times <= self.horizon + 1e-9, self.F[k.astype(int)], np.nan)
 
-    def plot(self, *programs):
+    def plot(self, *programs: Program) -> Figure:
         """Return a figure: motion and force; with compiled programs, the forces that these hold and their errors."""
         return plot_reference(self, programs)
 
-    def __str__(self):
+    def __str__(self) -> str:
         verdict = "certified" if self.certified else "uncertified"
         until = f", chaotic from {self.horizon:.3g} s on" if self.chaotic else ""
         until += f", no number from {self.horizon:.3g} s on: the scene faults there" if self.faulted else ""
@@ -106,12 +118,14 @@ class Reference:
         return f"{self.motion.name}: {verdict}, {agreed}{until} ({self.how})"
 
 
-def reference(scene, motion, *, step=STEP, tolerance=TOLERANCE):
+def reference(scene: Scene, motion: HandleMotion, *, step: float = STEP, tolerance: float = TOLERANCE) -> Reference:
     """Return the :class:`Reference` of a scene under one motion of the handle; see :func:`references`."""
     return references(scene, [motion], step=step, tolerance=tolerance)[0]
 
 
-def references(scene, motions, *, step=STEP, tolerance=TOLERANCE):
+def references(
+    scene: Scene, motions: Iterable[HandleMotion], *, step: float = STEP, tolerance: float = TOLERANCE
+) -> list[Reference]:
     """The force of a scene as its equations have it, for each of some motions of the handle: a list of :class:`Reference`.
 
     First solver: the Taylor series of the motion, events located, the handle a polynomial of degree 6 over each step.

@@ -1,11 +1,14 @@
 """Speed against accuracy: every way to compute a scene on every target, measured, and the cheapest that is good enough."""
 
+from __future__ import annotations
+
 import itertools
 import math
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from numbers import Real
+from typing import TYPE_CHECKING, Any, Literal
 
 from ...compiler.boards.cost import BOARDS
 from ...compiler.ir.options import choice, period, steps
@@ -28,6 +31,16 @@ from .tradeoff_setup import Bench
 from .tradeoff_trials import Setting, sensor_floor
 from .work_precision import front, plot_work_precision
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from matplotlib.figure import Figure
+
+    from ...compiler.events.taylor_method import Taylor
+    from ...device.simulated.simulated_paddle import SimulatedPaddle
+    from ...records import PaddleProfile
+    from .tradeoff_choice import Configuration, NotFeasible
+
 #: the target that is no board: this computer
 PC = "pc"
 #: float64 is the pc's alone
@@ -41,10 +54,24 @@ SHORTEST = 1e-5
 
 
 def tradeoff(
-    scene, paddle, *, methods="auto", T=(2e-3, 1e-3, 5e-4), substeps=(1, 2, 4), holds=HOLDS, force_at=("before",),
-    precision=PRECISIONS, targets=(PC, "uno", "cortex-m0+", "cortex-m4f"), motions=None, tolerance=1e-2,
-    velocity="backward_difference", every=10, live=(), workers=None, progress=True,
-):  # fmt: skip
+    scene: Scene,
+    paddle: SimulatedPaddle | PaddleProfile,
+    *,
+    methods: Literal["auto"] | Sequence[str | Taylor] = "auto",
+    T: float | Iterable[float] = (2e-3, 1e-3, 5e-4),
+    substeps: Sequence[int] = (1, 2, 4),
+    holds: Sequence[str] = HOLDS,
+    force_at: Sequence[str] = ("before",),
+    precision: Sequence[str] = PRECISIONS,
+    targets: str | Iterable[str] = (PC, "uno", "cortex-m0+", "cortex-m4f"),
+    motions: HandleMotion | Iterable[HandleMotion] | None = None,
+    tolerance: float = 1e-2,
+    velocity: Literal["backward_difference", "measured"] = "backward_difference",
+    every: int = 10,
+    live: str | Iterable[str] | None = (),
+    workers: int | Callable[..., Iterable[Any]] | None = None,
+    progress: bool = True,
+) -> Tradeoff:
     """Measure speed against accuracy of a scene: error of the force, cost, stability and passivity of every setting.
 
     The handle is led along motions; the force of each compiled setting is compared with a reference that two
@@ -102,20 +129,20 @@ def tradeoff(
     """
     _check(scene, paddle)
     Asked(tolerance, load=1.0, passive=True)  # refuses a tolerance that is none
-    T, targets = tuple(period(one) for one in _several(T)), _several(targets)
-    for name in targets:
+    T, here = tuple(period(one) for one in _several(T)), _several(targets)
+    for name in here:
         choice("target", name, (PC, *(board for board in BOARDS if BOARDS[board].hz)))
-    boards = tuple(name for name in targets if name != PC)
+    boards = tuple(name for name in here if name != PC)
     settings = _settings(scene, methods, T, substeps, holds, force_at, precision)
-    motions = _motions(motions, scene, paddle, T)
+    led = _motions(motions, scene, paddle, T)
     with shared_out((scene, _step(T)), workers) as share:
-        halves = list(share(_references, [motions[::2], motions[1::2]]))
+        halves = list(share(_references, [led[::2], led[1::2]]))
     bench = Bench(scene, paddle, tuple(itertools.chain(*halves)), boards, every, velocity, live)
     with progress_bar(len(settings), progress, "setting") as shown, shared_out(bench, workers) as share:
         trials = all_tried(settings, share, shown.update, paddle.b)
         keys = list(dict.fromkeys((s.T, s.hold) for s in settings))
         floors = dict(zip(keys, share(sensor_floor, keys), strict=True))
-    return Tradeoff(scene.name, Table(rows_of(bench, trials, floors, targets)), targets, tolerance, bench)
+    return Tradeoff(scene.name, Table(rows_of(bench, trials, floors, here)), here, tolerance, bench)
 
 
 def _check(scene, paddle):
@@ -202,16 +229,25 @@ class Tradeoff:
 
     name: str
     table: Table
-    targets: tuple
+    targets: tuple[str, ...]
     tolerance: float
-    bench: object
+    bench: Bench
 
-    def front(self, target):
+    def front(self, target: str) -> Table:
         """Return the rows of a target that none beats in both load and error, cheapest first."""
         choice("target", target, self.targets)
         return Table(front(row for row in self.table if row.target == target and row.status == OK))
 
-    def choose(self, *, tolerance=None, load=0.5, passive=True, target=None, margin=MARGIN, held=None):
+    def choose(
+        self,
+        *,
+        tolerance: float | None = None,
+        load: float = 0.5,
+        passive: bool = True,
+        target: str | None = None,
+        margin: float = MARGIN,
+        held: float | None = None,
+    ) -> Configuration | NotFeasible:
         """Return the Configuration of least load that is good enough, or NotFeasible, which says what to relax.
 
         Parameters
@@ -232,22 +268,23 @@ class Tradeoff:
         target = choice("target", self.targets[0] if target is None else target, self.targets)
         return chosen(self.table, target, self._asked(tolerance, load, passive, margin, held), self.bench.options)
 
-    def measured(self, row, cycles):
+    def measured(self, row: Row, cycles: float) -> Tradeoff:
         """Return the trade-off with what a tick of one row's program took on its board [cycles], beside what was predicted."""
         if row.cycles is None or not any(one is row for one in self.table):
             raise AnalysisError(f"{row.name} on {row.target} is no row of this trade-off that a board runs; take one of .table")
         hz = BOARDS[row.target].hz
+        assert hz is not None  # a row with cycles is of a board with a clock
         load = row.load + (cycles - (row.measured or row.cycles)) / (hz * row.T)
         new = replace(row, measured=float(cycles), seconds=cycles / hz, load=load)
         return replace(self, table=Table(new if one is row else one for one in self.table))
 
-    def explain(self, row):
+    def explain(self, row: Row) -> str:
         """Return what a row says, in sentences."""
         if not isinstance(row, Row):
             raise AnalysisError(f"row = {row!r}; needs a row, such as found.explain(found.table[0]) or found.front('pc')[0]")
         return explained(row, self.table, self.bench.every)
 
-    def plot(self, *targets, tolerance=None, load=0.5, passive=True):
+    def plot(self, *targets: str, tolerance: float | None = None, load: float = 0.5, passive: bool = True) -> Figure:
         """Draw error against load, a line for each method; see ``plot_work_precision``."""
         for target in targets:
             choice("target", target, self.targets)
@@ -256,7 +293,7 @@ class Tradeoff:
     def _asked(self, tolerance, load, passive, margin, held=None):
         return Asked(self.tolerance if tolerance is None else tolerance, load, passive, margin, held)
 
-    def summary(self, **asked):
+    def summary(self, **asked: Any) -> str:
         """Return for each target what none beats, and the choice, as text."""
         counts = Counter(row.status.split(" at t")[0].split(" after")[0] for row in self.table)
         lines = [
@@ -270,5 +307,5 @@ class Tradeoff:
             lines += ["", f"{target}: what none beats", self.front(target).brief(), str(self.choose(target=target, **asked))]
         return "\n".join(lines)
 
-    def __str__(self):
+    def __str__(self) -> str:
         return self.summary()

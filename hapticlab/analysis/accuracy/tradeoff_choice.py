@@ -1,7 +1,10 @@
 """Choose from a trade-off the least load that is good enough, or say what to relax."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from ...errors import AnalysisError
 from .tradeoff_rows import TOO_LARGE, Row, percent
@@ -34,18 +37,18 @@ class Configuration:
     """
 
     row: Row
-    options: dict
+    options: dict[str, Any]
     tolerance: float
-    notes: tuple = ()
+    notes: tuple[str, ...] = ()
 
-    def facts(self):
+    def facts(self) -> dict[str, Any]:
         """Return what was chosen as a dictionary for JSON."""
         row = self.row
         told = {name: getattr(row, name) for name in ("err_max", "err_hold", "load")}
         told |= {"tolerance": self.tolerance, "notes": list(self.notes)}
         return {"feasible": True, "options": {**self.options, "live": _listed(self.options["live"])}, **told}
 
-    def __str__(self):
+    def __str__(self) -> str:
         row = self.row
         given = ", ".join(f"{name}={value!r}" for name, value in self.options.items())
         lines = [
@@ -70,16 +73,16 @@ class NotFeasible:
 
     target: str
     nearest: Row | None
-    relax: tuple
+    relax: tuple[str, ...]
 
-    def __bool__(self):
+    def __bool__(self) -> bool:
         return False
 
-    def facts(self):
+    def facts(self) -> dict[str, Any]:
         """Return what is missing as a dictionary for JSON."""
         return {"feasible": False, "nearest": self.nearest and self.nearest.name, "relax": list(self.relax)}
 
-    def __str__(self):
+    def __str__(self) -> str:
         near = f"; nearest is {self.nearest.name}" if self.nearest else ""
         return "\n".join([f"{self.target}: nothing meets what was asked{near}", *(f"  {words}" for words in self.relax)])
 
@@ -94,7 +97,7 @@ class Asked:
     margin: float = MARGIN
     held: float | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ("tolerance", "load", "margin", "held"):
             given = getattr(self, name)
             if given is not None and not given > 0:

@@ -1,11 +1,17 @@
 """One row of a trade-off: a way to compute a scene on one target, with what it gets wrong, costs and needs."""
 
+from __future__ import annotations
+
 import csv
 import itertools
 import math
 from dataclasses import asdict, astuple, dataclass, fields, replace
+from typing import TYPE_CHECKING, Any
 
 from ...compiler.methods.chosen_method import chosen_method
+
+if TYPE_CHECKING:
+    from os import PathLike
 
 OK, TOO_LARGE, NOT_TRIED = "ok", "does not fit", "not tried"
 #: percentages below this are not told apart
@@ -85,17 +91,17 @@ class Row:
     why: str = ""
 
     @property
-    def passive(self):
+    def passive(self) -> bool | None:
         """Whether the device is passive in every passive hand; None where that is not known."""
         return None if self.b_req is None or self.b_device is None else self.b_req <= self.b_device
 
     @property
-    def ran(self):
+    def ran(self) -> bool:
         """Whether it ran to the end, so that its errors are known."""
         return self.status.startswith(RAN)
 
     @property
-    def name(self):
+    def name(self) -> str:
         """The setting in a few words."""
         parts = [*([] if self.static else [self.method, self.hold]), f"T = {self.T * 1e3:g} ms"]
         parts += [f"{self.substeps} substeps"] * (self.substeps > 1) + [f"force {self.force_at}"] * (self.force_at != "before")
@@ -121,10 +127,10 @@ LEGEND = (
 class Table(tuple):
     """Rows of a trade-off; printing it shows them, one a line."""
 
-    def __str__(self):
+    def __str__(self) -> str:
         return self._text(_HEADS)
 
-    def brief(self):
+    def brief(self) -> str:
         """Return the rows in lines of less than 120 columns, without their target and what is of little weight."""
         aside = (*_ASIDE, "force") if all(row.force_at == "before" for row in self) else _ASIDE
         return self._text([(head, width) for head, width in _HEADS if head not in aside])
@@ -136,11 +142,11 @@ class Table(tuple):
             " ".join(f"{cells[head]:{sides.get(head, '>')}{width}}" for head, width in heads).rstrip() for cells in lines
         )
 
-    def where(self, **wanted):
+    def where(self, **wanted: Any) -> Table:
         """Return the rows whose attributes have these values, as in ``table.where(target="uno", status="ok")``."""
         return Table(row for row in self if all(getattr(row, name) == value for name, value in wanted.items()))
 
-    def to_csv(self, path):
+    def to_csv(self, path: str | PathLike[str]) -> str | PathLike[str]:
         """Write the rows to a file, SI units, and return its path."""
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)

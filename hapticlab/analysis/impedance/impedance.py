@@ -1,6 +1,9 @@
 """What a scene is at its port: the impedance Z = F/v of its equations of motion, linearised, in continuous time."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 import sympy as sp
@@ -14,6 +17,9 @@ from ...scene.notation.symbols import Parameter, delay, lag_of, n, t, v, x
 from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
 from .impedance_curve import LOOKED_AT, Impedance
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
 
 #: the handle as a force sees it at the sample, and as an equation of motion sees it
 SEEN = ((x(t), x(n)), (v(t), v(n)))
@@ -32,18 +38,18 @@ class Port:
         Force of the handle's own position and velocity [N/m], [N s/m].
     """
 
-    coordinates: tuple
-    M: np.ndarray
-    C: np.ndarray
-    K: np.ndarray
-    Kx: np.ndarray
-    Cx: np.ndarray
-    KF: np.ndarray
-    CF: np.ndarray
+    coordinates: tuple[sp.Expr, ...]
+    M: NDArray[np.float64]
+    C: NDArray[np.float64]
+    K: NDArray[np.float64]
+    Kx: NDArray[np.float64]
+    Cx: NDArray[np.float64]
+    KF: NDArray[np.float64]
+    CF: NDArray[np.float64]
     k: float
     c: float
 
-    def impedance(self, frequency):
+    def impedance(self, frequency: ArrayLike) -> NDArray[np.complex128]:
         """Return Z = F/v [N s/m] at frequencies > 0 [Hz], complex, shape as given."""
         s = 2j * np.pi * np.asarray(frequency, float)
         S = np.reshape(s, (-1, 1, 1))
@@ -52,7 +58,11 @@ class Port:
         return (F / S[:, 0, 0]).reshape(np.shape(s))
 
 
-def impedance(scene, frequency=None):
+@overload
+def impedance(scene: Scene, frequency: None = None) -> Impedance: ...
+@overload
+def impedance(scene: Scene, frequency: ArrayLike) -> NDArray[np.complex128]: ...
+def impedance(scene: Scene, frequency: ArrayLike | None = None) -> Impedance | NDArray[np.complex128]:
     """Impedance Z = F/v at the handle [N s/m], of the scene linearised about its start with the handle at x = 0.
 
     A mass at the handle would have Z = m s, a spring k/s, a damper b, at s = 2 pi j frequency. Continuous: without the

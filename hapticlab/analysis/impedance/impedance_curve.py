@@ -1,10 +1,17 @@
 """The impedance of a scene over frequency, as a picture: where it is a spring, a damper, a mass."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...drawing import STYLES, house_style, log_scales, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
 #: where an impedance is looked at unless frequencies are given [Hz]
 LOOKED_AT = np.geomspace(0.1, 200.0, 600)
@@ -25,14 +32,14 @@ class Impedance:
     """
 
     name: str
-    frequency: np.ndarray
-    Z: np.ndarray
+    frequency: NDArray[np.float64]
+    Z: NDArray[np.complex128]
 
-    def __str__(self):
+    def __str__(self) -> str:
         ends = (f"{abs(self.Z[k]):.3g} N s/m at {self.frequency[k]:.3g} Hz, {_like(self.Z[k])}" for k in (0, -1))
         return f"impedance of {self.name}: " + "; ".join(ends)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Return a figure: size and angle over frequency; a mass leads by 90 degrees, a damper by none, a spring lags."""
         with house_style():
             figure = new_figure(height=5.4)

@@ -1,6 +1,9 @@
 """A scene of fewer masses that feels the same at the handle: offered, measured, never taken without a word."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +17,13 @@ from .impedance_peaks import BESIDE, around, frequencies, held, infinite, outsid
 from .mass_chain import modal, network_of, scene_of
 from .moment_matching import candidates
 from .reduction_plot import plot_reduction
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ...limits.limit import Device
+    from ...records import PaddleProfile
 
 #: below what a hand tells from another force, 7 to 10 %
 TOLERANCE = 0.05
@@ -51,49 +61,51 @@ class Reduction:
     full: Scene
     before: int
     masses: int
-    band: tuple
+    band: tuple[float, float]
     tolerance: float
-    frequency: np.ndarray = field(repr=False)
-    impedance: np.ndarray = field(repr=False)
-    full_impedance: np.ndarray = field(repr=False)
-    error: np.ndarray = field(repr=False)
-    tried: tuple = ()
-    poles: tuple = ()
+    frequency: NDArray[np.float64] = field(repr=False)
+    impedance: NDArray[np.complex128] = field(repr=False)
+    full_impedance: NDArray[np.complex128] = field(repr=False)
+    error: NDArray[np.float64] = field(repr=False)
+    tried: tuple[tuple[int, float], ...] = ()
+    poles: tuple[tuple[float, float], ...] = ()
 
     @property
-    def largest(self):
+    def largest(self) -> float:
         """The largest error over the band."""
         return float(self.error.max())
 
     @property
-    def within(self):
+    def within(self) -> bool:
         return self.largest <= self.tolerance and self.shift <= BESIDE
 
     @property
-    def shift(self):
+    def shift(self) -> float:
         """How far a pole has moved, the largest part of its frequency."""
         return max((abs(now / before - 1) for before, now in self.poles), default=0.0)
 
-    def below(self, frequency):
+    def below(self, frequency: float) -> float:
         """Return the largest error up to a frequency [Hz]."""
         return float(self.error[self.frequency <= frequency * (1 + 1e-12)].max())
 
-    def instructions(self, T=1e-3):
+    def instructions(self, T: float = 1e-3) -> tuple[int, int]:
         """Return the instructions a tick of (the full, the reduced) scene, each compiled with its parameters fixed."""
-        return tuple(len(compile(scene, T=T, live=())) for scene in (self.full, self.scene))
+        full, reduced = (len(compile(scene, T=T, live=())) for scene in (self.full, self.scene))
+        return full, reduced
 
-    def device_damping(self, T=1e-3):
+    def device_damping(self, T: float = 1e-3) -> tuple[float, float]:
         """Return the damping b [N s/m] that a device needs for (the full, the reduced) scene, each compiled.
 
         See :func:`~hapticlab.limits.port.port_damping`; ``inf`` without damping of the scene's own.
         """
-        return tuple(port_damping(scene, T=T, method="exact") for scene in (self.full, self.scene))
+        full, reduced = (port_damping(scene, T=T, method="exact") for scene in (self.full, self.scene))
+        return full, reduced
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw both impedances and the error over the band; return a figure."""
         return plot_reduction(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         before, after = self.instructions()
         needed = "{:.4g} N s/m, of the reduced one {:.4g}".format(*self.device_damping())
         high = self.band[1]
@@ -109,7 +121,15 @@ class Reduction:
         return "\n".join(lines)
 
 
-def reduction(scene, paddle, *, band=(0.1, 20.0), masses=None, tolerance=TOLERANCE, accept=False):
+def reduction(
+    scene: Scene,
+    paddle: Device | PaddleProfile,
+    *,
+    band: tuple[float, float] = (0.1, 20.0),
+    masses: int | None = None,
+    tolerance: float = TOLERANCE,
+    accept: bool = False,
+) -> Reduction:
     """Offer a scene of fewer masses whose impedance at the handle is the same within a tolerance over a band.
 
     Second-order and structure-preserving: the reduced scene has masses, springs and dampers whose energies are those of

@@ -1,8 +1,11 @@
 """Pictures of mechanisms, each in a state: of the library, and of any other scene."""
 
+from __future__ import annotations
+
 import inspect
 import re
 from difflib import get_close_matches
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,8 +16,13 @@ from ...scene.notation.units import in_si
 from ...scene.scene import Scene
 from .schematic import Schematic
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
-def picture(name, **state):
+    from matplotlib.figure import Figure
+
+
+def picture(name: str | Scene | Callable[..., Scene], **state: float | str) -> Figure:
     """Draw a scene as a schematic, with the handle and what moves in a given state.
 
     Parameters

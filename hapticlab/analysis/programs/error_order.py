@@ -1,9 +1,12 @@
 """The order of the error that a scene's program may be expected to have: the least of what the method, the hold, the force
 and the cases of the motion have."""
 
+from __future__ import annotations
+
 import itertools
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import sympy as sp
@@ -17,6 +20,10 @@ from ...compiler.prune.dependence import Dependence, part_of
 from ...compiler.prune.excluded_modes import excluded
 from ...compiler.prune.mass_matrix import start_of
 from ...scene.notation.symbols import Parameter, acceleration, delay, n, t, v, x
+
+if TYPE_CHECKING:
+    from ...compiler.events.taylor_method import Taylor
+    from ...scene.scene import Scene
 
 #: error of x(t) and of v(t) within a period, as a power of T
 HOLD = {"zoh": (1, 1), "foh": (2, 1), "soh": (3, 2)}
@@ -38,12 +45,12 @@ class Order:
     (1.0, '1 (hold zoh; method rk4: 4)')
     """
 
-    limits: dict
+    limits: dict[str, float]
 
-    def __float__(self):
+    def __float__(self) -> float:
         return float(min(self.limits.values(), default=math.inf))
 
-    def __str__(self):
+    def __str__(self) -> str:
         least = float(self)
         if least == math.inf:
             return "no error but rounding"
@@ -52,7 +59,15 @@ class Order:
         return f"{least:g} ({'; '.join([', '.join(first), *others])})"
 
 
-def order_of(scene, method="rk4", *, hold="soh", velocity="backward_difference", force_at="before", **options):
+def order_of(
+    scene: Scene,
+    method: str | Taylor = "rk4",
+    *,
+    hold: Literal["zoh", "foh", "soh"] = "soh",
+    velocity: Literal["backward_difference", "measured"] = "backward_difference",
+    force_at: Literal["before", "after", "mean"] = "before",
+    **options: Any,
+) -> Order:
     """Return the order in T of the error of the force that a scene's program computes, where T is short enough.
 
     The error is that beside the force at the sample, for ``force_at="mean"`` beside the mean force of the period, in a
@@ -85,15 +100,15 @@ def order_of(scene, method="rk4", *, hold="soh", velocity="backward_difference",
     form = part_of(form, Dependence(form, graph).needed)
     moving = graph.variables_of([*form.f, *sum(form.M, ()), *(g for model in form.models for g in model.constraints)])
     felt = graph.variables_of([form.force])
-    method = chosen_method(method)
-    seen = _seen(hold, velocity, at_samples=_at_samples(method, options))
-    limits = {}
+    chosen = chosen_method(method)
+    seen = _seen(hold, velocity, at_samples=_at_samples(chosen, options))
+    limits: dict[str, float] = {}
     if form.coordinates:
-        limits |= _of_method(method)
+        limits |= _of_method(chosen)
         limits |= _of_hold(moving, seen)
-        if method.exact and any(a == t or isinstance(a, driven) for a in moving):
+        if chosen.exact and any(a == t or isinstance(a, driven) for a in moving):
             limits["t followed by a parabola"] = 4
-        if not method.locates:
+        if not chosen.locates:
             limits |= _of_cases(form, graph, scene.values)
     limits |= _of_force(felt, seen, velocity, force_at)
     return Order(limits)

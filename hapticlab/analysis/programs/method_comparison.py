@@ -1,14 +1,24 @@
 """The methods that hl.compile knows, as a table and a picture: order, cost, and where each is stable."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...compiler.ir.options import choice
 from ...compiler.methods.method_table import METHODS
 from ...drawing import house_style, new_figure, style_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from matplotlib.figure import Figure
+
+    from ...compiler.methods.method_table import Method
 
 #: damping ratios of the right picture, and omega h past which nothing is drawn
 ZETA = np.geomspace(0.02, 5.0, 41)
@@ -36,11 +46,11 @@ class WithoutSteps:
     real: float
     imaginary: float
 
-    def longest_step(self, zeta=0.0):
+    def longest_step(self, zeta: float = 0.0) -> float:
         """Return the largest omega h of q'' = -omega^2 q - 2 zeta omega q'."""
         return self.imaginary / max(1.0, zeta + math.sqrt(max(zeta**2 - 1.0, 0.0)))
 
-    def energy_gain(self, omega_h):
+    def energy_gain(self, omega_h: float) -> float:
         """Return the part of its energy that a spring-mass gains in a step: none."""
         return 0.0
 
@@ -62,22 +72,22 @@ WITHOUT_STEPS = {
 }  # fmt: skip
 
 
-class Methods(Mapping):
+class Methods(Mapping[str, "Method | WithoutSteps"]):
     """Methods by name; printing them makes a table, :meth:`plot` a picture."""
 
     def __init__(self, known):
         self._known = known
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Method | WithoutSteps:
         return self._known[choice("method", name, self._known)]
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(self._known)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._known)
 
-    def __str__(self):
+    def __str__(self) -> str:
         gains = "".join(f"{f'gain at wh={y:g}':>15}" for y in AT)
         lines = [f"{'method':<28}{'order':>9}{'evaluations':>13}{'h b/m <':>10}{'wh <':>8}{gains}"]
         for name, m in self.items():
@@ -87,7 +97,7 @@ class Methods(Mapping):
 
     __repr__ = __str__
 
-    def plot(self, *names):
+    def plot(self, *names: str) -> Figure:
         """Draw where methods are stable: |R(z)| = 1 of y' = z y, and the largest omega h against the damping ratio.
 
         Parameters
@@ -139,7 +149,7 @@ _BESIDE = (
 )
 
 
-def methods():
+def methods() -> Methods:
     """Return the methods by name: explicit fixed-step ones, their limits found by taking steps of them, "exact" and "taylor".
 
     Returns

@@ -1,7 +1,10 @@
 """What only feeds a view, run after the fact: a scene over the recorded motion of the handle, at a rate of its own."""
 
+from __future__ import annotations
+
 import operator
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -14,6 +17,9 @@ from ...records import Telemetry, check_record
 from ...scene.notation.symbols import T, delay, lag_of, n
 from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -36,12 +42,12 @@ class Replay:
 
     log: Telemetry
     every: int
-    error: dict
-    size: dict
+    error: dict[str, float]
+    size: dict[str, float]
     instructions: int
-    units: dict = field(repr=False, default_factory=dict)
+    units: dict[str, str] = field(repr=False, default_factory=dict)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Return a figure: each channel of the view over time."""
         with house_style():
             figure = new_figure(height=1.2 + 1.7 * len(self.error))
@@ -54,7 +60,7 @@ class Replay:
             rows[-1].set_xlabel("time t [s]")
         return figure
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [f"{self.instructions} instructions every {self.every} rows; largest difference from every row:"]
         for name, error in self.error.items():
             part = f" ({error / self.size[name]:.2g} of the largest)" if self.size[name] else ""
@@ -62,7 +68,9 @@ class Replay:
         return "\n".join(lines)
 
 
-def replay(view, log, *, every=10, engine="auto", **options):
+def replay(
+    view: Scene, log: Telemetry, *, every: int = 10, engine: Literal["auto", "llvm", "interpreter"] = "auto", **options: Any
+) -> Replay:
     """Run a view over the recorded motion of the handle, at a slower rate than the record's.
 
     Parameters

@@ -1,5 +1,7 @@
 """The report of what a scene requires, as text and as a table for a notebook."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 
 from ...compiler.ir.program import Program
@@ -53,9 +55,9 @@ class Requirements:
     """
 
     program: Program = field(repr=False)
-    kept: tuple
-    dropped: tuple
-    offered: tuple
+    kept: tuple[Item, ...]
+    dropped: tuple[Item, ...]
+    offered: tuple[Item, ...]
     everything: int
     felt: Scene = field(repr=False)
     view: Scene | None = field(repr=False)
@@ -82,7 +84,7 @@ class Requirements:
         nothing = "" if self.offered else "offered: nothing; "
         return [f"{nothing}exact is not offered: {self.declined}"] if self.declined else []
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [self._head]
         items = [i for _, _, group in self._tables() for i in group]
         wide = max([len(i.name) for i in items], default=0)
@@ -94,7 +96,7 @@ class Requirements:
                     lines.append(f"  {i.name:<{wide}}  {i.kind:<10}{saves:>6}  {i.why}")
         return "\n".join([*lines, *self._declined])
 
-    def _repr_markdown_(self):
+    def _repr_markdown_(self) -> str:
         rows = [f"**{self._head}**", "", "| | what | saves | why |", "|---|---|---|---|"]
         for title, _, group in self._tables():
             for i in group:

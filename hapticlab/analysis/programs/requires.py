@@ -1,8 +1,11 @@
 """What a scene requires at the sample rate: what is kept, what is left out and why, and what that saves, measured."""
 
+from __future__ import annotations
+
 import inspect
 import math
 from dataclasses import replace
+from typing import Any
 
 import sympy as sp
 
@@ -21,7 +24,7 @@ from ...scene.scene import Scene
 from .requirement_report import PART, Item, Requirements
 
 
-def requires(scene, *, T=1e-3, **options):
+def requires(scene: Scene, *, T: float = 1e-3, **options: Any) -> Requirements:
     """Say what a scene requires at the sample rate, what the compiler leaves out, why, and the instructions saved.
 
     Parameters

@@ -1,7 +1,10 @@
 """Chatter: is there a sustained oscillation, how large, how fast, and has it settled."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +13,14 @@ from ...records import check_record
 from .chatter_findings import Chatter
 from .chatter_signs import leaves_its_drive, levels_off, runs_away, scatter, upward_crossings
 from .driven_motion import drive_of, following
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...device.hand.hand import Hand
+    from ...records import Telemetry
 
 #: amplitudes of the last two quarters within this ratio count as one sustained oscillation
 LOCK = 0.01
@@ -31,7 +42,7 @@ REPEATS, LONGEST_CYCLE = 1e-4, 2000
 COUNTS = 4
 
 
-def chatter(log, driven=None):
+def chatter(log: Telemetry, driven: Hand | Callable[[NDArray[np.float64]], ArrayLike] | str | ArrayLike | None = None) -> Chatter:
     """Find chatter, Section 23.4: sustained oscillation, often with repeated contact with the wall.
 
     Looks at the last half of a record, at the handle itself where an encoder or noise hid it (``x_true``). An
@@ -117,7 +128,7 @@ def _found(log, driven):
         locked = abs(ratio) < LOCK or (abs(ratio) < 2 * uneven and not _sinks_to_counts(y, log.x[-half:]))
         state = "chatter" if locked else "growing" if ratio > 0 else "decaying"
     else:
-        state, ratio, locked, uneven = *_compare_swings(x, quarter), False, math.nan
+        (state, ratio), locked, uneven = _compare_swings(x, quarter), False, math.nan
     dither, amplitude = len(np.unique(log.x[-half:])) == 2, float(np.ptp(y) / 2)
     period = cycle_length(x[-half:], amplitude) if locked else None
     growth, error = ratio / (quarter * log.T), uneven / (quarter * log.T)

@@ -1,10 +1,16 @@
 """What is found of chatter in a record, in words and as a picture."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
 
 from ...records import Telemetry
 from .record_plots import plot_chatter
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -51,7 +57,7 @@ class Chatter:
         Where it was found.
     """
 
-    state: str
+    state: Literal["none", "chatter", "growing", "decaying", "undecided", "driven", "runaway"]
     amplitude: float
     frequency: float | None
     contacts_per_second: float
@@ -67,11 +73,11 @@ class Chatter:
     levels_off: bool = False
     record: Telemetry | None = field(default=None, repr=False, compare=False)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Return a figure: the handle's motion with the swing found in its last half, and which frequencies are in it."""
         return plot_chatter(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         if self.state == "runaway":
             return f"runaway: the handle moves on by {1e3 * self.travel:.4g} mm in the last quarter, faster and faster"
         if self.state == "driven":

@@ -1,6 +1,9 @@
 """Energy at the port: what a rendered wall gives back beyond what was put in, Fig. 23.6."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -8,6 +11,12 @@ from ...errors import AnalysisError
 from ...limits.limit import whole_and_fraction
 from ...records import check_record
 from .record_plots import plot_energy
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ...records import Telemetry
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,18 +40,18 @@ class Energy:
         False where the force changed inside the periods and the position there was not recorded.
     """
 
-    t: np.ndarray
-    W: np.ndarray
+    t: NDArray[np.float64]
+    W: NDArray[np.float64]
     generated: float
     extracted: float
     contacts: int
     exact: bool
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Return a figure: the energy that the environment holds over time, and where it gave more than it took."""
         return plot_energy(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         if np.isnan(self.generated):
             return f"no completed penetration; {1e3 * self.extracted:.4g} mJ was drawn from the environment at most"
         about = "" if self.exact else ", the position at the force's changes interpolated"
@@ -51,7 +60,7 @@ class Energy:
         return f"{penetrations} {verb} {1e3 * abs(self.generated):.4g} mJ{about}"
 
 
-def energy(log):
+def energy(log: Telemetry) -> Energy:
     """Return the energy through the port, force and displacement paired as they acted: Fig. 23.6.
 
     The force computed from sample n acts while the handle moves from x[n] to x[n+1]; a delay of d + f periods moves it on

@@ -4,7 +4,10 @@ The books are first-order coordinates like any other, so that every method keeps
 not balance is the method's: a spring wall of Fig. 23.6 that generates energy shows it here sample by sample.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import sympy as sp
@@ -18,11 +21,28 @@ from ...scene.notation.symbols import acceleration, coordinate, lag_of, t, v, x
 from .energy import energy
 from .record_plots import plot_balance
 
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ...records import Telemetry
+    from ...scene.contact.contact import Contact
+    from ...scene.scene import Scene
+
 #: what a scene's books record [J]
 CHANNELS = ("supplied", "stored", "dissipated", "leak")
 
 
-def energy_books(scene, *, stored=None, supplied=None, dissipated=0, contacts=()):
+def energy_books(
+    scene: Scene,
+    *,
+    stored: sp.Expr | float | None = None,
+    supplied: sp.Expr | float | None = None,
+    dissipated: sp.Expr | float = 0,
+    contacts: Iterable[Contact | friction] = (),
+) -> Scene:
     """Return the scene with its energy books: the watched channels supplied, stored, dissipated and leak, all in J.
 
     ``supplied`` is the energy at the first sample and all work done on the environment since, by the handle and by other
@@ -189,19 +209,19 @@ class Balance:
         later than they acted. Work of other forces than the handle's is part of it.
     """
 
-    t: np.ndarray
-    supplied: np.ndarray
-    stored: np.ndarray
-    dissipated: np.ndarray
-    leak: np.ndarray
-    port: np.ndarray
-    sampling: np.ndarray
+    t: NDArray[np.float64]
+    supplied: NDArray[np.float64]
+    stored: NDArray[np.float64]
+    dissipated: NDArray[np.float64]
+    leak: NDArray[np.float64]
+    port: NDArray[np.float64]
+    sampling: NDArray[np.float64]
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Return a figure: where the supplied energy is, and what the books cannot account for."""
         return plot_balance(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         put_in, kept, lost = (a[-1] - a[0] for a in (self.supplied, self.stored, self.dissipated))
         worst = self.leak[np.argmax(np.abs(self.leak))]
         return (
@@ -212,7 +232,7 @@ class Balance:
         )
 
 
-def balance(log):
+def balance(log: Telemetry) -> Balance:
     """Return the energy books of a run of a scene made by :func:`energy_books`.
 
     Parameters

@@ -1,6 +1,9 @@
 """What a passivity observer and controller did along a record, and for how long the environment was active."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -8,6 +11,12 @@ from ...drawing import STYLES, house_style, new_figure
 from ...errors import AnalysisError
 from ...records import check_record
 from .energy import energy
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ...records import Telemetry
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,21 +44,21 @@ class PassivityTrace:
         gave back of what a human had paid before, Eq. (23.9) unbroken.
     """
 
-    t: np.ndarray
-    W: np.ndarray
-    same_sample: np.ndarray
-    observed: np.ndarray | None
-    error: np.ndarray | None
-    dissipated: np.ndarray | None
-    active: tuple
+    t: NDArray[np.float64]
+    W: NDArray[np.float64]
+    same_sample: NDArray[np.float64]
+    observed: NDArray[np.float64] | None
+    error: NDArray[np.float64] | None
+    dissipated: NDArray[np.float64] | None
+    active: tuple[float, float]
     drained: float
 
     @property
-    def passive(self):
+    def passive(self) -> bool:
         """Whether the environment never gave more than it had taken, Eq. (23.9) with nothing stored at the start."""
         return bool(self.W.min() >= -1e-7 * abs(self.W).max())
 
-    def __str__(self):
+    def __str__(self) -> str:
         least = int(np.argmin(self.W))
         held = "held" if self.passive else f"broken by {-1e3 * self.W[least]:.4g} mJ at t = {self.t[least]:.4g} s"
         lines = [f"W >= 0 {held}; {1e3 * self.W[-1]:.4g} mJ taken in the end"]
@@ -60,7 +69,7 @@ class PassivityTrace:
             lines.append(f"the controller's damper took {1e3 * self.dissipated[-1]:.4g} mJ")
         return "\n".join(lines)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the energy at the port, the observer's own, and the sum with the wrong pairing."""
         with house_style():
             figure = new_figure(height=4.2)
@@ -79,7 +88,7 @@ class PassivityTrace:
         return figure
 
 
-def passivity_trace(log):
+def passivity_trace(log: Telemetry) -> PassivityTrace:
     """Return the trace of a passivity observer or controller, and the longest time the environment was active.
 
     Parameters

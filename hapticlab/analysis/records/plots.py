@@ -1,10 +1,23 @@
 """Figures of records, sweeps and limits."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ...drawing import FRAME, SHOWN, STYLES, axis_label, colour_map, house_style, new_figure, outline, scale_axis
 from ...errors import AnalysisError
 from ...records import check_record
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from matplotlib.figure import Figure
+
+    from ...limits.limit import Limit
+    from ...records import Telemetry
+    from ..sweeps.sweep import Sweep
 
 #: forces, which a board holds from one sample to the next
 HELD = ("F", "F_applied")
@@ -14,7 +27,7 @@ NONE = "#e4e4e4"
 FAMILY = len(STYLES)
 
 
-def plot(log, *names):
+def plot(log: Telemetry, *names: str) -> Figure:
     """Draw recorded quantities against time, one below the other.
 
     Parameters
@@ -63,7 +76,7 @@ def plot(log, *names):
     return figure
 
 
-def plot_sweep(result, *, limits=None):
+def plot_sweep(result: Sweep, *, limits: Limit | Sequence[Limit] | Mapping[str, Limit | Sequence[Limit]] | None = None) -> Figure:
     """Draw a sweep: lines over one axis, a line for each value of a short second axis, or a map over two.
 
     Parameters

@@ -1,6 +1,9 @@
 """The staircase of Fig. 23.6: held force against displacement, the spring law through it, and the area between."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,6 +12,12 @@ from ...errors import AnalysisError
 from ...limits.limit import whole_and_fraction
 from ...records import check_record
 from .energy import energy
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ...records import Telemetry
 
 #: periods of a penetration up to which each step's leak is written beside it
 NUMBERED = 16
@@ -37,7 +46,7 @@ class Bounce:
     v_in: float
     v_out: float
 
-    def __str__(self):
+    def __str__(self) -> str:
         verb = "generated" if self.generated >= 0 else "dissipated"
         ratio = f", rebound {self.v_out / self.v_in:.4g} of the entry speed" if self.v_in > 0 else ""
         return f"{1e3 * self.depth:.3g} mm deep: {verb} {1e3 * abs(self.generated):.4g} mJ{ratio}"
@@ -61,19 +70,19 @@ class Staircase:
     bounces : tuple of Bounce
     """
 
-    x: np.ndarray
-    F: np.ndarray
+    x: NDArray[np.float64]
+    F: NDArray[np.float64]
     K: float
     x_o: float
-    leak: np.ndarray
-    moved: np.ndarray
-    bounces: tuple
+    leak: NDArray[np.float64]
+    moved: NDArray[np.float64]
+    bounces: tuple[Bounce, ...]
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [f"{number}: {bounce}" for number, bounce in enumerate(self.bounces, 1)]
         return "\n".join(lines or ["no completed penetration"])
 
-    def plot(self, bounce=1):
+    def plot(self, bounce: int = 1) -> Figure:
         """Draw one penetration, counted from 1, as Fig. 23.6: the area between spring line and staircase is the leak.
 
         Where there are few steps, each has its leak beside it in mJ.
@@ -125,7 +134,7 @@ def _numbers(axes, x, F, leak):
             )  # fmt: skip
 
 
-def staircase(log, *, K=None, x_o=None):
+def staircase(log: Telemetry, *, K: float | None = None, x_o: float | None = None) -> Staircase:
     """Return the staircase of Fig. 23.6 of a record, and the energy generated in each penetration.
 
     Parameters
@@ -158,11 +167,11 @@ def staircase(log, *, K=None, x_o=None):
     W = energy(log).W
     x = np.asarray(log.channels.get("x_true", log.x), float)
     v = np.asarray(log.channels.get("v_true", log.v), float)
-    corners, held = _corners(log, x)
+    (along, acted), held = _corners(log, x)
     U = K * np.maximum(x - x_o, 0) ** 2 / 2
-    bounces = (_bounce(first, last, x - x_o, v, W) for first, last in _contacts((held != 0) | (x > x_o)))
-    bounces = tuple(one for one in bounces if one.depth > 0)  # a damper may act outside
-    return Staircase(*corners, K, x_o, np.diff(U) - np.diff(W), np.diff(x), bounces)
+    contacts = (_bounce(first, last, x - x_o, v, W) for first, last in _contacts((held != 0) | (x > x_o)))
+    bounces = tuple(one for one in contacts if one.depth > 0)  # a damper may act outside
+    return Staircase(along, acted, K, x_o, np.diff(U) - np.diff(W), np.diff(x), bounces)
 
 
 def _spring(log, K, x_o):

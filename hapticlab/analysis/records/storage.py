@@ -1,6 +1,9 @@
 """Storage function and supply of a rendered environment along a record, Eq. (23.9), every term of it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import sympy as sp
@@ -10,6 +13,12 @@ from ...errors import AnalysisError
 from ...records import check_record
 from ...scene.notation.symbols import Parameter, lag_of, x
 from .energy import energy
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...records import Telemetry
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,31 +43,31 @@ class Storage:
         What a force of float32 leaves open in a period [J].
     """
 
-    t: np.ndarray
-    stored: np.ndarray
-    supplied: np.ndarray
-    leak: np.ndarray
-    paid: np.ndarray | None = None
-    bound: np.ndarray | None = None
+    t: NDArray[np.float64]
+    stored: NDArray[np.float64]
+    supplied: NDArray[np.float64]
+    leak: NDArray[np.float64]
+    paid: NDArray[np.float64] | None = None
+    bound: NDArray[np.float64] | None = None
     rounding: float = 0.0
 
     @property
-    def excess(self):
+    def excess(self) -> NDArray[np.float64]:
         """W(x(0)) + supply - W(x(t)) [J], and what the damper paid where b was given; Eq. (23.9) holds where >= 0."""
         paid = 0.0 if self.paid is None else self.paid
         return np.r_[0.0, np.cumsum(paid - self.leak)]
 
     @property
-    def holds(self):
+    def holds(self) -> bool:
         """Whether the inequality held at every sample."""
         return bool(self.excess.min() >= -len(self.t) * self.rounding)
 
     @property
-    def within_bound(self):
+    def within_bound(self) -> bool | None:
         """Whether no period leaked more than the stiffness allows; None without a stiffness."""
         return None if self.bound is None else bool((self.leak <= self.bound + self.rounding).all())
 
-    def __str__(self):
+    def __str__(self) -> str:
         worst = int(np.argmin(self.excess))
         who = "the environment" if self.paid is None else "environment and damper"
         put_in, kept = self.supplied[-1], self.stored[-1] - self.stored[0]
@@ -78,7 +87,7 @@ class Storage:
             )
         return "\n".join(lines)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw what was supplied and stored, and below what is left of Eq. (23.9)."""
         with house_style():
             figure = new_figure(height=5.0)
@@ -96,7 +105,9 @@ class Storage:
         return figure
 
 
-def storage(log, stored=None, *, b=None, stiffness=None):
+def storage(
+    log: Telemetry, stored: sp.Expr | ArrayLike | None = None, *, b: float | None = None, stiffness: float | None = None
+) -> Storage:
     """Check the passivity inequality, Eq. (23.9), of the environment along a record, with every term.
 
     A spring law held over a period, F(n) = U'(x(n)) with a slope of at most ``stiffness``, leaks no more than

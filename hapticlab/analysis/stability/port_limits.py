@@ -1,6 +1,9 @@
 """What a tick asks of a device at each operating point: sampled over a travel, told where it asks for the most."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,6 +12,9 @@ from ...errors import AnalysisError
 from ...limits.port import POINTS, negative, required, static_stiffness, unstable_pole
 from .linearization import motion_at
 from .operating_points import TRAVEL, borders, kind_of, operating_points, probes_of, telling
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 #: why a mode asks for what it asks, unless it is worse
 WORST = "worst frequency"
@@ -43,7 +49,7 @@ class PortLimit:
     floor: float
     frequency: float
     reason: str
-    tick: tuple = field(repr=False)
+    tick: tuple[NDArray[np.float64], ...] = field(repr=False)
     stiffness: float = 0.0
 
 

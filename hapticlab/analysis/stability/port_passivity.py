@@ -1,7 +1,10 @@
 """Whether a device pays for what sampling adds, in every mode of a scene: the compiled tick, linearised, at its port."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -16,6 +19,15 @@ from .linearization import forces_and_ticks_at
 from .operating_points import WORTH
 from .passive_hands import UNSTABLE, radii, single
 from .port_limits import WORST, Looked
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from matplotlib.figure import Figure
+
+    from ...limits.limit import Device
+    from ...records import PaddleProfile
+    from .port_limits import PortLimit
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,44 +51,44 @@ class PortPassivity:
     scene: str
     T: float
     delay: float
-    modes: tuple
-    kind: str
+    modes: tuple[PortLimit, ...]
+    kind: Literal["linear", "piecewise linear", "small-signal"]
     b_device: float | None = None
     m: float | None = None
     travel: float | None = None
 
     @property
-    def worst(self):
+    def worst(self) -> PortLimit:
         """The mode that asks for the most; one that falls before all others."""
         return max(self.modes, key=lambda m: (np.isnan(m.b_req), m.b_req))
 
     @property
-    def b_req(self):
+    def b_req(self) -> float:
         """Least damping of a device [N s/m] for every passive hand, in every mode that was looked at."""
         return self.worst.b_req
 
     @property
-    def floor(self):
+    def floor(self) -> float:
         """What the force asks for that follows the handle alone [N s/m]."""
         return self.worst.floor
 
     @property
-    def frequency(self):
+    def frequency(self) -> float:
         """Where b_req is asked for [Hz]."""
         return self.worst.frequency
 
     @property
-    def passive(self):
+    def passive(self) -> bool | None:
         """Whether the paddle's own damping is enough; None without a paddle, and where the scene falls by itself."""
         return None if self.b_device is None or np.isnan(self.b_req) else bool(self.b_device >= self.b_req)
 
     @property
-    def small_signal(self):
+    def small_signal(self) -> bool:
         """Whether this is about small motions about the operating points alone."""
         return self.kind == "small-signal"
 
     @cached_property
-    def b_stable(self):
+    def b_stable(self) -> float | None:
         """Least damping [N s/m] with which the handle of this mass is stable in every mass and spring that was tried."""
         if self.m is None:
             return None
@@ -86,10 +98,10 @@ class PortPassivity:
             return np.inf
         return max((stable_damping(m.tick, self.m, self.T, self.delay, m.b_req) for m in asking), default=np.nan)
 
-    def __float__(self):
+    def __float__(self) -> float:
         return float(self.b_req)
 
-    def __str__(self):
+    def __str__(self) -> str:
         enough = {True: "passive", False: "not passive", None: "no damping makes it passive"}[self.passive]
         has = "" if self.b_device is None else f"; the device has {self.b_device:.4g}: {enough}"
         head = f"{self.scene}, T = {1e3 * self.T:g} ms: needs b = {self.b_req:.4g} N s/m{has} ({WORTH[self.kind]}"
@@ -102,12 +114,19 @@ class PortPassivity:
 
     __repr__ = __str__
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the damping that each frequency asks of a device, in every mode."""
         return plot_port(self)
 
 
-def port_passivity(scene, paddle=None, *, T=None, at=None, **options):
+def port_passivity(
+    scene: Scene,
+    paddle: Device | PaddleProfile | None = None,
+    *,
+    T: float | None = None,
+    at: Mapping[str, float] | Sequence[Mapping[str, float]] | None = None,
+    **options: Any,
+) -> PortPassivity:
     """Least damping b_req [N s/m] of a device for a scene to be passive in every passive hand, in every mode of its contacts.
 
     Colgate and Schenkel's criterion on the tick of the compiled program, linearised at operating points; its cases are
@@ -141,15 +160,17 @@ def port_passivity(scene, paddle=None, *, T=None, at=None, **options):
     """
     if not isinstance(scene, Scene):
         raise AnalysisError(no_scene(scene, "needs hl.port_passivity(hl.Scene(force=...), T=1e-3)"))
-    if T is None and not hasattr(paddle, "T"):
+    given = getattr(paddle, "T", None) if T is None else T
+    if given is None:
         raise AnalysisError("T is missing; needs a sampling period, T=1e-3, or a paddle that has one")
-    T = period(paddle.T if T is None else T)
+    T = period(given)
     delay = check_number("delay", getattr(paddle, "delay", 0.0), "s", "needs delay >= 0", lambda d: d >= 0)
     known = switched(scene)
     looked = Looked(known, at, T)
-    modes, kind = looked.limits(*forces_and_ticks_at(known, looked.all, T, **options), T, delay)
-    own = [None if paddle is None else float(getattr(paddle, name)) for name in ("b", "m")]
-    return PortPassivity(scene.name, T, delay, modes, kind, *own, looked.travel)
+    forces, ticks, handle = forces_and_ticks_at(known, looked.all, T, **options)
+    modes, kind = looked.limits(forces, ticks, handle, T, delay)
+    b, m = (None if paddle is None else float(getattr(paddle, name)) for name in ("b", "m"))
+    return PortPassivity(scene.name, T, delay, modes, kind, b, m, looked.travel)
 
 
 def stable_damping(tick, m, T, delay=0.0, b_req=np.inf):

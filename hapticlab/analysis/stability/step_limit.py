@@ -1,6 +1,9 @@
 """The longest step that a method takes stably on a scene, predicted from its equations of motion before it runs."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import sympy as sp
@@ -18,6 +21,14 @@ from .condition_switches import switched
 from .limit_plots import plot_step_limit
 from .linearization import motion_at, slopes_of, tick_at
 from .operating_points import FAR, TRAVEL, WORTH, kind_of, operating_points, probes_of, telling
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ...compiler.events.taylor_method import Taylor
 
 #: states past which eigenvalues take their time
 MANY = 12
@@ -50,12 +61,12 @@ class ModeLimit:
 
     mode: str
     point: str
-    eigenvalues: np.ndarray
+    eigenvalues: NDArray[np.complex128]
     h_max: float
     margin: float
     energy_gain: float
     steps_per_contact: float
-    step: callable = field(repr=False)
+    step: Callable[[NDArray[np.float64]], NDArray[np.float64]] = field(repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,43 +92,43 @@ class StepLimit:
     method: str
     T: float
     h: float
-    modes: tuple
-    kind: str
+    modes: tuple[ModeLimit, ...]
+    kind: Literal["linear", "piecewise linear", "small-signal"]
     given: bool = False
     held: float | None = None
 
     @property
-    def small_signal(self):
+    def small_signal(self) -> bool:
         """Whether this is about small motions about the operating points alone."""
         return self.kind == "small-signal"
 
     @property
-    def worst(self):
+    def worst(self) -> ModeLimit:
         """The mode that decides."""
         return min(self.modes, key=lambda m: m.margin)
 
     @property
-    def h_max(self):
+    def h_max(self) -> float:
         """Longest stable step [s]."""
         return self.worst.h_max
 
     @property
-    def margin(self):
+    def margin(self) -> float:
         """h_max/h: below 1 unstable."""
         return self.worst.margin
 
     @property
-    def energy_gain(self):
+    def energy_gain(self) -> float:
         """The largest gain of energy per step."""
         return max(m.energy_gain for m in self.modes)
 
     @property
-    def steps_per_contact(self):
+    def steps_per_contact(self) -> float:
         """The fewest, over the modes in which something holds that does not at the start."""
         return min((m.steps_per_contact for m in self.modes[1:] if m.mode != self.modes[0].mode), default=np.inf)
 
     @property
-    def verdict(self):
+    def verdict(self) -> Literal["unstable", "close", "stable"]:
         """``"unstable"``, ``"close"`` or ``"stable"``.
 
         Close is a margin under 2 where motions are not linear, under 1.5 where only modes are (switching between them pumps
@@ -128,10 +139,10 @@ class StepLimit:
         close = self.margin < AMPLE[self.kind] or self.steps_per_contact < STEPS_PER_CONTACT
         return "close" if close else "stable"
 
-    def __float__(self):
+    def __float__(self) -> float:
         return float(self.h_max)
 
-    def __str__(self):
+    def __str__(self) -> str:
         head = f"{self.scene}, {self.method} in steps of {1e3 * self.h:g} ms: {self.verdict}, h_max = {1e3 * self.h_max:.4g} ms"
         looked = "" if self.given else f"; handle and positions without a range within {1e3 * TRAVEL:g} mm, {FAR['rad']:.4g} rad"
         worth = WORTH[self.kind] if self.held is None else "of the equations of motion"
@@ -147,12 +158,21 @@ class StepLimit:
 
     __repr__ = __str__
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the largest |eigenvalue| of a step against its length, in every mode."""
         return plot_step_limit(self)
 
 
-def step_limit(scene, method="rk4", *, T, substeps=1, hold="soh", at=None, **options):
+def step_limit(
+    scene: Scene,
+    method: str | Taylor = "rk4",
+    *,
+    T: float,
+    substeps: int = 1,
+    hold: Literal["zoh", "foh", "soh"] = "soh",
+    at: Mapping[str, float] | Sequence[Mapping[str, float]] | None = None,
+    **options: Any,
+) -> StepLimit:
     """Longest stable step h_max [s] of a method on a scene, in every mode of its contacts and cases.
 
     In each mode the method takes one step from every basis vector of the linearised motion. The longest step is the

@@ -1,7 +1,10 @@
 """One metric over the product of many parameter values: a lane a point, a run for every period and structure."""
 
+from __future__ import annotations
+
 from contextlib import closing
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -18,6 +21,16 @@ from .sweep_grid import PADDLE_AXES, START_AXES, Grid
 from .sweep_measures import METRICS
 from .sweep_plan import Plan, identity
 from .workers import number_of, spread
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from os import PathLike
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ...device.simulated.simulated_paddle import SimulatedPaddle
+    from ...limits.limit import Limit
 
 #: what a sweep may say about how its scene is compiled; a parameter of that name goes first
 OPTIONS = ("method", "substeps", "hold", "force_at")
@@ -42,24 +55,35 @@ class Sweep:
         The scene, the paddle and the values that were the same everywhere, in lines.
     """
 
-    axes: dict
-    values: np.ndarray
+    axes: dict[str, NDArray[np.float64]]
+    values: NDArray[np.float64]
     metric: str
     unit: str
-    units: dict = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
     duration: float = 1.0
     about: str = ""
 
-    def plot(self, *, limits=None):
+    def plot(self, *, limits: Limit | Sequence[Limit] | Mapping[str, Limit | Sequence[Limit]] | None = None) -> Figure:
         """Draw lines or a map; see :func:`hapticlab.analysis.records.plots.plot_sweep`."""
         return plot_sweep(self, limits=limits)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         grid = " x ".join(f"{name} ({len(a)})" for name, a in self.axes.items())
         return f"Sweep({self.metric} [{self.unit}] over {grid}, {self.duration:g} s each)"
 
 
-def sweep(scene, paddle, *, duration=1.0, metric="chatter", engine="auto", progress=True, workers=1, resume=None, **values):
+def sweep(
+    scene: Scene,
+    paddle: SimulatedPaddle,
+    *,
+    duration: float = 1.0,
+    metric: Literal["chatter", "growth", "contacts", "energy", "peak_force"] = "chatter",
+    engine: Literal["auto", "llvm", "interpreter"] = "auto",
+    progress: bool = True,
+    workers: int | Callable[..., Iterable[Any]] = 1,
+    resume: str | PathLike[str] | None = None,
+    **values: Any,
+) -> Sweep:
     """Simulate every combination of the named values and measure each, without storing a trace.
 
     Points that differ in values only are lanes of one program; every T, and every paddle of another structure, is a run

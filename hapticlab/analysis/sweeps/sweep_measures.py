@@ -5,6 +5,8 @@ metric, given one encoder count [m] for every lane and the length of a quarter o
 halves of the run are counted in ticks, as :func:`hapticlab.analysis.records.chatter.chatter` counts them.
 """
 
+from typing import Any
+
 import numpy as np
 
 from ...compiler.ir.program import Channel
@@ -180,4 +182,4 @@ class WithFault:
         return [*outputs, select(sample["fault"], one, 0.0)], following
 
 
-METRICS = {"chatter": Chatter, "growth": Growth, "contacts": Contacts, "energy": Energy, "peak_force": PeakForce}
+METRICS: dict[str, Any] = {"chatter": Chatter, "growth": Growth, "contacts": Contacts, "energy": Energy, "peak_force": PeakForce}

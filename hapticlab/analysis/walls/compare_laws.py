@@ -1,7 +1,10 @@
 """One wall, one entry, every law: what each adds to the energy, to the rebound and to the path of a single bounce."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -14,6 +17,11 @@ from ...records import Telemetry
 from ...rendering.hybrid import hybrid_wall
 from ...rendering.wall_laws import LAWS, checked_laws, wall_law
 from ..records.energy import energy
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from matplotlib.figure import Figure
 
 #: samples before the entry, so that laws with a memory know the approach
 APPROACH = 4
@@ -66,22 +74,22 @@ class LawComparison:
         Laws that cannot render this wall, and why.
     """
 
-    bounces: tuple
+    bounces: tuple[Bounce, ...]
     K: float
     speed: float
     incoming: float
     entries: int
     paddle: str
-    refused: dict
+    refused: dict[str, str]
 
-    def __getitem__(self, law):
+    def __getitem__(self, law: str) -> Bounce:
         """Return the bounce of a law by name."""
         found = {bounce.law: bounce for bounce in self.bounces}
         if law not in found:
             raise AnalysisError(f"no bounce of {law!r}; there are {', '.join(found)}")
         return found[law]
 
-    def __str__(self):
+    def __str__(self) -> str:
         head = (
             f"a wall of {self.K:g} N/m entered at {self.speed:g} m/s ({1e3 * self.incoming:.4g} mJ), {self.entries} phases of a "
             f"period\n{'law':<20} {'generated':>10} {'worst':>10} {'rebound':>9} {'spread':>8} {'path':>8} {'pull':>8}"
@@ -93,7 +101,7 @@ class LawComparison:
         ]
         return "\n".join([head, *rows, *(f"{law:<20} refused: {why}" for law, why in self.refused.items())])
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw, law by law, the energy generated and how far the path is from the wall's own."""
         names = [b.law.replace("_", " ") for b in self.bounces]
         places = np.arange(len(names))
@@ -115,9 +123,18 @@ class LawComparison:
 
 
 def compare_laws(
-    paddle, *, K, speed=0.1, laws=tuple(LAWS), entries=16, model=None, unilateral="gate", clamp=False, velocity="handle",
-    engine="auto",
-):  # fmt: skip
+    paddle: SimulatedPaddle,
+    *,
+    K: float,
+    speed: float = 0.1,
+    laws: str | Iterable[str] = tuple(LAWS),
+    entries: int = 16,
+    model: SimulatedPaddle | None = None,
+    unilateral: Literal["gate", "clip"] = "gate",
+    clamp: bool = False,
+    velocity: Literal["handle", "model"] = "handle",
+    engine: Literal["auto", "llvm", "interpreter"] = "auto",
+) -> LawComparison:
     """Render one wall by every law of the chapter, and compare a single bounce with the wall itself.
 
     The handle comes in at one speed, at phases of the sampling period spread evenly, for what a law makes of an entry

@@ -1,7 +1,10 @@
 """How stiff a wall each law can hold against a push, by trials from soft to stiff on a simulated paddle."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -10,6 +13,13 @@ from ...drawing import COLD, house_style, new_figure, scale_axis
 from ...errors import AnalysisError, HapticlabError
 from ...rendering.wall_laws import LAWS, wall_law
 from ..records.chatter import SHORTEST, chatter
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from matplotlib.figure import Figure
+
+    from ...device.simulated.simulated_paddle import SimulatedPaddle
 
 #: largest ratio between what stood and what did not, of the last trials
 GROWTH, FINEST = 1.5, 1.03
@@ -57,26 +67,26 @@ class LawLimits:
     paddle : str
     """
 
-    limits: tuple
+    limits: tuple[LawLimit, ...]
     push: float
     duration: float
     paddle: str
 
-    def __getitem__(self, law):
+    def __getitem__(self, law: str) -> LawLimit:
         """Return the limit of a law by name."""
         found = {limit.law: limit for limit in self.limits}
         if law not in found:
             raise AnalysisError(f"no limit of {law!r}; there are {', '.join(found)}")
         return found[law]
 
-    def __str__(self):
+    def __str__(self) -> str:
         head = f"walls that stand under a push of {self.push:g} N, an outcome of one start: {self.duration:g} s from the boundary"
         rows = [
             f"{m.law:<20} {m.why}" if math.isnan(m.K) else f"{m.law:<20} {m.K:>9.4g} N/m   beyond: {m.why}" for m in self.limits
         ]
         return "\n".join([head, *rows])
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the stiffest wall of each law on one scale."""
         names, places = [m.law.replace("_", " ") for m in self.limits], np.arange(len(self.limits))
         with house_style():
@@ -92,9 +102,18 @@ class LawLimits:
 
 
 def law_limits(
-    paddle, *, push=1.0, laws=tuple(LAWS), first=50.0, most=1e5, duration=1.0, model=None, unilateral="gate", clamp=False,
-    velocity="handle",
-):  # fmt: skip
+    paddle: SimulatedPaddle,
+    *,
+    push: float = 1.0,
+    laws: str | Iterable[str] = tuple(LAWS),
+    first: float = 50.0,
+    most: float = 1e5,
+    duration: float = 1.0,
+    model: SimulatedPaddle | None = None,
+    unilateral: Literal["gate", "clip"] = "gate",
+    clamp: bool = False,
+    velocity: Literal["handle", "model"] = "handle",
+) -> LawLimits:
     """Search, law by law, the stiffest wall against which a pushed handle does not chatter.
 
     From soft to stiff: the handle starts at rest on the boundary, pushed by a constant force that no law knows of. A wall

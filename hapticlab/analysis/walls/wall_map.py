@@ -1,10 +1,13 @@
 """Maps of a wall: where it is passive, stable, chatters or is unusable, theory and simulation on one picture."""
 
+from __future__ import annotations
+
 import inspect
 import math
 import time
 from dataclasses import replace
 from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +20,9 @@ from ..sweeps.lane_runs import LaneRuns
 from .wall_limits import ChapterLimits, SceneLimits
 from .wall_regions import WallMap, beyond, regions_of
 
+if TYPE_CHECKING:
+    from ...limits.limit import LawName
+
 #: what a map may be over beside K, and its unit
 OTHERS = {
     "B": "N s/m", "T": "s", "delay": "s", "m": "kg", "b": "N s/m", "coulomb": "N", "counts_per_metre": "1/m",
@@ -28,7 +34,9 @@ ROWS = 41
 FEW_ROWS = 9
 
 
-def wall_map(paddle, *, law="zoh", over=("K", "B"), **given):
+def wall_map(
+    paddle: SimulatedPaddle, *, law: LawName | Scene = "zoh", over: tuple[str, str] = ("K", "B"), **given: Any
+) -> WallMap:
     """Map of a virtual wall: passive, stable, chatters or unusable over two quantities.
 
     The lines are theory, exact: the passivity limit of Eq. (23.10) and its general form, and the linear stability of this
@@ -132,7 +140,7 @@ class WallMaps:
         rows = other[np.unique(np.linspace(0, len(other) - 1, min(len(other), most)).round().astype(int))]
         self.rows = np.union1d(rows, [0.0]) if other[0] < 0 < other[-1] else rows  # |B| has a corner at 0
 
-    def of(self, paddle):
+    def of(self, paddle: SimulatedPaddle) -> WallMap:
         """Return the WallMap of a paddle."""
         self._check(paddle, self.over, self.unusable)
         if paddle.T != self.T and isinstance(self.limits, SceneLimits):

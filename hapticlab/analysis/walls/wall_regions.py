@@ -1,14 +1,24 @@
 """A map of a wall: its regions, the limits on it, and what it says of itself."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
 from ...errors import AnalysisError
 from .wall_map_plot import plot_wall_map
 
-REGIONS = ("passive", "stable", "chatters", "unusable")
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ...limits.limit import Limit
+
+Region = Literal["passive", "stable", "chatters", "unusable"]
+REGIONS: tuple[Region, ...] = get_args(Region)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,45 +56,45 @@ class WallMap:
         How long the map took.
     """
 
-    axes: dict
-    regions: np.ndarray
-    amplitude: np.ndarray
-    undecided: np.ndarray
-    rows: np.ndarray
-    limits: dict
+    axes: dict[str, NDArray[np.float64]]
+    regions: NDArray[np.int_]
+    amplitude: NDArray[np.float64]
+    undecided: NDArray[np.bool_]
+    rows: NDArray[np.float64]
+    limits: dict[str, tuple[Limit | None, ...]]
     unusable: float
     duration: float
-    units: dict = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
     about: str = ""
     seconds: float = math.nan
 
-    def limit(self, name):
+    def limit(self, name: str) -> NDArray[np.float64]:
         """Return the stiffnesses [N/m] of a limit at ``rows``; nan where a bound's assumptions fail."""
         if name not in self.limits:
             raise AnalysisError(f"no limit {name} here; the map has {', '.join(self.limits)}")
         return np.array([math.nan if one is None else one.K for one in self.limits[name]])
 
-    def share(self, region):
+    def share(self, region: Region) -> float:
         """Return the part of the map that is a region, 0 to 1."""
         if region not in REGIONS:
             raise AnalysisError(f"region = {region!r}; needs one of {', '.join(REGIONS)}")
         return float((self.regions == REGIONS.index(region)).mean())
 
     @property
-    def surprises(self):
+    def surprises(self) -> NDArray[np.bool_]:
         """Points within the passivity limit that chatter all the same, as an encoder or friction makes them: bool array."""
         return under(self, "passivity") & (self.regions >= 2)
 
     @property
-    def inside_only(self):
+    def inside_only(self) -> bool:
         """Whether the passivity limit says nothing about the switching at the boundary: a law with a memory, or delay."""
-        return any("not covered" in note for one in self.limits.get("passivity", ()) for note in one.assumptions)
+        return any("not covered" in note for one in self.limits.get("passivity", ()) if one for note in one.assumptions)
 
-    def plot(self):
+    def plot(self) -> Figure:
         """Draw the regions with the lines of the theory; see :func:`hapticlab.analysis.walls.wall_map_plot.plot_wall_map`."""
         return plot_wall_map(self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         (K, k), (other, a) = self.axes.items()
         known = "passivity" in self.limits
         shares = ", ".join(f"{name} {100 * self.share(name):.1f} %" for name in REGIONS[0 if known else 1 :])
