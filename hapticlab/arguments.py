@@ -45,15 +45,19 @@ def number(
         value = None if isinstance(given, bool) else float(given)
     except (TypeError, ValueError, OverflowError):
         value = None
-    finite = value is not None and math.isfinite(value)
-    if finite and all((least is None or value >= least, above is None or value > above, most is None or value <= most)):
+    finite = value is None or math.isfinite(value)
+    if value is not None and finite and _within(value, least, above, most):
         return value
-    need = _needs(owner, _range(what or name, least, above, most, value is None or finite))
+    need = _needs(owner, _range(what or name, least, above, most, finite))
     reason = why and (f". {why}" if why[0].isupper() else f": {why}")
     has_unit = unit not in ("", "1")
     if value is None:
         raise error(f"{name} = {given!r}; {need}{reason}, as a number{f' in {unit}' if has_unit else ''}")
     raise error(f"{name} = {given}{f' {unit}' if has_unit else ''}; {need}{reason}")
+
+
+def _within(value: float, least: float | None, above: float | None, most: float | None) -> bool:
+    return (least is None or value >= least) and (above is None or value > above) and (most is None or value <= most)
 
 
 def period(T: Any, error: type[HapticlabError] = AnalysisError) -> float:

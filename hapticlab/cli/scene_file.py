@@ -5,6 +5,7 @@ import runpy
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from ..device.hand.hand import Hand
 from ..device.paddle import Paddle
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError, SceneError
+from ..records import Telemetry
 from ..scene.scene import Scene
 
 
@@ -87,7 +89,7 @@ def run_scene(file, *, progress=True, **options):
     return program, file.paddle.run(program, duration=file.duration, progress=progress)
 
 
-def report_of(program: Program, log):
+def report_of(program: Program, log: Telemetry) -> dict[str, Any]:
     """Return what a run showed as a dictionary for JSON.
 
     A number's name ends in its unit; counts (samples, instructions, substeps, contacts) have none, and the units of the

@@ -6,12 +6,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from ..errors import HapticlabError
-from .assignment import Assignment
 from .formats.gradescope import GRADER_FAILED
 from .grade import Deferred, grade
 from .handed_in.submission import Submission
 from .report import Report
-from .sessions.limits import Limits
 from .sessions.starter import start
 
 
@@ -59,7 +57,7 @@ class Bench:
         Of :meth:`Preloaded.zygote`; without it one is begun.
     """
 
-    def __init__(self, assignment: Assignment, limits: Limits, sandbox="auto", hidden=(), zygote=None):
+    def __init__(self, assignment, limits, sandbox="auto", hidden=(), zygote=None):
         self.assignment, self.limits, self.sandbox = assignment, limits, sandbox
         paths = {Path(path) for path in (*hidden, *([assignment.answers] if assignment.answers else []))}
         # what lies in another one is hidden with that

@@ -25,7 +25,8 @@ AHEAD = 2
 #: how long a scheduler has to answer at first [s]
 PATIENCE = 10
 #: of a worker's process: benches nobody works at, by what they were made of
-_idle, _lock = {}, threading.Lock()
+_idle: dict[tuple, list] = {}
+_lock = threading.Lock()
 
 
 class ClusterWorkers:

@@ -1,11 +1,12 @@
 """What the library holds: each scene with its picture, the settings it is meant for, and what a paddle must have."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 
 from ..errors import SceneError
 from ..records import PaddleProfile
+from ..scene.scene import Scene
 from . import bodies, contacts, mechanisms, pendulums, surfaces
 
 #: the paddle that the default values are made for
@@ -35,8 +36,8 @@ class Entry:
         Energy that it holds at the start and can give [J].
     """
 
-    scene: callable
-    draw: callable
+    scene: Callable[..., Scene]
+    draw: Callable[..., None]
     b: float
     options: dict = field(default_factory=lambda: {"method": "rk4", "T": NOMINAL.T})
     uno: dict | None = None

@@ -1,8 +1,11 @@
 """A scene: what is felt, as equations. Frozen; calling it binds values."""
 
-from collections.abc import Mapping
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
@@ -22,6 +25,12 @@ from .notation.checks import (
 )
 from .notation.units import unit_of
 from .notation.written import expression, no_scene
+
+if TYPE_CHECKING:
+    from ..annotations import Number
+    from .explicit import ExplicitForm
+    from .mechanics.lagrange import Mechanics
+    from .notation.parameters import Parameter
 
 
 @dataclass(frozen=True)
@@ -59,12 +68,23 @@ class Scene:
     """
 
     force: sp.Expr
-    eom: tuple = ()
-    watch: dict = field(default_factory=dict)
-    values: dict = field(default_factory=dict)
+    eom: tuple[Any, ...] = ()
+    watch: Mapping[str, sp.Expr] = field(default_factory=dict)
+    values: Mapping[str, float] = field(default_factory=dict)
     name: str = "scene"
 
-    def __post_init__(self):
+    if TYPE_CHECKING:  # it takes more than it keeps
+
+        def __init__(
+            self,
+            force: sp.Expr | float,
+            eom: Sequence[sp.Eq | Mechanics] | sp.Eq | Mechanics = (),
+            watch: Sequence[sp.Expr | str] | Mapping[str, sp.Expr] = (),
+            values: Mapping[str, Number] = {},
+            name: str = "scene",
+        ) -> None: ...
+
+    def __post_init__(self) -> None:
         try:
             self._check()
         except RecursionError:
@@ -89,30 +109,30 @@ class Scene:
         bound = {name: _bound(known, name, value) for name, value in self.values.items()}
         _set(self, "values", Frozen({**defaults, **bound}))
 
-    def __call__(self, /, **values):
+    def __call__(self, /, **values: Number) -> Scene:
         """The scene with these parameters bound, each in SI or as a text with its unit."""
         known, bound = self.parameters, copy(self)  # the equations are checked already
         _set(bound, "values", Frozen({**self.values, **{name: _bound(known, name, one) for name, one in values.items()}}))
         return bound
 
     @property
-    def parameters(self):
+    def parameters(self) -> dict[str, Parameter]:
         """The parameters in use, name -> Parameter, in alphabetical order."""
         if "_parameters" not in self.__dict__:  # looked for once: every compilation asks again and again
             _set(self, "_parameters", parameters_in(self._expressions()))
-        return dict(self._parameters)
+        return dict(self.__dict__["_parameters"])
 
     @property
-    def coordinates(self):
+    def coordinates(self) -> tuple[sp.Expr, ...]:
         """The generalized coordinates in use, in alphabetical order."""
         return tuple(applied(self._expressions(), "coordinate"))
 
     @property
-    def watch_units(self):
+    def watch_units(self) -> dict[str, str]:
         """The SI unit of each watched channel."""
         return {name: _unit_shown(expr) for name, expr in self.watch.items()}
 
-    def explicit(self):
+    def explicit(self) -> ExplicitForm:
         """The equations solved for the unknowns they determine: ``M a = f`` and the difference equations."""
         return explicit_form(self)
 
@@ -128,7 +148,7 @@ class Scene:
             kinds = {type(q) for q in applied(starts, "coordinate", "signal")}
         return found
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [f"scene {self.name}", f"  F = {self.force}"]
         lines += [f"  {e}" if is_model(e) else f"  {e.lhs} = {e.rhs}" for e in self.eom]
         shown = (f"{p.name} = {self.values.get(p.name, '?')} {p.unit}" for p in self.parameters.values())

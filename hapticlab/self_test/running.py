@@ -36,7 +36,8 @@ def rubbing_wall():
     b = Builder("f32")
     init = b.block(states=[b.leaf("input", 0, "f32"), b.const(0.0, "f32"), b.const(0, "i32")])
     b = Builder("f32")
-    x, last, speed, count = b.leaf("input", 0, "f32"), *(b.leaf("state", k, kind) for k, kind in enumerate(("f32", "f32", "i32")))
+    x = b.leaf("input", 0, "f32")
+    last, speed, count = (b.leaf("state", k, kind) for k, kind in enumerate(("f32", "f32", "i32")))
     k, x_o, damping = (b.leaf("param", which, "f32") for which in range(3))
     speed = speed * 0.9 + (x - last) * 100.0
     force = select(x_o <= x, maximum(k * (x - x_o) + damping * speed, 0.0), 0.0)

@@ -31,7 +31,7 @@ class Switched(Scene):
     switches : dict Parameter -> condition
     """
 
-    form: ExplicitForm = None
+    form: ExplicitForm | None = None
     switches: dict = field(default_factory=dict)
 
     def explicit(self):

@@ -13,6 +13,7 @@ holds for 2**33 ticks, three months at 1 kHz; in float64 for 2**48. Where t stan
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import sympy as sp
@@ -51,7 +52,7 @@ def is_timed(program):
 class Clock:
     """Time as a program has it: ``count()`` whole ticks of ``T`` [s], as two digits, and ``after`` [s] since the last."""
 
-    count: callable
+    count: Callable[[], tuple[Value, Value]]
     T: float
     after: float | Value = 0.0
 

@@ -47,8 +47,10 @@ MAGIC, VERSION = b"HLVM", 1
 #: magic, version, bytes a word, hash of the table, period [us], registers, constants, parameters, inputs, states,
 #: outputs, words of init, of tick, moves of init, of tick
 HEADER = struct.Struct("<4sBBHII10H")
-COUNTS = ("registers", "constants", "parameters", "inputs", "states", "outputs")
-COUNTS += ("init_words", "tick_words", "init_moves", "tick_moves")
+COUNTS = (
+    *("registers", "constants", "parameters", "inputs", "states", "outputs"),
+    *("init_words", "tick_words", "init_moves", "tick_moves"),
+)
 
 
 def table_hash():

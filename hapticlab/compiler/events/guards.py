@@ -70,8 +70,8 @@ class Reaction:
     level: int
     free: Value
     inside: Value
-    lean: Value = None
-    side: Value = None
+    lean: Value | None = None
+    side: Value | None = None
 
 
 def coulomb(new, slip, F_c, F_s, leaf):

@@ -61,8 +61,8 @@ class Taylor:
     hapticlab.errors.ProgramError: order = 1; needs a whole number in 2..20
     """
 
-    order: int = None
-    events: int = None
+    order: int | None = None
+    events: int | None = None
     name = "taylor"
 
     def __post_init__(self):

@@ -32,7 +32,7 @@ from ...scene.notation.symbols import Parameter
 LASTING = {"builtins", "collections", "copyreg", "hapticlab", "mpmath", "numpy", "sympy"}
 #: of an undefined function, what SymPy derives from the rest
 _DERIVED = {"_prop_handler", "_sage_", "default_assumptions"}
-_TABLES = weakref.WeakSet()
+_TABLES: "weakref.WeakSet[Shared]" = weakref.WeakSet()
 
 
 class Shared:

@@ -1,6 +1,7 @@
 """The explicit fixed-step methods that ``hl.compile`` knows by name, and what each is known for."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -32,8 +33,8 @@ class Method:
     name: str
     order: int
     evaluations: int
-    step: callable
-    order_with_velocity: int = None
+    step: Callable[..., tuple]
+    order_with_velocity: int | None = None
     steps: int = 1
     implicit_damping: bool = False
 

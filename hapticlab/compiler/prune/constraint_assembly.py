@@ -5,6 +5,7 @@ back onto them by Newton's method, many walks at once. Where the smallest singul
 a minimum the walk narrows down on it.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -32,7 +33,7 @@ class Assembly:
     angles : array of bool, shape (n,)
     """
 
-    look: callable
+    look: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
     start: np.ndarray
     low: np.ndarray
     high: np.ndarray

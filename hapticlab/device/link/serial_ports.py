@@ -15,7 +15,7 @@ from .port_faults import explain
 try:
     from termios import error as TerminalError  # pyserial lets it through, and it is no OSError
 except ImportError:  # Windows
-    TerminalError = OSError
+    TerminalError = OSError  # type: ignore[assignment, misc]
 
 #: pyserial looks for protocol_<scheme> in these packages
 HANDLERS = "hapticlab.device.urls"

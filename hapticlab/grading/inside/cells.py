@@ -135,10 +135,10 @@ def run_cell(source, names, number):
     except BaseException as problem:
         line = problem.lineno if isinstance(problem, SyntaxError) else None
         return _said(problem, f" in line {line}" if isinstance(line, int) else "")
-    problem = _run(code, names, number)
+    stopped = _run(code, names, number)
     if not in_script:
         _close_figures()
-    return problem
+    return stopped
 
 
 def _run(code, names, number):

@@ -54,7 +54,7 @@ class ContactLaw:
     #: the duration of a contact depends on the speed of its approach
     speed_matters = False
     #: constant -> Allowed, at the values bound and at all that live parameters may be set to
-    allowed: ClassVar = {}
+    allowed: ClassVar[dict] = {}
 
     def check(self, gap, where):
         """Refuse constants whose units do not belong to the gap."""

@@ -59,7 +59,7 @@ class Mechanics:
     contacts: tuple = ()
     lagrangian: sp.Expr = None
     enforce: str = "auto"
-    alpha: float = None
+    alpha: float | None = None
     dissipation: sp.Expr = sp.S.Zero
     forces: tuple = ()
     notes: tuple = ()

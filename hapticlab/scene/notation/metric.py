@@ -22,7 +22,7 @@ _UNITS = {
 }
 #: prefix -> power of ten; the two signs for micro are different characters that look alike
 _PREFIXES = {"": 0, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "\u00b5": -6, "\u03bc": -6, "n": -9}
-_SIZES = {
+_SIZES: dict[str, tuple[Fraction, dict]] = {
     prefix + name: (size * Fraction(10) ** power, exponents)
     for name, (size, exponents) in _UNITS.items()
     for prefix, power in _PREFIXES.items()

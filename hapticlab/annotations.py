@@ -1,0 +1,15 @@
+"""The types that public signatures share; only a type checker opens this module."""
+
+from os import PathLike
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+#: a number in SI, or a text with its unit, such as "10 mm"
+Number = float | str
+#: a sympy expression, a number in SI, or a text with its unit
+Term = sp.Expr | float | str
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+File = str | PathLike[str]
