@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 
-from ..errors import EngineMissingError
 from .frame import COLUMNS, Frame
+from .sliders import open_ipywidgets
 
 #: an SVG is drawn so often a second at most: of frames that come at 50 to 60 a second, every other one
 RATE = 40.0
@@ -36,18 +36,11 @@ def front(session):
     EngineMissingError
         Without ipywidgets.
     """
-    return PlainFront(_open_ipywidgets(), session).box
-
-
-def _open_ipywidgets():
-    try:
-        import ipywidgets
-    except ImportError as missing:
-        raise EngineMissingError(
-            "hl.live draws with widgets, which do not import here; do: pip install 'hapticlab[notebook]', in the environment "
-            "of the notebook"
-        ) from missing
-    return ipywidgets
+    cure = (
+        "hl.live draws with widgets, which do not import here; do: pip install 'hapticlab[notebook]', in the environment "
+        "of the notebook"
+    )
+    return PlainFront(open_ipywidgets(cure), session).box
 
 
 class PlainFront:
