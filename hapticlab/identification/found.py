@@ -15,14 +15,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-#: constant -> what it is called
-CALLED = {
-    "m": "mass", "b": "viscous damping", "coulomb": "Coulomb friction", "delay": "delay", "scale": "force constant",
-    "b/m": "damping over mass", "coulomb/m": "friction over mass", "k": "stiffness",
-}  # fmt: skip
-CONSTANT_UNITS = {
-    "m": "kg", "b": "N s/m", "coulomb": "N", "delay": "s", "scale": "1", "b/m": "1/s", "coulomb/m": "m/s^2", "k": "N/m",
-}  # fmt: skip
 #: share of the largest from which on a constant is part of what a record leaves open
 PART = 0.05
 #: correlation of neighbouring residuals, in its standard errors, from which something is left unexplained; and residuals
@@ -66,6 +58,8 @@ class Estimate:
 class Found:
     """Constants found from records; ``found["m"]`` is an :class:`Estimate`. Print it, or plot what it left.
 
+    An identification has a class of its own below this one: ``about``, ``lacking`` and ``constants`` are what it adds.
+
     The intervals cover as often as they say, and are as narrow as any can be, where the fit converged, the model explains
     the record, and noise dithers the counts (0.4 count of it and more was tried). The text says so where that is not so.
 
@@ -73,6 +67,8 @@ class Found:
     ----------
     about, lacking : str
         Whose constants they are, and what the model leaves out.
+    constants : dict of str to (str, str)
+        Constant -> what it is called, and its unit.
     estimates : dict of str to Estimate
     confidence : float
     sigma : float
@@ -91,6 +87,7 @@ class Found:
 
     about: ClassVar[str]
     lacking: ClassVar[str]
+    constants: ClassVar[dict[str, tuple[str, str]]]
     estimates: dict[str, Estimate]
     confidence: float
     sigma: float
@@ -121,7 +118,7 @@ class Found:
 
     def __str__(self) -> str:
         lines = [f"{self.about} identified from {len(self.measured)} samples, {self.confidence:.0%} confidence:"]
-        lines += [f"  {CALLED[name]:<20}{found}" for name, found in self.estimates.items()]
+        lines += [f"  {self.constants[name][0]:<20}{found}" for name, found in self.estimates.items()]
         how = "noise" if self.dithered else "noise and counting"
         counts = f", counts of {1e6 * self.quantum:.3g} um" if self.quantum else ""
         lines.append(f"  {'sensor':<20}{how} {1e6 * self.sigma:.3g} um{counts}")
@@ -176,7 +173,7 @@ def told(made, y, fitted, names, *, quantum, T, confidence, beside=""):
         )
     half = fitted.half_width(confidence)[:, 0]
     estimates = {
-        name: Estimate(name, float(value), float(value - width), float(value + width), CONSTANT_UNITS[name])
+        name: Estimate(name, float(value), float(value - width), float(value + width), made.constants[name][1])
         for name, value, width in zip(names, fitted.values[: len(names), 0], half, strict=False)
     }
     rest, counted = fitted.residuals[:, 0], bool(fitted.counted[0])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -33,6 +33,7 @@ class HandFit(Found):
 
     about = "hand"
     lacking = "a reflex within the window, tremor, a grip that changes or does not follow"
+    constants: ClassVar = {"m": ("mass", "kg"), "b": ("viscous damping", "N s/m"), "k": ("stiffness", "N/m")}
 
     def hand(self, **changes: Any) -> Hand:
         """Return a Hand with what was found; a value below zero within its interval becomes zero."""

@@ -11,7 +11,7 @@ from ..errors import AnalysisError
 from ..records import Telemetry, check_record
 from .found import told
 from .paddle_fit import PaddleFit
-from .problem import UNITS, Problem, Trace
+from .problem import CONSTANTS, Problem, Trace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -205,14 +205,14 @@ def identify(
         If the records do not tell a constant: which, and what would.
     """
     known = dict(known or {})
-    if unknown := set(known) - set(UNITS):
-        raise AnalysisError(f"known = {sorted(unknown)}; needs constants of {', '.join(UNITS)}")
+    if unknown := set(known) - set(CONSTANTS):
+        raise AnalysisError(f"known = {sorted(unknown)}; needs constants of {', '.join(CONSTANTS)}")
     given = [one if isinstance(one, HandleRecord) else HandleRecord(one) for one in records]
     if not given:
         raise AnalysisError("identify() of no record; needs one or more, log = paddle.run(...)")
     if force_constant and "m" not in known and not any(one.added or one.push for one in given):
         raise AnalysisError(FORCE_CONSTANT)
-    sought = tuple(name for name in UNITS if name not in known and (force_constant or name != "scale"))
+    sought = tuple(name for name in CONSTANTS if name not in known and (force_constant or name != "scale"))
     problem = Problem(tuple(one.trace() for one in given), sought, known, _quantum(counts_per_metre))
     return _found(problem, sought, confidence)
 

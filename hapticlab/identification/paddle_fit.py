@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
@@ -17,6 +17,10 @@ class PaddleFit(Found):
 
     about = "paddle"
     lacking = "a stop, a hand, backlash, friction that is not constant"
+    constants: ClassVar = {
+        "m": ("mass", "kg"), "b": ("viscous damping", "N s/m"), "coulomb": ("Coulomb friction", "N"), "delay": ("delay", "s"),
+        "scale": ("force constant", "1"), "b/m": ("damping over mass", "1/s"), "coulomb/m": ("friction over mass", "m/s^2"),
+    }  # fmt: skip
 
     def profile(
         self,

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from .scoring import Fitted
 
-#: what a paddle has, with units; scale is newtons at the handle for each commanded
-UNITS = {"m": "kg", "b": "N s/m", "coulomb": "N", "delay": "s", "scale": "1"}
+#: constants of a paddle; scale is newtons at the handle for each commanded
+CONSTANTS = ("m", "b", "coulomb", "delay", "scale")
 #: what is taken for known where it is not sought
 USUAL = {"delay": 0.0, "scale": 1.0}
 
