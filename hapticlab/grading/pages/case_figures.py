@@ -7,7 +7,7 @@ import numpy as np
 from ...course.curves import UNIT
 from ...drawing import axis_label
 from .page_figures import POINT, SAMPLE, bounded, chart
-from .page_text import clean, pair
+from .page_text import pair
 
 LEAST_DRAWN, MOST_FIGURES, LEAST_COLUMN = 3, 4, 7
 #: given axes, and their units where nothing says others
@@ -31,7 +31,7 @@ class Panel:
 
 
 def figures(one, unit):
-    """Return figures of a wrong case as HTML, at most a few.
+    """Figures of a wrong case, at most a few: each an SVG, and what it says in words.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def numbers(value, axes=None):
 
 
 def _figure(one, panel, unit):
-    """Return a figure over a curve's own x, the time or the place that was given, else the number of the sample."""
+    """A figure over a curve's own x, the time or the place that was given, else the number of the sample."""
     if panel.axes:
         (scale_x, across), (scale, label) = (axis_label(*axis) for axis in panel.axes)
         x, x_got = panel.x * scale_x, None if panel.x_got is None else panel.x_got * scale_x
@@ -120,8 +120,7 @@ def _figure(one, panel, unit):
     if panel.got is not None:
         lines["got"] = x_got[: len(panel.got)], bounded(panel.got) * scale
     alt = f"{panel.name[:60]}: {label} over {across}. " + " ".join(_course(name, y) for name, (_, y) in lines.items())
-    told = f"<figcaption>{clean(_difference(lines, across, bool(panel.axes)))}</figcaption>"
-    return f"<figure>{chart(lines, (across, label), alt)}{told}</figure>"
+    return chart(lines, (across, label), alt), _difference(lines, across, bool(panel.axes))
 
 
 def _across(one, size, unit):

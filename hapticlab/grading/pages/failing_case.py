@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from .case_figures import figures, is_curve, numbers
-from .page_text import clean, pair, shown
+from .page_text import pair, shown
 
 #: lists of more numbers are told by their first ones, tables of more too; a figure shows all
 MOST_NUMBERS, MOST_ROWS = 6, 24
@@ -15,23 +15,9 @@ UNITS = {"x": "m", "v": "m/s", "T": "s"}
 TOLERANCE = 1e-6, 1e-12
 
 
-def failing_case(one, lab):
-    """Return the first wrong case of an exercise as HTML: tables, and a figure of each list.
-
-    Parameters
-    ----------
-    one : ExerciseReport
-        With a failing case.
-    lab : Lab
-        Whose words tell units, and whose exercises how near is right.
-    """
-    case = one.failing
-    if case.expected is None:  # of a value or a choice: the answer itself is not told
-        return "" if case.value is None else f"<p>You answered: <strong>{clean(shown(case.value))}</strong></p>"
-    which = "a public case of the lab" if case.public else "a case drawn for this grading"
-    head = f'<h3>The first case that is wrong <span class="aside">{which}</span></h3>'
-    drawn = figures(one, lambda name, other: unit_of(name, one, lab, other))
-    return "".join([head, _given(one, lab), _compared(one, lab), *drawn])
+def drawn(one, lab):
+    """Pairs of an SVG and what it says in words, one for each list of the case."""
+    return figures(one, lambda name, other: unit_of(name, one, lab, other))
 
 
 def unit_of(name, one, lab, otherwise=""):
@@ -54,38 +40,24 @@ def _told(name, asks):
     return found[1] if found else ""
 
 
-def _given(one, lab):
-    """Return a table of what was given; nothing where nothing was."""
+def given(one, lab):
+    """Rows (name, value, unit) of what was given."""
     flat, units = {}, UNITS if one.kind == "scene" else {}
     for name, value in one.failing.given.items():
         flat |= value if isinstance(value, dict) else {name: value}
-    rows = [
-        (name, clean(shown(value)), clean(unit_of(str(name), one, lab, units.get(name, ""))))
-        for name, value in [*flat.items()][:MOST_ROWS]
-    ]
-    return _table(("given", "value", "unit"), rows) if rows else ""
+    few = [(str(name), value) for name, value in [*flat.items()][:MOST_ROWS]]
+    return [(name, shown(value), unit_of(name, one, lab, units.get(name, ""))) for name, value in few]
 
 
-def _compared(one, lab):
-    """Return a table of what came beside what was expected; long lists in a few numbers."""
+def compared(one, lab):
+    """Rows (name, got, alike, expected, unit) of the case; long lists in a few numbers."""
     case, rows = one.failing, []
     several = isinstance(case.expected, dict)
     for name, got, expected, alike in [*_rows(one.name, case.value, case.expected, _tolerance(one, lab))][:MOST_ROWS]:
         came, wanted = (shown(got), shown(expected)) if alike else pair(got, expected)
         unit = unit_of(name, one, lab, case.unit) if several else case.unit
-        unlike = "" if alike else '<span role="img" aria-label="differs from">&#8800;</span>'
-        rows.append((name, clean("nothing" if got is None else came), unlike, clean(wanted), clean(unit)))
-    return _table(("answer", "got", "", "expected", "unit"), rows)
-
-
-def _table(head, rows):
-    """Return a table whose rows begin with a name of the student's code."""
-    top = "".join(f'<th scope="col">{word}</th>' if word else "<td></td>" for word in head)
-    body = "".join(
-        f'<tr><th scope="row"><code>{clean(str(name), 60)}</code></th>{"".join(f"<td>{cell}</td>" for cell in cells)}</tr>'
-        for name, *cells in rows
-    )
-    return f'<table class="values"><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>'
+        rows.append((name, "nothing" if got is None else came, alike, wanted, unit))
+    return rows
 
 
 def _tolerance(one, lab):

@@ -20,7 +20,7 @@ GREY, HUGE, TINY = "#767676", 1e290, 1e-290
 
 
 def chart(lines, labels, alt):
-    """Return one or two lines as SVG.
+    """One or two lines as SVG.
 
     Parameters
     ----------
@@ -61,17 +61,17 @@ def chart(lines, labels, alt):
 
 
 def picture(width, height, inside, alt):
-    """Return an SVG element with the words that stand for it."""
+    """An SVG element with the words that stand for it."""
     return f'<svg role="img" aria-label="{clean(alt, 1000)}" viewBox="0 0 {width} {height}" width="{width}">{inside}</svg>'
 
 
 def bounded(many):
-    """Return numbers whose sums do not overflow; what is not finite becomes NaN, a gap."""
+    """Numbers whose sums do not overflow; what is not finite becomes NaN, a gap."""
     return np.where(np.isfinite(many), np.clip(many, -HUGE, HUGE), np.nan)
 
 
 def _span(several):
-    """Return the ends of an axis with some room beyond what is drawn."""
+    """The ends of an axis with some room beyond what is drawn."""
     finite = np.concatenate([line[np.isfinite(line)] for line in several])
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
     least = max(1e-9 * max(abs(low), abs(high)), TINY)
@@ -82,7 +82,7 @@ def _span(several):
 
 
 def _ticks(low, high, most=5, whole=False):
-    """Return places of 1, 2 or 5 times a power of ten with their texts; ``whole`` ones count samples."""
+    """Places of 1, 2 or 5 times a power of ten with their texts; ``whole`` ones count samples."""
     rough = max((high - low) / most, float(whole))
     tens = 10.0 ** math.floor(math.log10(rough))
     step = next(tens * part for part in (1, 2, 5, 10) if tens * part >= rough * (1 - 1e-9))
@@ -106,7 +106,7 @@ def _across_tick(x, text):
 
 
 def _thinned(line):
-    """Return which points of a line are drawn: of a long one, the lowest and the highest in each of many parts."""
+    """The points of a line that are drawn: of a long one, the lowest and the highest in each of many parts."""
     if len(line) <= MOST_POINTS:
         return np.arange(len(line))
     numbers = np.nan_to_num(line)
@@ -116,7 +116,7 @@ def _thinned(line):
 
 
 def _line(name, across, up, joined):
-    """Return a line with gaps where there is no number: expected is whole with rings, got is dashed with crosses."""
+    """A line with gaps where there is no number: expected is whole with rings, got is dashed with crosses."""
     colour, dash = (WARM, ' stroke-dasharray="7 4"') if name == "got" else (COLD, "")
     course, marks, pen = [], [], "M"
     for x, y in zip(across.tolist(), up.tolist(), strict=True):
@@ -143,7 +143,7 @@ def _key(name, x, joined):
 
 
 def bars(counts, label, alt):
-    """Return a distribution as SVG.
+    """A distribution as SVG.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ STRIPES = "".join(
 
 
 def shares(rows, alt):
-    """Return bars as SVG, each divided into the parts of FILLS.
+    """Bars as SVG, each divided into the parts of FILLS.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ SAFE_NAME = re.compile(r"(?!.*-[0-9a-f]{16}$)(?!(con|prn|aux|nul|com[0-9]|lpt[0-
 
 
 def clean(text, most=SENTENCE, *, lines=False):
-    """Return text for a page.
+    """Text for a page.
 
     Parameters
     ----------
@@ -45,14 +45,14 @@ def clean(text, most=SENTENCE, *, lines=False):
 
 
 def _seen(letter, lines):
-    """Return a letter, or the number of one that is not seen: controls, turns of the writing direction, half pairs."""
+    """A letter, or the number of one that is not seen: controls, turns of the writing direction, half pairs."""
     if letter.isprintable() or letter in JOINERS or (lines and letter in "\n\t"):
         return letter
     return " " if unicodedata.category(letter) == "Zs" or letter in "\n\t" else f"[U+{ord(letter):04X}]"
 
 
 def shown(value, depth=0):
-    """Return a plain value in a few characters.
+    """A plain value in a few characters.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def shown(value, depth=0):
 
 
 def number(value, digits=6):
-    """Return a number in so many digits; an integer may be larger than any float."""
+    """A number in so many digits; an integer may be larger than any float."""
     try:
         return f"{float(value) + 0.0:.{digits}g}"  # no sign on a zero
     except OverflowError:
@@ -87,7 +87,7 @@ def number(value, digits=6):
 
 
 def pair(got, expected):
-    """Return two values in as many digits as tell them apart.
+    """Two values in as many digits as tell them apart.
 
     Examples
     --------
@@ -103,7 +103,7 @@ def pair(got, expected):
 
 
 def file_name(student, copy=0):
-    """Return the name of a student's page, without its ending: the same student has the same, two students never.
+    """The name of a student's page, without its ending: the same student has the same, two students never.
 
     Parameters
     ----------

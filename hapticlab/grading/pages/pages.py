@@ -2,16 +2,56 @@
 
 import base64
 import hashlib
+from functools import lru_cache
 from pathlib import Path
 
+from ...course.exercise import NOTED
 from ...errors import CourseError
-from .class_page import class_body
-from .page_text import clean, file_name
-from .student_page import student_body
+from ..formats.words import state
+from .class_page import WORDS, broken, class_facts
+from .failing_case import compared, drawn, given
+from .page_figures import bars, shares
+from .page_text import BLOCK, SENTENCE, clean, file_name, shown
 
 #: near the beginning of every page
 OWN = b"default-src 'none'; style-src 'sha256-"
-STYLE = Path(__file__).with_name("pages.css")
+HERE = Path(__file__).parent
+#: what the templates call
+NAMES = {
+    "BLOCK": BLOCK, "MOST_CELLS": 40, "NOTED": NOTED, "WORDS": WORDS,
+    "bars": bars, "broken": broken, "compared": compared, "drawn": drawn, "given": given, "shares": shares, "state": state,
+}  # fmt: skip
+
+
+@lru_cache(maxsize=1)
+def _templates():
+    """Templates whose every expression is text of anybody: bounded and escaped, unless a template calls it safe."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    from markupsafe import Markup
+
+    @lru_cache(maxsize=4096)  # a class has the same names and sentences on every page
+    def kept(text, most, lines):
+        return Markup(clean(text, most, lines=lines))
+
+    def text(value, most=SENTENCE, lines=False):
+        if hasattr(value, "__html__"):
+            return value
+        short = type(value) is str and len(value) <= SENTENCE
+        return kept(value, most, lines) if short else Markup(clean(value, most, lines=lines))
+
+    pages = Environment(
+        loader=FileSystemLoader(HERE),
+        autoescape=True,
+        finalize=text,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    style = (HERE / "pages.css").read_text("utf-8")
+    allowed = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    pages.globals |= {**NAMES, "style": Markup(style), "allowed": allowed}
+    pages.filters |= {"clean": text, "shown": shown, "g": "{:g}".format}
+    return pages
 
 
 def write_pages(reports, folder, *, lab):
@@ -52,10 +92,10 @@ def write_pages(reports, folder, *, lab):
     for report in sorted(reports, key=lambda r: (r.student.casefold(), r.student, r.submission, r.sha256)):
         copies[report.student] = copies.get(report.student, -1) + 1
         named.append((f"students/{file_name(report.student, copies[report.student])}.html", report))
-    style = STYLE.read_text("utf-8")
-    pages = {"class.html": page(f"Lab {lab.number}, the class", class_body(named, lab), style)}
+    pages = {"class.html": _templates().get_template("class.html").render(lab=lab, **class_facts(named))}
+    student = _templates().get_template("student.html")
     for address, report in named:
-        pages[address] = page(f"Lab {report.lab}, {report.student}", student_body(report, lab), style)
+        pages[address] = student.render(report=report, lab=lab)
     return _written(Path(folder), pages)
 
 
@@ -69,18 +109,6 @@ def check_folder(folder):
     path = Path(folder) / "class.html"
     if path.is_file() and OWN not in path.read_bytes()[:500]:
         raise CourseError(f"{path} is not a page of hapticlab's and would be overwritten; name a folder of its own for the pages")
-
-
-def page(title, body, style):
-    """Return a whole page, which may load and run nothing: its style is allowed by its hash alone."""
-    allowed = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'sha256-{allowed}'; "
-        "base-uri 'none'; form-action 'none'\">\n"
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n<meta name="referrer" content="no-referrer">\n'
-        f"<title>{clean(title, 150)}</title>\n<style>{style}</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n"
-    )
 
 
 def _written(folder, pages):
