@@ -48,35 +48,40 @@ def _rows():
 
 def _elementary_header():
     lines = [NOTICE, "#ifndef HL_ELEMENTARY_H", "#define HL_ELEMENTARY_H", ""]
-    lines += [f"float hl_{name}f(float x);" for name in ELEMENTARY]
+    lines += [f"{_head(name)};" for name in ELEMENTARY]
     return "\n".join(lines) + "\n\n#endif\n"
 
 
 def _elementary_source():
-    functions = "\n".join(_function(name, define) for name, define in ELEMENTARY.items())
+    functions = "\n".join(map(_function, ELEMENTARY))
     return f'{NOTICE}\n#include "elementary.h"\n#include "mathf.h"\n\nHL_NO_CONTRACTION\n\n{functions}'
 
 
-def _function(name, define):
-    """Return the trace of a function as C: the same operations on the same operands, so the same bits.
+def _head(name):
+    return f"float hl_{name}f({', '.join(f'float {x}' for x, _ in zip('xyz', OPERATIONS[name].operands, strict=False))})"
+
+
+def _function(name):
+    """The trace of a function as C: the same operations on the same operands, so the same bits.
 
     What only one arm of a select needs is computed inside that arm, and an arm that is not taken costs nothing.
     """
     builder = Builder("f32")
-    block = builder.block([define(builder.leaf("input", 0, "f32"))])
+    operands = [builder.leaf("input", k, "f32") for k in range(len(OPERATIONS[name].operands))]
+    block = builder.block([ELEMENTARY[name](*operands)])
     code, result = block.instructions, block.outputs[0]
     places = _places(code, result)
     names, bodies = {}, {}
     for k, i in enumerate(code):
         if i.op == "input":
-            names[k] = "x"
+            names[k] = "xyz"[i.index]
         elif i.op == "const":
             names[k] = _literal(i.value)
         elif places[k] is not None:
             names[k] = f"t{k}"
             bodies.setdefault(places[k], []).append(k)
     lines = _statements((), code, names, bodies)
-    return "\n".join([f"float hl_{name}f(float x)", "{", *lines, f"    return {names[result]};", "}", ""])
+    return "\n".join([_head(name), "{", *lines, f"    return {names[result]};", "}", ""])
 
 
 def _places(code, result):

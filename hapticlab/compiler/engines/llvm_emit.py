@@ -86,7 +86,7 @@ class Writer:
         self.lanes = lanes
         self.types = {t: self.vector(s) for t, s in SCALAR.items()}
         self.suffix = "" if lanes == 1 else f"v{lanes}"
-        self.intrinsics = set()
+        self.intrinsics, self._words = set(), {}
 
     def vector(self, scalar):
         return scalar if self.lanes == 1 else f"<{self.lanes} x {scalar}>"
@@ -105,49 +105,35 @@ class Writer:
 
     def operation(self, result, i, operands, operand_type):
         """The lines that compute one instruction."""
-        line = OPERATIONS[i.op].llvm
-        if not line:
-            return getattr(self, i.op)(result, i.type, operands[0], operand_type)
-        t, a = self.types[i.type], self.types[operand_type]
-        true, false = self.const(True, "bool"), self.const(False, "bool")
-        line = line.format(*operands, t=t, a=a, s=self.suffix + i.type, true=true, false=false)
-        if "@" in line:
-            name = line[line.index("@") : line.index("(")]
-            self.intrinsics.add(f"declare {t} {name}({', '.join([a] * len(operands))})")
-        return f"{result} = {line}"
+        words = self.words(i.type, operand_type)
+        lines = OPERATIONS[i.op].llvm.format(*operands, r=result, **words).splitlines()
+        for line in lines:
+            if "@" in line:
+                name = line[line.index("@") : line.index("(")]
+                self.intrinsics.add(f"declare {words['t']} {name}({', '.join([words['a']] * len(operands))})")
+        return [*lines[:-1], f"{result} = {lines[-1]}"]
 
-    def cast(self, r, type, a, operand_type):
-        """From one real type to the other."""
-        extend = "fpext" if type == "f64" else "fptrunc"
-        return f"{r} = {extend} {self.types[operand_type]} {a} to {self.types[type]}"
+    def words(self, type, operand_type):
+        """The names in the lines of an operation, by the types of its result and of its first operand.
 
-    def exp2i(self, r, type, a, _):
-        """2**a by way of the exponent field. The clamp comes first, so the conversion to an integer is defined."""
-        bits, mantissa, bias = LAYOUT[type]
-        t, c, k, w = self.types[type], self.types["bool"], self.types["i32"], self.vector(f"i{bits}")
-        zero, low, high = (self.const(float(v), type) for v in (0, 1 - bias, bias))
-        return "\n  ".join([
-            f"{r}.a = fcmp ord {t} {a}, {zero}", f"{r}.b = select {c} {r}.a, {t} {a}, {t} {zero}",
-            f"{r}.c = fcmp olt {t} {r}.b, {low}", f"{r}.d = select {c} {r}.c, {t} {low}, {t} {r}.b",
-            f"{r}.e = fcmp olt {t} {high}, {r}.d", f"{r}.f = select {c} {r}.e, {t} {high}, {t} {r}.d",
-            f"{r}.g = fptosi {t} {r}.f to {k}", f"{r}.h = add {k} {r}.g, {self.splat('i32', str(bias))}",
-            *([f"{r}.i = zext {k} {r}.h to {w}"] if bits == 64 else []),
-            f"{r}.j = shl {w} {r}.{'i' if bits == 64 else 'h'}, {self.splat(f'i{bits}', str(mantissa))}",
-            f"{r} = bitcast {w} {r}.j to {t}",
-        ])  # fmt: skip
-
-    def exponent(self, r, type, a, _):
-        """The exponent field less its bias, whatever the sign."""
-        bits, mantissa, bias = LAYOUT[type]
-        t, k, w = self.types[type], self.types["i32"], self.vector(f"i{bits}")
-        return "\n  ".join([
-            f"{r}.a = bitcast {t} {a} to {w}",
-            f"{r}.b = lshr {w} {r}.a, {self.splat(f'i{bits}', str(mantissa))}",
-            f"{r}.c = and {w} {r}.b, {self.splat(f'i{bits}', str(2 * bias + 1))}",
-            *([f"{r}.d = trunc {w} {r}.c to {k}"] if bits == 64 else []),
-            f"{r}.e = sub {k} {r}.{'d' if bits == 64 else 'c'}, {self.splat('i32', str(bias))}",
-            f"{r} = sitofp {k} {r}.e to {t}",
-        ])  # fmt: skip
+        ``t`` and ``a`` are those types, ``s`` the suffix of an intrinsic, ``convert`` goes from one real type to the other.
+        Of a real operand, ``bits`` is the integer type of its width, reached from i32 by ``widen`` and left by ``narrow``;
+        ``field`` are the ones of an exponent, ``low`` and ``high`` the least and the greatest of a normal number.
+        """
+        if (type, operand_type) not in self._words:
+            words = {name: self.types[name] for name in ("bool", "i32")}
+            words |= {"t": self.types[type], "a": self.types[operand_type], "s": self.suffix + type}
+            words |= {"true": self.const(True, "bool"), "false": self.const(False, "bool")}
+            words["convert"] = "fpext" if type == "f64" else "fptrunc"
+            if operand_type in LAYOUT:
+                width, mantissa, bias = LAYOUT[operand_type]
+                integer, real = f"i{width}", {"zero": 0, "low": 1 - bias, "high": bias}
+                words |= {name: self.const(float(number), operand_type) for name, number in real.items()}
+                words |= {"bits": self.vector(integer), "bias": self.splat("i32", str(bias))}
+                words |= {"mantissa": self.splat(integer, str(mantissa)), "field": self.splat(integer, str(2 * bias + 1))}
+                words |= {"widen": "zext", "narrow": "trunc"} if width == 64 else {"widen": "bitcast", "narrow": "bitcast"}
+            self._words[type, operand_type] = words
+        return self._words[type, operand_type]
 
     def names(self, block, prefix, leaves):
         """Return the name of every result of a block, by position."""
@@ -169,7 +155,7 @@ class Writer:
                 lines += functions(self, block, names, alike)
             else:
                 operands = [names[a] for a in in_lazy_order(block.instructions, i)]
-                lines.append(self.operation(names[alike[0]], i, operands, block.instructions[i.args[0]].type))
+                lines += self.operation(names[alike[0]], i, operands, block.instructions[i.args[0]].type)
         return lines
 
     def load(self, result, channel, address, shared=False):

@@ -37,28 +37,29 @@ def in_order(block, positions):
 
 @functools.cache
 def arithmetic(ops, type):
-    """Return the block that computes elementary functions ``ops`` of its one input."""
+    """The block that computes elementary functions ``ops`` of the same operands, its inputs."""
     builder = Builder(type)
-    argument = builder.leaf("input", 0, type)
-    return builder.block([ELEMENTARY[op](argument) for op in ops])
+    operands = [builder.leaf("input", k, type) for k in range(len(OPERATIONS[ops[0]].operands))]
+    return builder.block([ELEMENTARY[op](*operands) for op in ops])
 
 
 def functions(writer, block, names, alike):
-    """Return the lines of LLVM that compute elementary functions of one family, for a writer of one lane."""
+    """The lines of LLVM that compute elementary functions of one family, for a writer of one lane."""
     calls = [block.instructions[k] for k in alike]
     ops, type_ = sorted({i.op for i in calls}), calls[0].type
     made, scalar = arithmetic(tuple(ops), type_), writer.types[type_]
-    arguments, lines = [*dict.fromkeys(i.args[0] for i in calls)], []
-    for first in range(0, len(arguments), LANES[type_]):
-        lane_of = {a: lane for lane, a in enumerate(arguments[first : first + LANES[type_]])}
+    operands, lines = [*dict.fromkeys(i.args for i in calls)], []
+    for first in range(0, len(operands), LANES[type_]):
+        lane_of = {args: lane for lane, args in enumerate(operands[first : first + LANES[type_]])}
         vector = type(writer)(1 << (len(lane_of) - 1).bit_length())
         base = f"{names[alike[0]]}.{first}."
-        lines += _gathered(vector, f"{base}x", [names[a] for a in lane_of], type_, scalar)
+        for k, positions in enumerate(zip(*lane_of, strict=True)):
+            lines += _gathered(vector, f"{base}x{k}", [names[a] for a in positions], type_, scalar)
         inner = vector.names(made, base[1:], {"input": f"{base}x"})
         lines += vector.lines(made, inner, range(len(made.instructions)))
         for k, i in zip(alike, calls, strict=True):
-            if i.args[0] in lane_of:
-                result, lane = inner[made.outputs[ops.index(i.op)]], lane_of[i.args[0]]
+            if i.args in lane_of:
+                result, lane = inner[made.outputs[ops.index(i.op)]], lane_of[i.args]
                 take = f"extractelement {vector.types[type_]} {result}, i32 {lane}"
                 lines.append(f"{names[k]} = {take if vector.lanes > 1 else _same(scalar, result)}")
         writer.intrinsics |= vector.intrinsics
@@ -66,12 +67,12 @@ def functions(writer, block, names, alike):
 
 
 def _gathered(vector, result, values, type, scalar):
-    """Return the lines that make a vector of scalars, the last one repeated where lanes are left."""
+    """The lines that make a vector of scalars, the last one repeated where lanes are left."""
     if vector.lanes == 1:
-        return [f"{result}0 = {_same(scalar, values[0])}"]
+        return [f"{result} = {_same(scalar, values[0])}"]
     lines, so_far = [], "undef"
     for lane in range(vector.lanes):
-        after = f"{result}{'0' if lane == vector.lanes - 1 else f'.{lane}'}"
+        after = result if lane == vector.lanes - 1 else f"{result}.{lane}"
         value = values[min(lane, len(values) - 1)]
         lines.append(f"{after} = insertelement {vector.types[type]} {so_far}, {scalar} {value}, i32 {lane}")
         so_far = after

@@ -30,8 +30,8 @@ class Operation:
     compute : callable
         Its value from those of its operands: numbers and arrays by NumPy, in their own precision; traced values recorded.
     llvm : str
-        Its line. {0}, {1}, {2}: operands; {t}: type of the result, {a}: of the first operand; {s}: suffix of an intrinsic.
-        Empty where :class:`~hapticlab.compiler.engines.llvm_emit.Writer` has a method of its name.
+        Its lines, the last of them the result; none for an elementary function. {0}, {1}, {2} are the operands; the other
+        names are those of :meth:`hapticlab.compiler.engines.llvm_emit.Writer.words`.
     c : str
         Its C expression, where the C of an elementary function uses it.
     derivative : tuple of callables (d, r, *operands) -> value
@@ -67,6 +67,28 @@ class Operation:
     converts: bool = False
     work: int = 1
 
+
+#: by way of the exponent field; the clamp comes first, so that the conversion to an integer is defined
+_EXP2I = """\
+{r}.a = fcmp ord {t} {0}, {zero}
+{r}.b = select {bool} {r}.a, {t} {0}, {t} {zero}
+{r}.c = fcmp olt {t} {r}.b, {low}
+{r}.d = select {bool} {r}.c, {t} {low}, {t} {r}.b
+{r}.e = fcmp olt {t} {high}, {r}.d
+{r}.f = select {bool} {r}.e, {t} {high}, {t} {r}.d
+{r}.g = fptosi {t} {r}.f to {i32}
+{r}.h = add {i32} {r}.g, {bias}
+{r}.i = {widen} {i32} {r}.h to {bits}
+{r}.j = shl {bits} {r}.i, {mantissa}
+bitcast {bits} {r}.j to {t}"""
+#: the exponent field less its bias, whatever the sign
+_EXPONENT = """\
+{r}.a = bitcast {t} {0} to {bits}
+{r}.b = lshr {bits} {r}.a, {mantissa}
+{r}.c = and {bits} {r}.b, {field}
+{r}.d = {narrow} {bits} {r}.c to {i32}
+{r}.e = sub {i32} {r}.d, {bias}
+sitofp {i32} {r}.e to {t}"""
 
 _RECORDS = (
     Operation(
@@ -152,14 +174,14 @@ _RECORDS = (
         series=recurrences.hyperbolic_tangent,
     ),
     # 2**k for an integral k, clamped to the normal exponents of the type
-    Operation("exp2i", "R", "R", 22, values.exp2i, c="hl_exp2if({0})"),
+    Operation("exp2i", "R", "R", 22, values.exp2i, llvm=_EXP2I, c="hl_exp2if({0})"),
     # the exponent field of a positive normal number, as a real: floor(log2(a))
-    Operation("exponent", "R", "R", 23, values.exponent, c="hl_exponentf({0})"),
+    Operation("exponent", "R", "R", 23, values.exponent, llvm=_EXPONENT, c="hl_exponentf({0})"),
     Operation("iadd", "II", "I", 24, values.iadd, llvm="add {t} {0}, {1}", commutes=True),
     Operation("itof", "I", "R", 25, lambda a: a, llvm="sitofp {a} {0} to {t}", converts=True),
     # f32 <-> f64, only in programs that link a scene to a simulated paddle
     Operation(
-        "cast", "R", "R", None, lambda a: a, converts=True,
+        "cast", "R", "R", None, lambda a: a, llvm="{convert} {a} {0} to {t}", converts=True,
         derivative=(lambda d, r, a: d,),
     ),
 )  # fmt: skip

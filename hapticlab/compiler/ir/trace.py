@@ -134,7 +134,7 @@ class Builder:
         here = []
         for i in block.instructions:
             if i.op in ELEMENTARY:
-                here.append(ELEMENTARY[i.op](here[i.args[0]]))
+                here.append(ELEMENTARY[i.op](*(here[a] for a in i.args)))
             elif i.op == "const":
                 here.append(self.const(i.value, i.type))
             elif i.op in LEAVES:

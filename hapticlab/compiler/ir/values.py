@@ -4,6 +4,8 @@ A line such as ``k * maximum(x - x_o, 0.0)`` is written once. With a float in it
 array; with a :class:`Value` in it becomes instructions of the block whose builder made the value.
 """
 
+import operator
+
 import numpy as np
 
 from ...errors import ProgramError
@@ -24,34 +26,34 @@ class Value:
         i = self.builder.instructions[self.id]
         return i.value if i.op == "const" else None
 
-    def _with(self, op, other, swap=False):
-        if not isinstance(other, Value):
-            other = self.builder.const(other, self.type)
-        return self.builder.emit(op, *((other, self) if swap else (self, other)))
+    def _emit(self, op, *operands):
+        """Record an operation of values and numbers; a number becomes a constant of this value's type."""
+        const = self.builder.const
+        return self.builder.emit(op, *[o if isinstance(o, Value) else const(o, self.type) for o in operands])
 
     def __add__(self, other):
-        return self._with("add", other)
+        return self._emit("add", self, other)
 
     def __radd__(self, other):
-        return self._with("add", other, True)
+        return self._emit("add", other, self)
 
     def __sub__(self, other):
-        return self._with("sub", other)
+        return self._emit("sub", self, other)
 
     def __rsub__(self, other):
-        return self._with("sub", other, True)
+        return self._emit("sub", other, self)
 
     def __mul__(self, other):
-        return self._with("mul", other)
+        return self._emit("mul", self, other)
 
     def __rmul__(self, other):
-        return self._with("mul", other, True)
+        return self._emit("mul", other, self)
 
     def __truediv__(self, other):
-        return self._with("div", other)
+        return self._emit("div", self, other)
 
     def __rtruediv__(self, other):
-        return self._with("div", other, True)
+        return self._emit("div", other, self)
 
     def __neg__(self):
         return self.builder.emit("neg", self)
@@ -60,22 +62,22 @@ class Value:
         return self.builder.emit("abs", self)
 
     def __lt__(self, other):
-        return self._with("lt", other)
+        return self._emit("lt", self, other)
 
     def __le__(self, other):
-        return self._with("le", other)
+        return self._emit("le", self, other)
 
     def __gt__(self, other):
-        return self._with("lt", other, True)
+        return self._emit("lt", other, self)
 
     def __ge__(self, other):
-        return self._with("le", other, True)
+        return self._emit("le", other, self)
 
     def __and__(self, other):
-        return self._with("and", other)
+        return self._emit("and", self, other)
 
     def __or__(self, other):
-        return self._with("or", other)
+        return self._emit("or", self, other)
 
     __rand__, __ror__ = __and__, __or__  # of a plain bool on the left
 
@@ -116,22 +118,28 @@ def clip(a, low, high):
     return minimum(maximum(a, low), high)
 
 
-def equal(a, b):
-    """Compare for equality (``==`` on values compares the values themselves, not their numbers)."""
-    return a._with("eq", b) if isinstance(a, Value) else a == b
-
-
 def cast(a, type):
     """Return a in another real type."""
     return a if not isinstance(a, Value) or a.type == type else a.builder.emit("cast", a, type=type)
 
 
-def _recorded(name, of_numbers):
-    def apply(a, *others):
-        return a.builder.emit(name, a, *others) if isinstance(a, Value) else of_numbers(a, *others)
+def recorded(name, of_numbers):
+    """The operation ``name``: computed of numbers and arrays by ``of_numbers``, recorded of traced values.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(recorded("sqrt", np.sqrt)(9.0))
+    3.0
+    """
+
+    def apply(*operands):
+        for o in operands:
+            if isinstance(o, Value):
+                return o._emit(name, *operands)
+        return of_numbers(*operands)
 
     apply.__name__ = name
-    apply.__doc__ = f"Compute the operation ``{name}`` of floats or arrays, or record it of traced values."
     return apply
 
 
@@ -153,8 +161,10 @@ def _exponent_of_numbers(a):
     return (field - integer(bias)).astype(a.dtype)
 
 
-sqrt, floor = _recorded("sqrt", np.sqrt), _recorded("floor", np.floor)
-sin, cos, atan = _recorded("sin", np.sin), _recorded("cos", np.cos), _recorded("atan", np.arctan)
-exp, log, tanh = _recorded("exp", np.exp), _recorded("log", np.log), _recorded("tanh", np.tanh)
-exp2i, exponent = _recorded("exp2i", _exp2i_of_numbers), _recorded("exponent", _exponent_of_numbers)
-iadd = _recorded("iadd", np.add)
+sqrt, floor = recorded("sqrt", np.sqrt), recorded("floor", np.floor)
+sin, cos, atan = recorded("sin", np.sin), recorded("cos", np.cos), recorded("atan", np.arctan)
+exp, log, tanh = recorded("exp", np.exp), recorded("log", np.log), recorded("tanh", np.tanh)
+exp2i, exponent = recorded("exp2i", _exp2i_of_numbers), recorded("exponent", _exponent_of_numbers)
+iadd = recorded("iadd", np.add)
+#: of values, ``==`` compares the values themselves, not their numbers
+equal = recorded("eq", operator.eq)

@@ -57,7 +57,7 @@ def test_of_an_absolute_value_at_most_a_limit_is_one_range_too():
 
 def test_only_the_arm_that_is_taken_is_computed():
     """Of sine's two polynomials each stands in an arm of its own, deeper than the reduction of the angle."""
-    source = c_headers._function("sin", ELEMENTARY["sin"])
+    source = c_headers._function("sin")
     depth = {m[2]: len(m[1]) // 4 for m in re.finditer(r"^( +)const float (t\d+) =", source, re.M)}
     lines = source.splitlines()
     of_sine = next(line for line in lines if "0x1.9ac9b" in line)
@@ -72,9 +72,9 @@ def test_only_the_arm_that_is_taken_is_computed():
 
 def test_every_value_is_declared_before_and_in_reach_of_its_uses():
     """A scope closes what it declared: each name is used only while its block is open."""
-    for name, define in ELEMENTARY.items():
+    for name in ELEMENTARY:
         open_scopes = [set()]
-        for line in c_headers._function(name, define).splitlines()[1:]:
+        for line in c_headers._function(name).splitlines()[1:]:
             text = line.strip()
             if text.startswith("}"):
                 open_scopes.pop()
