@@ -12,6 +12,7 @@ from .judge import verdict
 from .labs import find_lab
 
 if TYPE_CHECKING:
+    from .exercise import Exercise
     from .judge import Verdict
 
 #: of what a student's code prints while it is checked
@@ -97,7 +98,7 @@ def _exercise(name):
     return find_lab(lab.zfill(2), beside=Path.cwd()).exercise(exercise)
 
 
-def checked(name, exercise, answer):
+def checked(name: str, exercise: Exercise, answer: object) -> CheckResult:
     """Return the result for one exercise, by its public cases."""
     if not exercise.judged or not exercise.cases:
         return _noted(name, exercise, answer)
@@ -113,7 +114,7 @@ def checked(name, exercise, answer):
     return CheckResult(name, passed, True, verdicts, "\n".join(lines))
 
 
-def points_words(points):
+def points_words(points: float) -> str:
     """Return a number of points in words."""
     return f"{points:g} point{'' if points == 1 else 's'}"
 

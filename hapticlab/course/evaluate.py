@@ -4,12 +4,15 @@ What comes out holds numbers, texts, lists and dicts of Python itself, so it can
 not known here.
 """
 
+from __future__ import annotations
+
 import copy
 import inspect
 import io
 import sys
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,8 +24,13 @@ from .felt import felt
 from .outcome import Outcome
 from .plain import NotPlain, a, plain
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
-def evaluate(kind, answer, given):
+    from .exercise import Kind
+
+
+def evaluate(kind: Kind, answer: object, given: Mapping[str, Any]) -> Outcome:
     """Return what an answer gives for one case; it never raises, except where a person interrupts.
 
     Parameters

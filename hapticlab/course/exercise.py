@@ -1,13 +1,22 @@
 """What a lab asks: exercises with their public cases. Cases hold numbers, never a formula of the answer."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from ..errors import CourseError
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
 #: what is judged, and what is only noted
-JUDGED, NOTED = ("function", "scene", "expression", "plot", "value", "choice"), ("prediction", "text")
+Judged = Literal["function", "scene", "expression", "plot", "value", "choice"]
+Noted = Literal["prediction", "text"]
+Kind = Judged | Noted
+JUDGED, NOTED = get_args(Judged), get_args(Noted)
 
 
 @dataclass(frozen=True)
@@ -35,12 +44,12 @@ class Case:
     ((-2.4, 'The sign is turned.'),)
     """
 
-    given: dict
-    expected: object
+    given: Mapping[str, Any]
+    expected: Any
     unit: str = ""
-    slips: tuple = ()
+    slips: Mapping[Any, str] | Sequence[tuple[Any, str]] = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not isinstance(self.given, Mapping):
             raise CourseError(f"given = {self.given!r}; a case needs a dict, such as Case({{'x': 0.01}}, 2.0)")
         pairs = self.slips.items() if isinstance(self.slips, Mapping) else self.slips
@@ -78,17 +87,17 @@ class Exercise:
     """
 
     name: str
-    kind: str = "function"
+    kind: Kind = "function"
     points: float = 0
     asks: str = ""
-    cases: tuple = ()
-    options: dict = field(default_factory=dict)
+    cases: Sequence[Case] = ()
+    options: dict[str, str] = field(default_factory=dict)
     rtol: float = 1e-6
     atol: float = 1e-12
     hint: str = ""
     least_words: int = 0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "cases", tuple(self.cases))
         if self.kind not in JUDGED + NOTED:
             raise CourseError(f"{self.name}: kind = {self.kind!r}; needs one of {', '.join(JUDGED + NOTED)}")
@@ -101,7 +110,7 @@ class Exercise:
             raise CourseError(f"{self.name}: {strange[0]!r} is none of the options {', '.join(self.options)}")
 
     @property
-    def judged(self):
+    def judged(self) -> bool:
         """Whether it can be right or wrong."""
         return self.kind in JUDGED
 
@@ -129,9 +138,9 @@ class Lab:
     number: str
     title: str
     minutes: int
-    exercises: tuple
+    exercises: Sequence[Exercise]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "exercises", tuple(self.exercises))
         if not (isinstance(self.number, str) and re.fullmatch("[0-9][0-9]", self.number)):
             raise CourseError(f"lab number {self.number!r}: needs two digits as text, as its folder begins, such as '02'")
@@ -141,11 +150,11 @@ class Lab:
             raise CourseError(f"lab {self.number}: {', '.join(twice)} twice; each exercise needs a name of its own")
 
     @property
-    def points(self):
+    def points(self) -> float:
         """What all exercises are worth together."""
         return sum(e.points for e in self.exercises)
 
-    def exercise(self, name):
+    def exercise(self, name: str) -> Exercise:
         """Return the exercise of that name."""
         found = {e.name: e for e in self.exercises}
         if name not in found:

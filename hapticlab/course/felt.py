@@ -1,9 +1,20 @@
 """What a scene does at the handle: its force, sample by sample, over a motion that is given."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from ..errors import CourseError
 from ..scene.scene import check_scene
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from ..scene.scene import Scene
 
 #: what may be given beside the motion, as hl.compile takes it
 OPTIONS = ("method", "substeps", "hold", "force_at")
@@ -11,7 +22,16 @@ OPTIONS = ("method", "substeps", "hold", "force_at")
 FEW = 4000
 
 
-def felt(scene, *, x, v=None, T=1e-3, values=None, channels=None, **options):
+def felt(
+    scene: Scene,
+    *,
+    x: Sequence[float] | NDArray[np.float64],
+    v: Sequence[float] | NDArray[np.float64] | None = None,
+    T: float = 1e-3,
+    values: Mapping[str, float] | None = None,
+    channels: Sequence[str] | None = None,
+    **options: Any,
+) -> NDArray[np.float64] | dict[str, NDArray[np.float64]]:
     """Force of a scene over given samples, in float64.
 
     Parameters

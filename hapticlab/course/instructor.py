@@ -1,29 +1,39 @@
 """An instructor's folder of answers: the solved notebook of a lab, and what a notebook earns."""
 
+from __future__ import annotations
+
 import shutil
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from ..errors import CourseError
 from .marks import SOLUTION, hidden_cases, instructor_names, marks
 from .notebook import code_of, read, run, solved
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from .labs import LabFolder
+    from .marks import Mark
+    from .notebook import Problem
 
 
 @dataclass(frozen=True)
 class Marked:
     """What a notebook earned, and what its cells raised."""
 
-    marks: tuple
-    problems: list
+    marks: tuple[Mark, ...]
+    problems: list[Problem]
 
     @property
-    def earned(self):
+    def earned(self) -> float:
         """Points of all exercises together."""
         return sum(mark.earned for mark in self.marks)
 
 
-def check_tree(tree):
+def check_tree(tree: str | PathLike[str]) -> None:
     """Refuse a folder without any answers; its folders are named as the labs are, NN_name."""
     if not any(Path(tree).glob(f"[0-9][0-9]_*/{SOLUTION}")):
         raise CourseError(
@@ -31,7 +41,7 @@ def check_tree(tree):
         )
 
 
-def solved_notebook(folder, answers):
+def solved_notebook(folder: LabFolder, answers: Path) -> dict[str, Any]:
     """Return a lab's notebook with the solution written in.
 
     Parameters
@@ -45,7 +55,7 @@ def solved_notebook(folder, answers):
     return solved(read(folder.notebook), solution, [exercise.name for exercise in folder.lab().exercises])
 
 
-def mark_notebook(folder, notebook, answers, seed=0):
+def mark_notebook(folder: LabFolder, notebook: dict[str, Any], answers: Path, seed: int = 0) -> Marked:
     """Run a notebook of a lab in a copy of its folder, in this process, and mark what it holds at its end.
 
     Only for notebooks that are trusted: their code runs with the rights of whoever marks.

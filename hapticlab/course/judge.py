@@ -1,11 +1,18 @@
 """Whether a plain value is the one expected, and where it is not, which slip it looks like."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .diagnose import slip
 from .match import plot_fault
+
+if TYPE_CHECKING:
+    from .exercise import Case, Exercise
+    from .outcome import Outcome
 
 
 @dataclass(frozen=True)
@@ -21,7 +28,7 @@ class Verdict:
     slip: str = ""
 
 
-def judge(exercise, case, value):
+def judge(exercise: Exercise, case: Case, value: Any) -> Verdict:
     """Compare a plain value with what a case expects.
 
     Parameters
@@ -70,7 +77,7 @@ def _taught(words, sentence):
     return Verdict(False, f"{words}. {sentence}".strip(), sentence)
 
 
-def verdict(exercise, case, outcome):
+def verdict(exercise: Exercise, case: Case, outcome: Outcome) -> Verdict:
     """Return the verdict on what an answer gave.
 
     Its ``problem`` is told in the words and is no slip: in a grader it comes from the process of the student's code.

@@ -1,5 +1,7 @@
 """The labs: where they are, the checks beside each, and copies of them, which lose nothing that was changed."""
 
+from __future__ import annotations
+
 import hashlib
 import itertools
 import json
@@ -7,9 +9,14 @@ import re
 import runpy
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..errors import CourseError
 from .exercise import Lab
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from os import PathLike
 
 PACKAGE = Path(__file__).resolve().parents[1]
 #: of a wheel, and of a checkout
@@ -26,21 +33,21 @@ class LabFolder:
     path: Path
 
     @property
-    def name(self):
+    def name(self) -> str:
         """NN_name."""
         return self.path.name
 
     @property
-    def number(self):
+    def number(self) -> str:
         """Its two digits, as text."""
         return self.name[:2]
 
     @property
-    def notebook(self):
+    def notebook(self) -> Path:
         """The student's notebook."""
         return self.path / f"{self.name}.ipynb"
 
-    def lab(self):
+    def lab(self) -> Lab:
         """Return the Lab that its checks define."""
         lab = load_lab(self.path / CHECKS)
         if lab.number != self.number:
@@ -48,7 +55,7 @@ class LabFolder:
         return lab
 
 
-def load_lab(path):
+def load_lab(path: str | PathLike[str]) -> Lab:
     """Return the Lab of a file of checks."""
     try:
         lab = runpy.run_path(str(path)).get("LAB")
@@ -59,7 +66,7 @@ def load_lab(path):
     return lab
 
 
-def labs_folder():
+def labs_folder() -> Path:
     """Return the folder of the labs that came with the package."""
     for place in PLACES:
         if place.is_dir():
@@ -67,7 +74,7 @@ def labs_folder():
     raise CourseError(f"no labs in {' or '.join(map(str, PLACES))}; install hapticlab anew")
 
 
-def copy_labs(target, only=()):
+def copy_labs(target: str | PathLike[str], only: Sequence[str] = ()) -> dict[str, str]:
     """Copy the student's labs into a folder; what somebody changed there stays as it is.
 
     In a folder that has labs, those that were deleted stay away, unless ``only`` names them. A ``checks.py`` that is as it
@@ -177,20 +184,20 @@ def _free(path):
     return next(one for one in several if not one.exists())
 
 
-def incomplete_labs(folder):
+def incomplete_labs(folder: str | PathLike[str]) -> list[str]:
     """Return the names of folders that look like a lab's, NN_name, and lack its notebook or its checks."""
     whole = {lab.name for lab in find_labs(folder)}
     return [path.name for path in sorted(Path(folder).glob("[0-9][0-9]_*")) if path.is_dir() and path.name not in whole]
 
 
-def find_labs(folder=None):
+def find_labs(folder: str | PathLike[str] | None = None) -> list[LabFolder]:
     """Return the labs in a folder, by default those that came with the package, in their order."""
     folder = labs_folder() if folder is None else Path(folder)
     found = [LabFolder(path) for path in sorted(folder.glob("[0-9][0-9]_*"))]
     return [lab for lab in found if lab.notebook.is_file() and (lab.path / CHECKS).is_file()]
 
 
-def find_lab(number, beside=None):
+def find_lab(number: str, beside: str | PathLike[str] | None = None) -> Lab:
     """Return the lab of a number: the one whose checks lie in the folder ``beside``, else the one that came with the package.
 
     Examples

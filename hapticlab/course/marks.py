@@ -7,6 +7,8 @@ each student. ``hidden.py`` may also have ``def numbers(random): return {"K_OWN"
 that are other for each student, see :mod:`hapticlab.course.personal`.
 """
 
+from __future__ import annotations
+
 import hashlib
 import math
 import runpy
@@ -14,6 +16,7 @@ import zlib
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +25,11 @@ from .constants import with_constants
 from .evaluate import evaluate
 from .exercise import Case
 from .judge import judge, verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from .exercise import Exercise, Lab
 
 SOLUTION, HIDDEN = "solution.py", "hidden.py"
 #: beside them, wrong answers that test a lab's sentences; no grader reads it
@@ -42,7 +50,7 @@ class Mark:
     words: str  # of the first wrong case
 
 
-def marks(lab, answers, hidden=None):
+def marks(lab: Lab, answers: Mapping[str, Any], hidden: Mapping[str, Sequence[Case]] | None = None) -> tuple[Mark, ...]:
     """Mark answers.
 
     Parameters
@@ -72,7 +80,7 @@ def marks(lab, answers, hidden=None):
     )
 
 
-def counted_cases(exercise, hidden=None):
+def counted_cases(exercise: Exercise, hidden: Mapping[str, Sequence[Case]] | None = None) -> tuple[tuple[Case, bool], ...]:
     """Return the cases that an exercise is marked by, each with whether it is public.
 
     Where there are hidden cases of a value or a choice, the public one, whose answer a class can pass on, does not count.

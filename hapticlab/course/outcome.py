@@ -1,6 +1,9 @@
 """What an answer gave for one case."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -10,11 +13,11 @@ class Outcome:
     Beside a value ``problem`` is a remark, told where the value is wrong. ``printed`` is what its code printed meanwhile.
     """
 
-    value: object = None
+    value: Any = None
     problem: str = ""
     printed: str = ""
 
     @property
-    def answered(self):
+    def answered(self) -> bool:
         """Whether anything was answered at all."""
         return self.value is not None or bool(self.problem)

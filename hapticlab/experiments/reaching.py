@@ -39,7 +39,7 @@ ARRIVED = 0.05
 class Path(Protocol):
     """A path of time: (position [m], velocity [m/s], acceleration [m/s^2]) at times [s]."""
 
-    def at(self, times, /): ...
+    def at(self, times: Any, /) -> Any: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -246,7 +246,7 @@ class Anticipated(Intent):
         return np.interp(np.asarray(t, float), self.times, self.places)
 
 
-def check_path(path):
+def check_path(path: object) -> None:
     """Refuse what is no path."""
     if not hasattr(path, "at"):
         raise PaddleError(f"path = {path!r}; needs a path of time, as hl.MinimumJerk(end=0.02, duration=0.4).")

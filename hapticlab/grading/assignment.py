@@ -1,9 +1,12 @@
 """What a class was asked: a lab, the answers to it, and the cases of each student."""
 
+from __future__ import annotations
+
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .. import __version__
 from ..course.exercise import Lab
@@ -13,6 +16,11 @@ from ..course.marks import SOLUTION, counted_cases, hidden_cases, instructor_nam
 from ..course.notebook import code_of, read
 from ..course.variants import slips
 from ..errors import CourseError
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from ..course.exercise import Case
 
 
 @dataclass(frozen=True)
@@ -37,7 +45,7 @@ class Assignment:
     seed: int = 0
     personal: bool = False
 
-    def cases(self, student):
+    def cases(self, student: str) -> dict[str, tuple[tuple[Case, bool], ...]]:
         """Return the cases of a student: exercise to ``((case, public), ...)``, public ones first.
 
         See :func:`hapticlab.course.marks.counted_cases`.
@@ -47,7 +55,7 @@ class Assignment:
             hidden = hidden_cases(self.lab, self.answers, self.seed, student, self.personal)
         return {one.name: counted_cases(one, hidden) for one in self.lab.exercises if one.judged}
 
-    def files(self):
+    def files(self) -> dict[str, bytes]:
         """Return what lies beside the notebook while it runs, name to bytes: the lab's data, never what judges it."""
         paths = files_of(self.folder.path)
         return {name: path.read_bytes() for name, path in paths.items() if path.suffix != ".ipynb" and path.name != CHECKS}
@@ -71,12 +79,12 @@ class Assignment:
         return {}
 
     @cached_property
-    def untouched(self):
+    def untouched(self) -> tuple[str, ...]:
         """The code cells of the lab's own notebook."""
         return tuple(code_of(read(self.folder.notebook)))
 
     @cached_property
-    def digest(self):
+    def digest(self) -> str:
         """SHA-256 of all that a mark depends on beside the submission: lab, answers, seed, hapticlab's version."""
         found = hashlib.sha256(f"{__version__} {self.seed} {self.personal} {self.folder.name}".encode())
         for folder in (self.folder.path, *([self.answers] if self.answers else [])):
@@ -86,7 +94,9 @@ class Assignment:
         return found.hexdigest()
 
 
-def find_assignment(lab, instructor=None, seed=0, personal=False):
+def find_assignment(
+    lab: str | PathLike[str], instructor: str | PathLike[str] | None = None, seed: int = 0, personal: bool = False
+) -> Assignment:
     """Return the assignment of a lab.
 
     Parameters
@@ -141,7 +151,7 @@ def _folder(lab):
     raise CourseError(f"there is no lab {lab}; there are {', '.join(found) or 'none'}; an own lab is named by its folder")
 
 
-def files_of(folder):
+def files_of(folder: str | PathLike[str]) -> dict[str, Path]:
     """Return the files of a folder by their names in it, in order; none that Python or Jupyter made."""
     paths = ((path.relative_to(folder), path) for path in sorted(Path(folder).rglob("*")) if path.is_file())
     return {inside.as_posix(): path for inside, path in paths if not any(part[0] in "._" for part in inside.parts)}

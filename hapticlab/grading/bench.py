@@ -1,5 +1,7 @@
 """What a worker grades with: the assignment, and processes for the students' code; what it is told and says is JSON text."""
 
+from __future__ import annotations
+
 import json
 import time
 from dataclasses import asdict, dataclass
@@ -31,14 +33,14 @@ class Reply:
     problem: str = ""
 
     @classmethod
-    def from_json(cls, text):
+    def from_json(cls, text: str) -> Reply:
         """Return the reply that a worker wrote."""
         held = json.loads(text)
         report = Report.from_json(held["report"]) if held["report"] else None
         return cls(report, held["seconds"], problem=held["problem"])
 
 
-def as_json(task, last):
+def as_json(task: Task, last: bool) -> str:
     """Return what a worker is told of a task."""
     return json.dumps({**asdict(task.submission), "last": last})
 

@@ -11,15 +11,24 @@ What a student may be told comes from sessions that have not heard of a hidden c
 before all that is hidden, and what the quick way gave is told to nobody.
 """
 
+from __future__ import annotations
+
 import base64
 import time
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from .handed_in.replies import Garbage, line_of, outcomes_of
 from .marking import SHOWN, Found, ended_words, exercise_report
 from .report import Report
 from .sessions.starter import SessionEnded
+
+if TYPE_CHECKING:
+    from .assignment import Assignment
+    from .handed_in.submission import Submission
+    from .sessions.limits import Limits
+    from .sessions.starter import Starter
 
 #: what a session is charged for its start [s], and how much wall clock a submission has, in what it may be charged
 START, MOST_WALL = 0.05, 3
@@ -46,7 +55,9 @@ class _Unknown(Exception):
     """The code does not tell which statements the answers need."""
 
 
-def grade(submission, assignment, starter, limits, *, last=True):
+def grade(
+    submission: Submission, assignment: Assignment, starter: Starter, limits: Limits, *, last: bool = True
+) -> Report | Deferred:
     """Grade one submission.
 
     Parameters
@@ -77,7 +88,7 @@ def grade(submission, assignment, starter, limits, *, last=True):
     return _report(submission, assignment, cases, work.found, work.problems(), limits)
 
 
-def refused(submission, assignment, problem, limits):
+def refused(submission: Submission, assignment: Assignment, problem: str, limits: Limits) -> Report:
     """Return the report on a submission that cannot be graded, and why."""
     return _report(replace(submission, problem=problem), assignment, {}, {}, (), limits)
 
@@ -112,10 +123,10 @@ class _Ask:
 class _Work:
     """The way of a submission through its sessions."""
 
-    submission: object
-    assignment: object
-    starter: object
-    limits: object
+    submission: Submission
+    assignment: Assignment
+    starter: Starter
+    limits: Limits
     last: bool
     cases: dict
     until: float
@@ -124,7 +135,7 @@ class _Work:
     raised: dict = field(default_factory=dict)
     left_out: dict = field(default_factory=dict)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         self._untouched = tuple(self.submission.cells) == self.assignment.untouched
         self._told, self._step = False, self.limits.seconds
 

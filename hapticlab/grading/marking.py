@@ -1,10 +1,17 @@
 """What an exercise earns for what its answer gave: verdicts are made here, where no student's code runs."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from ..course.judge import Verdict, verdict
 from .handed_in.replies import line_of, rounded, text_of
 from .report import ExerciseReport, Failing
+
+if TYPE_CHECKING:
+    from ..course.outcome import Outcome
+    from .sessions.limits import Limits
 
 #: characters kept of the sentence on a wrong case
 WORDS = 600
@@ -19,12 +26,12 @@ class Found:
     What was printed is ``told`` where none of its processes knew of a hidden case.
     """
 
-    outcomes: tuple = ()
+    outcomes: tuple[Outcome, ...] = ()
     ended: str = ""
     told: bool = True
 
 
-def ended_words(reason, limits):
+def ended_words(reason: str, limits: Limits) -> str:
     """Return in words why a process ended."""
     words = {
         "time": f"it was not done after {limits.seconds:g} s",

@@ -1,7 +1,10 @@
 """What grading one submission found, as plain values: the same bytes for the same submission and seed, no times, no paths."""
 
+from __future__ import annotations
+
 import json
 from dataclasses import asdict, dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -12,9 +15,9 @@ class Failing:
     ``value`` is None where the answer gave none; ``expected`` is None where it is the answer itself (a value, a choice).
     """
 
-    given: dict
-    value: object
-    expected: object
+    given: dict[str, Any]
+    value: Any
+    expected: Any
     unit: str
     public: bool
 
@@ -93,25 +96,25 @@ class Report:
     submission: str
     sha256: str = ""
     problem: str = ""
-    cells: tuple = ()
-    exercises: tuple = ()
+    cells: tuple[tuple[int, str], ...] = ()
+    exercises: tuple[ExerciseReport, ...] = ()
 
     @property
-    def points(self):
+    def points(self) -> float:
         """What all exercises are worth together."""
         return sum(one.points for one in self.exercises)
 
     @property
-    def earned(self):
+    def earned(self) -> float:
         """What the submission earned."""
         return sum(one.earned for one in self.exercises)
 
-    def to_json(self):
+    def to_json(self) -> str:
         """Return one line of JSON."""
         return json.dumps(asdict(self), ensure_ascii=True, sort_keys=True)
 
     @classmethod
-    def from_json(cls, line):
+    def from_json(cls, line: str) -> Report:
         """Return the report that a line of JSON holds.
 
         Examples

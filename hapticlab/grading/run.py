@@ -1,8 +1,11 @@
 """A class is graded: many submissions at once, each report kept as soon as it is known."""
 
+from __future__ import annotations
+
 import itertools
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..course.personal import foreign_numbers
 from ..device.progress import progress_bar
@@ -14,6 +17,14 @@ from .journal import Journal, key_of
 from .sessions.limits import Limits
 from .sessions.starter import Walls
 from .workers import Workers, processor_seconds
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from os import PathLike
+
+    from .assignment import Assignment
+    from .report import Report
+    from .sessions.preloaded import Preloaded
 
 
 @dataclass(frozen=True)
@@ -38,23 +49,33 @@ class Graded:
         Those that could not be graded.
     """
 
-    reports: tuple
+    reports: tuple[Report, ...]
     walls: Walls
-    seconds: tuple
+    seconds: tuple[float, ...]
     known: int
     processor: float
-    foreign: tuple = ()
+    foreign: tuple[str, ...] = ()
 
     @property
-    def failed(self):
+    def failed(self) -> tuple[Report, ...]:
         """Reports with a problem."""
         return tuple(report for report in self.reports if report.problem)
 
 
 def run(
-    paths, assignment, limits=None, *, workers=1, sandbox="auto", journal=None, fresh=False, hidden=(), progress=False,
-    preloaded=None, begun=None,
-):  # fmt: skip
+    paths: Sequence[str | PathLike[str]],
+    assignment: Assignment,
+    limits: Limits | None = None,
+    *,
+    workers: int | str = 1,
+    sandbox: str = "auto",
+    journal: str | PathLike[str] | None = None,
+    fresh: bool = False,
+    hidden: Sequence[str | PathLike[str]] = (),
+    progress: bool = False,
+    preloaded: Preloaded | None = None,
+    begun: Callable[[Walls], None] | None = None,
+) -> Graded:
     """Grade submissions.
 
     Parameters
@@ -86,6 +107,7 @@ def run(
     limits, before = limits or Limits(), processor_seconds()
     sources = find_submissions(paths, assignment.folder.name)
     secrets = tuple(str(Path(path).resolve()) for path in (*paths, *hidden, *([journal] if journal else [])))
+    crew: Workers | ClusterWorkers
     if isinstance(workers, str):
         crew = ClusterWorkers(workers, assignment, limits, sandbox, secrets)
     else:

@@ -1,7 +1,10 @@
 """What all settings of a trade-off are tried on: a scene, a paddle, and the force that it would give without samples."""
 
+from __future__ import annotations
+
 import functools
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,6 +13,12 @@ from ...scene.notation.symbols import delay, lag_of, v, x
 from ..stability.operating_points import TRAVEL
 from ..stability.trial_limits import Limits
 from .tradeoff_rows import percent
+
+if TYPE_CHECKING:
+    from ...device.simulated.simulated_paddle import SimulatedPaddle
+    from ...records import PaddleProfile
+    from ...scene.scene import Scene
+    from .reference import Reference
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,15 +35,15 @@ class Bench:
         As of :func:`~hapticlab.analysis.accuracy.tradeoff.tradeoff`.
     """
 
-    scene: object
-    paddle: object
-    runs: tuple
-    boards: tuple
+    scene: Scene
+    paddle: SimulatedPaddle | PaddleProfile
+    runs: tuple[Reference, ...]
+    boards: tuple[str, ...]
     every: int
     velocity: str
-    live: object = ()
+    live: Any = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not self.peak > 0:
             motions = ", ".join(known.motion.name for known in self.runs)
             raise AnalysisError(
@@ -43,39 +52,39 @@ class Bench:
             )
 
     @functools.cached_property
-    def peak(self):
+    def peak(self) -> float:
         """Greatest force of the reference [N]."""
         return max(known.peak for known in self.runs)
 
     @property
-    def doubt(self):
+    def doubt(self) -> float:
         """By which part of the greatest force the solvers of the reference differ."""
         return max(known.agreement for known in self.runs) / self.peak
 
     @property
-    def certainty(self):
+    def certainty(self) -> str:
         """How far the solvers of the reference agree, in words."""
         if not np.isfinite(self.doubt):
             return "a motion has one solver only, so that no error is certain"
         return f"the solvers of its reference differ by {percent(self.doubt)} of it"
 
     @property
-    def chaotic(self):
+    def chaotic(self) -> float | None:
         """From when on rounding decides the motion [s]; None where it does not."""
         return min((known.horizon for known in self.runs if known.chaotic), default=None)
 
     @property
-    def faulted(self):
+    def faulted(self) -> float | None:
         """From when on the force of the reference is no number [s]; None where it always is one."""
         return min((known.horizon for known in self.runs if known.faulted), default=None)
 
     @property
-    def delay(self):
+    def delay(self) -> float:
         """After which the paddle's force is felt [s]."""
         return float(getattr(self.paddle, "delay", 0.0))
 
     @property
-    def notes(self):
+    def notes(self) -> list[str]:
         """What is to be known of the whole, in sentences."""
         told, most = [], getattr(self.paddle, "force_max", None)
         if most and self.peak > most:
@@ -85,7 +94,7 @@ class Bench:
         return told
 
     @functools.cached_property
-    def limits(self):
+    def limits(self) -> Limits:
         """Of stability and passivity, for all settings: over a paddle's travel, or further where the motions go further."""
         reach = max(float(np.abs(known.motion.at(known.t)[0]).max()) for known in self.runs)
         return Limits(self.scene, max(reach, TRAVEL), self.delay)

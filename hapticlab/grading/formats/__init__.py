@@ -1,16 +1,25 @@
 """Reports as others read them: a terminal, a spreadsheet, a learning management system, an autograder's platform."""
 
+from __future__ import annotations
+
 from importlib import import_module
 from pkgutil import iter_modules
+from typing import TYPE_CHECKING
 
 from ...errors import CourseError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ..handed_in.roster import Roster
+    from ..report import Report
 
 _MODULES = [import_module(f".{found.name}", __name__) for found in iter_modules(__path__)]
 #: name -> Format, of all modules in this folder
 FORMATS = {one.name: one for one in sorted((f for m in _MODULES for f in getattr(m, "FORMATS", ())), key=lambda one: one.rank)}
 
 
-def write(name, reports, roster=None, assignment="", folder=""):
+def write(name: str, reports: Iterable[Report], roster: Roster | None = None, assignment: str = "", folder: str = "") -> str:
     """Return reports in a format.
 
     Parameters

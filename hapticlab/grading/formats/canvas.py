@@ -4,14 +4,24 @@ Fields: https://github.com/instructure/canvas-lms/blob/master/lib/gradebook_impo
 https://teaching.resources.osu.edu/toolsets/carmencanvas/guides/calculating-final-grades/import-csv-file-carmen-grades
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from ...errors import CourseError
 from .format import Format
 from .table import by_student, table
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..handed_in.roster import Roster
+    from ..report import Report
+
 COLUMNS = {"student": "Student", "id": "ID", "sis_user_id": "SIS User ID", "sis_login_id": "SIS Login ID", "section": "Section"}
 
 
-def gradebook(reports, roster, assignment=""):
+def gradebook(reports: Sequence[Report], roster: Roster, assignment: str = "") -> str:
     """Return the points of each student who is in the roster, in a column of the assignment's name.
 
     Canvas takes a column of the name of an assignment of its own, "Lab 02 (12345)" or "Lab 02", for that assignment, and

@@ -1,11 +1,21 @@
 """A class as a table: a row for each submission, or one for each exercise of each."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from .format import Format
 from .table import table
 from .words import judged, points, state
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
-def wide(reports, roster=None, assignment=""):
+    from ..handed_in.roster import Roster
+    from ..report import Report
+
+
+def wide(reports: Sequence[Report], roster: Roster | None = None, assignment: str = "") -> str:
     """Return a row for each submission, with a column of the points of each exercise, named "02.held_work"."""
     exercises = {f"{report.lab}.{one.name}": None for report in reports for one in judged(report)}
     columns = ["student", "lab", "submission", "earned", "points", *exercises, "failed_cells", "problem"]
@@ -27,7 +37,7 @@ def _whose(report):
     return {"student": report.student, "lab": report.lab, "submission": report.submission}
 
 
-def long(reports, roster=None, assignment=""):
+def long(reports: Sequence[Report], roster: Roster | None = None, assignment: str = "") -> str:
     """Return a row for each exercise of each submission, with what is wrong in words."""
     columns = ["student", "lab", "submission", "exercise", "kind", "state", "earned", "points", "right", "cases"]
     rows = (

@@ -1,16 +1,25 @@
 """results.json of a Gradescope autograder: https://gradescope-autograders.readthedocs.io/en/latest/specs/."""
 
+from __future__ import annotations
+
 import json
+from typing import TYPE_CHECKING
 
 from ...errors import CourseError
 from .format import Format
 from .words import clean, failed_cells, for_student, judged, only, points, printed, state
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..handed_in.roster import Roster
+    from ..report import Report
+
 #: how a problem begins that is no fault of the student
 GRADER_FAILED = "the grader failed"
 
 
-def results(reports, roster=None, assignment=""):
+def results(reports: Sequence[Report], roster: Roster | None = None, assignment: str = "") -> str:
     """Return the result of one submission, a test for each exercise that carries points.
 
     A student may hand in again, so of a hidden case only its slip is told. There is none where the grader failed, so that

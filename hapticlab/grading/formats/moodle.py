@@ -1,14 +1,24 @@
 """A file for "Import grades, CSV file" of Moodle: https://docs.moodle.org/en/Grade_import."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from ...errors import CourseError
 from .format import Format
 from .table import by_student, table
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..handed_in.roster import Roster
+    from ..report import Report
 
 #: key in the roster to the field that is chosen at "Map to"
 KEYS = {"email_address": "Email address", "email": "Email address", "id_number": "ID number", "username": "Username"}
 
 
-def grades(reports, roster, assignment=""):
+def grades(reports: Sequence[Report], roster: Roster, assignment: str = "") -> str:
     """Return the points of each student who is in the roster.
 
     At the import, "Map from" is the first column; "Map to" is its name without spaces, as in "Email address" (useremail) or

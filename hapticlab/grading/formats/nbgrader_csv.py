@@ -1,8 +1,18 @@
 """The grades.csv that nbgrader exports."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from .format import Format
 from .table import best, table
 from .words import points, title
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..handed_in.roster import Roster
+    from ..report import Report
 
 #: https://github.com/jupyter/nbgrader/blob/main/nbgrader/plugins/export.py
 COLUMNS = (
@@ -11,7 +21,7 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def grades(reports, roster=None, assignment=""):
+def grades(reports: Sequence[Report], roster: Roster | None = None, assignment: str = "") -> str:
     """Return a row for each student and lab; names and e-mail addresses come from the roster, where there is one.
 
     Who could not be graded has no score.

@@ -1,14 +1,23 @@
 """Reports on a terminal, and all of them as JSON."""
 
+from __future__ import annotations
+
 import json
 import math
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 from .format import Format
 from .words import clean, failed_cells, judged, points, state
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
-def text(reports, roster=None, assignment=""):
+    from ..handed_in.roster import Roster
+    from ..report import Report
+
+
+def text(reports: Sequence[Report], roster: Roster | None = None, assignment: str = "") -> str:
     """Return reports in words: all of one, a line each of several."""
     if len(reports) == 1:
         return "\n".join([_head(reports[0]), *_lines(reports[0])]) + "\n"
@@ -47,7 +56,7 @@ def _summary(reports):
     yield f"{lost} could not be graded" if lost else f"{len(reports)} submissions, all graded"
 
 
-def whole(reports, roster=None, assignment=""):
+def whole(reports: Sequence[Report], roster: Roster | None = None, assignment: str = "") -> str:
     """Return all that is known as JSON: ``{"reports": [...]}``, see :class:`hapticlab.grading.report.Report`.
 
     JSON has no NaN and no infinity: these are the texts "nan", "inf" and "-inf".

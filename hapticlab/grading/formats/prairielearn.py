@@ -1,16 +1,25 @@
 """results.json of an external grader of PrairieLearn: https://prairielearn.readthedocs.io/en/latest/externalGrading/."""
 
+from __future__ import annotations
+
 import json
+from typing import TYPE_CHECKING
 
 from .format import Format
 from .words import clean, failed_cells, for_student, judged, only, points, printed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..handed_in.roster import Roster
+    from ..report import Report
 
 #: bytes that PrairieLearn takes
 MOST = 1_000_000
 NO_PYTHON = ("SyntaxError", "IndentationError", "TabError")
 
 
-def results(reports, roster=None, assignment=""):
+def results(reports: Sequence[Report], roster: Roster | None = None, assignment: str = "") -> str:
     """Return the result of one submission, a test for each exercise that carries points.
 
     What cannot be read, or is no Python, is not gradable: it costs the student no attempt. A student may hand in again, so of a

@@ -1,10 +1,18 @@
 """CSV that spreadsheets open without running anything in it."""
 
+from __future__ import annotations
+
 import csv
 import io
 import re
+from typing import TYPE_CHECKING, Any
 
 from .words import clean, points, title
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from ..report import Report
 
 #: Excel takes a file for UTF-8 by it; all systems that read grades leave it out
 BOM = "\ufeff"
@@ -24,7 +32,7 @@ def safe(value):
     return FORMULA.sub(r"\1\2'", clean(value)) if isinstance(value, str) else value
 
 
-def table(columns, rows):
+def table(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
     """Return CSV with a byte order mark.
 
     Parameters
@@ -40,12 +48,12 @@ def table(columns, rows):
     return BOM + output.getvalue()
 
 
-def best(reports):
+def best(reports: Iterable[Report]) -> list[Report]:
     """Return for each student and lab the report that earned most, of equal ones the first: a gradebook has one place.
 
     One that could not be graded has earned nothing, not even 0 points.
     """
-    found = {}
+    found: dict[tuple[str, str], Report] = {}
     for report in reports:
         key = (report.student, report.lab)
         if key not in found or _worth(report) > _worth(found[key]):

@@ -1,8 +1,16 @@
 """Words and points of a report for any reader: bounded, without what a terminal or a database takes for a command."""
 
+from __future__ import annotations
+
 import re
+from typing import TYPE_CHECKING
 
 from ...errors import CourseError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..report import ExerciseReport, Report
 
 #: characters kept of a sentence, and of what was printed
 SENTENCE, BLOCK = 600, 4000
@@ -12,7 +20,7 @@ WORKED_OUT = re.compile(r"\d\.\d|\de[+-]|= -?\d|\b(?!10*\b|[23]\b)\d+ times")
 JOINERS = "\u200c\u200d"
 
 
-def clean(text, most=SENTENCE, *, lines=False):
+def clean(text: str, most: int = SENTENCE, *, lines: bool = False) -> str:
     """Return text without what is not seen: control characters, turns of the writing direction, halves of characters.
 
     Parameters
@@ -38,7 +46,7 @@ def _seen(letter, lines):
     return " " if letter.isspace() else "\ufffd"
 
 
-def points(value):
+def points(value: float) -> float:
     """Return points as a number without needless digits, to a hundredth.
 
     Examples
@@ -50,12 +58,12 @@ def points(value):
     return int(value) if value.is_integer() else value
 
 
-def judged(report):
+def judged(report: Report) -> list[ExerciseReport]:
     """Return the exercises of a report that carry points."""
     return [one for one in report.exercises if one.points]
 
 
-def state(one):
+def state(one: ExerciseReport) -> str:
     """Return whether an exercise is right, in a word or two."""
     if not one.points:
         return "noted" if one.answered else "no answer"
@@ -64,7 +72,7 @@ def state(one):
     return "wrong" if one.answered else "no answer"
 
 
-def for_student(one):
+def for_student(one: ExerciseReport) -> str:
     """Return what a student is told who may hand in again: of a case that is hidden, that it is wrong, and the slip's sentence.
 
     Its numbers, sentences with numbers worked out from them, what a program raised with these in its words, and how it ended
@@ -81,24 +89,24 @@ def for_student(one):
     return f"{said}{hint}"
 
 
-def printed(one):
+def printed(one: ExerciseReport) -> str:
     """Return what an exercise printed, bounded."""
     return clean(one.printed, BLOCK, lines=True)
 
 
-def failed_cells(report, most=20):
+def failed_cells(report: Report, most: int = 20) -> list[str]:
     """Return a line for each cell that failed, the first ones."""
     more = len(report.cells) - most
     told = [f"cell {number}: {clean(words)}" for number, words in report.cells[:most]]
     return told + [f"{more} cells more failed"] * (more > 0)
 
 
-def title(report):
+def title(report: Report) -> str:
     """Return the number and title of a report's lab."""
     return clean(f"Lab {report.lab}: {report.title}")
 
 
-def only(reports, name):
+def only(reports: Sequence[Report], name: str) -> Report:
     """Return the one report of a format that is of one submission."""
     if len(reports) != 1:
         raise CourseError(f"{name} reads the result of one submission; {len(reports)} were given. Grade each by itself")

@@ -1,9 +1,12 @@
 """Pages of a graded class: one for each student, and one of all; they open without a network, run no script, and print."""
 
+from __future__ import annotations
+
 import base64
 import hashlib
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ...course.exercise import NOTED
 from ...errors import CourseError
@@ -12,6 +15,13 @@ from .class_page import WORDS, broken, class_facts
 from .failing_case import compared, drawn, given
 from .page_figures import bars, shares
 from .page_text import BLOCK, SENTENCE, clean, file_name, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from os import PathLike
+
+    from ...course.exercise import Lab
+    from ..report import Report
 
 #: near the beginning of every page
 OWN = b"default-src 'none'; style-src 'sha256-"
@@ -54,7 +64,7 @@ def _templates():
     return pages
 
 
-def write_pages(reports, folder, *, lab):
+def write_pages(reports: Iterable[Report], folder: str | PathLike[str], *, lab: Lab) -> list[Path]:
     """Write a page for each student and one of the class; the same reports give the same bytes, in whatever order.
 
     A student's page names nobody else, so it can be sent to its student.
@@ -88,7 +98,8 @@ def write_pages(reports, folder, *, lab):
     ...     [path.relative_to(folder).as_posix() for path in written]
     ['class.html', 'students/ada.html']
     """
-    named, copies = [], {}
+    named: list[tuple[str, Report]] = []
+    copies: dict[str, int] = {}
     for report in sorted(reports, key=lambda r: (r.student.casefold(), r.student, r.submission, r.sha256)):
         copies[report.student] = copies.get(report.student, -1) + 1
         named.append((f"students/{file_name(report.student, copies[report.student])}.html", report))
@@ -99,7 +110,7 @@ def write_pages(reports, folder, *, lab):
     return _written(Path(folder), pages)
 
 
-def check_folder(folder):
+def check_folder(folder: str | PathLike[str]) -> None:
     """Refuse a folder whose class.html is of something else, which would be overwritten.
 
     Raises
