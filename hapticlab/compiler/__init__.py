@@ -27,11 +27,11 @@ what is written by hand. Nothing is solved in symbols.
 ``analysis.programs.requirement_report``), for ``analysis.programs.replay`` to run after the fact.
 
 **ExplicitForm -> tick.** ``compile_scene`` checks what was asked for (``chosen_method`` reads ``method=``,
-``options`` the rest). A scene without coordinates is a ``force_program``: the sample is taken (``handle_samples``),
-its leaves get their values (``samples``), the force follows, and that is the tick. Any other is a ``motion_program``,
-in the order the tick runs: sample, force, outputs, and one period of motion; ``force_timing`` has the force on
-average. Expressions become ``values`` of a ``trace`` by ``expressions`` (``phase`` and ``constants`` look after
-angles and numbers). Each does one of the ``operations``: a record of each says how it is computed, simplified and
+``options`` the rest). A scene without coordinates needs no other path: the sample is taken (``handle_samples``), its
+leaves get their values (``samples``), the force follows, and that is the tick. Any other is a ``motion_program``, in
+the order the tick runs: sample, force, outputs, and one period of motion; ``force_timing`` has the force on average.
+Expressions become ``values`` of a ``trace`` by ``expressions`` (``phase`` and ``constants`` look after angles and
+numbers). Each does one of the ``operations``: a record of each says how it is computed, simplified and
 differentiated, here and on a board. Whatever must be differentiated, evaluated in numbers or shared is in ``graph``
 (``differentiate``, ``derivative_builder``).
 

@@ -65,16 +65,16 @@ def explicit_form(scene):
         A highest derivative enters nonlinearly, a signal does not stand alone on the left of its equation, or a
         coordinate of first order is given an initial rate.
     """
-    models = tuple(e for e in scene.eom if isinstance(e, Mechanics))
+    models = scene.models
     written = [e for e in scene.eom if not isinstance(e, Mechanics)]
     updates = {e.lhs: e.rhs for e in written if getattr(type(e.lhs), "role", None) == "signal"}
     modelled = [q for model in models for q in model.coordinates]
     _check_models(modelled)
     equations = [e for e in written if e.lhs not in updates]
-    known, equations = definitions(equations, [q for q in scene.coordinates if q not in modelled])
+    known, equations = definitions(equations, [q for q in scene.coordinates if q not in modelled]) if equations else ({}, [])
 
     def put(expr):
-        return substituted(expr, known)
+        return substituted(expr, known) if known else expr
 
     equations = [sp.Eq(*map(put, e.args), evaluate=False) for e in equations] if known else equations
     updates = {y: put(expr) for y, expr in updates.items()}

@@ -12,6 +12,7 @@ import sympy as sp
 from ..errors import ParameterError, SceneError
 from .explicit import explicit_form
 from .frozen import Frozen
+from .mechanics.lagrange import Mechanics
 from .notation.checks import (
     applied,
     check_size,
@@ -102,7 +103,9 @@ class Scene:
         check_symbols(self._expressions())
         known = self.parameters
         plain = [e for e in self.eom if not is_model(e)]
-        check_units(self.force, plain, self.watch, applied(self._expressions(), "coordinate", "signal"))
+        used = self._expressions()
+        check_units(self.force, plain, self.watch, applied(used, "coordinate", "signal"))
+        _set(self, "_coordinates", tuple(applied(used, "coordinate")))
         if not isinstance(self.values, Mapping):
             raise ParameterError(f"values = {self.values!r}; needs a dict, such as values={{'k': 150}}")
         defaults = {p.name: p.value for p in known.values() if p.value == p.value}
@@ -125,7 +128,12 @@ class Scene:
     @property
     def coordinates(self) -> tuple[sp.Expr, ...]:
         """The generalized coordinates in use, in alphabetical order."""
-        return tuple(applied(self._expressions(), "coordinate"))
+        return self._coordinates
+
+    @property
+    def models(self):
+        """The models among the equations of motion, such as those of :func:`~hapticlab.scene.mechanics.lagrange.lagrange`."""
+        return tuple(e for e in self.eom if isinstance(e, Mechanics))
 
     @property
     def watch_units(self) -> dict[str, str]:

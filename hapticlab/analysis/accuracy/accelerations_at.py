@@ -13,6 +13,7 @@ import sympy as sp
 
 from ...compiler.algebra.linear_solve import solve
 from ...compiler.algebra.phase import TICKS, digit
+from ...compiler.contacts.scene_contacts import InstantContacts
 from ...compiler.events.flow import motion_of
 from ...compiler.events.series_checks import numbers
 from ...compiler.events.taylor_series import Series
@@ -101,7 +102,7 @@ def instant(scene, *, T):
     *between, _ = between_samples(scene, T)
     moving = moving_scene(*between, AtInstant)
     dynamics, tick = moving.dynamics, moving.tick.tracing.tick
-    contacts, equations, touching = dynamics.contacts, dynamics.equations, dynamics.touching()
+    contacts, equations, touching = dynamics.contacts or InstantContacts(()), dynamics.equations, dynamics.touching()
     _check(contacts)
     unknowns = touching.unknowns if touching else {}
 
@@ -115,11 +116,10 @@ def instant(scene, *, T):
         lean = r.lean if r.lean is not None else tick.const(0.0)
         outputs += [r.measure, *derivatives, r.free, r.inside, lean]
     bounces = [_bounce(c, moving.sample) for c in contacts.contacts]
-    return Instant(
-        _program(scene.name, moving, motion, outputs), len(motion.w), len(motion.s), tuple(g.kind for g in motion.guards),
-        tuple(r.level for r in motion.reactions), (*bounces, *[None] * (len(motion.reactions) - len(bounces))),
-        _start_of(moving), digit("f64"),
-    )  # fmt: skip
+    program = _program(scene.name, moving, contacts, motion, outputs)
+    kinds, levels = tuple(g.kind for g in motion.guards), tuple(r.level for r in motion.reactions)
+    bounces += [None] * (len(levels) - len(bounces))
+    return Instant(program, len(motion.w), len(motion.s), kinds, levels, tuple(bounces), _start_of(moving), digit("f64"))
 
 
 def _check(contacts):
@@ -154,13 +154,13 @@ def _derivatives(motion):
         yield value(c[1]), value(2.0 * c[2] if r.level == 2 else 0.0)
 
 
-def _program(name, moving, motion, outputs):
+def _program(name, moving, contacts, motion, outputs):
     """The program with every leaf of the motion a state, its reactions found."""
     tracing, builder = moving.tick.tracing, Builder("f64")
     held = len(motion.reactions)
     leaves = [*motion.q, *motion.w, *motion.s, *(g.leaf for g in motion.guards), *(r.leaf for r in motion.reactions)]
     leaves += [r.side for r in motion.reactions if r.side is not None]
-    raw = _block(tracing, moving.dynamics, motion, outputs, leaves)
+    raw = _block(tracing, moving.dynamics.equations.states, contacts, motion, outputs, leaves)
     types = [*["f64"] * len(TICKS), *(leaf.type for leaf in leaves), *["bool"] * held]
     states = [builder.leaf("state", k, type) for k, type in enumerate(types)]
     inputs = [builder.leaf("input", k, "f64") for k in range(DEGREE + 2)]
@@ -180,17 +180,17 @@ def _program(name, moving, motion, outputs):
     return Program(name, tuple(tracing.inputs[3:]), (), channels, named, zero, tick, tracing.T).verify()
 
 
-def _block(tracing, dynamics, motion, outputs, leaves):
+def _block(tracing, states, contacts, motion, outputs, leaves):
     """The block of the outputs, each leaf of the motion a state: the period's number, then ``leaves``."""
     place = {("input", 3 + k): ("input", k) for k in range(DEGREE + 2)}
     place[_key(motion.tau)] = ("input", DEGREE + 1)
     place |= {_key(leaf): ("state", len(TICKS) + k) for k, leaf in enumerate(leaves)}
-    reactions = [e.force for e in (*dynamics.contacts.contacts, *dynamics.contacts.frictions)]
+    reactions = [e.force for e in (*contacts.contacts, *contacts.frictions)]
     for k, key in enumerate(tracing.keys):
         if key in TICKS:
             place["state", k] = ("state", TICKS.index(key))
-        elif key in dynamics.equations.states:
-            place["state", k] = ("state", len(TICKS) + dynamics.equations.states.index(key))
+        elif key in states:
+            place["state", k] = ("state", len(TICKS) + states.index(key))
         elif key in reactions:
             place["state", k] = place[_key(motion.reactions[reactions.index(key)].leaf)]
     block = tracing.tick.block(outputs)

@@ -111,7 +111,7 @@ class Translator:
         above, below = [], []
         for factor in expr.args:
             base, exponent = factor.as_base_exp() if isinstance(factor, sp.Pow) else (factor, sp.S.One)
-            exponent = fixed(exponent)
+            exponent = fixed(exponent) if exponent.is_Float else exponent
             if exponent.is_Rational and exponent < 0:
                 below.append(base**-exponent)
             else:

@@ -20,7 +20,7 @@ def guarded(force, declared, ranges, values, translate):
     ----------
     force : Value
     declared : iterable of coordinates
-        Those that the program keeps.
+        Those with a finite range that the program keeps.
     ranges : dict coordinate -> (low, high)
         Those that are guarded already, since something was decided over them.
     values : dict name -> float
@@ -33,8 +33,7 @@ def guarded(force, declared, ranges, values, translate):
     SceneError
         A coordinate starts outside of its range.
     """
-    ends = {q: (type(q).low, type(q).high) for q in declared if q not in ranges}
-    found = {q: pair for q, pair in ends.items() if any(map(math.isfinite, pair))}
+    found = {q: (type(q).low, type(q).high) for q in declared if q not in ranges}
     _check_starts({**ranges, **found}, values)
     return within(force, {q: _wider(*pair) for q, pair in found.items()}, translate), {**ranges, **found}
 

@@ -13,7 +13,6 @@ from ...errors import ParameterError, SceneError
 from ...scene.mechanics.loop_closure import check_range
 from ...scene.mechanics.loop_solutions import is_holonomic
 from ...scene.mechanics.loop_terms import NotClosed
-from ...scene.notation.checks import is_model
 from ...scene.notation.symbols import Parameter
 from .constraint_consistency import assembled, check_independent, check_rank
 
@@ -33,7 +32,7 @@ def held(scene):
     >>> list(held(hl.Scene(force=k * (hl.x(hl.n) - q), eom=[rod])))
     ['l']
     """
-    used = {p.name for e in scene.eom if is_model(e) for g in e.constraints for p in g.atoms(Parameter)}
+    used = {p.name for model in scene.models for g in model.constraints for p in g.atoms(Parameter)}
     return {name: p for name, p in scene.parameters.items() if name in used}
 
 

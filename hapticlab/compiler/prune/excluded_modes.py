@@ -124,13 +124,16 @@ def _noted(what, becomes, sides, ranges, found):
     return becomes
 
 
-def without_excluded(form, ranges, keep=()):
-    """Return (form, decisions): an explicit form without the modes that the ranges exclude, and what was decided.
+def without_excluded(form, fixed, T, keep=()):
+    """(form, decisions): an explicit form without the modes that the ranges exclude, and what was decided.
 
     Parameters
     ----------
     form : ExplicitForm
-    ranges : Ranges
+    fixed : dict name -> float
+        The parameters that are constants; the others go anywhere in their ranges.
+    T : float
+        Sampling period [s].
     keep : collection of sympy expressions
         Conditions of which nothing is decided.
 
@@ -141,7 +144,9 @@ def without_excluded(form, ranges, keep=()):
     """
     found, changed = {}, {}
     exprs = [form.force, *form.f, *(m for row in form.M for m in row), *form.updates.values(), *form.watch.values()]
-    for node in _choices(exprs):
+    choices = _choices(exprs)
+    ranges = Ranges(fixed, T) if choices else None
+    for node in choices:
         decided = node if node in keep else _without_excluded(node, ranges, found, keep)
         if decided != node:
             changed[node] = decided
@@ -167,8 +172,8 @@ def open_conditions(form, rows):
 
 
 def excluded(scene, T, live, undecided=()):
-    """Return (form, decisions) of :func:`without_excluded` for a scene whose ``live`` parameters alone may change."""
-    return without_excluded(scene.explicit(), Ranges(folded(scene, live), T), undecided)
+    """(form, decisions) of :func:`without_excluded` for a scene whose ``live`` parameters alone may change."""
+    return without_excluded(scene.explicit(), folded(scene, live), T, undecided)
 
 
 def rests_on(form, decisions):
@@ -194,9 +199,9 @@ def within(value, ranges, translate):
 
 
 def folded(scene, live):
-    """Return name -> value of the parameters that become constants: where ``live`` is None, what constraints hold."""
+    """name -> value of the parameters that become constants: where ``live`` is None, what constraints hold."""
     if live is None:
-        return {name: scene.values[name] for name in held(scene) if name in scene.values}
+        return {name: scene.values[name] for name in held(scene) if name in scene.values} if scene.models else {}
     strangers = set(live) - set(scene.parameters)
     if strangers:
         raise ParameterError(f"live: {', '.join(sorted(strangers))} is not a parameter; {', '.join(scene.parameters)} are")

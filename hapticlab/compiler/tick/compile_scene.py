@@ -9,13 +9,13 @@ from ..algebra.graph import Graph
 from ..contacts.broad_phase import Contacts
 from ..ir.cache import Shared, content
 from ..ir.options import choice, live_names, period, steps, unusual
+from ..ir.program import Channel
 from ..methods.chosen_method import ChosenMethod, chosen_method
 from ..methods.force_timing import FORCE_AT, averaged
 from ..prune.excluded_modes import excluded, folded, rests_on
-from .force_program import force_program
 from .handle_samples import HOLDS, VELOCITIES
 from .motion_program import motion_program
-from .samples import REAL_OF
+from .samples import REAL_OF, at_sample, at_start, outputs_at_sample, real, tick_of, unknown_reaction
 
 #: compiled scenes that are kept: instructions, of which each takes 0.4 kB, and as many again for what else a program has
 PROGRAMS = Shared(60_000, lambda program: 200 + program.size)
@@ -144,9 +144,38 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at, u
             program = motion_program(scene, form, options, fixed, graph, rests_on(form, decisions))
         else:
             program = force_program(scene, form, options, fixed, graph)
-        return replace(program, notes=(*program.notes, *unusual(options.T, len(program))))
+        notes = unusual(options.T, len(program))
+        return replace(program, notes=(*program.notes, *notes)) if notes else program
     except RecursionError:
         raise ProgramError(
             f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals, "
             "y = hl.signal(...), with an equation for each"
         ) from None
+
+
+def force_program(scene, form, options, fixed, graph):
+    """The program of a force of samples alone: the sample is taken, force and channels follow from it, and that is the tick.
+
+    Parameters
+    ----------
+    scene : Scene
+    form : ExplicitForm
+        What declared ranges left of it.
+    options : Options
+    fixed : dict name -> float
+        The parameters that are constants of the program.
+    graph : Graph
+        Of the form's expressions, with these constants.
+    """
+    tick = tick_of(scene, form, options, fixed, graph)
+    tracing = tick.tracing
+    sample = at_sample(tick, at_start(tick), lambda expr, _: unknown_reaction(expr))
+    before = options.force_at == "before"
+    force, outputs = outputs_at_sample(scene, form, tracing, sample, before)
+    force = force if before else real(scene, tracing, sample(form.force))
+    tracing.complete()
+    facts = {"velocity": options.velocity, "dtype": options.dtype}
+    outputs = [(Channel("F", "N", tracing.real), force), *outputs]
+    program = tracing.finish(scene.name, outputs, scene.values, facts, tick.signals.unused)
+    tick.check_values(program)
+    return program

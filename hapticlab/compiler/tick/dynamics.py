@@ -200,7 +200,7 @@ class Dynamics:
     sample : Translator
         What expressions are at the sample.
     equations : Equations
-    contacts : InstantContacts
+    contacts : InstantContacts or None
     exact : callable tau -> {state: value}
         What is advanced exactly, at ``tau`` [s] after the sample.
     unknowns : dict expression -> Value
@@ -210,7 +210,7 @@ class Dynamics:
     tick: Tick
     sample: Translator
     equations: Equations
-    contacts: InstantContacts
+    contacts: InstantContacts | None
     exact: Callable
     unknowns: dict
 
@@ -230,7 +230,7 @@ class Dynamics:
 
     def touching(self):
         """The :class:`Touching` of one motion; None where no event is located."""
-        if not self.contacts.located:
+        if not (self.contacts and self.contacts.located):
             return None
         return Touching(self.contacts, lambda *at: self.at(*at).translate, self.sample, self.tick.tracing.T)
 
@@ -248,7 +248,7 @@ class Dynamics:
 
     def hovered(self, tau, state):
         """(the state after the micro-impulses at the end of a step, what they added up to)."""
-        if not self.contacts.hovering:
+        if not (self.contacts and self.contacts.hovering):
             return state, {}
         equations = self.equations
         if equations.enforced:
@@ -346,7 +346,7 @@ def one_period(dynamics, method, substeps, start, name, at_start):
         facts, unlocated, reactions = done.facts, done.unlocated, done.reactions if touching else ()
         notes = (linear_between(facts),) if "maps" in facts else ()
         notes += (f"{BEYOND}the Taylor series of a step diverges; take more substeps",) if "remainder" in facts else ()
-        notes += dynamics.contacts.faults
+        notes += dynamics.contacts.faults if dynamics.contacts else ()
         if touching:
             dynamics = replace(dynamics, unknowns=dynamics.unknowns | touching.unknowns)
         state = hovered(dynamics, tracing.T, done.groups)
@@ -356,5 +356,6 @@ def one_period(dynamics, method, substeps, start, name, at_start):
     else:
         for step in range(substeps):
             state = hovered(dynamics, (step + 1) * h, method.step(rates, step * h, state, h))
-    dynamics.contacts.finish(tracing, reactions, sums)
+    if dynamics.contacts:
+        dynamics.contacts.finish(tracing, reactions, sums)
     return Period(start, dynamics.settled(tracing.T, state), first[0] if first else None, facts, notes, unlocated)

@@ -18,6 +18,8 @@ from ...scene.frozen import Frozen
 from ...scene.notation.symbols import delay, lag_of, n
 from ..events.taylor_method import Switched, Taylor
 from ..ir.cache import Shared
+from ..ir.trace import reachable
+from ..ir.values import Value
 from .live_stability import SLOW, SMALL, SMALL_MOTIONS, StableValues
 
 #: states of a motion whose limits are looked for, and places between limits
@@ -32,6 +34,8 @@ CLOSER = (1.0, 0.99, 0.97, 0.93, 0.85, 0.7, 0.5, 0.25)
 UNSTABLE = "unstable as bound: "
 #: how the note of a program begins of whose steps nothing is known
 UNKNOWN = "whether its steps are stable is not looked at: "
+#: operations by which a motion has modes
+COMPARING = ("lt", "le", "eq", "abs", "floor")
 #: limits that a note names are within so many times the value bound
 NEAR = 1e2
 
@@ -89,9 +93,11 @@ def kept_stable(program, stepped, form, graph):
     limits = Limits({}, stepped)
     if isinstance(method, Taylor) or states > MOST_STATES:
         return replace(program, limits=limits) if program.parameters else program
-    steps = limits.steps
-    if not steps.known_at(values):
-        unbound = ", ".join(name for name in steps.live if not math.isfinite(values.get(name, math.nan)))
+    unbound = _unbound(stepped)
+    steps = None if unbound else limits.steps
+    if unbound or not steps.known_at(values):
+        names = unbound or [name for name in steps.live if not math.isfinite(values.get(name, math.nan))]
+        unbound = ", ".join(names)
         note = f"{UNKNOWN}{unbound} has no value; it is looked at when it is set"
         return replace(program, limits=limits, notes=(*program.notes, note))
     limits = limits if steps.live else Limits()
@@ -107,6 +113,16 @@ def kept_stable(program, stepped, form, graph):
     worth = "" if steps.linear else f" {SMALL_MOTIONS}"
     said = f"{steps.name} in steps of {steps.h:g} s is stable{worth} for {', '.join(ends)}, each with the others as bound"
     return replace(program, notes=(*program.notes, *([f"{said}; more substeps allow more"] if ends else [])))
+
+
+def _unbound(stepped):
+    """Parameters without a value that the accelerations depend on; none where comparisons say on which they depend."""
+    builder, rates = stepped.tracing.tick, [rate for part in stepped.rates for rate in part]
+    reached = [builder.instructions[p] for p in reachable(builder.instructions, [r.id for r in rates if isinstance(r, Value)])]
+    if any(i.op in COMPARING for i in reached):
+        return []
+    live = [stepped.tracing.parameters[k] for k in sorted({i.index for i in reached if i.op == "param"})]
+    return [p.name for p in live if not math.isfinite(stepped.values.get(p.name, math.nan))]
 
 
 def _fed_back(form, variables_of):

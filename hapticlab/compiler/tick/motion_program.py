@@ -1,5 +1,6 @@
 """The program of a scene that moves: the sample, the force, the outputs, and one period of its equations of motion."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -73,7 +74,7 @@ def moving_scene(scene, form, options, fixed, graph, handle=None):
     if options.method.exact:
         exact, method = exact_or_switched(scene, form, tick, start, method)
         form = exact.others if exact else form
-    equations, contacts = Equations(form, scene, tick, method, h), InstantContacts(elements)
+    equations, contacts = Equations(form, scene, tick, method, h), InstantContacts(elements) if elements else None
 
     def state_at_sample(leaf):
         if leaf == IMPULSE:
@@ -82,16 +83,20 @@ def moving_scene(scene, form, options, fixed, graph, handle=None):
 
     sample = at_sample(tick, start, bodies_at_sample(form, equations, contacts, exact, tracing, state_at_sample))
     # a contact that hovers has no reaction inside a step
-    still = {c.force: tracing.tick.const(0.0) for c in contacts.hovering}
+    still = {c.force: tracing.tick.const(0.0) for c in contacts.hovering} if contacts else {}
     dynamics = Dynamics(tick, sample, equations, contacts, exact.at_sample if exact else lambda tau: {}, still)
-    if form.coordinates and not isinstance(method, Taylor):
-        contacts.check(method)
-        check_suited(method, form, graph, exact is not None)
-    largest = _checked_contacts(form, scene.values, h, options.T, method) if elements and form.coordinates else {}
+    largest = _check(form, scene.values, graph, contacts, method, h, options.T, exact) if form.coordinates else {}
     return Moving(form, tick, start, sample, dynamics, method, exact, state_at_sample, settable, largest)
 
 
-def _checked_contacts(form, values, h, T, method):
+def _check(form, values, graph, contacts, method, h, T, exact):
+    """Refuse what a method cannot do with a motion; contact -> the stiffness with which it lasts just ten steps."""
+    if contacts:
+        contacts.check(method)
+    if not isinstance(method, Taylor) and (method.steps > 1 or method.order_with_velocity):
+        check_suited(method, form, graph, exact is not None)
+    if not contacts:
+        return {}
     check_starts(form, values)
     return check_contacts(form, values, h, T, method)
 
@@ -107,7 +112,7 @@ def bodies_at_sample(form, equations, contacts, exact, tracing, state_at_sample)
         if leaf in equations.states:
             return state_at_sample(leaf)
         if hasattr(kind, "contact"):
-            return reaction_at_sample(leaf, tracing) if contacts.knows(leaf) else unknown_reaction(leaf)
+            return reaction_at_sample(leaf, tracing) if contacts and contacts.knows(leaf) else unknown_reaction(leaf)
         if equations.enforced and not instant:
             instant.append(Moment(sample, equations.enforced.instant(sample)))
         if hasattr(kind, "constraint"):
@@ -156,8 +161,10 @@ def motion_program(scene, form, options, fixed, graph, ranges, handle=None):
     program = bounded(limited(program, moving.largest), moving.settable) if moving.largest or moving.settable else program
     program = kept_stable(program, _stepped(moving, period), moving.form, graph) if period.first else program
     tick.check_values(program)
-    notes = (*(exact.notes if exact else ()), *equations.notes, *unfelt(moving.form), *period.notes, *suits)
-    return replace(program, notes=(*program.notes, *notes, *notes_on(scene, fixed), *notes_of(ranges)))
+    notes = [*(exact.notes if exact else ()), *equations.notes]
+    notes += [*(unfelt(moving.form) if moving.dynamics.contacts else ()), *period.notes, *suits]
+    notes += [*(notes_on(scene, fixed) if equations.enforced else ()), *(notes_of(ranges) if ranges else ())]
+    return replace(program, notes=(*program.notes, *notes))
 
 
 def _traced(moving, scene, force_at, substeps, ranges):
@@ -196,9 +203,11 @@ def _within_ranges(outputs, moving, scene, ranges):
     tied = enforced.coordinates if enforced and kept & {*enforced.second, *enforced.first} else ()
     moved = exact.states if exact and kept & set(exact.keys) else ()
     (channel, force), *others = outputs
-    declared = [q for q in scene.coordinates if q in {*kept, *tied, *moved}]
-    force, ranges = guarded(force, declared, ranges, scene.values, moving.sample)
-    tracing.complete()
+    held = {*kept, *tied, *moved}
+    declared = [q for q in scene.coordinates if q in held and any(map(math.isfinite, (type(q).low, type(q).high)))]
+    if declared or ranges:
+        force, ranges = guarded(force, declared, ranges, scene.values, moving.sample)
+        tracing.complete()
     return [(channel, force), *others], ranges
 
 

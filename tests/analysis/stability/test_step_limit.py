@@ -166,6 +166,20 @@ def test_what_is_exact_has_no_longest_step_and_taylor_takes_a_radian():
     assert hl.step_limit(hl.wall()(k=150, x_o=0.01), T=1e-3).h_max == np.inf
 
 
+def test_beside_the_exact_part_the_rest_alone_has_a_longest_step():
+    """A spring that stiffens, driven by the exact carriage: from rest it has the frequency of its linear spring."""
+    y = hl.coordinate("y", unit="m")
+    c = hl.parameters("c", units="N/m^3", values=1000.0)
+    F = K * (x(t) - z)
+    stiffens = sp.Eq(m * y.diff(t, 2), K * (z - y) - c * y**3)
+    scene = hl.Scene(force=F + K * y, eom=[sp.Eq(m * z.diff(t, 2), F), stiffens])(K=500)
+    alone = hl.Scene(force=K * y, eom=[sp.Eq(m * y.diff(t, 2), -K * y - c * y**3)])(K=500)
+    at = {"x": 0.0, "z": 0.0, "y": 0.0}
+    limit = hl.step_limit(scene, "exact+rk4", T=1e-3, at=at)
+    assert limit.h_max == pytest.approx(hl.step_limit(alone, "rk4", T=1e-3, at={"x": 0.0, "y": 0.0}).h_max, rel=1e-6)
+    assert limit.h_max == pytest.approx(np.sqrt(8 * 0.05 / 500), rel=1e-3)
+
+
 def test_refusals():
     with pytest.raises(AnalysisError, match=r"hl\.step_limit"):
         hl.step_limit("scene", T=1e-3)
