@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
+
+    from .annotations import Array
 
 
-def normal(z: ArrayLike) -> NDArray[np.float64]:
+def normal(z: ArrayLike) -> Array:
     """Standard normal distribution function of z; small values keep all their digits.
 
     Examples
@@ -22,7 +23,7 @@ def normal(z: ArrayLike) -> NDArray[np.float64]:
     return ndtr(z)
 
 
-def student(confidence: float, freedom: ArrayLike) -> NDArray[np.float64]:
+def student(confidence: float, freedom: ArrayLike) -> Array:
     """Quantile t of Student's distribution with P(|t'| < t) = confidence.
 
     Examples

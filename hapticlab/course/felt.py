@@ -12,8 +12,7 @@ from ..scene.scene import check_scene
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from ..annotations import Array
     from ..scene.scene import Scene
 
 #: what may be given beside the motion, as hl.compile takes it
@@ -25,13 +24,13 @@ FEW = 4000
 def felt(
     scene: Scene,
     *,
-    x: Sequence[float] | NDArray[np.float64],
-    v: Sequence[float] | NDArray[np.float64] | None = None,
+    x: Sequence[float] | Array,
+    v: Sequence[float] | Array | None = None,
     T: float = 1e-3,
     values: Mapping[str, float] | None = None,
     channels: Sequence[str] | None = None,
     **options: Any,
-) -> NDArray[np.float64] | dict[str, NDArray[np.float64]]:
+) -> Array | dict[str, Array]:
     """Force of a scene over given samples, in float64.
 
     Parameters

@@ -13,8 +13,7 @@ from .marks import SOLUTION, hidden_cases, instructor_names, marks
 from .notebook import code_of, read, run, solved
 
 if TYPE_CHECKING:
-    from os import PathLike
-
+    from ..annotations import File
     from .labs import LabFolder
     from .marks import Mark
     from .notebook import Problem
@@ -33,7 +32,7 @@ class Marked:
         return sum(mark.earned for mark in self.marks)
 
 
-def check_tree(tree: str | PathLike[str]) -> None:
+def check_tree(tree: File) -> None:
     """Refuse a folder without any answers; its folders are named as the labs are, NN_name."""
     if not any(Path(tree).glob(f"[0-9][0-9]_*/{SOLUTION}")):
         raise CourseError(

@@ -16,7 +16,8 @@ from .exercise import Lab
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from os import PathLike
+
+    from ..annotations import File
 
 PACKAGE = Path(__file__).resolve().parents[1]
 #: of a wheel, and of a checkout
@@ -55,7 +56,7 @@ class LabFolder:
         return lab
 
 
-def load_lab(path: str | PathLike[str]) -> Lab:
+def load_lab(path: File) -> Lab:
     """Return the Lab of a file of checks."""
     try:
         lab = runpy.run_path(str(path)).get("LAB")
@@ -74,7 +75,7 @@ def labs_folder() -> Path:
     raise CourseError(f"no labs in {' or '.join(map(str, PLACES))}; install hapticlab anew")
 
 
-def copy_labs(target: str | PathLike[str], only: Sequence[str] = ()) -> dict[str, str]:
+def copy_labs(target: File, only: Sequence[str] = ()) -> dict[str, str]:
     """Copy the student's labs into a folder; what somebody changed there stays as it is.
 
     In a folder that has labs, those that were deleted stay away, unless ``only`` names them. A ``checks.py`` that is as it
@@ -184,20 +185,20 @@ def _free(path):
     return next(one for one in several if not one.exists())
 
 
-def incomplete_labs(folder: str | PathLike[str]) -> list[str]:
+def incomplete_labs(folder: File) -> list[str]:
     """Return the names of folders that look like a lab's, NN_name, and lack its notebook or its checks."""
     whole = {lab.name for lab in find_labs(folder)}
     return [path.name for path in sorted(Path(folder).glob("[0-9][0-9]_*")) if path.is_dir() and path.name not in whole]
 
 
-def find_labs(folder: str | PathLike[str] | None = None) -> list[LabFolder]:
+def find_labs(folder: File | None = None) -> list[LabFolder]:
     """Return the labs in a folder, by default those that came with the package, in their order."""
     folder = labs_folder() if folder is None else Path(folder)
     found = [LabFolder(path) for path in sorted(folder.glob("[0-9][0-9]_*"))]
     return [lab for lab in found if lab.notebook.is_file() and (lab.path / CHECKS).is_file()]
 
 
-def find_lab(number: str, beside: str | PathLike[str] | None = None) -> Lab:
+def find_lab(number: str, beside: File | None = None) -> Lab:
     """Return the lab of a number: the one whose checks lie in the folder ``beside``, else the one that came with the package.
 
     Examples

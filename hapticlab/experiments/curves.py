@@ -12,7 +12,9 @@ from ..errors import AnalysisError
 from ..statistics import normal
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
+
+    from ..annotations import Array
 
 Shape = Literal["d_prime", "weibull", "normal"]
 SHAPES: tuple[Shape, ...] = get_args(Shape)
@@ -68,7 +70,7 @@ class Psychometric:
         if not (0 <= self.guess and 0 <= self.lapse and self.guess + self.lapse < 1):
             raise AnalysisError(f"guess = {self.guess:g}, lapse = {self.lapse:g}; needs both >= 0 and guess + lapse < 1")
 
-    def __call__(self, levels: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, levels: ArrayLike) -> Array:
         """Return the part of right answers at each level."""
         q = (self.threshold if self.shape == "normal" else math.log(self.threshold), math.log(self.slope))
         return self.guess + (1 - self.guess - self.lapse) * rise(self.shape, np.asarray(levels, float), *q)[0]

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
+    from ..annotations import Array
     from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 #: the hand moves freely, presses, and holds until [s]
@@ -58,9 +58,9 @@ class Rendered:
     misfit: float
     wanted: float
     state: Literal["at rest", "moving", "unstable"]
-    t: NDArray[np.float64] = field(repr=False)
-    x: NDArray[np.float64] = field(repr=False)
-    f_h: NDArray[np.float64] = field(repr=False)
+    t: Array = field(repr=False)
+    x: Array = field(repr=False)
+    f_h: Array = field(repr=False)
 
     def __str__(self) -> str:
         if self.state == "unstable":

@@ -22,11 +22,10 @@ from .submovements import Submovements
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
-    from os import PathLike
 
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
+    from ..annotations import Array, File
     from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 #: in the target for so long, it is selected [s]
@@ -113,7 +112,7 @@ class Fitts:
         return "\n".join([f"{head}, throughput {self.throughput:.2f} bit/s",
                           "  distance    width       index        time       effective   throughput", *rows])  # fmt: skip
 
-    def to_csv(self, path: str | PathLike[str]) -> Path:
+    def to_csv(self, path: File) -> Path:
         """Write one row a movement and return the path."""
         with open(path, "w", newline="", encoding="utf-8") as file:
             table = csv.writer(file, lineterminator="\n")
@@ -143,7 +142,7 @@ def fitts(
     scene: Scene | Callable[[float, float], Scene] | None = None,
     *,
     distances: Iterable[float] = (0.02, 0.04, 0.08),
-    widths: Sequence[float] | NDArray[np.float64] = (0.004, 0.008),
+    widths: Sequence[float] | Array = (0.004, 0.008),
     movements: int = 16,
     scatter: float = 0.04,
     reaction: float = REACTION,

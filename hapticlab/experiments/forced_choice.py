@@ -21,10 +21,9 @@ from .tasks import Task
 from .up_down import UpDown
 
 if TYPE_CHECKING:
-    from os import PathLike
-
     from matplotlib.figure import Figure
 
+    from ..annotations import File
     from ..device.board.serial_paddle import SerialPaddle
     from ..device.simulated.simulated_paddle import SimulatedPaddle
     from .observers import Answer
@@ -91,7 +90,7 @@ class ForcedChoice:
             lines.append(f"  difference threshold {part:.3g} % of the standard, by the procedure's own rule")
         return "\n".join(lines + ([f"  ended early: {self.stopped}"] if self.stopped else []))
 
-    def to_csv(self, path: str | PathLike[str]) -> Path:
+    def to_csv(self, path: File) -> Path:
         """Write one row a trial and return the path."""
         with open(path, "w", newline="", encoding="utf-8") as file:
             table = csv.writer(file, lineterminator="\n")
@@ -99,13 +98,13 @@ class ForcedChoice:
             table.writerows(_row(trial) for trial in self.trials)
         return Path(path)
 
-    def save(self, path: str | PathLike[str]) -> Path:
+    def save(self, path: File) -> Path:
         """Write everything as JSON and return the path."""
         Path(path).write_text(json.dumps(asdict(self), indent=1), encoding="utf-8")
         return Path(path)
 
     @classmethod
-    def load(cls, path: str | PathLike[str]) -> ForcedChoice:
+    def load(cls, path: File) -> ForcedChoice:
         """Read what :meth:`save` wrote."""
         try:
             held = json.loads(Path(path).read_text(encoding="utf-8"))
@@ -143,7 +142,7 @@ def forced_choice(
     procedure: UpDown | Psi | ConstantLevels | None = None,
     *,
     seed: int = 0,
-    keep: str | PathLike[str] | None = None,
+    keep: File | None = None,
     **options: Any,
 ) -> ForcedChoice:
     """Measure a difference threshold by two-alternative forced choice, on a simulated paddle or a board.

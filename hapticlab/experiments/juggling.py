@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from ..annotations import Array
     from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 WORDS = {"vision": "sight", "touch": "touch", "both": "sight and touch", "none": "neither sight nor touch"}
@@ -45,8 +46,8 @@ class Juggle:
 
     senses: Senses
     height: float
-    impacts: NDArray[np.float64]
-    heights: NDArray[np.float64]
+    impacts: Array
+    heights: Array
     log: Telemetry
 
     @property
@@ -177,7 +178,7 @@ def juggle(
     return Juggle(senses, height, impacts, heights, log)
 
 
-def bounces(log: Telemetry) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def bounces(log: Telemetry) -> tuple[Array, Array]:
     """Return when the ball was struck [s], and how high it rose above those places in between [m]."""
     y, t = log.y, log.t
     low = np.flatnonzero((y[1:-1] < y[:-2]) & (y[1:-1] <= y[2:])) + 1

@@ -13,7 +13,7 @@ from .likelihood import CERTAIN
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
+    from ..annotations import Array
 
 
 class Psi:
@@ -61,7 +61,7 @@ class Psi:
         high: float,
         levels: int = 40,
         thresholds: int = 60,
-        slopes: Sequence[float] | NDArray[np.float64] = (0.5, 0.71, 1.0, 1.41, 2.0, 2.83),
+        slopes: Sequence[float] | Array = (0.5, 0.71, 1.0, 1.41, 2.0, 2.83),
         lapse: float = 0.02,
         guess: float = 0.5,
         shape: Literal["d_prime", "weibull"] = "d_prime",
@@ -91,7 +91,7 @@ class Psi:
     def level(self) -> float:
         return float(self.levels[np.argmin(self.expected_entropy())])
 
-    def expected_entropy(self) -> NDArray[np.float64]:
+    def expected_entropy(self) -> Array:
         """Return the entropy [nat] that an answer at each level is expected to leave."""
         total = np.zeros(len(self.levels))
         for chance in (self._right, 1 - self._right):
@@ -131,7 +131,7 @@ class ConstantLevels:
     [0.1, 0.1, 0.2, 0.2]
     """
 
-    def __init__(self, levels: Sequence[float] | NDArray[np.float64], *, repeats: int, seed: int = 0) -> None:
+    def __init__(self, levels: Sequence[float] | Array, *, repeats: int, seed: int = 0) -> None:
         if not (len(levels) and repeats >= 1):
             raise AnalysisError(f"{len(levels)} levels, {repeats} times; needs one of each at least")
         levels = [float(a) for a in levels]

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from ..annotations import Array
     from .curves import Shape
 
 #: samples from which on they say how much less likely than the best an interval's end may be
@@ -45,9 +46,9 @@ class PsychometricFit:
     """
 
     curve: Psychometric
-    levels: NDArray[np.float64]
-    right: NDArray[np.float64]
-    trials: NDArray[np.float64]
+    levels: Array
+    right: Array
+    trials: Array
     interval: dict[str, tuple[float, float]]
     confidence: float
     deviance: float

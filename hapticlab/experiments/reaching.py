@@ -24,8 +24,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ..annotations import Array
     from ..compiler.ir.program import Program
     from ..device.simulated.simulated_paddle import SimulatedPaddle
     from ..scene.scene import Scene
@@ -91,7 +92,7 @@ class Reach:
 
     how: How
     log: Telemetry
-    wanted: NDArray[np.float64]
+    wanted: Array
     settled: float | None
     overshoot: float
     error: float
@@ -112,7 +113,7 @@ class Reach:
         return figure
 
 
-def handle(log: Telemetry) -> NDArray[np.float64]:
+def handle(log: Telemetry) -> Array:
     """Return where the handle was [m], also where an encoder hid it."""
     return np.asarray(log.channels.get("x_true", log.x), float)
 
@@ -198,10 +199,10 @@ def follow(
     expects: Load | None = None,
     gain: float | None = None,
     reaction: float = REACTION,
-    tremor: Callable[[NDArray[np.float64]], ArrayLike] | None = None,
+    tremor: Callable[[Array], ArrayLike] | None = None,
     record: float = 2.0,
     **options: Any,
-) -> tuple[Telemetry, NDArray[np.float64]]:
+) -> tuple[Telemetry, Array]:
     """Let the hand of a simulated paddle follow a path; return (Telemetry, where the handle was meant to be [m]).
 
     Parameters
@@ -239,10 +240,10 @@ def follow(
 class Anticipated(Intent):
     """An intent computed beforehand, at so many times, linear in between."""
 
-    times: NDArray[np.float64]
-    places: NDArray[np.float64]
+    times: Array
+    places: Array
 
-    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, t: ArrayLike) -> Array:
         return np.interp(np.asarray(t, float), self.times, self.places)
 
 

@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ..annotations import Array
     from ..device.simulated.simulated_paddle import SimulatedPaddle
     from .reaching import Path
 
@@ -62,7 +63,7 @@ class Assistance:
     """The same hand, tremor and path with several scenes; the first row is the hand alone."""
 
     rows: tuple[Assisted, ...]
-    wanted: NDArray[np.float64]
+    wanted: Array
 
     def __str__(self) -> str:
         lines = [f"{'':<24}{'error [mm]':>12}{'tremor [mm]':>13}{'peak force [N]':>16}{'work taken [mJ]':>17}"]
@@ -90,7 +91,7 @@ def assistance(
     scenes: Scene | Iterable[Scene],
     path: Path,
     *,
-    tremor: Callable[[NDArray[np.float64]], ArrayLike] | None = None,
+    tremor: Callable[[Array], ArrayLike] | None = None,
     record: float = 4.0,
     band: tuple[float, float] = BAND,
     **options: Any,

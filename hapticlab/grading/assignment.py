@@ -18,8 +18,7 @@ from ..course.variants import slips
 from ..errors import CourseError
 
 if TYPE_CHECKING:
-    from os import PathLike
-
+    from ..annotations import File
     from ..course.exercise import Case
 
 
@@ -94,9 +93,7 @@ class Assignment:
         return found.hexdigest()
 
 
-def find_assignment(
-    lab: str | PathLike[str], instructor: str | PathLike[str] | None = None, seed: int = 0, personal: bool = False
-) -> Assignment:
+def find_assignment(lab: File, instructor: File | None = None, seed: int = 0, personal: bool = False) -> Assignment:
     """Return the assignment of a lab.
 
     Parameters
@@ -151,7 +148,7 @@ def _folder(lab):
     raise CourseError(f"there is no lab {lab}; there are {', '.join(found) or 'none'}; an own lab is named by its folder")
 
 
-def files_of(folder: str | PathLike[str]) -> dict[str, Path]:
+def files_of(folder: File) -> dict[str, Path]:
     """Return the files of a folder by their names in it, in order; none that Python or Jupyter made."""
     paths = ((path.relative_to(folder), path) for path in sorted(Path(folder).rglob("*")) if path.is_file())
     return {inside.as_posix(): path for inside, path in paths if not any(part[0] in "._" for part in inside.parts)}

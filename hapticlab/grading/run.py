@@ -20,8 +20,8 @@ from .workers import Workers, processor_seconds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from os import PathLike
 
+    from ..annotations import File
     from .assignment import Assignment
     from .report import Report
     from .sessions.preloaded import Preloaded
@@ -63,15 +63,15 @@ class Graded:
 
 
 def run(
-    paths: Sequence[str | PathLike[str]],
+    paths: Sequence[File],
     assignment: Assignment,
     limits: Limits | None = None,
     *,
     workers: int | str = 1,
     sandbox: str = "auto",
-    journal: str | PathLike[str] | None = None,
+    journal: File | None = None,
     fresh: bool = False,
-    hidden: Sequence[str | PathLike[str]] = (),
+    hidden: Sequence[File] = (),
     progress: bool = False,
     preloaded: Preloaded | None = None,
     begun: Callable[[Walls], None] | None = None,

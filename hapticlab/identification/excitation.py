@@ -18,7 +18,7 @@ from ..scene.scene import Scene
 from .motion import positions
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ..annotations import Array
 
 #: samples of rest before a force begins
 LEAD = 20
@@ -49,7 +49,7 @@ class Excitation:
     length: int
     samples: int
 
-    def forces(self, T: float) -> NDArray[np.float64]:
+    def forces(self, T: float) -> Array:
         """Return the force at each sample, without the guard of :meth:`scene` [N]."""
         at = np.arange(self.samples) - LEAD
         if self.kind == "chirp":

@@ -13,7 +13,8 @@ from .sensor import DITHERED
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
+
+    from ..annotations import Array
 
 #: share of the largest from which on a constant is part of what a record leaves open
 PART = 0.05
@@ -95,8 +96,8 @@ class Found:
     quantum: float
     converged: bool
     correlation: float
-    measured: NDArray[np.float64]
-    fitted: NDArray[np.float64]
+    measured: Array
+    fitted: Array
     T: float
 
     def __getitem__(self, name: str) -> Estimate:

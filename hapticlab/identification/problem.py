@@ -14,8 +14,7 @@ from .start import begin
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
+    from ..annotations import Array
     from .scoring import Fitted
 
 #: constants of a paddle; scale is newtons at the handle for each commanded
@@ -43,8 +42,8 @@ class Trace:
     ``rests`` says that the handle is at rest at the first sample.
     """
 
-    y: NDArray[np.float64]
-    F: NDArray[np.float64]
+    y: Array
+    F: Array
     T: float
     added: float = 0.0
     push: float = 0.0

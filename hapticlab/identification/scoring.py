@@ -15,7 +15,7 @@ from ..statistics import student
 from .sensor import DITHERED, information, log_likelihood, run_weights, spread
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ..annotations import Array, Flags
 
 #: of a parameter's scale: the step of central differences
 STEP = 1e-5
@@ -62,21 +62,21 @@ class Fitted:
         The direction, over the parameters' scales, in which nothing changes; zeros where there is none.
     """
 
-    values: NDArray[np.float64]
-    covariance: NDArray[np.float64]
-    sigma: NDArray[np.float64]
-    residuals: NDArray[np.float64]
-    freedom: NDArray[np.float64]
-    counted: NDArray[np.bool_]
-    converged: NDArray[np.bool_]
-    blind: NDArray[np.float64]
+    values: Array
+    covariance: Array
+    sigma: Array
+    residuals: Array
+    freedom: Array
+    counted: Flags
+    converged: Flags
+    blind: Array
 
     @property
-    def error(self) -> NDArray[np.float64]:
+    def error(self) -> Array:
         """Standard errors, shape (P, L)."""
         return np.sqrt(np.maximum(np.diagonal(self.covariance, axis1=1, axis2=2), 0.0)).T
 
-    def half_width(self, confidence: float = 0.95) -> NDArray[np.float64]:
+    def half_width(self, confidence: float = 0.95) -> Array:
         """Half the width of the confidence intervals, shape (P, L)."""
         return self.error * student(confidence, self.freedom)
 

@@ -19,7 +19,7 @@ from .linear_law import LinearLaw
 from .port import SMALL, tick_map
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ..annotations import Array
 
 #: part of the largest entry below which a difference between laws is rounding; a scene's tick is measured to 1e-9
 ROUNDING = 1e-8
@@ -42,16 +42,16 @@ class AffineLaw:
     name : str
     """
 
-    A: NDArray[np.float64]
-    B0: NDArray[np.float64]
-    B1: NDArray[np.float64]
-    C0: NDArray[np.float64]
-    C1: NDArray[np.float64]
-    D0: NDArray[np.float64]
-    D1: NDArray[np.float64]
+    A: Array
+    B0: Array
+    B1: Array
+    C0: Array
+    C1: Array
+    D0: Array
+    D1: Array
     name: str
 
-    def at(self, K: float) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    def at(self, K: float) -> tuple[Array, Array, Array]:
         """Return B, C, D at a stiffness [N/m]."""
         return self.B0 + K * self.B1, self.C0 + K * self.C1, self.D0 + K * self.D1
 

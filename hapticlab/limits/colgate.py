@@ -36,7 +36,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
+
+    from ..annotations import Array
 
 #: a stiffness beside which the next cut has nothing to add
 SETTLED = 1e-13
@@ -74,12 +76,12 @@ class PassivityMargin:
     def passive(self) -> bool:
         return self.b >= self.required
 
-    def asked(self, theta: ArrayLike) -> NDArray[np.float64]:
+    def asked(self, theta: ArrayLike) -> Array:
         """Return the damping [N s/m] that motion at theta = w T asks of the device, 0 < theta <= pi; shape (P,)."""
         law = self.law
         return asked(law.A, law.B, law.C, law.D, law.T, np.atleast_1d(np.asarray(theta, dtype=float)), self.delay)
 
-    def equivalent_damper(self, theta: ArrayLike) -> NDArray[np.float64]:
+    def equivalent_damper(self, theta: ArrayLike) -> Array:
         """Return the damper [N s/m] as which a sinusoid of theta = w T feels the law; negative: it draws energy."""
         return equivalent_damper(self.law, theta, delay=self.delay)
 
@@ -145,7 +147,7 @@ def passivity_margin(law: LinearLaw, *, b: float, delay: float = 0.0) -> Passivi
     return PassivityMargin(law, b, delay, most, theta / (2 * math.pi * law.T))
 
 
-def equivalent_damper(law: LinearLaw, theta: ArrayLike, *, delay: float = 0.0) -> NDArray[np.float64]:
+def equivalent_damper(law: LinearLaw, theta: ArrayLike, *, delay: float = 0.0) -> Array:
     """Return the damper [N s/m] as which a sinusoid x of theta = w T > 0 feels a held law, past Nyquist too.
 
     The part of the held force in phase with the velocity, over the velocity: at whole multiples of theta = pi averaged

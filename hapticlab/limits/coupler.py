@@ -33,8 +33,8 @@ from .two_port import TwoPort, frequencies, hertz, stopped
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
+    from ..annotations import Array
     from .limit import Device
 
 #: part of the damping to which the best pair is searched
@@ -70,7 +70,7 @@ class CouplerDesign:
         """The display with this coupler, as a TwoPort between hand and environment."""
         return impedance_display(k_c=self.k_c, b_c=self.b_c, b=self.b, T=self.T, delay=self.delay)
 
-    def border(self, points: int = 60) -> NDArray[np.float64]:
+    def border(self, points: int = 60) -> Array:
         """Return (b_c, k_c) of shape (2, points): the stiffest spring beside every damper the device can carry."""
         dampers = np.linspace(0.0, _most_damping(self.b, self.T, self.delay), points)
         return np.array([dampers, [_stiffest(b_c, self.b, self.T, self.delay)[0] for b_c in dampers]])

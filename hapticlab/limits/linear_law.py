@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from ..annotations import Array
     from ..scene.scene import Scene
     from .limit import LawName
 
@@ -53,9 +54,9 @@ class LinearLaw:
     ellis, K = 100 N/m: F[n] = 200 x[n] - 150 x[n-1] + 50 x[n-2], T = 1 ms
     """
 
-    A: NDArray[np.float64]
-    B: NDArray[np.float64]
-    C: NDArray[np.float64]
+    A: Array
+    B: Array
+    C: Array
     D: float
     T: float
     name: str
@@ -198,7 +199,7 @@ class LinearLaw:
         inside = np.linalg.solve(gap, np.broadcast_to(self.B[:, None], (*theta.shape, len(self.B), 1)))[..., 0]
         return np.where(on_pole, np.inf, inside @ self.C + self.D)
 
-    def impulse(self, count: int) -> NDArray[np.float64]:
+    def impulse(self, count: int) -> Array:
         """Return the first ``count`` forces [N/m] of a handle that was at one metre at the first sample alone."""
         forces, state = [self.D], self.B
         for _ in range(count - 1):
@@ -213,7 +214,7 @@ class LinearLaw:
         response = np.abs(self.impulse(2 * n + 1))  # n + 1 terms of zero in a row: all that follow are (Cayley, Hamilton)
         return bool(response[n + 1 :].max(initial=0.0) <= ROUNDING * response.max())
 
-    def taps(self) -> NDArray[np.float64]:
+    def taps(self) -> Array:
         """Return the weights [N/m] on x[n], x[n-1], ... of a law with a finite memory, array of shape (m,), m >= 1.
 
         Raises

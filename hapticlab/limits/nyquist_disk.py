@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from ..annotations import Array
+
 #: |M| past which 1 + H c is rounding
 INFINITE = 1e9
 
@@ -65,7 +67,7 @@ class NyquistDisk:
         z = np.exp(1j * np.asarray(theta, dtype=float))
         return self._hold(theta) * ((1 - f) + f / z) * z ** -float(whole)
 
-    def radius(self, theta: ArrayLike) -> NDArray[np.float64]:
+    def radius(self, theta: ArrayLike) -> Array:
         """Return the radius [m/N] of that disk."""
         return np.abs(self._hold(theta))
 

@@ -18,8 +18,7 @@ from ..errors import AnalysisError
 from .limit import whole_and_fraction
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ..annotations import Array
     from ..compiler.ir.program import Program
     from ..scene.scene import Scene
 
@@ -142,7 +141,7 @@ def asked(A, B, C, D, T, theta, delay=0.0):
     return (linear + np.sqrt(linear**2 + T**2 * fraction * (1 - fraction) * abs(H) ** 2)) / 2 if fraction else linear
 
 
-def tick_map(program: Program) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float]:
+def tick_map(program: Program) -> tuple[Array, Array, Array, float]:
     """Return A, B, C, D of one tick: states' = A states + B x, F = C states + D x, measured on unit states.
 
     Raises

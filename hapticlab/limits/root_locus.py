@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from ..annotations import Array
     from .affine_law import StiffnessLaw
     from .limit import Plant
 
@@ -50,7 +51,7 @@ class RootLocus:
         The law.
     """
 
-    K: NDArray[np.float64]
+    K: Array
     poles: NDArray[np.complex128]
     zeros: NDArray[np.complex128]
     limit: Limit
@@ -59,7 +60,7 @@ class RootLocus:
     name: str
 
     @property
-    def radius(self) -> NDArray[np.float64]:
+    def radius(self) -> Array:
         """Largest |pole| at each stiffness, array of shape (P,)."""
         return np.abs(self.poles).max(axis=1)
 

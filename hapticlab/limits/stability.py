@@ -26,6 +26,7 @@ from .port import static_stiffness
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..annotations import Array
     from .affine_law import StiffnessLaw
     from .limit import Plant
 
@@ -121,7 +122,7 @@ def _intervals(loop):
 
 def closed_loop_matrix(
     paddle: Plant, *, K: float | None = None, law: StiffnessLaw | LinearLaw = "zoh", B: float = 0.0, parameter: str = "k"
-) -> NDArray[np.float64]:
+) -> Array:
     """One period of handle, hand and law as a matrix on [x, v, past forces, states of the law]; SI units.
 
     Parameters

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from ..annotations import Array
+
 #: relative rounding of the criterion
 ROUNDING = 1e-9
 #: slow motion is looked at down to this w T
@@ -35,12 +37,12 @@ SLOW = 1e-5
 ALIKE = 1e-9
 
 
-def frequencies(points: int = 2000) -> NDArray[np.float64]:
+def frequencies(points: int = 2000) -> Array:
     """Return theta = w T, close together at both ends, shape (P,)."""
     return np.unique(np.r_[np.geomspace(SLOW, np.pi, points), np.linspace(SLOW, np.pi, points)])
 
 
-def hertz(curve: Callable[[NDArray[np.float64]], NDArray[np.float64]], theta: float, T: float, size: float = 0.0) -> float | None:
+def hertz(curve: Callable[[Array], Array], theta: float, T: float, size: float = 0.0) -> float | None:
     """Return in Hz where a function of w T is least, from the theta that was found: None where flat, 0.0 for slow motion."""
     values = curve(np.r_[theta, frequencies()])
     alike = np.abs(values - values[0]) <= ALIKE * max(abs(values[0]), size)
@@ -79,12 +81,12 @@ class TwoPort:
     True
     """
 
-    h: Callable[[NDArray[np.float64]], NDArray[np.complex128]] = field(repr=False)
+    h: Callable[[Array], NDArray[np.complex128]] = field(repr=False)
     T: float
     name: str
     stable: bool
 
-    def criterion(self, theta: ArrayLike) -> NDArray[np.float64]:
+    def criterion(self, theta: ArrayLike) -> Array:
         """Return 2 Re h11 Re h22 - |h12 h21| - Re(h12 h21), a number without unit that has to be >= 0; theta of shape (P,)."""
         h = self.h(np.atleast_1d(np.asarray(theta, dtype=float)))
         product = h[:, 0, 1] * h[:, 1, 0]
@@ -114,7 +116,7 @@ class TwoPort:
         h, Z = self.h(np.atleast_1d(np.asarray(theta, dtype=float))), np.asarray(environment)
         return h[:, 0, 0] - h[:, 0, 1] * h[:, 1, 0] * Z / (1 + h[:, 1, 1] * Z)
 
-    def least_resistance(self, theta: ArrayLike) -> NDArray[np.float64]:
+    def least_resistance(self, theta: ArrayLike) -> Array:
         """Return the least Re F_1/v_1 that a passive environment can make the hand feel, theta of shape (P,).
 
         A passive environment fills a half plane, which the fractional map of the two-port turns into a disk.

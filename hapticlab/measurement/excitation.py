@@ -18,6 +18,7 @@ from .signals import chirp, multisine
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..annotations import Array
     from ..scene.scene import Scene
 
 How = Literal["multisine", "swept_sine"]
@@ -50,7 +51,7 @@ class Excitation:
     seed: int
 
     @cached_property
-    def period(self) -> NDArray[np.float64]:
+    def period(self) -> Array:
         """One period, peak ``amplitude``."""
         if self.how == "swept_sine":
             return self.amplitude * chirp(self.samples, self.lines)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from ..annotations import Array
+
 #: part of an impedance by which blocks may differ without a word
 UNSURE = 0.02
 Drive = Literal["hand", "motor"]
@@ -47,7 +49,7 @@ class MeasuredImpedance:
         What drove, and what was not observable.
     """
 
-    frequency: NDArray[np.float64]
+    frequency: Array
     measured: Response
     law: NDArray[np.complex128]
     ideal: NDArray[np.complex128] | None
@@ -64,12 +66,12 @@ class MeasuredImpedance:
         return self.measured.value
 
     @property
-    def radius(self) -> NDArray[np.float64]:
+    def radius(self) -> Array:
         """Radius of the circle around ``rendered`` that holds the truth with 95 % confidence [N s/m]."""
         return self.measured.radius
 
     @property
-    def coherence(self) -> NDArray[np.float64]:
+    def coherence(self) -> Array:
         """Coherence of motion and force over the blocks."""
         return self.measured.coherence
 
@@ -109,12 +111,12 @@ class MeasuredImpedance:
         return self.ideal
 
     @property
-    def stiffness(self) -> NDArray[np.float64]:
+    def stiffness(self) -> Array:
         """Real part of s Z, rendered [N/m]."""
         return (2j * np.pi * self.frequency * self.rendered).real
 
     @property
-    def damping(self) -> NDArray[np.float64]:
+    def damping(self) -> Array:
         """Real part of Z, rendered [N s/m]: below zero the environment gives energy at that frequency."""
         return self.rendered.real
 

@@ -15,13 +15,15 @@ from ..errors import AnalysisError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from ..annotations import Array
+
 #: rounds of clipping; most of the gain comes in the first hundred
 ROUNDS = 150
 
 
 def multisine(
     samples: int, lines: ArrayLike, *, phases: Literal["schroeder", "random", "low_crest"] = "schroeder", seed: int = 0
-) -> NDArray[np.float64]:
+) -> Array:
     """Return one period of a sum of cosines of equal amplitude, peak 1.
 
     Parameters
@@ -60,7 +62,7 @@ def multisine(
     return signal / abs(signal).max()
 
 
-def chirp(samples: int, lines: ArrayLike) -> NDArray[np.float64]:
+def chirp(samples: int, lines: ArrayLike) -> Array:
     """Return one period of a swept sine from the first to the last line, peak 1: sin of a phase that grows as t^2.
 
     A line of every cycle number between first and last gets much the same power, a little leaks beyond the ends.
@@ -71,7 +73,7 @@ def chirp(samples: int, lines: ArrayLike) -> NDArray[np.float64]:
     return np.sin(2 * np.pi * (first * part + (last - first) / 2 * part**2))
 
 
-def crest_factor(signal: NDArray[np.float64]) -> float:
+def crest_factor(signal: Array) -> float:
     """Return peak over rms."""
     return float(abs(signal).max() / np.sqrt(np.mean(np.square(signal))))
 

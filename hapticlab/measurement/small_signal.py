@@ -12,6 +12,7 @@ from ..errors import AnalysisError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..annotations import Array
     from ..compiler.ir.program import Program
 
 #: of the motion [m], and samples of the answer that are followed
@@ -19,7 +20,7 @@ SMALL, LONGEST = 1e-6, 20_000
 
 
 def law_at(
-    program: Program, place: float, theta: NDArray[np.float64], *, small: float = SMALL
+    program: Program, place: float, theta: Array, *, small: float = SMALL
 ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
     """Return H(e^(j theta)) of F to x, and of F to a measured v, complex arrays, linearised at a place [m].
 

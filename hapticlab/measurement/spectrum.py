@@ -10,6 +10,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..annotations import Array
+
 #: of the circle that is stated around every number
 CONFIDENCE = 0.95
 
@@ -28,11 +30,11 @@ class Response:
     """
 
     value: NDArray[np.complex128]
-    radius: NDArray[np.float64]
-    coherence: NDArray[np.float64]
+    radius: Array
+    coherence: Array
 
 
-def lines_in(blocks: NDArray[np.float64], lines: NDArray[np.int_]) -> NDArray[np.complex128]:
+def lines_in(blocks: Array, lines: NDArray[np.int_]) -> NDArray[np.complex128]:
     """Return the Fourier coefficients of real blocks, shape (B, N), at their lines, shape (B, L)."""
     return 2 / blocks.shape[1] * np.fft.rfft(blocks, axis=1)[:, lines]
 
@@ -63,6 +65,6 @@ def held_transfer(s: NDArray[np.complex128], T: float, delay: float = 0.0) -> ND
     return -np.expm1(-s * T) / (s * T) * np.exp(-s * delay)
 
 
-def ramp_transfer(s: NDArray[np.complex128], T: float) -> NDArray[np.float64]:
+def ramp_transfer(s: NDArray[np.complex128], T: float) -> Array:
     """Spectrum of a path that is straight between its samples, over the spectrum of the samples: sinc^2(f T)."""
     return np.sinc(s.imag * T / (2 * np.pi)) ** 2

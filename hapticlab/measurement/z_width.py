@@ -14,8 +14,9 @@ from .search_plot import plot_border
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ..annotations import Array
     from ..device.board.serial_paddle import SerialPaddle
     from ..device.simulated.simulated_paddle import SimulatedPaddle
     from ..limits.limit import LawName
@@ -48,11 +49,11 @@ class ZWidth:
     border of what comes to rest after one entry, in one hand.
     """
 
-    B: NDArray[np.float64]
-    K: NDArray[np.float64]
-    chatters_at: NDArray[np.float64]
-    passivity: NDArray[np.float64]
-    stability: NDArray[np.float64]
+    B: Array
+    K: Array
+    chatters_at: Array
+    passivity: Array
+    stability: Array
     searches: tuple[LargestStiffness, ...]
     law: str
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from ..annotations import Array
     from ..device.hand.hand import Hand
     from ..limits.limit import Plant
     from ..records import Telemetry
@@ -44,17 +45,17 @@ class HybridMotion:
     model : WallModel
     """
 
-    t: NDArray[np.float64]
-    x: NDArray[np.float64]
-    v: NDArray[np.float64]
-    F: NDArray[np.float64]
-    crossings: NDArray[np.float64]
-    speeds: NDArray[np.float64]
+    t: Array
+    x: Array
+    v: Array
+    F: Array
+    crossings: Array
+    speeds: Array
     x_o: float
     model: WallModel
 
     @property
-    def energy(self) -> NDArray[np.float64]:
+    def energy(self) -> Array:
         """Kinetic energy and what the hand's and the wall's springs and the push hold [J], shape (N,)."""
         m, inside = self.model, self.F != 0
         depth = np.where(inside, (self.F - m.B * self.v) / m.K, 0.0)

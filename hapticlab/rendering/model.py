@@ -20,8 +20,7 @@ from ..errors import AnalysisError
 from ..limits.limit import MOST_PERIODS, whole_and_fraction
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ..annotations import Array
     from ..limits.limit import Plant
 
 
@@ -93,7 +92,7 @@ class WallModel:
         """Whole periods of the delay and the fraction that is left."""
         return whole_and_fraction(self.delay, self.T, most=MOST_PERIODS)
 
-    def flow(self, periods: float, wall: bool = False) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def flow(self, periods: float, wall: bool = False) -> tuple[Array, Array]:
         """Return the exact motion over a time in periods, inside the wall or outside.
 
         Returns

@@ -19,8 +19,8 @@ from .compensation_limit import CompensationLimit, compensation_limit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
+    from ..annotations import Array
     from ..scene.laws.estimators import VelocityEstimate
 
 #: parts of the Coulomb friction looked at side by side, and how often the gap around the limit is divided again
@@ -57,9 +57,9 @@ class OverCompensation:
     ideal: CompensationLimit
     viscous: float
     speed: float
-    dry: NDArray[np.float64]
-    motion: NDArray[np.float64]
-    expected: NDArray[np.float64]
+    dry: Array
+    motion: Array
+    expected: Array
     duration: float
 
     def __str__(self) -> str:

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
+
+    from ..annotations import Array
 
 MARKERS = "osD^v*P"
 
@@ -52,7 +53,7 @@ class VelocityError:
     noise: float
     cycles: int
     fits: bool
-    v: NDArray[np.float64] = field(repr=False, compare=False)
+    v: Array = field(repr=False, compare=False)
 
     def __str__(self) -> str:
         fits = "fits" if self.fits else "does not fit"
@@ -74,8 +75,8 @@ class VelocityErrors:
     """
 
     rows: tuple[VelocityError, ...]
-    t: NDArray[np.float64] = field(repr=False)
-    v_true: NDArray[np.float64] = field(repr=False)
+    t: Array = field(repr=False)
+    v_true: Array = field(repr=False)
     T: float
     board: str
 

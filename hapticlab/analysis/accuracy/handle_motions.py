@@ -17,7 +17,9 @@ from ...scene.notation.symbols import t
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
+
+    from ...annotations import Array
 
 #: band of a hand's voluntary motion [Hz]; irrational, so that no period is a whole number of samples
 BAND = (math.sqrt(0.5), 5 * math.sqrt(2))
@@ -66,11 +68,11 @@ class HandleMotion:
         if not (math.isfinite(self.duration) and self.duration > 0):
             raise AnalysisError(f"{self.name}: duration = {self.duration} s; needs a finite duration > 0 s")
 
-    def at(self, times: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    def at(self, times: ArrayLike) -> tuple[Array, Array, Array]:
         """Return (x, v, a) at an array of times [s]: three arrays, in m, m/s, m/s^2."""
         return tuple(self.derivatives(times, 2))
 
-    def derivatives(self, times: ArrayLike, order: int) -> NDArray[np.float64]:
+    def derivatives(self, times: ArrayLike, order: int) -> Array:
         """Return x and its derivatives up to an order at an array of times: array (order + 1, times)."""
         times, graph, wanted = np.atleast_1d(np.asarray(times, float)), Graph(), [sp.sympify(self.x)]
         for _ in range(order):

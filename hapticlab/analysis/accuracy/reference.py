@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...annotations import Array
     from ...compiler.ir.program import Program
     from ...scene.scene import Scene
 
@@ -66,8 +67,8 @@ class Reference:
     """
 
     motion: HandleMotion
-    t: NDArray[np.float64]
-    F: NDArray[np.float64]
+    t: Array
+    F: Array
     agreement: float
     how: str
     horizon: float
@@ -94,7 +95,7 @@ class Reference:
         """Tell whether the solvers agree ten times better than an error [N] that is to be reported."""
         return self.agreement <= 0.1 * error
 
-    def at(self, times: ArrayLike) -> NDArray[np.float64]:
+    def at(self, times: ArrayLike) -> Array:
         """Return F [N] at times [s] that are whole numbers of the step, nan past the horizon."""
         times = np.asarray(times, float)
         k = np.rint(times / self.step)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ...compiler.methods.chosen_method import chosen_method
 
 if TYPE_CHECKING:
-    from os import PathLike
+    from ...annotations import File
 
 OK, TOO_LARGE, NOT_TRIED = "ok", "does not fit", "not tried"
 #: percentages below this are not told apart
@@ -146,7 +146,7 @@ class Table(tuple):
         """Return the rows whose attributes have these values, as in ``table.where(target="uno", status="ok")``."""
         return Table(row for row in self if all(getattr(row, name) == value for name, value in wanted.items()))
 
-    def to_csv(self, path: str | PathLike[str]) -> str | PathLike[str]:
+    def to_csv(self, path: File) -> File:
         """Write the rows to a file, SI units, and return its path."""
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)

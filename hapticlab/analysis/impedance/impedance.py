@@ -21,6 +21,8 @@ from .impedance_curve import LOOKED_AT, Impedance
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from ...annotations import Array
+
 #: the handle as a force sees it at the sample, and as an equation of motion sees it
 SEEN = ((x(t), x(n)), (v(t), v(n)))
 
@@ -39,13 +41,13 @@ class Port:
     """
 
     coordinates: tuple[sp.Expr, ...]
-    M: NDArray[np.float64]
-    C: NDArray[np.float64]
-    K: NDArray[np.float64]
-    Kx: NDArray[np.float64]
-    Cx: NDArray[np.float64]
-    KF: NDArray[np.float64]
-    CF: NDArray[np.float64]
+    M: Array
+    C: Array
+    K: Array
+    Kx: Array
+    Cx: Array
+    KF: Array
+    CF: Array
     k: float
     c: float
 

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from ...annotations import Array
+
 #: where an impedance is looked at unless frequencies are given [Hz]
 LOOKED_AT = np.geomspace(0.1, 200.0, 600)
 SOFT = "#8a8a8a"
@@ -32,7 +34,7 @@ class Impedance:
     """
 
     name: str
-    frequency: NDArray[np.float64]
+    frequency: Array
     Z: NDArray[np.complex128]
 
     def __str__(self) -> str:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from ...annotations import Array
     from ...limits.limit import Device
     from ...records import PaddleProfile
 
@@ -63,10 +64,10 @@ class Reduction:
     masses: int
     band: tuple[float, float]
     tolerance: float
-    frequency: NDArray[np.float64] = field(repr=False)
+    frequency: Array = field(repr=False)
     impedance: NDArray[np.complex128] = field(repr=False)
     full_impedance: NDArray[np.complex128] = field(repr=False)
-    error: NDArray[np.float64] = field(repr=False)
+    error: Array = field(repr=False)
     tried: tuple[tuple[int, float], ...] = ()
     poles: tuple[tuple[float, float], ...] = ()
 

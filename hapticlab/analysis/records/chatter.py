@@ -17,8 +17,9 @@ from .driven_motion import drive_of, following
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...annotations import Array
     from ...device.hand.hand import Hand
     from ...records import Telemetry
 
@@ -42,7 +43,7 @@ REPEATS, LONGEST_CYCLE = 1e-4, 2000
 COUNTS = 4
 
 
-def chatter(log: Telemetry, driven: Hand | Callable[[NDArray[np.float64]], ArrayLike] | str | ArrayLike | None = None) -> Chatter:
+def chatter(log: Telemetry, driven: Hand | Callable[[Array], ArrayLike] | str | ArrayLike | None = None) -> Chatter:
     """Find chatter, Section 23.4: sustained oscillation, often with repeated contact with the wall.
 
     Looks at the last half of a record, at the handle itself where an encoder or noise hid it (``x_true``). An

@@ -14,8 +14,8 @@ from .record_plots import plot_energy
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
+    from ...annotations import Array
     from ...records import Telemetry
 
 
@@ -40,8 +40,8 @@ class Energy:
         False where the force changed inside the periods and the position there was not recorded.
     """
 
-    t: NDArray[np.float64]
-    W: NDArray[np.float64]
+    t: Array
+    W: Array
     generated: float
     extracted: float
     contacts: int

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
+    from ...annotations import Array
     from ...records import Telemetry
     from ...scene.contact.contact import Contact
     from ...scene.scene import Scene
@@ -209,13 +209,13 @@ class Balance:
         later than they acted. Work of other forces than the handle's is part of it.
     """
 
-    t: NDArray[np.float64]
-    supplied: NDArray[np.float64]
-    stored: NDArray[np.float64]
-    dissipated: NDArray[np.float64]
-    leak: NDArray[np.float64]
-    port: NDArray[np.float64]
-    sampling: NDArray[np.float64]
+    t: Array
+    supplied: Array
+    stored: Array
+    dissipated: Array
+    leak: Array
+    port: Array
+    sampling: Array
 
     def plot(self) -> Figure:
         """Return a figure: where the supplied energy is, and what the books cannot account for."""

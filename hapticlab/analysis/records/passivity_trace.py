@@ -14,8 +14,8 @@ from .energy import energy
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
+    from ...annotations import Array
     from ...records import Telemetry
 
 
@@ -44,12 +44,12 @@ class PassivityTrace:
         gave back of what a human had paid before, Eq. (23.9) unbroken.
     """
 
-    t: NDArray[np.float64]
-    W: NDArray[np.float64]
-    same_sample: NDArray[np.float64]
-    observed: NDArray[np.float64] | None
-    error: NDArray[np.float64] | None
-    dissipated: NDArray[np.float64] | None
+    t: Array
+    W: Array
+    same_sample: Array
+    observed: Array | None
+    error: Array | None
+    dissipated: Array | None
     active: tuple[float, float]
     drained: float
 

@@ -15,8 +15,8 @@ from .energy import energy
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
+    from ...annotations import Array
     from ...records import Telemetry
 
 #: periods of a penetration up to which each step's leak is written beside it
@@ -70,12 +70,12 @@ class Staircase:
     bounces : tuple of Bounce
     """
 
-    x: NDArray[np.float64]
-    F: NDArray[np.float64]
+    x: Array
+    F: Array
     K: float
     x_o: float
-    leak: NDArray[np.float64]
-    moved: NDArray[np.float64]
+    leak: Array
+    moved: Array
     bounces: tuple[Bounce, ...]
 
     def __str__(self) -> str:

@@ -16,8 +16,9 @@ from .energy import energy
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...annotations import Array
     from ...records import Telemetry
 
 
@@ -43,16 +44,16 @@ class Storage:
         What a force of float32 leaves open in a period [J].
     """
 
-    t: NDArray[np.float64]
-    stored: NDArray[np.float64]
-    supplied: NDArray[np.float64]
-    leak: NDArray[np.float64]
-    paid: NDArray[np.float64] | None = None
-    bound: NDArray[np.float64] | None = None
+    t: Array
+    stored: Array
+    supplied: Array
+    leak: Array
+    paid: Array | None = None
+    bound: Array | None = None
     rounding: float = 0.0
 
     @property
-    def excess(self) -> NDArray[np.float64]:
+    def excess(self) -> Array:
         """W(x(0)) + supply - W(x(t)) [J], and what the damper paid where b was given; Eq. (23.9) holds where >= 0."""
         paid = 0.0 if self.paid is None else self.paid
         return np.r_[0.0, np.cumsum(paid - self.leak)]

@@ -14,7 +14,7 @@ from .linearization import motion_at
 from .operating_points import TRAVEL, borders, kind_of, operating_points, probes_of, telling
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...annotations import Array
 
 #: why a mode asks for what it asks, unless it is worse
 WORST = "worst frequency"
@@ -49,7 +49,7 @@ class PortLimit:
     floor: float
     frequency: float
     reason: str
-    tick: tuple[NDArray[np.float64], ...] = field(repr=False)
+    tick: tuple[Array, ...] = field(repr=False)
     stiffness: float = 0.0
 
 

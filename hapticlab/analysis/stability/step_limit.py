@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from ...annotations import Array
     from ...compiler.events.taylor_method import Taylor
 
 #: states past which eigenvalues take their time
@@ -66,7 +67,7 @@ class ModeLimit:
     margin: float
     energy_gain: float
     steps_per_contact: float
-    step: Callable[[NDArray[np.float64]], NDArray[np.float64]] = field(repr=False)
+    step: Callable[[Array], Array] = field(repr=False)
 
 
 @dataclass(frozen=True, eq=False)

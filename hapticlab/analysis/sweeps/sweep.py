@@ -24,11 +24,10 @@ from .workers import number_of, spread
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
-    from os import PathLike
 
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
+    from ...annotations import Array, File
     from ...device.simulated.simulated_paddle import SimulatedPaddle
     from ...limits.limit import Limit
 
@@ -55,8 +54,8 @@ class Sweep:
         The scene, the paddle and the values that were the same everywhere, in lines.
     """
 
-    axes: dict[str, NDArray[np.float64]]
-    values: NDArray[np.float64]
+    axes: dict[str, Array]
+    values: Array
     metric: str
     unit: str
     units: dict[str, str] = field(default_factory=dict)
@@ -81,7 +80,7 @@ def sweep(
     engine: Literal["auto", "llvm", "interpreter"] = "auto",
     progress: bool = True,
     workers: int | Callable[..., Iterable[Any]] = 1,
-    resume: str | PathLike[str] | None = None,
+    resume: File | None = None,
     **values: Any,
 ) -> Sweep:
     """Simulate every combination of the named values and measure each, without storing a trace.

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from ...annotations import Array, Flags
     from ...limits.limit import Limit
 
 Region = Literal["passive", "stable", "chatters", "unusable"]
@@ -56,11 +57,11 @@ class WallMap:
         How long the map took.
     """
 
-    axes: dict[str, NDArray[np.float64]]
+    axes: dict[str, Array]
     regions: NDArray[np.int_]
-    amplitude: NDArray[np.float64]
-    undecided: NDArray[np.bool_]
-    rows: NDArray[np.float64]
+    amplitude: Array
+    undecided: Flags
+    rows: Array
     limits: dict[str, tuple[Limit | None, ...]]
     unusable: float
     duration: float
@@ -68,7 +69,7 @@ class WallMap:
     about: str = ""
     seconds: float = math.nan
 
-    def limit(self, name: str) -> NDArray[np.float64]:
+    def limit(self, name: str) -> Array:
         """Return the stiffnesses [N/m] of a limit at ``rows``; nan where a bound's assumptions fail."""
         if name not in self.limits:
             raise AnalysisError(f"no limit {name} here; the map has {', '.join(self.limits)}")
@@ -81,7 +82,7 @@ class WallMap:
         return float((self.regions == REGIONS.index(region)).mean())
 
     @property
-    def surprises(self) -> NDArray[np.bool_]:
+    def surprises(self) -> Flags:
         """Points within the passivity limit that chatter all the same, as an encoder or friction makes them: bool array."""
         return under(self, "passivity") & (self.regions >= 2)
 

@@ -18,8 +18,8 @@ from .page_text import BLOCK, SENTENCE, clean, file_name, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from os import PathLike
 
+    from ...annotations import File
     from ...course.exercise import Lab
     from ..report import Report
 
@@ -64,7 +64,7 @@ def _templates():
     return pages
 
 
-def write_pages(reports: Iterable[Report], folder: str | PathLike[str], *, lab: Lab) -> list[Path]:
+def write_pages(reports: Iterable[Report], folder: File, *, lab: Lab) -> list[Path]:
     """Write a page for each student and one of the class; the same reports give the same bytes, in whatever order.
 
     A student's page names nobody else, so it can be sent to its student.
@@ -110,7 +110,7 @@ def write_pages(reports: Iterable[Report], folder: str | PathLike[str], *, lab: 
     return _written(Path(folder), pages)
 
 
-def check_folder(folder: str | PathLike[str]) -> None:
+def check_folder(folder: File) -> None:
     """Refuse a folder whose class.html is of something else, which would be overwritten.
 
     Raises
