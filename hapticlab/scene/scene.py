@@ -131,7 +131,7 @@ class Scene:
         return self._coordinates
 
     @property
-    def models(self):
+    def models(self) -> tuple[Mechanics, ...]:
         """The models among the equations of motion, such as those of :func:`~hapticlab.scene.mechanics.lagrange.lagrange`."""
         return tuple(e for e in self.eom if isinstance(e, Mechanics))
 
