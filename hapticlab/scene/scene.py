@@ -30,7 +30,6 @@ from .notation.written import expression, no_scene
 if TYPE_CHECKING:
     from ..annotations import Number
     from .explicit import ExplicitForm
-    from .mechanics.lagrange import Mechanics
     from .notation.parameters import Parameter
 
 
@@ -128,7 +127,7 @@ class Scene:
     @property
     def coordinates(self) -> tuple[sp.Expr, ...]:
         """The generalized coordinates in use, in alphabetical order."""
-        return self._coordinates
+        return self.__dict__["_coordinates"]
 
     @property
     def models(self) -> tuple[Mechanics, ...]:
