@@ -5,7 +5,7 @@ from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from ..device.board.running import is_refusal
+from ..device.board.serial_paddle import is_refusal
 from ..device.live import named_values
 from ..errors import HapticlabError, PaddleError
 from .frame import COLUMNS, Frame

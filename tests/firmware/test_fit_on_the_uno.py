@@ -91,7 +91,7 @@ def holds(scene, options, T, every, sets=60, settings=SLOW, hand=HAND):
     with emulated_uno(hand, T=T, settings=settings) as paddle:
         board = paddle.loop.board
         paddle.start(scene, every=every, check_fit=False, **options)
-        values = paddle._program.values[:8]
+        values = paddle._loaded.program.values[:8]
         rest = b"".join(bytes([k]) + np.float32(v).tobytes() for k, v in enumerate(values))
         edges = sum(board.cost(v)[0] for v in (INT0, INT1))
         for k in range(sets):

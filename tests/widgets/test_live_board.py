@@ -323,7 +323,7 @@ def test_a_scene_that_does_not_fit_is_refused_before_it_is_shown(board, monkeypa
     def too_long(*given, **options):
         raise hl.ProgramLimitError("takes 140 % of the period")
 
-    monkeypatch.setattr(type(board), "_checked", too_long)
+    monkeypatch.setattr(type(board), "fitted", too_long)
     with pytest.raises(hl.ProgramLimitError, match="140 %"):
         hl.live(board, WALL)
 

@@ -4,7 +4,7 @@ import math
 
 from ...errors import LinkError
 from ..link.messages import RESET_CAUSES, STATES, row_of, table_hash
-from .recording import fault_words
+from .run import fault_words
 
 #: seconds between two hellos: opening the port has reset many a board, whose bootloader listens first
 AGAIN = 0.2

@@ -3,27 +3,51 @@
 import math
 import threading
 import weakref
-from contextlib import suppress
-from dataclasses import replace
+from contextlib import contextmanager, suppress
 
 from ...compiler.boards.board_fit import fit
 from ...compiler.boards.cost import BOARDS, cost
+from ...compiler.engines.bytecode import encode
 from ...compiler.ir.program import Program
-from ...errors import PaddleError
+from ...errors import HapticlabError, LinkError, PaddleError, PortError
 from ..hand.hand import require
 from ..link.exchange import Exchange
-from ..link.messages import OPTIONS, SENSORS, STATES
+from ..link.messages import OPTIONS, SENSORS, STATES, TARGETS
 from ..link.serial_ports import open_port
-from ..live import check_margin, checked, named_values, send
+from ..live import check_margin, checked, send
 from ..paddle import Paddle
 from ..progress import progress_bar
-from .greeting import cleared, introduction, say_hello, what_happened
+from .greeting import cleared, explain_silence, introduction, say_hello, what_happened
 from .homing import home
-from .recording import decimation, fault_words
-from .running import begin, collect, guarded
-from .standalone import forget, keep
-from .step_timing import Timing
-from .upload import check_period, check_room, read_settings
+from .run import Run, Timing, decimation, fault_words, load
+from .upload import STORE_PATIENCE, check_period, check_room, read_settings, upload
+
+#: seconds a board may be silent in a run, beyond the time to the next look, before the host gives up
+PATIENCE = 1.0
+#: ticks from one look at a run to the next
+LOOK = 500
+#: the smallest size that BEGIN takes: one byte beside the CRC-32 at the end
+SMALLEST = 5
+#: what starts it, for whoever stands beside it
+GESTURE = "lead the handle to both stops, then hold it in the middle for 1 s: the force comes on"
+
+
+@contextmanager
+def guarded(give_up):
+    """Give up where anything but a refusal ends what is done inside: an interrupt by the keyboard, a port that fails."""
+    try:
+        yield
+    except BaseException as problem:
+        if not is_refusal(problem):
+            give_up()
+        raise
+
+
+def is_refusal(problem):
+    """Return whether the host or the board said no, so that nothing was begun; anything else may leave a motor on."""
+    if isinstance(problem, LinkError):
+        return problem.result is not None
+    return isinstance(problem, HapticlabError) and not isinstance(problem, PortError)
 
 
 class SerialPaddle(Paddle):
@@ -64,7 +88,7 @@ class SerialPaddle(Paddle):
     def __init__(self, url, *, T=1e-3, port=None, hello=3.0):
         self.url, self.T = url, require("T", T, "s", "a paddle", above=0)
         self.exchange = Exchange(open_port(url) if port is None else port)
-        self._recording = self._program = self._crc = None
+        self._loaded = self._run = None  # what is on the board, and what runs or waits to be told
         self._lock = threading.RLock()  # two threads: what the board has last is what is known here
         try:
             self.board = say_hello(self.exchange, url, hello)
@@ -75,7 +99,7 @@ class SerialPaddle(Paddle):
         except BaseException:
             self.exchange.close()
             raise
-        # the exchange holds a recording and never the paddle, so that a dropped paddle ends; at exit this is called too
+        # the exchange holds a run and never the paddle, so that a dropped paddle ends; at exit this is called too
         self._end = weakref.finalize(self, self.exchange.hang_up)
 
     @property
@@ -109,10 +133,10 @@ class SerialPaddle(Paddle):
         if x is not None or v is not None:
             raise PaddleError("x, v: a handle on a board starts where it is; move it there, or use a SimulatedPaddle.")
         ticks = self.ticks(duration)
-        with guarded(self._abandon):
+        with guarded(self.abandon):
             self.start(scene, **options)
             with progress_bar(ticks, progress) as bar:
-                collect(self, ticks, bar)
+                self._collect(ticks, bar)
             return self.stop(ticks=ticks)
 
     def cost(self, scene, **options):
@@ -141,15 +165,15 @@ class SerialPaddle(Paddle):
         """
         if force_max != math.inf:
             force_max = require("force_max", force_max, "N", "a run", "passive=True runs with the motor off.", low=0)
-        with guarded(self._abandon):
-            program = self._checked(scene, every, check_fit, options)
+        with guarded(self.abandon):
+            program = self.fitted(scene, every, check_fit, options)
             if not passive:
-                check_margin(self._program if program is None else program)
+                check_margin(self._loaded.program if program is None else program)
             self.clear()
             if not passive and self.settings is not None:
                 self.home()
             with self._lock:
-                begin(self, program, every, OPTIONS["PASSIVE"] if passive else 0, min(force_max, 3e38))
+                self._begin(program, every, OPTIONS["PASSIVE"] if passive else 0, min(force_max, 3e38))
 
     def set(self, **values):
         """Set parameters of the scene on the board, live, all of them between the same two ticks.
@@ -160,39 +184,38 @@ class SerialPaddle(Paddle):
             For an unknown name, a bad value, or more than 8 at once.
         """
         with self._lock, guarded(self._motor_off):
-            if self._program is None:
+            if self._loaded is None:
                 raise PaddleError("nothing is on the board yet; start a scene first: paddle.start(scene)")
-            numbers = checked(self._program, values)
-            tick = send(self.exchange, self._program, numbers)
-            known = named_values(self._program) | numbers
-            self._program = replace(self._program, values=tuple(known.values()))
-            if self._recording is not None:
-                self._recording.changes.append(((tick + 1) * self.T, numbers))
+            numbers = checked(self._loaded.program, values)
+            tick = send(self.exchange, self._loaded.program, numbers)
+            self._loaded = self._loaded.with_values(numbers)
+            if self._run is not None:
+                self._run.changes.append(((tick + 1) * self.T, numbers))
 
     def wait(self, seconds):
         """Let the scene run for so many seconds of the board's time, or until a fault, which is told.
 
         Interrupted, it switches the motor off; :meth:`stop` returns what was recorded until then.
         """
-        recording = self._running()
+        run = self._running()
         with guarded(self._motor_off):
-            collect(self, recording.last_tick + 1 + self.ticks(seconds), None)
-        if recording.fault is not None:
-            print(f"{self.url}: {fault_words(recording.fault, self.T)}")
+            self._collect(run.last_tick + 1 + self.ticks(seconds), None)
+        if run.fault is not None:
+            print(f"{self.url}: {fault_words(run.fault, self.T)}")
 
     def stop(self, *, ticks=None):
         """Switch the motor off and return the Telemetry of the run."""
         with self._lock:
-            recording = self._running()
+            run = self._running()
             self.exchange.beating = False  # first: whatever happens to STOP, the motor goes off
             self.exchange.command("STOP")
             state = self.exchange.refresh()
             if state["state"] == STATES["FAULT"]:
-                recording.fault = recording.fault or {"fault": state["fault"], "tick": state["tick"], "value": math.nan}
+                run.fault = run.fault or {"fault": state["fault"], "tick": state["tick"], "value": math.nan}
                 self.exchange.command("CLEAR")
-            self._record(None)
+            self._listen(None)
             self.timing = Timing(state, self.board["clock_hz"], self.T)
-            return recording.telemetry(ticks=ticks, delay=self.timing.mean, paddle=str(self))
+            return run.telemetry(ticks=ticks, delay=self.timing.mean, paddle=str(self))
 
     def clear(self):
         """Say which fault stands, if one does, and clear it: the board takes a scene again. The motor stays off."""
@@ -214,17 +237,69 @@ class SerialPaddle(Paddle):
         home(self.exchange, self.settings, at, timeout)
 
     def keep(self, scene, **options):
-        """Have the board keep a scene and run it without a computer; return what starts it. See standalone.keep."""
+        """Write a scene into the board's memory that survives power-off, arm it, and return what starts it, in words.
+
+        After power-on without a computer the board waits for a deliberate act that also tells it where the handle is. A
+        computer that says hello takes the board back. Parameters are fixed at their values: nobody is there to set them.
+
+        Parameters
+        ----------
+        scene : Scene
+            With every parameter bound.
+        **options
+            Of hapticlab.compile.
+
+        Raises
+        ------
+        PaddleError
+            If a scene runs, the motor's sign was never checked, or its steps are unstable.
+        ProgramLimitError
+            If a step could be late, with whatever operands: nobody is there to see that it was.
+        LinkError
+            If it does not fit the board's store.
+
+        Examples
+        --------
+        >>> import hapticlab as hl
+        >>> with hl.connect("sim://hapkit") as paddle:
+        ...     print(paddle.keep(hl.wall()(k=150, x_o=0.01)))
+        lead the handle to both stops, then hold it in the middle for 1 s: the force comes on
+        """
         with self._lock:
             self._require_idle("keep")
-            self._program = None  # the upload takes the place of what was loaded
-            return keep(self, scene, **options)
+            if self.settings is None or not self.settings.checked:
+                raise PaddleError(
+                    "the motor's sign was not checked on this board; a board without a computer must not push the wrong way: "
+                    "run `hapticlab calibrate` first."
+                )
+            program = self.program(scene, live=(), **options)
+            check_margin(program)
+            known = {} if isinstance(scene, Program) else {"T": self.T, "velocity": self.velocity, "live": (), **options}
+            fit(scene, promise=True, **self._board(), **known)
+            self._loaded = None  # the upload takes the place of what was loaded
+            upload(self.exchange, "STANDALONE", encode(program, word_bits=8 * self.board["word_bytes"]))
+            self.exchange.command("ARM", 1, patience=STORE_PATIENCE, tries=2)
+            return GESTURE
 
     def forget(self):
         """Have the board wait for a computer after power-on again."""
         with self._lock:
             self._require_idle("forget")
-            forget(self)
+            self.exchange.command("ARM", 0, patience=STORE_PATIENCE, tries=2)
+
+    @property
+    def under_way(self):
+        """The Run that is under way, or None."""
+        return self._run
+
+    @contextmanager
+    def attended(self):
+        """Start, ask a person and stop inside; what raises here, an interrupt included, leaves no motor running."""
+        try:
+            yield
+        except BaseException:
+            self.abandon()
+            raise
 
     def state(self):
         """Return the board's state as it is now: a dict of messages.STATE's fields."""
@@ -235,7 +310,7 @@ class SerialPaddle(Paddle):
         with self._lock:
             try:
                 if self.exchange.broken is None:
-                    self._abandon()
+                    self.abandon()
             finally:
                 self._end()
 
@@ -257,10 +332,10 @@ class SerialPaddle(Paddle):
         edges = s.speed_max / abs(s.metres_per_count) if s is not None and s.sensor == SENSORS["QUADRATURE"] else 0.0
         return {"board": name if name in BOARDS else "host", "edges_per_second": edges}
 
-    def _checked(self, scene, every, check_fit, options):
-        """Return the program of a scene that fits the board, or None for the one that is there."""
+    def fitted(self, scene, every, check_fit, options):
+        """The program of a scene that fits the board, or None for the one that is there."""
         if scene is None:
-            if self._program is None:
+            if self._loaded is None:
                 raise PaddleError("nothing is on the board yet; give a scene: paddle.start(scene)")
             return None
         program = self.program(scene, **options)
@@ -271,22 +346,61 @@ class SerialPaddle(Paddle):
         return program
 
     def _require_idle(self, asked):
-        if self._recording is not None:
+        if self._run is not None:
             raise PaddleError(f"{asked}: a scene runs; end it first: paddle.stop()")
 
     def _running(self):
-        if self._recording is None:
+        if self._run is None:
             raise PaddleError("nothing runs; start a scene first: paddle.start(scene)")
-        return self._recording
+        return self._run
 
-    def _record(self, recording):
-        """Give what the board says to a recording, or to none."""
-        self._recording = recording
-        self.exchange.give(recording and recording.add)
+    def _begin(self, program, every, options, force_max):
+        """Load a program, or take the one that is there for None, and start it; refused, what ran before is meant again."""
+        if program is not None and self._run is not None and self.board["slots"] == 1:
+            self.stop()
+        fed, before, earlier = self.exchange.beating, self._loaded, self._run
+        try:
+            if program is not None:
+                self._loaded = load(self.exchange, program, self.board["word_bytes"])
+            run = Run(self._loaded, decimation(self._loaded.program, self.exchange.port, every))
+            self._listen(run)
+            self.exchange.beating = True
+            self.exchange.command("START", self._loaded.crc, run.every, options, force_max, then=run.begin)
+        except HapticlabError as problem:
+            if is_refusal(problem):
+                self._listen(earlier)
+                self.exchange.beating = fed
+                if fed and self._loaded is not before:
+                    self._loaded = before
+                    # a BEGIN that nothing follows empties the place that was loaded: SET means the one that runs again
+                    self.exchange.command("BEGIN", TARGETS["PROGRAM"], SMALLEST)
+            raise
 
-    def _abandon(self):
+    def _collect(self, ticks, bar):
+        """Read until so many ticks are recorded, or a fault."""
+        run, exchange, seen = self._running(), self.exchange, 0
+        wanted, look = (ticks - 1) // run.every * run.every, max(LOOK, run.every)
+        while run.last_tick < wanted and run.fault is None:
+            before, next_look = run.last_tick, min(wanted, run.last_tick + look)
+            came = exchange.wait(
+                lambda enough=next_look: run.last_tick >= enough or run.fault or self._run is not run, PATIENCE + look * self.T
+            )
+            if self._run is not run:
+                raise PaddleError("another thread ended this run, or began another; what was recorded went to that thread.")
+            if not came and run.last_tick == before:
+                run.fault = run.fault or explain_silence(exchange, self.url)
+            if bar is not None:
+                bar.update(max(0, min(run.last_tick + 1, ticks) - seen))
+                seen = max(seen, run.last_tick + 1)
+
+    def _listen(self, run):
+        """Give what the board says to a run, or to none."""
+        self._run = run
+        self.exchange.give(run and run.add)
+
+    def abandon(self):
         """Motor off, and nothing recorded any more."""
-        self._record(None)
+        self._listen(None)
         self._motor_off()
 
     def _motor_off(self):

@@ -8,8 +8,8 @@ from ..link.messages import STATES
 from ..live import checked, in_portions, named_values
 from .greeting import explain_silence
 from .homing import state_flag
-from .recording import decimation, fault_words
-from .running import PATIENCE
+from .run import decimation, fault_words
+from .serial_paddle import PATIENCE
 
 #: a board is fed so long after the last look at its samples, then its motor goes off by itself [s]
 LEASH = 1.0
@@ -58,9 +58,9 @@ class Streaming:
 
     def __init__(self, paddle, scene, **options):
         self.paddle = paddle
-        self.program = paddle._checked(scene, None, True, options)
+        self.program = paddle.fitted(scene, None, True, options)
         self.period = paddle.T * decimation(self.program, paddle.exchange.port)
-        self._last_run = self._recording = None
+        self._last_run = self._run = None
         self.place, self.waits, self.fault = 0.0, "", None
 
     @property
@@ -69,7 +69,7 @@ class Streaming:
 
     @property
     def motor(self):
-        return self._recording is not None and self._recording is self.paddle._recording and self.fault is None
+        return self._run is not None and self._run is self.paddle.under_way and self.fault is None
 
     def start(self):
         """Start the scene, or wait for the handle to be led to its stops where the board does not know where it is."""
@@ -81,12 +81,12 @@ class Streaming:
 
     def stop(self):
         """Switch the motor off; what another run on this paddle does is left alone."""
-        mine, self._recording, self.waits = self._recording, None, ""
-        if mine is not None and mine is self.paddle._recording:
+        mine, self._run, self.waits = self._run, None, ""
+        if mine is not None and mine is self.paddle.under_way:
             try:
                 self.paddle.stop()
             except BaseException:
-                self.paddle._abandon()
+                self.paddle.abandon()
                 raise
 
     def advance(self, intent):
@@ -102,18 +102,18 @@ class Streaming:
         if not self.motor:
             self.fault = self.fault or self._why_off()
             return None
-        exchange, recording = self.paddle.exchange, self._recording
+        exchange, run = self.paddle.exchange, self._run
         self._leash.renew()
         if exchange.lockstep:
             self._until += (len(intent) - 1) * self.paddle.T
-            exchange.wait(lambda: recording.fault is not None, max(0.0, self._until - exchange.now()))
-        exchange._check()
-        samples = recording.take()
+            exchange.wait(lambda: run.fault is not None, max(0.0, self._until - exchange.now()))
+        exchange.check()
+        samples = run.take()
         if len(samples["t"]):
             self._heard, self.place = exchange.now(), float(samples["x"][-1])
-        elif exchange.now() - self._heard > PATIENCE and recording.fault is None:
-            recording.fault = explain_silence(exchange, self.paddle.url)
-        self.fault = fault_words(recording.fault, self.paddle.T)
+        elif exchange.now() - self._heard > PATIENCE and run.fault is None:
+            run.fault = explain_silence(exchange, self.paddle.url)
+        self.fault = fault_words(run.fault, self.paddle.T)
         return samples if len(samples["t"]) else None
 
     def check(self, **values):
@@ -128,7 +128,7 @@ class Streaming:
         numbers, since = self.check(**values), 0.0
         for some in in_portions(numbers) if self.motor else ():
             self.paddle.set(**some)
-            since = self._recording.changes[-1][0]
+            since = self._run.changes[-1][0]
         self.program = replace(self.program, values=tuple((named_values(self.program) | numbers).values()))
         return since
 
@@ -148,7 +148,7 @@ class Streaming:
 
     def _begin(self):
         self.paddle.start(self.program, check_fit=False)
-        self._recording = self._last_run = self.paddle._recording
+        self._run = self._last_run = self.paddle.under_way
         exchange = self.paddle.exchange
         self._leash = exchange.beating = Leash(exchange)
         self._until = self._heard = exchange.now()
@@ -164,7 +164,7 @@ class Streaming:
         exchange = self.paddle.exchange
         if exchange.broken is not None:
             return str(exchange.broken)
-        if exchange._closed:
+        if exchange.closed:
             return "this paddle was closed: connect it again, and run the view's cell again"
         return "another cell began a scene on this paddle, or ended this one"
 

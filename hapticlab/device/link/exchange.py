@@ -51,7 +51,7 @@ class Exchange:
         self._sequences = {guarded: itertools.count(1) for guarded in (False, True)}
         self._wanted = self._reply = self._then = self._beat_sequence = None
         port.timeout = HEARTBEAT / 4  # so that a silent board does not keep the reader from beating
-        self._turn, self._news, self._closed = threading.Lock(), threading.Condition(), False
+        self._turn, self._news, self.closed = threading.Lock(), threading.Condition(), False
         self._waiting = None  # the thread for which virtual time passes
         self._last_sent = self.now()
         self._thread = None
@@ -128,7 +128,7 @@ class Exchange:
 
     def close(self):
         """End the reader and close the port; the board goes silent-host by itself."""
-        self._closed = True
+        self.closed = True
         if self._thread is not None and self._thread is not threading.current_thread():
             self._thread.join(2)
         carrier = getattr(self.port, "_socket", None)
@@ -161,12 +161,13 @@ class Exchange:
         return next(self._sequences[MESSAGES[message].guarded])
 
     def _send(self, frame):
-        self._check()
+        self.check()
         self._last_sent = self.now()
         with port_watched(self.port):
             self.port.write(frame)
 
-    def _check(self):
+    def check(self):
+        """Raise what broke the exchange, if anything did."""
         if self.broken is not None:
             raise self.broken
 
@@ -175,7 +176,7 @@ class Exchange:
         if not self.lockstep:
             with self._news:
                 self._news.wait_for(lambda: condition() or self.broken, seconds)
-            self._check()
+            self.check()
             return bool(condition())
         while not condition():
             if self.now() >= deadline:
@@ -220,7 +221,7 @@ class Exchange:
             self._turn.release()
 
     def _read_for_ever(self):
-        while not self._closed:
+        while not self.closed:
             try:
                 data = read_available(self.port)
                 self._beat()
@@ -229,7 +230,7 @@ class Exchange:
                         self._take(data)
                         self._news.notify_all()
             except Exception as problem:  # whatever it was, those who wait must hear of it
-                if not self._closed:
+                if not self.closed:
                     self.broken = problem
                 with self._news:
                     self._news.notify_all()

@@ -2,6 +2,6 @@
 
 In: a board, a person beside it. Out: settings stored on the board, or a list of findings with a cure each.
 Read ``connect``; ``flash`` and ``intel_hex``; ``calibrate`` with ``sign_check``, ``stops``, ``force_constant`` and
-``force_fit``, asking the ``person`` and holding the motor by ``attended_motor``; ``stored_settings``; ``doctor`` with
+``force_fit``, asking the ``person``; ``stored_settings``; ``doctor`` with
 ``doctor_checks`` and ``computer_checks``.
 """

@@ -5,7 +5,6 @@ from ...scene.notation.symbols import parameters
 from ...scene.scene import Scene
 from ..board.settings import changed
 from ..link.messages import MOTOR_LAWS, UNCHECKED_FORCE_N
-from .attended_motor import attended
 from .force_fit import duty_of, fit_force
 from .person import number
 from .stored_settings import lead_home
@@ -36,7 +35,7 @@ def measure_force(paddle, person):
         "How shall the force be measured?",
         {"scale": "the handle presses on a kitchen scale", "weight": "the handle lifts a hanging weight of known mass"},
     )
-    with attended(paddle):
+    with paddle.attended():
         forces, newtons = on_scale(paddle, person) if how == "scale" else with_weights(paddle, person)
     duties = [duty_of(force, settings, paddle.board["duty_full"]) for force in forces]
     found = fit_force(duties, newtons, law, intercept=how == "scale")

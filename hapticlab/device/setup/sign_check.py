@@ -27,7 +27,6 @@ from ...scene.notation.symbols import n, parameters, x
 from ...scene.scene import Scene
 from ..board.settings import changed
 from ..link.messages import UNCHECKED_FORCE_N
-from .attended_motor import attended
 from .stored_settings import lead_home, offer
 
 #: the spring [N/m]: 0.5 N at 10 mm, below the passivity limit 2 b/T of any paddle with b >= 0.025 N s/m at 1 kHz
@@ -173,7 +172,7 @@ def _tugged(paddle, tosses):
     centre = paddle.state()["x"]
     k, x_0 = parameters("k x_0", units="N/m m")
     spring = Scene(force=k * (x(n) - x_0), name="a spring on and off")(k=0.0, x_0=centre)
-    with attended(paddle):
+    with paddle.attended():
         paddle.start(spring, force_max=UNCHECKED_FORCE_N)
         for on in tosses:
             paddle.wait(LASTS)

@@ -12,7 +12,7 @@ from hapticlab.compiler.engines.bytecode import encode as encode_program
 from hapticlab.compiler.engines.bytecode import layout
 from hapticlab.compiler.tick.compile_scene import compile
 from hapticlab.device.board.host_board import HostBoard
-from hapticlab.device.board.recording import fault_words
+from hapticlab.device.board.run import fault_words
 from hapticlab.device.link.messages import SENSORS
 from hapticlab.device.link.wire import encode
 from hapticlab.scene.notation.symbols import n, parameters, x

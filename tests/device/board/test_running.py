@@ -11,7 +11,6 @@ import pytest
 from bad_line import Peer
 
 import hapticlab as hl
-from hapticlab.device.board.running import begin
 from hapticlab.device.board.serial_paddle import SerialPaddle
 from hapticlab.device.link.messages import STATES
 from hapticlab.device.link.wire import encode
@@ -156,7 +155,7 @@ def test_after_a_refused_start_set_means_the_scene_that_runs(board):
     board.start(LEAN(k=0, push=0.1))
     board.wait(0.05)
     with pytest.raises(LinkError, match="RANGE"):
-        begin(board, board.program(OTHER(k=20, push=-0.1)), None, 0, -1.0)
+        board._begin(board.program(OTHER(k=20, push=-0.1)), None, 0, -1.0)
     board.wait(0.05)
     board.set(push=0.2)
     board.wait(0.05)
@@ -169,7 +168,7 @@ def test_after_a_refused_start_set_means_the_scene_that_runs(board):
 
 def test_a_refused_start_with_nothing_running_may_be_started_again(board):
     with pytest.raises(LinkError, match="RANGE"):
-        begin(board, board.program(LEAN(k=0, push=0.1)), None, 0, -1.0)
+        board._begin(board.program(LEAN(k=0, push=0.1)), None, 0, -1.0)
     assert is_off(board)
     assert np.allclose(board.run(duration=0.01).F, 0.1, atol=1e-7)
 
@@ -221,7 +220,7 @@ def test_a_simulated_handle_beyond_its_travel_is_led_back():
     with hl.connect("sim://hapkit") as board:
         port = board.exchange.port
         board.start(LEAN(k=0, push=0.0))
-        while board._recording.fault is None:  # 0.3 m/s, slower than what is too fast
+        while board.under_way.fault is None:  # 0.3 m/s, slower than what is too fast
             port.handle.x += 3e-4
             board.wait(1e-3)
         assert "OVER_TRAVEL" in board.stop().fault and port.handle.x > 0.04

@@ -122,7 +122,7 @@ def test_a_damaged_upload_leaves_the_old_scene_running(monkeypatch):
     with paddle() as board:
         board.start(LEAN(k=10, push=0.1))
         board.wait(0.05)
-        monkeypatch.setattr("hapticlab.device.board.running.upload", damaged)
+        monkeypatch.setattr("hapticlab.device.board.run.upload", damaged)
         with pytest.raises(LinkError, match="CRC"):
             board.start(LEAN(k=20, push=-0.1))
         assert state_of(board) == "RUN"
@@ -227,7 +227,7 @@ def test_two_threads_that_set_at_once_leave_one_truth():
         for thread in threads:
             thread.join(30)
         board.wait(0.01)
-        known = dict(zip((c.name for c in board._program.parameters), board._program.values, strict=True))
+        known = dict(zip((c.name for c in board._loaded.program.parameters), board._loaded.program.values, strict=True))
         log = board.stop()
     assert not failures and len(log.changes) == 60
     assert log.F[-1] == np.float32(known["push"]) and log.parameters["k"] in (known["k"], 0.0)

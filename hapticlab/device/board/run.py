@@ -1,14 +1,20 @@
-"""Samples as they come from a board, and the Telemetry they make."""
+"""A run on a board: the program that was loaded, the samples as they come, and the Telemetry they make."""
 
 import math
 import struct
+import zlib
 from collections import deque
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...compiler.engines.bytecode import encode
+from ...compiler.ir.program import Program
 from ...errors import PaddleError
 from ...records import Telemetry
 from ..link.messages import FAULTS, SAMPLE_FLAGS, row_of
+from ..live import in_portions, named_values, send
+from .upload import upload
 
 #: part of the link that samples may take; state and requests need the rest
 SAMPLES_SHARE = 0.9
@@ -17,23 +23,45 @@ SAMPLE_OVERHEAD = 11
 _NUMPY = {"f32": "<f4", "bool": "<i4", "i32": "<i4"}
 
 
-class Recording:
-    """What one run said: samples are kept as bytes, and become arrays once, at the end.
+@dataclass(frozen=True)
+class Loaded:
+    """A program on the board, with the values that its parameters have there; START names it by its CRC-32."""
+
+    program: Program
+    crc: int
+
+    def with_values(self, numbers):
+        """The same program with other values of some parameters, {name: number}."""
+        known = named_values(self.program) | numbers
+        return Loaded(replace(self.program, values=tuple(known.values())), self.crc)
+
+
+def load(exchange, program, word_bytes):
+    """Put a program and its parameters on the board; nothing runs until the board has verified it."""
+    data = encode(program, word_bits=8 * word_bytes)
+    upload(exchange, "PROGRAM", data)
+    for some in in_portions(named_values(program)):
+        send(exchange, program, some)
+    return Loaded(program, zlib.crc32(data[:-4]))
+
+
+class Run:
+    """One run and what it said: samples are kept as bytes, and become arrays once, at the end.
 
     Parameters
     ----------
-    program : Program
-        Whose outputs the samples carry.
+    loaded : Loaded
+        What runs; the samples carry the outputs of its program.
     every : int
         Ticks from one sample to the next.
     """
 
-    def __init__(self, program, every):
-        self.program, self.every = program, every
+    def __init__(self, loaded, every):
+        self.loaded, self.program, self.every = loaded, loaded.program, every
         self.fault, self.last_tick, self.changes, self.begun = None, -1, [], False
         self._rows, self._taken = deque(), -every
         self._row = np.dtype([("tick", "<u4"), ("flags", "u1"), ("x", "<f4"), ("v", "<f4"), ("F", "<f4")] + [
-            (f"channel.{c.name}", _NUMPY[c.type]) for c in program.outputs[1:]])  # fmt: skip
+            (f"channel.{c.name}", _NUMPY[c.type]) for c in self.program.outputs[1:]])  # fmt: skip
 
     def begin(self):
         """Take samples from here on: those that are still under way from an earlier run came before."""
@@ -117,3 +145,37 @@ def fault_words(fault, T=None):
     name, cause, cure = row_of(FAULTS, fault["fault"]) or ("UNKNOWN", "", "")
     when = f"tick {fault['tick']}" + (f" (t = {fault['tick'] * T:g} s)" if T else "")
     return f"{when}: {name}: {cause}; the motor is off from there on. {cure[:1].upper()}{cure[1:]}."
+
+
+class Timing:
+    """What a board measures of its own steps and periods in one run [s].
+
+    Parameters
+    ----------
+    state : dict
+        Fields of a STATE message.
+    clock_hz : float
+        Of the board's clock.
+    T : float
+        [s]
+    """
+
+    def __init__(self, state, clock_hz, T):
+        self.T = T
+        self.period_min, self.period_max = (state[name] / clock_hz for name in ("period_min", "period_max"))
+        self.worst, self.mean = state["step_worst"] / clock_hz, state["step_mean"] / clock_hz
+        self.overruns, self.lost, self.damaged = state["overruns"], state["lost"], state["damaged"]
+
+    @property
+    def load(self):
+        """Share of the period that a step takes, on average."""
+        return self.mean / self.T
+
+    def __str__(self):
+        return (
+            f"step {self.mean * 1e6:.0f} us, worst {self.worst * 1e6:.0f} us of T = {self.T * 1e6:.0f} us "
+            f"({100 * self.load:.0f} %); period {self.period_min * 1e6:.1f} to {self.period_max * 1e6:.1f} us; "
+            f"{self.overruns} overruns, {self.lost} samples lost"
+        )
+
+    __repr__ = __str__

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from host_driver import spring
 
-from hapticlab.device.board.recording import Recording, decimation, fault_words
+from hapticlab.device.board.run import Loaded, Run, decimation, fault_words
 from hapticlab.device.link.messages import FAULTS
 from hapticlab.device.link.wire import Decoder, Frame, encode
 from hapticlab.errors import PaddleError
@@ -20,7 +20,7 @@ def sample(tick, flags=0, x=0.0, F=0.0):
 
 
 def recorded(*frames, every=1, begin=True, ticks=None):
-    recording = Recording(spring(K=2.0), every)
+    recording = Run(Loaded(spring(K=2.0), 0), every)
     if begin:
         recording.begin()
     for frame in frames:
@@ -89,7 +89,7 @@ def test_decimation_is_what_the_link_carries():
 
 def test_garbage_never_raises_and_never_counts_beyond_the_odds_of_16_bits():
     """20000 samples, each damaged: what passes CRC-16 anyway is about one in 65536, so at most a few."""
-    rng, decoder, recording = random.Random(8), Decoder(), Recording(spring(K=1.0), 1)
+    rng, decoder, recording = random.Random(8), Decoder(), Run(Loaded(spring(K=1.0), 0), 1)
     recording.begin()
     accepted = 0
     for k in range(20000):
