@@ -68,7 +68,7 @@ def order_of(
     force_at: Literal["before", "after", "mean"] = "before",
     **options: Any,
 ) -> Order:
-    """Return the order in T of the error of the force that a scene's program computes, where T is short enough.
+    """The order in T of the error of the force that a scene's program computes, where T is short enough.
 
     The error is that beside the force at the sample, for ``force_at="mean"`` beside the mean force of the period, in a
     smooth motion of the handle.
@@ -127,7 +127,7 @@ def _at_samples(method, options):
 
 
 def _seen(hold, velocity, at_samples):
-    """Return in words -> order: how x(t) and v(t) are seen over a period, and what is held from sample to sample."""
+    """Text -> order: how x(t) and v(t) are seen over a period, and what is held from sample to sample."""
     of_x, of_v = HOLD[hold]
     if not at_samples:
         return {f"x(t) of hold {hold}": of_x, f"v(t) of hold {hold}": of_v, "held over a period": 1}
@@ -136,7 +136,7 @@ def _seen(hold, velocity, at_samples):
 
 
 def _of_hold(variables, seen):
-    """Return the limits that the handle between samples, and what is held over a period, set."""
+    """The limits that the handle between samples, and what is held over a period, set."""
     (of_x, of_v, (kept, of_held)), limits = seen.items(), {}
     for variable in variables:
         role = getattr(type(variable), "role", None)
@@ -153,7 +153,7 @@ def _of_hold(variables, seen):
 
 
 def _of_force(felt, seen, velocity, force_at):
-    """Return the limits that the instant of the force sets, and the velocity in it."""
+    """The limits that the instant of the force sets, and the velocity in it."""
     limits = {}
     states = [a for a in felt if getattr(type(a.expr if a.is_Derivative else a), "role", None) in ("coordinate", "reaction")]
     if force_at == "after" and states:
@@ -168,7 +168,7 @@ def _of_force(felt, seen, velocity, force_at):
 
 
 def _of_cases(form, graph, values):
-    """Return the limits of cases that a method steps over: of a motion whose force goes as d**p at a distance d, p + 1."""
+    """The limits of cases that a method steps over: of a motion whose force goes as d**p at a distance d, p + 1."""
     limits, generator = {}, np.random.default_rng(7)
     for q, f in zip(form.coordinates, form.f, strict=True):
         for case in sorted(f.atoms(*KINKS), key=str):
@@ -179,7 +179,7 @@ def _of_cases(form, graph, values):
 
 
 def _sides(case):
-    """Return what is zero where a case ends."""
+    """The expressions that are zero where a case ends."""
     if isinstance(case, sp.Piecewise):
         return [r.lhs - r.rhs for _, c in case.args for r in c.atoms(sp.core.relational.Relational)] or [sp.S.One]
     if isinstance(case, (sp.Max, sp.Min)):
@@ -188,7 +188,7 @@ def _sides(case):
 
 
 def _power(side, f, graph, values, generator, looks=6):
-    """Return the least power of the distance from where ``side`` is zero by which f is not smooth there; inf where it is.
+    """The least power of the distance from where ``side`` is zero by which f is not smooth there; inf where it is.
 
     The fourth difference of d**p goes as d**p, that of a smooth function as d**4. It is taken at some places of each.
     """
@@ -211,7 +211,7 @@ def _somewhere(variable, values, generator):
 
 
 def _zero(of, place):
-    """Return where a function is zero, by the secant from a place, or None."""
+    """A zero of a function, by the secant method from a place, or None."""
     a, b = place, place + 1e-3
     for _ in range(30):
         ya, yb = float(of(a)), float(of(b))
@@ -226,7 +226,7 @@ def _zero(of, place):
 
 
 def _roughness(of, edge):
-    """Return by which power of the distance a function is not smooth at an edge, in halves; inf from 3 on."""
+    """The power of the distance by which a function is not smooth at an edge, in halves; inf from 3 on."""
     steps = np.array([-1.63, -0.63, 0.37, 1.37, 2.37])  # not even about the edge: an odd jump would cancel
     for d in (1e-6, 1e-4, 1e-3):  # a smoother edge shows farther from it
         near, far = (of(edge + steps * k * d) @ [1.0, -4.0, 6.0, -4.0, 1.0] for k in (1.0, 4.0))

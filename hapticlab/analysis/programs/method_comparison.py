@@ -47,11 +47,11 @@ class WithoutSteps:
     imaginary: float
 
     def longest_step(self, zeta: float = 0.0) -> float:
-        """Return the largest omega h of q'' = -omega^2 q - 2 zeta omega q'."""
+        """The largest omega h of q'' = -omega^2 q - 2 zeta omega q'."""
         return self.imaginary / max(1.0, zeta + math.sqrt(max(zeta**2 - 1.0, 0.0)))
 
     def energy_gain(self, omega_h: float) -> float:
-        """Return the part of its energy that a spring-mass gains in a step: none."""
+        """The part of its energy that a spring-mass gains in a step: none."""
         return 0.0
 
 
@@ -150,7 +150,7 @@ _BESIDE = (
 
 
 def methods() -> Methods:
-    """Return the methods by name: explicit fixed-step ones, their limits found by taking steps of them, "exact" and "taylor".
+    """The methods by name: explicit fixed-step ones, their limits found by taking steps of them, "exact" and "taylor".
 
     Returns
     -------

@@ -48,7 +48,7 @@ class Replay:
     units: dict[str, str] = field(repr=False, default_factory=dict)
 
     def plot(self) -> Figure:
-        """Return a figure: each channel of the view over time."""
+        """A figure: each channel of the view over time."""
         with house_style():
             figure = new_figure(height=1.2 + 1.7 * len(self.error))
             rows = figure.subplots(len(self.error), 1, sharex=True, squeeze=False)[:, 0]
@@ -148,7 +148,7 @@ def _rows(every, view, rows):
 
 
 def _memory(expr):
-    """Return what in an expression belongs to the samples of one rate, or None."""
+    """A part of an expression that belongs to the samples of one rate, or None."""
     for leaf in sorted(leaves(expr), key=str):
         role = getattr(type(leaf), "role", None)
         if leaf in (T, n) or isinstance(leaf, delay) or role == "signal" or (role == "handle" and lag_of(leaf)):
@@ -157,7 +157,7 @@ def _memory(expr):
 
 
 def _run(view, log, every, engine, options):
-    """Return the program and its watched channels at every so many rows, one tick past the record's end."""
+    """The program and its watched channels at every so many rows, one tick past the record's end."""
     program = compile(view, T=log.T * every, **options)
     at = np.arange(0, len(log) - 1 + every, every)
     over = np.maximum(at - (len(log) - 1), 0) * log.T  # the last tick may lie past the end: the handle goes on as it was
@@ -176,7 +176,7 @@ def _run(view, log, every, engine, options):
 
 
 def _between(values, every, rows):
-    """Return a channel at every row, by the cubic through the four nearest ticks."""
+    """A channel at every row, by the cubic through the four nearest ticks."""
     if every == 1 or len(values) < 4:
         return np.interp(np.arange(rows) / every, np.arange(len(values)), values)
     place = np.arange(rows) / every

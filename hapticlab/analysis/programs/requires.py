@@ -90,14 +90,14 @@ class _Report:
         return Requirements(self.program, kept, tuple(dropped), offers, everything, felt, view, made_of, declined)
 
     def _more(self, scene=None, **changes):
-        """Return how many instructions another scene or other options take more, or None where they cannot be had."""
+        """The additional instructions of another scene or other options; None where these cannot be had."""
         try:
             return len(lowered(scene or self.scene, **{**self.options, **changes})) - len(self.program)
         except HapticlabError:
             return None
 
     def _seeing(self, expressions):
-        """Return the scene with more channels, which cost nothing themselves but keep what they see."""
+        """The scene with more channels, which cost nothing themselves but keep what they see."""
         more = {f"seen_{k}": e for k, e in enumerate(expressions)}
         return replace(self.scene, watch={**self.scene.watch, **more})
 
@@ -166,7 +166,7 @@ class _Report:
                 yield Item(PART if len(folded) > 1 else "parameter", name, why, self._more(live=(*live, name)))
 
     def _parameters_used(self):
-        """Return the names in what the outputs can see, in the starts of it, and in the laws of contacts."""
+        """The names in what the outputs can see, in the starts of it, and in the laws of contacts."""
         form, seen = self.form, [self.form.force, *self.form.watch.values()]
         laws = [getattr(c, "law", c) for model in form.models for c in model.contacts]
         seen += [a for law in laws for a in vars(law).values() if isinstance(a, sp.Basic)]
@@ -193,7 +193,7 @@ class _Report:
             yield Item("velocity", "v", "nothing uses it", self._more(self._seeing([v(n)])))
 
     def _everything(self):
-        """Return the instructions with nothing left out."""
+        """The instructions with nothing left out."""
         names = (*self.graph.coordinates, *self.graph.signals)
         all_of_it = self._seeing([*(s for name in names for s in self._states(name)), v(n)])
         live = {} if chosen_method(self.options["method"]).exact else {"live": None}
@@ -201,7 +201,7 @@ class _Report:
         return len(self.program) + (more or 0)
 
     def _made_of(self):
-        """Return what the states of the program are, in words."""
+        """The states of the program, in words."""
         names = {c.name for c in self.program.states}
         rates = {f"d{name}/dt" for name in self.graph.coordinates} & names
         coordinates = set(self.graph.coordinates) & names
@@ -213,7 +213,7 @@ class _Report:
     # what is offered
 
     def _split(self):
-        """Return (felt, view): the scene without the islands that only feed a view, and these."""
+        """(felt, view): the scene without the islands that only feed a view, and these."""
         graph = self.whole
         shown = [c for c in graph.channels if set(graph.paths(c)) - {c} - set(graph.paths(FORCE))]
         if not shown:
@@ -226,14 +226,14 @@ class _Report:
         return felt, self._part(sp.S.Zero, of_view, graph.paths(*shown), f"view of {self.scene.name}")
 
     def _part(self, force, watch, needed, name):
-        """Return the scene of a force and channels, with the equations they need."""
+        """The scene of a force and channels, with the equations they need."""
         orders = dict(zip(self.form.coordinates, self.form.orders, strict=True))
         eom = [e for e in self.scene.eom if _defined(e, orders) & set(needed)]
         made = Scene(force=force, eom=eom, watch=watch, name=name)
         return made(**{p: value for p, value in self.scene.values.items() if p in made.parameters})
 
     def _offers(self, felt, view):
-        """Return (what is offered, why exact is not, or None)."""
+        """(what is offered, why exact is not, or None)."""
         offered, declined = [], None
         if view is not None:
             names = sorted(set(self.whole.paths(*self.whole.channels)) - set(self.whole.paths(FORCE)))
@@ -247,7 +247,7 @@ class _Report:
         return tuple(offered), declined
 
     def _linear(self):
-        """Return what method="exact" would save, or ([], why it cannot be had)."""
+        """The savings of method="exact", or ([], why it cannot be had)."""
         form = part_of(self.form, self.graph.needed)
         found = Coefficients(form, {}, self.options["T"])
         rows, reasons = linear_rows(found)
@@ -265,7 +265,7 @@ class _Report:
 
 
 def _in_words(item):
-    """Return an item whose savings are none without a number, and with words where it costs instructions."""
+    """An item whose savings are none without a number, and with words where it costs instructions."""
     if item.saves is None or item.saves > 0:
         return item
     return replace(item, saves=None, why=item.why + (f"; this takes {-item.saves} more" if item.saves else ""))
@@ -280,7 +280,7 @@ def _limits(p):
 
 
 def _defined(equation, orders):
-    """Return the names that an entry of eom determines: a signal, or the coordinates whose highest rate it holds."""
+    """The names that an entry of eom determines: a signal, or the coordinates whose highest rate it holds."""
     if not isinstance(equation, sp.Eq):
         return {type(q).__name__ for q in equation.coordinates}
     if getattr(type(equation.lhs), "role", None) == "signal":

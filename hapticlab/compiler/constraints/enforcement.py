@@ -28,16 +28,16 @@ class Closed:
         self.second, self.first = embedding.drivers, ()
 
     def instant(self, translate):
-        """Return the loops at one instant, to ask for rows, offsets and reactions."""
+        """The loops at one instant, to ask for rows, offsets and reactions."""
         return Instant(self.embedding, translate)
 
     def rates(self, instant, M, f):
-        """Return the accelerations of the drivers."""
+        """The accelerations of the drivers."""
         B, b = self._motion(instant)
         return embedded(M, f, B, b, self.definite), []
 
     def reactions(self, instant, M, f):
-        """Return constraint -> multiplier."""
+        """constraint -> multiplier."""
         B, b = self._motion(instant)
         w = embedded(M, f, B, b, self.definite)
         a = [plus(dot(row, w), offset) for row, offset in zip(B, b, strict=True)]
@@ -45,7 +45,7 @@ class Closed:
         return instant.reactions(dict(zip(self.coordinates, rest, strict=True)))
 
     def settle(self, at, state):
-        """Return the state as it is: a closed form is always on the constraints."""
+        """The state as it is: a closed form is always on the constraints."""
         return state
 
     def _motion(self, instant):
@@ -63,15 +63,15 @@ class Multipliers:
         self.second, self.first = tuple(coordinates), ()
 
     def instant(self, translate):
-        """Return the constraints at one instant, to ask for gradients and residuals."""
+        """The constraints at one instant, to ask for gradients and residuals."""
         return Unreduced(self.coordinates, self.constraints, translate)
 
     def rates(self, instant, M, f):
-        """Return the accelerations of all coordinates."""
+        """The accelerations of all coordinates."""
         return self._solved(instant, M, f)[0], []
 
     def reactions(self, instant, M, f):
-        """Return constraint -> multiplier."""
+        """constraint -> multiplier."""
         return dict(zip(self.constraints, self._solved(instant, M, f)[1], strict=True))
 
     def _solved(self, instant, M, f):
@@ -87,7 +87,7 @@ class Multipliers:
         return multipliers(M, J, f, c, LOST[real])
 
     def settle(self, at, state):
-        """Return the state moved back onto the constraints, by as little as the masses allow.
+        """The state moved back onto the constraints, by as little as the masses allow.
 
         ``at(state)`` returns the instant and the mass matrix there. One Newton step for the positions; the rates lose
         what would leave the constraints. Both use the same factors.
@@ -111,7 +111,7 @@ class Unreduced:
         self.coordinates, self.constraints, self.translate = coordinates, constraints, translate
 
     def leaf(self, expr):
-        """Return None: every coordinate is integrated, so none follows from others."""
+        """None: every coordinate is integrated, so none follows from others."""
         return None
 
     @property
@@ -137,7 +137,7 @@ class Unreduced:
         return [self.translate(Rate(g) if is_holonomic(g) else g) for g in self.constraints]
 
     def feedback(self, alpha):
-        """Return Baumgarte's 2 alpha g' + alpha^2 g, or alpha times a constraint of rates."""
+        """Baumgarte's 2 alpha g' + alpha^2 g, or alpha times a constraint of rates."""
         terms = []
         for g, off, rate in zip(self.constraints, self.residuals, self.rates_of_constraints, strict=True):
             terms.append(2 * alpha * rate + alpha**2 * off if is_holonomic(g) else alpha * rate)
@@ -156,15 +156,15 @@ class Partitioned:
         self.second = tuple(q for q in coordinates if q not in followers)
 
     def instant(self, translate):
-        """Return the followers at one instant, to ask for their rates."""
+        """The followers at one instant, to ask for their rates."""
         return Following(self, translate)
 
     def rates(self, instant, M, f):
-        """Return the accelerations of the drivers and the rates of the followers."""
+        """The accelerations of the drivers and the rates of the followers."""
         return embedded(M, f, instant.B, instant.b, self.definite), [instant.leaf(u.diff(t)) for u in self.first]
 
     def reactions(self, instant, M, f):
-        """Return constraint -> multiplier."""
+        """constraint -> multiplier."""
         w = embedded(M, f, instant.B, instant.b, self.definite)
         a = [plus(dot(row, w), offset) for row, offset in zip(instant.B, instant.b, strict=True)]
         rest = [plus(dot(row, a), scaled(-1.0, right)) for row, right in zip(M, f, strict=True)]
@@ -172,7 +172,7 @@ class Partitioned:
         return dict(zip(self.constraints, solve([list(column) for column in zip(*instant.J, strict=True)], own), strict=True))
 
     def settle(self, at, state):
-        """Return the state with the followers back on the constraints."""
+        """The state with the followers back on the constraints."""
         for _ in range(NEWTON):
             instant, _ = at(state)
             q, w, s = state
@@ -194,7 +194,7 @@ class Following:
         return [[self.translate(Partial(g, u)) for u in self.partition.first] for g in self.partition.constraints]
 
     def leaf(self, expr):
-        """Return the rate of a follower, or None for any other expression."""
+        """The rate of a follower, or None for any other expression."""
         if getattr(type(expr), "role", None) == "held":
             return self.translate(type(expr).of)
         if not (isinstance(expr, sp.Derivative) and expr.expr in self.partition.first):

@@ -30,7 +30,7 @@ def enforcement(
     constraints, coordinates, start, *, enforce="auto", alpha=None, M=None, definite=None, method=None, h=None, real="f64",
     used=(),
 ):  # fmt: skip
-    """Return (what enforces the constraints, notes that say why).
+    """(what enforces the constraints, notes that say why).
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def enforcement(
 
 @functools.lru_cache(maxsize=8)
 def _assembled(constraints, coordinates, start):
-    """Return the constraints as functions of arrays, independent of each other; ``start`` as items of a dict."""
+    """The constraints as functions of arrays, independent of each other; ``start`` as items of a dict."""
     assembly = assembled(constraints, coordinates, dict(start))
     check_independent(assembly, constraints, [g for g in constraints if is_holonomic(g)], coordinates)
     return assembly
@@ -107,7 +107,7 @@ def _assembled(constraints, coordinates, start):
 
 @functools.lru_cache(maxsize=8)
 def _closed(constraints, coordinates, start):
-    """Return the closed form and the note that says so."""
+    """The closed form and the note that says so."""
     embedding = embed(constraints, coordinates, dict(start))
     return embedding, _note_of(embedding)
 
@@ -132,7 +132,7 @@ def _note_of(embedding):
 
 
 def _followers(assembly, positions, constraints, coordinates, real):
-    """Return the coordinates to solve for: those that the constraints determine best where they do it worst."""
+    """The coordinates to solve for: those that the constraints determine best where they do it worst."""
     if len(positions) < len(constraints):
         raise SceneError("enforce='numeric' solves constraints of positions; one of rates needs enforce='kkt'")
     choices = list(itertools.combinations(range(len(coordinates)), len(constraints)))[:MOST_CHOICES]
@@ -160,7 +160,7 @@ def _definite(M):
 
 
 def _weight(M, assembly, coordinates):
-    """Return the factor of J^T J beside M: of the size of the masses that there are."""
+    """The factor of J^T J beside M: of the size of the masses that there are."""
     J = assembly.look(assembly.start[:, None])[1][:, :, 0]
     weight = float(np.trace(np.asarray(M, float)) / max(np.sum(J**2), math.ulp(0.0))) or 1.0
     whole = np.asarray(M, float) + weight * J.T @ J

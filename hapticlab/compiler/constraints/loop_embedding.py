@@ -29,7 +29,7 @@ class Instant:
         self.gradients, self.rates, self.rows, self.offsets = {}, {}, {}, {}
 
     def leaf(self, expr):
-        """Return a dependent coordinate or its rate, or None for any other expression."""
+        """A dependent coordinate or its rate, or None for any other expression."""
         if expr in self.step_of:
             return self._position(self.step_of[expr])
         if isinstance(expr, sp.Derivative) and expr.expr in self.step_of and expr.derivative_count == 1:
@@ -57,7 +57,7 @@ class Instant:
         return rate if isinstance(rate, Value) else self.translate(sp.Float(rate))
 
     def row(self, q):
-        """Return the row of B: how the rate of q follows those of the drivers."""
+        """The row of B: how the rate of q follows those of the drivers."""
         drivers = self.embedding.drivers
         if q in drivers:
             return [1.0 if q == driver else 0.0 for driver in drivers]
@@ -75,7 +75,7 @@ class Instant:
         return self.rows[q]
 
     def offset(self, q):
-        """Return what the acceleration of q is when the drivers have none."""
+        """The acceleration of q when the drivers have none."""
         if q in self.embedding.drivers:
             return 0.0
         if q not in self.offsets:
@@ -90,7 +90,7 @@ class Instant:
         return self.offsets[q]
 
     def reactions(self, unbalanced):
-        """Return constraint -> multiplier, from coordinate -> M a - f: what the reactions J^T lambda must provide."""
+        """constraint -> multiplier, from coordinate -> M a - f: what the reactions J^T lambda must provide."""
         found = {}
         for constraints, steps in reversed(self.embedding.groups):
             own = [step.coordinate for step in steps]
@@ -124,7 +124,7 @@ class Instant:
 
 
 def rate_of_itself(g):
-    """Return the rate of a constraint with its coordinates held: what time and the handle do to it."""
+    """The rate of a constraint with its coordinates held: what time and the handle do to it."""
     moving = [q for q in rates_of(g) if getattr(type(q), "role", None) == "coordinate"]
     held = {q: sp.Function(f"held_{type(q).__name__}", real=True, unit=type(q).unit, role="held", of=q)(t) for q in moving}
     still = g.xreplace(dict.fromkeys(held, sp.S.One))
@@ -132,7 +132,7 @@ def rate_of_itself(g):
 
 
 def solved(J, right):
-    """Return J^-1 right for one or two unknowns; the determinant is inverted once, whatever is solved with it.
+    """J^-1 right for one or two unknowns; the determinant is inverted once, whatever is solved with it.
 
     Examples
     --------

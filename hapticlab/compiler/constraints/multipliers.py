@@ -23,7 +23,7 @@ LOST = {"f64": 4e-15, "f32": 2e-6}
 
 
 def multipliers(M, J, f, c, tolerance=LOST["f64"]):
-    """Return (a, reaction multipliers) with M a = f + J^T lambda and J a = c, M symmetric and positive definite.
+    """(a, reaction multipliers) with M a = f + J^T lambda and J a = c, M symmetric and positive definite.
 
     Where J has lost a rank the pivot is replaced by zero, so that the result is not finite: the motor goes off.
 
@@ -71,7 +71,7 @@ def multipliers(M, J, f, c, tolerance=LOST["f64"]):
 
 
 def stiffened(M, J, f, c, weight):
-    """Return M + weight J^T J and f + weight J^T c: the same solution, and definite where M alone is not.
+    """M + weight J^T J and f + weight J^T c: the same solution, and definite where M alone is not.
 
     A coordinate without mass of its own is determined by the constraints.
     """
@@ -85,7 +85,7 @@ def stiffened(M, J, f, c, weight):
 
 
 def embedded(M, f, B, b, definite=True):
-    """Return the accelerations w' of what remains free: (B^T M B) w' = B^T (f - M b).
+    """The accelerations w' of what remains free: (B^T M B) w' = B^T (f - M b).
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def embedded(M, f, B, b, definite=True):
 
 
 def largest_feedback(method, most=100.0):
-    """Return the largest alpha*h for which Baumgarte's feedback g'' + 2 alpha g' + alpha^2 g = 0 decays in a method.
+    """The largest alpha*h for which Baumgarte's feedback g'' + 2 alpha g' + alpha^2 g = 0 decays in a method.
 
     The step matrix of the method on that equation is formed and its spectral radius followed: 2 (sqrt(2) - 1) for
     semi-implicit Euler, 2.785 for RK4. A Taylor series is taken for steps of up to a radian of the fastest part, and
@@ -145,7 +145,7 @@ def largest_feedback(method, most=100.0):
 
 
 def _radius(method, alpha_h):
-    """Return the spectral radius of one step of h = 1; implicit damping is of forces, and has no part in a feedback."""
+    """The spectral radius of one step of h = 1; implicit damping is of forces, and has no part in a feedback."""
     J = np.array([[0.0, 1.0], [-(alpha_h**2), -2.0 * alpha_h]])
     return max(abs(np.linalg.eigvals(step_matrix(replace(method, implicit_damping=False), J, 1, 1.0))))
 

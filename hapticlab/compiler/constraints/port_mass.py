@@ -10,7 +10,7 @@ from ..ir.trace import Builder, computed
 
 
 def port_mass(enforced, force, M, f, start):
-    """Return dF/dx'' [kg], the largest over the range of the drivers, at the rates of the start.
+    """dF/dx'' [kg], the largest over the range of the drivers, at the rates of the start.
 
     Parameters
     ----------
@@ -48,6 +48,6 @@ class _Stopped:
 
 
 def _evaluated(value, inputs, variables, a):
-    """Return a traced value in numbers, with the handle's acceleration a."""
+    """A traced value in numbers, with the handle's acceleration a."""
     inputs = [a if variable == acceleration(t) else number for variable, number in zip(variables, inputs, strict=True)]
     return computed(value.builder.instructions, [value.id], lambda i: inputs[i.index])[value.id]

@@ -82,7 +82,7 @@ class Contacts(tuple):
             check_apart(bodies, values)
 
     def speeds(self, T):
-        """Return name -> speed [m/s] past which two bodies may pass through each other between two samples T [s] apart.
+        """name -> speed [m/s] past which two bodies may pass through each other between two samples T [s] apart.
 
         A method that locates the touch inside the step has no such limit.
         """
@@ -96,7 +96,7 @@ class Contacts(tuple):
 
 
 def contacts_between(bodies, *, law, ignore=(), handle=(-math.inf, math.inf), corners=False, method="sample", values=None):
-    """Return a contact for each pair of bodies that can meet.
+    """A contact for each pair of bodies that can meet.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def contacts_between(bodies, *, law, ignore=(), handle=(-math.inf, math.inf), co
 
 
 def possible_pairs(bodies, *, ignore=(), handle=(-math.inf, math.inf)):
-    """Return the :class:`Pairs` of bodies whose boxes can meet over the declared ranges.
+    """The :class:`Pairs` of bodies whose boxes can meet over the declared ranges.
 
     Examples
     --------
@@ -190,7 +190,7 @@ def possible_pairs(bodies, *, ignore=(), handle=(-math.inf, math.inf)):
 
 
 def box(body, ranges):
-    """Return ((low, high) of x, (low, high) of y) [m] that hold a body wherever its coordinates are in their ranges."""
+    """((low, high) of x, (low, high) of y) [m] that hold a body wherever its coordinates are in their ranges."""
     if isinstance(body.shape, HalfPlane):
         everywhere, (_, top) = (-math.inf, math.inf), ranges(number_of(body.y))
         return (everywhere, (-math.inf, top)) if body.angle == 0 else (everywhere, everywhere)
@@ -205,7 +205,7 @@ def box(body, ranges):
 
 
 def _sweep(boxes):
-    """Return the pairs whose boxes overlap, as a set of frozensets; sorted along x, each is compared with the open ones."""
+    """The pairs whose boxes overlap, as a set of frozensets; sorted along x, each is compared with the open ones."""
     close, open_ = set(), []
     for body, (along, up) in sorted(boxes.items(), key=lambda item: item[1][0][0]):
         open_ = [other for other in open_ if boxes[other][0][1] >= along[0]]
@@ -218,7 +218,7 @@ def _sweep(boxes):
 
 
 def _reason(a, b, boxes, close, ignored, ranges):
-    """Return why two bodies never meet, or None."""
+    """Why two bodies never meet, or None."""
     if {frozenset([a.name]), frozenset([b.name]), frozenset([a.name, b.name])} & ignored:
         return WHATEVER[0]
     if not any(pose.has(t) for body in (a, b) for pose in (body.x, body.y, body.angle)):
@@ -247,7 +247,7 @@ def _apart(one, other):
 
 
 def _reach(body, ranges):
-    """Return the distance [m] from a body's origin to its furthest point."""
+    """The distance [m] from a body's origin to its furthest point."""
     squares = [ranges(number_of(u**2 + v**2))[1] for core in body.shape.cores for u, v in core]
     return math.sqrt(max(squares)) + ranges(number_of(body.shape.radius))[1]
 

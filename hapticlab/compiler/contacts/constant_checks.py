@@ -23,7 +23,7 @@ _ROUNDING = 1e-12
 
 
 def limits(form, values, folded, period):
-    """Return (low, high) of the live parameters that may not be set to all they were declared to be, by name.
+    """(low, high) of the live parameters that may not be set to all they were declared to be, by name.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def limits(form, values, folded, period):
 
 
 def bounded(program, limits):
-    """Return a program whose live parameters keep to limits, name -> (low, high)."""
+    """A program whose live parameters keep to limits, name -> (low, high)."""
     parameters = []
     for channel in program.parameters:
         low, high = limits.get(channel.name, (-math.inf, math.inf))
@@ -82,7 +82,7 @@ class _Constant:
             raise SceneError(f"{self.where}: {self.part}{shown} is {value:g}{unit} at the start; {self.why}: {self._needs()}")
 
     def narrowed(self, values, folded, period, given):
-        """Return name -> (low, high) of live parameters, which keep the constant in its range; refuse where none do."""
+        """name -> (low, high) of live parameters, which keep the constant in its range; refuse where none do."""
         live = [p for p in self.variables if isinstance(p, Parameter) and p.name not in folded and p not in given]
         open_ = [p for p in live if self._may_narrow(p, values)]
         if not all(isinstance(p, Parameter) for p in self.variables):

@@ -51,7 +51,7 @@ def _check_apart(contact, form, values):
 
 
 def _is_carried(contact, form, values):
-    """Tell whether a force is at most some times what presses its bodies together, or whether that cannot be told."""
+    """Whether a force is at most some times the one that presses its bodies together; True where that is not known."""
     if any(model.constraints for model in form.models):
         return True  # forces of constraints may press, which are found later
     free = {leaf: sp.S.Zero for f in form.f for leaf in f.atoms(sp.Function) if hasattr(type(leaf), "contact")}

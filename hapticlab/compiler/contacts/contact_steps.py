@@ -64,12 +64,12 @@ def check_contacts(form, values, h, T, method):
 
 
 def _largest(law, W, h, speed=1.0):
-    """Return the stiffness with which a contact lasts just ten steps: its duration goes as k^(-1/(n + 1)), n = 1 of a spring."""
+    """The stiffness with which a contact lasts just ten steps: its duration goes as k^(-1/(n + 1)), n = 1 of a spring."""
     return (law.duration(1.0, 1 / W, speed) / (STEPS_PER_CONTACT * h)) ** (float(getattr(law, "exponent", 1)) + 1)
 
 
 def limited(program, largest):
-    """Return a program whose live parameters stop where a contact would get too short, with a note on each.
+    """A program whose live parameters stop where a contact would get too short, with a note on each.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ class Impacts:
     sums: dict = field(default_factory=dict)
 
     def __call__(self, at, fired, held):
-        """Return (w, held) after the contacts fired, beside those that rest or touch already; add to ``sums``.
+        """(w, held) after the contacts fired, beside those that rest or touch already; add to ``sums``.
 
         ``at(value)`` gives any value of the motion at that instant; ``fired`` and ``held`` go by reactions.
         """
@@ -81,7 +81,7 @@ class Impacts:
 
 
 def impacts_of(motion, laws, place, period, order="sequential", slips=(), rubs=()):
-    """Return the :class:`Impacts` of a motion.
+    """The :class:`Impacts` of a motion.
 
     J, M^-1 J^T and the second derivative of each gap are traced from the motion itself: along a coordinate, along a
     reaction, along the motion.
@@ -127,7 +127,7 @@ class _Along:
         self.builder = motion.builder
 
     def __call__(self, value, direction, order=1, zero=()):
-        """Return coefficient ``order`` of a value while its leaves go along a direction; those in ``zero`` are 0."""
+        """Coefficient ``order`` of a value while its leaves go along a direction; those in ``zero`` are 0."""
         rows = {leaf.id: [leaf, speed, *[0.0] * order] for leaf, speed in direction.items()}
         rows |= {leaf.id: [0.0] for leaf in zero}
         found = Series(self.builder.instructions, rows, self.builder.result).of(value, order)[order]
@@ -135,7 +135,7 @@ class _Along:
 
 
 def _symmetric(rows, columns):
-    """Return J (M^-1 J^T), symmetric to the last digit."""
+    """J (M^-1 J^T), symmetric to the last digit."""
     W = [[None] * len(rows) for _ in rows]
     for i, row in enumerate(rows):
         for j in range(i + 1):

@@ -13,7 +13,7 @@ from ..ir.trace import maximum, minimum, select
 
 
 def sequential(W, u, e, touching=None, sweeps=None, rubs=None):
-    """Return (p, u_after): one contact after the other, in sweeps to and fro over the list, each by its own restitution.
+    """(p, u_after): one contact after the other, in sweeps to and fro over the list, each by its own restitution.
 
     A contact that approaches gets u+ = -e u-, its neighbours feel it, and so on. Along a chain of k contacts k sweeps
     bring a blow from either end to the other: Newton's cradle of k + 1 balls. What still approaches then, among unequal
@@ -63,7 +63,7 @@ def _plus(a, w, blow):
 
 
 def simultaneous(W, u, e, touching=None, names=None):
-    """Return (p, u_after): all contacts at once, 0 <= p, u+ >= -e u-, and p > 0 only where they are equal (Moreau 1988).
+    """(p, u_after): all contacts at once, 0 <= p, u+ >= -e u-, and p > 0 only where they are equal (Moreau 1988).
 
     Exact, and whatever the order of the contacts. With one e for all it never gains energy; with several it may, and then
     the least of them serves for all. A contact that was leaving and is struck closed again stays closed.
@@ -102,7 +102,7 @@ def _at_once(W, u, e, touching, names):
 
 
 def closed(W, p, u, touching=None, names=None):
-    """Return (p, u_after) with what still approaches after an impact brought to rest on each other: then u_after >= 0."""
+    """(p, u_after) with what still approaches after an impact brought to rest on each other: then u_after >= 0."""
     more = complementarity(W, u, touching, names)
     return [a + b for a, b in zip(p, more, strict=True)], _after(W, u, more)
 
@@ -112,7 +112,7 @@ def _after(W, u, p):
 
 
 def with_friction(W, c, N, u, slip, e, mu):
-    """Return (p, s): normal and tangential impulse of one contact, the tangential one within the friction cone |s| <= mu p.
+    """(p, s): normal and tangential impulse of one contact, the tangential one within the friction cone |s| <= mu p.
 
     Newton's restitution and Coulomb's law of impulses (Whittaker; Brach 1991): the impulse that stops the slip if the
     cone holds it, else mu p against the slip. Where slip and approach are coupled (c != 0) the pair can gain energy
@@ -161,7 +161,7 @@ def _coulomb(W, c, N, u, slip, e, mu):
 
 
 def dissipated(u, after, p):
-    """Return the energy that each impulse took [J]: -p (u- + u+)/2, exact in sum for any of the laws (Thomson and Tait).
+    """The energy that each impulse took [J]: -p (u- + u+)/2, exact in sum for any of the laws (Thomson and Tait).
 
     For one contact it is 1/2 (1 - e^2) u^2 / W, with 1/W the effective mass.
 
@@ -198,7 +198,7 @@ def check_rest_speed(rest_speed, acceleration, T, name):
 
 
 def micro_rebound(gap, u, e, envelope, acceleration, step):
-    """Return the gap rate after a micro-impulse at the end of a step; Mirtich and Canny (1995).
+    """The gap rate after a micro-impulse at the end of a step; Mirtich and Canny (1995).
 
     A contact acts within the envelope. An approach faster than the free acceleration a gives in two steps is an impact
     and rebounds with e. A slower one is lasting contact: it rebounds with enough to end the next step in the middle of the

@@ -60,7 +60,7 @@ class Struck:
 
 
 def strike(W, u, b, touching, laws, period, order="sequential"):
-    """Return :class:`Struck`: impacts by the laws, then rest for what would be back within the period.
+    """:class:`Struck`: impacts by the laws, then rest for what would be back within the period.
 
     A contact rests if it is pressed closed and its rebound is slower than its rest speed, or than a T/2: a flight of
     2 u/a would end within the period T. What rests loses its rebound at once, so that no gap opens under it.
@@ -117,7 +117,7 @@ def strike(W, u, b, touching, laws, period, order="sequential"):
 
 
 def release(W, b, resting, names=None):
-    """Return which of some resting contacts go on resting: those whose reactions push.
+    """Those of some resting contacts that go on resting: their reactions push.
 
     To be asked where one of the reactions has come down to zero; the others may need another set than before.
     """
@@ -126,7 +126,7 @@ def release(W, b, resting, names=None):
 
 
 def micro_impulses(W, u, b, gaps, laws, envelopes, step):
-    """Return (p, u_after) of the micro-impulses at the end of a step; Mirtich and Canny (1995).
+    """(p, u_after) of the micro-impulses at the end of a step; Mirtich and Canny (1995).
 
     All at once: each contact within its envelope is to leave at least as
     :func:`~hapticlab.compiler.contacts.impulses.micro_rebound` says, with the acceleration that its reaction would cancel.
@@ -145,7 +145,7 @@ def micro_impulses(W, u, b, gaps, laws, envelopes, step):
 
 
 def _possible(gaps, p, before, after, touching):
-    """Return the impulses, nan where they do not keep the contacts apart: there the motor goes off."""
+    """The impulses, nan where they do not keep the contacts apart: there the motor goes off."""
     size = 0.0
     for rate in before[: len(touching)]:
         size = maximum(size, abs(rate))
@@ -154,7 +154,7 @@ def _possible(gaps, p, before, after, touching):
 
 
 def _slow(rate, acceleration, rest_speed, period):
-    """Tell whether a rebound is below the rest speed, or back within the period."""
+    """Whether a rebound is below the rest speed, or back within the period."""
     if isinstance(rest_speed, float) and math.isinf(rest_speed):
         return True
     bound = acceleration * (0.5 * period)

@@ -11,7 +11,7 @@ INFLATED = 1 + 1e-6
 
 
 def strays(A, c, h, degree, scale):
-    """Return how far c y strays from its chord over [0, h], at most, a unit of each rate and of each drive.
+    """The largest distance of c y from its chord over [0, h], for a unit of each rate and of each drive.
 
     y(tau) = y(0) + Psi_0(tau) y'(0) + sum of Psi_j(tau) r_j for y'' = A y' + r_1 + r_2 tau + ..., the Psi_j of
     :func:`~hapticlab.compiler.algebra.matrix_exponential.held`. The largest of places h/16 apart or nearer; between two
@@ -57,6 +57,6 @@ def strays(A, c, h, degree, scale):
 
 
 def power_strays(k):
-    """Return how far theta^k strays from its chord over [0, 1]."""
+    """The largest distance of theta^k from its chord over [0, 1]."""
     place = k ** (-1 / (k - 1))
     return (place - place**k) * INFLATED

@@ -131,7 +131,7 @@ class Flow:
         self.held = []
 
     def at(self, value):
-        """Return what a value of the motion is at the start."""
+        """A value of the motion at the start."""
         return self.series.of(value, 0)[0]
 
     def grow(self, order):
@@ -142,11 +142,11 @@ class Flow:
             self._grow_once(k, self.motion.stops)
 
     def of(self, value, order):
-        """Return the coefficients 0 to order of a value of the motion."""
+        """The coefficients 0 to order of a value of the motion."""
         return self.series.of(value, order)
 
     def state(self):
-        """Return the coefficients of (q, w, s)."""
+        """The coefficients of (q, w, s)."""
         motion, known = self.motion, self.series.known
         return tuple([known[leaf.id] for leaf in group] for group in (motion.q, motion.w, motion.s))
 
@@ -184,7 +184,7 @@ class Flow:
         self._set(0, self._solved(self._rest))
 
     def put_back(self, held):
-        """Return ((q, w, s), impulses) with what is held put back to where it is held; after :meth:`begin`.
+        """((q, w, s), impulses) with what is held put back to where it is held; after :meth:`begin`.
 
         The handle moves between two samples as its hold has it, so at a sample it jumps, and with it what it touches.
         Positions and rates change by as little as the masses allow: by what the reactions themselves push.
@@ -201,7 +201,7 @@ class Flow:
         return (moved, rates[: len(w)], rates[len(w) :]), p
 
     def _possible(self, moved, pushes, held, gaps):
-        """Return the positions put back, nan where a body is held between two that leave no room for it."""
+        """The positions put back, nan where a body is held between two that leave no room for it."""
         contacts = [i for i, r in enumerate(self.motion.reactions) if r.level == 2]
         slopes = [[self._slopes[1][i][j] for j in contacts] for i in contacts]
         r, size = [pushes[i] for i in contacts], 0.0
@@ -212,13 +212,13 @@ class Flow:
         return moved if never is False else [select(never, math.nan, value) for value in moved]
 
     def _masked(self, held, left):
-        """Return the pushes that take away what is left of some held measures."""
+        """The pushes that take away what is left of some held measures."""
         n = len(held)
         rows = [[_either(held[i], self._slopes[1][i][j], float(i == j)) for j in range(n)] for i in range(n)]
         return reactions(rows, [_either(h, value, 0.0) for h, value in zip(held, left, strict=True)], [True] * n)
 
     def slope(self, i):
-        """Return how the rate of measure i changes with its own reaction."""
+        """The slope of the rate of measure i by its own reaction."""
         return self._slopes[1][i][i]
 
     def _set(self, k, values):
@@ -226,7 +226,7 @@ class Flow:
             self.series.known[r.leaf.id].append(value)
 
     def _left(self, k, trial):
-        """Return [(free, held)]: what each reaction leaves unsatisfied at order k with trial values; forget the trial."""
+        """[(free, held)]: what each reaction leaves unsatisfied at order k with trial values; forget the trial."""
         series, motion = self.series, self.motion
         start = series.lengths()
         self._set(k, trial)

@@ -18,7 +18,7 @@ class Leaves:
         self.builder, self.made = builder, 1 << 20
 
     def __call__(self, type=None):
-        """Return a leaf that no other is equal to."""
+        """A leaf that no other is equal to."""
         # past every real input, and past the leaves that an earlier motion made in the same builder
         self.made += 1
         return self.builder.leaf("input", self.made + (len(self.builder.instructions) << 24), type or self.builder.real)
@@ -75,13 +75,13 @@ class Reaction:
 
 
 def coulomb(new, slip, F_c, F_s, leaf):
-    """Return the Reaction of a Coulomb friction that is F_c against the slip, or up to F_s while it sticks."""
+    """The Reaction of a Coulomb friction that is F_c against the slip, or up to F_s while it sticks."""
     side = new("bool")
     return Reaction(leaf, slip, 1, select(side, F_c, -F_c), (F_s - leaf) * (F_s + leaf), leaf, side)
 
 
 def contact(gap, leaf):
-    """Return the Reaction of a contact: zero apart, what keeps the gap closed at rest."""
+    """The Reaction of a contact: zero apart, what keeps the gap closed at rest."""
     return Reaction(leaf, gap, 2, leaf.builder.const(0.0, leaf.type), leaf)
 
 
@@ -96,7 +96,7 @@ class _Surface:
 
 
 def freeze(builder, targets, moving, rates, new, where=None):
-    """Return (targets, guards, reactions) with every comparison of what moves replaced by a leaf.
+    """(targets, guards, reactions) with every comparison of what moves replaced by a leaf.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def freeze(builder, targets, moving, rates, new, where=None):
 
 
 def _idle(guard, frozen, targets):
-    """Return the (leaf, value) of other guards that hide this one: a wall that only pushes, while it is not touched."""
+    """The (leaf, value) of other guards that hide this one: a wall that only pushes, while it is not touched."""
     others = [g for g in frozen.guards if g is not guard]
     parts = [part for g in others for part in (g.first, g.second)]
     parts += [part for r in frozen.reactions for part in (r.measure, r.free, r.inside)]
@@ -131,7 +131,7 @@ def _idle(guard, frozen, targets):
 
 
 def _reached_in(instructions, positions, leaf, value):
-    """Return what some positions depend on where a bool leaf has a value."""
+    """The positions that others depend on where a bool leaf has a value."""
     reached, stack = set(), list(positions)
     while stack:
         p = stack.pop()
@@ -164,7 +164,7 @@ class _Freezing:
         return reached
 
     def _surface_of(self, p):
-        """Return (key, sense) of the comparison at p: True for first < second, or (None, None)."""
+        """(key, sense) of the comparison at p: True for first < second, or (None, None)."""
         i = self.instructions[p]
         if i.op == "not":
             key, sense = self._surface_of(i.args[0])
@@ -175,7 +175,7 @@ class _Freezing:
         return None, None
 
     def _ordered(self, a, b):
-        """Return (key, sense) of a < b: the same key for all ways to write one surface, 0 < -u and u - v < 0 too."""
+        """(key, sense) of a < b: the same key for all ways to write one surface, 0 < -u and u - v < 0 too."""
         while self.zero in (a, b):
             i = self.instructions[a if b == self.zero else b]
             if i.op == "neg":
@@ -213,12 +213,12 @@ class _Freezing:
         return found
 
     def _slides(self, key):
-        """Tell whether both cases may push towards the surface: it is a velocity, and the cases differ on it."""
+        """Whether both cases may push towards the surface: it is a velocity, and the cases differ on it."""
         surface = self.surfaces[key]
         return bool(surface.cases) and not surface.in_logic and not self.of_rates.isdisjoint(key)
 
     def rewritten(self, p, assumed):
-        """Return the value at p, comparisons replaced; ``assumed`` holds (surface, sense) of the cases it stands in."""
+        """The value at p, comparisons replaced; ``assumed`` holds (surface, sense) of the cases it stands in."""
         if p not in self.moves:
             return self.builder.result(p)
         if (p, assumed) not in self.known:
@@ -251,7 +251,7 @@ class _Freezing:
         return self._either(key, sense, *(lambda within, a=a: self.rewritten(a, within) for a in i.args[1:]), assumed)
 
     def _either(self, key, sense, true, false, assumed):
-        """Return one of two cases, or the mixture of both where their surface may be slid along."""
+        """One of two cases, or the mixture of both where their surface may be slid along."""
         below, above = (true, false) if sense else (false, true)
         if (key, True) in assumed or (key, False) in assumed:
             return (below if (key, True) in assumed else above)(assumed)
@@ -260,7 +260,7 @@ class _Freezing:
         return select(leaf, below, above) if leaf.type == "bool" else below + leaf * (above - below)
 
     def _leaf(self, key):
-        """Return the leaf of a surface; the first time, describe the surface too."""
+        """The leaf of a surface; the first time, describe the surface too."""
         if key not in self.leaves:
             surface = self.surfaces[key]
             self.leaves[key] = self._slide(key) if self._slides(key) else self._guard(key, surface)

@@ -72,7 +72,7 @@ class Stepper:
         self.longest = longest
 
     def step(self, tau, state, held=(), jumped=False):
-        """Return (state, held, unlocated) at tau + h; ``unlocated`` is true where an event was left out.
+        """(state, held, unlocated) at tau + h; ``unlocated`` is true where an event was left out.
 
         ``jumped``: the handle is a new sample, not where the step before left it.
         """
@@ -97,7 +97,7 @@ class Stepper:
         return self._ended(ends, self._moved(flow, now, reach), now.held, missed)
 
     def _ended(self, ends, state, held, missed):
-        """Return what the first piece that ends the step leaves; all later ones are needed by one case alone."""
+        """(state, held, missed) of the first piece that ends the step."""
         for now, rough in reversed(ends):
             more = 0.0 < now.left
             state = tuple(
@@ -109,7 +109,7 @@ class Stepper:
         return state, held, missed
 
     def reactions(self, tau, state, held):
-        """Return what the reactions are at a state, with those held that are."""
+        """The reactions at a state, with those held that are."""
         flow, _ = self._flow(self._start(tau, state, list(held)))
         return [flow.at(r.leaf) for r in self.motion.reactions]
 
@@ -120,7 +120,7 @@ class Stepper:
         return replace(now, flags=flags, sides=sides)
 
     def _put_back(self, now):
-        """Return where the step stands after the handle jumped: what rests on it and sticks to it goes along.
+        """The step after the handle jumped: bodies that rest on it or stick to it go along.
 
         A contact is let go where that takes a pull that its reaction could not give within the step.
         """
@@ -139,7 +139,7 @@ class Stepper:
         return replace(now, state=state, held=held)
 
     def _truths(self, tau, state):
-        """Return the flag of every guard, and the side of every slip, as the comparisons have them."""
+        """The flag of every guard, and the side of every slip, as the comparisons have them."""
         motion, modes, flags = self.motion, {}, []
         for g in motion.guards:
             flow = Flow(motion, tau, state, modes, self.h, self.number)
@@ -150,7 +150,7 @@ class Stepper:
         return flags, [None if r.side is None else 0.0 < flow.at(r.measure) for r in motion.reactions]
 
     def _flow(self, now):
-        """Return the motion from here on, and which reactions are held: those tried whose limits allow it."""
+        """The motion from here on, and which reactions are held: those tried whose limits allow it."""
         flow = self._fresh(now)
         if self.motion.reactions:
             flow.begin()
@@ -204,7 +204,7 @@ class Stepper:
             yield [a if is_zero(a) and is_zero(b) else select(held, b, a) for a, b in zip(apart, inside, strict=True)], left
 
     def _moved(self, flow, now, theta):
-        """Return the state at theta; nan where its series diverges."""
+        """The state at theta; nan where its series diverges."""
         state = tuple([horner(p, theta) for p in part] for part in flow.state())
         if not self.remainder:
             return state
@@ -213,7 +213,7 @@ class Stepper:
         return tuple([select(wild, math.nan, value) for value in part] for part in state)
 
     def _advanced(self, flow, now, guards, reach):
-        """Return where the step stands at the earliest of the crossings found, its mode changed."""
+        """The step at the earliest of the crossings found, its mode changed."""
         motion, base = self.motion, len(self.motion.guards)
         earliest = 1.0
         for place, _ in guards:
@@ -241,7 +241,7 @@ class Stepper:
         return self._struck(now, later, fired) if self.impact else later
 
     def _toggled(self, flow, now, theta, fired):
-        """Return the flags after the crossings."""
+        """The flags after the crossings."""
         flags = []
         for g, flag, f in zip(self.motion.guards, now.flags, fired, strict=False):
             if g.kind == "floor":
@@ -262,7 +262,7 @@ class Stepper:
         yield from (None for _ in self.motion.reactions)
 
     def _idle(self, guard, now):
-        """Tell whether the motion does not depend on a guard in the present modes."""
+        """Whether the motion does not depend on a guard in the present modes."""
         flags = {g.leaf: flag for g, flag in zip(self.motion.guards, now.flags, strict=True)}
         return any_of(flags[leaf] if value else ~flags[leaf] for leaf, value in guard.idle)
 

@@ -24,7 +24,7 @@ _MOST_ENDS = 4
 
 
 def numbers(instructions, given):
-    """Return what evaluates positions of an instruction list: leaves from ``given``: dict (op, index) -> float."""
+    """A function that evaluates positions of an instruction list; leaves come from ``given``: dict (op, index) -> float."""
     known = {}
 
     def number(p):
@@ -51,7 +51,7 @@ def _value(i, known, given):
 
 
 def _varied(motion, modes, at, number):
-    """Return the series of values and their gradients by (q, w, s), as coefficients 0 and 1."""
+    """The series of values and their gradients by (q, w, s), as coefficients 0 and 1."""
     leaves, values = [*motion.q, *motion.w, *motion.s], [*at[0], *at[1], *at[2]]
     rows = {leaf.id: [np.float64(value), unit] for leaf, value, unit in zip(leaves, values, np.eye(len(leaves)), strict=True)}
     # float zeros of numpy: what divides by them is inf, as on every engine
@@ -61,7 +61,7 @@ def _varied(motion, modes, at, number):
 
 
 def jacobian(motion, modes, at, number):
-    """Return the matrix of the motion's rates at a state (q, w, s), shape (2 n + m, 2 n + m), in given modes."""
+    """The matrix of the motion's rates at a state (q, w, s), shape (2 n + m, 2 n + m), in given modes."""
     series, n = _varied(motion, modes, at, number), len(motion.q)
     J = np.zeros((2 * n + len(motion.s),) * 2)
     J[:n, n : 2 * n] = np.eye(n)
@@ -72,7 +72,7 @@ def jacobian(motion, modes, at, number):
 
 
 def onto_surfaces(motion, modes, at, number):
-    """Return a state like the one given that can be in these modes: on the surfaces it would have to lie beyond."""
+    """A state like the one given that can be in these modes: on the surfaces it would have to lie beyond."""
     q, w, s = np.array(at[0], float), at[1], at[2]
     for g in motion.guards:
         if g.kind == "side":
@@ -106,7 +106,7 @@ def _free(motion, modes):
 
 
 def frequency(motion, states, number, linear=True):
-    """Return the largest |eigenvalue| [rad/s] of the motion over its modes and some states; nan where it is not known.
+    """The largest |eigenvalue| [rad/s] of the motion over its modes and some states; nan where it is not known.
 
     Where it is not linear, a mode that a state cannot be in is looked at where it begins; of the states after the first,
     those where it has no finite rates do not count.
@@ -138,7 +138,7 @@ def within(ranges, start, count=8):
 
 
 def live_in(motion, parameters):
-    """Return the live parameters that the rates of a motion depend on, of all ``parameters`` of its scene."""
+    """The live parameters that the rates of a motion depend on, of all ``parameters`` of its scene."""
     instructions = motion.builder.instructions
     reached = reachable(instructions, [rate.id for rate in (*motion.a, *motion.ds)])
     return [parameters[k] for k in sorted({instructions[p].index for p in reached if instructions[p].op == "param"})]
@@ -191,7 +191,7 @@ def around(start, ranges, bound):
 
 
 def order_for(omega_h, real, linear):
-    """Return the order at which the series of a motion is cut: its rest is below the rounding of the type.
+    """The order at which the series of a motion is cut: its rest is below the rounding of the type.
 
     A linear motion leaves (omega h)^(N+1)/(N+1)!; it is taken for twice its frequency, so that a live parameter may
     grow fourfold. Others converge as a geometric series does, and get the largest order.
@@ -214,7 +214,7 @@ def order_for(omega_h, real, linear):
 
 
 def is_linear(motion, measures=()):
-    """Tell whether the motion of every mode is linear in its state, driven by polynomials of time at most; measures too."""
+    """Whether the motion of every mode is linear in its state, driven by polynomials of time at most; measures too."""
     instructions = motion.builder.instructions
     reached = reachable(instructions, [value.id for value in (*motion.a, *motion.ds, *measures)])
     mixed = _mixed(motion, reached)
@@ -238,7 +238,7 @@ def is_linear(motion, measures=()):
 
 
 def _mixed(motion, reached):
-    """Return the products, of a mixture of cases and the jump between them, that stand for the mixture's unknown.
+    """The products, of a mixture of cases and the jump between them, that stand for the mixture's unknown.
 
     Free, a mixture is 0 or 1, and its product no more than the jump is. Held, the product is what keeps a coordinate at
     rest, as linear as an unknown friction is: where the mixture enters nowhere else, and nothing of the jump moves then.
@@ -275,7 +275,7 @@ def check_smooth(motion, name):
     zero = motion.builder.const(0.0, motion.builder.real).id
 
     def vanishes(p):
-        """Tell whether a value is zero on a surface: a factor of it is, or one of its cases."""
+        """Whether a value is zero on a surface: a factor of it is, or one of its cases."""
         i = instructions[p]
         if p == zero or frozenset((p, zero)) in edges:
             return True

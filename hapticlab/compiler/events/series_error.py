@@ -11,7 +11,7 @@ NOTHING = 1e-9
 
 
 def remainder_for(order, real, linear):
-    """Return the parts of a state that the last term of its series may be: (converged, not diverged); None where it is.
+    """The parts of a state that the last term of its series may be: (converged, not diverged); None where it is.
 
     Examples
     --------
@@ -26,7 +26,7 @@ def remainder_for(order, real, linear):
 
 
 def exceeded(rows, theta, order, parts):
-    """Return for each part whether the last term of a series at theta is more than that part of the terms before it.
+    """For each part whether the last term of a series at theta is more than that part of the terms before it.
 
     Parameters
     ----------
@@ -43,6 +43,6 @@ def exceeded(rows, theta, order, parts):
 
 
 def _power(a, n):
-    """Return a**n by squaring."""
+    """a**n by squaring."""
     half = _power(a, n // 2) if n > 1 else 1.0
     return half * half * a if n % 2 else half * half

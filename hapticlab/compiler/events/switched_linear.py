@@ -97,7 +97,7 @@ class Maps:
             yield r.measure, r.side, True, ()
 
     def _walls(self, mode):
-        """Return (number of the choice, direction, place) of each surface that stands still: it is met at row y = place."""
+        """(number of the choice, direction, place) of each surface that stands still: it is met at row y = place."""
         motion, found = self.motion, []
         still = self._at([0.0] * len(self.leaves), 0.0, mode.sides, 1)
         leaves = {leaf.id for leaf in self.choices} | {r.leaf.id for r in motion.reactions}
@@ -111,7 +111,7 @@ class Maps:
         return found
 
     def _possible(self, sides):
-        """Tell whether a state can be on these sides of all surfaces that stand still: of walls in a row, not on any two."""
+        """Whether a state can be on these sides of all surfaces that stand still: of walls in a row, not on any two."""
         within = {}
         for k, direction, turned, place in self.walls:
             low, high = within.get(direction, (-math.inf, math.inf))
@@ -120,7 +120,7 @@ class Maps:
         return all(low <= high for low, high in within.values())
 
     def _series(self, rows, sides, order, number=None):
-        """Return the series of a motion whose state stays as ``rows`` has it, nothing held, known to an order."""
+        """The series of a motion whose state stays as ``rows`` has it, nothing held, known to an order."""
         motion = self.motion
         rows |= {leaf.id: [value] + [0.0] * order for leaf, value in sides.items()}
         rows |= {r.leaf.id: [] for r in motion.reactions}
@@ -131,7 +131,7 @@ class Maps:
         return series
 
     def _mode(self, sides):
-        """Return a mode: its matrix and rows column by column, the slopes by one state at a time."""
+        """A mode: its matrix and rows column by column, the slopes by one state at a time."""
         motion, columns, sides = self.motion, [], dict(zip(self.choices, map(np.bool_, sides), strict=True))
         rates, measures = [*motion.a, *motion.ds], [surface[0] for surface in self.surfaces]
         for varied in self.leaves:
@@ -143,7 +143,7 @@ class Maps:
         return _Mode(sides, A, list(table[len(rates) :]))
 
     def _number(self, slope):
-        """Return a slope as a number; refuse one that may change while the program runs."""
+        """A slope as a number; refuse one that may change while the program runs."""
         value = slope.constant if isinstance(slope, Value) else slope
         if value is not None:
             return float(value)
@@ -160,14 +160,14 @@ class Maps:
     # at run time
 
     def over(self, state):
-        """Return (state after the period, room): in the modes at the sample, ``room`` > 0 if they hold over the period."""
+        """(state after the period, room): in the modes at the sample, ``room`` > 0 if they hold over the period."""
         values, n = [*state[0], *state[1], *state[2]], len(self.motion.q)
         moved = {sides: self._moved(mode, values) for sides, mode in self.modes.items()}
         *after, room = self._chosen(self._sides(values), moved, [*values, -1.0])
         return (after[:n], after[n : 2 * n], after[2 * n :]), room
 
     def _sides(self, values, number=None):
-        """Return on which sides a state is, as the comparisons have it."""
+        """On which sides a state is, as the comparisons have it."""
         sides = {}
         for g in self.motion.guards:
             at = self._at(values, 0.0, sides, number=number)
@@ -179,7 +179,7 @@ class Maps:
         return tuple(sides.values())
 
     def step(self, stepper, state, held):
-        """Return (state, held, unlocated) after a period: by a map where that is sure, else with switches located."""
+        """(state, held, unlocated) after a period: by a map where that is sure, else with switches located."""
         fast, room = self.over(state)
         slow, now, missed = stepper.step(self.motion.builder.const(0.0), state, held, jumped=True)
         sure = (0.0 < room) & ~any_of(held)
@@ -190,7 +190,7 @@ class Maps:
         return state, held, select(sure, 0.0, select(missed, 1.0, self.motion.builder.const(0.0)))
 
     def longest(self, flags):
-        """Return the part of the period in which a motion in the modes of these flags turns by a radian, at most 1."""
+        """The part of the period in which a motion in the modes of these flags turns by a radian, at most 1."""
         parts = {}
         for sides, mode in self.modes.items():
             part = min(1.0, 1.0 / (mode.omega * self.h)) if mode.omega else 1.0
@@ -198,7 +198,7 @@ class Maps:
         return self._chosen(flags, parts, min(parts.values()))[0]
 
     def _chosen(self, flags, results, other):
-        """Return one of several lists of results, by flags; ``other`` where there is none, unless that cannot be."""
+        """One of several lists of results, by flags; ``other`` where there is none, unless that cannot be."""
         if not results:
             return other
         if not len(flags):
@@ -215,7 +215,7 @@ class Maps:
         return self._series(rows, sides, order, number)
 
     def _moved(self, mode, values):
-        """Return the state after a period in a mode, and the room that its surfaces leave at least."""
+        """The state after a period in a mode, and the room that its surfaces leave at least."""
         motion, n = self.motion, len(self.motion.q)
         series = self._at(values, 0.0, mode.sides, DEGREE)
         drives = [series.of(rate, DEGREE) for rate in (*motion.a, *motion.ds)]
@@ -255,12 +255,12 @@ class Maps:
 
 
 def _changes_from(first):
-    """Return what counts the sides that differ from these."""
+    """A function that counts the sides that differ from these."""
     return lambda sides: sum(bool(a) != bool(b) for a, b in zip(sides, first, strict=True))
 
 
 def linear_between(facts):
-    """Return what a program says of being linear between switches."""
+    """The note of a program that is linear between switches."""
     return (
         f"linear between switches: a constant map for each of {facts['maps']} modes, wherever no switch can be reached within "
         f"the period; where one may be, it is located, in at most {facts['pieces']} pieces"

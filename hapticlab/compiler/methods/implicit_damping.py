@@ -18,7 +18,7 @@ STEEP = 1e18
 
 
 def stiffened(M, f, coordinates, orders, translate, h, values):
-    """Return (M - h D, f) as values, rows of negative mass turned over.
+    """(M - h D, f) as values, rows of negative mass turned over.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def stiffened(M, f, coordinates, orders, translate, h, values):
 
 
 def dissipative(slopes, scale):
-    """Return the symmetric D, none of whose eigenvalues is positive, that slopes have where they are those of dampers.
+    """The symmetric D, none of whose eigenvalues is positive, that slopes have where they are those of dampers.
 
     Off the diagonal it is the symmetric part; on the diagonal the slope, or what outweighs the row where that is more.
     A damper between two coordinates, and each to the ground, is kept as it is; action stays reaction, which a diagonal
@@ -87,7 +87,7 @@ def dissipative(slopes, scale):
 
 
 def _slope(e, rate, translate):
-    """Return the slope of a force by a rate; 0 at the tip of a root, such as a drag by sqrt(u'^2 + w'^2) has at rest."""
+    """The slope of a force by a rate; 0 at the tip of a root, such as a drag by sqrt(u'^2 + w'^2) has at rest."""
     slope = translate(Partial(e, rate))
     if all(power.exp.is_integer for power in e.atoms(sp.Pow)):
         return slope

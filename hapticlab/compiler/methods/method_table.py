@@ -52,15 +52,15 @@ class Method:
         return stability_region.longest_for(self)
 
     def longest_step(self, zeta=0.0):
-        """Return the largest stable omega h of q'' = -omega^2 q - 2 zeta omega q'; nan with damping that is refused."""
+        """The largest stable omega h of q'' = -omega^2 q - 2 zeta omega q'; nan with damping that is refused."""
         return math.nan if zeta and self.order_with_velocity else stability_region.longest_for(self, zeta)
 
     def energy_gain(self, omega_h):
-        """Return the part of its energy that a spring-mass gains in a step of omega h, in the long run."""
+        """The part of its energy that a spring-mass gains in a step of omega h, in the long run."""
         return stability_region.energy_gain(self, omega_h)
 
     def amplification(self, z):
-        """Return |R(z)| of y' = lambda y, z = h lambda: at most 1 in the stability region.
+        """|R(z)| of y' = lambda y, z = h lambda: at most 1 in the stability region.
 
         Semi-implicit Euler and Verlet take first-order states by Euler and Heun, of which this is the region; what they
         do to a spring is in :meth:`longest_step`.

@@ -11,7 +11,7 @@ DAMPER = np.array([[0.0, 1.0], [0.0, -1.0]])
 
 
 def amplification(method, z):
-    """Return |R(z)|, by how much a step of h lambda = z makes y' = lambda y grow; of a multistep method the largest root.
+    """|R(z)|, by how much a step of h lambda = z makes y' = lambda y grow; of a multistep method the largest root.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def amplification(method, z):
 
 
 def longest_for(method, zeta=0.0):
-    """Return the largest stable omega h of q'' = -omega^2 q - 2 zeta omega q'; 0 where none is, inf where every one is.
+    """The largest stable omega h of q'' = -omega^2 q - 2 zeta omega q'; 0 where none is, inf where every one is.
 
     Examples
     --------
@@ -48,12 +48,12 @@ def longest_for(method, zeta=0.0):
 
 
 def longest_damper(method):
-    """Return the largest stable h b/m of a body on a damper."""
+    """The largest stable h b/m of a body on a damper."""
     return longest_step(lambda h: step_matrix(method, DAMPER, 1, h), DAMPER)
 
 
 def energy_gain(method, omega_h):
-    """Return the part of its energy that a spring-mass gains in a step, from one step to the next for long after the start.
+    """The part of its energy that a spring-mass gains in a step, from one step to the next for long after the start.
 
     Of a symplectic method, whose energy goes up and down by a bounded part, 0.
 

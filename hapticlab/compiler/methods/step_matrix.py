@@ -18,7 +18,7 @@ SHOWS = 0.05
 
 
 def step_matrix(method, J, seconds, h, mass=None):
-    """Return the matrix of one step, shape (..., S, S), for J of shape (..., S, S) and h that broadcasts with (...).
+    """The matrix of one step, shape (..., S, S), for J of shape (..., S, S) and h that broadcasts with (...).
 
     Of a multistep method it is larger: it moves the rates of the steps before, too, shape (..., S steps, S steps).
 
@@ -63,7 +63,7 @@ def step_matrix(method, J, seconds, h, mass=None):
 
 
 def _damped(rows, n, h, mass):
-    """Return the rates with implicit damping: of accelerations a, (M - h D)^-1 M a."""
+    """The rates with implicit damping: of accelerations a, (M - h D)^-1 M a."""
     forces = mass @ rows[..., :n, :]
     slopes = [[forces[..., i, n + j] for j in range(n)] for i in range(n)]
     D = dissipative(slopes, lambda i, j: 1.0)
@@ -72,20 +72,20 @@ def _damped(rows, n, h, mass):
 
 
 def rising(J):
-    """Return how many eigenvalues of J, shape (..., S, S), are in the right half plane."""
+    """The number of eigenvalues of J, shape (..., S, S), in the right half plane."""
     values = np.linalg.eigvals(J)
     return (values.real > GROWS * np.abs(values).max(axis=-1, keepdims=True, initial=1e-300)).sum(axis=-1)
 
 
 def growing(R, grows=GROWS):
-    """Return how many eigenvalues of step matrices are outside the unit circle, by ``grows``; all where one has overflowed."""
+    """The number of eigenvalues of step matrices outside the unit circle, by ``grows``; all where one has overflowed."""
     whole = np.isfinite(R).all(axis=(-2, -1))
     outside = np.abs(np.linalg.eigvals(np.where(whole[..., None, None], R, 0.0))) > 1.0 + grows
     return np.where(whole, outside.sum(axis=-1), R.shape[-1])
 
 
 def excess(R, J, h, allowed):
-    """Return the largest |eigenvalue| of step matrices beside those of what rises in truth, shape (N,); inf where one overflowed.
+    """The largest |eigenvalue| of step matrices beside those of what rises in truth, shape (N,); inf where one overflowed.
 
     Of what rises as exp(lambda t), the eigenvalue nearest to exp(lambda h) is left out where it grows at most twice as fast.
 
@@ -117,7 +117,7 @@ def excess(R, J, h, allowed):
 
 
 def radius(R, besides=0):
-    """Return the largest |eigenvalue| of matrices, shape (..., M, M), ``besides`` so many larger; inf where one overflowed."""
+    """The largest |eigenvalue| of matrices, shape (..., M, M), ``besides`` so many larger; inf where one overflowed."""
     whole = np.isfinite(R).all(axis=(-2, -1))
     sizes = np.sort(np.abs(np.linalg.eigvals(np.where(whole[..., None, None], R, 0.0))), axis=-1)
     found = sizes[..., -1 - besides] if sizes.shape[-1] > besides else np.zeros(whole.shape)
@@ -125,7 +125,7 @@ def radius(R, besides=0):
 
 
 def longest_step(step, J, grid=GRID, closing=(62, 62, 62)):
-    """Return the longest stable step [s] of the motion y' = J y; inf where there is none, 0 where no step is stable.
+    """The longest stable step [s] of the motion y' = J y; inf where there is none, 0 where no step is stable.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ def _plus(y, h, dy):
 
 
 def runge_kutta(a, b):
-    """Return the step of an explicit Runge-Kutta table with rows ``a`` and weights ``b``; nodes are the row sums."""
+    """The step of an explicit Runge-Kutta table with rows ``a`` and weights ``b``; nodes are the row sums."""
 
     def step(rhs, tau, state, h):
         q, v, s = state
@@ -32,7 +32,7 @@ def runge_kutta(a, b):
 
 
 def _weighted(y, h, b, slopes):
-    """Return y + h * (b1 k1 + b2 k2 + ...), stages of equal weight summed first."""
+    """State y + h * (b1 k1 + b2 k2 + ...), stages of equal weight summed first."""
     result = []
     for i, start in enumerate(y):
         groups = {}
@@ -85,7 +85,7 @@ RK4 = runge_kutta([(), (1 / 2,), (0, 1 / 2), (0, 0, 1)], [1 / 6, 1 / 3, 1 / 3, 1
 
 
 def adams_bashforth(weights):
-    """Return the step of an Adams-Bashforth method; ``past`` are the rates of the steps before, newest first."""
+    """The step of an Adams-Bashforth method; ``past`` are the rates of the steps before, newest first."""
 
     def step(rhs, tau, state, h, past):
         slopes = [rates(rhs, tau, state), *past]
@@ -96,12 +96,12 @@ def adams_bashforth(weights):
 
 
 def rates(rhs, tau, state):
-    """Return the rates of (q, v, s)."""
+    """The rates of (q, v, s)."""
     return (state[1], *rhs(tau, *state))
 
 
 def before(rhs, state, h, count):
-    """Return the rates of the last ``count`` steps before a state, newest first, by RK4 backwards from it."""
+    """The rates of the last ``count`` steps before a state, newest first, by RK4 backwards from it."""
     past = []
     for k in range(count):
         state = RK4(rhs, -k * h, state, -h)

@@ -36,7 +36,7 @@ class Coefficients:
         self.states = states_of(form.coordinates, form.orders)
 
     def why_not(self, k):
-        """Return why equation k is not linear with constant coefficients, or None."""
+        """Why equation k is not linear with constant coefficients, or None."""
         form, name = self.form, type(self.form.coordinates[k]).__name__
         for model in coupled(form):
             if form.coordinates[k] in model.coordinates:
@@ -54,7 +54,7 @@ class Coefficients:
         return f"the inertia {short(m.doit(), 60)} {of} changes with {leaves}"
 
     def slope_moves(self, expr, where):
-        """Return which term of an expression is not linear in states and handle, or None."""
+        """The reason why an expression is not linear in states and handle, naming the term, or None."""
         cancels = None
         for term in sp.Add.make_args(expr):
             for jump in term.atoms(*JUMPS):  # its slope is zero on both sides, so that the slopes do not tell
@@ -69,7 +69,7 @@ class Coefficients:
         return cancels
 
     def _varies(self, expr):
-        """Tell whether an expression is another number at other places; parameters stay what they are."""
+        """Whether an expression is another number at other places; parameters keep their values."""
         somewhere = np.random.default_rng(1).uniform(0.5, 1.5, (64, 5))
         leaves = sorted(self.graph.variables_of([expr]), key=str)
         at = {a: row[0] if isinstance(a, Parameter) else row for a, row in zip(leaves, somewhere, strict=False)}
@@ -77,17 +77,17 @@ class Coefficients:
         return bool(np.ptp(values) > 1e-9 * np.abs(values).max() + 1e-12)
 
     def _moving(self, expr):
-        """Return what changes while it runs in a coefficient, as text, or nothing."""
+        """The variables of a coefficient that change while it runs, as text; empty where none do."""
         return ", ".join(sorted({shown(s) for s in self.graph.variables_of([expr]) if not isinstance(s, Parameter)}))
 
     def sees(self, k):
-        """Return the equations whose states enter equation k, in order."""
+        """The equations whose states enter equation k, in order."""
         of = {s: s.expr if isinstance(s, sp.Derivative) else s for s in self.states}
         seen = {of[s] for s in self.graph.variables_of([*self.form.M[k], self.form.f[k]]) if s in of}
         return [j for j, q in enumerate(self.form.coordinates) if q in seen]
 
     def numbers(self, exprs, values=None):
-        """Return expressions as floats: at the start, with the handle at x = 0, where they depend on the state."""
+        """Expressions as floats: at the start, with the handle at x = 0, where they depend on the state."""
         at = {s: self._start(s, values or {}) for s in self.graph.variables_of(exprs)}
         return [float(number) for number in self.graph.evaluate(exprs, at)]
 
@@ -99,7 +99,7 @@ class Coefficients:
         return self.numbers([getattr(type(variable), "initial", sp.S.Zero)], values)[0]
 
     def live(self, rows):
-        """Return the names of parameters that would have to be constants for these equations, in order."""
+        """The names of parameters that would have to be constants for these equations, in order."""
         form, found = self.form, set()
         for k in rows:
             parts = [*form.M[k], *(Partial(form.f[k], variable) for variable in (*self.states, *HANDLE))]
@@ -107,7 +107,7 @@ class Coefficients:
         return sorted(found)
 
     def linear(self, rows):
-        """Return the :class:`Linear` of these equations, which are closed and linear."""
+        """The :class:`Linear` of these equations, which are closed and linear."""
         form = self.form
         rows = sorted(rows, key=lambda k: -form.orders[k])
         coordinates, orders = tuple(form.coordinates[k] for k in rows), tuple(form.orders[k] for k in rows)
@@ -135,7 +135,7 @@ def _what_ties(name, model):
 
 
 def leaves(expr):
-    """Return what an expression is made of: states, samples, delays, the handle, time and parameters."""
+    """The leaves of an expression: states, samples, delays, the handle, time and parameters."""
     found, stack = set(), [expr]
     while stack:
         e = stack.pop()
@@ -147,7 +147,7 @@ def leaves(expr):
 
 
 def linear_rows(coefficients):
-    """Return (rows, reasons): the equations that are linear by themselves, and why each other is not, causes first.
+    """(rows, reasons): the equations that are linear by themselves, and why each other is not, causes first.
 
     Equations of one mass matrix block go together; one that sees a state which is not linear is not linear itself.
     """

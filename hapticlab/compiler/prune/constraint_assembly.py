@@ -49,7 +49,7 @@ class Assembly:
         return np.where(self.angles, 1.0, length)
 
     def jacobian(self, q):
-        """Return the Jacobian at each lane, shape (lanes, m, n), its rows and columns of size one."""
+        """The Jacobian at each lane, shape (lanes, m, n), its rows and columns of size one."""
         _, J = self.look(q)
         return np.moveaxis(J, 2, 0) * self.scale / self._rows[:, None]
 
@@ -60,7 +60,7 @@ class Assembly:
         return np.where(rows > 0, rows, 1.0)
 
     def closest(self, q, times=50):
-        """Return the nearest configuration on the constraints, by Newton's method with the smallest correction."""
+        """The nearest configuration on the constraints, by Newton's method with the smallest correction."""
         for _ in range(times):
             g, J = self.look(q)
             if not (np.isfinite(g).all() and np.isfinite(J).all()):
@@ -73,7 +73,7 @@ class Assembly:
         return q
 
     def dependent(self, q):
-        """Return the weights of a sum of constraints that has no gradient at q, or None where they are independent."""
+        """The weights of a sum of constraints that has no gradient at q, or None where they are independent."""
         J = self.jacobian(q[:, None])[0]
         left, sizes, _ = np.linalg.svd(J)
         if len(sizes) == len(J) and sizes[-1] > SMALLEST["f64"] * sizes[0]:
@@ -87,7 +87,7 @@ class Assembly:
         return self._walked(free).reshape(len(self.start), -1) if free > 0 else self.start[:, None]
 
     def weakest(self, columns=slice(None)):
-        """Return (relative singular value, configuration) where the constraints come closest to losing a rank.
+        """(relative singular value, configuration) where the constraints come closest to losing a rank.
 
         ``columns`` picks coordinates, when the others are held.
         """
@@ -96,14 +96,14 @@ class Assembly:
         return self._narrowed(self.reached[:, best], values[best], columns)
 
     def weakness(self, q, columns=slice(None)):
-        """Return the relative singular value at each configuration, shape (lanes,)."""
+        """The relative singular value at each configuration, shape (lanes,)."""
         J = self.jacobian(q)[:, :, columns]
         known = np.isfinite(J).all(axis=(1, 2))  # a mechanism does not get where its constraints are not numbers
         sizes = np.linalg.svd(np.where(known[:, None, None], J, 0.0), compute_uv=False)
         return np.where(known, sizes[:, -1] / np.maximum(sizes[:, 0], 1.0), np.inf)
 
     def _along(self, q, headings):
-        """Return what the constraints let pass of directions, of size one; shape (lanes, n)."""
+        """Directions projected onto the motions that the constraints allow, of size one; shape (lanes, n)."""
         J = self.jacobian(q)
         h = headings[:, :, None]
         along = (h - _transposed(J) @ _solved(J, J @ h))[:, :, 0]
@@ -111,7 +111,7 @@ class Assembly:
         return along / np.where(size > 0, size, 1.0)
 
     def _walked(self, free):
-        """Return configurations reached by walks from the start, shape (n, strides, walks)."""
+        """Configurations reached by walks from the start, shape (n, strides, walks)."""
         walks = 2 if free == 1 else WALKS
         q = np.repeat(self.start[:, None], walks, axis=1)
         heading = np.random.default_rng(23).standard_normal((walks, len(q)))
@@ -159,7 +159,7 @@ def _transposed(J):
 
 
 def _solved(J, right):
-    """Return (J J^T)^-1 right at each lane, with a trace of stiffness that only a lost rank feels."""
+    """(J J^T)^-1 right at each lane, with a trace of stiffness that only a lost rank feels."""
     W = J @ _transposed(J)
     trace = np.trace(W, axis1=1, axis2=2)[:, None, None]
     return np.linalg.solve(W + 1e-15 * np.where(trace > 0, trace, 1.0) * np.eye(W.shape[1]), right)

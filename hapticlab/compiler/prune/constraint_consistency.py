@@ -14,7 +14,7 @@ from .constraint_assembly import SMALLEST, Assembly
 
 
 def assembled(constraints, coordinates, start):
-    """Return the constraints as functions of arrays."""
+    """The constraints as functions of arrays."""
     q = sp.symbols(f"q:{len(coordinates)}", real=True)
     rates = [p.diff(t) for p in coordinates]
     rows, off = [], []
@@ -103,7 +103,7 @@ def check_rates(assembly, constraints, coordinates, start, drivers=()):
 
 
 def _rate(g, coordinates):
-    """Return the rate of a constraint of positions, or a constraint of rates as it is."""
+    """The rate of a constraint of positions, or a constraint of rates as it is."""
     if not is_holonomic(g):
         return g.doit()
     held = {p: sp.Dummy() for p in coordinates}
@@ -135,5 +135,5 @@ def _lost(constraints, coordinates, q, where):
 
 
 def shown_at(coordinates, q):
-    """Return a configuration for a message; what is zero but for rounding is shown as zero."""
+    """A configuration for a message; what is zero but for rounding is shown as zero."""
     return ", ".join(f"{name(p)} = {round(float(value), 9) + 0.0:.4g}" for p, value in zip(coordinates, q, strict=True))

@@ -21,7 +21,7 @@ _COMBINED = 3
 
 
 def held(scene):
-    """Return the parameters of a scene that stand in its constraints, name -> Parameter.
+    """The parameters of a scene that stand in its constraints, name -> Parameter.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def check_live(scene, live):
 
 
 def notes_on(scene, folded):
-    """Return what a program says of the parameters that constraints hold."""
+    """The notes of a program on the parameters that constraints hold."""
     return tuple(
         f"{name}: held by a constraint, so not live"
         if name in folded

@@ -45,7 +45,7 @@ class Dependence:
             self.on[name] = self._moving([expr]) - {name}
 
     def _moving(self, exprs):
-        """Return the names of coordinates and signals that expressions depend on, also through delays and reactions."""
+        """The names of coordinates and signals that expressions depend on, also through delays and reactions."""
         found, stack = set(), self.graph.variables_of(exprs)
         while stack:
             leaf = stack.pop()
@@ -61,7 +61,7 @@ class Dependence:
         return found
 
     def paths(self, *roots):
-        """Return name -> the way to it from the nearest of the roots, for all they depend on.
+        """name -> the way to it from the nearest of the roots, for all they depend on.
 
         Examples
         --------
@@ -88,7 +88,7 @@ class Dependence:
         return [k for k, q in enumerate(self.form.coordinates) if type(q).__name__ in seen]
 
     def groups(self, names):
-        """Return names as lists of those that depend on each other, directly or not, in either direction."""
+        """Names as lists of those that depend on each other, directly or not, in either direction."""
         left, groups = list(names), []
         while left:
             group = [left.pop(0)]
@@ -101,12 +101,12 @@ class Dependence:
 
 
 def coupled(form):
-    """Return the models whose coordinates are held together by more than M and f: constraints, contacts of an instant."""
+    """The models whose coordinates are held together by more than M and f: constraints, contacts of an instant."""
     return [model for model in form.models if model.constraints or not all(c.is_force for c in model.contacts)]
 
 
 def _held(model):
-    """Return what holds the coordinates of a model together."""
+    """The constraints, gaps and slips that tie the coordinates of a model to each other."""
     gaps = [getattr(c, part) for c in model.contacts for part in ("gap", "slip") if hasattr(c, part)]
     return [*model.constraints, *gaps]
 
@@ -116,7 +116,7 @@ def _holds(model, form, rows):
 
 
 def blocks(form, graph):
-    """Return the groups of equations that are solved together, as lists of rows."""
+    """The groups of equations that are solved together, as lists of rows."""
     N = len(form.coordinates)
     group = list(range(N))
     tied = [(i, j) for i in range(N) for j in range(N) if i != j and graph(form.M[i][j]).constant != 0]
@@ -130,7 +130,7 @@ def blocks(form, graph):
 
 
 def part_of(form, rows):
-    """Return a form with these equations of motion alone; they must depend on no other's acceleration."""
+    """A form with these equations of motion alone; they must depend on no other's acceleration."""
     return replace(
         form,
         coordinates=tuple(form.coordinates[k] for k in rows),

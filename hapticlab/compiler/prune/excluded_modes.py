@@ -32,7 +32,7 @@ class Decision:
 
 
 def decide(expr, ranges, found=None, keep=()):
-    """Return an expression without the modes that the ranges exclude.
+    """An expression without the modes that the ranges exclude.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def decide(expr, ranges, found=None, keep=()):
 
 
 def _choices(exprs):
-    """Return what may be decided in expressions; a part that many share, such as a Lagrangian, is looked at once."""
+    """The choices in expressions that ranges may decide; a part that many share, such as a Lagrangian, is looked at once."""
     seen, stack, found = set(), list(exprs), []
     while stack:
         e = stack.pop()
@@ -164,7 +164,7 @@ def without_excluded(form, fixed, T, keep=()):
 
 
 def open_conditions(form, rows):
-    """Return the conditions that stay open in the force, the channels and these equations of motion, as written."""
+    """The conditions that stay open in the force, the channels and these equations of motion, as written."""
     exprs = [form.force, *form.watch.values(), *form.updates.values(), *(form.f[k] for k in rows)]
     cases = [node for node in _choices(exprs) if isinstance(node, sp.Piecewise)]
     conditions = {condition for node in cases for _, condition in node.args if condition not in (sp.true, sp.false)}
@@ -177,7 +177,7 @@ def excluded(scene, T, live, undecided=()):
 
 
 def rests_on(form, decisions):
-    """Return coordinate -> (low, high): the ranges without which what was decided, and pairs left out, may be wrong."""
+    """coordinate -> (low, high): the ranges without which what was decided, and pairs left out, may be wrong."""
     found = {}
     for decision in decisions.values():
         moving = (e for e in decision.what.atoms(sp.Function) if getattr(type(e), "role", None) == "coordinate")
@@ -188,7 +188,7 @@ def rests_on(form, decisions):
 
 
 def within(value, ranges, translate):
-    """Return a value that is no number where a coordinate is outside of these ranges: a fault, and the motor off."""
+    """A value that is no number where a coordinate is outside of these ranges: a fault, and the motor off."""
     inside = None
     for q, (low, high) in ranges.items():
         place = translate(q)

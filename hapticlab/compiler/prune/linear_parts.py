@@ -124,18 +124,18 @@ class Space:
         return np.array_equal(self.V, np.eye(len(self.V)))
 
     def scale(self, h):
-        """Return sizes beside each other: 1 of a position, the highest frequency or 1/h of its rate."""
+        """Sizes beside each other: 1 of a position, the highest frequency or 1/h of its rate."""
         two = self.seconds
         frequency = max(1 / h, np.sqrt(np.abs(self.A[two : 2 * two, :two]).max(initial=0.0))) or 1.0
         return np.r_[np.ones(two), np.full(two, frequency), np.ones(len(self.A) - 2 * two)]
 
     def over(self, h):
-        """Return (Phi, [Psi_0, Psi_1, Psi_2]) of :func:`~hapticlab.compiler.algebra.matrix_exponential.held` over h seconds."""
+        """(Phi, [Psi_0, Psi_1, Psi_2]) of :func:`~hapticlab.compiler.algebra.matrix_exponential.held` over h seconds."""
         return held(self.A, h, self.scale(h))
 
 
 def states_of(coordinates, orders):
-    """Return positions, their rates, then states of first order, as the stepper orders them."""
+    """Positions, their rates, then states of first order, as the stepper orders them."""
     second = [q for q, order in zip(coordinates, orders, strict=True) if order == 2]
     first = [q for q, order in zip(coordinates, orders, strict=True) if order == 1]
     return (*second, *(q.diff(t) for q in second), *first)

@@ -14,7 +14,7 @@ GENERIC, WIDE = 3, 5
 
 
 def is_definite(form, values, graph):
-    """Tell whether the mass matrix is symmetric and of one sign wherever looked at; then it needs no pivoting.
+    """Whether the mass matrix is symmetric and of one sign wherever looked at; then it needs no pivoting.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def is_definite(form, values, graph):
 
 
 def _configurations(form, values, graph):
-    """Return variable -> array over the configurations."""
+    """variable -> array over the configurations."""
     symbols = graph.variables_of([m for row in form.M for m in row])
     starts = {s: start_of(s) for s in symbols}
     symbols = sorted({*symbols, *graph.variables_of(starts.values())}, key=str)
@@ -69,7 +69,7 @@ def _configurations(form, values, graph):
 
 
 def start_of(variable):
-    """Return the initial value of a variable, an expression; handle and time start at zero, a parameter is what it is."""
+    """The initial value of a variable, an expression; handle and time start at zero, a parameter is what it is."""
     if isinstance(variable, sp.Derivative):
         return getattr(type(variable.expr), "rate", sp.S.Zero)
     return variable if isinstance(variable, Parameter) else getattr(type(variable), "initial", sp.S.Zero)
@@ -81,7 +81,7 @@ def _singular(M):
 
 
 def _definite(M):
-    """Tell whether M is symmetric and its pivots, of entries scaled to a unit diagonal, have one sign and are not small."""
+    """Whether M is symmetric and its pivots, of entries scaled to a unit diagonal, have one sign and are not small."""
     diagonal = np.diag(M)
     if not np.isfinite(M).all() or not (diagonal * M[0, 0] > 0).all():
         return False
@@ -102,5 +102,5 @@ def _balanced(M):
 
 
 def _over(M, rows, columns):
-    """Return M over the geometric means of rows and columns, whose products may be past all numbers."""
+    """M over the geometric means of rows and columns, whose products may be past all numbers."""
     return M / np.sqrt(rows)[:, None] / np.sqrt(columns)[None, :]

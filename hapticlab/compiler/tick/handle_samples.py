@@ -40,7 +40,7 @@ class Handle:
         self.T = tracing.T
 
     def sample(self, signal, lag=0):
-        """Return x(n - lag) or v(n - lag)."""
+        """x(n - lag) or v(n - lag)."""
         tracing = self.tracing
         if lag:
             # history starts at the first measured sample, and with it an estimated velocity at rest
@@ -51,17 +51,17 @@ class Handle:
         return (self.sample(x) - self.sample(x, 1)) * (1 / self.T)
 
     def acceleration(self):
-        """Return the acceleration of the handle at the sample, as estimated: (v(n) - v(n-1))/T."""
+        """The acceleration of the handle at the sample, as estimated: (v(n) - v(n-1))/T."""
         return (self.sample(v) - self.sample(v, 1)) * (1 / self.T)
 
     def first(self, signal):
-        """Return x or v at the first sample, in the init block."""
+        """Position x or velocity v at the first sample, in the init block."""
         if signal is x or self.velocity == "measured":
             return self.tracing.input(self.tracing.init, signal)
         return self.tracing.init.const(0.0)
 
     def motion(self, tau):
-        """Return (x, v) of the handle at tau [s] after the sample, as ``hold`` sees them."""
+        """(x, v) of the handle at tau [s] after the sample, as ``hold`` sees them."""
         position, velocity = self.sample(x), self.sample(v)
         if self.hold == "zoh":
             return position, velocity
@@ -73,11 +73,11 @@ class Handle:
         return position + (velocity + acceleration * (tau / 2)) * tau, velocity + acceleration * tau
 
     def leaves(self, tau):
-        """Return what an equation of motion sees of the handle at tau [s] after the sample: expression -> value."""
+        """The handle as an equation of motion sees it at tau [s] after the sample: expression -> value."""
         return dict(zip((x(t), v(t)), self.motion(tau), strict=True))
 
     def polynomial(self):
-        """Return x(t) and v(t) after the sample as ``hold`` sees them, each as value, rate, ... at the sample: two lists."""
+        """x(t) and v(t) after the sample as ``hold`` sees them, each as value, rate, ... at the sample: two lists."""
         position, velocity = self.sample(x), self.sample(v)
         if self.hold == "zoh":
             return [position], [velocity]

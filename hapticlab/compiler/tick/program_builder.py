@@ -25,15 +25,15 @@ class Tracing:
         self._waiting = []  # (key, callable) of next values not traced yet
 
     def input(self, builder, signal):
-        """Return the input x or v in one of the two builders."""
+        """The input x or v in one of the two builders."""
         return builder.leaf("input", (x, v).index(signal), self.real)
 
     def parameter(self, builder, index):
-        """Return a live parameter in one of the two builders."""
+        """A live parameter in one of the two builders."""
         return builder.leaf("param", index, self.real)
 
     def state(self, key, channel, first, next=None):
-        """Return the present value of a state, made on first use; ``next`` is a callable, or is set later."""
+        """The present value of a state, made on first use; ``next`` is a callable, or is set later."""
         if key not in self._states:
             if len(self._states) == MOST_STATES:
                 raise ProgramLimitError(
@@ -56,11 +56,11 @@ class Tracing:
         self._states[key][2] = value
 
     def next_of(self, key):
-        """Return the value that a state has at the next tick, once it is set."""
+        """The value that a state has at the next tick, once it is set."""
         return self._states[key][2]
 
     def at_start(self, values):
-        """Return what the leaves of the tick are at the first sample, x = 0: dict (op, index) -> float; nan unbound."""
+        """The values of the tick's leaves at the first sample, x = 0: dict (op, index) -> float; nan unbound."""
         given = {("param", k): values.get(p.name, float("nan")) for k, p in enumerate(self.parameters)}
         given |= {("input", k): 0.0 for k in range(len(self.inputs))}
         number = numbers(self.init.instructions, given)
@@ -73,7 +73,7 @@ class Tracing:
             self._states[key][2] = next()
 
     def finish(self, name, outputs, values, facts, unused=()):
-        """Return the program that computes ``outputs``: a list of (Channel, Value). All states must have a next value.
+        """The program that computes ``outputs``: a list of (Channel, Value). All states must have a next value.
 
         States, inputs and parameters the outputs cannot see are dropped; the program's notes name the states, and
         beside them what was ``unused`` from the start.
@@ -105,12 +105,12 @@ class Tracing:
         ).verify()
 
     def observed(self, outputs):
-        """Return the keys of the states the outputs depend on, now or at any later tick."""
+        """The keys of the states the outputs depend on, now or at any later tick."""
         keys = list(self._states)
         return {keys[k] for k in self._observed(outputs)}
 
     def _observed(self, outputs):
-        """Return the numbers of the states the outputs depend on, now or at any later tick."""
+        """The numbers of the states the outputs depend on, now or at any later tick."""
         nexts = [next for _, _, next in self._states.values()]
         alive, frontier, seen = set(), [o.id for o in outputs], set()
         while frontier:
