@@ -121,7 +121,7 @@ _RECORDS = (
         series=recurrences.quotient,
     ),
     Operation(
-        "sqrt", "R", "R", 7, values.sqrt, llvm="call {t} @llvm.sqrt.{s}({t} {0})", work=6,
+        "sqrt", "R", "R", 7, values.sqrt, llvm="call {t} @llvm.sqrt.{s}({t} {0})", c="sqrtf({0})", work=6,
         derivative=(lambda d, r, a: (0.5 * d) / r,),
         series=recurrences.root,
     ),
