@@ -89,7 +89,7 @@ def complementarity(W, q, touching=None, names=None):
 
 
 def impossible(W, after, touching, size):
-    """Return whether some gaps close although everything that can has been done: no p keeps these contacts apart.
+    """A condition that some gaps close with any reactions p: nothing keeps these contacts apart.
 
     A body between two that do not give, an imposed handle and a wall, is the case. Only contacts that act on each other
     can be; False where there are none.

@@ -50,7 +50,7 @@ def entering(value, type, shown, error=ProgramError):
 
 
 def is_ordinary(value, type):
-    """Tell whether a number of a real type is neither zero nor denormal, infinite or nan."""
+    """True of a number of a real type that is neither zero nor denormal, infinite or nan."""
     return float(np.finfo(NUMPY_TYPE[type]).tiny) <= abs(value) < math.inf
 
 
@@ -89,7 +89,7 @@ def _number_of(symbol, known, bound):
 
 
 def _settled(expr, known, bound, remembered):
-    """Tell whether every symbol of an expression is a number."""
+    """True of an expression whose symbols are all numbers."""
     if expr not in remembered:
         one = _number_of(expr, known, bound) is not None if expr.is_Symbol else None
         remembered[expr] = all(_settled(a, known, bound, remembered) for a in expr.args) if one is None else one

@@ -28,7 +28,7 @@ class driven(sp.Function):
 
 
 def shown(variable):
-    """Return what a message calls a variable; an angle that time drives is time."""
+    """The name of a variable in a message; an angle that time drives is time."""
     return "time" if variable == t or isinstance(variable, driven) else str(variable)
 
 
@@ -111,7 +111,7 @@ class Graph:
         return self._tangents.setdefault(key, Tangent(self.builder, seed))
 
     def _rate_of(self, number):
-        """Return how the input that is instruction ``number`` changes along the motion."""
+        """The rate along the motion of the input that is instruction ``number``."""
         expr = self._input(number)
         if isinstance(expr, driven):
             return self(2 * sp.pi * expr.args[0])

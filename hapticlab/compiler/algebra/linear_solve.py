@@ -41,7 +41,7 @@ def solve(M, f, definite=False):
 
 
 def same(a, b):
-    """Tell whether two entries are the same value: value numbering has made equal expressions one."""
+    """True of two entries that are the same value: value numbering has made equal expressions one."""
     return a.id == b.id if isinstance(a, Value) and isinstance(b, Value) else a is b or a == b
 
 

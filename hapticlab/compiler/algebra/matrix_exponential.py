@@ -74,7 +74,7 @@ def held(A, h, scale, degree=2):
 
 
 def _reach(A):
-    """Tell which states act on which within any time: the zeros of e^(A h) that no rounding makes."""
+    """A mask of the states that act on each state in any time: elsewhere e^(A h) is zero but for rounding."""
     reached = (A != 0) | np.eye(len(A), dtype=bool)
     for _ in range(len(A).bit_length()):
         reached = (reached.astype(int) @ reached.astype(int)) > 0

@@ -39,12 +39,12 @@ def counted(tracing):
 
 
 def digit(type):
-    """Return how many ticks a digit of the tick count takes."""
+    """The ticks that fill the lower digit of the tick count."""
     return 2.0 ** SPLIT[type][0]
 
 
 def is_timed(program):
-    """Tell whether a program counts ticks: its tick is another map at another time."""
+    """True of a program that counts ticks: its tick is another map at another time."""
     return any(c.name in TICKS for c in program.states)
 
 
@@ -126,5 +126,5 @@ def angle_of(translator, expr):
 
 
 def _has_time(expr):
-    """Tell whether t or n stands in sums and products: those inside of x(n) and other functions are no angle of time."""
+    """True where t or n stands in sums and products: inside of x(n) and other functions they are no angle of time."""
     return expr in (t, n) or (isinstance(expr, (sp.Add, sp.Mul)) and any(map(_has_time, expr.args)))

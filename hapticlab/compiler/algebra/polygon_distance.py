@@ -72,7 +72,7 @@ def _edges(corners, count):
 
 
 def closest(A, B, chosen=None, radius=None):
-    """Return what two cores are to each other; they must not both be points.
+    """The signed distance of two cores, which must not both be points, with its normal and closest point.
 
     Parameters
     ----------

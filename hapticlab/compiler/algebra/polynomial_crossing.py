@@ -55,7 +55,7 @@ def departing(p, just, level):
 
 
 def first_crossing(p, starts_at_zero=False, steps=None):
-    """Return where p first goes from positive to negative within [0, 1], and whether it does.
+    """The first place in [0, 1] where p goes from positive to negative, and a condition that there is one.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def _of_polynomial(p, steps):
 
 
 def _bend(second, steps):
-    """Return where p'' changes sign, 1 where it does not."""
+    """The place where p'' changes sign, 1 if there is none."""
     start, end = second[0], horner(second, 1.0)
     sign = select(end < start, 1.0, -1.0)
     falling = [times(sign, c) for c in second]

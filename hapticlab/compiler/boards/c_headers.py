@@ -85,7 +85,7 @@ def _function(name):
 
 
 def _places(code, result):
-    """Return where each value is computed: the path of (select, arm) that all its uses share; None without a use."""
+    """The place of each value: the path of (select, arm) that all its uses share; None without a use."""
     uses = {result: [()]}
     places = [None] * len(code)
     for k in reversed(range(len(code))):
@@ -102,7 +102,7 @@ def _places(code, result):
 
 
 def _shared(paths):
-    """Return what all paths begin with."""
+    """The longest beginning that all paths share."""
     first = paths[0]
     same = (n for n in range(len(first)) if any(path[: n + 1] != first[: n + 1] for path in paths))
     return first[: next(same, len(first))]

@@ -148,7 +148,7 @@ class Cost:
         return high
 
     def in_words(self, promise=False):
-        """Return what part of the period a program that does not fit would take."""
+        """The part of the period taken by a program that does not fit, in words."""
         cycles = self.bound if promise else self.typical
         rest, needed = self.longest(promise) - cycles, self.T_needed(promise)
         return (
@@ -192,7 +192,7 @@ class Cost:
 
 
 def cost(program, board="uno", *, every=1, edges_per_second=0.0):
-    """Return what a program takes of a board.
+    """The cycles and memory that a program takes of a board.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ def load_library(word_bits, *flags):
 
 
 def firmware_folder():
-    """Return where the C sources are: inside an installed package, or beside it in a checkout."""
+    """The folder of the C sources: inside an installed package, or beside it in a checkout."""
     for folder in (PACKAGE / "firmware", PACKAGE.parent / "firmware"):
         if (folder / "core" / "vm.c").is_file():
             return folder

@@ -47,7 +47,7 @@ class Llvm:
         return outputs[..., :lanes], carried[:, :lanes]
 
     def bound(self, inputs, parameters, states, outputs):
-        """Return what runs one tick of one lane on these arrays; it keeps them."""
+        """A function that runs one tick of one lane on these arrays; it keeps them."""
         arrays = inputs, parameters, states, outputs
         pointers, run = [a.ctypes.data for a in arrays], self._function(1)
 
@@ -68,7 +68,7 @@ class Llvm:
 
 
 def llvmlite_is_ready():
-    """Tell whether this machine has a working llvmlite."""
+    """True where llvmlite is installed and its library loads."""
     try:
         open_llvmlite()
     except EngineMissingError:

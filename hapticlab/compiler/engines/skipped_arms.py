@@ -128,7 +128,7 @@ class Demand:
         self.of = [needed and needed & kept for needed in self.of]
 
     def before(self, k):
-        """Return what must be known before position k: its operands, and the conditions of its choices."""
+        """The positions that must be known before k: its operands, and the conditions of its choices."""
         return (*self.instructions[k].args, *self._conditions(self.of[k]))
 
     def arranged(self, positions):

@@ -55,7 +55,7 @@ class Vm:
 
 
 def meaning(number):
-    """Return what a result of the machine means, in words."""
+    """The meaning of a result of the machine, in words."""
     return next((f"{name}: {text}" for name, (n, text) in RESULTS.items() if n == number), f"result {number}")
 
 

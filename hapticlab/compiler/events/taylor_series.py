@@ -51,7 +51,7 @@ class Series:
                 row.append(self._coefficient(p, len(row), row))
 
     def lengths(self):
-        """Return how far everything is known, for :meth:`cut`."""
+        """The number of coefficients known of each result, for :meth:`cut`."""
         return {p: len(row) for p, row in self.known.items()}
 
     def cut(self, lengths):

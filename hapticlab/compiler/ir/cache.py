@@ -74,7 +74,7 @@ class Shared:
             self._entries.clear()
 
     def get(self, key, make):
-        """Return what is kept under a key, made now if there is none; without a key (None) it is made and not kept."""
+        """The entry under a key, made now if there is none; without a key (None) it is made and not kept."""
         if key is None:
             return make()
         with self._lock:

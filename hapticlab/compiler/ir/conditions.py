@@ -31,7 +31,7 @@ def size(values):
 
 
 def any_of(conditions):
-    """Return whether any of some conditions holds."""
+    """The disjunction of some conditions."""
     total = np.False_
     for c in conditions:
         total = c | total

@@ -13,7 +13,7 @@ ZERO = np.float64(0.0)
 
 
 def is_zero(a):
-    """Tell whether a value is the constant zero; an array never is."""
+    """True of the constant zero; an array is never one."""
     a = a.constant if isinstance(a, Value) else a
     return not isinstance(a, np.ndarray) and a == 0
 
