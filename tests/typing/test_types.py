@@ -123,6 +123,18 @@ def test_a_type_checker_passes():
 
 
 @pytest.mark.wide
+def test_readme_passes(tmp_path):
+    """README's examples, one after the other in one file."""
+    examples = re.findall(r"```python\n(.*?)```", (PACKAGE.parent / "README.md").read_text("utf-8"), re.S)
+    assert examples
+    file = tmp_path / "readme.py"
+    file.write_text("\n".join(examples), "utf-8")
+    command = [sys.executable, "-m", "mypy", "--allow-redefinition", str(file)]
+    done = subprocess.run(command, cwd=PACKAGE.parent, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.wide
 def test_what_passes_also_runs(capsys):
     runpy.run_path(str(EXAMPLES / "student.py"))
     assert "asked for 300 N/m" in capsys.readouterr().out
