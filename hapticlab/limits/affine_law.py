@@ -12,9 +12,8 @@ from ..arguments import choice
 from ..compiler.engines.engine import load
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
-from ..scene.laws.taps import LEAD, TAPS
+from ..scene.laws.taps import LEAD, TAPS, LawName
 from ..scene.scene import Scene
-from .limit import LawName
 from .linear_law import LinearLaw
 from .port import SMALL, tick_map
 

@@ -17,7 +17,8 @@ from .stability import stability_limit
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from .limit import LawName, Plant
+    from ..scene.laws.taps import LawName
+    from .limit import Plant
 
 #: what e of :func:`gil_limit` may be at most for Gil's formula
 SLOW_ENOUGH = 0.1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from ..errors import AnalysisError
 from .plots import plot_limit
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 MOST_PERIODS = 200
 
 A_PADDLE = "a paddle, as hl.SimulatedPaddle(...)"
-
-LawName = Literal["zoh", "half_sample", "backward_difference", "ellis"]
 
 
 class Device(Protocol):

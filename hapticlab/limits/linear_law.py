@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ..annotations import Array
+    from ..scene.laws.taps import LawName
     from ..scene.scene import Scene
-    from .limit import LawName
 
 #: Eq. (23.8), the force filter, on F[n], F[n-1], F[n-2]
 FORCE_FILTER = (2.0, -1.5, 0.5)

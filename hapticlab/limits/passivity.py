@@ -32,8 +32,8 @@ from .linear_law import LinearLaw
 from .port import unstable_pole
 
 if TYPE_CHECKING:
+    from ..scene.laws.taps import LawName
     from .affine_law import StiffnessLaw
-    from .limit import LawName
 
 KIND = "passivity: any passive hand, sufficient"
 NO_DAMPING = "b = 0: without device damping nothing pays for the hold"

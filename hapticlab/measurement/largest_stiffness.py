@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..device.board.serial_paddle import SerialPaddle
-    from ..limits.limit import LawName
+    from ..scene.laws.taps import LawName
 
 #: parts of the first stiffness tried before none is said to stand
 SOFTER = 1e-2

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..annotations import Array
     from ..device.board.serial_paddle import SerialPaddle
     from ..device.simulated.simulated_paddle import SimulatedPaddle
-    from ..limits.limit import LawName
+    from ..scene.laws.taps import LawName
 
 #: part of the last damping's border at which the search for the next one begins
 BELOW = 5.0

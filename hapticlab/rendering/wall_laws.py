@@ -11,7 +11,7 @@ import sympy as sp
 
 from ..errors import AnalysisError
 from ..scene.laws.chapter_laws import wall
-from ..scene.laws.taps import TAPS
+from ..scene.laws.taps import SPRING_LAWS
 from ..scene.notation.symbols import T, n, parameters, x
 from ..scene.scene import Scene
 from .deadbeat import deadbeat_wall
@@ -46,25 +46,21 @@ def _deadbeat(begins, between):
     return lambda model, clamp, **options: deadbeat_wall(model, begins=begins, between=between, **options)
 
 
+#: name -> the law in the words of a table, and the scene of a wall by it
 MODEL_LAWS = {
-    "digital": digital_wall,
-    "predictive": predictive_wall,
-    "deadbeat": _deadbeat("predictive", "pairs"),
-    "deadbeat_reactive": _deadbeat("reactive", "pairs"),
-    "deadbeat_crossings": _deadbeat("predictive", "half_sample"),
-}
-#: name -> what it is, in the words of a table
+    "digital": ("poles of the wall, in the digital domain", digital_wall),
+    "predictive": ("half a sample by the model", predictive_wall),
+    "deadbeat": ("dead-beat pairs inside and at foreseen crossings", _deadbeat("predictive", "pairs")),
+    "deadbeat_reactive": ("dead-beat pairs inside and after crossings", _deadbeat("reactive", "pairs")),
+    "deadbeat_crossings": (
+        "half a sample by the model, dead-beat pairs at foreseen crossings", _deadbeat("predictive", "half_sample")
+    ),
+}  # fmt: skip
+#: name -> the law in the words of a table
 LAWS = {
-    "zoh": "K p(n), Eq. (23.1)",
-    "half_sample": "velocity half a sample on, Eq. (23.3)",
-    "backward_difference": "Eq. (23.5)",
-    "ellis": "predictor-corrector, Eq. (23.7)",
+    **{str(name): law.says for name, law in SPRING_LAWS.items()},
     "damped": "Eq. (23.1), with a damper K T/2 on the paddle and B = -K T/2 everywhere",
-    "digital": "poles of the wall, in the digital domain",
-    "predictive": "half a sample by the model",
-    "deadbeat": "dead-beat pairs inside and at foreseen crossings",
-    "deadbeat_reactive": "dead-beat pairs inside and after crossings",
-    "deadbeat_crossings": "half a sample by the model, dead-beat pairs at foreseen crossings",
+    **{name: says for name, (says, _) in MODEL_LAWS.items()},
 }
 
 
@@ -125,12 +121,13 @@ def wall_law(
     """
     if name not in LAWS:
         raise AnalysisError(f"law = {name!r}; needs one of {', '.join(LAWS)}")
-    if name in TAPS:
+    if name in SPRING_LAWS:
         return WallLaw(name, wall(name, unilateral, clamp)(k=K), paddle)
     if name == "damped":
         added = K * paddle.T / 2
         plain = wall("zoh", unilateral, clamp)
         scene = Scene(plain.force.xreplace({plain.parameters["B"]: sp.S.Zero}) + _damper(), name="damped wall")
         return WallLaw(name, scene(k=K, B=-added), replace(paddle, b=paddle.b + added))
-    scene = MODEL_LAWS[name](model or paddle, K=K, clamp=clamp, velocity=velocity, force_max=paddle.force_max)
+    made = MODEL_LAWS[name][1]
+    scene = made(model or paddle, K=K, clamp=clamp, velocity=velocity, force_max=paddle.force_max)
     return WallLaw(name, scene, paddle)

@@ -5,8 +5,8 @@ from typing import get_args
 import pytest
 
 from hapticlab.errors import AnalysisError
-from hapticlab.limits.limit import MOST_PERIODS, LawName, Limit, whole_and_fraction
-from hapticlab.scene.laws.taps import TAPS
+from hapticlab.limits.limit import MOST_PERIODS, Limit, whole_and_fraction
+from hapticlab.scene.laws.taps import TAPS, LawName
 
 
 def test_the_type_of_a_law_has_the_names_of_the_laws():

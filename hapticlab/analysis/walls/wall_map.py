@@ -21,7 +21,7 @@ from .wall_limits import ChapterLimits, SceneLimits
 from .wall_regions import WallMap, beyond, regions_of
 
 if TYPE_CHECKING:
-    from ...limits.limit import LawName
+    from ...scene.laws.taps import LawName
 
 #: what a map may be over beside K, and its unit
 OTHERS = {
