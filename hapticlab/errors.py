@@ -47,6 +47,14 @@ class ProgramError(HapticlabError, ValueError):
     """A program is damaged, or asks for an operation no engine has."""
 
 
+class LiveConstantError(ProgramError):
+    """A method makes constants of what may be set while the program runs: ``live``, names of parameters."""
+
+    def __init__(self, message, live=()):
+        super().__init__(message)
+        self.live = tuple(live)
+
+
 class ProgramLimitError(ProgramError):
     """A program is larger than an engine or a board can hold."""
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ..compiler.tick.live_limits import UNSTABLE, part_of_the_way
+from ..compiler.ir.notes import UnstableNote, why_of
+from ..compiler.tick.live_limits import part_of_the_way
 from ..compiler.tick.live_stability import SLOW, SMALL_MOTIONS
 from ..errors import PaddleError, ParameterError
 from ..scene.notation.parameters import Parameter
@@ -30,8 +31,7 @@ def checked(program, values):
     names = named_values(program)
     unknown = sorted(set(values) - set(names))
     if unknown:
-        why = next((f" ({note})" for note in program.notes if note.startswith(f"{unknown[0]}: ")), "")
-        listed = ", ".join(names) or "none"
+        listed, why = ", ".join(names) or "none", why_of(program.notes, unknown[0])
         raise ParameterError(f"{unknown[0]} is no live parameter of {program.name}{why}; it has {listed}.")
     if len(values) > MOST_AT_ONCE:
         raise ParameterError(f"{len(values)} parameters at once; a board takes {MOST_AT_ONCE} between two ticks: set fewer")
@@ -116,8 +116,8 @@ def check_margin(program):
         growth = steps.growth(values)
         doubles = steps.doubles(growth) if growth > steps.allowed else np.inf
     if doubles < SLOW:
-        otherwise = f"{UNSTABLE}what vibrates doubles in {doubles:.2g} s; take more substeps"
-        why = next((note for note in program.notes if note.startswith(UNSTABLE)), otherwise)
+        otherwise = UnstableNote(f"what vibrates doubles in {doubles:.2g} s; take more substeps")
+        why = next((note for note in program.notes if isinstance(note, UnstableNote)), otherwise)
         raise PaddleError(f"{program.name}: {why}. A motor would follow what grows; passive=True runs with the motor off.")
 
 
@@ -126,8 +126,7 @@ def _within(parameter, value, notes):
     try:
         return parameter.check(value)
     except ParameterError as problem:
-        why = next((f" ({note})" for note in notes if note.startswith(f"{parameter.name}: ")), "")
-        raise ParameterError(f"{problem}{why}") from None
+        raise ParameterError(f"{problem}{why_of(notes, parameter.name)}") from None
 
 
 def send(exchange, program, numbers):

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from .affine_law import StiffnessLaw
 
 KIND = "passivity: any passive hand, sufficient"
+SWITCHING_NOT_COVERED = "the spring always acts: the switching of a unilateral wall is not covered"
 NO_DAMPING = "b = 0: without device damping nothing pays for the hold"
 NO_VELOCITY = "its exact velocity jumps at the samples: a hand that moves only there draws energy at any stiffness"
 
@@ -207,7 +208,7 @@ def _checked(T, B, delay, law):
 def _unilateral(law, delay):
     if law == "zoh" and not delay:
         return "sufficient for the unilateral wall too"
-    return "the spring always acts: the switching of a unilateral wall is not covered"
+    return SWITCHING_NOT_COVERED
 
 
 def _law_taps(K, B, law):

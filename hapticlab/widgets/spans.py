@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from ..compiler.ir.notes import why_of
 from ..compiler.tick.live_limits import NEAR
 from ..errors import ParameterError
 from ..scene.notation.units import dimension
@@ -60,8 +61,7 @@ def spans(program, sliders=None):
     chosen = dict.fromkeys(channels) if sliders is None else sliders
     for name in chosen:
         if name not in channels:
-            why = next((f" ({note})" for note in program.notes if note.startswith(f"{name}: ")), "")
-            listed = ", ".join(channels) or "none"
+            listed, why = ", ".join(channels) or "none", why_of(program.notes, name)
             raise ParameterError(f"sliders: {name} is no live parameter of {program.name}{why}; there are {listed}")
     return tuple(_span(*channels[name], ends, program.limits.get(name)) for name, ends in chosen.items())
 

@@ -295,7 +295,7 @@ class Tradeoff:
 
     def summary(self, **asked: Any) -> str:
         """Return for each target what none beats, and the choice, as text."""
-        counts = Counter(row.status.split(" at t")[0].split(" after")[0] for row in self.table)
+        counts = Counter(row.status.name for row in self.table)
         lines = [
             f"{self.name}: {len(self.table)} rows ({', '.join(f'{count} {status}' for status, count in counts.items())})",
             f"greatest force {self.bench.peak:.3g} N; {self.bench.certainty}",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...errors import AnalysisError
-from .tradeoff_rows import TOO_LARGE, Row, percent
+from .tradeoff_rows import NOT_TRIED, REFUSED, TOO_LARGE, UNSURE, Row, percent
 
 #: a margin of stability from which a setting is chosen; from 1 to 2 it may still be unstable where a scene is not linear
 MARGIN = 2.0
@@ -15,8 +15,6 @@ MARGIN = 2.0
 STEPS_PER_CONTACT = 10.0
 #: measured times that differ by less are the same
 NOISE = 1.2
-#: statuses that a choice tells of, with their reason
-UNSURE = ("uncertified", "chaotic", "faulted")
 #: part of the greatest force up to which an encoder's own error raises the tolerance
 COARSEST = 0.1
 
@@ -118,7 +116,7 @@ class Asked:
             "doubt": row.doubt / self.allowed(row),
             "tolerance": (row.err_max + (row.doubt if row.doubt < self.allowed(row) else 0.0)) / self.allowed(row),
             "held": row.err_hold / self.held if self.held else 0.0,
-            "load": max(row.load / self.load, 1.001 if row.status.startswith("does not fit") else 0.0),
+            "load": max(row.load / self.load, 1.001 if row.status == TOO_LARGE else 0.0),
         }
         return {name: factor for name, factor in found.items() if factor > 1}
 
@@ -167,7 +165,7 @@ def _least(rows):
 
 def _reasons(rows):
     """Return why nothing ran: what those did that were tried; of what cannot be compiled only where there is nothing else."""
-    tried = [row for row in rows if row.status not in ("refused", "not tried")]
+    tried = [row for row in rows if row.status not in (REFUSED, NOT_TRIED)]
     return dict.fromkeys(row.why for row in tried or rows if row.why)
 
 
@@ -183,7 +181,7 @@ def _notes(row, asked):
         yield "the margin of stability is not known"
     if row.b_where and asked.passive:
         yield f"passive in small motions, the scene is not linear: it asks for the most damping at {row.b_where}"
-    if row.status.startswith(UNSURE):
+    if row.status.name in UNSURE:
         yield f"{row.status}: {row.why}"
 
 

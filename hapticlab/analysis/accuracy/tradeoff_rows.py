@@ -13,11 +13,28 @@ from ...compiler.methods.chosen_method import chosen_method
 if TYPE_CHECKING:
     from ...annotations import File
 
-OK, TOO_LARGE, NOT_TRIED = "ok", "does not fit", "not tried"
 #: percentages below this are not told apart
 LEAST_PERCENT = 0.001
-#: statuses of settings that ran, and whose errors are measured
-RAN = (OK, TOO_LARGE, "uncertified", "chaotic", "faulted")
+
+
+class Status(str):
+    """How the trial of a setting ended: it prints with the instant, its ``name`` is without."""
+
+    name: str
+
+    def __new__(cls, name: str, when: str = "") -> Status:
+        self = super().__new__(cls, f"{name} {when}".rstrip())
+        self.name = name
+        return self
+
+    def __getnewargs__(self):
+        return self.name, self.removeprefix(self.name).strip()
+
+
+OK, TOO_LARGE, NOT_TRIED, REFUSED = map(Status, ("ok", "does not fit", "not tried", "refused"))
+#: of settings that ran, whose errors are measured: those that a choice tells of, and those that it need not
+UNSURE = ("uncertified", "chaotic", "faulted")
+RAN = (OK.name, TOO_LARGE.name, *UNSURE)
 
 
 @dataclass(frozen=True)
@@ -51,7 +68,7 @@ class Row:
         Damping [N s/m] that a device needs for passivity in every hand, and has.
     b_where : str
         Where a scene that is not linear asks for b_req: it is of small motions about there. Else empty.
-    status : str
+    status : Status
         "ok", "unstable at t=...", "does not fit", "refused", "uncertified", "chaotic after ...", "faulted after ...",
         "not tried".
     why : str
@@ -87,8 +104,12 @@ class Row:
     b_where: str = ""
     estimated: bool = False
     static: bool = False
-    status: str = OK
+    status: Status = OK
     why: str = ""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.status, Status):
+            object.__setattr__(self, "status", Status(self.status))
 
     @property
     def passive(self) -> bool | None:
@@ -98,7 +119,7 @@ class Row:
     @property
     def ran(self) -> bool:
         """Whether it ran to the end, so that its errors are known."""
-        return self.status.startswith(RAN)
+        return self.status.name in RAN
 
     @property
     def name(self) -> str:
@@ -239,12 +260,12 @@ def _certain(row, bench):
         return row
     if bench.chaotic is not None:
         why = "from there on two solvers of the reference differ; errors are those before"
-        return replace(row, status=f"chaotic after {bench.chaotic:.3g} s", why=why)
+        return replace(row, status=Status("chaotic", f"after {bench.chaotic:.3g} s"), why=why)
     if bench.faulted is not None:
         why = "from there on the force of the reference is no number; errors are those before"
-        return replace(row, status=f"faulted after {bench.faulted:.3g} s", why=why)
+        return replace(row, status=Status("faulted", f"after {bench.faulted:.3g} s"), why=why)
     if row.err_max < 10 * bench.doubt:
-        return replace(row, status="uncertified", why=f"the solvers of the reference differ by {percent(bench.doubt)}")
+        return replace(row, status=Status("uncertified"), why=f"the solvers of the reference differ by {percent(bench.doubt)}")
     return row
 
 

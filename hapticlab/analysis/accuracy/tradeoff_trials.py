@@ -13,7 +13,7 @@ from ...compiler.engines.vm import machine
 from ...compiler.tick.compile_scene import compile
 from ...errors import EngineMissingError, HapticlabError, ProgramLimitError
 from .port_error import WILD, compared, counted
-from .tradeoff_rows import OK
+from .tradeoff_rows import OK, REFUSED, Status
 
 #: runs of one motion of which the shortest time counts
 TIMED = 3
@@ -41,7 +41,7 @@ class Trial:
     """
 
     setting: Setting
-    status: str = OK
+    status: Status = OK
     why: str = ""
     error: tuple = (math.nan, math.nan, math.nan)
     seconds: float = math.nan
@@ -70,7 +70,7 @@ def tried(bench, settings, again=False):
                 twin = next((trial for trial, other in programs if other == (program.init, program.tick)), None)
             trial = _with_order(bench, twin, setting) if twin else _tried(bench, setting, program, again)
         except HapticlabError as refusal:
-            trials.append(Trial(setting, "refused", str(refusal)))
+            trials.append(Trial(setting, REFUSED, str(refusal)))
             continue
         if twin:
             bench.same.add(_pair(twin.setting, setting))
@@ -102,7 +102,7 @@ def _tried(bench, setting, program, again):
         error = compared(F, known, setting.T, bench.delay)
         if error.unstable_at == error.unstable_at:
             why = f"during {known.motion.name} its force passes a hundred times the greatest, {known.peak:.3g} N"
-            return replace(trial, status=f"unstable at t={error.unstable_at:.3g} s", why=why)
+            return replace(trial, status=Status("unstable", f"at t={error.unstable_at:.3g} s"), why=why)
         errors.append((error.max, error.rms, error.hold))
     most, rms, hold = np.transpose(errors) / bench.peak
     error = float(most.max()), float(np.sqrt(np.mean(rms**2))), float(hold.max())

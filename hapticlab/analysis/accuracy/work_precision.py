@@ -1,6 +1,7 @@
 """The figure of a trade-off: error against load, both logarithmic, a line for each method."""
 
 from ...drawing import FRAME, house_style, log_scales, new_figure, style_of
+from .tradeoff_rows import TOO_LARGE
 
 MARKERS = {"zoh": "s", "foh": "^", "soh": "o"}
 #: with a force of the period's end or mean a marker has a bar through it
@@ -56,7 +57,7 @@ def _panel(axes, target, rows, methods, asked):
         best = front(own)
         axes.plot(*_places(best), **style, linewidth=1.2, zorder=2)
         for row in own:
-            allowed = not asked.excess(row).keys() - {"tolerance", "load"} and not row.status.startswith("does not fit")
+            allowed = not asked.excess(row).keys() - {"tolerance", "load"} and row.status != TOO_LARGE
             axes.plot(
                 *_places([row]), MARKERS[row.hold], color=style["color"], markersize=6, zorder=3,
                 markerfacecolor=style["color"] if allowed else "white", markeredgewidth=0.8,

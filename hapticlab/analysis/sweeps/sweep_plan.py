@@ -1,14 +1,13 @@
 """A sweep laid out: which points share a program, that program, and the chunks that are left to run."""
 
 import hashlib
-import re
 import textwrap
 
 import numpy as np
 
 from ... import __version__
 from ...compiler.engines.llvm import llvmlite_is_ready
-from ...errors import AnalysisError, ProgramError
+from ...errors import AnalysisError, LiveConstantError, ProgramError
 from ...scene.notation.parameters import Parameter
 from ..records.chatter import SHORTEST
 from .sweep_chunks import Chunk, chunk_size, linked
@@ -95,17 +94,6 @@ class Plan:
         known[cells] = True
         return np.count_nonzero(fresh)
 
-    def _explain(self, error):
-        """Raise for method="exact" that an axis is what may be set while the program runs, if that is what stops it."""
-        reason, live, _ = str(error).partition(" may be set while it runs")
-        met = reason.rpartition("makes constants of ")[2]
-        names = ", ".join(name for name in self.options.get("live", ()) if re.search(rf"\b{re.escape(name)}\b", met))
-        if live and names:
-            raise ProgramError(
-                f"method='exact' makes constants of the motion, and {names} in it may be no axis of the sweep: use "
-                "method='taylor', or one call for each value"
-            ) from error
-
     def _other(self):
         return AnalysisError(
             f"the file to resume from is of another sweep: {self.scene.name}, its values, the paddle or its hand are not what "
@@ -116,9 +104,14 @@ class Plan:
         """Return the program of the scene for a group."""
         try:
             program = points.paddle.program(self.scene(**points.lengths) if points.lengths else self.scene, **self.options)
-        except ProgramError as error:
-            self._explain(error)
-            raise
+        except LiveConstantError as error:
+            names = ", ".join(name for name in self.options.get("live", ()) if name in error.live)
+            if not names:
+                raise
+            raise ProgramError(
+                f"method='exact' makes constants of the motion, and {names} in it may be no axis of the sweep: use "
+                "method='taylor', or one call for each value"
+            ) from error
         for channel in program.parameters:  # a program may take less than a scene
             if channel.name in self.grid.axes:
                 swept = Parameter(channel.name, channel.unit, channel.low, channel.high)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from ...errors import AnalysisError
+from ...limits.passivity import SWITCHING_NOT_COVERED
 from .wall_map_plot import plot_wall_map
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ class WallMap:
     @property
     def inside_only(self) -> bool:
         """Whether the passivity limit says nothing about the switching at the boundary: a law with a memory, or delay."""
-        return any("not covered" in note for one in self.limits.get("passivity", ()) if one for note in one.assumptions)
+        return any(SWITCHING_NOT_COVERED in one.assumptions for one in self.limits.get("passivity", ()) if one)
 
     def plot(self) -> Figure:
         """Draw the regions with the lines of the theory; see :func:`hapticlab.analysis.walls.wall_map_plot.plot_wall_map`."""

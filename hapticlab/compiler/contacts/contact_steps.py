@@ -11,6 +11,7 @@ from ...scene.notation.derivative import Partial, Rate
 from ...scene.notation.parameters import Parameter
 from ..algebra.first_sample import numbers
 from ..events.taylor_method import Taylor
+from ..ir.notes import ParameterNote
 from ..ir.options import proposed
 from .impulses import check_rest_speed
 
@@ -83,7 +84,7 @@ def limited(program, largest):
         lasts = f"for which {c.name} lasts {STEPS_PER_CONTACT} steps; substeps or method='taylor' allow more"
         if names and isinstance(c.law.k, Parameter) and most < live[names[0]].high:
             live[names[0]] = replace(live[names[0]], high=most)
-            notes.append(f"{names[0]}: at most {most:.4g} {live[names[0]].unit}, {lasts}")
+            notes.append(ParameterNote(names[0], f"at most {most:.4g} {live[names[0]].unit}, {lasts}"))
         elif names and not isinstance(c.law.k, Parameter):
             notes.append(f"{', '.join(names)}: {c.law.k} at most {most:.4g}, {lasts}")
     return replace(program, parameters=tuple(live.values()), notes=(*program.notes, *notes))

@@ -5,10 +5,10 @@ import math
 from ...errors import SceneError
 from ...scene.notation.symbols import x
 from ..algebra.first_sample import numbers
+from ..ir.notes import UndefinedForceNote
 from ..prune.excluded_modes import within
 
 #: how a note begins that says beyond what the force is no number
-BEYOND = "F is nan where "
 #: how far past a declared range the rounding of what rests at its end may go, against the larger end [m] or [rad]
 SLACK = 1e-6
 
@@ -41,7 +41,7 @@ def guarded(force, declared, ranges, values, translate):
 def notes_of(ranges):
     """The notes of a program on the ranges it holds over."""
     for q, ends in ranges.items():
-        yield f"{BEYOND}{type(q).__name__} left {_shown(q, ends)}"
+        yield UndefinedForceNote(f"{type(q).__name__} left {_shown(q, ends)}")
 
 
 def _wider(low, high):

@@ -10,9 +10,9 @@ from ...scene.notation.symbols import t, x
 from ..algebra.complementarity import response
 from ..events.guards import contact, coulomb
 from ..events.taylor_method import Taylor
+from ..ir.notes import UndefinedForceNote
 from ..ir.program import Channel
 from ..ir.structural_zeros import dot
-from .coordinate_bounds import BEYOND
 from .impacts import impacts_of
 from .impulses import dissipated
 from .touch import Law, micro_impulses
@@ -72,10 +72,11 @@ class InstantContacts:
         touching = [*self.contacts, *self.hovering]
         if len(touching) < 2 or not any(c.gap.has(x(t)) for c in touching):
             return ()
-        return (
-            f"{BEYOND}no force keeps contacts apart ({', '.join(c.name for c in touching)}): the handle presses a body "
-            "against something that does not give; use penalty, or a coupler between handle and body",
+        where = (
+            f"no force keeps contacts apart ({', '.join(c.name for c in touching)}): the handle presses a body "
+            "against something that does not give; use penalty, or a coupler between handle and body"
         )
+        return (UndefinedForceNote(where),)
 
     def knows(self, expr):
         """Whether a reaction, or what impacts add up to, is that of one of these contacts and frictions."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import ProgramError
+from ...errors import LiveConstantError, ProgramError
 from ..algebra.matrix_exponential import held
 from ..ir.conditions import any_of, one_of
 from ..ir.structural_zeros import dot, is_zero, plus, times
@@ -152,9 +152,10 @@ class Maps:
         live = sorted({self.parameters[i.index].name for i in reached if i.op == "param"})
         if not live:
             raise self._refused()
-        raise ProgramError(
+        raise LiveConstantError(
             f"{self.why[0]}; method='exact' makes constants of each mode, and {', '.join(live)} may be set while it runs; fix "
-            f"what modes are made of, hl.compile(..., method='exact', live=[...]) without {', '.join(live)}, or use 'taylor'"
+            f"what modes are made of, hl.compile(..., method='exact', live=[...]) without {', '.join(live)}, or use 'taylor'",
+            live,
         )
 
     # at run time

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...errors import ProgramError
+from ...errors import LiveConstantError, ProgramError
 from ...scene.notation.symbols import t
 from ..algebra.graph import driven
 from ..contacts.scene_contacts import located
@@ -242,8 +242,9 @@ def linear_part(scene, form, constants, T, rest, graph):
     live = coefficients.live(rows)
     if live:
         keep = " ".join(sorted(set(scene.parameters) - set(live) - set(constants)))
-        raise ProgramError(
+        raise LiveConstantError(
             f"{scene.name}: method='exact' makes constants of the motion of {names}, and {', '.join(live)} of it may be set "
-            f"while it runs; fix what it is made of, hl.compile(..., method='exact', live={keep!r})"
+            f"while it runs; fix what it is made of, hl.compile(..., method='exact', live={keep!r})",
+            live,
         )
     return coefficients.linear(rows), part_of(form, sorted(reasons))

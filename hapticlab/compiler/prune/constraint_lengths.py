@@ -14,6 +14,7 @@ from ...scene.mechanics.loop_closure import check_range
 from ...scene.mechanics.loop_solutions import is_holonomic
 from ...scene.mechanics.loop_terms import NotClosed
 from ...scene.notation.symbols import Parameter
+from ..ir.notes import ParameterNote
 from .constraint_consistency import assembled, check_independent, check_rank
 
 #: places of the ranges of live lengths that are looked at: all combinations of the ends and middles of so many
@@ -52,9 +53,9 @@ def check_live(scene, live):
 def notes_on(scene, folded):
     """The notes of a program on the parameters that constraints hold."""
     return tuple(
-        f"{name}: held by a constraint, so not live"
+        ParameterNote(name, "held by a constraint, so not live")
         if name in folded
-        else f"{name}: live, and held by a constraint: the mechanism jumps to the new length when it is set"
+        else ParameterNote(name, "live, and held by a constraint: the mechanism jumps to the new length when it is set")
         for name in held(scene)
     )
 

@@ -16,10 +16,10 @@ from ..algebra.first_sample import numbers
 from ..algebra.linear_solve import solve
 from ..constraints.enforcement_choice import enforcement
 from ..constraints.port_mass import port_mass
-from ..contacts.coordinate_bounds import BEYOND
 from ..contacts.scene_contacts import InstantContacts, Touching
 from ..events.switched_linear import linear_between
 from ..events.taylor_method import Taylor, advance
+from ..ir.notes import UndefinedForceNote
 from ..ir.structural_zeros import dot, plus, scaled
 from ..ir.trace import Value
 from ..methods.force_timing import IMPULSE
@@ -345,7 +345,7 @@ def one_period(dynamics, method, substeps, start, name, at_start):
         )  # fmt: skip
         facts, unlocated, reactions = done.facts, done.unlocated, done.reactions if touching else ()
         notes = (linear_between(facts),) if "maps" in facts else ()
-        notes += (f"{BEYOND}the Taylor series of a step diverges; take more substeps",) if "remainder" in facts else ()
+        notes += (UndefinedForceNote("the Taylor series of a step diverges; take more substeps"),) if "remainder" in facts else ()
         notes += dynamics.contacts.faults if dynamics.contacts else ()
         if touching:
             dynamics = replace(dynamics, unknowns=dynamics.unknowns | touching.unknowns)

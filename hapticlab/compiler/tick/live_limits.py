@@ -18,6 +18,7 @@ from ...scene.frozen import Frozen
 from ...scene.notation.symbols import delay, lag_of, n
 from ..events.taylor_method import Switched, Taylor
 from ..ir.cache import Shared
+from ..ir.notes import UnstableNote
 from ..ir.trace import reachable
 from ..ir.values import Value
 from .live_stability import SLOW, SMALL, SMALL_MOTIONS, StableValues
@@ -30,8 +31,6 @@ LARGEST, SMALLEST = 3e38, 1e-37
 FIRST, CLOSER_BY, ROUNDS = (40, 16), 7, 4
 #: parts of the way to the limits at which places between them are looked at
 CLOSER = (1.0, 0.99, 0.97, 0.93, 0.85, 0.7, 0.5, 0.25)
-#: how the note of a program begins that is unstable as bound
-UNSTABLE = "unstable as bound: "
 #: how the note of a program begins of whose steps nothing is known
 UNKNOWN = "whether its steps are stable is not looked at: "
 #: operations by which a motion has modes
@@ -151,7 +150,8 @@ def _told(program, steps):
     why = f"what vibrates doubles in {doubles:.2g} s"
     why = f"its longest step is {margin * steps.h:.3g} s, and {why}" if 0 < margin < 1 else why
     worth = "" if steps.linear else f", {SMALL_MOTIONS}"
-    note = f"{UNSTABLE}{steps.name} in steps of {steps.h:g} s, {why}{worth}; take more substeps, a shorter T or another method"
+    why = f"{steps.name} in steps of {steps.h:g} s, {why}{worth}; take more substeps, a shorter T or another method"
+    note = UnstableNote(why)
     return replace(program, facts=facts | {"doubles_s": float(f"{doubles:.3g}")}, notes=(*program.notes, note))
 
 

@@ -1,7 +1,7 @@
 """Why a simulated run stopped: what was not finite, when, and what to look for."""
 
-from ...compiler.contacts.coordinate_bounds import BEYOND
 from ...compiler.ir.elementary import TABLES
+from ...compiler.ir.notes import UndefinedForceNote
 
 
 def not_finite(program, code, tick, T):
@@ -27,7 +27,7 @@ def not_finite(program, code, tick, T):
 
 def _likely_cause(program):
     """Return what to look for where a program stopped: what its notes say, an angle past all sines; else nothing."""
-    left = [note.removeprefix(BEYOND) for note in program.notes if note.startswith(BEYOND)]
+    left = [note.where for note in program.notes if isinstance(note, UndefinedForceNote)]
     likely = f". Most likely {' or '.join(left)}" if left else ""
     if not any(i.op in ("sin", "cos") for i in program.tick.instructions):
         return likely

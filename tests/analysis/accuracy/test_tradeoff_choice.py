@@ -7,6 +7,7 @@ import pytest
 from trade_rows import one_row
 
 from hapticlab.analysis.accuracy.tradeoff_choice import Asked, chosen
+from hapticlab.analysis.accuracy.tradeoff_rows import Status
 from hapticlab.errors import AnalysisError
 
 ASKED = Asked(1e-2, 0.5, True)
@@ -32,9 +33,9 @@ def test_the_error_of_the_held_force_can_be_bounded():
 @pytest.mark.parametrize(
     ("found", "word"),
     [
-        ({"status": "chaotic after 0.02 s", "why": "two solvers differ"}, "chaotic after 0.02 s: two solvers differ"),
+        ({"status": Status("chaotic", "after 0.02 s"), "why": "two solvers differ"}, "chaotic after 0.02 s: two solvers differ"),
         ({"status": "uncertified", "why": "they differ by 0.1 %", "doubt": 1e-3}, "uncertified: they differ by 0.1 %"),
-        ({"status": "faulted after 0.1 s", "why": "no number"}, "faulted after 0.1 s: no number"),
+        ({"status": Status("faulted", "after 0.1 s"), "why": "no number"}, "faulted after 0.1 s: no number"),
         ({"b_where": "x = 0.05"}, "passive in small motions, the scene is not linear: it asks for the most damping at x = 0.05"),
     ],
 )
