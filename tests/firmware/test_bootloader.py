@@ -9,7 +9,7 @@ import serial
 from bootloader import Board, BoardPort, bootloader_folder, build_shim, hex_file, offer
 
 from hapticlab.compiler.engines.firmware_library import firmware_folder
-from hapticlab.device.link.serial_ports import BOARDS
+from hapticlab.device.link.serial_ports import KNOWN
 from hapticlab.device.setup.flash import PAGE, STAND_STILL, flash
 from hapticlab.errors import PaddleError, PortError
 
@@ -185,7 +185,7 @@ def test_every_uno_that_arduino_knows_is_known():
     text = (bootloader_folder().parent / "boards.txt").read_text()
     pairs = re.findall(r"^uno\.vid\.\d+=(\w+)\nuno\.pid\.\d+=(\w+)$", text, re.M)
     unos = {(int(vendor, 16), int(product, 16)) for vendor, product in pairs}
-    assert len(unos) >= 5 and unos <= set(BOARDS)
+    assert len(unos) >= 5 and unos <= set(KNOWN)
 
 
 def test_lost_requests_are_asked_again(connect, tmp_path):

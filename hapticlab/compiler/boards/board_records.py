@@ -1,11 +1,47 @@
-"""The boards: what each gives a program."""
+"""The boards, one record each: what a program has there, how it is found on a USB port, and how firmware comes onto it.
+
+What is measured of a board stands in ``costs.json``, its firmware in a folder of ``firmware/boards``. All else that knows
+boards reads these records: the cost model, ``hapticlab ports`` and ``flash``, the choices of the command line; tests
+compare them with the firmware's constants and with the rules for udev.
+"""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
+class Usb:
+    """A USB device by which a board is known: its vendor's and product's numbers, and what people call it."""
+
+    vendor: int
+    product: int
+    words: str
+
+
+@dataclass(frozen=True)
+class Bootloader:
+    """A bootloader that speaks STK500: its name, its speed, and where it begins, which is where a program ends."""
+
+    name: str
+    baudrate: int
+    start: int
+
+
+@dataclass(frozen=True)
+class Flashing:
+    """How firmware is written: the image in firmware/prebuilt, the chip's signature, its page [bytes], its bootloaders."""
+
+    image: str
+    chip: str
+    signature: bytes
+    page: int
+    bootloaders: tuple[Bootloader, ...]
+
+
+@dataclass(frozen=True)
 class Board:
-    """What a board gives a program.
+    """A board.
 
     Attributes
     ----------
@@ -20,6 +56,10 @@ class Board:
         Numbers in a sample: x, v, F and what is watched.
     T_max : float
         Longest period [s].
+    usb : tuple of Usb
+        Empty for a board that is modelled and was never on a port.
+    flashing : Flashing, optional
+        None where this package brings no firmware for it.
     """
 
     name: str
@@ -28,15 +68,39 @@ class Board:
     arena: int
     channels: int
     T_max: float = 10e-3
+    usb: tuple[Usb, ...] = ()
+    flashing: Flashing | None = None
 
 
-#: arena, channels and T_max are those of firmware/boards/*/board_constants.h; a test compares them
-BOARDS = {
-    b.name: b
-    for b in (
-        Board("uno", 16e6, 8, 848, 8),
-        Board("cortex-m0+", 125e6, 8, 16_384, 16),
-        Board("cortex-m4f", 168e6, 8, 16_384, 16),
-        Board("host", None, 16, 1 << 20, 16),
-    )
-}
+UNO = Board(
+    name="uno",
+    hz=16e6,
+    word_bits=8,
+    arena=848,
+    channels=8,
+    # boards.txt of ArduinoCore-avr; for the bridges on copies the device tables of Linux's ch341.c, cp210x.c, ftdi_sio_ids.h
+    usb=(
+        Usb(0x2341, 0x0043, "Arduino Uno R3"),
+        Usb(0x2341, 0x0001, "Arduino Uno"),
+        Usb(0x2341, 0x0243, "Genuino Uno"),
+        Usb(0x2A03, 0x0043, "Arduino Uno (arduino.org)"),
+        Usb(0x2341, 0x006A, "Arduino Uno Mini"),
+        Usb(0x1A86, 0x7523, "CH340 (copies of the Uno and Nano)"),
+        Usb(0x1A86, 0x5523, "CH341 (copies of the Uno and Nano)"),
+        Usb(0x0403, 0x6001, "FT232R (Hapkit board, Nano)"),
+        Usb(0x0403, 0x6015, "FT231X (copies of the Uno)"),
+        Usb(0x10C4, 0xEA60, "CP210x (copies of the Uno)"),
+    ),
+    flashing=Flashing(
+        image="uno.hex",
+        chip="ATmega328P",
+        signature=bytes.fromhex("1e950f"),
+        page=128,
+        bootloaders=(Bootloader("optiboot", 115200, 0x7E00), Bootloader("ATmegaBOOT (older Nano)", 57600, 0x7800)),
+    ),
+)
+CORTEX_M0 = Board(name="cortex-m0+", hz=125e6, word_bits=8, arena=16_384, channels=16)
+CORTEX_M4 = Board(name="cortex-m4f", hz=168e6, word_bits=8, arena=16_384, channels=16)
+HOST = Board(name="host", hz=None, word_bits=16, arena=1 << 20, channels=16)
+
+BOARDS = {board.name: board for board in (UNO, CORTEX_M0, CORTEX_M4, HOST)}

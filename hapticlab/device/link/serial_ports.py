@@ -9,6 +9,7 @@ import re
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
+from ...compiler.boards.board_records import BOARDS
 from ...errors import HapticlabError, PortError
 from .port_faults import explain
 
@@ -23,20 +24,8 @@ HANDLERS = "hapticlab.device.urls"
 ENOUGH = 64
 #: an environment variable; where it is "sim", as while grading, nobody's hand is at the handle and no other port opens
 PORTS = "HAPTICLAB_PORTS"
-#: (vendor, product) of boards a paddle is built on, and of the USB bridges on their copies. Sources: boards.txt of
-#: ArduinoCore-avr (uno), the device tables of Linux's ch341.c, cp210x.c and ftdi_sio_ids.h.
-BOARDS = {
-    (0x2341, 0x0043): "Arduino Uno R3",
-    (0x2341, 0x0001): "Arduino Uno",
-    (0x2341, 0x0243): "Genuino Uno",
-    (0x2A03, 0x0043): "Arduino Uno (arduino.org)",
-    (0x2341, 0x006A): "Arduino Uno Mini",
-    (0x1A86, 0x7523): "CH340 (copies of the Uno and Nano)",
-    (0x1A86, 0x5523): "CH341 (copies of the Uno and Nano)",
-    (0x0403, 0x6001): "FT232R (Hapkit board, Nano)",
-    (0x0403, 0x6015): "FT231X (copies of the Uno)",
-    (0x10C4, 0xEA60): "CP210x (copies of the Uno)",
-}
+#: (vendor, product) of boards a paddle is built on, and of the USB bridges on their copies
+KNOWN = {(usb.vendor, usb.product): usb.words for board in BOARDS.values() for usb in board.usb}
 
 
 @dataclass(frozen=True)
@@ -70,7 +59,7 @@ def available_ports():
 
 def _described(info):
     words = "" if info.description == "n/a" else info.description or ""
-    return Port(info.device, words, info.vid, info.pid, info.serial_number, BOARDS.get((info.vid, info.pid)))
+    return Port(info.device, words, info.vid, info.pid, info.serial_number, KNOWN.get((info.vid, info.pid)))
 
 
 def _natural(port):

@@ -4,16 +4,15 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from ...compiler.boards.board_records import UNO, Bootloader
 from ...compiler.engines.firmware_library import firmware_folder
 from ...errors import PaddleError, PortError
 from ..link.serial_ports import open_port, port_watched
 from ..progress import progress_bar
 from .intel_hex import parse_hex
 
-PAGE = 128  # bytes, of the ATmega328P
-SIGNATURE = bytes.fromhex("1e950f")
+#: other chips that answer in the same way, to name what was met
 CHIPS = {
-    SIGNATURE: "ATmega328P",
     bytes.fromhex("1e9514"): "ATmega328",
     bytes.fromhex("1e9516"): "ATmega328PB",
     bytes.fromhex("1e9406"): "ATmega168",
@@ -22,6 +21,9 @@ CHIPS = {
     bytes.fromhex("1e9587"): "ATmega32U4",
     bytes.fromhex("1e9801"): "ATmega2560",
 }
+HOW = UNO.flashing
+assert HOW is not None  # for a type checker: the Uno has firmware
+PAGE = HOW.page
 SYNC, ENTER, LEAVE, ADDRESS, WRITE, READ, SIGN = b"0", b"P", b"Q", b"U", b"d", b"t", b"u"
 END_OF_COMMAND, IN_SYNC, OK = b" ", b"\x14", b"\x10"
 #: s. The first is longer than optiboot blinks (0.4 s) before it listens: more than two bytes sent meanwhile are lost,
@@ -31,18 +33,6 @@ REPLY_WAIT = 1.0  # s; the bootloader's own watchdog
 #: rjmp to itself. It fills the first page until all others are verified, so that after a cut the board does nothing,
 #: with its motor pins off, and never runs half a program.
 STAND_STILL = b"\xff\xcf" * (PAGE // 2)
-
-
-@dataclass(frozen=True)
-class Bootloader:
-    """A bootloader: what it speaks, and where it begins, which is where a program ends."""
-
-    name: str
-    baudrate: int
-    start: int
-
-
-BOOTLOADERS = (Bootloader("optiboot", 115200, 0x7E00), Bootloader("ATmegaBOOT (older Nano)", 57600, 0x7800))
 
 
 @dataclass(frozen=True)
@@ -90,7 +80,7 @@ def flash(port, image=None, *, progress=True, tell=lambda sentence: None):
     """
     path = Path(image) if image is not None else prebuilt_image()
     content = read_image(path)
-    opened = open_port(port, baudrate=BOOTLOADERS[0].baudrate)
+    opened = open_port(port, baudrate=HOW.bootloaders[0].baudrate)
     try:
         bootloader = find_bootloader(opened)
         check_fits(content, bootloader, path.name)
@@ -104,9 +94,9 @@ def flash(port, image=None, *, progress=True, tell=lambda sentence: None):
 
 def prebuilt_image():
     """Return the path of the image that comes with the package."""
-    path = firmware_folder() / "prebuilt" / "uno.hex"
+    path = firmware_folder() / "prebuilt" / HOW.image
     if not path.is_file():
-        raise PaddleError("this hapticlab came without uno.hex; give an image, or install a release")
+        raise PaddleError(f"this hapticlab came without {HOW.image}; give an image, or install a release")
     return path
 
 
@@ -135,7 +125,7 @@ def check_fits(content, bootloader, name):
 
 def find_bootloader(port):
     """Reset the board and return the bootloader that answers."""
-    for bootloader in BOOTLOADERS:
+    for bootloader in HOW.bootloaders:
         with port_watched(port):
             port.baudrate = bootloader.baudrate
         for _ in range(RESETS):
@@ -155,10 +145,10 @@ def find_bootloader(port):
 def check_chip(port):
     """Refuse a board with another chip than the image was built for."""
     signature = _ask(port, SIGN, 3)
-    if signature != SIGNATURE:
+    if signature != HOW.signature:
         name = CHIPS.get(signature, "an unknown chip")
         raise PaddleError(
-            f"{port.port} is {name} (signature {signature.hex()}), needs {CHIPS[SIGNATURE]} ({SIGNATURE.hex()}); "
+            f"{port.port} is {name} (signature {signature.hex()}), needs {HOW.chip} ({HOW.signature.hex()}); "
             "nothing was written. Choose the port of an Uno"
         )
 

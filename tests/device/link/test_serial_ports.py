@@ -16,7 +16,7 @@ from serial.tools.list_ports_common import ListPortInfo
 
 from hapticlab.device.link import port_faults
 from hapticlab.device.link.port_faults import explain, permission_cure, rules_file
-from hapticlab.device.link.serial_ports import BOARDS, Port, available_ports, open_port, port_watched, read_available
+from hapticlab.device.link.serial_ports import KNOWN, Port, available_ports, open_port, port_watched, read_available
 from hapticlab.errors import PortError
 
 NOBODY = 65534
@@ -283,7 +283,7 @@ def test_ports_are_listed_by_what_they_are(monkeypatch):
 def test_the_udev_rules_are_for_the_same_boards():
     text = rules_file().read_text()
     pairs = re.findall(r'idVendor}=="(\w+)", ATTRS{idProduct}=="(\w+)", ENV{ID_HAPTICLAB}="1"', text)
-    assert {(int(vendor, 16), int(product, 16)) for vendor, product in pairs} == set(BOARDS)
+    assert {(int(vendor, 16), int(product, 16)) for vendor, product in pairs} == set(KNOWN)
     assert 'TAG+="uaccess"' in text and 'ENV{ID_MM_DEVICE_IGNORE}="1"' in text
     assert int(rules_file().name[:2]) < 73  # systemd's 73-seat-late.rules gives access to what is tagged before it
 
