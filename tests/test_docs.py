@@ -95,9 +95,20 @@ def test_public_names_are_documented_and_exist():
 
 def test_files_named_in_the_documents_exist():
     contributing = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
-    named = set(re.findall(r"`((?:tests|firmware|hapticlab|\.ci)/[\w/.]+)`", README + contributing))
+    named = set(re.findall(r"`((?:tests|firmware|hapticlab|docs|\.ci)/[\w/.]+)`", README + contributing))
+    named = {path for path in named if "NAME" not in path and "NN_name" not in path}
+    named |= {f"hapticlab/{path}" for path in re.findall(r"^\| `[^|]+\| `([\w/]+\.py)`", contributing, re.M)}
     assert len(named) >= 5
     assert [path for path in sorted(named) if not (ROOT / path).exists()] == []
+
+
+def test_the_map_shows_every_room():
+    contributing = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    table = contributing[contributing.index("| room of") : contributing.index("| question |")]
+    rooms = {path.stem for path in (ROOT / "hapticlab").iterdir() if path.name[0] not in "_." and path.suffix in ("", ".py")}
+    assert rooms - {"examples", "labs", "firmware"} == {
+        name.rstrip("/") for row in re.findall(r"^\| (`[^|]+) \|", table, re.M) for name in re.findall("`([a-z_]+/?)`", row)
+    }
 
 
 def test_a_misspelt_name_is_answered_with_those_that_come_near():

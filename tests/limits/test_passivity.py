@@ -121,7 +121,7 @@ def test_a_limit_at_rest_is_said_in_words():
         ({"B": math.nan}, "B = nan N s/m"),
         ({"delay": -1e-3}, "delay = -0.001 s; needs delay >= 0"),
         ({"delay": 1.0}, "at most 200 periods"),
-        ({"law": "foh"}, "law = 'foh'; needs one of zoh, half_sample, backward_difference, ellis"),
+        ({"law": "foh"}, f"law = 'foh'; needs one of {', '.join(TAPS)}"),
         ({"b": "thick"}, "b = 'thick'; a device needs b >= 0: its damping pays for the hold, as a number in N s/m"),
     ],
 )
