@@ -10,7 +10,7 @@ import hapticlab as hl
 paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch"))
 view = hl.live(paddle, hl.wall()(k=300, x_o=0.01))
 """
-STAGE, STATUS, READOUT = "canvas.hl-stage", ".hl-status", ".hl-readout"
+STAGE, STATUS = "canvas.hl-stage", ".hl-status"
 # Where the handle is, F, and E as the view says them in words.
 NUMBERS = "() => document.querySelector('.hl-readout').textContent.match(/-?[0-9.]+/g).map(Number)"
 # Contrast of two colours after WCAG 2.

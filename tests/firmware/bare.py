@@ -176,9 +176,6 @@ class Bench:
     def set_parameters(self, values):
         self.cpu.write(self.parameters, self._slots(values, self.program.parameters).tobytes())
 
-    def set_states(self, values):
-        self.cpu.write(self.states, self._slots(values, self.program.states).tobytes())
-
     def run(self, inputs, init=True):
         """Run a tick a row of ``inputs``; return the outputs, the states at the end, and the cycles of each hl_tick."""
         inputs = np.asarray(inputs, float).reshape(-1, len(self.program.inputs))

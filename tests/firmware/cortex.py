@@ -133,7 +133,7 @@ class Cortex:
         if name == "cortex-m4f":
             uc.reg_write(arm_const.UC_ARM_REG_FPEXC, 0x4000_0000)
         self.listing = _listing(path)
-        self.blocks, self.cycles, self.executed = {}, 0, 0
+        self.blocks, self.cycles = {}, 0
         self.after, self.may_fall = None, False
         if counting:
             uc.hook_add(unicorn.UC_HOOK_BLOCK, self._block)
@@ -145,10 +145,9 @@ class Cortex:
         if key not in self.blocks:
             code = [self.listing[a] for a in range(address, address + size, 2) if a in self.listing]
             last = bool(code) and bool(CONDITIONAL.match(code[-1][0]))
-            self.blocks[key] = sum(self.cycles_of(*c) for c in code), len(code), last
-        cycles, count, self.may_fall = self.blocks[key]
+            self.blocks[key] = sum(self.cycles_of(*c) for c in code), last
+        cycles, self.may_fall = self.blocks[key]
         self.cycles += cycles
-        self.executed += count
         self.after = address + size
 
     def place(self, name):
@@ -170,7 +169,7 @@ class Cortex:
             self.write(stack + 4 * k, struct.pack("<I", value))
         uc.reg_write(arm.UC_ARM_REG_SP, stack)
         uc.reg_write(arm.UC_ARM_REG_LR, STOP | 1)
-        self.cycles = self.executed = 0
+        self.cycles = 0
         self.may_fall = False
         uc.emu_start(self.address[name] | 1, STOP)
         return uc.reg_read(arm.UC_ARM_REG_R0) & 255, self.cycles

@@ -13,7 +13,7 @@ from hapticlab.device.link.serial_ports import KNOWN
 from hapticlab.device.setup.flash import PAGE, STAND_STILL, flash
 from hapticlab.errors import PaddleError, PortError
 
-DDRB, DDRD = 0x24, 0x2A
+DDRD = 0x2A
 UCSR0A, UCSR0B, UBRR0L, UDR0 = 0xC0, 0xC1, 0xC4, 0xC6
 
 

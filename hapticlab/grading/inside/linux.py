@@ -12,7 +12,7 @@ NOSUID, NODEV, NOEXEC, BIND, RECURSIVE, PRIVATE, DETACH = 2, 4, 8, 4096, 16384, 
 # mount_setattr(2)
 MOUNT_SETATTR, AT_FDCWD, AT_RECURSIVE, ATTR_RDONLY, ATTR_NOSUID, ATTR_NODEV = 442, -100, 0x8000, 1, 2, 4
 # prctl(2)
-SET_PDEATHSIG, SET_DUMPABLE, SET_SECCOMP, CAPBSET_DROP, SET_CHILD_SUBREAPER, SET_NO_NEW_PRIVS = 1, 4, 22, 24, 36, 38
+SET_PDEATHSIG, SET_SECCOMP, CAPBSET_DROP, SET_CHILD_SUBREAPER, SET_NO_NEW_PRIVS = 1, 22, 24, 36, 38
 CAPABILITY_VERSION_3 = 0x20080522  # capget(2)
 # landlock(7), numbers of its calls from asm-generic/unistd.h, flags from linux/landlock.h
 LANDLOCK_CREATE, LANDLOCK_ADD, LANDLOCK_RESTRICT = 444, 445, 446
@@ -63,11 +63,6 @@ def move_root(new):
 def become_subreaper():
     """Let orphans among the descendants become children of this process."""
     _call("prctl", SET_CHILD_SUBREAPER, 1, 0, 0, 0)
-
-
-def forbid_dumps():
-    """Forbid other processes of the user to trace this one and to read its memory."""
-    _call("prctl", SET_DUMPABLE, 0, 0, 0, 0)
 
 
 def die_with_parent():
