@@ -99,8 +99,8 @@ def instant(scene, *, T):
     ProgramError
         The scene has a part that no state determines: a past sample, a micro-impulse, friction in an impact.
     """
-    *between, _ = between_samples(scene, T)
-    moving = moving_scene(*between, AtInstant)
+    source, _ = between_samples(scene, T)
+    moving = moving_scene(source, AtInstant)
     dynamics, tick = moving.dynamics, moving.tick.tracing.tick
     contacts, equations, touching = dynamics.contacts or InstantContacts(()), dynamics.equations, dynamics.touching()
     _check(contacts)

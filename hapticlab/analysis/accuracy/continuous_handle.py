@@ -10,9 +10,9 @@ from ...compiler.events.taylor_method import Taylor
 from ...compiler.ir.program import Channel
 from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.prune.excluded_modes import excluded, folded, rests_on
-from ...compiler.tick.compile_scene import Options
 from ...compiler.tick.handle_samples import Handle
 from ...compiler.tick.motion_program import motion_program
+from ...compiler.tick.source import Options, Source
 from ...errors import ProgramError
 from ...scene.notation.symbols import T, acceleration, delay, lag_of, n, t, v, x
 
@@ -98,12 +98,12 @@ def driven(scene, *, T, substeps=1, order=None):
     ProgramError
         The scene has a part that lives at the samples alone: a signal, or the rate of a delay.
     """
-    *between, decisions = between_samples(scene, T, substeps, order)
-    return motion_program(*between, rests_on(between[1], decisions), Followed)
+    source, decisions = between_samples(scene, T, substeps, order)
+    return motion_program(source, rests_on(source.form, decisions), Followed)
 
 
 def between_samples(scene, T, substeps=1, order=None):
-    """(scene, form, options, fixed, graph, decisions) of a scene without samples, by "taylor", all its values constants."""
+    """(the :class:`Source` of a scene without samples, by "taylor", all its values constants; what ranges decided)."""
     form, decisions = excluded(replace(scene, watch={}), T, ())
     if form.updates:
         signal = next(iter(form.updates))
@@ -114,7 +114,7 @@ def between_samples(scene, T, substeps=1, order=None):
     )  # fmt: skip
     options = Options(chosen_method(Taylor(order=order)), T, substeps, dtype="float64", velocity="measured", live=())
     fixed = folded(scene, ())
-    return scene, form, options, fixed, Graph(fixed), decisions
+    return Source(scene, form, options, fixed, Graph(fixed)), decisions
 
 
 def without_samples(expr):

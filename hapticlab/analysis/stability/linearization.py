@@ -11,8 +11,9 @@ from ...compiler.algebra.tangents import tangents
 from ...compiler.events.taylor_method import Taylor
 from ...compiler.methods.chosen_method import ChosenMethod, chosen_method
 from ...compiler.prune.excluded_modes import folded
-from ...compiler.tick.compile_scene import Options, compile
+from ...compiler.tick.compile_scene import compile
 from ...compiler.tick.motion_program import moving_scene
+from ...compiler.tick.source import Options, Source
 from ...errors import AnalysisError
 from .slopes import Slopes
 
@@ -21,7 +22,7 @@ def slopes_of(scene, T, damped=False, exact=False):
     """The :class:`Slopes` of a switched scene's equations of motion; with ``exact``, of those that are not linear."""
     live = () if exact else None
     options, fixed = Options(ChosenMethod(exact, Taylor()), T, hold="zoh", dtype="float64", live=live), folded(scene, live)
-    return Slopes(moving_scene(scene, scene.form, options, fixed, Graph(fixed)), damped)
+    return Slopes(moving_scene(Source(scene, scene.form, options, fixed, Graph(fixed))), damped)
 
 
 def motion_at(scene, points, T):

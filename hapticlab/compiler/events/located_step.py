@@ -81,14 +81,14 @@ class Stepper:
         if jumped and self.motion.driven:
             now = self._put_back(now)
         ends = []
-        for piece in range(self.pieces):
+        for piece in range(self.pieces):  # traced whether an event ends one or not: a program has no jumps
             flow, now = self._flow(now)
             reach = trace.minimum(now.left, self.longest(now.flags)) if self.longest else now.left
             guards = [
                 self._crossing(p, just, idle, reach)
                 for (p, just), idle in zip(self._guards(flow, now), self._idles(now), strict=True)
             ]
-            if piece < self.pieces - 1:
+            if piece < self.pieces - 1:  # the last one goes to the end of the step, and counts what it did not locate
                 now = self._advanced(flow, now, guards, reach)
                 ends.append((now, self._rough))
         missed = self._rough | any_of(found for _, found in guards)
@@ -98,6 +98,7 @@ class Stepper:
 
     def _ended(self, ends, state, held, missed):
         """(state, held, missed) of the first piece that ends the step."""
+        # from the last piece back: each select holds all later ones, which an engine may skip as one arm
         for now, rough in reversed(ends):
             more = 0.0 < now.left
             state = tuple(
@@ -141,7 +142,7 @@ class Stepper:
     def _truths(self, tau, state):
         """The flag of every guard, and the side of every slip, as the comparisons have them."""
         motion, modes, flags = self.motion, {}, []
-        for g in motion.guards:
+        for g in motion.guards:  # in order: a surface may lie elsewhere in the modes of those before it
             flow = Flow(motion, tau, state, modes, self.h, self.number)
             first, second = flow.at(g.first), flow.at(g.second)
             flags.append(trace.floor(first) if g.kind == "floor" else first < second if g.strict else first <= second)
@@ -153,6 +154,7 @@ class Stepper:
         """The motion from here on, and which reactions are held: those tried whose limits allow it."""
         flow = self._fresh(now)
         if self.motion.reactions:
+            # a reaction tells whether it may be held once the series is begun with it held; then the series begins anew
             flow.begin()
             flow.hold(now.held)
             held, sides = self._allowed(flow, now)
@@ -160,7 +162,7 @@ class Stepper:
             just = [(j | was) & ~is_ for j, was, is_ in zip(now.just[base:], now.held, held, strict=True)]
             q, w, s = now.state
             rates = [*w, *s]
-            for n, k in self.motion.stops.items():
+            for n, k in self.motion.stops.items():  # a held rate is zero, not its rounding, which would add up over hours
                 rates[n] = select(held[k], 0.0, rates[n])
             state = q, rates[: len(w)], rates[len(w) :]
             now = replace(now, state=state, held=held, sides=sides, just=[*now.just[:base], *just])
@@ -180,6 +182,7 @@ class Stepper:
         for i, (r, wanted, side) in enumerate(zip(self.motion.reactions, now.held, now.sides, strict=True)):
             allowed = wanted & (0.0 <= flow.at(r.inside))
             if side is not None:
+                # a friction holds where it acts against its own slip; any other surface is crossed (Filippov)
                 holds = flow.slope(i) < 0.0
                 allowed = allowed & holds
                 side = either(wanted & ~allowed, either(holds, 0.0 < flow.at(r.lean), ~side), side)
@@ -192,12 +195,13 @@ class Stepper:
         motion, order, just = self.motion, self.order, iter(now.just)
         for g, flag in zip(motion.guards, now.flags, strict=True):
             p = flow.of(g.measure, order)
-            if g.kind == "floor":
+            if g.kind == "floor":  # 1/4 - d^2, d from the middle: zero at either of the two whole numbers
                 square = [product(p, p, k) for k in range(order + 1)]
                 yield [0.25 - square[0], *(times(-1.0, c) for c in square[1:])], next(just)
             else:
                 yield [signed(flag, c) for c in p], next(just)
         for r, held, side in zip(motion.reactions, now.held, now.sides, strict=True):
+            # a reaction is known to one order less than the motion that it acts on
             apart, inside = flow.of(r.measure, order), [*flow.of(r.inside, order - 1), 0.0]
             left = next(just)
             apart = departing([c if side is None else signed(~side, c) for c in apart], left, r.level)
@@ -218,6 +222,7 @@ class Stepper:
         earliest = 1.0
         for place, _ in guards:
             earliest = trace.minimum(place, earliest)
+        # what happens at once, as at a corner, changes at once: the later of two would begin on the wrong side of its surface
         fired = [(place <= earliest + TOGETHER[motion.builder.real]) & found for place, found in guards]
         theta = earliest * reach
         state, tau = self._moved(flow, now, theta), now.tau + self.h * theta
@@ -276,7 +281,7 @@ class Stepper:
             f & ~was if r.level == 2 else np.False_ for r, f, was in zip(motion.reactions, fired[base:], before.held, strict=True)
         ]
         struck = any_of(closed)
-        w, held = self.impact(self._fresh(now).at, closed, now.held)
+        w, held = self.impact(self._fresh(now).at, closed, now.held)  # traced at each piece; it counts where one closed
         w = [select(struck, new, old) for new, old in zip(w, now.state[1], strict=True)]
         state = now.state[0], w, now.state[2]
         flags, sides = self._truths(now.tau, state)

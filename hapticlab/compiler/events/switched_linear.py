@@ -66,6 +66,7 @@ class Maps:
         self.leaves = [*motion.q, *motion.w, *motion.s]
         self.choices = [g.leaf for g in motion.guards] + [r.side for r in motion.reactions if r.side is not None]
         measures = [g.measure for g in motion.guards] + [r.measure for r in motion.reactions]
+        # the maps put each free reaction in by its formula, which may hold none of the others; friction on a contact does
         leaves = {r.leaf.id for r in motion.reactions}
         pushed = reachable(motion.builder.instructions, [r.free.id for r in motion.reactions])
         if any(g.kind == "floor" for g in motion.guards) or not is_linear(motion, measures) or not leaves.isdisjoint(pushed):
@@ -98,6 +99,7 @@ class Maps:
 
     def _walls(self, mode):
         """(number of the choice, direction, place) of each surface that stands still: it is met at row y = place."""
+        # two walls of one direction have three sides together, not four: a map for the fourth would never be used
         motion, found = self.motion, []
         still = self._at([0.0] * len(self.leaves), 0.0, mode.sides, 1)
         leaves = {leaf.id for leaf in self.choices} | {r.leaf.id for r in motion.reactions}
@@ -181,6 +183,7 @@ class Maps:
 
     def step(self, stepper, state, held):
         """(state, held, unlocated) after a period: by a map where that is sure, else with switches located."""
+        # both are traced, and an engine may skip the one that is not chosen; a held reaction is an unknown that no map has
         fast, room = self.over(state)
         slow, now, missed = stepper.step(self.motion.builder.const(0.0), state, held, jumped=True)
         sure = (0.0 < room) & ~any_of(held)
@@ -205,7 +208,7 @@ class Maps:
         if not len(flags):
             return results[()]
         above, below = ({sides[1:]: r for sides, r in results.items() if sides[0] == side} for side in (True, False))
-        if self.complete and not (above and below):
+        if self.complete and not (above and below):  # every mode has a map, so that these sides cannot be
             return self._chosen(flags[1:], above or below, other)
         pairs = zip(self._chosen(flags[1:], above, other), self._chosen(flags[1:], below, other), strict=True)
         return [a if a is b else select(flags[0], a, b) for a, b in pairs]
@@ -242,6 +245,7 @@ class Maps:
             first, last = series.of(measure, DEGREE), end.of(measure, 0)[0]
             if leaf is not None and bool(mode.sides[leaf]) != positive:
                 first, last = [times(-1.0, c) for c in first], times(-1.0, last)
+            # g >= its chord - stray, and the chord is least at an end: room > 0 says that the surface is not reached
             bound = strays(mode.A, row, self.h, degree, scale) * np.array(units)[:, None]
             stray = _sum(dot([float(f) for f in E], [_size(c) for c in change]) for E, change in zip(bound, changes, strict=True))
             for k in range(2, DEGREE):
@@ -250,6 +254,7 @@ class Maps:
         return [*after, room]
 
     def _scale(self, A):
+        """Units for the states, rates in those of the fastest spring: an exponential loses digits beside larger entries."""
         two = len(self.motion.q)
         frequency = max(1 / self.h, math.sqrt(np.abs(A[two : 2 * two, :two]).max(initial=0.0)))
         return np.r_[np.ones(two), np.full(two, frequency), np.ones(len(A) - 2 * two)]

@@ -18,12 +18,12 @@ from .force_timing import IMPULSE
 _LARGEST_RATE = 1e150
 
 
-class _NotLinear(ProgramError):
+class NotLinear(ProgramError):
     """What ``method="exact"`` cannot take as one linear system: the reason, and what to do where there is no other way."""
 
     def __init__(self, reason, cure):
         super().__init__(f"{reason}; {cure}")
-        self.reason = reason
+        self.reason, self.cure = reason, f"; {cure}"
 
 
 def exact_or_switched(scene, form, tick, start, rest):
@@ -41,10 +41,10 @@ def exact_or_switched(scene, form, tick, start, rest):
     """
     try:
         return Exact(scene, form, tick, start, rest), rest
-    except _NotLinear as why:
+    except NotLinear as why:
         if rest is not None or any(model.constraints for model in form.models):
             raise
-        return None, Switched(reason=why.reason, cure=str(why).removeprefix(why.reason))
+        return None, Switched(reason=why.reason, cure=why.cure)
 
 
 class Exact:
@@ -73,6 +73,7 @@ class Exact:
         read = set().union(*map(leaves, other))
         averaged = IMPULSE in self.states  # which starts anew at each sample, alone
         seen = [k for s, k in self.states.items() if s in read]
+        # the program keeps w = V^-1 y, states or modes, whichever take fewer products
         self.space = linear.space if averaged else _cheaper(linear, seen, tracing.T)
         first, back = [start(start_of(s)) for s in self.states], np.linalg.inv(self.space.V)
         plain, real = self.space.is_plain, tracing.real
@@ -102,6 +103,7 @@ class Exact:
         It stays as it is at the sample, but for what t drives: a parabola through its values at both ends and midway.
         """
         T = tick.tracing.T
+        # linear in states and handle: what is left of f with these at zero
         still = dict.fromkeys((*self.states, *HANDLE), tick.tracing.tick.const(0.0))
 
         def at(tau):
@@ -169,6 +171,7 @@ class ExactPeriod:
         for k, value in enumerate(self.now):
             # w + (Phi - 1) w keeps the digits of a small change, and those of float32 constants
             add(value, Phi[:, k] - np.eye(len(Phi))[k])
+        # the handle's polynomial and the parabola of the rest are integrated exactly: Psi_k is the effect of tau^k/k!
         for column, powers in enumerate(self.motion):
             for k, value in enumerate(powers):
                 add(value, Psi[k] @ space.inputs[:, column])
@@ -233,12 +236,12 @@ def linear_part(scene, form, constants, T, rest, graph):
     names = ", ".join(type(form.coordinates[k]).__name__ for k in rows)
     reason = f"{scene.name}: {next(iter(reasons.values()), '')}"
     if reasons and any(located(model.contacts) for model in coupled(form)):
-        raise _NotLinear(reason, "use method='taylor', which locates that and is exact where motion is linear")
+        raise NotLinear(reason, "use method='taylor', which locates that and is exact where motion is linear")
     if reasons and not rows:
         other = "'taylor', which locates that" if any(f.has(*JUMPS) for f in form.f) else "'rk4'"
-        raise _NotLinear(reason, f"nothing is left for method='exact', use {other}")
+        raise NotLinear(reason, f"nothing is left for method='exact', use {other}")
     if reasons and rest is None:
-        raise _NotLinear(reason, f"method='exact+rk4' takes {names} exactly and the rest by rk4")
+        raise NotLinear(reason, f"method='exact+rk4' takes {names} exactly and the rest by rk4")
     live = coefficients.live(rows)
     if live:
         keep = " ".join(sorted(set(scene.parameters) - set(live) - set(constants)))

@@ -1,6 +1,6 @@
 """Lower a scene to a program: the sample is taken, the force computed from it, then the equations of motion advance."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ...errors import ProgramError, SceneError
 from ...scene.notation.written import no_scene
@@ -10,12 +10,13 @@ from ..contacts.broad_phase import Contacts
 from ..ir.cache import Shared, content
 from ..ir.options import choice, live_names, period, steps, unusual
 from ..ir.program import Channel
-from ..methods.chosen_method import ChosenMethod, chosen_method
+from ..methods.chosen_method import chosen_method
 from ..methods.force_timing import FORCE_AT, averaged
 from ..prune.excluded_modes import excluded, folded, rests_on
 from .handle_samples import HOLDS, VELOCITIES
 from .motion_program import motion_program
 from .samples import REAL_OF, at_sample, at_start, outputs_at_sample, real, tick_of, unknown_reaction
+from .source import Options, Source
 
 #: compiled scenes that are kept: instructions, of which each takes 0.4 kB, and as many again for what else a program has
 PROGRAMS = Shared(60_000, lambda program: 200 + program.size)
@@ -102,20 +103,6 @@ def _key(scene, options):
     return content(type(scene), {**vars(scene), "_parameters": scene.parameters}, options)
 
 
-@dataclass(frozen=True)
-class Options:
-    """What a scene is compiled with, as :func:`compile` describes it, each option checked."""
-
-    method: ChosenMethod
-    T: float
-    substeps: int = 1
-    hold: str = "soh"
-    dtype: str = "float32"
-    velocity: str = "backward_difference"
-    live: tuple | None = None
-    force_at: str = "before"
-
-
 def _checked(method, T, substeps, hold, dtype, velocity, live, force_at):
     """The :class:`Options` of what was asked for, or a refusal that names what is known."""
     method = chosen_method(method)
@@ -140,10 +127,8 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at, u
         fixed = folded(scene, options.live)
         graph = Graph(fixed)
         form = averaged(form, graph) if options.force_at == "mean" else form
-        if form.coordinates:
-            program = motion_program(scene, form, options, fixed, graph, rests_on(form, decisions))
-        else:
-            program = force_program(scene, form, options, fixed, graph)
+        source = Source(scene, form, options, fixed, graph)
+        program = motion_program(source, rests_on(form, decisions)) if form.coordinates else force_program(source)
         notes = unusual(options.T, len(program))
         return replace(program, notes=(*program.notes, *notes)) if notes else program
     except RecursionError:
@@ -153,26 +138,14 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at, u
         ) from None
 
 
-def force_program(scene, form, options, fixed, graph):
-    """The program of a force of samples alone: the sample is taken, force and channels follow from it, and that is the tick.
-
-    Parameters
-    ----------
-    scene : Scene
-    form : ExplicitForm
-        What declared ranges left of it.
-    options : Options
-    fixed : dict name -> float
-        The parameters that are constants of the program.
-    graph : Graph
-        Of the form's expressions, with these constants.
-    """
-    tick = tick_of(scene, form, options, fixed, graph)
+def force_program(source):
+    """The program of a force of samples alone: the sample is taken, force and channels follow from it, and that is the tick."""
+    scene, options, tick = source.scene, source.options, tick_of(source)
     tracing = tick.tracing
     sample = at_sample(tick, at_start(tick), lambda expr, _: unknown_reaction(expr))
     before = options.force_at == "before"
-    force, outputs = outputs_at_sample(scene, form, tracing, sample, before)
-    force = force if before else real(scene, tracing, sample(form.force))
+    force, outputs = outputs_at_sample(scene, source.form, tracing, sample, before)
+    force = force if before else real(scene, tracing, sample(source.form.force))
     tracing.complete()
     facts = {"velocity": options.velocity, "dtype": options.dtype}
     outputs = [(Channel("F", "N", tracing.real), force), *outputs]

@@ -64,12 +64,12 @@ class Moving:
     largest: dict
 
 
-def moving_scene(scene, form, options, fixed, graph, handle=None):
-    """The :class:`Moving` of a scene; arguments of :func:`motion_program`."""
-    tick = tick_of(scene, form, options, fixed, graph, handle)
+def moving_scene(source, handle=None):
+    """The :class:`Moving` of a :class:`Source`; ``handle`` as of :func:`motion_program`."""
+    scene, form, options, tick = source.scene, source.form, source.options, tick_of(source, handle)
     tracing, h = tick.tracing, options.T / options.substeps
     elements = [c for model in form.models for c in model.contacts]
-    settable = limits(form, scene.values, fixed, options.T) if elements else {}
+    settable = limits(form, scene.values, source.fixed, options.T) if elements else {}
     start, exact, method = at_start(tick), None, options.method.rest
     if options.method.exact:
         exact, method = exact_or_switched(scene, form, tick, start, method)
@@ -85,7 +85,7 @@ def moving_scene(scene, form, options, fixed, graph, handle=None):
     # a contact that hovers has no reaction inside a step
     still = {c.force: tracing.tick.const(0.0) for c in contacts.hovering} if contacts else {}
     dynamics = Dynamics(tick, sample, equations, contacts, exact.at_sample if exact else lambda tau: {}, still)
-    largest = _check(form, scene.values, graph, contacts, method, h, options.T, exact) if form.coordinates else {}
+    largest = _check(form, scene.values, source.graph, contacts, method, h, options.T, exact) if form.coordinates else {}
     return Moving(form, tick, start, sample, dynamics, method, exact, state_at_sample, settable, largest)
 
 
@@ -131,26 +131,20 @@ def bodies_at_sample(form, equations, contacts, exact, tracing, state_at_sample)
     return moving
 
 
-def motion_program(scene, form, options, fixed, graph, ranges, handle=None):
+def motion_program(source, ranges, handle=None):
     """The program of a scene with coordinates.
 
     Parameters
     ----------
-    scene : Scene
-    form : ExplicitForm
-        What declared ranges left of it.
-    options : Options
-    fixed : dict name -> float
-        The parameters that are constants of the program.
-    graph : Graph
-        Of the form's expressions, with these constants.
+    source : Source
     ranges : dict coordinate -> (low, high)
         Outside of them the force is no number, since something was decided over them.
     handle : callable tracing -> Handle, optional
         In place of the handle that the options describe.
     """
-    suits = tuple(hints(form, graph, options))
-    moving = moving_scene(scene, form, options, fixed, graph, handle)
+    scene, options = source.scene, source.options
+    suits = tuple(hints(source.form, source.graph, options))
+    moving = moving_scene(source, handle)
     tick, exact, equations = moving.tick, moving.exact, moving.dynamics.equations
     outputs, period = _traced(moving, scene, options.force_at, options.substeps, ranges)
     outputs, ranges = _within_ranges(outputs, moving, scene, ranges)
@@ -159,11 +153,11 @@ def motion_program(scene, form, options, fixed, graph, ranges, handle=None):
     unused = [*tick.signals.unused, *(exact.left_out if exact else ())]
     program = tick.tracing.finish(scene.name, outputs, scene.values, facts | equations.facts(scene) | period.facts, unused)
     program = bounded(limited(program, moving.largest), moving.settable) if moving.largest or moving.settable else program
-    program = kept_stable(program, _stepped(moving, period), moving.form, graph) if period.first else program
+    program = kept_stable(program, _stepped(moving, period), moving.form, source.graph) if period.first else program
     tick.check_values(program)
     notes = [*(exact.notes if exact else ()), *equations.notes]
     notes += [*(unfelt(moving.form) if moving.dynamics.contacts else ()), *period.notes, *suits]
-    notes += [*(notes_on(scene, fixed) if equations.enforced else ()), *(notes_of(ranges) if ranges else ())]
+    notes += [*(notes_on(scene, source.fixed) if equations.enforced else ()), *(notes_of(ranges) if ranges else ())]
     return replace(program, notes=(*program.notes, *notes))
 
 

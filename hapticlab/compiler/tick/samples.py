@@ -99,14 +99,15 @@ class Tick:
                 self.entering(channel.name, value)
 
 
-def tick_of(scene, form, options, fixed, graph, handle=None):
-    """The :class:`Tick` of a scene, nothing traced yet; ``handle(tracing)`` makes another :class:`Handle` than usual."""
+def tick_of(source, handle=None):
+    """The :class:`Tick` of a :class:`Source`, nothing traced yet; ``handle(tracing)`` may make another :class:`Handle`."""
+    scene, options = source.scene, source.options
     real, T = REAL_OF[options.dtype], options.T
     for value, text in ((T, "T"), (1 / T, "1/T with T"), (T / options.substeps, "T/substeps with T")):
         entering(value, real, f"{text} = {T:g} s", ParameterError)
     tracing = Tracing(real, T, tuple(scene.parameters.values()))
     handle = handle(tracing) if handle else Handle(tracing, options.velocity, options.hold)
-    return Tick(tracing, handle, graph, scene.values, fixed, Signals(form.updates))
+    return Tick(tracing, handle, source.graph, scene.values, source.fixed, Signals(source.form.updates))
 
 
 def at_start(tick):
