@@ -152,6 +152,7 @@ def row(version, which, python, work, tools, tests):
         ok, text = run(f"{test} -q -p no:cacheprovider --basetemp {place}/pytest", log, shell=True, **copy("tests"))
         closing = re.findall(r"^=*\s*((?:\d+ \w+(?:, )?)+) in [\d.]+s", text, re.M)
         counts, passed = closing[-1] if closing else "did not end", passed and ok
+        print("".join(f"{line}\n" for line in re.findall(r"^(?:FAILED|ERROR) .*", text, re.M)), end="", file=sys.stderr)
     cells += [counts, f"{time.monotonic() - started:.0f}" if tests else ""]
     shutil.rmtree(place, ignore_errors=True)
     return cells, passed
