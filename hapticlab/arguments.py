@@ -49,10 +49,11 @@ def number(
     if value is not None and finite and _within(value, least, above, most):
         return value
     need = _needs(owner, _range(what or name, least, above, most, finite))
-    reason = why and (f". {why}" if why[0].isupper() else f": {why}")
     has_unit = unit not in ("", "1")
     if value is None:
+        reason = f": {why}" if why and not why.endswith(".") else ""
         raise error(f"{name} = {given!r}; {need}{reason}, as a number{f' in {unit}' if has_unit else ''}")
+    reason = why and (f". {why}" if why[0].isupper() else f": {why}")
     raise error(f"{name} = {given}{f' {unit}' if has_unit else ''}; {need}{reason}")
 
 

@@ -25,6 +25,7 @@ def test_numbers_of_any_library_pass_as_floats(given):
         (math.nan, {}, "b = nan N s/m; a device needs a finite b"),
         (math.inf, {"least": 0}, "b = inf N s/m; a device needs b >= 0 and finite"),
         ("soft", {"least": 0}, "b = 'soft'; a device needs b >= 0, as a number in N s/m"),
+        ("soft", {"least": 0, "why": "It pays."}, "b = 'soft'; a device needs b >= 0, as a number in N s/m"),
         (True, {"least": 0}, "b = True; a device needs b >= 0, as a number in N s/m"),
         (10**400, {}, f"b = {10**400!r}; a device needs a finite b, as a number in N s/m"),
         (3, {"above": 0, "most": 2, "what": "a part"}, "b = 3 N s/m; a device needs a part > 0 and <= 2"),

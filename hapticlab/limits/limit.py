@@ -86,17 +86,6 @@ class Limit:
         return f"Limit(K={self.K:.9g} N/m, frequency={at}, kind={self.kind!r}, reason={self.reason!r})"
 
 
-def check_number(name, value, unit, need, allowed):
-    """Return the value as a float, or say what it has to be."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise AnalysisError(f"{name} = {value!r}; {need}, as a number in {unit}") from None
-    if not (math.isfinite(number) and allowed(number)):
-        raise AnalysisError(f"{name} = {value} {unit}; {need}")
-    return number
-
-
 def whole_and_fraction(delay: float, T: float, most: float = math.inf) -> tuple[int, float]:
     """Split a delay [s] into whole periods and a fraction of one; 1e-9 of a period is rounding, not delay."""
     periods = delay / T

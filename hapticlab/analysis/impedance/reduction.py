@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...arguments import number
 from ...compiler.tick.compile_scene import compile
 from ...errors import AnalysisError
-from ...limits.limit import check_number
 from ...limits.port import port_damping
 from ...scene.scene import Scene
 from .impedance import port_of
@@ -178,7 +178,7 @@ def reduction(
         cure = "needs one with m [kg] and b [N s/m], such as hl.SimulatedPaddle(m=0.05, b=0.1)"
         raise AnalysisError(f"paddle = {paddle!r}; {cure}")
     low, high = _band(band)
-    tolerance = check_number("tolerance", tolerance, "", "needs a part > 0, such as 0.05", lambda a: a > 0)
+    tolerance = number("tolerance", tolerance, above=0, what="a part", why="take 0.05")
     network = network_of(scene, port_of(scene, linear=True))
     N = len(network.mass)
     wanted = _wanted(scene, masses, N)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ...arguments import number
 from ...compiler.ir.options import period
 from ...errors import AnalysisError
-from ...limits.limit import check_number
 from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
 from .condition_switches import switched
@@ -164,7 +164,7 @@ def port_passivity(
     if given is None:
         raise AnalysisError("T is missing; needs a sampling period, T=1e-3, or a paddle that has one")
     T = period(given)
-    delay = check_number("delay", getattr(paddle, "delay", 0.0), "s", "needs delay >= 0", lambda d: d >= 0)
+    delay = number("delay", getattr(paddle, "delay", 0.0), "s", least=0)
     known = switched(scene)
     looked = Looked(known, at, T)
     forces, ticks, handle = forces_and_ticks_at(known, looked.all, T, **options)

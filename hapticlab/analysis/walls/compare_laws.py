@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ...arguments import count, number
 from ...device.simulated.closed_loop import link, load_linked
 from ...device.simulated.simulated_paddle import SimulatedPaddle
 from ...drawing import COLD, WARM, house_style, new_figure
 from ...errors import AnalysisError
-from ...limits.limit import check_number
 from ...records import Telemetry
 from ...rendering.hybrid import hybrid_wall
 from ...rendering.wall_laws import LAWS, checked_laws, wall_law
@@ -175,8 +175,8 @@ def compare_laws(
     True
     """
     laws = _checked(paddle, laws, entries)
-    K = check_number("K", K, "N/m", "a wall needs K > 0", lambda a: a > 0)
-    speed = check_number("speed", speed, "m/s", "an entry needs a finite speed > 0", lambda a: a > 0)
+    K = number("K", K, "N/m", "a wall", above=0)
+    speed = number("speed", speed, "m/s", "an entry", above=0, what="a finite speed")
     M = paddle.m + (paddle.hand.m if paddle.hand else 0.0)
     starts = -(APPROACH + (np.arange(entries) + 0.5) / entries) * speed * paddle.T
     ticks = math.ceil(2 * math.pi * math.sqrt(M / K) / paddle.T) + 3 * APPROACH + 2 * math.ceil(paddle.delay / paddle.T)
@@ -201,8 +201,7 @@ def _checked(paddle, laws, entries):
         raise AnalysisError(
             f"compare_laws simulates a bounce under every law; needs a SimulatedPaddle, not a {type(paddle).__name__}"
         )
-    if not (isinstance(entries, int) and entries >= 1):
-        raise AnalysisError(f"entries = {entries!r}; needs a whole number >= 1")
+    count("entries", entries)
     return checked_laws(laws)
 
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...arguments import number
 from ...device.simulated.simulated_paddle import SimulatedPaddle
 from ...errors import AnalysisError
-from ...limits.limit import check_number
 from ...scene.laws.chapter_laws import wall
 from ...scene.scene import Scene
 from ..sweeps.lane_runs import LaneRuns
@@ -127,11 +127,11 @@ class WallMaps:
         else:
             scene, self.limits = wall(law, unilateral=unilateral, clamp=clamp)(x_o=0.0), ChapterLimits(law, bounds)
         axes |= {"B": B} if over[1] == "B" and np.ndim(B) else {}
-        self.B = 0.0 if np.ndim(B) else check_number("B", B, "N s/m", "needs a finite B", math.isfinite)
+        self.B = 0.0 if np.ndim(B) else number("B", B, "N s/m")
         if self.B and over[1] == "B":
             raise AnalysisError(f'B = {self.B:g} N s/m; B is an axis: needs an array, or over=("K", other)')
         _check_names(axes, self.over)
-        duration = check_number("duration", duration, "s", "a contact needs a duration > 0", lambda a: a > 0)
+        duration = number("duration", duration, "s", "a contact", above=0, what="a duration")
         self.runs = LaneRuns(scene(**{self.parameter: 1.0}), duration, workers=workers, engine=engine)
         other = self._axis(self.over[1], axes.get(over[1]), lambda: _range(paddle, self.over[1], points))
         K = self._axis("K", axes.get("K"), lambda: self._stiffnesses(paddle, other, points))
@@ -212,7 +212,7 @@ class WallMaps:
             raise AnalysisError(f"over = {over}; the paddle has no hand: hand=hl.Hand(push=1.0)")
         if over[1] == "counts_per_metre" and paddle.counts_per_metre is None:
             raise AnalysisError(f"over = {over}; the paddle has no encoder: counts_per_metre=2e4")
-        check_number("unusable", unusable, "m", "needs an amplitude > 0", lambda a: a > 0)
+        number("unusable", unusable, "m", above=0, what="an amplitude")
 
     def _check_scene(self, scene):
         """Refuse a scene that cannot be mapped: without the parameters of the axes, or over T, on which its times depend."""
@@ -239,7 +239,7 @@ class WallMaps:
 def _start(x, v):
     """Return where a contact begins."""
     return tuple(
-        check_number(name, value, unit, "a contact begins at a finite one", math.isfinite)
+        number(name, value, unit, why="a contact begins at a finite one")
         for name, value, unit in (("x", x, "m"), ("v", v, "m/s"))
     )
 
