@@ -122,7 +122,7 @@ def test_a_fault_names_the_call_and_an_interrupt_leaves_the_motor_off(monkeypatc
     with board:
         with pytest.raises(hl.PaddleError, match="identify_hand: force = 99 N; the motor stands for"):
             hl.identify_hand(board, force=99.0)
-        patch = "hapticlab.device.board.serial_paddle.collect"
+        patch = "hapticlab.device.board.serial_paddle.SerialPaddle._collect"
         monkeypatch.setattr(patch, lambda *given: (_ for _ in ()).throw(KeyboardInterrupt))
         with pytest.raises(KeyboardInterrupt):
             hl.identify_hand(board)

@@ -257,7 +257,7 @@ def test_a_board_refuses_more_than_its_motor_stands_and_an_interrupt_leaves_it_o
         with pytest.raises(hl.PaddleError, match="2.5 N to hold the place and 0.1 N .* more than the 2 N"):
             measured_impedance(board, hl.wall()(k=500), place=0.005, **SHORT)
         assert not logs  # before anything moves
-        patch = "hapticlab.device.board.serial_paddle.collect"
+        patch = "hapticlab.device.board.serial_paddle.SerialPaddle._collect"
         monkeypatch.setattr(patch, lambda *given: (_ for _ in ()).throw(KeyboardInterrupt))
         with pytest.raises(KeyboardInterrupt):
             measured_impedance(board, hl.wall()(k=150), **SHORT)
