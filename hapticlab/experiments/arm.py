@@ -16,11 +16,11 @@ class Arm:
     k: float
 
     def force(self, x, v, a):
-        """Return the intent that holds this motion were it to last [m]."""
+        """The intent [m] that would hold this motion if it lasted."""
         return x + (self.m * a + (self.b + self.b_hand) * v) / self.k
 
     def intent(self, intent, before, after, h):
-        """Return the intent h later: b_hand i' + k i = k force, its right side linear in between."""
+        """The intent h later: b_hand i' + k i = k force, its right side linear in between."""
         if self.b_hand == 0:
             return after
         decay = math.exp(-self.k * h / self.b_hand)
@@ -29,7 +29,7 @@ class Arm:
 
 
 def quintic(start, end, duration):
-    """Return coefficients, lowest first, of the smoothest path between two (place, velocity, acceleration): least jerk.
+    """Coefficients, lowest first, of the smoothest path between two (place, velocity, acceleration): least jerk.
 
     Examples
     --------
@@ -45,7 +45,7 @@ def quintic(start, end, duration):
 
 
 def along(path, t):
-    """Return place, velocity and acceleration of a path at t."""
+    """Place, velocity and acceleration of a path at t."""
     place = velocity = acceleration = 0.0
     for c in reversed(path.tolist()):  # Horner's rule, derivatives along with it
         acceleration = acceleration * t + 2 * velocity

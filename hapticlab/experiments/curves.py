@@ -71,12 +71,12 @@ class Psychometric:
             raise AnalysisError(f"guess = {self.guess:g}, lapse = {self.lapse:g}; needs both >= 0 and guess + lapse < 1")
 
     def __call__(self, levels: ArrayLike) -> Array:
-        """Return the part of right answers at each level."""
+        """The part of right answers at each level."""
         q = (self.threshold if self.shape == "normal" else math.log(self.threshold), math.log(self.slope))
         return self.guess + (1 - self.guess - self.lapse) * rise(self.shape, np.asarray(levels, float), *q)[0]
 
     def level_at(self, part: float) -> float:
-        """Return the level at which this part of the answers is right, by bisection."""
+        """The level at which this part of the answers is right, by bisection."""
         top = 1 - self.lapse
         if not self.guess < part < top:
             raise AnalysisError(f"{part:g} of the answers right; this curve needs a part between {self.guess:g} and {top:g}")
@@ -91,7 +91,7 @@ class Psychometric:
 
 
 def rise(shape, levels, place, log_slope):
-    """Return F and its derivatives with respect to place and log_slope.
+    """F and its derivatives with respect to place and log_slope.
 
     ``place`` is the logarithm of the threshold, the threshold itself for ``normal``.
     """

@@ -21,11 +21,11 @@ class Impedance:
     name = "impedance"
 
     def begin(self):
-        """Return the display's memory."""
+        """The display's memory."""
         return ()
 
     def force(self, memory, x, v, f_h, T):
-        """Return the force on the environment [N] and the memory."""
+        """The force on the environment [N] and the memory."""
         return (self.k * x if x > 0 else 0.0) + self.b * v, memory
 
 
@@ -58,11 +58,11 @@ class Admittance:
     name = "admittance"
 
     def begin(self):
-        """Return place and velocity of the virtual body."""
+        """Place and velocity of the virtual body."""
         return (0.0, 0.0)
 
     def force(self, memory, x, v, f_h, T):
-        """Return the force on the environment [N] and the memory."""
+        """The force on the environment [N] and the memory."""
         place, velocity = memory
         F = self.k_p * (x - place) + self.k_d * (v - velocity) + self.ahead * f_h
         velocity += T / self.m_v * (f_h - (self.k * place if place > 0 else 0.0) - self.b * velocity)
@@ -105,7 +105,7 @@ def display_motion(paddle, display, *, duration, sensor_delay=0):
 
 
 def sensed(hand, now, before, intent, T):
-    """Return the mean force [N] of a hand on the handle over a period, from (x, v) and the intents at its end and begin."""
+    """The mean force [N] of a hand on the handle over a period, from (x, v) and the intents at its end and begin."""
     (x, v), (x_0, v_0) = now, before
     pull = hand.k * (sum(intent) - x - x_0) / 2 + hand.b * ((intent[0] - intent[1]) / T - (v + v_0) / 2)
     return pull - hand.m * (v - v_0) / T
@@ -134,7 +134,7 @@ def growth(paddle, display):
 
 
 def _resting(paddle):
-    """Return a handle without friction and noise, its hand at rest at x = 0, and that hand."""
+    """A handle without friction and noise, its hand at rest at x = 0, and that hand."""
     if paddle.hand is None:
         raise PaddleError("a display is felt by a hand; give hl.SimulatedPaddle(..., hand=hl.hand('grip'))")
     hand = replace(paddle.hand, intent=None, push=0.0, noise=0.0)
@@ -142,7 +142,7 @@ def _resting(paddle):
 
 
 def _one_period(handle, hand, display):
-    """Return the matrix that takes handle, handle before and memory from sample to sample, inside the wall."""
+    """The matrix that takes handle, handle before and memory from sample to sample, inside the wall."""
     T = handle.paddle.T
     inside = 1.0  # [m], so deep that no step leaves the wall; the motion is linear, and this is taken off again
 
@@ -160,7 +160,7 @@ def _one_period(handle, hand, display):
 
 
 def largest_stiffness(paddle, make, *, low=1.0, high=1e7):
-    """Return the largest k [N/m] up to which ``make(k)`` is stable, looked for upwards by steps of 16 %, then by bisection.
+    """The largest k [N/m] up to which ``make(k)`` is stable, looked for upwards by steps of 16 %, then by bisection.
 
     0 where it is unstable at ``low``, infinity where it is stable up to ``high``.
     """

@@ -216,7 +216,7 @@ def _between(paddle, scene, distance, width, movements, scatter, reaction, seed)
 
 
 def selections(t, x, distance, width):
-    """Return (time entered for good, time set out, end beside the centre along the movement) of targets reached in turn.
+    """(time entered for good, time set out, end beside the centre along the movement) of targets reached in turn.
 
     The first is the target at x = 0, then that at x = distance, and so on. A target is selected once the handle has been
     in it for :data:`DWELL`; the end is the mean place over that time. The handle sets out from it where it last was slower

@@ -76,7 +76,7 @@ class ForcedChoice:
         return psychometric([t.level for t in self.trials], [t.right for t in self.trials], **options)
 
     def weber(self, **options: Any) -> tuple[float, float, float]:
-        """Return the Weber fraction at d' = 1 and its interval, from the fit with slope and lapses."""
+        """The Weber fraction at d' = 1 and its interval, from the fit with slope and lapses."""
         found = self.fit(**options)
         low, high = found.interval["threshold"]
         return math.expm1(found.curve.threshold), math.expm1(low), math.expm1(high)

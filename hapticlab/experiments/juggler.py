@@ -61,7 +61,7 @@ class Juggler:
         self.begun = 0.0
 
     def plan(self, t, seen, intent):
-        """Return the intent at t [m]: along the stroke towards the next impact, ahead of it by what the arm weighs."""
+        """The intent at t [m]: along the stroke towards the next impact, ahead of it by what the arm weighs."""
         flight = self._look(seen) if self.sees or self.feels else None
         if flight is not None and self._falls(*flight)[0] > self.now + BALLISTIC:
             self._aim(*flight)  # it is the flight of now, and there is time to change the stroke
@@ -80,7 +80,7 @@ class Juggler:
         self.path, self.begun = quintic(here, self.goal, max(self.hit - self.now, BALLISTIC)), self.now
 
     def _falls(self, t, y, v):
-        """Return when a ball that is at y with v at t comes down to x = 0, and its velocity then."""
+        """Time at which a ball that is at y with v at t comes down to x = 0, and its velocity then."""
         speed = math.sqrt(max(v * v + 2 * self.g * y, 0.0))
         return t + (v + speed) / self.g, -speed
 
@@ -92,7 +92,7 @@ class Juggler:
         self.goal = 0.0, min(max(strike, 0.0), 3 * nominal), self.acceleration
 
     def _look(self, seen):
-        """Return time, place and velocity of the last launch that was seen or felt, or None."""
+        """Time, place and velocity of the last launch that was seen or felt, or None."""
         if len(seen) < 3:
             return None
         low = np.flatnonzero((seen.y[1:-1] < seen.y[:-2]) & (seen.y[1:-1] <= seen.y[2:])) + 1

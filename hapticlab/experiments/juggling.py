@@ -179,7 +179,7 @@ def juggle(
 
 
 def bounces(log: Telemetry) -> tuple[Array, Array]:
-    """Return when the ball was struck [s], and how high it rose above those places in between [m]."""
+    """Times at which the ball was struck [s], and the heights to which it rose above those places in between [m]."""
     y, t = log.y, log.t
     low = np.flatnonzero((y[1:-1] < y[:-2]) & (y[1:-1] <= y[2:])) + 1
     heights = [float(y[a : b + 1].max() - y[a]) for a, b in zip(low[:-1], low[1:], strict=True)]

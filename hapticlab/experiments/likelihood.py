@@ -41,7 +41,7 @@ class Likelihood:
         self.low, self.high = np.array(bounds).T
 
     def chance(self, q):
-        """Return P and its derivatives at parameters q, shapes (..., N) and (..., N, parameters)."""
+        """P and its derivatives at parameters q, shapes (..., N) and (..., N, parameters)."""
         F, *slopes = rise(self.shape, self.levels, q[..., :1], q[..., 1:2])
         lapse = q[..., 2:3] if self.lapse is None else self.lapse
         guess = lapse if self.guess is None else self.guess
@@ -51,7 +51,7 @@ class Likelihood:
         return np.clip(guess + (1 - guess - lapse) * F, CERTAIN, 1 - CERTAIN), np.stack(steps, -1)
 
     def loss(self, q, right):
-        """Return minus the log likelihood, its gradient and Fisher's information, each with one row a set of answers."""
+        """Minus the log likelihood, its gradient and Fisher's information, each with one row a set of answers."""
         P, dP = self.chance(q)
         wrong = self.trials - right
         pull = right / P - wrong / (1 - P)
@@ -60,7 +60,7 @@ class Likelihood:
         return loss, -np.einsum("...n,...ni->...i", pull, dP), information
 
     def saturated(self, right):
-        """Return minus the log likelihood of a free proportion at each level."""
+        """Minus the log likelihood of a free proportion at each level."""
         part = right / self.trials
         with np.errstate(divide="ignore", invalid="ignore"):
             terms = right * np.log(part), (self.trials - right) * np.log1p(-part)
@@ -98,7 +98,7 @@ class Likelihood:
         return q, loss
 
     def ratios(self, right, q, losses):
-        """Return 2 log of the likelihood ratio between the best and the best with place, or log slope, as in q.
+        """2 log of the likelihood ratio between the best and the best with place, or log slope, as in q.
 
         Parameters
         ----------
@@ -119,7 +119,7 @@ class Likelihood:
         return np.column_stack(found)
 
     def intervals(self, right, best, most):
-        """Return the least and the largest place and log slope with 2 log(L(best)/L) of at most ``most``.
+        """The least and the largest place and log slope with 2 log(L(best)/L) of at most ``most``.
 
         Each end is the outermost value of a grid that is likely enough, looked for again just beyond it, on ever finer grids.
 
@@ -148,7 +148,7 @@ class Likelihood:
         return inside.reshape(2, 2)
 
     def _profile(self, right, best, held, values):
-        """Return the least loss with parameter ``held[j]`` at ``values[i, j]``, shape (GRID, 4)."""
+        """The least loss with parameter ``held[j]`` at ``values[i, j]``, shape (GRID, 4)."""
         middle = np.where(np.arange(len(best)) < 2, (self.low + self.high) / 2, best)
         starts = np.stack([np.broadcast_to(q, (*values.shape, len(best))) for q in (best, middle)])
         low, high = np.broadcast_to(self.low, starts.shape).copy(), np.broadcast_to(self.high, starts.shape).copy()
@@ -159,20 +159,20 @@ class Likelihood:
         return losses.reshape(2, *values.shape).min(0)
 
     def starts(self):
-        """Return parameters all over the bounds, one row each."""
+        """Parameters all over the bounds, one row each."""
         inside = [np.linspace(low, high, 7)[1:-1:2] for low, high in zip(self.low[:2], self.high[:2], strict=True)]
         inside += [[0.01]] if self.lapse is None else []
         return np.array(np.meshgrid(*inside)).reshape(len(inside), -1).T
 
     def curve(self, q):
-        """Return the psychometric function of parameters q."""
+        """The psychometric function of parameters q."""
         lapse = float(q[2]) if self.lapse is None else self.lapse
         threshold = float(q[0]) if self.shape == "normal" else math.exp(q[0])
         return Psychometric(threshold, math.exp(q[1]), lapse if self.guess is None else self.guess, lapse, self.shape)
 
 
 def _step(gradient, information, damping, held):
-    """Return the damped step of each set; a parameter held by its bound stays."""
+    """The damped step of each set; a parameter held by its bound stays."""
     diagonal = np.einsum("...ii->...i", information)
     matrix = information + (damping[:, None] * diagonal + 1e-12 * diagonal.max(-1, keepdims=True) + 1e-300)[:, :, None] * np.eye(
         gradient.shape[-1]

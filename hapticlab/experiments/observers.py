@@ -60,18 +60,18 @@ class SimulatedObserver:
             )
 
     def curve(self) -> Psychometric:
-        """Return the psychometric function over ln(comparison/standard) that follows, for no bias."""
+        """The psychometric function over ln(comparison/standard) that follows, for no bias."""
         return Psychometric(math.log1p(self.weber), 1.0, 0.5, self.lapse / 2)
 
     def ready(self, task: Task, which: Answer) -> None:
         """Be told that the first or second presentation comes."""
 
     def compare(self, task: Task, logs: Sequence[Telemetry], trial: int) -> Answer:
-        """Return "first" or "second", whichever felt stronger in these two records."""
+        """The answer: "first" or "second", whichever felt stronger in these two records."""
         return self.decide([task.felt(log) for log in logs], trial)
 
     def decide(self, felt: Sequence[float], trial: int) -> Answer:
-        """Return the answer to two felt magnitudes > 0; the trial's number draws the noise."""
+        """The answer to two felt magnitudes > 0; the trial's number draws the noise."""
         rng = np.random.default_rng([self.seed, trial])
         if rng.random() < self.lapse:
             return ("first", "second")[rng.integers(2)]

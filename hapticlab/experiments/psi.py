@@ -92,7 +92,7 @@ class Psi:
         return float(self.levels[np.argmin(self.expected_entropy())])
 
     def expected_entropy(self) -> Array:
-        """Return the entropy [nat] that an answer at each level is expected to leave."""
+        """The entropy [nat] that an answer at each level is expected to leave."""
         total = np.zeros(len(self.levels))
         for chance in (self._right, 1 - self._right):
             joint = self.belief[:, :, None] * chance
@@ -107,11 +107,11 @@ class Psi:
         self.belief, self.told = belief / belief.sum(), self.told + 1
 
     def estimate(self) -> float:
-        """Return the threshold: the mean of its logarithm over what is believed."""
+        """The threshold: the mean of its logarithm over what is believed."""
         return float(np.exp(self.belief.sum(1) @ np.log(self.thresholds)))
 
     def interval(self, confidence: float = 0.95) -> tuple[float, float]:
-        """Return thresholds between which this part of the belief lies, as much of the rest on either side."""
+        """Thresholds between which this part of the belief lies, as much of the rest on either side."""
         mass = np.cumsum(self.belief.sum(1)) - self.belief.sum(1) / 2
         tail = (1 - confidence) / 2
         low, high = np.interp([tail, 1 - tail], mass, np.log(self.thresholds))

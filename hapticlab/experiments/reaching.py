@@ -114,7 +114,7 @@ class Reach:
 
 
 def handle(log: Telemetry) -> Array:
-    """Return where the handle was [m], also where an encoder hid it."""
+    """Position of the handle [m], also where an encoder hid it."""
     return np.asarray(log.channels.get("x_true", log.x), float)
 
 
@@ -254,7 +254,7 @@ def check_path(path: object) -> None:
 
 
 def inverse_dynamics(hand, load, path, times):
-    """Return the intent [m] at the times [s] that moves hand and load along a path: k i + b i' = M a + (b + b_l) v + (k + k_l) x.
+    """The intent [m] at the times [s] that moves hand and load along a path: k i + b i' = M a + (b + b_l) v + (k + k_l) x.
 
     Where the hand has a damper the intent solves that first-order equation, its right side linear between times.
     """

@@ -68,7 +68,7 @@ class Submovements:
         self.times, self.durations = times, durations[cost.argmin(axis=1)]
 
     def time(self, distance):
-        """Return the mean time from this far to being in the target [s]."""
+        """Mean time from this distance until the hand is in the target [s]."""
         return float(np.interp(math.log(distance), np.log(self.distances), self.times))
 
     def duration(self, distance):

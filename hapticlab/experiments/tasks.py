@@ -61,7 +61,7 @@ class Task:
     source: str
 
     def on(self, paddle: SimulatedPaddle | SerialPaddle) -> SimulatedPaddle | SerialPaddle:
-        """Return a simulated paddle with the exploring hand on it, unless it has a hand already; a board as it is."""
+        """A simulated paddle with the exploring hand on it, unless it has a hand already; a board as it is."""
         if isinstance(paddle, SimulatedPaddle) and paddle.hand is None:
             return replace(paddle, hand=self.hand)
         return paddle
@@ -150,7 +150,7 @@ def texture_task(*, standard: float = 0.15, pitch: float = 0.003, stroke: float 
 
 
 def felt_stiffness(log: Telemetry) -> float:
-    """Return the slope of force over penetration while there is contact, by least squares [N/m].
+    """The slope of force over penetration while there is contact, by least squares [N/m].
 
     Examples
     --------
@@ -166,7 +166,7 @@ def felt_stiffness(log: Telemetry) -> float:
 
 
 def felt_damping(log: Telemetry) -> float:
-    """Return the damping [N s/m] that takes as much work as was done on the environment: int F dx over int v^2 dt.
+    """The damping [N s/m] that takes as much work as was done on the environment: int F dx over int v^2 dt.
 
     A difference over a hundredth of a second stands for the velocity, as an encoder's single steps say little.
     """
@@ -178,7 +178,7 @@ def felt_damping(log: Telemetry) -> float:
 
 
 def felt_roughness(log: Telemetry) -> float:
-    """Return the force's quick part, root mean square over the presentation [N].
+    """The force's quick part, root mean square over the presentation [N].
 
     Quick is what is left beside a mean over a tenth of a second.
     """

@@ -124,7 +124,7 @@ class UpDown:
         self.level = min(max(self.level * self.factor ** (heading * step), self.low), self.high)
 
     def estimate(self) -> float:
-        """Return the geometric mean of the levels at the turning points, an even number of them, after the first ones."""
+        """The geometric mean of the levels at the turning points, an even number of them, after the first ones."""
         if self.gave_up:
             raise AnalysisError(f"no estimate: {self.gave_up}; ask again with other low, high or most")
         used = self.turned[self.skip :]
@@ -134,7 +134,7 @@ class UpDown:
         return math.exp(float(np.mean(np.log(used))))
 
     def settles(self, curve: Psychometric, per_step: int = 1, most: int = 400) -> float:
-        """Return the level a long staircase turns about for an observer of this psychometric function.
+        """The level a long staircase turns about for an observer of this psychometric function.
 
         The staircase is a Markov chain over levels and right answers in a row; this is the geometric mean of the levels
         at which its stationary run turns, exact where ``weight`` is a multiple of 1/per_step.
@@ -164,7 +164,7 @@ class UpDown:
 
 
 def _turning_mean(levels, P, down, step_down, step_up):
-    """Return the geometric mean level at turning points of the stationary chain over (heading, row, level)."""
+    """The geometric mean level at turning points of the stationary chain over (heading, row, level)."""
     N = len(levels)
     at = np.arange(N)
     lower, upper = np.maximum(at - step_down, 0), np.minimum(at + step_up, N - 1)

@@ -50,14 +50,14 @@ class Excitation:
     samples: int
 
     def forces(self, T: float) -> Array:
-        """Return the force at each sample, without the guard of :meth:`scene` [N]."""
+        """The force at each sample, without the guard of :meth:`scene` [N]."""
         at = np.arange(self.samples) - LEAD
         if self.kind == "chirp":
             return np.where(at >= 0, self.size * np.cos(self._phase(np.maximum(at, 0))), 0.0)
         return self.size * sum(by * (at >= start * self.length) for start, by in self._changes())
 
     def scene(self, travel: float) -> Scene:
-        """Return it as a scene whose force ends, for good, further than ``travel`` [m] from where the handle began."""
+        """A scene whose force is this, and ends for good further than ``travel`` [m] from where the handle began."""
         A = parameters("A", units="N", values=self.size)
         at = n - LEAD
         if self.kind == "chirp":
@@ -70,14 +70,14 @@ class Excitation:
         return ((0, 1), (1, -1)) if self.kind == "kick" else CHANGES
 
     def _phase(self, at, number=float):
-        """Return the angle of a chirp: ``length`` samples are its first period, SWEEP times as fast at the end."""
+        """The angle of a chirp: ``length`` samples are its first period, SWEEP times as fast at the end."""
         rate = 2 * np.pi / self.length
         bend = rate * (SWEEP - 1) / (2 * (self.samples - LEAD))
         return at * (number(rate) + number(bend) * at)
 
 
 def designed(kind, size, T, travel, constants):
-    """Return the longest excitation of a size [N] whose motion fills FILLS of +-travel [m], by the constants known so far.
+    """The longest excitation of a size [N] whose motion fills FILLS of +-travel [m], by the constants known so far.
 
     A handle that coasts too far even after the shortest kick gets half the size, and so on.
 
@@ -119,7 +119,7 @@ def _samples(kind, length, size, T, constants):
 
 
 def centring(stiffness, damping):
-    """Return a scene that leads the handle back to the middle."""
+    """A scene that leads the handle back to the middle."""
     K = parameters("K", units="N/m", values=stiffness)
     damper = virtual_damper()(B=damping)
     return Scene(K * x(n) + damper.force, name="centring", values=damper.values)

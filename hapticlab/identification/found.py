@@ -141,7 +141,7 @@ class Found:
         return "\n".join(lines)
 
     def plot(self) -> Figure:
-        """Return a figure: positions measured and fitted, and what is left."""
+        """A figure: positions measured and fitted, and what is left."""
         t = np.arange(len(self.measured)) * self.T
         with house_style():
             figure = new_figure(height=5.2)

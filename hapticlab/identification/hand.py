@@ -36,7 +36,7 @@ class HandFit(Found):
     constants: ClassVar = {"m": ("mass", "kg"), "b": ("viscous damping", "N s/m"), "k": ("stiffness", "N/m")}
 
     def hand(self, **changes: Any) -> Hand:
-        """Return a Hand with what was found; a value below zero within its interval becomes zero."""
+        """A Hand with what was found; a value below zero within its interval becomes zero."""
         return Hand(**{**{name: max(self[name].value, 0.0) for name in ("m", "b", "k")}, **changes})
 
     def __str__(self) -> str:
@@ -58,7 +58,7 @@ def identify_hand(
     counts_per_metre: float | None = None,
     confidence: float = 0.95,
 ) -> HandFit:
-    """Return the second-order hand on a handle from its answers to pushes, each before the hand can react.
+    """The second-order hand on a handle from its answers to pushes, each before the hand can react.
 
     (m_device + m) x'' = -F - b_device x' - coulomb sign(x') - b x' - k (x - rest). Valid for some 30 to 60 ms after each
     push: then reflexes, later intent, and the hand is another one. ``explained`` says whether the model does.
@@ -114,7 +114,7 @@ def identify_hand(
 
 
 def _windows(log, window):
-    """Return (first, stop) of each push with what comes before it and until a hand may react."""
+    """(first, stop) of each push with what comes before it and until a hand may react."""
     on = np.flatnonzero((log.F[1:] != 0) & (log.F[:-1] == 0)) + 1
     before, long = round(BEFORE / log.T), round(window / log.T)
     found, free = [], 0
@@ -131,7 +131,7 @@ def _windows(log, window):
 
 
 def _motion(log, windows, own):
-    """Return the model: m, b, k of the hand, then the resting place, x and v at the begin of each window.
+    """The model: m, b, k of the hand, then the resting place, x and v at the begin of each window.
 
     A handle with friction is held by it before a push, wherever within the friction's reach the hand would rest: it
     stays at x until the push, and has no v.
@@ -152,7 +152,7 @@ def _motion(log, windows, own):
 
 
 def _start(log, windows, own):
-    """Return first values and scales: the equation of motion integrated twice, least squares in every window."""
+    """First values and scales: the equation of motion integrated twice, least squares in every window."""
     T, told = log.T, []
     lag = round(own["delay"] / T)
     for a, z in windows:

@@ -9,7 +9,7 @@ LEAST = 1e-12
 
 
 def hand_positions(F, T, *, m, b, k, coulomb, delay, rest, x0, v0):
-    """Return positions at the samples [m] of m x'' = -F - b x' - k (x - rest) - coulomb sign(x'), shape (N, ...).
+    """Positions at the samples [m] of m x'' = -F - b x' - k (x - rest) - coulomb sign(x'), shape (N, ...).
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class _Friction:
         return np.where(again, moved + middle, y), np.where(again, speed, v)
 
     def _shape(self, t):
-        """Return e^(-sigma t) cos, and e^(-sigma t) sin over the rate, hyperbolic where nothing swings."""
+        """e^(-sigma t) cos, and e^(-sigma t) sin over the rate, hyperbolic where nothing swings."""
         angle, fades = self.rate * t, np.exp(-self.sigma * t)
         cos = np.where(self.swings, np.cos(angle), np.cosh(np.minimum(angle, 300.0)))
         sin = np.where(self.swings, np.sin(angle), np.sinh(np.minimum(angle, 300.0)))
@@ -92,7 +92,7 @@ class _Friction:
         return z * (cos + self.sigma * sin) + v * sin, v * (cos - self.sigma * sin) - self.square * z * sin
 
     def _stops(self, z, v, heading):
-        """Return when the speed is zero next [s], infinity where it never is."""
+        """Time until the speed is zero next [s], infinity where it never is."""
         over, under = self.rate * v * heading, (self.sigma * v + self.square * z) * heading
         ratio = over / np.where(under == 0, LEAST, under)
         creeps = np.arctanh(np.where((ratio > 0) & (ratio < 1), ratio, 0.0))

@@ -58,11 +58,11 @@ class HandleRecord:
 
     @classmethod
     def hanging(cls, log: Telemetry, mass: float, *, at_rest: bool = True) -> HandleRecord:
-        """Return the record of a handle that a weight pulls into the wall: it adds its force and its mass."""
+        """The record of a handle that a weight pulls into the wall: it adds its force and its mass."""
         return cls(log, mass, mass * GRAVITY, at_rest)
 
     def trace(self, first: int = 0) -> Trace:
-        """Return its positions and forces from sample ``first`` on."""
+        """The positions and forces of the record from sample ``first`` on."""
         check_record(self.log, "identify")
         if self.log.fault:
             raise AnalysisError(f"identify: the record ends in a fault, {self.log.fault}; needs one that ran to its end")
@@ -77,7 +77,7 @@ class HandleRecord:
 def spin_down(
     log: Telemetry, *, m: float | None = None, counts_per_metre: float | None = None, confidence: float = 0.95
 ) -> PaddleFit:
-    """Return damping and Coulomb friction of a handle that coasts to rest with the motor off.
+    """Damping and Coulomb friction of a handle that coasts to rest with the motor off.
 
     m x'' = -b x' - coulomb sign(x'), from the last stretch without force. It tells ratios to the mass only.
 
@@ -124,7 +124,7 @@ def step_response(
     at_rest: bool = True,
     confidence: float = 0.95,
 ) -> PaddleFit:
-    """Return mass, damping, Coulomb friction and delay from steps of force on a free handle.
+    """Mass, damping, Coulomb friction and delay from steps of force on a free handle.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def chirp_response(
     at_rest: bool = True,
     confidence: float = 0.95,
 ) -> PaddleFit:
-    """Return mass, damping, Coulomb friction and delay from a force that swings faster and faster; as :func:`step_response`."""
+    """Mass, damping, Coulomb friction and delay from a force that swings faster and faster; as :func:`step_response`."""
     check_record(log, "chirp_response")
     changes = np.count_nonzero(np.diff(log.F))
     if changes <= len(log) / 4:
@@ -177,7 +177,7 @@ def identify(
     known: Mapping[str, float] | None = None,
     confidence: float = 0.95,
 ) -> PaddleFit:
-    """Return a paddle's constants from records of its free handle, all of them together, by maximum likelihood.
+    """A paddle's constants from records of its free handle, all of them together, by maximum likelihood.
 
     (m + added) x'' = push - scale F - b x' - coulomb sign(x'), F[n] held over [n T + delay, (n+1) T + delay).
     Intervals of 95 % cover in 93 to 97 % of trials where the handle moves freely for most of the record and noise dithers

@@ -12,7 +12,7 @@ SERIES = 2e-3
 
 
 def positions(F, T, *, m, b, coulomb, delay, scale, push, x0, v0):
-    """Return the handle's positions at the samples [m], shape (N, ...) with ... that of the parameters.
+    """The handle's positions at the samples [m], shape (N, ...) with ... that of the parameters.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def _glide(x, v, pull, beta, grip, duration, phi):
 
 
 def _stops(v, net, beta):
-    """Return when v' = net - beta v from v comes to zero [s], infinity where it does not."""
+    """Time until v, with v' = net - beta v, comes to zero [s]; infinity where it does not."""
     brakes = v * net < 0
     ratio = np.where(brakes, -v / np.where(brakes, net, 1.0), 0.0)
     z = beta * ratio
@@ -81,7 +81,7 @@ def _stops(v, net, beta):
 
 
 def _phi(beta, t):
-    """Return the integral of e^(-beta s) and of it again, from 0 to t."""
+    """The integral of e^(-beta s) and of it again, from 0 to t."""
     z = beta * t
     small = np.abs(z) < SERIES
     safe = np.where(small, 1.0, z)

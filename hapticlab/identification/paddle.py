@@ -43,7 +43,7 @@ class Identified(PaddleFit):
     records: tuple[HandleRecord, ...] = ()
 
     def loaded(self, mass: float) -> tuple[HandleRecord, ...]:
-        """Return the records as those of a handle with a known mass [kg] fixed to it; see :func:`identify`."""
+        """The records as those of a handle with a known mass [kg] fixed to it; see :func:`identify`."""
         return tuple(replace(record, added=mass) for record in self.records)
 
 
@@ -116,7 +116,7 @@ def identify_paddle(
 
 
 def _limits(paddle, force, travel):
-    """Return the largest force [N] and travel [m]."""
+    """The largest force [N] and travel [m]."""
     settings = getattr(paddle, "settings", None)
     if isinstance(paddle, SerialPaddle) and settings is None:
         raise PaddleError("the board has no calibration, so its travel and force are not known: run `hapticlab calibrate` first.")
@@ -129,7 +129,7 @@ def _limits(paddle, force, travel):
 
 
 def counts_per_metre_of(paddle):
-    """Return the encoder counts per metre of a board or of a simulated paddle, None without an encoder."""
+    """The encoder counts per metre of a board or of a simulated paddle, None without an encoder."""
     return 1 / paddle.settings.metres_per_count if isinstance(paddle, SerialPaddle) else paddle.counts_per_metre
 
 
@@ -139,7 +139,7 @@ def _rests(paddle):
 
 
 def _pilot(paddle, force, travel):
-    """Return a record of the first force that moves the handle by FOUND of the travel, and that force [N]."""
+    """A record of the first force that moves the handle by FOUND of the travel, and that force [N]."""
     length, size = max(4, round(PILOT / paddle.T)), force * FIRST
     while True:
         steps = Excitation("steps", size, length, 2 * LEAD + 8 * length)
@@ -174,7 +174,7 @@ def after(log, asked):
 
 
 def given(paddle, F):
-    """Return the forces [N] that a board's motor gave for those it was asked for: its duty has steps."""
+    """The forces [N] that a board's motor gave for those it was asked for: its duty has steps."""
     law = next(name for name, k in MOTOR_LAWS.items() if k == paddle.settings.motor_law)
     duties = np.array([duty_of(force, paddle.settings, paddle.board["duty_full"]) for force in F])
     return np.sign(F) * paddle.settings.force_full * (duties if law == "LINEAR" else duties**2)

@@ -30,7 +30,7 @@ class PaddleFit(Found):
         force_max: float | None = None,
         rounding: Literal["floor", "nearest"] = "floor",
     ) -> PaddleProfile:
-        """Return a PaddleProfile of what was found, marked as measured.
+        """A PaddleProfile of what was found, marked as measured.
 
         Raises
         ------
@@ -48,6 +48,6 @@ class PaddleFit(Found):
         )  # fmt: skip
 
     def paddle(self, **changes: Any) -> SimulatedPaddle:
-        """Return a SimulatedPaddle with what was found."""
+        """A SimulatedPaddle with what was found."""
         delay = {"delay": max(self["delay"].value, 0.0)} if "delay" in self.estimates else {}
         return SimulatedPaddle.from_profile(self.profile(), **{**delay, **changes})

@@ -50,7 +50,7 @@ class Trace:
     rests: bool = False
 
     def start(self, lane, known, **how):
-        """Return first values of the paddle's constants, and of position and velocity, from one of the records."""
+        """First values of the paddle's constants, and of position and velocity, from one of the records."""
         F = self.F if self.F.ndim == 1 else self.F[:, lane]
         mass = known["m"] + self.added if "m" in known else None
         found, begun = begin(self.y[:, lane], F, self.T, push=self.push, m=mass, **how)
@@ -79,7 +79,7 @@ class Problem:
         return self.traces[0].y.shape[1]
 
     def motion(self, p):
-        """Return the positions of all traces one after the other, for parameters of shape (P, K, L)."""
+        """The positions of all traces one after the other, for parameters of shape (P, K, L)."""
         values = {**USUAL, **self.known, **dict(zip(self.free, p, strict=False))}
         # no step is taken to where nothing moves any more, whatever the other constants are
         sane = (values["m"] > 0) & (np.abs(values["delay"]) < LATEST * self.traces[0].T)
@@ -103,7 +103,7 @@ class Problem:
         ])  # fmt: skip
 
     def solve(self) -> Fitted:
-        """Return the Fitted of all lanes."""
+        """The Fitted of all lanes."""
         ways = [{"noise": noise, "without": without} for noise in sorted({0.0, self.quantum}) for without in WITHOUT]
         y = np.concatenate([trace.y for trace in self.traces])
         groups = [self._side(ways, PARTS)]
@@ -114,7 +114,7 @@ class Problem:
         return fit(self.motion, y, groups, self._scales, quantum=self.quantum)
 
     def _side(self, ways, parts):
-        """Return the guesses, shape (P, C, L), that come of first values found in these ways."""
+        """The guesses, shape (P, C, L), that come of first values found in these ways."""
         starts = [np.array([self._start(lane, **way) for lane in range(self.lanes)]).T for way in ways]
         return np.stack([guess for start in starts for guess in self._guesses(start, parts)], axis=1)
 
@@ -138,7 +138,7 @@ class Problem:
         return [*(told[name] for name in self.free), *(a for start in begun for a in start)]
 
     def _scales(self, start):
-        """Return considerable changes: a tenth of the mass, and of the forces that go with it."""
+        """Considerable changes: a tenth of the mass, and of the forces that go with it."""
         values = {**USUAL, **self.known, **dict(zip(self.free, start, strict=False))}
         T, span = self.traces[0].T, max(len(trace.y) * trace.T for trace in self.traces)
         travel = max(float(np.ptp(trace.y, axis=0).max()) for trace in self.traces)

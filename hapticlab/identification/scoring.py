@@ -82,7 +82,7 @@ class Fitted:
 
 
 def fit(motion, y, start, scales, *, quantum=0.0):
-    """Return the most likely parameters of y = motion(parameters) + noise, with their covariance.
+    """The most likely parameters of y = motion(parameters) + noise, with their covariance.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def _rms(rest):
 
 
 def _nearest(motion, y, start):
-    """Return of the guesses for each record the one with the least residuals, and these."""
+    """The guess with the least residuals, for each record, and these residuals."""
     lane, some = np.arange(y.shape[1]), max(1, LANES // y.shape[1])
     best, least, rest = start[:, 0], np.inf, y
     for first in range(0, start.shape[1], some):
@@ -173,7 +173,7 @@ def _first(motion, y, begun, scales):
 
 
 def noise_of(y):
-    """Return the noise of each record as its second differences tell it, shape (L,): what motion adds to them is small.
+    """The noise of each record as its second differences tell it, shape (L,): what motion adds to them is small.
 
     Examples
     --------
@@ -185,7 +185,7 @@ def noise_of(y):
 
 
 def _counted(motion, y, found, rest, scales, quantum, weights, freedom):
-    """Return the fit of counts: by their own likelihood in dither, else as numbers, a run of one count being one."""
+    """The fit of counts: by their own likelihood in dither, else as numbers, a run of one count being one."""
     dithered = spread(rest, quantum) >= DITHERED * quantum
     weights, sigma = np.where(dithered, 1.0, weights), np.inf
     for _ in range(ROUNDS[1]):
@@ -226,7 +226,7 @@ def _scored(motion, y, start, scales, sigma, quantum, weights, counted, steps=ST
 
 
 def _linearised(motion, y, at, scales):
-    """Return residuals, shape (N, L), and slopes of the motion by its parameters over their scales, (N, P, L)."""
+    """Residuals, shape (N, L), and slopes of the motion by its parameters over their scales, (N, P, L)."""
     count = len(at)
     offsets = np.concatenate([np.zeros((1, count)), np.eye(count), -np.eye(count)]) * STEP
     with np.errstate(all="ignore"):  # a step may go where nothing is finite, and is not taken then
@@ -259,7 +259,7 @@ def _finished(motion, y, found, scales, sigma, quantum, weights, freedom, counte
 
 
 def _blind(fisher):
-    """Return the direction that the information leaves out, shape (L, P); zeros where it leaves out none."""
+    """The direction that the information leaves out, shape (L, P); zeros where it leaves out none."""
     size = np.sqrt(np.maximum(np.einsum("lpp->lp", fisher), 1e-300))
     told, directions = np.linalg.eigh(fisher / (size[:, :, None] * size[:, None, :]))
     away = directions[:, :, 0] / size

@@ -16,13 +16,13 @@ TRIED = np.geomspace(0.02, 100.0, 52)
 
 
 def _edges(rest, sigma, quantum):
-    """Return the count's probability, and its edges over sigma with |r|, for which tails keep their digits."""
+    """The count's probability, and its edges over sigma with |r|, for which tails keep their digits."""
     low, high = (np.abs(rest) - quantum / 2) / sigma, (np.abs(rest) + quantum / 2) / sigma
     return np.maximum(normal(-low) - normal(-high), LEAST), low, high
 
 
 def log_likelihood(rest, sigma, quantum, counted):
-    """Return the logarithm of each sample's probability (density where it is no count), up to a constant.
+    """The logarithm of each sample's probability (density where it is no count), up to a constant.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def log_likelihood(rest, sigma, quantum, counted):
 
 
 def information(rest, sigma, quantum, counted):
-    """Return each sample's score, the slope of its log-likelihood by the position [1/m], and its information [1/m^2]."""
+    """Each sample's score, the slope of its log-likelihood by the position [1/m], and its information [1/m^2]."""
     score, info = rest / sigma**2, np.broadcast_to(1 / sigma**2, rest.shape)
     if not np.any(counted):
         return score, info
@@ -52,7 +52,7 @@ def information(rest, sigma, quantum, counted):
 
 
 def expected_information(position, sigma, quantum):
-    """Return the Fisher information of a count about the position in it, as if noise were drawn anew [1/m^2].
+    """The Fisher information of a count about the position in it, as if noise were drawn anew [1/m^2].
 
     Examples
     --------
@@ -72,7 +72,7 @@ def expected_information(position, sigma, quantum):
 
 
 def spread(rest, quantum):
-    """Return the noise that makes counted residuals likeliest, shape (L,), by search and a parabola."""
+    """The noise that makes counted residuals likeliest, shape (L,), by search and a parabola."""
     tried = TRIED * quantum
     told = np.array([np.sum(np.log(_edges(rest, s, quantum)[0]), axis=0) for s in tried])
     best = np.clip(np.argmax(told, axis=0), 1, len(tried) - 2)

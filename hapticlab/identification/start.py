@@ -9,7 +9,7 @@ DELAYS = range(6)
 
 
 def begin(y, F, T, *, push=0.0, m=None, noise=0.0, delays=DELAYS, without=(), coulomb=None):
-    """Return first values of (m, b, coulomb, delay) and of the start (x0, v0), from one record.
+    """First values of (m, b, coulomb, delay) and of the start (x0, v0), from one record.
 
     x = x0 + (v0 + b/m x0) t - b/m int x - coulomb/m iint sign(x') + 1/m iint (push - F): least squares, for each whole
     delay that is tried. As nothing is differentiated noise in x hardly matters. A resting handle has no net force.
@@ -69,6 +69,6 @@ def _sum(values, T):
 
 
 def _heading(y, noise):
-    """Return the sign of the velocity over a window, 0 where the handle seems to rest."""
+    """The sign of the velocity over a window, 0 where the handle seems to rest."""
     moved = np.pad(y, (0, WINDOW), "edge")[WINDOW:] - np.pad(y, (WINDOW, 0), "edge")[:-WINDOW]
     return np.where(np.abs(moved) > MOVED * noise, np.sign(moved), 0.0)

@@ -58,7 +58,7 @@ class Excitation:
         return self.amplitude * multisine(self.samples, self.lines, phases="low_crest", seed=self.seed)
 
     def hand(self, hand: Hand, place: float, pull: float) -> Hand:
-        """Return the hand with an intent that moves as the signal does, and holds the handle at a place [m] against a pull.
+        """The hand with an intent that moves as the signal does, and holds the handle at a place [m] against a pull.
 
         A hand without a spring holds it by a push.
         """
@@ -71,7 +71,7 @@ class Excitation:
         return Hand(m=hand.m, b=hand.b, k=hand.k, push=push, noise=hand.noise, intent=intent)
 
     def beside(self, scene: Scene, pull: float = 0.0) -> Scene:
-        """Return the scene with the signal as a force of the motor beside its own, and watch the scene's own as ``own`` [N].
+        """The scene with the signal as a second force of the motor; its own force is watched as ``own`` [N].
 
         ``pull`` [N] is a constant force into the wall, which holds the handle where the scene gives as much.
         """
@@ -83,13 +83,13 @@ class Excitation:
         return replace(scene, force=force, eom=(*scene.eom, *rule), watch=watch, name=f"shaken {scene.name}")
 
     def _count(self):
-        """Return the tick within the period, and the rule that counts it."""
+        """The tick within the period, and the rule that counts it."""
         count = signal("shake_tick", unit="1", initial=-1)
         again = count(n - 1) >= self.samples - sp.Rational(3, 2)
         return count(n), sp.Eq(count(n), when(again, 0, count(n - 1) + 1))
 
     def _sines(self):
-        """Return the sum of cosines, each a pointer that turns by its angle a tick and begins anew with every period.
+        """The sum of cosines, each a pointer that turns by its angle a tick and begins anew with every period.
 
         Six operations a line, where a sine takes ten times as many; single precision drifts by 1e-4 within a period, and
         by nothing from one to the next.

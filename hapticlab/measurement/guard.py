@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def guarded(scene: Scene, *, energy_max: float, speed_max: float, periods: int = 0) -> Scene:
-    """Return the scene with a guard around its force: past a limit the force is zero, and stays so.
+    """The scene with a guard around its force: past a limit the force is zero, and stays so.
 
     The guard is part of the scene, so it acts at the sample that passes a limit, on a board as in simulation, and waits
     for no computer. Beside the board's own faults, which it comes before.

@@ -206,7 +206,7 @@ def _runs(paddle, scene, drive, place, settle, limits, options):
 
 
 def _blocks(log, samples, blocks, skip):
-    """Return x, F and the scene's own part of F as blocks of one period, shape (B, N)."""
+    """x, F and the scene's own part of F as blocks of one period, shape (B, N)."""
     if log.fault or log.gap.any() or log.every > 1 or len(log) < skip + blocks * samples:
         raise PaddleError(
             f"measured_impedance: the record is not whole: {log.fault or 'samples were lost or left out'}. Drive less, "
@@ -222,7 +222,7 @@ def _blocks(log, samples, blocks, skip):
 
 
 def _evaluated(kept, lines, drive, paddle, exact, place, scene, ideal, simulated):
-    """Return the impedances at the lines, from blocks of whole periods and the excitations that made them."""
+    """The impedances at the lines, from blocks of whole periods and the excitations that made them."""
     _, first, delay = kept[0]
     s = 2j * np.pi * lines / (first.samples * paddle.T)
     x, F, own = (np.concatenate(parts) for parts in zip(*(blocks for blocks, _, _ in kept), strict=True))
@@ -259,7 +259,7 @@ def _images(paddle, F, intent, lines, samples):
 
 
 def _distortion(F, excitation):
-    """Return the force's rms at lines that nothing excites, over that at those that are excited; nan for a chirp."""
+    """The force's rms at lines that nothing excites, over that at those that are excited; nan for a chirp."""
     if excitation.how != "multisine":
         return float("nan")
     power = abs(lines_in(F, np.arange(excitation.samples // 2 + 1))) ** 2

@@ -212,7 +212,7 @@ def largest_stiffness(
 
 
 def search(trial, first, most, growth, tolerance, durations):
-    """Return (trials, largest that stood, smallest that did not), from below, never further than one ratio beyond.
+    """(trials, largest that stood, smallest that did not), from below, never further than one ratio beyond.
 
     A trial is as short as tells; the one that is the answer is repeated at full length. Where that finds a chatter which
     a short one did not see, the search goes on below it, at full length only. ``durations(K)`` gives both lengths [s].
@@ -242,7 +242,7 @@ def search(trial, first, most, growth, tolerance, durations):
 
 
 def _pressed(scene, push):
-    """Return the scene with the motor's push beside it."""
+    """The scene with the motor's push beside it."""
     if not push:
         return scene
     force = parameters("pressed", units="N", values=push, ranges=(-math.inf, math.inf))
@@ -250,7 +250,7 @@ def _pressed(scene, push):
 
 
 def theory_of(paddle, law, B):
-    """Return the limits of theory, where they are known: a law with a name, a handle with constants."""
+    """The limits of theory, where they are known: a law with a name, a handle with constants."""
     known = paddle if isinstance(paddle, SimulatedPaddle) else _from_settings(paddle)
     if isinstance(law, Scene) or law not in TAPS or known is None:
         return {}

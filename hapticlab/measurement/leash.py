@@ -18,7 +18,7 @@ SPARE = 0.05
 
 
 def leashed(scene: Scene, reach: float, speed_max: float | None = None) -> Scene:
-    """Return the scene with no force from the tick on at which the handle is further than ``reach`` from where it began.
+    """The scene with no force from the tick on at which the handle is further than ``reach`` from where it began.
 
     Counted from the handle's place at the first tick, wherever that is, and for good: a handle that comes back past the
     limit is not pushed again. Nor is one that was faster than ``speed_max`` [m/s]. It watches ``cut``, 1 from that tick on.
@@ -42,7 +42,7 @@ def leashed(scene: Scene, reach: float, speed_max: float | None = None) -> Scene
 
 
 def held_back(scene: Scene, reach: float, *, speed_max: float, work: float, periods: int = 0) -> Scene:
-    """Return the scene on a leash and guarded: ``cut`` is 1 from the tick on at which either switched the motor off.
+    """The scene on a leash and guarded: ``cut`` is 1 from the tick on at which either switched the motor off.
 
     Parameters
     ----------

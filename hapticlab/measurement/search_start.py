@@ -17,7 +17,7 @@ PUSH, OF_LIMIT = 0.2, 0.25
 
 
 def durations_of(paddle, duration, longest):
-    """Return a function of K that gives (how long a trial begins, how long it may become) [s]."""
+    """A function of K that gives (how long a trial begins, how long it may become) [s]."""
     for name, value in (("duration", duration), ("longest", longest)):
         if value is not None and not FEWEST * paddle.T <= value < math.inf:
             raise AnalysisError(
@@ -34,7 +34,7 @@ def durations_of(paddle, duration, longest):
 
 
 def pushes_of(paddle, push, place, seconds):
-    """Return the motor's push and how hard a simulated hand leans on the wall [N]; a moving hand in the mean."""
+    """The motor's push and the force with which a simulated hand leans on the wall [N]; a moving hand's in the mean."""
     hand, most = getattr(paddle, "hand", None), _force_max(paddle)
     leaning = 0.0
     if hand is not None:
@@ -64,7 +64,7 @@ def _force_max(paddle):
 
 
 def first_of(paddle, pressing, longest):
-    """Return the softest wall to begin with [N/m]: not too deep, and with three periods in the longest trial."""
+    """The softest wall to begin with [N/m]: not too deep, and with three periods in the longest trial."""
     soft = (pressing or PUSH) / DEEPEST
     needs = 0.0 if longest is None else ENOUGH * period_on(paddle, soft) / longest
     return soft * max(1.0, needs**2)

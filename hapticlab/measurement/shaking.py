@@ -18,7 +18,7 @@ ROOM = 2.0
 
 
 def motor_stands(paddle):
-    """Return the force [N] that the motor of a board stands for long, or the limit of a simulated one, or None."""
+    """The force [N] that the motor of a board stands for long, or the limit of a simulated one, or None."""
     settings = getattr(paddle, "settings", None)
     if settings is not None:
         return min(settings.force_continuous, settings.force_max)
@@ -26,7 +26,7 @@ def motor_stands(paddle):
 
 
 def bearable(program, paddle, origin, depth):
-    """Return the place [m], ``depth`` beyond the origin or less: the motor holds it with half of what it stands."""
+    """The place [m], ``depth`` beyond the origin or less: the motor holds it with half of what it stands."""
     stands = motor_stands(paddle)
     for _ in range(8):  # one step for a straight spring
         pull = abs(force_at_rest(program, origin + depth))

@@ -24,7 +24,7 @@ ROUNDS = 150
 def multisine(
     samples: int, lines: ArrayLike, *, phases: Literal["schroeder", "random", "low_crest"] = "schroeder", seed: int = 0
 ) -> Array:
-    """Return one period of a sum of cosines of equal amplitude, peak 1.
+    """One period of a sum of cosines of equal amplitude, peak 1.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def multisine(
 
 
 def chirp(samples: int, lines: ArrayLike) -> Array:
-    """Return one period of a swept sine from the first to the last line, peak 1: sin of a phase that grows as t^2.
+    """One period of a swept sine from the first to the last line, peak 1: sin of a phase that grows as t^2.
 
     A line of every cycle number between first and last gets much the same power, a little leaks beyond the ends.
     """
@@ -74,12 +74,12 @@ def chirp(samples: int, lines: ArrayLike) -> Array:
 
 
 def crest_factor(signal: Array) -> float:
-    """Return peak over rms."""
+    """Peak over rms."""
     return float(abs(signal).max() / np.sqrt(np.mean(np.square(signal))))
 
 
 def lines_of(frequency, T, period):
-    """Return (samples, lines): the period in samples, and the odd lines nearest to the frequencies asked for [Hz].
+    """(samples, lines): the period in samples, and the odd lines nearest to the frequencies asked for [Hz].
 
     Odd lines alone, so that what a nonlinearity puts on the even ones is seen.
     """
@@ -111,7 +111,7 @@ def _sum(samples, lines, angles):
 
 
 def _lowered(signal, lines):
-    """Return the signal with phases changed so that its peaks are low: clip, keep the phases, restore the amplitudes."""
+    """The signal with phases changed so that its peaks are low: clip, keep the phases, restore the amplitudes."""
     best = signal
     for k in range(ROUNDS):
         level = (0.75 + 0.2 * k / ROUNDS) * abs(signal).max()

@@ -22,7 +22,7 @@ SMALL, LONGEST = 1e-6, 20_000
 def law_at(
     program: Program, place: float, theta: Array, *, small: float = SMALL
 ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Return H(e^(j theta)) of F to x, and of F to a measured v, complex arrays, linearised at a place [m].
+    """H(e^(j theta)) of F to x, and of F to a measured v, complex arrays, linearised at a place [m].
 
     The program runs at rest there until it has settled; then x is off by a micrometre for one sample, and what the force
     does is the law's impulse response. Run it in float64: a float32 has no micrometre to spare.
@@ -53,7 +53,7 @@ def law_at(
 
 
 def force_at_rest(program: Program, place: float) -> float:
-    """Return the force with the handle at rest at a place, settled [N]."""
+    """The force with the handle at rest at a place, settled [N]."""
     names = [c.name for c in program.inputs]
     rest = np.zeros((LONGEST, len(names)))
     rest[:, names.index("x")] = place

@@ -35,12 +35,12 @@ class Response:
 
 
 def lines_in(blocks: Array, lines: NDArray[np.int_]) -> NDArray[np.complex128]:
-    """Return the Fourier coefficients of real blocks, shape (B, N), at their lines, shape (B, L)."""
+    """The Fourier coefficients of real blocks, shape (B, N), at their lines, shape (B, L)."""
     return 2 / blocks.shape[1] * np.fft.rfft(blocks, axis=1)[:, lines]
 
 
 def response(y: NDArray[np.complex128], x: NDArray[np.complex128], reference: NDArray[np.complex128]) -> Response:
-    """Return y/x, each of shape (B, L), through what both have of the reference.
+    """y/x, each of shape (B, L), through what both have of the reference.
 
     Noise on x that comes round through the loop would pull a plain ratio of y and x towards the loop's inverse; the
     reference has none of it (Pintelon and Schoukens, joint input-output approach).

@@ -103,7 +103,7 @@ def try_wall(paddle, scene, *, K, place, duration, longest, buzz_max=0.05, noise
 
 
 def _judged(paddle, log, place, buzz_max, last, noise):
-    """Return (stands, verdict, amplitude, frequency, scatter where it rests), or None where a longer record may tell."""
+    """(stands, verdict, amplitude, frequency, scatter where it rests), or None where a longer record may tell."""
     stopped = _stopped(log)
     if stopped:
         return *stopped, 0.0, None
@@ -141,7 +141,7 @@ def _judged(paddle, log, place, buzz_max, last, noise):
 
 
 def _stopped(log):
-    """Return (stands, why) of a trial that was cut short, or None."""
+    """(stands, why) of a trial that was cut short, or None."""
     if log.fault:  # a wall too soft for its push lets the handle through its travel as a wall that throws it does
         return (None if "OVER_TRAVEL" in log.fault else False), f"the paddle stopped: {log.fault}"
     if log.tripped.any():
@@ -154,14 +154,14 @@ def _counts(found):
 
 
 def period_on(paddle, K):
-    """Return the period of handle and hand on a spring of K [s]."""
+    """The period of handle and hand on a spring of K [s]."""
     hand = getattr(paddle, "hand", None)
     m = paddle.m if isinstance(paddle, SimulatedPaddle) else getattr(paddle.settings, "m", 0.0) or A_HANDLE
     return 2 * math.pi * math.sqrt((m + (hand.m if hand else 0.0)) / (K + (hand.k if hand else 0.0)))
 
 
 def count_of(paddle):
-    """Return one encoder count [m]; 0 where there is no encoder."""
+    """One encoder count [m]; 0 where there is no encoder."""
     if isinstance(paddle, SimulatedPaddle):
         return 1 / paddle.counts_per_metre if paddle.counts_per_metre else 0.0
     return abs(paddle.settings.metres_per_count)
@@ -190,12 +190,12 @@ def lead_back(paddle, place, force_max=math.inf):
 
 
 def speed_limit(paddle, speed):
-    """Return a speed limit [m/s] that leaves room for a jump of some encoder counts in one period."""
+    """A speed limit [m/s] that leaves room for a jump of some encoder counts in one period."""
     return max(speed, COUNTS * count_of(paddle) / paddle.T)
 
 
 def wall_of(law: str | Scene, parameter: str = "k") -> Scene:
-    """Return the scene of a law by its name, or a scene of one's own that has the parameter."""
+    """The scene of a law by its name, or a scene of one's own that has the parameter."""
     scene = law if isinstance(law, Scene) else wall(law)
     if parameter not in scene.parameters:
         known = ", ".join(scene.parameters) or "none"
