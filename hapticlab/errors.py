@@ -9,6 +9,8 @@
     |   +-- ParameterError    a value is missing, unknown, not finite or out of its range
     |   +-- MassError         the equations do not determine every acceleration
     +-- ProgramError          a program is damaged, or asks for what no engine has
+    |   +-- LiveConstantError a method makes constants of what may be set while the program runs
+    |   +-- LongStepError     a step is too long for a method
     |   +-- ProgramLimitError a program is past a limit of the engine or board
     +-- PaddleError           a device, simulated or real, was asked for what it cannot do
     |   +-- PortError         a serial port is missing, taken, forbidden, or left during use
@@ -53,6 +55,14 @@ class LiveConstantError(ProgramError):
     def __init__(self, message, live=()):
         super().__init__(message)
         self.live = tuple(live)
+
+
+class LongStepError(ProgramError):
+    """A step is too long for a method: ``substeps`` are enough, None where so many are no cure."""
+
+    def __init__(self, message, substeps=None):
+        super().__init__(message)
+        self.substeps = substeps
 
 
 class ProgramLimitError(ProgramError):

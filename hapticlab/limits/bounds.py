@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..arguments import choice, having, number, period
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
-from .limit import A_PADDLE, Limit, whole_and_fraction
+from .limit import A_PADDLE, AnyHand, Limit, whole_and_fraction
 from .passivity import passivity_limit
 from .plots import plot_bounds
 from .stability import stability_limit
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 #: what e of :func:`gil_limit` may be at most for Gil's formula
 SLOW_ENOUGH = 0.1
-PASSIVITY = "passivity: any hand, sufficient"
+PASSIVITY = AnyHand("passivity: any hand, sufficient")
 SINUSOIDS = "of slow sinusoids alone: no passivity, which ends sooner"
 STABILITY = "stability of this plant, to first order in the delay"
 

@@ -40,6 +40,10 @@ class Plant(Device, Protocol):
     def hand(self) -> Hand | None: ...
 
 
+class AnyHand(str):
+    """The kind of a limit that holds in every passive hand."""
+
+
 @dataclass(frozen=True)
 class Limit:
     """The largest stiffness, and what it promises.
@@ -51,7 +55,7 @@ class Limit:
     frequency : float or None
         Where the limit is reached [Hz]; None where no single frequency decides.
     kind : str
-        Which limit this is: passivity with any hand, or stability of one plant.
+        Which limit this is: passivity, an :class:`AnyHand`, or stability of one plant.
     reason : str
         What decides it, or why it is zero.
     assumptions : tuple of str
@@ -68,6 +72,11 @@ class Limit:
     kind: str
     reason: str
     assumptions: tuple[str, ...] = ()
+
+    @property
+    def any_hand(self) -> bool:
+        """Whether the limit holds in every passive hand."""
+        return isinstance(self.kind, AnyHand)
 
     def __float__(self) -> float:
         return float(self.K)

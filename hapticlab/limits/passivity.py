@@ -27,7 +27,7 @@ from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
 from .affine_law import affine_law
 from .colgate import largest_passive_stiffness, least_passive_stiffness
-from .limit import MOST_PERIODS, Limit, whole_and_fraction
+from .limit import MOST_PERIODS, AnyHand, Limit, whole_and_fraction
 from .linear_law import LinearLaw
 from .port import unstable_pole
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ..scene.laws.taps import LawName
     from .affine_law import StiffnessLaw
 
-KIND = "passivity: any passive hand, sufficient"
+KIND = AnyHand("passivity: any passive hand, sufficient")
 SWITCHING_NOT_COVERED = "the spring always acts: the switching of a unilateral wall is not covered"
 NO_DAMPING = "b = 0: without device damping nothing pays for the hold"
 NO_VELOCITY = "its exact velocity jumps at the samples: a hand that moves only there draws energy at any stiffness"

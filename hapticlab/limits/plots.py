@@ -209,8 +209,7 @@ def plot_bounds(bounds: Bounds) -> Figure:
             if isinstance(limit, str):
                 axes.text(0.01 * most, row, "does not apply", va="center", fontsize="small", color="#555555")
                 continue
-            passive = limit.kind.startswith("passivity")
-            bar = {"color": COLD} if passive else {"color": "white", "hatch": "///", "edgecolor": WARM}
+            bar = {"color": COLD} if limit.any_hand else {"color": "white", "hatch": "///", "edgecolor": WARM}
             axes.barh(row, min(limit.K, most), height=0.6, **bar)
             axes.text(min(limit.K, most) + 0.01 * most, row, f"{limit.K:.4g}", va="center", fontsize="small")
         axes.set(yticks=range(len(bounds.found)), yticklabels=list(bounds.found), xlim=(0, 1.1 * most))

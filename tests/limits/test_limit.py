@@ -6,6 +6,7 @@ import pytest
 
 from hapticlab.errors import AnalysisError
 from hapticlab.limits.limit import MOST_PERIODS, Limit, whole_and_fraction
+from hapticlab.limits.passivity import passivity_limit
 from hapticlab.scene.laws.taps import TAPS, LawName
 
 
@@ -32,3 +33,8 @@ def test_delays_split_without_rounding_noise(T):
     with pytest.raises(AnalysisError, match="at most 200 periods"):
         whole_and_fraction(201 * T, T, most=MOST_PERIODS)
     assert whole_and_fraction(301 * T, T)[0] == 301  # a record may be older than a polynomial can be long
+
+
+def test_a_limit_knows_whether_it_holds_in_any_hand():
+    assert passivity_limit(b=0.1, T=1e-3).any_hand
+    assert not Limit(K=200.0, frequency=None, kind="exact linear stability of this plant", reason="a pole").any_hand

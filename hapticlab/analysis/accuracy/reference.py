@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,7 @@ import numpy as np
 from ...compiler.algebra.graph import Graph
 from ...compiler.algebra.graph import driven as turning
 from ...compiler.engines.engine import load
-from ...errors import AnalysisError, ProgramError
+from ...errors import AnalysisError, LongStepError, ProgramError
 from ...scene.notation.symbols import acceleration, n, t, v, x
 from .accelerations_at import instant
 from .continuous_handle import DEGREE, coefficients, driven, without_samples
@@ -232,11 +231,10 @@ def _slow_enough(scene, step):
     while True:
         try:
             return driven(scene, T=step / parts, order=ORDER), parts
-        except ProgramError as error:
-            more = re.search(r"take substeps=(\d+)", str(error))
-            if not more or parts >= MOST_PARTS:
+        except LongStepError as error:
+            if not error.substeps or parts >= MOST_PARTS:
                 raise
-            parts *= max(int(more[1]), 2)
+            parts *= max(error.substeps, 2)
 
 
 def _finite_until(times, F):

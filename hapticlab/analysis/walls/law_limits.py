@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -179,17 +179,16 @@ def _limit(name, paddle, first, most, push, duration, options):
     stood, beyond, why, rest = 0.0, math.inf, "nothing stiffer was tried", np.nan
     K, longer = first, 1.0
     while K <= most and (beyond == math.inf or beyond / max(stood, 1e-9) > FINEST):
-        fault, felt, clipped = _trial(name, paddle, K, push, duration * longer, options)
-        untold = fault is not None and fault.startswith("undecided")
-        if untold and (stood == 0 or clipped) and longer < LONGEST:
+        trial = _trial(name, paddle, K, push, duration * longer, options)
+        if trial.undecided and (stood == 0 or trial.clipped) and longer < LONGEST:
             longer = min(2 * longer, LONGEST)
             continue
-        if untold and stood == 0:
-            return LawLimit(name, math.nan, math.nan, f"{K:g} N/m {fault}: it neither dies out nor grows", np.nan)
-        if fault is None:
-            stood, rest = K, felt
+        if trial.undecided and stood == 0:
+            return LawLimit(name, math.nan, math.nan, f"{K:g} N/m {trial.fault}: it neither dies out nor grows", np.nan)
+        if trial.fault is None:
+            stood, rest = K, trial.felt
         else:
-            beyond, why = K, fault
+            beyond, why = K, trial.fault
             if stood == 0 and K * SOFTER < SOFTEST * first:
                 break
             longer = max(longer, min(math.sqrt(first / (K * SOFTER)), LONGEST)) if stood == 0 else longer
@@ -197,8 +196,17 @@ def _limit(name, paddle, first, most, push, duration, options):
     return LawLimit(name, stood, beyond, why, rest)
 
 
+class _Trial(NamedTuple):
+    """What is wrong with a wall, or None; the stiffness felt at rest over K; whether the motor clipped; if it is undecided."""
+
+    fault: str | None
+    felt: float = math.nan
+    clipped: bool = False
+    undecided: bool = False
+
+
 def _trial(name, paddle, K, push, duration, options):
-    """Return what is wrong with a wall, or None, the stiffness felt at rest over K, and whether the motor's limit is in it.
+    """The outcome of one wall under the push.
 
     A decay in which the motor clips, or that slows down, may end in a cycle: it is undecided.
     """
@@ -206,15 +214,16 @@ def _trial(name, paddle, K, push, duration, options):
         law = wall_law(name, paddle, K=K, **options)
         log = law.paddle.run(law.scene, duration=duration, progress=False)
     except HapticlabError as refusal:
-        return f"refused: {refusal}", np.nan, False
+        return _Trial(f"refused: {refusal}")
     if log.fault:
-        return "its force was not finite", np.nan, False
+        return _Trial("its force was not finite")
     found = chatter(log)
     clipped = log.saturated is not None and bool(log.saturated[len(log) // 2 :].any())
     state = "undecided" if found.state == "decaying" and clipped else found.state
     seen = found.amplitude > (0.0 if paddle.counts_per_metre is None else 1 / paddle.counts_per_metre)
     if (seen and state in ("chatter", "growing", "undecided")) or abs(found.rest) > 20 * push / K:
         tone = "" if found.frequency is None else f" at {found.frequency:.4g} Hz"
-        return f"{state}, {1e3 * found.amplitude:.3g} mm{tone}", np.nan, clipped
+        words = f"{state}, {1e3 * found.amplitude:.3g} mm{tone}"
+        return _Trial(words, clipped=clipped, undecided=state == "undecided")
     settled = found.travel < 0.05 * abs(found.rest)
-    return None, push / (K * found.rest) if settled else np.nan, clipped
+    return _Trial(None, push / (K * found.rest) if settled else math.nan, clipped)

@@ -5,9 +5,9 @@ import math
 
 import numpy as np
 
-from ...errors import ProgramError, ProgramLimitError
+from ...errors import LongStepError, ProgramError, ProgramLimitError
 from ..ir.operations import OPERATIONS
-from ..ir.options import proposed
+from ..ir.options import MOST_SUBSTEPS, proposed
 from ..ir.program import LEAVES
 from ..ir.structural_zeros import ZERO
 from ..ir.trace import reachable
@@ -172,9 +172,10 @@ def check_step(omega, T, substeps, name, live=()):
         where = f"at {shown}, to which it may be set while it runs, " if live else ""
         cure = f", declare a narrower range, or leave {', '.join(live)} out of live=" if live else ""
         more = proposed(omega * T, "a shorter T or, for what is linear, method='exact'")
-        raise ProgramError(
+        raise LongStepError(
             f"{name}: {where}its fastest part turns with omega = {omega:.4g} rad/s, by omega T/substeps = "
-            f"{omega * T / substeps:.3g} rad in a step of {T / substeps:g} s; method='taylor' needs at most 1: take {more}{cure}"
+            f"{omega * T / substeps:.3g} rad in a step of {T / substeps:g} s; method='taylor' needs at most 1: take {more}{cure}",
+            math.ceil(omega * T) if omega * T <= MOST_SUBSTEPS else None,
         )
 
 

@@ -23,8 +23,11 @@ def mass_on_a_spring(ranges, pendulum=False):
 def test_a_step_is_short_enough_at_the_ends_of_declared_ranges():
     # omega = sqrt(K/m): 22.4 rad/s as bound, 1 rad a step of 1 ms at 1e5 N/m, and three times that at 9e5 N/m
     assert hl.compile(mass_on_a_spring((0, 0.99e5)), "taylor", T=1e-3).facts["omega"] == pytest.approx(math.sqrt(500), rel=1e-3)
-    with pytest.raises(ProgramError, match=r"spring: at K = 900000, to which it may be set while it runs.*substeps=3, declare"):
+    with pytest.raises(
+        ProgramError, match=r"spring: at K = 900000, to which it may be set while it runs.*substeps=3, declare"
+    ) as found:
         hl.compile(mass_on_a_spring((0, 9e5)), "taylor", T=1e-3)
+    assert found.value.substeps == 3
     assert hl.compile(mass_on_a_spring((0, 8.9e5)), "taylor", T=1e-3, substeps=3)
     with pytest.raises(ProgramError, match=r"omega = 3000 rad/s, .* or leave K out of live="):
         hl.compile(mass_on_a_spring((0, 9e5)), "taylor", T=1e-3, live="K")
