@@ -62,7 +62,7 @@ def _labs(options):
 
 
 def _called(lab):
-    """Return what `hapticlab grade` finds a lab by: the number of one that came with hapticlab, or the folder."""
+    """The name by which `hapticlab grade` finds a lab: the number of one that came with hapticlab, or the folder."""
     return lab.number if lab in find_labs() else str(lab.path)
 
 

@@ -80,7 +80,7 @@ def run_on_board(file, options, **compiling):
 
 
 def timing_facts(timing):
-    """Return what the board measured of its own steps, as a dictionary for JSON."""
+    """The board's measurements of its own steps, as a dictionary for JSON."""
     return {
         "step_mean_s": timing.mean,
         "step_worst_s": timing.worst,

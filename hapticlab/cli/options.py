@@ -174,7 +174,7 @@ def _add_board_commands(commands, shared):
 
 
 def _whole(least, what):
-    """Return what reads a whole number; ``what`` says in an error what it is."""
+    """A reader of a whole number; ``what`` names the number in an error."""
 
     def whole(text):
         if not text.isdecimal() or int(text) < least:

@@ -90,7 +90,7 @@ def run_scene(file, *, progress=True, **options):
 
 
 def report_of(program: Program, log: Telemetry) -> dict[str, Any]:
-    """Return what a run showed as a dictionary for JSON.
+    """The results of a run as a dictionary for JSON.
 
     A number's name ends in its unit; counts (samples, instructions, substeps, contacts) have none, and the units of the
     parameters stand beside them under ``units``. None is a number that does not exist, such as a rate without a swing,

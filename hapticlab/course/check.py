@@ -157,7 +157,7 @@ def _brief(value):
 
 
 def _printed(outcomes):
-    """Return what a student's code printed, its first lines."""
+    """First lines that a student's code printed."""
     lines = "".join(outcome.printed for outcome in outcomes).splitlines()
     more = len(lines) - MOST_LINES
     return [f"  printed: {line[:MOST_CHARACTERS]}" for line in lines[:MOST_LINES]] + [f"  ... {more} lines more"] * (more > 0)

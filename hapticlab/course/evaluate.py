@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def evaluate(kind: Kind, answer: object, given: Mapping[str, Any]) -> Outcome:
-    """Return what an answer gives for one case; it never raises, except where a person interrupts.
+    """The outcome of an answer for one case; it never raises, except where a person interrupts.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def _pyplot_figures():
 
 
 def _called(function, given):
-    """Return what a function returns, called by the names of the notebook."""
+    """The value of a function, called by the names of the notebook."""
     if not callable(function):
         raise NotPlain(f"it is {a(function)}, needs a function of ({', '.join(given)})")
     mismatch = _mismatch(function, given)

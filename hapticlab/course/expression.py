@@ -25,7 +25,7 @@ STRAIGHT = 1e-9
 
 
 def values(answer, at, solve_for=()):
-    """Return what an expression is worth at points, or an equation's solution there.
+    """Values of an expression at points, or an equation's solutions there.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def values(answer, at, solve_for=()):
 
 
 def unit_remark(answer, unit=""):
-    """Return what is wrong with the units of an expression or an equation whose symbols all carry one, or an empty text.
+    """The fault in the units of an expression or an equation whose symbols all carry one, or an empty text.
 
     Examples
     --------
@@ -147,7 +147,7 @@ def symbols(expression):
 
 
 def spelling(node):
-    """Return how a symbol, a sample, a function of time or its rate is written, or an empty text."""
+    """The text of a symbol, a sample, a function of time or its rate; empty for anything else."""
     if isinstance(node, sp.Derivative) and len(node.variable_count) == 1:
         name, (_, order) = spelling(node.expr), node.variable_count[0]
         return name and name + "'" * int(order)
@@ -159,7 +159,7 @@ def spelling(node):
 
 
 def _held(expression, allowed):
-    """Return what an expression holds, by the names of ``allowed``; refuse what is not among them."""
+    """Symbols of an expression by the names of ``allowed``; refuse one that is not among them."""
     bound = {symbol for one in expression.atoms(sp.Integral, sp.Sum) for symbol in one.bound_symbols}
     texts = {node: spelling(node) for node in symbols(expression) if node not in bound}
     strange = sorted({text for text in texts.values() if text not in allowed})
@@ -190,7 +190,7 @@ def _branch(*cases):
 
 
 def _solution(equations, point, names):
-    """Return what equations are solved by at a point: a straight line is known by its value at 0 and its slope."""
+    """The solution of equations at a point: a straight line is known by its value at 0 and its slope."""
 
     def residuals(trial):
         tried = {**point, **dict(zip(names, map(float, trial), strict=True))}

@@ -177,7 +177,7 @@ def _difference(exercise, case, wanted, got, hidden):
 
 
 def _digits(one, other):
-    """Return how many digits tell two numbers apart, six at least."""
+    """The number of digits that tell two numbers apart, six at least."""
     return next((d for d in range(6, 17) if f"{float(one):.{d}g}" != f"{float(other):.{d}g}"), 17)
 
 

@@ -153,7 +153,7 @@ def _copied_all(source, target, paths):
 
 
 def _record(target):
-    """Return what was written down of the files that came, nothing where that cannot be read."""
+    """The record of the files that came, empty where it cannot be read."""
     try:
         return dict(json.loads((target / RECORD).read_text("utf-8")))
     except (OSError, ValueError, TypeError):

@@ -221,7 +221,7 @@ def _case(exercise, answers, given):
 
 
 def instructor_names(path):
-    """Return what an instructor's file defines."""
+    """Names that an instructor's file defines, and their values."""
     _text(path)
     try:
         return runpy.run_path(str(path))

@@ -11,7 +11,7 @@ END = 0.02
 
 
 def plot_fault(expected, found, rtol, atol):
-    """Return what is wrong with the curves of a plot.
+    """The fault of the curves of a plot, in words.
 
     A curve whose abscissae rise is compared by interpolation at those expected, or else at its own, where they are fewer
     and close enough to show it, so it may be sampled otherwise; any other point by point. Labels are free, units are not. Points
@@ -131,7 +131,7 @@ def _where_drawn(wanted, curve):
 
 
 def _widest(wanted, curve):
-    """Return how far apart the points of a curve are, within the range, at most."""
+    """The largest distance between neighbouring points of a curve within the range."""
     return np.abs(np.diff(np.clip(curve["x"], wanted["x"].min(), wanted["x"].max()))).max(initial=0)
 
 
@@ -154,7 +154,7 @@ def _near(wanted, got, band):
 
 
 def _mixed_up(wanted, curve, rtol, atol):
-    """Return what was mixed up, if a curve would fit with that put right, or an empty text."""
+    """The mix-up without which a curve would fit, in words, or an empty text."""
     swapped = {"x": curve["y"], "y": curve["x"], "x_unit": curve["y_unit"], "y_unit": curve["x_unit"]}
     if _fits(wanted, swapped, rtol, atol):
         return f"The axes are swapped: {_unit(wanted['x_unit'])} belongs along x."

@@ -143,7 +143,7 @@ class Place:
 
 
 def places(notebook, lab):
-    """Return which cell answers which exercise of a lab, and which checks it, found by their code.
+    """The cell that answers each exercise of a lab and the one that checks it, found by their code.
 
     Parameters
     ----------

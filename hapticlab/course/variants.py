@@ -90,7 +90,7 @@ def solved_case(exercise, solution, given, unit=""):
 
 
 def slips(exercise, solution, given):
-    """Return what typical slips give of a right answer that is an expression, an equation or a scene.
+    """Wrong answers by typical slips, from a right answer that is an expression, an equation or a scene.
 
     Signs of terms are turned, terms and parameters left out, conditions turned round or left out, degrees put for radians,
     samples taken one late; in a scene in the force, in the equations of motion, or in both.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
+from ..arguments import choice
 from ..errors import AnalysisError
 from ..statistics import normal
 
@@ -61,8 +62,7 @@ class Psychometric:
     shape: Shape = "d_prime"
 
     def __post_init__(self) -> None:
-        if self.shape not in SHAPES:
-            raise AnalysisError(f"shape = {self.shape!r}; needs one of {', '.join(SHAPES)}")
+        choice("shape", self.shape, SHAPES)
         if not (self.slope > 0 and math.isfinite(self.slope) and (self.threshold > 0 or self.shape == "normal")):
             raise AnalysisError(
                 f"threshold = {self.threshold:g}, slope = {self.slope:g}; {self.shape} needs both positive and finite"

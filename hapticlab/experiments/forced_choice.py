@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arguments import instance
 from ..device.setup.person import Person
 from ..drawing import COLD, WARM, house_style, new_figure, scale_axis
 from ..errors import AnalysisError
@@ -180,8 +181,7 @@ def forced_choice(
     >>> len(found.trials), found.trials[-1].right
     (4, True)
     """
-    if not isinstance(task, Task):
-        raise AnalysisError(f"task = {task!r}; needs a Task, such as hl.stiffness_task()")
+    instance("task", task, Task, "a Task, such as hl.stiffness_task()")
     observer = observer or SimulatedObserver(weber=task.weber, seed=seed)
     observer = PersonObserver(observer) if isinstance(observer, Person) else observer
     if not hasattr(observer, "compare"):

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arguments import choice
 from ..device.hand.hand import require
 from ..device.hand.reacting_hand import REACTION, Reacting
 from ..drawing import house_style, new_figure, style_of
-from ..errors import AnalysisError
 from ..library.contacts import ball_on_the_paddle
 from ..records import Telemetry
 from .arm import Arm
@@ -162,8 +162,7 @@ def juggle(
     2
     """
     hand = check_held(paddle, "juggle")
-    if senses not in SENSES:
-        raise AnalysisError(f"senses = {senses!r}; needs one of {', '.join(SENSES)}")
+    choice("senses", senses, SENSES)
     height = require("height", height, "m", "a juggler", above=0)
     scene = ball_on_the_paddle()(**{"m": 0.005, "M": 0.1, "K": 1000.0, "b_c": 10.0, "h": height, **values})
     if senses == "vision":

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arguments import choice
 from ..drawing import COLD, WARM, house_style, new_figure, scale_axis, style_of
 from ..errors import AnalysisError
 from ..statistics import chi_squared
@@ -148,8 +149,7 @@ def psychometric(
     0.17
     """
     levels, right, trials = _counts(levels, right, trials)
-    if shape not in SHAPES:
-        raise AnalysisError(f"shape = {shape!r}; needs one of {', '.join(SHAPES)}")
+    choice("shape", shape, SHAPES)
     if lapse is not None and not 0 <= lapse < 0.5:
         raise AnalysisError(f"lapse = {lapse:g}; needs 0 <= lapse < 0.5, or None to fit it")
     if slope is not None and not 0 < slope < math.inf:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 import numpy as np
 
+from ..arguments import choice
 from ..device.hand.hand import UNITS, require
 from ..device.hand.intents import Intent, MinimumJerk
 from ..device.hand.reacting_hand import REACTION, Reacting
@@ -213,8 +214,7 @@ def follow(
     """
     hand = check_held(paddle, "reach")
     check_path(path)
-    if how not in HOW:
-        raise PaddleError(f"how = {how!r}; needs one of {', '.join(HOW)}")
+    choice("how", how, HOW, error=PaddleError)
     every = max(round(0.01 / paddle.T), 1) * paddle.T
     gain = 1 / (math.e * (reaction + every)) if gain is None else require("gain", gain, "1/s", "feedback", low=0)
     known = Load(m=paddle.m, b=paddle.b) if expects is None else expects

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments import number, period
+from ..arguments import instance, number, period
 from ..errors import AnalysisError
 from .limit import MOST_PERIODS, whole_and_fraction
 from .linear_law import LinearLaw
@@ -135,8 +135,7 @@ def passivity_margin(law: LinearLaw, *, b: float, delay: float = 0.0) -> Passivi
     """
     b = number("b", b, "N s/m", "a device", least=0, why="its damping pays for the hold")
     delay = number("delay", delay, "s", least=0, why="a force cannot come before its sample")
-    if not isinstance(law, LinearLaw):
-        raise AnalysisError(f"law = {law!r}; needs a LinearLaw: hl.LinearLaw.of('zoh', K=200, T=1e-3) or .of_scene(scene)")
+    instance("law", law, LinearLaw, "a LinearLaw: hl.LinearLaw.of('zoh', K=200, T=1e-3) or .of_scene(scene)")
     whole_and_fraction(delay, law.T, most=MOST_PERIODS)
     pole = unstable_pole(law.A, law.B, law.C)
     if pole is not None:

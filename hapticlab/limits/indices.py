@@ -23,6 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import instance
 from ..errors import AnalysisError
 from .colgate import passivity_margin
 from .linear_law import LinearLaw
@@ -99,8 +100,7 @@ def passivity_indices(law: LinearLaw) -> PassivityIndices:
       input-strict   nu = -0.2 N s/m, at 500 Hz: short, a damper of 0.2 N s/m beside it pays
       output-strict eps = -5 m/(N s), at 500 Hz: short, a dashpot in line that yields 5 m/s a newton pays
     """
-    if not isinstance(law, LinearLaw):
-        raise AnalysisError(f"law = {law!r}; needs a LinearLaw, as hl.LinearLaw.of('zoh', K=200, T=1e-3)")
+    instance("law", law, LinearLaw, "a LinearLaw, as hl.LinearLaw.of('zoh', K=200, T=1e-3)")
     margin = passivity_margin(law, b=0.0)
     theta = math.pi * np.arange(1, GRID + 1) / GRID
     size = np.abs(law.at(theta)).max()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import sympy as sp
 
+from ..arguments import choice
 from ..errors import AnalysisError
 from ..scene.laws.chapter_laws import wall
 from ..scene.laws.taps import SPRING_LAWS
@@ -119,8 +120,7 @@ def wall_law(
     >>> round(law.paddle.b, 9)
     0.3
     """
-    if name not in LAWS:
-        raise AnalysisError(f"law = {name!r}; needs one of {', '.join(LAWS)}")
+    choice("law", name, LAWS)
     if name in SPRING_LAWS:
         return WallLaw(name, wall(name, unilateral, clamp)(k=K), paddle)
     if name == "damped":

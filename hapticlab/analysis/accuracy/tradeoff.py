@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal
 
+from ...arguments import instance
 from ...compiler.boards.cost import BOARDS
 from ...compiler.ir.options import choice, period, steps
 from ...compiler.methods.chosen_method import chosen_method
@@ -280,8 +281,7 @@ class Tradeoff:
 
     def explain(self, row: Row) -> str:
         """Return what a row says, in sentences."""
-        if not isinstance(row, Row):
-            raise AnalysisError(f"row = {row!r}; needs a row, such as found.explain(found.table[0]) or found.front('pc')[0]")
+        instance("row", row, Row, "a row, such as found.explain(found.table[0]) or found.front('pc')[0]")
         return explained(row, self.table, self.bench.every)
 
     def plot(self, *targets: str, tolerance: float | None = None, load: float = 0.5, passive: bool = True) -> Figure:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ...arguments import choice
 from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.prune.constraint_lengths import held
 from ...device.progress import progress_bar
@@ -146,8 +147,7 @@ def sweep(
     >>> hl.sweep(hl.wall(), paddle, metric="energy", v=0.1, duration=0.1, workers=2, **fine)  # resume="walls.sweep" keeps it
     Sweep(energy [J] over k (50) x b (40), 0.1 s each)
     """
-    if metric not in METRICS:
-        raise AnalysisError(f"metric = {metric!r}; needs one of {', '.join(METRICS)}")
+    choice("metric", metric, METRICS)
     workers = number_of(workers)
     own = scene.parameters if isinstance(scene, Scene) else ()
     options = {name: values.pop(name) for name in OPTIONS if name in values and name not in own}

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
+from ...arguments import choice
 from ...errors import AnalysisError
 from ...limits.passivity import SWITCHING_NOT_COVERED
 from .wall_map_plot import plot_wall_map
@@ -78,8 +79,7 @@ class WallMap:
 
     def share(self, region: Region) -> float:
         """Return the part of the map that is a region, 0 to 1."""
-        if region not in REGIONS:
-            raise AnalysisError(f"region = {region!r}; needs one of {', '.join(REGIONS)}")
+        choice("region", region, REGIONS)
         return float((self.regions == REGIONS.index(region)).mean())
 
     @property

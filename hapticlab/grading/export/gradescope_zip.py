@@ -67,7 +67,7 @@ exit "$code"
 
 
 def bundle(folder, answers):
-    """Return what a grader elsewhere needs of a lab: path to bytes, ``labs/NN_name/...`` and ``answers/NN_name/...``.
+    """Files of a lab that a grader elsewhere needs: path to bytes, ``labs/NN_name/...`` and ``answers/NN_name/...``.
 
     Parameters
     ----------

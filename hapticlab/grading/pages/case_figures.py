@@ -72,7 +72,7 @@ def is_curve(value):
 
 
 def _part(got, key, expected):
-    """Return what came under a name; of several curves, whose names are free, the one nearest to what is expected."""
+    """The value that came under a name; of several curves, whose names are free, the one nearest to what is expected."""
     if not isinstance(got, dict):
         return None
     curves = [curve for curve in got.values() if is_curve(curve) and _units(curve) == _units(expected)]
@@ -124,7 +124,7 @@ def _figure(one, panel, unit):
 
 
 def _across(one, size, unit):
-    """Return what a figure runs over, and its label: t, else x where it grows or falls all the way, else counted."""
+    """The abscissae of a figure, and their label: t, else x where it grows or falls all the way, else counted."""
     for name, otherwise in ALONG.items():
         x = numbers(one.failing.given.get(name), 1)
         if x is not None and x.shape == (size,) and np.isfinite(x).all():
