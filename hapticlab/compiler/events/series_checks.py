@@ -28,14 +28,9 @@ def numbers(instructions, given):
     known = {}
 
     def number(p):
-        stack = [p]
-        while stack:
-            k = stack[-1]
-            missing = [a for a in instructions[k].args if a not in known]
-            if k in known or not missing:
-                stack.pop()
-                known.setdefault(k, _value(instructions[k], known, given))
-            stack.extend(missing if k not in known else ())
+        with np.errstate(all="ignore"):
+            for k in reachable(instructions, [p], known):
+                known[k] = _value(instructions[k], known, given)
         return known[p]
 
     return number
@@ -46,8 +41,7 @@ def _value(i, known, given):
         return np.bool_(i.value) if i.type == "bool" else np.float64(i.value)
     if i.op in LEAVES:
         return np.float64(given.get((i.op, i.index), math.nan))
-    with np.errstate(all="ignore"):
-        return OPERATIONS[i.op].compute(*(known[a] for a in i.args))
+    return OPERATIONS[i.op].compute(*(known[a] for a in i.args))
 
 
 def _varied(motion, modes, at, number):
