@@ -24,7 +24,7 @@ HERE = toolchain.running_target()
 CALLED = {"hl_host_run", "hl_host_verify", "hl_host_new", "hl_host_tick"}
 RUN_VM = """
 import numpy as np, hapticlab, sys
-from hapticlab.compiler import engine, native
+from hapticlab.compiler.engines import engine, firmware_library
 from hapticlab.compiler.ir.program import Block, Channel, Program
 from hapticlab.compiler.ir.trace import Builder
 b = Builder("f32")
@@ -33,7 +33,7 @@ program = Program("p", (Channel("x"),), (), (), (Channel("F"),), Block(), b.bloc
 inputs = np.array([[0.3], [-1.7]])
 vm, reference = (engine.load(program, name).run(2, inputs, []).outputs for name in ("vm", "interpreter"))
 assert (vm == reference).all() and vm[1] == np.float32(np.float32(1.7) * np.float32(1.7) + np.float32(0.1)), vm
-assert native.load_library(8)
+assert firmware_library.load_library(8)
 print(hapticlab.__file__)
 """
 
