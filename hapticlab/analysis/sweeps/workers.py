@@ -94,12 +94,25 @@ def _in_threads(function, pieces, workers):
         pool.shutdown(cancel_futures=True)
 
 
+class _Processes(ProcessPoolExecutor):
+    """Processes that import nothing from the working folder before they have the import path of this one."""
+
+    def submit(self, *task):
+        before = os.environ.get("PYTHONSAFEPATH")
+        os.environ["PYTHONSAFEPATH"] = "1"  # a process starts where there is a task for it
+        try:
+            return super().submit(*task)
+        finally:
+            os.environ.pop("PYTHONSAFEPATH")
+            os.environ.update({} if before is None else {"PYTHONSAFEPATH": before})
+
+
 def _in_processes(function, pieces, workers):
     """Start new processes where some were killed, and give them what was under way."""
     pieces, under_way, breaks = enumerate(_sendable(pieces)), {}, 0
     while breaks < MOST_BREAKS:
         # spawned, never forked: a fork copies locks that other threads hold, and other systems than Linux have none
-        pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _begin)
+        pool = _Processes(workers, multiprocessing.get_context("spawn"), _begin)
         try:
             todo = itertools.chain([*under_way.items()], pieces)
             for result in _submitted(pool, function, todo, under_way, 2 * workers):

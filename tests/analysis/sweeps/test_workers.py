@@ -258,6 +258,24 @@ def test_a_pool_of_processes():
         np.testing.assert_array_equal(swept(workers=pool.imap_unordered), swept())
 
 
+def test_workers_import_nothing_from_the_working_folder(tmp_path):
+    """A folder of data may hold a random.py or a pickle.py; neither new processes nor copies of this one take them."""
+    script, folder = tmp_path / "script.py", tmp_path / "data"
+    folder.mkdir()
+    for name in ("random", "pickle", "socket"):
+        (folder / f"{name}.py").write_text("raise SystemExit('imported from the working folder')")
+    script.write_text(
+        "import operator\nfrom hapticlab.analysis.sweeps.process_copies import shared_out\n"
+        "from hapticlab.analysis.sweeps.workers import spread\n"
+        "if __name__ == '__main__':\n"
+        "    print(sorted(spread(abs, [-1, -2], 2, threads=False)))\n"
+        "    with shared_out(10, 2) as share:\n        print(list(share(operator.add, [1, 2])))\n"
+    )
+    path = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, env=path, cwd=folder)
+    assert done.stdout.splitlines() == ["[1, 2]", "[11, 12]"], done.stderr
+
+
 @pytest.mark.slow
 def test_a_script_without_a_guard_is_told(tmp_path):
     script = tmp_path / "script.py"
