@@ -20,6 +20,10 @@
     +-- EngineMissingError    an engine cannot run on this machine
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+
 
 class HapticlabError(Exception):
     """Base of everything hapticlab raises on purpose."""
@@ -52,7 +56,7 @@ class ProgramError(HapticlabError, ValueError):
 class LiveConstantError(ProgramError):
     """A method makes constants of what may be set while the program runs: ``live``, names of parameters."""
 
-    def __init__(self, message, live=()):
+    def __init__(self, message: str, live: Iterable[str] = ()) -> None:
         super().__init__(message)
         self.live = tuple(live)
 
@@ -80,7 +84,7 @@ class PortError(PaddleError):
     "failed".
     """
 
-    def __init__(self, message, cause="failed"):
+    def __init__(self, message: str, cause: str = "failed") -> None:
         super().__init__(message)
         self.cause = cause
 
@@ -91,7 +95,7 @@ class LinkError(PaddleError):
     ``result`` is the board's own word for a refusal, a name in hapticlab.device.link.messages.RESULTS, else None.
     """
 
-    def __init__(self, message, result=None):
+    def __init__(self, message: str, result: str | None = None) -> None:
         super().__init__(message)
         self.result = result
 

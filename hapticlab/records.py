@@ -1,14 +1,20 @@
 """The immutable records that cross layers: what a paddle is, and what happened on it."""
 
+from __future__ import annotations
+
 import csv
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 from zipfile import BadZipFile
 
 import numpy as np
 
 from .errors import AnalysisError
+
+if TYPE_CHECKING:
+    from .annotations import File
 
 UNITS = {"t": "s", "x": "m", "v": "m/s", "F": "N", "x_true": "m", "v_true": "m/s", "F_applied": "N", "x_switch": "m"}
 FLAGS = ("saturated", "gap", "overrun")
@@ -56,7 +62,7 @@ class PaddleProfile:
     nominal: bool = True
     source: str = ""
 
-    def __str__(self):
+    def __str__(self) -> str:
         parts = [f"m = {self.m:g} kg", f"b = {self.b:g} N s/m", f"T = {self.T:g} s"]
         if self.counts_per_metre:
             parts.append(f"{1e6 / self.counts_per_metre:g} um per count ({self.rounding})")
@@ -112,19 +118,19 @@ class Telemetry:
     F: np.ndarray
     T: float
     delay: float = 0.0
-    channels: dict = field(default_factory=dict)
-    units: dict = field(default_factory=dict)
+    channels: dict[str, np.ndarray] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
     paddle: str = ""
     scene: str = ""
-    parameters: dict = field(default_factory=dict)
+    parameters: dict[str, float] = field(default_factory=dict)
     fault: str | None = None
     saturated: np.ndarray | None = None
     gap: np.ndarray | None = None
     overrun: np.ndarray | None = None
     every: int = 1
-    changes: tuple = ()
+    changes: tuple[tuple[float, dict[str, float]], ...] = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         samples = len(self.t)
         for name in ("t", "x", "v", "F"):
             object.__setattr__(self, name, _column(name, getattr(self, name), samples, float))
@@ -138,14 +144,14 @@ class Telemetry:
         object.__setattr__(self, "units", {**known, **self.units})
 
     @property
-    def columns(self):
+    def columns(self) -> tuple[str, ...]:
         """The names of everything recorded, in order."""
         return ("t", "x", "v", "F", *self.channels)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.t)
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> np.ndarray:
         channels = self.__dict__.get("channels", {})
         if name in channels:
             return channels[name]
@@ -156,28 +162,28 @@ class Telemetry:
         recorded = ", ".join(("t", "x", "v", "F", *channels))
         raise AttributeError(f"{name!r} was not recorded; this log has {recorded}. Watch it: hl.Scene(..., watch=[{name}])")
 
-    def __dir__(self):
+    def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self.channels]
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         stopped = f"; fault: {self.fault}" if self.fault else ""
         seconds = f"{len(self) * self.T:g} s at T = {self.T:g} s"
         missed = np.count_nonzero(self.channels.get("unlocated", 0))
         left_out = f"; an event was not located in {missed} of them, see unlocated" if missed else ""
         return f"Telemetry({len(self)} samples, {seconds}: {', '.join(self.columns)}{left_out}{stopped})"
 
-    def save(self, path):
+    def save(self, path: File) -> Path:
         """Write everything to a NumPy archive and return its path (``.npz`` is added where missing)."""
         path = Path(path)
         path = path if path.suffix == ".npz" else path.with_name(path.name + ".npz")
         plain = ("T", "delay", "units", "paddle", "scene", "parameters", "fault", "every", "changes")
         about = json.dumps({"order": list(self.channels), **{name: getattr(self, name) for name in plain}})
         arrays = {name: getattr(self, name) for name in ("t", "x", "v", "F", *FLAGS)}
-        np.savez(path, about=np.array(about), **arrays, **{f"channel.{k}": a for k, a in self.channels.items()})
+        np.savez(path, about=np.array(about), **arrays, **{f"channel.{k}": a for k, a in self.channels.items()})  # type: ignore[arg-type]
         return path
 
     @classmethod
-    def load(cls, path):
+    def load(cls, path: File) -> Telemetry:
         """Read what :meth:`save` wrote; the file can hold numbers and text only, never code."""
         try:
             with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as file:
@@ -188,7 +194,7 @@ class Telemetry:
         except (KeyError, TypeError, ValueError, EOFError, BadZipFile) as problem:
             raise AnalysisError(f"{path} is not a telemetry file ({problem}); needs one of log.save()") from None
 
-    def to_csv(self, path):
+    def to_csv(self, path: File) -> File:
         """Write a table whose header carries the units, and return its path; flags appear where any is raised."""
         raised = [name for name in FLAGS if getattr(self, name).any()]
         header = [f"{name} [{self.units.get(name, '1')}]" for name in self.columns] + raised

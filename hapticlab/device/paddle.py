@@ -1,7 +1,10 @@
 """The contract of a paddle: a scene runs on it for a while, and what happened comes back."""
 
+from __future__ import annotations
+
 import math
 from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +14,9 @@ from ..errors import PaddleError, ParameterError
 from ..scene.notation.written import no_scene
 from ..scene.scene import Scene
 from .port_mass import check_port_mass
+
+if TYPE_CHECKING:
+    from ..records import Telemetry
 
 
 class Paddle(ABC):
@@ -31,18 +37,18 @@ class Paddle(ABC):
 
     @property
     @abstractmethod
-    def velocity(self):
+    def velocity(self) -> str:
         """Say where v(n) comes from."""
 
     @abstractmethod
-    def run(self, scene, *, duration, **options):
+    def run(self, scene: Scene | Program, *, duration: float, **options: Any) -> Telemetry:
         """Run a scene or a program for a duration [s] and return its Telemetry."""
 
     @abstractmethod
-    def __str__(self):
+    def __str__(self) -> str:
         """Say what the paddle is and where its constants come from."""
 
-    def ticks(self, duration):
+    def ticks(self, duration: float) -> int:
         """Return the number of samples in a duration [s]."""
         if not (isinstance(duration, (int, float, np.number)) and math.isfinite(duration / self.T) and duration > 0):
             raise PaddleError(f"duration = {duration!r} s; needs a finite duration > 0 s.")
@@ -51,7 +57,7 @@ class Paddle(ABC):
             raise PaddleError(f"duration = {duration:g} s; needs at least one period T = {self.T:g} s.")
         return ticks
 
-    def program(self, scene, **options):
+    def program(self, scene: Scene | Program, **options: Any) -> Program:
         """Return the program of a scene for this paddle: T and the velocity's source are the paddle's.
 
         Raises
@@ -78,7 +84,7 @@ class Paddle(ABC):
             raise ParameterError(f"{program.name}: no value for {wanted}; bind them before the run: scene({cure})")
         return self.accept(program)
 
-    def accept(self, program):
+    def accept(self, program: Program) -> Program:
         """Return the program if this paddle can run it, else raise PaddleError."""
         name = program.name
         if not math.isclose(program.T, self.T, rel_tol=1e-9):

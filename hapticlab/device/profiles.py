@@ -1,7 +1,14 @@
 """Published constants of paddles, marked as what they are."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from ..errors import PaddleError
 from ..records import PaddleProfile
+
+if TYPE_CHECKING:
+    from ..records import PaddleProfile
 
 #: nothing here was measured by this package on anyone's device: a lab identifies m, b and friction
 hapkit = PaddleProfile(
@@ -30,7 +37,7 @@ eth = PaddleProfile(
 PROFILES = {p.name: p for p in (hapkit, eth)}
 
 
-def profile(name):
+def profile(name: str) -> PaddleProfile:
     """Return the profile of a kind of paddle by its name.
 
     Parameters

@@ -240,8 +240,8 @@ def follow(
 class Anticipated(Intent):
     """An intent computed beforehand, at so many times, linear in between."""
 
-    times: Array
-    places: Array
+    times: np.ndarray
+    places: np.ndarray
 
     def __call__(self, t: ArrayLike) -> Array:
         return np.interp(np.asarray(t, float), self.times, self.places)

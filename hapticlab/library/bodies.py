@@ -1,5 +1,7 @@
 """Masses, springs and dampers behind the handle: a mass-spring-damper, two masses, the tuned absorber."""
 
+from __future__ import annotations
+
 import math
 
 import sympy as sp
@@ -20,7 +22,7 @@ def coupler(z):
     return virtual_coupler(z, K=K, b=b_c)
 
 
-def mass_spring_damper():
+def mass_spring_damper() -> Scene:
     """Mass-spring-damper behind a virtual coupler: m z'' + b z' + k z = F_c, F_c = K (x - z) + b_c (x' - z').
 
     One feels a spring when moving slowly, next to nothing near sqrt(k/m) = 5 Hz, and a mass beyond. Held still, the
@@ -60,7 +62,7 @@ def draw_mass_spring_damper(axes, *, x=0.015, z=0.01, **_):
     s.coordinate("$z$", z, -11 * s.u, origin=origin)
 
 
-def two_masses():
+def two_masses() -> Scene:
     """Two masses joined by a spring, the first behind a virtual coupler: m_1 z_1'' = F_c - F_k, m_2 z_2'' = F_k.
 
     F_k = k (z_1 - z_2) + b (z_1' - z_2'). Pushed slowly the handle carries both masses; shaken at the antiresonance
@@ -103,7 +105,7 @@ def draw_two_masses(axes, *, x=0.012, z_1=0.008, z_2=0.015, **_):
     s.coordinate("$z_2$", z_2, -11 * s.u, origin=origin + 0.06)
 
 
-def tuned_absorber():
+def tuned_absorber() -> Scene:
     """Tuned vibration absorber: a machine shaken by F_0 sin(Omega t), a small mass m_2 on k_2 hung on it.
 
     m_1 z_1'' = F_0 sin(Omega t) - k_1 z_1 - b_1 z_1' - F_2 + F_c, m_2 z_2'' = F_2, F_2 = k_2 (z_1 - z_2) + b_2 (...).

@@ -1,5 +1,9 @@
 """Contacts behind the handle: a ball to juggle, a block that sticks and slips."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..scene.contact.contact import Contact, friction
@@ -10,8 +14,13 @@ from ..scene.scene import Scene
 from .bodies import coupler
 from .sketch import SOFT, Sketch, clearance
 
+if TYPE_CHECKING:
+    from typing import Any
 
-def ball_on_the_paddle(law=None):
+    from ..annotations import Number
+
+
+def ball_on_the_paddle(law: Any = None) -> Scene:
     """Ball on a paddle, to juggle: it flies freely, y'' = -g, and rebounds from a plate z with restitution e.
 
     The handle moves up and down, x up; a virtual coupler ties the plate of mass M to it, and lets one feel an impulse
@@ -68,7 +77,7 @@ def draw_ball_on_the_paddle(axes, *, x=-0.01, z=-0.004, y=0.055, **_):
     s.arrow((-30 * u, 0.1), (-30 * u, 0.08), "$g$")
 
 
-def stick_slip(stick_speed=None):
+def stick_slip(stick_speed: Number | None = None) -> Scene:
     """Stick-slip: a block on a rough floor, pulled by the handle through the coupler's spring.
 
     m z'' = K (x - z) + b_c (x' - z') - F_f. It sticks until the pull reaches F_s, then slides against F_c < F_s, for half

@@ -1,5 +1,7 @@
 """Mechanisms that turn the handle's motion into another: gears, slider-crank, four-bar linkage, a disc that rolls."""
 
+from __future__ import annotations
+
 import numpy as np
 import sympy as sp
 
@@ -10,7 +12,7 @@ from .bodies import coupler
 from .sketch import SOFT, Sketch, clearance
 
 
-def gears():
+def gears() -> Scene:
     """Gear train: a rack turns a pinion, z = r phi; on its shaft N_1 teeth drive N_2 teeth with a flywheel.
 
     (J_1 + (N_1/N_2)^2 J_2) phi'' = r F_c - c phi'. One feels a mass (J_1 + (N_1/N_2)^2 J_2)/r^2: three times the ratio
@@ -77,7 +79,7 @@ def _gear(s, centre, radius, teeth, turn, color):
     s.area(np.asarray(centre) + rim[:, None] * np.column_stack([np.cos(at), np.sin(at)]), color=color)
 
 
-def slider_crank():
+def slider_crank() -> Scene:
     """Slider-crank: the handle pushes the slider through a virtual coupler, a connecting rod turns the crank.
 
     (s - l - r cos(theta))^2 + (r sin(theta))^2 = l^2, L = J theta'^2/2 + m s'^2/2. At a dead centre, theta = 0 or pi, the
@@ -131,7 +133,7 @@ def draw_slider_crank(axes, *, x=0.012, theta=0.9, r=0.03, l=0.09, **_):
     s.coordinate("$s$", slider, -12 * u, origin=origin)
 
 
-def four_bar():
+def four_bar() -> Scene:
     """Four-bar linkage: a rack turns the crank a, the coupler link b swings the rocker c, on a ground link d.
 
     a cos(theta) + b cos(beta) = d + c cos(psi), a sin(theta) + b sin(beta) = c sin(psi), and z = rho (theta - theta_0).
@@ -213,7 +215,7 @@ def draw_four_bar(axes, *, x=0.012, theta=1.5, a=0.02, b=0.05, c=0.04, d=0.05, r
     s.coordinate("$z$", z, -8 * u, origin=ground[0])
 
 
-def rolling():
+def rolling() -> Scene:
     """Disc rolling without slipping on a plate that a virtual coupler ties to the handle; the plate may be tilted.
 
     u = -r phi for the disc's place u on the plate, L = M z'^2/2 + m (z' + u')^2/2 + J phi'^2/2 - weight, J = m r^2/2.

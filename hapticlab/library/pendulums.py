@@ -1,5 +1,7 @@
 """Pendulums carried by the handle: hanging from it, and standing on a cart."""
 
+from __future__ import annotations
+
 import numpy as np
 import sympy as sp
 
@@ -10,7 +12,7 @@ from .bodies import coupler
 from .sketch import Sketch, clearance
 
 
-def pendulum_on_the_handle():
+def pendulum_on_the_handle() -> Scene:
     """Pendulum hanging from a carriage of mass M that a virtual coupler ties to the handle.
 
     L = M z'^2/2 + m (z'^2 + 2 l z' theta' cos(theta) + l^2 theta'^2)/2 + m g l cos(theta), theta from below, and c theta'
@@ -62,7 +64,7 @@ def draw_pendulum_on_the_handle(axes, *, x=0.015, z=0.006, theta=0.4, l=0.15, **
     s.coordinate("$z$", z, (9 if hangs else -12) * s.u, origin=origin)
 
 
-def cart_pole():
+def cart_pole() -> Scene:
     """Cart and pole: a pendulum upright on a cart of mass M that a virtual coupler ties to the handle; balance it.
 
     L = M z'^2/2 + m (z'^2 + 2 l z' theta' cos(theta) + l^2 theta'^2)/2 - m g l cos(theta), theta from the top, and

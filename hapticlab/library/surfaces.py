@@ -4,6 +4,8 @@ Each is the slope of a potential U(x), F = dU/dx. Sampled and held, it is passiv
 b >= K T/2, where K is the steepest slope of F: the proof of Eq. (23.10) needs no more than that slope.
 """
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
@@ -16,7 +18,7 @@ from .sketch import INK, SOFT, Sketch
 TWO_PI = 2 * sp.pi
 
 
-def detents():
+def detents() -> Scene:
     """Detents, as of a knob that clicks: F = A sin(2 pi x/p), minima of U at every multiple of the pitch p.
 
     One feels stable places p apart and has to overcome A in between. The handle rings in a detent with
@@ -59,7 +61,7 @@ def draw_detents(axes, *, x=0.013, A=0.6, p=0.01, **_):
     s.text((first + p / 2, low), "pitch $p$", up=-2.8)
 
 
-def texture():
+def texture() -> Scene:
     """Texture on one half of the path, from the slope of its height: F = A (sin(2 pi x/p_1) + sin(2 pi x/p_2)), x >= 0.
 
     The left half is smooth. Two gratings whose pitches have no common multiple nearby feel rough rather than ribbed;
@@ -100,7 +102,7 @@ def draw_texture(axes, *, x=0.0135, p_1=0.003, p_2=0.00185, **_):
     s.text((0.03, 0), "$p_1,\\ p_2$", up=-4)
 
 
-def virtual_fixture():
+def virtual_fixture() -> Scene:
     """Virtual fixtures: a guide that draws the handle to x_g from as far as w, and a forbidden region beyond x_o.
 
     With d = x - x_g: F = k d for \\|d\\| <= w/2, k (w sign(d) - d) up to w, none beyond; and k_w (x - x_o) for x >= x_o.
@@ -145,7 +147,7 @@ def draw_virtual_fixture(axes, *, x=-0.006, x_g=0.0, w=0.02, x_o=0.035, k=150.0,
     s.arrow((x_g, -0.016), (x_g + w, -0.016), "$w$")
 
 
-def buckling_beam():
+def buckling_beam() -> Scene:
     """Buckling beam pressed in the middle, its load P in parts of the critical one: F = k (1 - P) x + k_3 x^3.
 
     Below P = 1 it is a hardening spring about x = 0. Beyond, the middle is unstable and two stable states appear at

@@ -1,9 +1,12 @@
 """hl.live: a paddle and a scene in a notebook, moving."""
 
+from __future__ import annotations
+
 import inspect
 import math
 import weakref
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +21,12 @@ from .front import front as canvas
 from .plain import front as plain
 from .session import Session
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from ..device.paddle import Paddle
+    from ..scene.scene import Scene
+
 #: scene time over the clock's time
 SPEEDS = (1e-3, 10.0)
 #: how far the rehearsal goes to either side [m]
@@ -28,8 +37,17 @@ RECORDED, REHEARSED = "recorded in the view", "rehearsal: nobody recorded here"
 
 
 def live(
-    paddle, scene, *, sliders=None, speed=1.0, picture=None, show_force=True, rehearsal=None, duration=4.0, **compile_options
-):
+    paddle: Paddle,
+    scene: Scene,
+    *,
+    sliders: Mapping[str, tuple[float, float]] | None = None,
+    speed: float = 1.0,
+    picture: Any = None,
+    show_force: bool = True,
+    rehearsal: Callable[..., Any] | None = None,
+    duration: float = 4.0,
+    **compile_options: Any,
+) -> LiveView:
     """Show a paddle and a scene in a notebook: it moves, can be pushed, and every parameter has a slider.
 
     On a simulated paddle the pointer, a finger or the arrow keys say where the hand means to be; the hand is the paddle's

@@ -1,6 +1,9 @@
 """Figures in a notebook with a text for who cannot see them; the only module that opens IPython."""
 
+from __future__ import annotations
+
 import sys
+from typing import Any
 
 from ..analysis.records.plots import plot
 from ..drawing import bundle, describe, forget
@@ -8,7 +11,7 @@ from ..errors import AnalysisError
 from ..records import Telemetry
 
 
-def show(figure, alt=None):
+def show(figure: Any, alt: str | None = None) -> None:
     """Show a figure in a notebook, with an alternative text.
 
     The text is read aloud by a screen reader, stands for the figure where it cannot be shown, and travels with the notebook

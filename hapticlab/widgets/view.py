@@ -1,12 +1,18 @@
 """A wall map that follows its sliders."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from ..analysis.walls.wall_map import OTHERS, WallMaps, changed
 from ..analysis.walls.wall_map_plot import WallMapPicture
 from ..errors import AnalysisError
 from .sliders import FollowedPicture
+
+if TYPE_CHECKING:
+    from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 #: what a slider may move beside what a map may be over, and its unit
 MORE = {"hand_k": "N/m", "hand_push": "N", "force_max": "N"}
@@ -16,7 +22,14 @@ _CURE = (
 )
 
 
-def explore(paddle, *, sliders=None, law="zoh", over=("K", "B"), **given):
+def explore(
+    paddle: SimulatedPaddle,
+    *,
+    sliders: Mapping[str, tuple[float, float]] | None = None,
+    law: Any = "zoh",
+    over: tuple[str, str] = ("K", "B"),
+    **given: Any,
+) -> MapView:
     """Wall map in a notebook that is drawn anew while a slider moves.
 
     While a map is computed only the newest place of the sliders waits: none pile up.

@@ -18,18 +18,6 @@ EXAMPLES, PACKAGE = Path(__file__).parent / "examples", Path(hl.__file__).parent
 BARE = re.compile(r"\b(tuple|dict|list|set|callable|Callable|Mapping|Sequence|Iterable|Iterator)\b(?!\[)")
 #: public names by room, some of whose signatures or fields say no types yet
 NOT_YET = {
-    "compiler": "Taylor compile contacts_between",
-    "device": """
-        Hand MinimumJerk Paddle Reacting SerialPaddle SimulatedPaddle Tremor calibrate connect doctor hand hand_presets
-        profile
-    """,
-    "errors": "LinkError PortError",
-    "library": """
-        library.ball_on_the_paddle library.buckling_beam library.cart_pole library.detents library.four_bar
-        library.gears library.mass_spring_damper library.pendulum_on_the_handle library.rolling library.slider_crank
-        library.stick_slip library.texture library.tuned_absorber library.two_masses library.virtual_fixture
-    """,
-    "records": "PaddleProfile Telemetry",
     "scene": """
         Amount Box Capsule Circle Contact Curve HalfPlane Mechanics Polygon Segment VelocityEstimate backward_velocity
         braking_pulse closest coordinate damping_compensation delay device_image felt_impulse filtered_velocity
@@ -38,7 +26,6 @@ NOT_YET = {
         proxy_wall pulse_time replacement rigid signal track tremor_filter v virtual_coupler virtual_damper wall
         wall_energy when window_velocity x
     """,
-    "widgets": "explore live show",
 }
 
 

@@ -232,8 +232,8 @@ def sensor_floor(
     """
     if not (math.isfinite(counts_per_metre) and counts_per_metre > 0):
         raise AnalysisError(f"counts_per_metre = {counts_per_metre}; needs a finite number > 0 of counts a metre")
-    options = {"method": Taylor(order=ORDER), "dtype": "float64"} | options
-    program = scene if isinstance(scene, Program) else compile(scene, T=T, live=(), **options)
+    taken: dict[str, Any] = {"method": Taylor(order=ORDER), "dtype": "float64"} | options
+    program = scene if isinstance(scene, Program) else compile(scene, T=T, live=(), **taken)
     true = recorded(program, reference.motion)
     counted_ = recorded(program, reference.motion, counts_per_metre=counts_per_metre, rounding=rounding)
     error = np.abs(counted_ - true)[: math.floor(reference.horizon / program.T * (1 + 1e-12)) + 1]

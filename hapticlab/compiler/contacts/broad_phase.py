@@ -6,9 +6,12 @@ out, with the reason. What is left out stays out only while coordinates keep to 
 on which ones that rests: a program must fault where one of them leaves its range.
 """
 
+from __future__ import annotations
+
 import math
 import warnings
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
@@ -23,6 +26,9 @@ from ...scene.shapes.gaps import corners as corners_of
 from ...scene.shapes.shapes import HalfPlane
 from ..algebra.first_sample import numbers
 from ..algebra.ranges import Ranges
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
 
 #: why a pair is left out whatever the ranges are
 WHATEVER = ("ignored", "neither of them moves")
@@ -95,7 +101,16 @@ class Contacts(tuple):
         return "\n".join(lines)
 
 
-def contacts_between(bodies, *, law, ignore=(), handle=(-math.inf, math.inf), corners=False, method="sample", values=None):
+def contacts_between(
+    bodies: Iterable[Any],
+    *,
+    law: Any,
+    ignore: Iterable[Any] = (),
+    handle: tuple[float, float] = (-math.inf, math.inf),
+    corners: bool = False,
+    method: str = "sample",
+    values: Mapping[str, float] | None = None,
+) -> Contacts:
     """A contact for each pair of bodies that can meet.
 
     Parameters

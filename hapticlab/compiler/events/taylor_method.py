@@ -1,5 +1,7 @@
 """Advance a scene by ``method="taylor"``: the series of its motion, events located, the order chosen and the step checked."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 
@@ -65,7 +67,7 @@ class Taylor:
     events: int | None = None
     name = "taylor"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name, given, low, high in (("order", self.order, 2, 20), ("events", self.events, 1, 8)):
             if given is not None and (type(given) is not int or not low <= given <= high):
                 raise ProgramError(f"{name} = {given!r}; needs a whole number in {low}..{high}")

@@ -1,6 +1,9 @@
 """Lower a scene to a program: the sample is taken, the force computed from it, then the equations of motion advance."""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from ...errors import ProgramError, SceneError
 from ...scene.notation.written import no_scene
@@ -18,22 +21,30 @@ from .motion_program import motion_program
 from .samples import REAL_OF, at_sample, at_start, outputs_at_sample, real, tick_of, unknown_reaction
 from .source import Options, Source
 
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ...annotations import Number
+    from ...scene.notation.parameters import Parameter
+    from ..events.taylor_method import Taylor
+    from ..ir.program import Program
+
 #: compiled scenes that are kept: instructions, of which each takes 0.4 kB, and as many again for what else a program has
 PROGRAMS = Shared(60_000, lambda program: 200 + program.size)
 
 
 def compile(
-    scene,
-    method="rk4",
+    scene: Scene,
+    method: str | Taylor = "rk4",
     *,
-    T,
-    substeps=1,
-    hold="soh",
-    dtype="float32",
-    velocity="backward_difference",
-    live=None,
-    force_at="before",
-):
+    T: Number,
+    substeps: int = 1,
+    hold: str = "soh",
+    dtype: str = "float32",
+    velocity: str = "backward_difference",
+    live: str | Iterable[str | Parameter] | None = None,
+    force_at: str = "before",
+) -> Program:
     """Compile a scene to the program that runs at the sample rate.
 
     At sample n the force is computed from x(n) and the present states (``force_at`` has two other ways); then the

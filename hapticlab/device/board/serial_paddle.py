@@ -1,9 +1,12 @@
 """A paddle on a board: scenes run in its firmware, and this computer sends, watches and records."""
 
+from __future__ import annotations
+
 import math
 import threading
 import weakref
 from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
 
 from ...compiler.boards.board_fit import fit
 from ...compiler.boards.cost import BOARDS, cost
@@ -19,8 +22,15 @@ from ..paddle import Paddle
 from ..progress import progress_bar
 from .greeting import cleared, explain_silence, introduction, say_hello, what_happened
 from .homing import home
-from .run import Run, Timing, decimation, fault_words, load
+from .run import Loaded, Run, Timing, decimation, fault_words, load
 from .upload import STORE_PATIENCE, check_period, check_room, read_settings, upload
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ...compiler.boards.cost import Cost
+    from ...records import Telemetry
+    from ...scene.scene import Scene
 
 #: seconds a board may be silent in a run, beyond the time to the next look, before the host gives up
 PATIENCE = 1.0
@@ -85,10 +95,11 @@ class SerialPaddle(Paddle):
     (100, None)
     """
 
-    def __init__(self, url, *, T=1e-3, port=None, hello=3.0):
+    def __init__(self, url: str, *, T: float = 1e-3, port: Any = None, hello: float = 3.0) -> None:
         self.url, self.T = url, require("T", T, "s", "a paddle", above=0)
         self.exchange = Exchange(open_port(url) if port is None else port)
-        self._loaded = self._run = None  # what is on the board, and what runs or waits to be told
+        self._loaded: Loaded | None = None  # what is on the board
+        self._run: Run | None = None  # what runs, or waits to be told
         self._lock = threading.RLock()  # two threads: what the board has last is what is known here
         try:
             self.board = say_hello(self.exchange, url, hello)
@@ -103,14 +114,23 @@ class SerialPaddle(Paddle):
         self._end = weakref.finalize(self, self.exchange.hang_up)
 
     @property
-    def velocity(self):
+    def velocity(self) -> str:
         return "backward_difference"
 
-    def accept(self, program):
+    def accept(self, program: Program) -> Program:
         check_room(self.board, self.settings, program)
         return super().accept(program)
 
-    def run(self, scene=None, *, duration, x=None, v=None, progress=True, **options):
+    def run(
+        self,
+        scene: Scene | Program | None = None,
+        *,
+        duration: float,
+        x: None = None,
+        v: None = None,
+        progress: bool = True,
+        **options: Any,
+    ) -> Telemetry:
         """Run a scene on the board for a duration and return what it recorded; the motor is off before and after.
 
         Parameters
@@ -139,11 +159,20 @@ class SerialPaddle(Paddle):
                 self._collect(ticks, bar)
             return self.stop(ticks=ticks)
 
-    def cost(self, scene, **options):
+    def cost(self, scene: Scene | Program, **options: Any) -> Cost:
         """Return what a scene or a program takes of this board: cycles, memory, share of the period; print it."""
         return cost(self.program(scene, **options), **self._board())
 
-    def start(self, scene=None, *, every=None, force_max=math.inf, passive=False, check_fit=True, **options):
+    def start(
+        self,
+        scene: Scene | Program | None = None,
+        *,
+        every: int | None = None,
+        force_max: float = math.inf,
+        passive: bool = False,
+        check_fit: bool = True,
+        **options: Any,
+    ) -> None:
         """Start a scene and return at once; :meth:`set` changes it, :meth:`wait` lets it run, :meth:`stop` ends it.
 
         Parameters
@@ -168,14 +197,14 @@ class SerialPaddle(Paddle):
         with guarded(self.abandon):
             program = self.fitted(scene, every, check_fit, options)
             if not passive:
-                check_margin(self._loaded.program if program is None else program)
+                check_margin(self._loaded.program if program is None else program)  # type: ignore[union-attr]
             self.clear()
             if not passive and self.settings is not None:
                 self.home()
             with self._lock:
                 self._begin(program, every, OPTIONS["PASSIVE"] if passive else 0, min(force_max, 3e38))
 
-    def set(self, **values):
+    def set(self, **values: float | str) -> None:
         """Set parameters of the scene on the board, live, all of them between the same two ticks.
 
         Raises
@@ -192,7 +221,7 @@ class SerialPaddle(Paddle):
             if self._run is not None:
                 self._run.changes.append(((tick + 1) * self.T, numbers))
 
-    def wait(self, seconds):
+    def wait(self, seconds: float) -> None:
         """Let the scene run for so many seconds of the board's time, or until a fault, which is told.
 
         Interrupted, it switches the motor off; :meth:`stop` returns what was recorded until then.
@@ -203,7 +232,7 @@ class SerialPaddle(Paddle):
         if run.fault is not None:
             print(f"{self.url}: {fault_words(run.fault, self.T)}")
 
-    def stop(self, *, ticks=None):
+    def stop(self, *, ticks: int | None = None) -> Telemetry:
         """Switch the motor off and return the Telemetry of the run."""
         with self._lock:
             run = self._running()
@@ -217,13 +246,13 @@ class SerialPaddle(Paddle):
             self.timing = Timing(state, self.board["clock_hz"], self.T)
             return run.telemetry(ticks=ticks, delay=self.timing.mean, paddle=str(self))
 
-    def clear(self):
+    def clear(self) -> None:
         """Say which fault stands, if one does, and clear it: the board takes a scene again. The motor stays off."""
         for sentence in cleared(self.exchange, self.url):
             self.exchange.beating = False  # what ran had ended
             print(sentence)
 
-    def home(self, at=None, *, timeout=60.0):
+    def home(self, at: float | None = None, *, timeout: float = 60.0) -> None:
         """Tell the board where the handle is; it forgets with every reset, and gives no force until it knows.
 
         Parameters
@@ -236,7 +265,7 @@ class SerialPaddle(Paddle):
         """
         home(self.exchange, self.settings, at, timeout)
 
-    def keep(self, scene, **options):
+    def keep(self, scene: Scene | Program, **options: Any) -> str:
         """Write a scene into the board's memory that survives power-off, arm it, and return what starts it, in words.
 
         After power-on without a computer the board waits for a deliberate act that also tells it where the handle is. A
@@ -281,19 +310,19 @@ class SerialPaddle(Paddle):
             self.exchange.command("ARM", 1, patience=STORE_PATIENCE, tries=2)
             return GESTURE
 
-    def forget(self):
+    def forget(self) -> None:
         """Have the board wait for a computer after power-on again."""
         with self._lock:
             self._require_idle("forget")
             self.exchange.command("ARM", 0, patience=STORE_PATIENCE, tries=2)
 
     @property
-    def under_way(self):
+    def under_way(self) -> Run | None:
         """The Run that is under way, or None."""
         return self._run
 
     @contextmanager
-    def attended(self):
+    def attended(self) -> Iterator[None]:
         """Start, ask a person and stop inside; what raises here, an interrupt included, leaves no motor running."""
         try:
             yield
@@ -301,11 +330,11 @@ class SerialPaddle(Paddle):
             self.abandon()
             raise
 
-    def state(self):
+    def state(self) -> dict[str, Any]:
         """Return the board's state as it is now: a dict of messages.STATE's fields."""
         return self.exchange.refresh()
 
-    def close(self):
+    def close(self) -> None:
         """Stop the motor and give the port back."""
         with self._lock:
             try:
@@ -314,16 +343,16 @@ class SerialPaddle(Paddle):
             finally:
                 self._end()
 
-    def __enter__(self):
+    def __enter__(self) -> SerialPaddle:
         return self
 
-    def __exit__(self, *failure):
+    def __exit__(self, *failure: Any) -> None:
         self.close()
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<SerialPaddle {self.url}: {self}>"
 
-    def __str__(self):
+    def __str__(self) -> str:
         return introduction(self.board, self.settings, self.T)
 
     def _board(self):
@@ -332,7 +361,9 @@ class SerialPaddle(Paddle):
         edges = s.speed_max / abs(s.metres_per_count) if s is not None and s.sensor == SENSORS["QUADRATURE"] else 0.0
         return {"board": name if name in BOARDS else "host", "edges_per_second": edges}
 
-    def fitted(self, scene, every, check_fit, options):
+    def fitted(
+        self, scene: Scene | Program | None, every: int | None, check_fit: bool, options: dict[str, Any]
+    ) -> Program | None:
         """The program of a scene that fits the board, or None for the one that is there."""
         if scene is None:
             if self._loaded is None:
@@ -398,7 +429,7 @@ class SerialPaddle(Paddle):
         self._run = run
         self.exchange.give(run and run.add)
 
-    def abandon(self):
+    def abandon(self) -> None:
         """Motor off, and nothing recorded any more."""
         self._listen(None)
         self._motor_off()

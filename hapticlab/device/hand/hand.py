@@ -1,12 +1,18 @@
 """The user's hand, as a mass, a damper and a spring on the handle, with a push and an intended path."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...errors import PaddleError
+
+if TYPE_CHECKING:
+    from ...annotations import Array
 
 UNITS = {"m": "kg", "b": "N s/m", "k": "N/m", "push": "N", "noise": "N"}
 _REASONS = {
@@ -57,10 +63,10 @@ class Hand:
     b: float = 0.0
     k: float = 0.0
     push: float = 0.0
-    intent: float | Callable | None = None
+    intent: float | Callable[..., Any] | None = None
     noise: float = 0.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name, reason in _REASONS.items():
             number = require(name, getattr(self, name), UNITS[name], "a hand", reason, low=0)
             object.__setattr__(self, name, number)
@@ -76,13 +82,14 @@ class Hand:
             )
 
     @property
-    def moves(self):
+    def moves(self) -> bool:
         """Whether the intent is a function of time."""
         return callable(self.intent)
 
-    def samples(self, ticks, T, first=0):
+    def samples(self, ticks: int, T: float, first: int = 0) -> Array:
         """Return the intent at the ticks first ... first + ticks (one more than the ticks) [m], shape (ticks + 1,)."""
         times = np.arange(first, first + ticks + 1) * T
+        assert callable(self.intent), "asked of a hand that moves"
         places = np.asarray(self.intent(times), float)
         if places.shape not in ((), times.shape):
             raise PaddleError(
@@ -91,11 +98,11 @@ class Hand:
             )
         bad = ~np.isfinite(places)
         if bad.any():
-            first = float(np.broadcast_to(times, bad.shape)[bad][0]) if bad.ndim else 0.0
-            raise PaddleError(f"intent is not finite at t = {first:g} s; needs a position [m] at every tick.")
+            when = float(np.broadcast_to(times, bad.shape)[bad][0]) if bad.ndim else 0.0
+            raise PaddleError(f"intent is not finite at t = {when:g} s; needs a position [m] at every tick.")
         return np.broadcast_to(places, times.shape)
 
-    def __str__(self):
+    def __str__(self) -> str:
         parts = [f"{name} = {getattr(self, name):g} {unit}" for name, unit in UNITS.items() if getattr(self, name)]
         if self.moves:
             parts.append("a moving intent")

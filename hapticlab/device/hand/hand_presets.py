@@ -1,9 +1,15 @@
 """Hands by name, each with where its numbers come from, and how a grip changes them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 from ...errors import PaddleError
 from .hand import Hand, require
+
+if TYPE_CHECKING:
+    from .hand import Hand
 
 ILLUSTRATIVE = "illustrative round numbers, measured on nobody"
 
@@ -38,7 +44,7 @@ PRESETS = {
 }  # fmt: skip
 
 
-def hand(name, *, grip=1.0, **changes):
+def hand(name: str, *, grip: float = 1.0, **changes: Any) -> Hand:
     """Return a hand by name: a second-order model of a grip and posture, with its source in ``hl.hand_presets()``.
 
     A firmer grip stiffens and damps and leaves the mass as it is (found for a pinched knob by Hasser and Cutkosky, 2002).
@@ -68,7 +74,7 @@ def hand(name, *, grip=1.0, **changes):
     return replace(known, **{"b": grip * known.b, "k": grip * known.k, **changes})
 
 
-def hand_presets():
+def hand_presets() -> str:
     """Return the presets as text, a line each: posture, numbers, source.
 
     Examples

@@ -1,23 +1,36 @@
 """Where a hand means to be, as functions of time: smooth reaches and tremor, which add up."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...errors import PaddleError
 from .hand import require
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike
+
+    from ...annotations import Array
+
 
 class Intent:
     """A path of the hand: a function of an array of times [s] that gives positions [m]. Two of them add up."""
 
-    def __add__(self, other):
+    def __call__(self, t: ArrayLike) -> Array:
+        raise NotImplementedError
+
+    def __add__(self, other: Callable[..., Any]) -> Any:
         if not callable(other):
             return NotImplemented
         return other.with_path(self) if hasattr(other, "with_path") else Together((self, other))
 
-    def __radd__(self, other):
+    def __radd__(self, other: Callable[..., Any]) -> Any:
         return Together((other, self)) if callable(other) else NotImplemented
 
 
@@ -60,18 +73,18 @@ class MinimumJerk(Intent):
     duration: float
     begin: float = 0.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name, unit, low in (("start", "m", None), ("end", "m", None), ("begin", "s", None), ("duration", "s", 0)):
             object.__setattr__(self, name, require(name, getattr(self, name), unit, "a reach", above=low))
 
     def _phase(self, t):
         return np.clip((np.asarray(t, float) - self.begin) / self.duration, 0.0, 1.0)
 
-    def __call__(self, t):
+    def __call__(self, t: ArrayLike) -> Array:
         s = self._phase(t)
         return self.start + (self.end - self.start) * s**3 * (10 - 15 * s + 6 * s * s)
 
-    def at(self, t):
+    def at(self, t: ArrayLike) -> tuple[Array, Array, Array]:
         """Return position [m], velocity [m/s] and acceleration [m/s^2] at times [s]."""
         s, mean = self._phase(t), (self.end - self.start) / self.duration
         return self(t), mean * 30 * (s * (1 - s)) ** 2, mean / self.duration * 60 * s * (1 - s) * (1 - 2 * s)
@@ -112,7 +125,7 @@ class Tremor(Intent):
     frequencies: np.ndarray = field(init=False, repr=False, compare=False)
     phases: np.ndarray = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name, unit, low in (("rms", "m", 0), ("low", "Hz", 0), ("high", "Hz", 0)):
             object.__setattr__(self, name, require(name, getattr(self, name), unit, "a tremor", low=low))
         require("high", self.high, "Hz", "a band of tremor", "It is the upper edge.", above=max(self.low, 0.0))
@@ -123,6 +136,6 @@ class Tremor(Intent):
         object.__setattr__(self, "frequencies", self.low + step * (np.arange(self.lines) + draw.random(self.lines)))
         object.__setattr__(self, "phases", 2 * np.pi * draw.random(self.lines))
 
-    def __call__(self, t):
+    def __call__(self, t: ArrayLike) -> Array:
         waves = np.sin(2 * np.pi * np.multiply.outer(np.asarray(t, float), self.frequencies) + self.phases)
         return self.rms * np.sqrt(2 / self.lines) * waves.sum(axis=-1)

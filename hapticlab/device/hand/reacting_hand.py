@@ -1,13 +1,21 @@
 """A hand that reacts to what it has seen and felt, a reaction time ago."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...errors import PaddleError
 from .hand import require
 from .intents import Intent, Together
+
+if TYPE_CHECKING:
+    from typing import NoReturn
+
+    from ...annotations import Array
 
 #: between a signal and the press of a button it tells of, Section 23.3.3 [s]
 REACTION = 0.18
@@ -69,26 +77,26 @@ class Reacting(Intent):
     (True, True)
     """
 
-    plan: Callable
+    plan: Callable[..., float]
     reaction: float = REACTION
     every: float = 0.01
     start: float = 0.0
-    beside: Callable | None = None
+    beside: Callable[..., Any] | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not callable(self.plan):
             raise PaddleError(f"plan = {self.plan!r}; needs a function plan(t, seen, intent) that returns an intent [m].")
         object.__setattr__(self, "reaction", require("reaction", self.reaction, "s", "a person", low=0))
         object.__setattr__(self, "every", require("every", self.every, "s", "a person", above=0))
         object.__setattr__(self, "start", require("start", self.start, "m", "a hand"))
 
-    def __call__(self, t):
+    def __call__(self, t: Any) -> NoReturn:
         raise PaddleError(
             "this hand reacts to what happens, so its intent is no function of time; it runs on SimulatedPaddle.run alone. "
             "Give a path instead, such as hl.MinimumJerk(...)."
         )
 
-    def with_path(self, path):
+    def with_path(self, path: Callable[..., Any]) -> Reacting:
         """Return this plan with a path of time beside it, :class:`Tremor` for one."""
         if isinstance(path, Reacting):
             raise PaddleError("two plans for one hand; give one Reacting(plan=...) that does what both do.")
@@ -96,12 +104,12 @@ class Reacting(Intent):
 
     __add__ = __radd__ = with_path
 
-    def asked(self, t, seen, intent):
+    def asked(self, t: float, seen: Any, intent: Array) -> float:
         """Return what the plan says, checked."""
-        place = self.plan(t, seen, intent)
+        place: Any = self.plan(t, seen, intent)
         if not np.isscalar(place) or not np.isfinite(place):
             raise PaddleError(f"plan gave {place!r} at t = {t:g} s; needs one position [m].")
-        return float(place)
+        return float(place)  # type: ignore[arg-type]
 
 
 def run_reacting(loaded, paddle, parameters, ticks, outputs):

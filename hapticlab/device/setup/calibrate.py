@@ -1,6 +1,9 @@
 """Calibrate a paddle: stops, motor sign, force constant, one after the other, each agreed to before it is stored."""
 
+from __future__ import annotations
+
 import secrets
+from typing import TYPE_CHECKING
 
 from ...errors import PaddleError
 from ..board.settings import changed, nominal
@@ -11,10 +14,14 @@ from .sign_check import check_sign
 from .stops import measure_stops
 from .stored_settings import lead_home, offer
 
+if TYPE_CHECKING:
+    from ..board.serial_paddle import SerialPaddle
+    from ..board.settings import Settings
+
 STEPS = ("stops", "sign", "force")
 
 
-def calibrate(paddle, person=None, *, date, only=None):
+def calibrate(paddle: SerialPaddle, person: Person | None = None, *, date: int, only: str | None = None) -> Settings | None:
     """Measure what a paddle is and store it on its board; nothing is written that the person did not agree to.
 
     Parameters
@@ -29,8 +36,8 @@ def calibrate(paddle, person=None, *, date, only=None):
 
     Returns
     -------
-    Settings
-        What the board keeps now.
+    Settings or None
+        What the board keeps now; None where the person gave up before there was anything to keep.
 
     Raises
     ------

@@ -1,14 +1,22 @@
 """Find a paddle and connect to it."""
 
+from __future__ import annotations
+
 from contextlib import suppress
+from typing import TYPE_CHECKING
 
 from ...errors import LinkError, PaddleError, PortError
 from ..board.serial_paddle import SerialPaddle
 from ..link.serial_ports import available_ports, open_port
 from ..simulated.simulated_paddle import SimulatedPaddle
 
+if TYPE_CHECKING:
+    from ..simulated.simulated_paddle import SimulatedPaddle
 
-def connect(port=None, *, T=None, paddle=None, hello=3.0):
+
+def connect(
+    port: str | None = None, *, T: float | None = None, paddle: SimulatedPaddle | None = None, hello: float = 3.0
+) -> SerialPaddle:
     """Connect to a paddle and return it; use it in a ``with``, which leaves the motor off whatever happens.
 
     Parameters

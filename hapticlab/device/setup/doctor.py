@@ -1,6 +1,9 @@
 """What is wrong with this paddle? A walk from the cable to the motor; every step says what it found and what to do."""
 
+from __future__ import annotations
+
 from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
 
 from ...errors import HapticlabError
 from ..board.serial_paddle import SerialPaddle
@@ -8,6 +11,11 @@ from ..link.port_faults import permission_cure
 from ..link.serial_ports import available_ports, open_port
 from . import computer_checks
 from . import doctor_checks as checks
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .person import Person
 
 STATES = ("ok", "attention", "fault", "skipped")
 
@@ -38,7 +46,7 @@ class Report:
     __repr__ = __str__  # what a notebook shows
 
 
-def doctor(url=None, person=None, *, tell=lambda check: None):
+def doctor(url: str | None = None, person: Person | None = None, *, tell: Callable[[Any], Any] = lambda check: None) -> Report:
     """Walk through notebook, rights, cable, port, firmware, settings, latency, loop, link, sensor, home and motor sign.
 
     Parameters

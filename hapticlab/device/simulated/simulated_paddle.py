@@ -1,6 +1,9 @@
 """A paddle in virtual time: handle, hand, encoder, delay, friction and motor limit around a scene's program."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +20,11 @@ from .lanes import device_values
 from .not_finite import not_finite
 from .plant import delay_parts, dynamics, plant_of
 from .transition import smallest_mass
+
+if TYPE_CHECKING:
+    from ...annotations import Array
+    from ...compiler.ir.program import Program
+    from ...scene.scene import Scene
 
 __all__ = ["SimulatedPaddle", "link", "load_linked"]
 
@@ -102,7 +110,7 @@ class SimulatedPaddle(Paddle):
     noise: float = 0.0
     profile: PaddleProfile | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name, unit in _POSITIVE.items():
             self._take(name, unit, above=0)
         for name, (unit, reason) in _NOT_NEGATIVE.items():
@@ -142,7 +150,7 @@ class SimulatedPaddle(Paddle):
             )
 
     @classmethod
-    def from_profile(cls, profile, **changes):
+    def from_profile(cls, profile: PaddleProfile | str, **changes: Any) -> SimulatedPaddle:
         """Return a paddle with the constants of a profile, given itself or by name: ``from_profile("eth", T=5e-4)``."""
         profile = named_profile(profile) if isinstance(profile, str) else profile
         names = {f.name for f in fields(cls)} & {f.name for f in fields(PaddleProfile)}
@@ -153,32 +161,32 @@ class SimulatedPaddle(Paddle):
         return cls(**{**{name: getattr(profile, name) for name in names}, "profile": profile, **changes})
 
     @property
-    def velocity(self):
+    def velocity(self) -> str:
         return "measured" if self.counts_per_metre is None and self.noise == 0 else "backward_difference"
 
     @property
-    def plant(self):
+    def plant(self) -> Any:
         """Which terms the plant has. Paddles that agree in :attr:`structure` share one linked program."""
         return plant_of(self)
 
     @property
-    def structure(self):
+    def structure(self) -> tuple[Any, ...]:
         """What decides the linked program, as against its parameter values; compare with ==."""
         encoder = self.rounding if self.counts_per_metre is not None else None
         return self.plant, encoder, self.noise > 0, self.force_max is not None
 
-    def plant_values(self, x=0.0, v=0.0):
+    def plant_values(self, x: float = 0.0, v: float = 0.0) -> tuple[float, ...]:
         """Return the values of the linked program's parameters after the scene's, for a start at x [m] with v [m/s]."""
         start = require("x", x, "m", "a start"), require("v", v, "m/s", "a start")
         return tuple(float(a) for a in (*device_values(self), *start))
 
-    def inputs(self, ticks):
+    def inputs(self, ticks: int) -> Array:
         """Return the linked program's inputs, shape (ticks, inputs).
 
         Intent [m], its rate [m/s], the sensor's noise [m], the hand's noise [N], each where the paddle has it.
         """
         columns = []
-        if self.plant.ramp:
+        if self.plant.ramp and self.hand is not None:
             intent = self.hand.samples(ticks, self.T)
             columns += [intent[:-1]] if self.plant.spring else []
             columns.append(np.diff(intent) / self.T)
@@ -188,7 +196,17 @@ class SimulatedPaddle(Paddle):
                 columns.append(deviation * np.random.default_rng([self.seed, stream]).standard_normal(ticks))
         return np.column_stack(columns) if columns else np.zeros((ticks, 0))
 
-    def run(self, scene, *, duration, x=0.0, v=0.0, engine="auto", progress=True, **options):
+    def run(
+        self,
+        scene: Scene | Program,
+        *,
+        duration: float,
+        x: float = 0.0,
+        v: float = 0.0,
+        engine: str = "auto",
+        progress: bool = True,
+        **options: Any,
+    ) -> Telemetry:
         """Run a scene in virtual time.
 
         Parameters
@@ -244,7 +262,7 @@ class SimulatedPaddle(Paddle):
             fault=fault, saturated=limited,
         )  # fmt: skip
 
-    def __str__(self):
+    def __str__(self) -> str:
         whole, fraction = delay_parts(self)
         samples = f"{whole} whole sample{'s' * (whole != 1)}" + (f" + {fraction:g}" if fraction else "")
         counts = self.counts_per_metre
