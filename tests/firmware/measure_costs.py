@@ -1,4 +1,4 @@
-"""Measure what every operation costs on every board, and write hapticlab/compiler/costs.json.
+"""Measure what every operation costs on every board, and write hapticlab/compiler/boards/costs.json.
 
     python tests/firmware/measure_costs.py            all boards
     python tests/firmware/measure_costs.py uno        one of them
