@@ -63,7 +63,7 @@ def affine_law(
     parameter: str | None = "k",
     velocity: Literal["backward_difference", "measured"] = "backward_difference",
 ) -> AffineLaw:
-    """Return what was given as a law, affine in K.
+    """The given law as an AffineLaw.
 
     Parameters
     ----------

@@ -234,7 +234,7 @@ def least_passive_stiffness(law: Callable[[float], LinearLaw]) -> float:
 
 
 def _flat(law, most, delay):
-    """Return whether all frequencies ask for ``most``."""
+    """Whether all frequencies ask for ``most``."""
     values = asked(law.A, law.B, law.C, law.D, law.T, np.linspace(0.01, np.pi, 101), delay)
     return bool(math.isfinite(most) and (abs(values - most) <= ALIKE * abs(most)).all())
 

@@ -67,7 +67,7 @@ def _loop(m, b, T, fraction):
 
 
 def _moved(m, b, time):
-    """Return how far and how fast 1 N moves the handle from rest in that time, and how far a start at 1 m/s takes it."""
+    """The displacement and velocity that 1 N gives a handle at rest in that time, and the displacement of a start at 1 m/s."""
     s = b * time / m
     if s < 1e-5:  # to rounding, where the quotients below would lose half their digits
         return time**2 / m * (1 / 2 - s / 6), time / m * (1 - s / 2), time * (1 - s / 2)

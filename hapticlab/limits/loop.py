@@ -109,7 +109,7 @@ class Loop:
         return np.array([self._settled(pole, K) if 1e-14 < abs(pole) < SLOW else pole for pole in w.tolist()])
 
     def unstable(self, K):
-        """Return whether a pole lies outside the unit circle."""
+        """Whether a pole lies outside the unit circle."""
         for w in np.linalg.eigvals(self.difference(K)).astype(complex).tolist():
             beyond = _beyond(w)
             if abs(beyond) < CLEAR * abs(w) < CLEAR * SLOW and abs(w) > 1e-14:

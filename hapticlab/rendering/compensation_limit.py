@@ -118,7 +118,7 @@ class CompensationLimit:
         return dry * self.coulomb - self.coulomb_least
 
     def _kept(self, viscous):
-        """Return which part of a swing half a period keeps."""
+        """The ratio of two successive half swings."""
         if not self.k:
             return 1.0
         ratio = self.left(viscous) / (2 * math.sqrt(self.k * self.m))
