@@ -16,6 +16,8 @@ from ..scene.scene import Scene
 from .guard import guarded
 
 if TYPE_CHECKING:
+    from ..scene.laws.taps import LawName
+
     pass
 
 #: a spring and damper that lead a handle back, soft enough for any paddle [N/m], and how long they take [s]
@@ -194,7 +196,7 @@ def speed_limit(paddle, speed):
     return max(speed, COUNTS * count_of(paddle) / paddle.T)
 
 
-def wall_of(law: str | Scene, parameter: str = "k") -> Scene:
+def wall_of(law: LawName | Scene, parameter: str = "k") -> Scene:
     """The scene of a law by its name, or a scene of one's own that has the parameter."""
     scene = law if isinstance(law, Scene) else wall(law)
     if parameter not in scene.parameters:

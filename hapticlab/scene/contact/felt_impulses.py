@@ -1,7 +1,10 @@
 """Impulses that are felt: an impact at the handle rendered as a force over a time, its impulse kept."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -12,6 +15,9 @@ from ..notation.derivative import Partial
 from ..notation.symbols import T, n, signal, t, x
 from ..notation.units import in_si
 from .contact import Contact
+
+if TYPE_CHECKING:
+    from ...annotations import Number, Term
 
 
 @dataclass(frozen=True)
@@ -33,7 +39,7 @@ class FeltImpulse:
     watch: dict
 
 
-def felt_impulse(contact, *, tau, F_max=None):
+def felt_impulse(contact: Contact, *, tau: Term, F_max: Term | None = None) -> FeltImpulse:
     """Render the impacts of a contact that holds the handle: each impulse p as the pulse p s/tau^2 exp(-s/tau).
 
     The pulse starts at zero, peaks at p/(e tau) a time tau after the impact, and its integral is p: what the body loses
@@ -94,7 +100,7 @@ def felt_impulse(contact, *, tau, F_max=None):
     return FeltImpulse(force, (rising, pulsing), watch)
 
 
-def pulse_time(*, impulse, F_max):
+def pulse_time(*, impulse: Number, F_max: Number) -> float:
     """The tau [s] with which an impulse peaks at F_max: p/(e F_max).
 
     Parameters

@@ -1,5 +1,9 @@
 """Velocity by windows that adapt: the longest line that the last positions allow."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import sympy as sp
 
 from ...arguments import choice, count
@@ -9,13 +13,17 @@ from ..notation.parameters import T
 from ..notation.symbols import n, signal, when, x
 from .estimators import VelocityEstimate, backward_velocity
 
+if TYPE_CHECKING:
+    from ...annotations import Term
+
+
 #: samples back that a window may reach: each takes a dozen instructions of every tick
 LONGEST_WINDOW = 32
 #: no displacement is less [m]
 _CLOSED = Amount(-1e30, "m")
 
 
-def window_velocity(*, band, most=8, fit="end", name="v_window"):
+def window_velocity(*, band: Term, most: int = 8, fit: str = "end", name: str = "v_window") -> VelocityEstimate:
     """First-order adaptive window: the slope of the longest line that the last samples allow.
 
     Janabi-Sharifi, Hayward and Chen, *Discrete-time adaptive windowing for velocity estimation*, IEEE Trans. Control

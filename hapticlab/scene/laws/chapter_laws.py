@@ -1,6 +1,9 @@
 """The chapter's laws as scenes: virtual walls, the force filter, the virtual damper, the virtual coupler."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -9,12 +12,18 @@ from ...errors import SceneError
 from ..notation.symbols import T, delay, n, parameters, t, v, when, x
 from ..scene import Scene, check_scene
 from .estimators import AN_ESTIMATE, VelocityEstimate
-from .taps import LEAD, TAPS
+from .taps import LEAD, TAPS, LawName
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ...annotations import Term
+
 
 UNILATERAL = ("gate", "clip", None)
 
 
-def wall(law="zoh", unilateral="gate", clamp=False, velocity=None):
+def wall(law: LawName = "zoh", unilateral: str = "gate", clamp: bool = False, velocity: VelocityEstimate | None = None) -> Scene:
     """Virtual wall: a spring K that pushes back beyond x_o, and a virtual damper B beside it.
 
     ======================  =======  ====================================================
@@ -93,7 +102,7 @@ def _scene(force, name, estimate):
     return Scene(force, estimate.eom, name=f"{name}, {estimate.name}") if estimate else Scene(force, name=name)
 
 
-def force_filter(scene, clamp=False):
+def force_filter(scene: Scene, clamp: bool = False) -> Scene:
     """Predictor-corrector filter around the whole force of any scene, Eq. (23.8): 2 F(n) - 1.5 F(n-1) + 0.5 F(n-2).
 
     On a plain wall without a switch it equals :func:`wall` with ``law="ellis"``, Eq. (23.7). Around a spring and damper
@@ -125,7 +134,7 @@ def force_filter(scene, clamp=False):
     return Scene(filtered, scene.eom, scene.watch, scene.values, f"filtered {scene.name}")
 
 
-def virtual_damper(velocity=None):
+def virtual_damper(velocity: VelocityEstimate | None = None) -> Scene:
     """Virtual damper: F = B v(n), B [N s/m] of either sign; a negative one compensates the device's own damping.
 
     v(n) is the paddle's velocity: the backward difference of its position on a board, exact in a simulated paddle
@@ -151,7 +160,7 @@ def virtual_damper(velocity=None):
     return _scene(B * (estimate.velocity if estimate else v(n)), "virtual damper", estimate)
 
 
-def virtual_coupler(z, *, K, b):
+def virtual_coupler(z: sp.Expr, *, K: Term, b: Term) -> sp.Expr:
     """Virtual coupler of Fig. 23.4: the force K (x - z) + b (x' - z') of a spring and damper from handle to proxy.
 
     It is at once the force on the environment and the force on the proxy z; it covers K and b, and sees the handle
@@ -180,7 +189,7 @@ def virtual_coupler(z, *, K, b):
     return K * (x(t) - z) + b * (v(t) - z.diff(t))
 
 
-def predicted_sample(signal=x):
+def predicted_sample(signal: Callable[[sp.Expr], sp.Expr] = x) -> sp.Expr:
     """The next sample predicted from the last two, 2 x(n) - x(n-1), Eq. (23.4).
 
     Examples

@@ -1,6 +1,9 @@
 """Damping compensation: the device's own friction, viscous and dry, fed back with the other sign."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -12,10 +15,22 @@ from ..notation.symbols import n, v, when
 from ..scene import Scene
 from .estimators import AN_ESTIMATE, VelocityEstimate
 
+if TYPE_CHECKING:
+    from ...annotations import Term
+
+
 SHAPES = ("smooth", "dead_zone")
 
 
-def damping_compensation(scene=None, *, b, coulomb=0, speed=None, shape="smooth", velocity=None):
+def damping_compensation(
+    scene: Scene | None = None,
+    *,
+    b: Term,
+    coulomb: Term = 0,
+    speed: Term | None = None,
+    shape: str = "smooth",
+    velocity: VelocityEstimate | None = None,
+) -> Scene:
     """Cancel a part of a device's friction: F = -viscous b v(n) - dry coulomb s(v(n)), negative virtual damping.
 
     The physical damper stays, and with it the passivity that it buys at all frequencies; the compensation acts where

@@ -6,6 +6,10 @@ and static friction with a magnetically levitated input/output device*, J. Dynam
 (1997) 127-132.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import sympy as sp
 
 from ...arguments import count, instance
@@ -16,11 +20,26 @@ from ..notation.symbols import n, signal, v, when, x
 from ..scene import Scene
 from .estimators import AN_ESTIMATE, VelocityEstimate
 
+if TYPE_CHECKING:
+    from ...annotations import Term
+
+
 #: periods that a pulse may last
 LONGEST_PULSE = 1000
 
 
-def braking_pulse(scene, *, impulse=None, part=None, mass=None, periods=1, force_max=None, velocity=None, x_o=None, name="brake"):
+def braking_pulse(
+    scene: Scene,
+    *,
+    impulse: Term | None = None,
+    part: Term | None = None,
+    mass: Term | None = None,
+    periods: int = 1,
+    force_max: Term | None = None,
+    velocity: VelocityEstimate | None = None,
+    x_o: Term | None = None,
+    name: str = "brake",
+) -> Scene:
     """Add a braking pulse on entry: so much impulse, or so much of the momentum that the handle comes in with.
 
     The pulse begins at the first sample inside and lasts ``periods`` T. It ends sooner where the handle has stopped or
@@ -81,7 +100,16 @@ def braking_pulse(scene, *, impulse=None, part=None, mass=None, periods=1, force
     return _added(scene, when(left(n) > 0, size(n)), eom, "a braking pulse")
 
 
-def friction_pulse(scene, *, friction, mass, periods, velocity=None, x_o=None, name="friction"):
+def friction_pulse(
+    scene: Scene,
+    *,
+    friction: Term,
+    mass: Term,
+    periods: int,
+    velocity: VelocityEstimate | None = None,
+    x_o: Term | None = None,
+    name: str = "friction",
+) -> Scene:
     """Add dry friction for a while after entry: it opposes the motion, either way, and holds what has stopped.
 
     For ``periods`` T from the first sample inside the force is ``friction`` against the motion, and never more than

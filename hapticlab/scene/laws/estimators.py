@@ -15,7 +15,10 @@ kalman             T (alpha/beta - 1/2)       beta D/T
 :func:`~hapticlab.rendering.velocity_errors.velocity_errors` compares them on a record.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -23,6 +26,10 @@ from ...errors import SceneError
 from ..notation.amount import amount, number_of
 from ..notation.parameters import T
 from ..notation.symbols import n, signal, x
+
+if TYPE_CHECKING:
+    from ...annotations import Term
+
 
 AN_ESTIMATE = "an estimate, as in velocity=hl.filtered_velocity(tau='4 ms')"
 
@@ -55,11 +62,11 @@ class VelocityEstimate:
     _transfer: tuple = field(default=(), repr=False)
 
     @property
-    def is_linear(self):
+    def is_linear(self) -> bool:
         """Whether it has a transfer function."""
         return bool(self._transfer)
 
-    def transfer(self, period):
+    def transfer(self, period: float) -> tuple[list[float], list[float]]:
         """(Numerator, denominator) in powers of 1/z, from positions [m] to the estimate [m/s], at T = period [s].
 
         Raises
@@ -84,12 +91,12 @@ class VelocityEstimate:
             raise SceneError(f"{self.name}: {', '.join(free)} has no number; make the estimate with one, as in tau='4 ms'")
         return [float(c) for c in over], [float(c) for c in under]
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [f"{self.name}: v = {self.velocity}"]
         return "\n".join([*lines, *(f"  {e.lhs} = {e.rhs}" for e in self.eom)])
 
 
-def backward_velocity():
+def backward_velocity() -> VelocityEstimate:
     """Backward difference (x(n) - x(n-1))/T, the estimate of Eq. (23.4), whatever the paddle measures.
 
     Examples
@@ -105,7 +112,7 @@ def _difference():
     return (x(n) - x(n - 1)) / T
 
 
-def filtered_velocity(*, tau, name="v_filtered"):
+def filtered_velocity(*, tau: Term, name: str = "v_filtered") -> VelocityEstimate:
     """Backward difference through a first-order filter, tau v' + v = x', mapped by s = (1 - 1/z)/T.
 
     v(n) = (tau v(n-1) + x(n) - x(n-1))/(tau + T). For a virtual damper B behind it Eq. (23.10) becomes

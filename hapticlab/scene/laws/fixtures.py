@@ -1,6 +1,9 @@
 """Shared control: forces of an automatic controller on the handle that a hand holds too; guidance and tremor filter."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -12,8 +15,11 @@ from ..notation.symbols import n, parameters, signal, t, v, when, x
 from ..notation.units import in_si
 from ..scene import Scene
 
+if TYPE_CHECKING:
+    from ...annotations import Term
 
-def guidance(path):
+
+def guidance(path: sp.Expr) -> Scene:
     """Guidance fixture: a controller's spring and damper lead the handle along a path, and give way beyond F_max.
 
     Hand and controller pull on one handle (shared control, Section 23.1.3): the hand feels where the controller means to
@@ -47,7 +53,7 @@ def guidance(path):
     return Scene(force=sp.Max(sp.Min(force, most), -most), name="guidance")
 
 
-def tremor_filter(centre="10 Hz", bandwidth="6 Hz"):
+def tremor_filter(centre: Term = "10 Hz", bandwidth: Term = "6 Hz") -> Scene:
     """Tremor filter: a damper B that acts within a band of frequencies and leaves slow motion alone.
 
     The velocity passes a digital band-pass of second order: gain 1 and no phase at the centre, half the power at the two

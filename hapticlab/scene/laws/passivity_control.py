@@ -5,7 +5,10 @@ is therefore known exactly, F(n-1) (x(n) - x(n-1)) for each period; F(n) (x(n) -
 nobody felt, and calls a wall that generates energy a damper. The exact pairing is that of Ryu, Kim and Hannaford (2004).
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
@@ -15,13 +18,18 @@ from ..notation.symbols import T, delay, n, parameters, signal, v, when, x
 from ..notation.written import expression
 from ..scene import check_scene
 
+if TYPE_CHECKING:
+    from ...annotations import Number, Term
+    from ..scene import Scene
+
+
 FORMS = ("series", "parallel")
 _IDLE = signal("F_zero_for", unit="s")
 #: unit of what a caller may bound; each becomes a parameter of that name
 _UNITS = {"alpha_max": "N*s/m", "beta_max": "m/(N*s)", "force_max": "N", "forget": "s", "credit_max": "J", "reset": "s"}
 
 
-def wall_energy():
+def wall_energy() -> sp.Expr:
     """Energy stored in the spring of :func:`hapticlab.wall`, k max(x(n) - x_o, 0)^2/2: its storage function, Eq. (23.9).
 
     Examples
@@ -34,7 +42,7 @@ def wall_energy():
     return k * sp.Max(x(n) - x_o, 0) ** 2 / 2
 
 
-def passivity_observer(scene, *, lag=0):
+def passivity_observer(scene: Scene, *, lag: int = 0) -> Scene:
     """The scene with a passivity observer: the watched W [J] is the work done on the environment so far.
 
     W(n) = W(n-1) + F(n-1-lag) (x(n) - x(n-1)), exact where the force is held over whole periods: below zero the
@@ -71,9 +79,19 @@ def passivity_observer(scene, *, lag=0):
 
 
 def passivity_controller(
-    scene, form="series", *, alpha_max=None, beta_max=None, force_max=None, forget=None, credit_max=None, reset=None,
-    stored=0, predict=False, lag=0,
-):  # fmt: skip
+    scene: Scene,
+    form: str = "series",
+    *,
+    alpha_max: Number | None = None,
+    beta_max: Number | None = None,
+    force_max: Number | None = None,
+    forget: Number | None = None,
+    credit_max: Number | None = None,
+    reset: Any = None,
+    stored: Term = 0,
+    predict: bool = False,
+    lag: int = 0,
+) -> Scene:
     """The scene with a passivity controller, which dissipates what the environment gave beyond what it had.
 
     The watched credit is what the port has taken since the start, less what the environment stores and less what was

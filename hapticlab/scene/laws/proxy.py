@@ -1,5 +1,9 @@
 """The proxy, or god-object: a point that follows the handle and never enters what is solid; the force pulls to it."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import sympy as sp
 
 from ...arguments import choice, count
@@ -10,8 +14,13 @@ from ..notation.symbols import T, n, parameters, signal, x
 from ..notation.written import expression
 from ..scene import Scene
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
-def proxy_wall(sides="one"):
+    from ...annotations import Term
+
+
+def proxy_wall(sides: str = "one") -> Scene:
     """Wall or thin plate felt through a proxy z(n), which stays on its side of the surface x_o.
 
     F = K (x(n) - z(n)) + B (p(n) - p(n-1))/T, p = x - z the penetration, never pulling. Zilles and Salisbury, *A
@@ -56,7 +65,7 @@ def proxy_wall(sides="one"):
     return Scene(force, equations, watch={"z": z(n)}, name="proxy plate")
 
 
-def proxy_curve(height, *, load, mu=0, steps=2):
+def proxy_curve(height: Callable[[sp.Expr], sp.Expr], *, load: Term, mu: Term = 0, steps: int = 2) -> Scene:
     """Texture or shape felt through a proxy on a planar curve: the handle draws it along a surface under a load.
 
     The finger rests with a constant ``load`` P on the curve y = h(z), pulled by a spring K along the handle: F =

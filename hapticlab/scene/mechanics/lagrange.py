@@ -1,7 +1,10 @@
 """Equations of motion from energies: Lagrange's equations, kept as derivatives that the compiler takes on its graph."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
@@ -13,6 +16,10 @@ from ..notation.derivative import Partial, Rate
 from ..notation.symbols import t
 from ..notation.units import agree, unit_of
 from ..notation.written import expression, zero_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
 
 ENFORCE = ("auto", "embed", "kkt", "baumgarte", "numeric")
 
@@ -65,7 +72,7 @@ class Mechanics:
     notes: tuple = ()
     names: tuple = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         choice("enforce", self.enforce, ENFORCE, error=SceneError)
         if self.alpha is not None and self.enforce != "baumgarte":
             raise SceneError(
@@ -77,7 +84,7 @@ class Mechanics:
         if twice:
             raise SceneError(f"two contacts are called {twice}; give each its own, hl.Contact(..., name='...')")
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: Any) -> sp.Expr:
         """The coordinate of a name; the coordinate or parameter that a symbol of SymPy became."""
         if isinstance(name, sp.Basic) and name in dict(self.names):
             return dict(self.names)[name]
@@ -87,7 +94,7 @@ class Mechanics:
         return known[name]
 
     @property
-    def energy(self):
+    def energy(self) -> sp.Expr:
         """The energy [J] that a Lagrangian without time in it conserves: the sum of q' dL/dq', less L."""
         if self.lagrangian is None:
             raise SceneError("these equations came without a Lagrangian, so they do not tell their energy")
@@ -95,7 +102,7 @@ class Mechanics:
         return sp.Add(*(w * Partial(self.lagrangian, w) for w in rates)) - self.lagrangian
 
     @property
-    def equations(self):
+    def equations(self) -> tuple[sp.Eq, ...]:
         """The equations in symbols, one ``sp.Eq`` a coordinate, worked out for a reader; slow past three links."""
         unknowns = [q.diff(t, order) for q, order in zip(self.coordinates, self.orders, strict=True)]
         multipliers = sp.symbols(f"lambda1:{len(self.constraints) + 1}")
@@ -106,7 +113,7 @@ class Mechanics:
             made.append(sp.Eq(left, f.doit() + sp.Add(*held), evaluate=False))
         return tuple(made)
 
-    def __str__(self):
+    def __str__(self) -> str:
         head = f"L = {self.lagrangian}" if self.lagrangian is not None else f"M a = f of {len(self.coordinates)} coordinates"
         contacts = [f"{c.name}: {getattr(c, 'gap', None) if isinstance(c, Contact) else c.slip}" for c in self.contacts]
         return "\n  ".join([head, *(f"0 = {g}" for g in self.constraints), *contacts])
@@ -116,7 +123,16 @@ class Mechanics:
         return "$\\displaystyle \\begin{array}{l}" + r" \\ ".join(rows) + "\\end{array}$"
 
 
-def lagrange(L, *, dissipation=0, forces=None, constraints=(), contacts=(), enforce="auto", alpha=None):
+def lagrange(
+    L: sp.Expr,
+    *,
+    dissipation: sp.Expr | float = 0,
+    forces: Mapping[sp.Expr, sp.Expr] | None = None,
+    constraints: Sequence[sp.Expr] | sp.Expr = (),
+    contacts: Sequence[Contact | friction] = (),
+    enforce: str = "auto",
+    alpha: float | None = None,
+) -> Mechanics:
     """Lagrange's equations of motion, d/dt(dL/dq') - dL/dq + dR/dq' = Q, of every coordinate in L.
 
     Nothing is differentiated in symbols: the compiler does that on the graph of L, in a few milliseconds, so L may be

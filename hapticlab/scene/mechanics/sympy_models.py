@@ -1,5 +1,9 @@
 """Equations of motion that ``sympy.physics.mechanics`` holds, as an entry of a scene: Lagrange's, Kane's, a System's."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import sympy as sp
 
 from ...errors import MassError, SceneError
@@ -9,8 +13,22 @@ from .kane import check_version, of_kane
 from .lagrange import lagrange, of_energies
 from .sympy_symbols import Vocabulary, gathered
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
-def from_mechanics(system, *, units=None, values=None, initial=None, replace=None, enforce="auto"):
+    from ...annotations import Number
+    from .lagrange import Mechanics
+
+
+def from_mechanics(
+    system: Any,
+    *,
+    units: Mapping[Any, str] | None = None,
+    values: Mapping[Any, Number] | None = None,
+    initial: Mapping[Any, Any] | None = None,
+    replace: Mapping[Any, Any] | None = None,
+    enforce: str = "auto",
+) -> Mechanics:
     """Take a model of ``sympy.physics.mechanics`` as it is: a LagrangesMethod, KanesMethod or System.
 
     Of a LagrangesMethod only the Lagrangian, the loads and the constraints are taken, so ``form_lagranges_equations()``

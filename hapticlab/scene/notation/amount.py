@@ -1,5 +1,7 @@
 """A number with a unit, where a parameter would be too much: the radius of a ball, a corner of a polygon."""
 
+from __future__ import annotations
+
 import math
 
 import sympy as sp
@@ -26,16 +28,16 @@ class Amount(sp.Expr):
     is_real = True
     is_number = False
 
-    def __new__(cls, value, unit):
+    def __new__(cls, value: float, unit: str) -> Amount:
         return super().__new__(cls, sp.Float(float(value)), sp.core.symbol.Str(str(unit)))
 
     @property
-    def value(self):
+    def value(self) -> sp.Expr:
         """The number [``unit``]."""
         return self.args[0]
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         """SI unit."""
         return self.args[1].name
 

@@ -1,5 +1,9 @@
 """Cases: an expression that is one thing where a condition holds and another elsewhere, kept as written."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import sympy as sp
 from sympy.functions.elementary.piecewise import ExprCondPair
 
@@ -24,7 +28,7 @@ class Piecewise(sp.Piecewise):
         return sp.Basic.__new__(cls, *(Case(*getattr(case, "args", case)) for case in cases))
 
 
-def when(condition, value, otherwise=0):
+def when(condition: Any, value: sp.Expr | float, otherwise: sp.Expr | float = 0) -> sp.Expr:
     """A value where a condition holds, else another, as the cases of Eq. (23.1).
 
     Parameters

@@ -1,12 +1,18 @@
 """Parameters: named quantities with a unit and a range."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from ...errors import ParameterError
 from .units import dimension, in_si, kind_of
 from .written import check_name
+
+if TYPE_CHECKING:
+    pass
 
 
 class Parameter(sp.Symbol):
@@ -50,7 +56,7 @@ class Parameter(sp.Symbol):
 T = Parameter("T", "s", 0.0)
 
 
-def parameters(names, *, units, values=None, ranges=None):
+def parameters(names: str, *, units: str, values: Any = None, ranges: Any = None) -> Any:
     """Declare the parameters of a scene, each with its unit.
 
     Parameters

@@ -1,7 +1,10 @@
 """The words a scene is written in: x(n), x(t), v(t), parameters, coordinates, signals, when and delay."""
 
+from __future__ import annotations
+
 import copyreg
 import math
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef, FunctionClass, UndefinedFunction
@@ -12,6 +15,13 @@ from .parameters import Parameter, T, parameters
 from .units import dimension, in_si
 from .written import CONDITIONS, check_name, expression
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from ...annotations import Term
+    from ..laws.estimators import VelocityEstimate
+
+
 __all__ = ["Parameter", "T", "coordinate", "delay", "lag_of", "n", "parameters", "signal", "t", "v", "when", "x"]
 
 #: time [s]; a plain SymPy symbol, so that expressions of sympy.physics.mechanics speak of the same time
@@ -20,7 +30,9 @@ t = sp.Symbol("t")
 n = sp.Symbol("n", integer=True)
 
 
-def coordinate(name, *, unit, initial=0, rate=0, range=(-math.inf, math.inf)):
+def coordinate(
+    name: str, *, unit: str, initial: Term = 0, rate: Term = 0, range: Sequence[float] = (-math.inf, math.inf)
+) -> sp.Expr:
     """Declare a generalized coordinate q(t) of the virtual environment.
 
     Parameters
@@ -112,7 +124,7 @@ def _restored(name, facts):
 copyreg.pickle(_SignalFunction, lambda made: (_restored, (made.name, dict(made._kwargs))))
 
 
-def signal(name, *, unit, initial=0, instead=()):
+def signal(name: str, *, unit: str, initial: Term = 0, instead: Sequence[VelocityEstimate] = ()) -> Callable[[sp.Expr], sp.Expr]:
     """Declare a discrete-time signal y(n), to be defined by an equation ``Eq(y(n), ...)`` in a scene's ``eom``.
 
     Its right side may use y(n-1), y(n-2): filters, observers and estimators are difference equations.
@@ -175,7 +187,7 @@ class _HandleSignal(_Sampled, sp.Function, metaclass=_Unapplied):
     role = "handle"
 
     @classmethod
-    def eval(cls, argument):
+    def eval(cls, argument: sp.Expr) -> None:
         # SymPy tries other arguments while it substitutes and compares; in a scene they are refused later
         if any((argument - clock).is_number for clock in (n, t)):
             lag_of(sp.Basic.__new__(cls, argument))
@@ -199,7 +211,7 @@ class x(_HandleSignal):
 
     unit = "m"
 
-    def fdiff(self, argindex=1):
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
         return v(self.args[0])
 
 
@@ -227,7 +239,7 @@ class delay(sp.Function):
     keeps_unit = True
 
     @classmethod
-    def eval(cls, argument):
+    def eval(cls, argument: Any) -> sp.Expr | None:
         if isinstance(argument, CONDITIONS):
             raise SignalError(f"delay({argument}): a condition has no delay; write hl.delay(hl.when({argument}, 1, 0)) > 0")
         if not isinstance(argument, sp.Expr):
