@@ -56,7 +56,6 @@ from .errors import (
     SignalError,
     UnitsError,
 )
-from .experiments.curves import Psychometric
 from .experiments.displays import compare_displays
 from .experiments.fitts import fitts
 from .experiments.forced_choice import forced_choice
@@ -65,6 +64,7 @@ from .experiments.observers import PersonObserver, SimulatedObserver
 from .experiments.psi import ConstantLevels, Psi
 from .experiments.psychometric import psychometric
 from .experiments.reaching import Load, follow, reach
+from .experiments.response_curves import Psychometric
 from .experiments.shared_control import assistance
 from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
 from .experiments.up_down import UpDown
@@ -103,8 +103,8 @@ from .rendering.predictive import predictive_wall
 from .rendering.velocity_errors import velocity_errors
 from .rendering.wall_laws import wall_law
 from .scene.contact.contact import Contact, friction
-from .scene.contact.contact_laws import impulse, micro_impulse, rigid
 from .scene.contact.felt_impulses import felt_impulse, pulse_time
+from .scene.contact.instant_laws import impulse, micro_impulse, rigid
 from .scene.contact.penalty_laws import hunt_crossley, penalty
 from .scene.laws.adaptive_window import window_velocity
 from .scene.laws.chapter_laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall

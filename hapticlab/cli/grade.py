@@ -14,8 +14,8 @@ from ..grading.formats.gradescope import GRADER_FAILED
 from ..grading.formats.words import clean
 from ..grading.handed_in.roster import read_roster
 from ..grading.handed_in.submission import find_submissions, lab_of, left_aside, read
+from ..grading.kept_apart import check_places, check_written
 from ..grading.pages.pages import check_folder, write_pages
-from ..grading.places import check_places, check_written
 from ..grading.run import run
 from ..grading.sessions.limits import MIB, Limits
 

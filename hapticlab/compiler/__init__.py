@@ -28,7 +28,7 @@ what is written by hand. Nothing is solved in symbols.
 
 **ExplicitForm -> tick.** ``compile_scene`` checks what was asked for (``chosen_method`` reads ``method=``,
 ``options`` the rest). A scene without coordinates needs no other path: the sample is taken (``handle_samples``), its
-leaves get their values (``samples``), the force follows, and that is the tick. Any other is a ``motion_program``, in
+leaves get their values (``leaf_values``), the force follows, and that is the tick. Any other is a ``motion_program``, in
 the order the tick runs: sample, force, outputs, and one period of motion; ``force_timing`` has the force on average.
 Expressions become ``values`` of a ``trace`` by ``expressions`` (``phase`` and ``constants`` look after angles and
 numbers). Each does one of the ``operations``: a record of each says how it is computed, simplified and
@@ -43,7 +43,7 @@ starts, ``structural_zeros`` leaves out what is structurally zero.
   ``constraint_consistency`` says why, ``constraint_assembly`` has walked the configurations. ``enforcement`` does what
   was chosen while it runs: a closed form (``scene.mechanics.loop_solutions`` found it, ``loop_embedding`` traces it),
   multipliers, or Newton's method, all three on the linear algebra of ``multipliers``. What the handle feels of it is
-  bounded by ``port_mass``.
+  bounded by ``felt_mass``.
 - A contact: ``scene_contacts`` is what dynamics knows of it. ``contact_starts`` and ``contact_steps`` have looked at
   the start and the step. Laws with a force are a case of f; of the others, see below.
 
@@ -80,7 +80,7 @@ Fig. 23.7 of the chapter has three processes, each with its model. Here they are
   ``broad_phase``, once, when the scene is compiled. Narrow phase: ``scene.shapes.gaps`` with ``polygon_distance`` and
   ``gjk``, or tracked in ``scene.shapes.curves``. When bodies touch: ``guards`` and ``polynomial_crossing`` of method
   "taylor"; a case of the force at the sample, with other methods.
-- Interaction calculator, on the interaction model (``scene.contact.penalty_laws``, ``scene.contact.contact_laws``).
+- Interaction calculator, on the interaction model (``scene.contact.penalty_laws``, ``scene.contact.instant_laws``).
   ``scene_contacts``, with forces that go into f or into ``complementarity``; impulses, that is new initial conditions,
   by ``impacts``, ``touch`` and ``impulses``, which ask the dynamic model for its mass.
 - Forward dynamics solver, on the dynamic model with its constraints (``scene.mechanics.lagrange``). ``dynamics`` with

@@ -18,11 +18,11 @@ import numpy as np
 
 from ..errors import HapticlabError
 from ..scene.scene import Scene
-from .curves import curves
 from .expression import unit_remark, values
 from .felt import felt
 from .outcome import Outcome
-from .plain import NotPlain, a, plain
+from .plain_values import NotPlain, a, plain
+from .plotted_curves import curves
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

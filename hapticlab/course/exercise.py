@@ -31,7 +31,7 @@ class Case:
         ``solve_for``, see :func:`hapticlab.course.expression.values`, and optionally its ``unit``; empty for a value or a
         choice.
     expected : float, bool, str, sequence of float (nested for more axes), or dict of str to these
-        Of an expression a number for each point; of a plot its curves, see :func:`hapticlab.course.curves.curves`.
+        Of an expression a number for each point; of a plot its curves, see :func:`hapticlab.course.plotted_curves.curves`.
     unit : str
         Of what is expected.
     slips : dict or sequence of (wrong, sentence)

@@ -18,7 +18,7 @@ from sympy.core.function import AppliedUndef
 from ..errors import UnitsError
 from ..scene.notation.symbols import delay, n
 from ..scene.notation.units import agree, dimension, si_name
-from .plain import NotPlain, a
+from .plain_values import NotPlain, a
 
 #: how far an equation may be from a straight line in what it is solved for, of its largest term
 STRAIGHT = 1e-9

@@ -21,7 +21,7 @@ def plot_fault(expected, found, rtol, atol):
     Parameters
     ----------
     expected, found : dict of str to dict
-        As :func:`hapticlab.course.curves.curves` returns them; of what is expected, ``x``, ``y`` and the units count.
+        As :func:`hapticlab.course.plotted_curves.curves` returns them; of what is expected, ``x``, ``y`` and the units count.
     rtol, atol : float
         Of the ordinates: ``atol + rtol*|largest|``; of abscissae point by point ``rtol`` alone.
 

@@ -13,7 +13,7 @@ from ..compiler.tick.compile_scene import compile
 from ..errors import PaddleError, ParameterError
 from ..scene.notation.written import no_scene
 from ..scene.scene import Scene
-from .port_mass import check_port_mass
+from .port_mass_check import check_port_mass
 
 if TYPE_CHECKING:
     from ..records import Telemetry

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from .curves import Psychometric, rise
+from .response_curves import Psychometric, rise
 
 #: lapses looked for, at most: the bound of Wichmann and Hill, who show that a fit without lapses is biased
 MOST_LAPSES = 0.06

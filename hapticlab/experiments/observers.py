@@ -10,7 +10,7 @@ import numpy as np
 
 from ..device.setup.person import Person
 from ..errors import AnalysisError
-from .curves import Psychometric
+from .response_curves import Psychometric
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ..errors import AnalysisError
-from .curves import rise
 from .likelihood import CERTAIN
+from .response_curves import rise
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

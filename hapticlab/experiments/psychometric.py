@@ -12,15 +12,15 @@ from ..arguments import choice
 from ..drawing import COLD, WARM, house_style, new_figure, scale_axis, style_of
 from ..errors import AnalysisError
 from ..statistics import chi_squared
-from .curves import SHAPES, Psychometric
 from .likelihood import MOST_LAPSES, Likelihood
+from .response_curves import SHAPES, Psychometric
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
     from ..annotations import Array
-    from .curves import Shape
+    from .response_curves import Shape
 
 #: samples from which on they say how much less likely than the best an interval's end may be
 ENOUGH = 100

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import AnalysisError
 
 if TYPE_CHECKING:
-    from .curves import Psychometric
+    from .response_curves import Psychometric
 
 #: as many answers in a row, all right at the lowest level or all wrong at the highest, and it ends: 1 in a million by guessing
 ENOUGH = 20

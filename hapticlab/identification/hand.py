@@ -12,7 +12,7 @@ from ..device.hand.hand import Hand
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
 from ..records import Telemetry, check_record
-from .found import Found, told
+from .fit_result import Found, told
 from .hand_motion import hand_positions
 from .paddle import counts_per_metre_of
 from .pushes import FORCE, push_hand

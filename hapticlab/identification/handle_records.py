@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import AnalysisError
 from ..records import Telemetry, check_record
-from .found import told
+from .fit_result import told
 from .paddle_fit import PaddleFit
 from .problem import CONSTANTS, Problem, Trace
 

@@ -12,8 +12,8 @@ from ..device.hand.hand import require
 from ..device.link.messages import MOTOR_LAWS
 from ..device.setup.force_fit import duty_of
 from ..errors import AnalysisError, PaddleError
-from .excitation import LEAD, Excitation, centring, designed
 from .handle_records import HandleRecord, identify
+from .identifying_forces import LEAD, Excitation, centring, designed
 from .paddle_fit import PaddleFit
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
 from ..records import PaddleProfile
-from .found import Found
+from .fit_result import Found
 
 
 @dataclass(frozen=True, eq=False)

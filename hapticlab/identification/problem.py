@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .motion import positions
+from .held_force_motion import positions
 from .scoring import fit, noise_of
 from .start import begin
 

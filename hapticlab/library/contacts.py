@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..scene.contact.contact import Contact, friction
-from ..scene.contact.contact_laws import impulse
+from ..scene.contact.instant_laws import impulse
 from ..scene.mechanics.lagrange import lagrange
 from ..scene.notation.symbols import coordinate, n, parameters, t, x
 from ..scene.scene import Scene

@@ -12,7 +12,7 @@ from ..analysis.impedance.impedance import impedance as impedance_of
 from ..compiler.tick.compile_scene import compile
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
-from .excitation import Excitation, How
+from .impedance_excitation import Excitation, How
 from .measured import MeasuredImpedance
 from .shaking import bearable, most_force, shake_board
 from .signals import lines_of

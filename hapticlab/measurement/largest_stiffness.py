@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from ..device.live import named_values
+from ..device.live_parameters import named_values
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
 from ..limits.limit import Limit, whole_and_fraction

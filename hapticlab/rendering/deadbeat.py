@@ -12,9 +12,9 @@ from ..errors import SceneError
 from ..scene.notation.symbols import delay, n, signal, when
 from .digital import digital_force, motor_limit
 from .flight import Flight
-from .lines import Lines, number
 from .model import WallModel
 from .predictive import half_sample_force
+from .scene_lines import Lines, number
 
 if TYPE_CHECKING:
     from ..device.hand.hand import Hand

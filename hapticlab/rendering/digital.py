@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ..scene.notation.symbols import when
-from .lines import Lines, number
 from .model import WallModel
+from .scene_lines import Lines, number
 
 if TYPE_CHECKING:
     from ..device.hand.hand import Hand

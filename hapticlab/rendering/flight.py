@@ -12,7 +12,7 @@ import sympy as sp
 
 from ..errors import AnalysisError
 from ..scene.notation.symbols import when
-from .lines import number
+from .scene_lines import number
 
 #: how far a mode may move in a period, as the norm of its rates: half a swing, so that none returns unseen
 FASTEST = math.pi

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Literal
 
 from ..scene.notation.symbols import when
 from .digital import motor_limit
-from .lines import Lines, number
 from .model import WallModel
+from .scene_lines import Lines, number
 
 if TYPE_CHECKING:
     from ..device.hand.hand import Hand

@@ -13,9 +13,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from .. import __version__
+from .all_checks import walk
 from .outcome import ATTENTION, FAULT
 from .table import CHECKS
-from .walk import walk
 
 ABOUT = (
     "What `hapticlab doctor --self-test` found on this computer. Send this file to the person who asked for it, or attach it to "

@@ -17,8 +17,8 @@ from ..device.simulated.stepping import with_grip
 from ..errors import EngineMissingError, PaddleError
 from ..records import Telemetry
 from ..scene.scene import check_scene
-from .front import front as canvas
-from .plain import front as plain
+from .browser_view import front as canvas
+from .plain_view import front as plain
 from .session import Session
 
 if TYPE_CHECKING:

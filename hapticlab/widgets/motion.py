@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from ..device.live import named_values
+from ..device.live_parameters import named_values
 from ..records import FLAGS
 from .pace import Pace
-from .recorder import Recorder, Replay
 from .traces import RECENT, Traces
+from .view_recorder import Recorder, Replay
 
 #: a hand goes no faster to where the pointer is [m/s], and follows it so late [s]: a pointer's steps would shake it
 FASTEST, FOLLOWS = 1.0, 0.025

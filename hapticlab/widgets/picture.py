@@ -11,7 +11,7 @@ from ..drawing import COLD
 from ..errors import AnalysisError
 from ..library.entries import CATALOGUE
 from ..library.sketch import HANDLE, INK, ring
-from .recording import RecordingAxes
+from .picture_items import RecordingAxes
 
 #: how far the handle goes to either side [m]
 REACH = 0.05
@@ -90,7 +90,7 @@ class MovingPicture:
 
         Returns
         -------
-        tuple of items, as :mod:`hapticlab.widgets.recording` lists them; coordinates in metres
+        tuple of items, as :mod:`hapticlab.widgets.picture_items` lists them; coordinates in metres
         """
         items = self._mechanism(values).items
         return items + self._marks(values, items)

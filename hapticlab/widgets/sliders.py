@@ -1,8 +1,8 @@
 """Sliders above a picture that follows them; the only module that opens ipywidgets."""
 
 from ..errors import AnalysisError, EngineMissingError
-from .front import around
-from .latest import Latest
+from .browser_view import around
+from .latest_value import Latest
 
 STEPS = 60
 

@@ -6,14 +6,14 @@ from dataclasses import asdict, replace
 from pathlib import Path
 
 from ..device.board.serial_paddle import is_refusal
-from ..device.live import named_values
+from ..device.live_parameters import named_values
 from ..errors import HapticlabError, PaddleError
 from .frame import COLUMNS, Frame
 from .motion import Motion
 from .picture import moving_picture
 from .sources import help_words, source_of
 from .spans import spans
-from .words import NOTICED, chatter_words, contact_words, late_words
+from .status_words import NOTICED, chatter_words, contact_words, late_words
 
 #: pictures a second of a scene that rests
 RESTING = 4.0

@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 
 import hapticlab as hl
-from hapticlab.identification.excitation import Excitation
+from hapticlab.identification.identifying_forces import Excitation
 from hapticlab.identification.problem import Problem, Trace
 
 TRAVEL = 0.1  # m: no guard cuts a force here

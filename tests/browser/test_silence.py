@@ -3,7 +3,7 @@
 import pytest
 from lab import REPOSITORY
 
-from hapticlab.widgets.front import SCRIPTS
+from hapticlab.widgets.browser_view import SCRIPTS
 from hapticlab.widgets.session import PRESSES
 
 ABOUT = {

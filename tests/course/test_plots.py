@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 
 import hapticlab as hl
 from hapticlab.course.check import checked
-from hapticlab.course.curves import curves
 from hapticlab.course.exercise import Case, Exercise
 from hapticlab.course.match import plot_fault
-from hapticlab.course.plain import NotPlain
+from hapticlab.course.plain_values import NotPlain
+from hapticlab.course.plotted_curves import curves
 
 TIME = np.linspace(0, 0.2, 21)
 #: by hand: half a period of 2.5 Hz, sampled at every tenth of it and not where an answer samples it

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hapticlab.errors import AnalysisError
-from hapticlab.experiments.curves import Psychometric
 from hapticlab.experiments.psi import ConstantLevels, Psi
+from hapticlab.experiments.response_curves import Psychometric
 
 
 def small():

@@ -8,9 +8,9 @@ from scipy.optimize import minimize, minimize_scalar
 from scipy.special import ndtr
 
 from hapticlab.errors import AnalysisError
-from hapticlab.experiments.curves import Psychometric
 from hapticlab.experiments.likelihood import Likelihood
 from hapticlab.experiments.psychometric import psychometric
+from hapticlab.experiments.response_curves import Psychometric
 
 LEVELS = np.geomspace(0.03, 0.8, 8)
 

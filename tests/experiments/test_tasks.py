@@ -9,14 +9,7 @@ import pytest
 from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError
-from hapticlab.experiments.tasks import (
-    damping_task,
-    felt_damping,
-    felt_roughness,
-    felt_stiffness,
-    stiffness_task,
-    texture_task,
-)
+from hapticlab.experiments.tasks import damping_task, felt_damping, felt_roughness, felt_stiffness, stiffness_task, texture_task
 from hapticlab.records import Telemetry
 
 PADDLE = SimulatedPaddle(m=0.05, b=0.1, T=1e-3)

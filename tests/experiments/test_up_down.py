@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hapticlab.errors import AnalysisError
-from hapticlab.experiments.curves import Psychometric
+from hapticlab.experiments.response_curves import Psychometric
 from hapticlab.experiments.up_down import UpDown
 
 

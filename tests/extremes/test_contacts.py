@@ -10,7 +10,7 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab import t, x
 from hapticlab.compiler.engines.engine import load
-from hapticlab.device.live import checked
+from hapticlab.device.live_parameters import checked
 from hapticlab.errors import HapticlabError, ProgramError, SceneError
 
 G = 9.81

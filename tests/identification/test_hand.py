@@ -8,8 +8,8 @@ import pytest
 import hapticlab as hl
 from hapticlab.compiler.boards.cost import cost
 from hapticlab.errors import AnalysisError
-from hapticlab.identification.excitation import Excitation
 from hapticlab.identification.hand import _motion, _start, _windows
+from hapticlab.identification.identifying_forces import Excitation
 from hapticlab.identification.paddle import after
 from hapticlab.identification.scoring import fit
 

@@ -7,7 +7,7 @@ import pytest
 
 import hapticlab as hl
 from hapticlab.errors import AnalysisError
-from hapticlab.identification.excitation import Excitation
+from hapticlab.identification.identifying_forces import Excitation
 
 COUNTS = 1 / 12.8e-6
 PADDLE = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, coulomb=0.05, delay=0.7e-3, noise=6e-6, counts_per_metre=COUNTS)

@@ -7,8 +7,8 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab.device.board.settings import changed, simulated
 from hapticlab.device.link.serial_ports import open_port
-from hapticlab.measurement.excitation import Excitation
 from hapticlab.measurement.impedance import measured_impedance
+from hapticlab.measurement.impedance_excitation import Excitation
 from hapticlab.measurement.signals import lines_of
 
 pytest.importorskip("llvmlite")  # some ten thousand ticks

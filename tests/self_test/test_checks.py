@@ -12,14 +12,22 @@ import pytest
 
 from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import EngineMissingError
-from hapticlab.self_test import computer, places, running, teaching
+from hapticlab.self_test import computer, file_checks, running, teaching
 from hapticlab.self_test.outcome import Attention, Fault
 from hapticlab.self_test.table import CHECKS
 
 
 @pytest.mark.parametrize(
     "check",
-    [computer.packages, computer.clocks, computer.ports, places.line_endings, places.paths, places.labs, running.engines],
+    [
+        computer.packages,
+        computer.clocks,
+        computer.ports,
+        file_checks.line_endings,
+        file_checks.paths,
+        file_checks.labs,
+        running.engines,
+    ],
 )
 def test_a_check_holds_here(check, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -114,10 +122,10 @@ def test_a_scene_that_rests_elsewhere_is_a_fault(tmp_path, monkeypatch):
 
 
 def test_line_endings_that_change_a_scene_are_a_fault(tmp_path, monkeypatch):
-    real = places.load_scene
-    monkeypatch.setattr(places, "load_scene", lambda path: running.replace(real(path), duration=len(path.read_bytes())))
+    real = file_checks.load_scene
+    monkeypatch.setattr(file_checks, "load_scene", lambda path: running.replace(real(path), duration=len(path.read_bytes())))
     with pytest.raises(Fault, match="the scenes differ"):
-        places.line_endings(tmp_path)
+        file_checks.line_endings(tmp_path)
 
 
 def refusing(condition):
@@ -136,28 +144,28 @@ def refusing(condition):
 
 
 def test_names_and_lengths_that_a_system_refuses_are_told(tmp_path, monkeypatch):
-    monkeypatch.setattr(places, "main", refusing(lambda path: not path.isascii()))
+    monkeypatch.setattr(file_checks, "main", refusing(lambda path: not path.isascii()))
     with pytest.raises(Fault, match="spaces and other alphabets: OSError"):
-        places.paths(tmp_path / "a")
-    monkeypatch.setattr(places, "main", refusing(lambda path: len(path) > places.MAX_PATH))
+        file_checks.paths(tmp_path / "a")
+    monkeypatch.setattr(file_checks, "main", refusing(lambda path: len(path) > file_checks.MAX_PATH))
     with pytest.raises(Fault, match="in a path of .* File name too long"):
-        places.paths(tmp_path / "b")
-    monkeypatch.setattr(places.sys, "platform", "win32")
+        file_checks.paths(tmp_path / "b")
+    monkeypatch.setattr(file_checks.sys, "platform", "win32")
     with pytest.raises(Attention, match="As Windows is set up here"):
-        places.paths(tmp_path / "c")
+        file_checks.paths(tmp_path / "c")
 
 
 def test_labs_that_lose_what_was_changed_are_a_fault(tmp_path, monkeypatch):
-    real = places.copy_labs
+    real = file_checks.copy_labs
 
     def overwriting(folder):
         for path in folder.rglob("*.ipynb"):
             path.unlink()
         return real(folder)
 
-    monkeypatch.setattr(places, "copy_labs", overwriting)
+    monkeypatch.setattr(file_checks, "copy_labs", overwriting)
     with pytest.raises(Fault, match="a changed notebook was not kept"):
-        places.labs(tmp_path)
+        file_checks.labs(tmp_path)
 
 
 # ---------------------------------------------------------------- the computer

@@ -10,13 +10,13 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab.device.simulated import stepping
+from hapticlab.widgets.browser_view import _canvas
 from hapticlab.widgets.frame import Frame
-from hapticlab.widgets.front import _canvas
 from hapticlab.widgets.pace import LONGEST
 from hapticlab.widgets.session import SILENCE, Session
 from hapticlab.widgets.stage import NOTE
+from hapticlab.widgets.status_words import chatter_words
 from hapticlab.widgets.traces import Traces
-from hapticlab.widgets.words import chatter_words
 
 T = 1e-3
 PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.hand("pinch"))
@@ -622,7 +622,7 @@ def test_what_a_front_end_is_told_once():
 
 def test_plain_widgets_show_and_say_the_same():
     widgets = pytest.importorskip("ipywidgets")
-    from hapticlab.widgets.plain import PlainFront
+    from hapticlab.widgets.plain_view import PlainFront
 
     stage = Stage()
     front = PlainFront(widgets, stage.session)

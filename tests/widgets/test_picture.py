@@ -8,7 +8,7 @@ from hapticlab.drawing import new_figure
 from hapticlab.library.entries import CATALOGUE
 from hapticlab.library.sketch import HANDLE
 from hapticlab.widgets.picture import COLD, moving_picture
-from hapticlab.widgets.recording import RecordingAxes, plain
+from hapticlab.widgets.picture_items import RecordingAxes, plain
 
 STATE = {"x": 0.012, "F": 1.5, "intent": 0.02}
 

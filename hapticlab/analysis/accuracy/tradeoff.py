@@ -21,7 +21,7 @@ from ...device.progress import progress_bar
 from ...errors import AnalysisError
 from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
-from ..sweeps.process_copies import shared_out
+from ..sweeps.forked_workers import shared_out
 from .handle_motions import HandleMotion, handle_motions
 from .reference import references
 from .tradeoff_choice import MARGIN, Asked, chosen

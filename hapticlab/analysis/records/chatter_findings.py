@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from ...records import Telemetry
-from .record_plots import plot_chatter
+from .finding_plots import plot_chatter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import AnalysisError
 from ...limits.limit import whole_and_fraction
 from ...records import check_record
-from .record_plots import plot_energy
+from .finding_plots import plot_energy
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

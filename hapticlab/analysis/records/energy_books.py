@@ -19,7 +19,7 @@ from ...scene.mechanics.lagrange import Mechanics
 from ...scene.notation.derivative import Partial, Rate
 from ...scene.notation.symbols import acceleration, coordinate, lag_of, t, v, x
 from .energy import energy
-from .record_plots import plot_balance
+from .finding_plots import plot_balance
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -2,5 +2,5 @@
 
 In: the constraints of an ``ExplicitForm``. Out: accelerations and states that keep them.
 Read ``enforcement_choice`` (which way, and why), ``multipliers`` (the linear algebra all three share),
-``loop_embedding`` (closed forms), ``enforcement`` (what runs), and ``port_mass`` (what the handle feels of it).
+``loop_embedding`` (closed forms), ``enforcement`` (what runs), and ``felt_mass`` (what the handle feels of it).
 """

@@ -11,23 +11,7 @@ import numpy as np
 from ...errors import ProgramError
 from .operations import ELEMENTARY, OPERATIONS
 from .program import LEAVES, NUMPY_TYPE, REAL_TYPES, Block, Instruction
-from .values import (
-    Value,
-    atan,
-    cast,
-    clip,
-    cos,
-    equal,
-    exp,
-    floor,
-    log,
-    maximum,
-    minimum,
-    select,
-    sin,
-    sqrt,
-    tanh,
-)
+from .values import Value, atan, cast, clip, cos, equal, exp, floor, log, maximum, minimum, select, sin, sqrt, tanh
 
 __all__ = [
     "Builder", "Value", "atan", "cast", "clip", "computed", "cos", "equal", "exp", "expand", "floor", "log", "maximum", "minimum",

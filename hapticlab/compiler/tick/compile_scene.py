@@ -17,8 +17,8 @@ from ..methods.chosen_method import chosen_method
 from ..methods.force_timing import FORCE_AT, averaged
 from ..prune.excluded_modes import excluded, folded, rests_on
 from .handle_samples import HOLDS, VELOCITIES
+from .leaf_values import REAL_OF, at_sample, at_start, outputs_at_sample, real, tick_of, unknown_reaction
 from .motion_program import motion_program
-from .samples import REAL_OF, at_sample, at_start, outputs_at_sample, real, tick_of, unknown_reaction
 from .source import Options, Source
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from ..algebra.expressions import Translator
 from ..algebra.first_sample import numbers
 from ..algebra.linear_solve import solve
 from ..constraints.enforcement_choice import enforcement
-from ..constraints.port_mass import port_mass
+from ..constraints.felt_mass import port_mass
 from ..contacts.scene_contacts import InstantContacts, Touching
 from ..events.switched_linear import linear_between
 from ..events.taylor_method import Taylor, advance
@@ -27,7 +27,7 @@ from ..methods.implicit_damping import stiffened
 from ..methods.multistep import advanced
 from ..prune.constraint_lengths import check_lengths
 from ..prune.mass_matrix import is_definite, start_of
-from .samples import Tick, unknown_reaction
+from .leaf_values import Tick, unknown_reaction
 
 
 class Moment(NamedTuple):

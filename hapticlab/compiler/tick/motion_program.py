@@ -25,9 +25,9 @@ from ..prune.constraint_lengths import notes_on
 from ..prune.excluded_modes import within
 from ..prune.mass_matrix import start_of
 from .dynamics import Dynamics, Equations, Moment, Period, one_period
+from .leaf_values import Tick, at_sample, at_start, outputs_at_sample, real, tick_of, unknown_reaction
 from .live_limits import kept_stable
 from .live_stability import SteppedMotion
-from .samples import Tick, at_sample, at_start, outputs_at_sample, real, tick_of, unknown_reaction
 
 
 @dataclass(frozen=True)

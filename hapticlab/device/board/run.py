@@ -13,7 +13,7 @@ from ...compiler.ir.program import Program
 from ...errors import PaddleError
 from ...records import Telemetry
 from ..link.messages import FAULTS, SAMPLE_FLAGS, row_of
-from ..live import in_portions, named_values, send
+from ..live_parameters import in_portions, named_values, send
 from .upload import upload
 
 #: part of the link that samples may take; state and requests need the rest

@@ -17,7 +17,7 @@ from ..hand.hand import require
 from ..link.exchange import Exchange
 from ..link.messages import OPTIONS, SENSORS, STATES, TARGETS
 from ..link.serial_ports import open_port
-from ..live import check_margin, checked, send
+from ..live_parameters import check_margin, checked, send
 from ..paddle import Paddle
 from ..progress import progress_bar
 from .greeting import cleared, explain_silence, introduction, say_hello, what_happened

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from ...errors import HapticlabError
 from ..link.messages import STATES
-from ..live import checked, in_portions, named_values
+from ..live_parameters import checked, in_portions, named_values
 from .greeting import explain_silence
 from .homing import state_flag
 from .run import decimation, fault_words

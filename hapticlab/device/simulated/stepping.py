@@ -7,7 +7,7 @@ import numpy as np
 from ...errors import PaddleError
 from ...records import Telemetry
 from ..hand.hand_presets import hand as named_hand
-from ..live import MOST_AT_ONCE, checked, in_portions, named_values
+from ..live_parameters import MOST_AT_ONCE, checked, in_portions, named_values
 from .closed_loop import link, load_linked
 from .not_finite import not_finite
 
@@ -105,7 +105,7 @@ class Stepping:
         return {"t": t, **found}
 
     def check(self, **values):
-        """Return values in SI, or say why a parameter cannot have one; see :func:`hapticlab.device.live.checked`."""
+        """Return values in SI, or say why a parameter cannot have one; see :func:`hapticlab.device.live_parameters.checked`."""
         if len(values) <= MOST_AT_ONCE:
             return checked(self.program, values)
         before, numbers = self.program, {}

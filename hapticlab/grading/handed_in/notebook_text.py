@@ -4,7 +4,7 @@ import codecs
 import json
 
 from ...errors import CourseError
-from ..inside.lines import statements
+from ..inside.source_lines import statements
 
 #: lists and dicts take more memory than they have bytes
 MOST_CONTAINERS, MOST_CODE, MOST_CELLS = 500_000, 4_000_000, 2000

@@ -13,7 +13,7 @@ import sys
 import types
 from contextlib import suppress
 
-from .lines import ASSIGNED_MAGIC, MAGIC, logical_lines
+from .source_lines import ASSIGNED_MAGIC, MAGIC, logical_lines
 
 CELL_MAGIC = re.compile(r"(?:[ \t]*(?:#[^\n]*)?\n)*%%(\w+)[^\n]*")
 #: cell magics whose cell is Python that runs

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from .cells import run_cell, runnable
-from .reads import STATE, Reads, reads_of
-from .solid import BUILTINS, is_solid
+from .statement_effects import STATE, Reads, reads_of
+from .unchanging_names import BUILTINS, is_solid
 
 #: of more the whole notebook runs at once: telling them apart would take longer
 MOST = 1000

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...course.curves import UNIT
+from ...course.plotted_curves import UNIT
 from ...drawing import axis_label
 from .page_figures import POINT, SAMPLE, bounded, chart
 from .page_text import pair
@@ -64,7 +64,7 @@ def panels(name, got, expected, depth=0):
 
 
 def is_curve(value):
-    """Whether a value is a curve, as :func:`hapticlab.course.curves.curves` gives it."""
+    """Whether a value is a curve, as :func:`hapticlab.course.plotted_curves.curves` gives it."""
     if not isinstance(value, dict):
         return False
     x, y = numbers(value.get("x"), 1), numbers(value.get("y"), 1)

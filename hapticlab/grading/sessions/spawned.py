@@ -19,7 +19,7 @@ from dataclasses import asdict
 from .asking import FRAME, Replies, SessionEnded
 from .preloaded import ENVIRONMENT, FIND_PACKAGE, FLAGS, PACKAGE
 
-PROGRAM = FIND_PACKAGE + "from hapticlab.grading.inside.alone import main; main()"
+PROGRAM = FIND_PACKAGE + "from hapticlab.grading.inside.standalone_session import main; main()"
 #: without these no interpreter starts on Windows
 KEPT = ("SYSTEMROOT", "WINDIR", "TEMP", "PATH")
 #: how long an interpreter may take to start [s]

@@ -14,7 +14,7 @@ from ..notation.derivative import Partial, Rate
 from ..notation.symbols import lag_of, t, v, x
 from ..notation.units import dimension_of, si_name
 from ..notation.written import check_name, expression
-from . import contact_laws, penalty_laws  # noqa: F401 (law_names needs every law there is)
+from . import instant_laws, penalty_laws  # noqa: F401 (law_names needs every law there is)
 from .contact_law import OPPOSING, Allowed, ContactLaw, check_constant, constant, gap_units, law_names, written_out
 
 

@@ -12,7 +12,7 @@ from hapticlab.analysis.pictures.shape_outlines import Outline
 from hapticlab.drawing import new_figure
 from hapticlab.library.entries import CATALOGUE
 from hapticlab.library.sketch import BODY, HANDLE, Sketch
-from hapticlab.widgets.recording import RecordingAxes
+from hapticlab.widgets.picture_items import RecordingAxes
 
 #: parameters that a picture does not name: constants of nature, losses, starts
 UNNAMED = {"c", "B", "theta_0", "A", "k", "k_3", "k_w", "e", "F_s", "F_c", "alpha", "g", "p", "Omega", "P", "F_0", "w"}

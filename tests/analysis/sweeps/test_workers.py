@@ -265,7 +265,7 @@ def test_workers_import_nothing_from_the_working_folder(tmp_path):
     for name in ("random", "pickle", "socket"):
         (folder / f"{name}.py").write_text("raise SystemExit('imported from the working folder')")
     script.write_text(
-        "import operator\nfrom hapticlab.analysis.sweeps.process_copies import shared_out\n"
+        "import operator\nfrom hapticlab.analysis.sweeps.forked_workers import shared_out\n"
         "from hapticlab.analysis.sweeps.workers import spread\n"
         "if __name__ == '__main__':\n"
         "    print(sorted(spread(abs, [-1, -2], 2, threads=False)))\n"

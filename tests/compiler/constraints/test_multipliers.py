@@ -8,13 +8,7 @@ from scipy.integrate import solve_ivp
 
 import hapticlab as hl
 from hapticlab.compiler.algebra import expressions
-from hapticlab.compiler.constraints.multipliers import (
-    check_feedback,
-    embedded,
-    largest_feedback,
-    multipliers,
-    stiffened,
-)
+from hapticlab.compiler.constraints.multipliers import check_feedback, embedded, largest_feedback, multipliers, stiffened
 from hapticlab.compiler.engines.engine import load
 from hapticlab.compiler.events.taylor_method import Taylor
 from hapticlab.compiler.ir.trace import Builder

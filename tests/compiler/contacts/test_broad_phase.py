@@ -13,7 +13,7 @@ from hapticlab.compiler.contacts.broad_phase import Contacts, _sweep, check_apar
 from hapticlab.compiler.engines import engine
 from hapticlab.compiler.events.taylor_method import Taylor
 from hapticlab.errors import SceneError
-from hapticlab.scene.contact.contact_laws import impulse, rigid
+from hapticlab.scene.contact.instant_laws import impulse, rigid
 from hapticlab.scene.contact.penalty_laws import penalty
 from hapticlab.scene.mechanics.lagrange import lagrange
 from hapticlab.scene.notation.amount import Amount

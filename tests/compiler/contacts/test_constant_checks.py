@@ -7,7 +7,7 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import n, t, x
-from hapticlab.device.live import checked
+from hapticlab.device.live_parameters import checked
 from hapticlab.errors import ParameterError, SceneError
 
 m, g = hl.parameters("m g", units="kg m/s^2", values=(0.1, 9.81))

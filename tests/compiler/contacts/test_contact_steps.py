@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 import hapticlab as hl
 from hapticlab import t
 from hapticlab.compiler.contacts.contact_steps import check_contact_steps
-from hapticlab.device.live import checked
+from hapticlab.device.live_parameters import checked
 from hapticlab.errors import ParameterError, SceneError
 from hapticlab.scene.contact.contact import Contact
 from hapticlab.scene.contact.penalty_laws import hunt_crossley, penalty

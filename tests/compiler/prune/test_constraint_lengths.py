@@ -7,7 +7,7 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab import n, t, x
 from hapticlab.compiler.engines.engine import load
-from hapticlab.device.live import checked
+from hapticlab.device.live_parameters import checked
 from hapticlab.errors import ParameterError, SceneError
 
 X = hl.coordinate("X", unit="m")

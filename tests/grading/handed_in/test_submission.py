@@ -20,7 +20,7 @@ from hapticlab.grading.handed_in import folders
 from hapticlab.grading.handed_in.naming import is_lab
 from hapticlab.grading.handed_in.submission import find_submissions, lab_of, read
 from hapticlab.grading.inside.cells import run_cell
-from hapticlab.grading.inside.lines import statements
+from hapticlab.grading.inside.source_lines import statements
 
 
 @pytest.mark.parametrize("packed", [False, True], ids=["folder", "zip"])

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from hapticlab.grading.inside.cells import Quiet, fresh_names, run_cell, runnable
-from hapticlab.grading.inside.lines import logical_lines, statements
+from hapticlab.grading.inside.source_lines import logical_lines, statements
 
 # cells, and the names that they bind
 CELLS = {

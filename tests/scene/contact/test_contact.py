@@ -11,7 +11,7 @@ from hapticlab import n, t, v, x
 from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import SceneError, SignalError, UnitsError
 from hapticlab.scene.contact.contact import Contact, friction
-from hapticlab.scene.contact.contact_laws import impulse, micro_impulse, rigid
+from hapticlab.scene.contact.instant_laws import impulse, micro_impulse, rigid
 from hapticlab.scene.contact.penalty_laws import hunt_crossley, penalty
 
 Q = hl.coordinate("q", unit="m")

@@ -10,8 +10,8 @@ from hapticlab import n, t, x
 from hapticlab.compiler.engines.engine import load
 from hapticlab.errors import SceneError
 from hapticlab.scene.contact.contact import Contact
-from hapticlab.scene.contact.contact_laws import impulse
 from hapticlab.scene.contact.felt_impulses import felt_impulse, pulse_time
+from hapticlab.scene.contact.instant_laws import impulse
 from hapticlab.scene.contact.penalty_laws import penalty
 
 Q = hl.coordinate("q", unit="m")

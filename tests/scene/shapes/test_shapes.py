@@ -14,17 +14,7 @@ from hapticlab.scene.notation.amount import Amount, amount, number_of
 from hapticlab.scene.notation.units import unit_of
 from hapticlab.scene.shapes.gaps import closest
 from hapticlab.scene.shapes.polygons import convex_parts, outline, width
-from hapticlab.scene.shapes.shapes import (
-    Box,
-    Capsule,
-    Circle,
-    HalfPlane,
-    Polygon,
-    Segment,
-    generalized,
-    ground,
-    replacement,
-)
+from hapticlab.scene.shapes.shapes import Box, Capsule, Circle, HalfPlane, Polygon, Segment, generalized, ground, replacement
 
 t = hl.t
 q = hl.coordinate("q", unit="m")

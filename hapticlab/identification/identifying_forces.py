@@ -15,7 +15,7 @@ from ..scene.laws.chapter_laws import virtual_damper
 from ..scene.notation.parameters import parameters
 from ..scene.notation.symbols import n, when, x
 from ..scene.scene import Scene
-from .motion import positions
+from .held_force_motion import positions
 
 if TYPE_CHECKING:
     from ..annotations import Array

@@ -2,7 +2,7 @@
 
 import threading
 
-from hapticlab.widgets.latest import Latest
+from hapticlab.widgets.latest_value import Latest
 
 
 def test_values_in_between_are_dropped():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hapticlab.errors import AnalysisError
-from hapticlab.experiments.curves import SHAPES, Psychometric, rise
+from hapticlab.experiments.response_curves import SHAPES, Psychometric, rise
 
 
 def two_alternatives(d_prime):

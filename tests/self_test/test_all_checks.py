@@ -11,9 +11,9 @@ import pytest
 import hapticlab
 from hapticlab.cli import main
 from hapticlab.self_test import report
+from hapticlab.self_test.all_checks import alone, walk
 from hapticlab.self_test.outcome import ATTENTION, FAULT, OK, Outcome
 from hapticlab.self_test.table import Check
-from hapticlab.self_test.walk import alone, walk
 
 BROKEN = """
 import os, sys

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import UnitsError
 from ..scene.notation.units import dimension, quantity, si_name
-from .plain import NotPlain, a, numbers
+from .plain_values import NotPlain, a, numbers
 
 #: more curves than any exercise asks for: one of very many would fit whatever is expected
 MOST_CURVES = 16

@@ -6,8 +6,8 @@ import pytest
 import hapticlab as hl
 from hapticlab.compiler.boards.cost import cost
 from hapticlab.compiler.engines.engine import load
-from hapticlab.measurement.excitation import Excitation
 from hapticlab.measurement.guard import guarded
+from hapticlab.measurement.impedance_excitation import Excitation
 
 T = 1e-3
 

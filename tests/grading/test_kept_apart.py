@@ -14,7 +14,7 @@ from submitted_files import fill
 
 from hapticlab.cli.main import main
 from hapticlab.course.labs import labs_folder
-from hapticlab.grading.places import is_inside
+from hapticlab.grading.kept_apart import is_inside
 
 ROOT = Path(__file__).parents[2]
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..device.live import named_values
+from ..device.live_parameters import named_values
 
 #: a recording ends by itself after so many samples
 LONGEST = 600_000

@@ -9,7 +9,7 @@ import sympy as sp
 import hapticlab as hl
 from hapticlab import t, v, x
 from hapticlab.compiler.tick.live_limits import part_of_the_way
-from hapticlab.device.live import check_margin, checked
+from hapticlab.device.live_parameters import check_margin, checked
 from hapticlab.errors import PaddleError, ParameterError
 from hapticlab.scene.frozen import Frozen
 

@@ -6,9 +6,9 @@ from scipy.integrate import solve_ivp
 
 from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
-from hapticlab.identification.excitation import Excitation, designed
 from hapticlab.identification.hand_motion import hand_positions
-from hapticlab.identification.motion import positions
+from hapticlab.identification.held_force_motion import positions
+from hapticlab.identification.identifying_forces import Excitation, designed
 
 T = 1e-3
 BODY = {"m": 0.03, "b": 0.1, "coulomb": 0.05}

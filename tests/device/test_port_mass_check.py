@@ -7,7 +7,7 @@ import pytest
 
 import hapticlab as hl
 from hapticlab import T, n, v
-from hapticlab.device.port_mass import largest_port_mass, largest_root
+from hapticlab.device.port_mass_check import largest_port_mass, largest_root
 
 M = 0.05
 

@@ -8,8 +8,8 @@ import pytest
 
 pytest.importorskip("anywidget")
 
+from hapticlab.widgets.browser_view import BROWSER, KINDS, SCRIPTS, Listener, Speaker, front
 from hapticlab.widgets.frame import Frame
-from hapticlab.widgets.front import BROWSER, KINDS, SCRIPTS, Listener, Speaker, front
 from hapticlab.widgets.session import PRESSES
 
 PICTURE = (

@@ -35,7 +35,7 @@ def largest_port_mass(*, m, T, delay=0.0, velocity="backward_difference"):
 
     Examples
     --------
-    >>> from hapticlab.device.port_mass import largest_port_mass
+    >>> from hapticlab.device.port_mass_check import largest_port_mass
     >>> round(largest_port_mass(m=0.05, T=1e-3), 12)
     0.1
     >>> largest_port_mass(m=0.05, T=1e-3, velocity="measured")
