@@ -16,23 +16,12 @@ import hapticlab as hl
 EXAMPLES, PACKAGE = Path(__file__).parent / "examples", Path(hl.__file__).parent
 # a container or a callable that does not say of what
 BARE = re.compile(r"\b(tuple|dict|list|set|callable|Callable|Mapping|Sequence|Iterable|Iterator)\b(?!\[)")
-#: public names by room, some of whose signatures or fields say no types yet
-NOT_YET = {
-    "scene": """
-        Box Capsule Circle Contact Curve HalfPlane Mechanics Polygon Segment VelocityEstimate closest device_image
-        friction gap ground hunt_crossley impulse kalman_velocity micro_impulse penalty replacement rigid track v x
-    """,
-}
 
 
 def public():
     """Public names and what they stand for, those of hl.library among them."""
     for module, prefix in ((hl, ""), (hl.library, "library.")):
         yield from ((prefix + name, getattr(module, name)) for name in module.__all__)
-
-
-def room(thing):
-    return thing.__module__.split(".")[1]
 
 
 def members(thing):
@@ -68,9 +57,7 @@ def untyped(thing):
 
 def test_every_public_signature_says_its_types():
     faults = {name: found for name, thing in public() if (found := list(untyped(thing)))}
-    allowed = {name for names in NOT_YET.values() for name in names.split()}
-    assert not {name: found for name, found in faults.items() if name not in allowed}
-    assert allowed <= set(faults), f"take these out of NOT_YET: {sorted(allowed - set(faults))}"
+    assert faults == {}
 
 
 def test_an_untyped_signature_is_found():

@@ -1,8 +1,10 @@
 """Contacts of a scene: a gap, the law that acts where it closes, and Coulomb friction."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import sympy as sp
 
@@ -17,11 +19,16 @@ from ..notation.written import check_name, expression
 from . import instant_laws, penalty_laws  # noqa: F401 (law_names needs every law there is)
 from .contact_law import OPPOSING, Allowed, ContactLaw, check_constant, constant, gap_units, law_names, written_out
 
+if TYPE_CHECKING:
+    from typing import NoReturn
+
 
 class _InASum:
     """What is no expression, and says so where it is added to one."""
 
-    def _refuse(self, other=None):
+    name: str
+
+    def _refuse(self, other: Any = None) -> NoReturn:
         raise SceneError(f"{self.name} is a {type(self).__name__}, not a force; its force is an expression, {self.name}.force")
 
     __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __neg__ = _refuse
@@ -64,13 +71,13 @@ class Contact(_InASum):
     """
 
     gap: sp.Expr
-    law: object
+    law: Any
     name: str = "contact"
     slip: sp.Expr = sp.S.Zero
 
     __repr__ = written_out
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_name(self.name, "contact")
         _check_is_distance(self.gap, self.name)
         gap, slip = expression(self.gap, f"{self.name}: gap"), expression(self.slip, f"{self.name}: slip")
@@ -96,49 +103,49 @@ class Contact(_InASum):
                 raise SceneError(f"{self.name}: a {type(self.law).__name__} has no friction of its own; {cure}")
 
     @property
-    def is_force(self):
+    def is_force(self) -> bool:
         """True for a law that is an expression of the state; False for one of impulses and reactions."""
         return self.law.is_force
 
     @property
-    def is_located(self):
+    def is_located(self) -> bool:
         """True for a law whose events a method must locate inside its step."""
         return self.law.is_located
 
     @property
-    def constants(self):
+    def constants(self) -> Any:
         """The expressions of the law, and the slip."""
         return (self.slip, *(part for part in vars(self.law).values() if isinstance(part, sp.Expr)))
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         """Unit of the force: N, or N*m where the gap is an angle."""
         return gap_units(self.gap, self.name)[0]
 
     @property
-    def force(self):
+    def force(self) -> sp.Expr:
         """The normal force [N], an expression."""
         if not self.is_force:
             return reaction(self.name, self.unit)
         return when(self.gap <= 0, self.law.force(self.gap, Rate(self.gap)))
 
     @property
-    def impulse(self):
+    def impulse(self) -> sp.Expr:
         """The sum of the normal impulses since the last sample [N s], found while the scene runs; zero of a force law."""
         return self._met("impulse", f"{self.unit}*s")
 
     @property
-    def impact_loss(self):
+    def impact_loss(self) -> sp.Expr:
         """The energy that impacts have dissipated so far [J]; zero of a force law."""
         return self._met("impact_loss", "J")
 
     @property
-    def impact_work(self):
+    def impact_work(self) -> sp.Expr:
         """The work that handle and moving surfaces have done in impacts so far [J]; zero of a force law."""
         return self._met("impact_work", "J")
 
     @property
-    def rub(self):
+    def rub(self) -> sp.Expr:
         """The tangential force of an impact [N]: a leaf along which a program pushes in the instant, else zero."""
         return sp.Function(f"{self.name}_rub", real=True, unit=self.unit, role="rub", contact=self.name)(t)
 
@@ -149,11 +156,11 @@ class Contact(_InASum):
         return sp.Function(f"{self.name}_{role}", real=True, unit=unit, role=role, contact=self.name)(t)
 
     @property
-    def felt(self):
+    def felt(self) -> Any:
         """The force on the environment [N] where the gap holds the handle x(t): -force times dgap/dx; not its impulses."""
         return -self.generalized_force(x(t))
 
-    def generalized_force(self, q):
+    def generalized_force(self, q: sp.Expr) -> sp.Expr:
         """Generalized force of the contact along a coordinate q, or the handle x(t): force times dgap/dq.
 
         With friction in its impacts, the leaf ``rub`` along dslip/dq' too, zero at all other times.
@@ -207,7 +214,7 @@ class friction(_InASum):
     }
     __repr__ = written_out
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_name(self.name, "friction")
         for part in ("slip", "F_c", "F_s", "stick_speed"):
             given = getattr(self, part)
@@ -233,33 +240,33 @@ class friction(_InASum):
             check_constant(self.stick_speed, si_name(dimension_of(self.slip, self.name)), f"{self.name}, stick_speed")
 
     @property
-    def is_force(self):
+    def is_force(self) -> bool:
         """True with a ``stick_speed``: then the force is an expression of the state."""
         return self.stick_speed is not None
 
     @property
-    def is_located(self):
+    def is_located(self) -> bool:
         """True without a ``stick_speed``: sticking and breaking away are events."""
         return not self.is_force
 
     @property
-    def constants(self):
+    def constants(self) -> Any:
         """The expressions of the law."""
         return tuple(part for part in (self.F_c, self.F_s, self.stick_speed) if part is not None)
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         """Unit of the force: N, or N*m where the slip is an angular velocity."""
         return "N" if si_name(dimension_of(self.slip, self.name)) == "m/s" else "N*m"
 
     @property
-    def force(self):
+    def force(self) -> sp.Expr:
         """The friction force [N] against the slip, an expression."""
         if not self.is_force:
             return reaction(self.name, self.unit, "F")
         return self.F_c * sp.Max(-1, sp.Min(1, self.slip / self.stick_speed))
 
-    def generalized_force(self, q):
+    def generalized_force(self, q: sp.Expr) -> sp.Expr:
         """Generalized force of the friction along a coordinate q, or the handle x(t): -force times dslip/dq'."""
         return -self.force * Partial(self.slip, v(t) if q == x(t) else q.diff(t))
 

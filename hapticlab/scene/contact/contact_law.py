@@ -3,9 +3,11 @@
 A law is one class of ``penalty_laws`` or ``contact_laws``, a frozen dataclass below :class:`ContactLaw`.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, fields
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import sympy as sp
 
@@ -54,9 +56,9 @@ class ContactLaw:
     #: the duration of a contact depends on the speed of its approach
     speed_matters = False
     #: constant -> Allowed, at the values bound and at all that live parameters may be set to
-    allowed: ClassVar[dict] = {}
+    allowed: ClassVar[dict[str, Allowed]] = {}
 
-    def check(self, gap, where):
+    def check(self, gap: sp.Expr, where: str) -> None:
         """Refuse constants whose units do not belong to the gap."""
         raise NotImplementedError
 
@@ -68,7 +70,7 @@ def law_names(chosen=lambda law: True):
     return f"{', '.join(first)} or {last}" if first else last
 
 
-def written_out(law):
+def written_out(law: Any) -> str:
     """A law, contact or friction as it is written, its numbers in few digits."""
     values = {f.name: getattr(law, f.name) for f in fields(law)}
     text = {k: sp.sstr(value, full_prec=False) if isinstance(value, sp.Basic) else repr(value) for k, value in values.items()}

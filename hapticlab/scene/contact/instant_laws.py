@@ -1,5 +1,7 @@
 """Contact laws that act in an instant, or as the reaction that keeps a gap closed; chapter section 23.5.2."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from typing import ClassVar
@@ -65,7 +67,7 @@ class impulse(ContactLaw):
     }
     __repr__ = written_out
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _take_restitution(self)
         take(self, mu="friction coefficient")
         choice(
@@ -75,7 +77,7 @@ class impulse(ContactLaw):
             speed = _positive(self.rest_speed, "rest_speed", "m/s", "the speed below which a contact rests")
             object.__setattr__(self, "rest_speed", speed)
 
-    def check(self, gap, where):
+    def check(self, gap: sp.Expr, where: str) -> None:
         """Refuse constants with a unit of their own."""
         agree_with(self.e, "1", f"{where}, e")
         agree_with(self.mu, "1", f"{where}, mu")
@@ -114,12 +116,12 @@ class micro_impulse(ContactLaw):
     }
     __repr__ = written_out
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _take_restitution(self)
         length = _positive(self.envelope, "envelope", "m", "the distance at which bodies count as in contact")
         object.__setattr__(self, "envelope", length)
 
-    def check(self, gap, where):
+    def check(self, gap: sp.Expr, where: str) -> None:
         """Refuse constants with a unit of their own."""
         agree_with(self.e, "1", f"{where}, e")
         agree([self.envelope, gap], f"{where}, envelope")
@@ -158,10 +160,10 @@ class rigid(ContactLaw):
     #: it leaves the order to the other contacts of the scene
     order = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         take(self, mu="friction coefficient")
 
-    def check(self, gap, where):
+    def check(self, gap: sp.Expr, where: str) -> None:
         """Refuse constants with a unit of their own."""
         agree_with(self.mu, "1", f"{where}, mu")
 

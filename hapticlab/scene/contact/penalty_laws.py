@@ -1,8 +1,10 @@
 """Contact laws that are forces over a time: the penalty spring and damper, and Hunt and Crossley's; chapter section 23.5.2."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import sympy as sp
 
@@ -44,26 +46,26 @@ class penalty(ContactLaw):
     allowed: ClassVar = {"k": PASSIVE, "b": PASSIVE}
     __repr__ = written_out
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         take(self, k="stiffness", b="damping")
 
-    def check(self, gap, where):
+    def check(self, gap: sp.Expr, where: str) -> None:
         """Refuse constants whose units do not belong to the gap."""
         _, stiffness, damping, _ = gap_units(gap, where)
         check_constant(self.k, stiffness, f"{where}, k")
         check_constant(self.b, damping, f"{where}, b")
 
-    def force(self, gap, rate):
+    def force(self, gap: sp.Expr, rate: sp.Expr) -> sp.Expr:
         """Normal force of a gap, <= 0, that changes at a rate."""
         # a spring alone never pulls while the gap is closed, and a case less is half the work of method="taylor"
         return sp.Max(0, -self.k * gap - self.b * rate) if self.b != 0 else -self.k * gap
 
-    def stored(self, gap):
+    def stored(self, gap: sp.Expr) -> sp.Expr:
         """Energy in the spring."""
         return self.k * sp.Max(0, -gap) ** 2 / 2
 
     @staticmethod
-    def duration(k, mass, speed=None):
+    def duration(k: float, mass: float, speed: Any = None) -> Any:
         """Duration of a contact [s]: half a period, pi sqrt(m/k), whatever the speed.
 
         ``mass`` is the effective one of the contact, 1/W. A damper below critical makes it somewhat longer or shorter.
@@ -103,14 +105,14 @@ class hunt_crossley(ContactLaw):
     allowed: ClassVar = {"k": PASSIVE, "c": PASSIVE}
     __repr__ = written_out
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         take(self, k="stiffness", c="damping factor")
         exponent = fixed(expression(self.exponent, "exponent"))
         if not (exponent.is_Rational and exponent >= 1):
             raise SceneError(f"exponent = {self.exponent}; needs a fraction n >= 1, such as 3/2 for spheres (Hertz)")
         object.__setattr__(self, "exponent", exponent)
 
-    def check(self, gap, where):
+    def check(self, gap: sp.Expr, where: str) -> None:
         """Refuse constants whose units do not belong to the gap."""
         force, _, _, speed = gap_units(gap, where)
         if self.k.is_number:
@@ -120,12 +122,12 @@ class hunt_crossley(ContactLaw):
         agree_with(self.k * gap**self.exponent, force, f"{where}, k gap^{self.exponent}")
         agree_with(1 / self.c if self.c != 0 else 0, speed, f"{where}, 1/c")
 
-    def force(self, gap, rate):
+    def force(self, gap: sp.Expr, rate: sp.Expr) -> sp.Expr:
         """Normal force of a gap that changes at a rate."""
         # the factor alone is held at zero: where it is negative the contact would pull
         return self.k * sp.Max(0, -gap) ** self.exponent * sp.Max(0, 1 - self.c * rate)
 
-    def duration(self, k, mass, speed):
+    def duration(self, k: float, mass: float, speed: float) -> Any:
         """Duration of an undamped contact at a speed [s]: 2 d/v int_0^1 dx/sqrt(1 - x^(n+1)), deepest at d.
 
         For n = 3/2, 2.943 d/v (Hertz; Johnson, *Contact Mechanics*, 1985, section 11.4): the faster the shorter.
@@ -142,12 +144,12 @@ class hunt_crossley(ContactLaw):
         whole = math.sqrt(math.pi) / power * math.gamma(1 / power) / math.gamma(1 / power + 0.5)
         return 2 * whole * deepest / speed
 
-    def stored(self, gap):
+    def stored(self, gap: sp.Expr) -> sp.Expr:
         """Energy in the spring."""
         return self.k * sp.Max(0, -gap) ** (self.exponent + 1) / (self.exponent + 1)
 
     @staticmethod
-    def restitution(cv):
+    def restitution(cv: Any) -> Any:
         """Restitution e for c times the approach speed v, exact: with y = c e v, y + ln(1 - y) = ln(1 + c v) - c v.
 
         From m v dv/dd = -k d^n (1 + c v), which separates: the energy of the entry and of the exit reach the same

@@ -18,7 +18,7 @@ kalman             T (alpha/beta - 1/2)       beta D/T
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
@@ -56,10 +56,10 @@ class VelocityEstimate:
     """
 
     velocity: sp.Expr
-    eom: tuple = ()
+    eom: tuple[sp.Eq, ...] = ()
     name: str = "velocity"
-    cheaper: tuple = ()
-    _transfer: tuple = field(default=(), repr=False)
+    cheaper: tuple[VelocityEstimate, ...] = ()
+    _transfer: tuple[Any, ...] = field(default=(), repr=False)
 
     @property
     def is_linear(self) -> bool:

@@ -1,5 +1,7 @@
 """Velocity by a Kalman filter of position and velocity, with gains that are steady or run in from the start."""
 
+from typing import Any
+
 import sympy as sp
 
 from ..notation.amount import amount
@@ -8,7 +10,9 @@ from ..notation.symbols import n, signal, when, x
 from .estimators import VelocityEstimate, backward_velocity
 
 
-def kalman_velocity(*, acceleration, noise, steady=True, speed=1.0, name="kalman"):
+def kalman_velocity(
+    *, acceleration: Any, noise: Any, steady: bool = True, speed: Any = 1.0, name: str = "kalman"
+) -> VelocityEstimate:
     """Kalman filter of position and velocity under white acceleration, held over each period.
 
     With the tracking index L = acceleration T^2/noise the steady gains are closed forms, Kalata, *The tracking index*,
@@ -43,12 +47,12 @@ def kalman_velocity(*, acceleration, noise, steady=True, speed=1.0, name="kalman
     """
     sigma = amount(acceleration, "m/s^2", "acceleration", "the handle", above=0), amount(noise, "m", "noise", "a sensor", above=0)
     index = sigma[0] * T**2 / sigma[1]
-    cheaper = () if steady else (kalman_velocity(acceleration=acceleration, noise=noise, name=name),)
-    cheaper += (backward_velocity(),)
+    plainer = [] if steady else [kalman_velocity(acceleration=acceleration, noise=noise, name=name)]
+    cheaper = (*plainer, backward_velocity())
     place, rate = signal(f"{name}_x", unit="m", initial=x(n)), signal(f"{name}_v", unit="m/s", instead=cheaper)
     if steady:
         lead = signal(f"{name}_lead", unit="1")
-        eom = (sp.Eq(lead(n), _lead(index)),)
+        eom: tuple[sp.Eq, ...] = (sp.Eq(lead(n), _lead(index)),)
         alpha, beta = _steady_gains(lead(n))
     else:
         start = (amount(speed, "m/s", "speed", "the handle", above=0) * T / sigma[1]) ** 2

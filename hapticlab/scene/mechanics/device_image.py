@@ -1,6 +1,9 @@
 """The device image driven by a constraint (section 23.5.3, last paragraph): a body that moves with the handle, no coupler."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Any
 
 import sympy as sp
 
@@ -29,7 +32,7 @@ class DeviceImage:
     force: sp.Expr
 
 
-def device_image(constraint, *, name="image"):
+def device_image(constraint: Any, *, name: str = "image") -> Any:
     """Impose the motion of the handle on the model, instead of coupling the two by a spring and damper.
 
     What is felt is the reaction, exact in position: no spring gives way. It needs the handle's acceleration, which is

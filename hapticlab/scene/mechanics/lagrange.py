@@ -57,20 +57,20 @@ class Mechanics:
         What the symbols of a model of ``sympy.physics.mechanics`` became.
     """
 
-    coordinates: tuple
-    orders: tuple
-    M: tuple
-    f: tuple
-    written: tuple
-    constraints: tuple = ()
-    contacts: tuple = ()
+    coordinates: tuple[sp.Expr, ...]
+    orders: tuple[int, ...]
+    M: tuple[tuple[sp.Expr, ...], ...]
+    f: tuple[sp.Expr, ...]
+    written: tuple[sp.Expr, ...]
+    constraints: tuple[sp.Expr, ...] = ()
+    contacts: tuple[Any, ...] = ()
     lagrangian: sp.Expr = None
     enforce: str = "auto"
     alpha: float | None = None
     dissipation: sp.Expr = sp.S.Zero
-    forces: tuple = ()
-    notes: tuple = ()
-    names: tuple = ()
+    forces: tuple[tuple[sp.Expr, sp.Expr], ...] = ()
+    notes: tuple[str, ...] = ()
+    names: tuple[tuple[Any, sp.Expr], ...] = ()
 
     def __post_init__(self) -> None:
         choice("enforce", self.enforce, ENFORCE, error=SceneError)

@@ -100,8 +100,8 @@ class _Sampled:
     """One value a sample: it changes with the clock, so SymPy must not take its rate for zero."""
 
     @property
-    def free_symbols(self):
-        symbols = super().free_symbols
+    def free_symbols(self) -> set[Any]:
+        symbols = super().free_symbols  # type: ignore[misc]
         return symbols | {t} if n in symbols else symbols
 
     def _eval_derivative(self, s):

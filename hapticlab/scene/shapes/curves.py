@@ -9,7 +9,10 @@ Differentiated along the motion, the two say how u and w must move: two linear e
 scene. What integration loses is taken back by -rate times the two residuals (Baumgarte).
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import sympy as sp
@@ -24,6 +27,11 @@ from ..notation.symbols import T, coordinate, n, t
 from ..notation.written import expression
 from .plane import dot, less
 from .shapes import Circle, Placed, Shape
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from .shapes import Placed
 
 #: points of each curve that are looked at for where the search starts
 GRID = 128
@@ -53,7 +61,7 @@ class Curve(Shape):
 
     tracked = True
 
-    def __init__(self, points, period=2 * sp.pi):
+    def __init__(self, points: Callable[..., Any], period: Any = 2 * sp.pi) -> None:
         self.u = Parameter("(u)", "1")
         try:
             self.x, self.y = (expression(p, "a point of the curve") for p in points(self.u))
@@ -63,10 +71,10 @@ class Curve(Shape):
             agree_with(p, "m", "a point of the curve")
         self.period = float(period)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"Curve({self.x}, {self.y})"
 
-    def derivative(self, u, order):
+    def derivative(self, u: Any, order: int) -> Any:
         """The point (x, y) [m] at u, or its derivative of an order."""
         return tuple(sp.diff(p, self.u, order).xreplace({self.u: u}) for p in (self.x, self.y))
 
@@ -111,7 +119,15 @@ class Tracked:
         return self.force(law) * Partial(self.gap, q)
 
 
-def track(a, b, *, names=("u", "w"), rate=None, start=None, values=None):
+def track(
+    a: Placed,
+    b: Placed,
+    *,
+    names: Sequence[str] = ("u", "w"),
+    rate: Any = None,
+    start: Any = None,
+    values: Mapping[str, float] | None = None,
+) -> Any:
     """Track where two curves are closest, or a curve and a point.
 
     Parameters

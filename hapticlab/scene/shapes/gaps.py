@@ -5,7 +5,10 @@ Discs, half-planes, boxes and bars that meet a disc have closed forms, written o
 beforehand, and differentiated with the closest points held on their bodies.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Any
 
 import sympy as sp
 from sympy.core.symbol import Str
@@ -52,7 +55,7 @@ class Closest:
         return (normal_force * n_x - friction * n_y, normal_force * n_y + friction * n_x), self.point
 
 
-def gap(a, b, *, method="faces"):
+def gap(a: Placed, b: Placed, *, method: str = "faces") -> sp.Expr:
     """Signed distance [m] of two placed shapes: positive apart, 0 in touch, negative in overlap.
 
     Its depth in overlap is the shortest way apart. Of a nonconvex polygon it is the least over its convex parts, so it
@@ -84,7 +87,7 @@ def gap(a, b, *, method="faces"):
     return closest(a, b, method=method).gap
 
 
-def closest(a, b, *, method="faces"):
+def closest(a: Placed, b: Placed, *, method: str = "faces") -> Any:
     """The :class:`Closest` of two placed shapes: gap, normal and point; see :func:`gap`.
 
     Examples

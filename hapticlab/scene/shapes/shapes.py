@@ -3,8 +3,11 @@
 A shape lies in a frame of its own; ``shape.at(x=, y=, angle=)`` places that frame, by expressions of coordinates.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -13,6 +16,12 @@ from ..notation.amount import amount, take_lengths
 from ..notation.derivative import Partial, rates_of
 from ..notation.units import in_si
 from .polygons import convex_parts, outline, width
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from typing import Any
+
+    from ...annotations import Term
 
 ZERO = sp.S.Zero
 #: the outline of a half-plane is its edge
@@ -25,12 +34,11 @@ class Shape:
     A core is a tuple of corners (x, y) [m], counter-clockwise: one corner for a disc, two for a bar with round ends.
     """
 
-    cores = (POINT,)
     radius = ZERO
     #: its closest points are found by following them, not by a formula
     tracked = False
 
-    def at(self, *, x=0, y=0, angle=0, name=None):
+    def at(self, *, x: Term = 0, y: Term = 0, angle: Term = 0, name: str | None = None) -> Placed:
         """Place the shape.
 
         Parameters
@@ -53,7 +61,12 @@ class Shape:
         return Placed(self, x, y, amount(angle, "rad", f"angle of {name}"), name)
 
     @property
-    def thickness(self):
+    def cores(self) -> tuple[Any, ...]:
+        """Its convex cores, one for each convex part."""
+        return (POINT,)
+
+    @property
+    def thickness(self) -> sp.Expr:
         """Least width [m] of the shape, which a body may not cross between two samples."""
         return 2 * self.radius
 
@@ -76,7 +89,7 @@ class Circle(Shape):
 
     radius: sp.Expr
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         take_lengths(self, zero="radius")
 
 
@@ -94,16 +107,16 @@ class Box(Shape):
     width: sp.Expr
     height: sp.Expr
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         take_lengths(self, "width", "height")
 
     @property
-    def cores(self):
+    def cores(self) -> tuple[Any, ...]:
         w, h = self.width / 2, self.height / 2
         return (((-w, -h), (w, -h), (w, h), (-w, h)),)
 
     @property
-    def thickness(self):
+    def thickness(self) -> sp.Expr:
         return sp.Min(self.width, self.height, evaluate=False)
 
 
@@ -122,11 +135,11 @@ class Capsule(Shape):
     length: sp.Expr
     radius: sp.Expr
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         take_lengths(self, "length", "radius")
 
     @property
-    def cores(self):
+    def cores(self) -> tuple[Any, ...]:
         return (((-self.length / 2, ZERO), (self.length / 2, ZERO)),)
 
 
@@ -146,7 +159,7 @@ class Segment(Shape):
 
     length: sp.Expr
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         take_lengths(self, "length")
 
     cores = Capsule.cores
@@ -176,10 +189,10 @@ class Polygon(Shape):
     [4, 4]
     """
 
-    points: tuple
+    points: tuple[Any, ...]
     radius: sp.Expr = 0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         try:
             points = [tuple(in_si(c, "m", f"corner {k}") for c in p) for k, p in enumerate(self.points, 1)]
         except TypeError:
@@ -191,12 +204,12 @@ class Polygon(Shape):
         take_lengths(self, zero="radius")
 
     @property
-    def cores(self):
-        return tuple(tuple((amount(u, "m", "x"), amount(v, "m", "y")) for u, v in part) for part in self.parts)
+    def cores(self) -> tuple[Any, ...]:
+        return tuple(tuple((amount(u, "m", "x"), amount(v, "m", "y")) for u, v in part) for part in self.parts)  # type: ignore[attr-defined]
 
     @property
-    def thickness(self):
-        return amount(min(map(width, self.parts)), "m", "width") + 2 * self.radius
+    def thickness(self) -> sp.Expr:
+        return amount(min(map(width, self.parts)), "m", "width") + 2 * self.radius  # type: ignore[attr-defined]
 
 
 @dataclass(frozen=True)
@@ -212,11 +225,11 @@ class HalfPlane(Shape):
     """
 
     @property
-    def thickness(self):
+    def thickness(self) -> sp.Expr:
         return sp.oo
 
 
-def ground(y=0, *, name="ground"):
+def ground(y: Term = 0, *, name: str = "ground") -> Placed:
     """The floor below a height y [m]: a :class:`HalfPlane` in its place.
 
     Examples
@@ -262,7 +275,7 @@ class Placed:
         return _rate(self.angle)
 
 
-def replacement(body, forces):
+def replacement(body: Placed, forces: Iterable[Any]) -> Any:
     """The force and couple that replace several forces on a body; chapter section 23.5.2.
 
     Parameters
