@@ -127,7 +127,7 @@ def spacing(array):
 
 
 def axis_label(name, unit):
-    """Return what to multiply SI values by, and the label of their axis with the unit it shows."""
+    """The factor of SI values on an axis, and its label with the unit it shows."""
     scale, shown = SHOWN.get(unit, (1.0, unit))
     return scale, f"{NAMES.get(name, name)} [{shown}]"
 
@@ -140,7 +140,7 @@ def png(figure):
 
 
 def bundle(figure, alt):
-    """Return what a notebook keeps of a figure, and its metadata: the picture and the text that stands for it.
+    """A notebook's bundle of a figure, and its metadata: the picture and the text that stands for it.
 
     JupyterLab shows the HTML, whose image carries the text; a PDF takes the PNG.
     """
@@ -157,7 +157,7 @@ def forget(figure):
 
 
 def describe(figure):
-    """Return what a figure shows, in words: titles, axes with their ranges, and the course of each line.
+    """Alternative text of a figure: titles, axes with their ranges, and the course of each line.
 
     Examples
     --------
@@ -179,7 +179,7 @@ def describe(figure):
 
 
 def _panel(axes):
-    """Return what one pair of axes shows."""
+    """Alternative text of one pair of axes."""
     title = _sentence(axes.get_title())
     if not axes.axison:
         named = dict.fromkeys(_plain(text.get_text()) for text in axes.texts if text.get_text())
@@ -222,7 +222,7 @@ def _ends(line, side):
 
 
 def _course(axes, line):
-    """Return how one line runs; nothing for what only guides the eye."""
+    """The course of one line in words; nothing for what only guides the eye."""
     name, (xs, ys) = _plain(line.get_label()), (np.asarray(part, float) for part in line.get_data())
     guide = name.startswith("_")
     if line.get_transform() != axes.transData:  # drawn right across: a level, or a place
@@ -266,7 +266,7 @@ def _bars(axes, container):
 
 
 def _legend(legends, panels):
-    """Return what legends name beyond what the lines were told by."""
+    """Names in legends beyond those that the lines were told by."""
     told = {_plain(line.get_label()) for axes in panels for line in axes.lines}
     words = [_plain(text.get_text()) for legend in legends if legend for text in legend.get_texts()]
     words = [word for word in dict.fromkeys(words) if word not in told]

@@ -74,7 +74,7 @@ def check_stable(program, numbers):
 
 
 def _growth_now(program, steps):
-    """Return how much a step makes grow with the values that are set: what grew before may grow less."""
+    """Largest growth in a step with the values that are set: what grew before may grow less."""
     now = named_values(program)
     known = steps.known_at(now)
     growth = steps.growth(now) if known else 0.0

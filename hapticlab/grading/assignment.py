@@ -55,12 +55,12 @@ class Assignment:
         return {one.name: counted_cases(one, hidden) for one in self.lab.exercises if one.judged}
 
     def files(self) -> dict[str, bytes]:
-        """Return what lies beside the notebook while it runs, name to bytes: the lab's data, never what judges it."""
+        """Files beside the notebook while it runs, name to bytes: the lab's data, never what judges it."""
         paths = files_of(self.folder.path)
         return {name: path.read_bytes() for name, path in paths.items() if path.suffix != ".ipynb" and path.name != CHECKS}
 
     def slips(self, exercise, given):
-        """Return what typical slips give in a case, as far as they can be worked out from the solution."""
+        """Answers that typical slips give in a case, as far as they can be worked out from the solution."""
         if self.answers is None or self.personal or exercise.kind not in ("expression", "scene"):
             return ()
         public = [case.given for case in exercise.cases]

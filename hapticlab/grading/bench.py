@@ -41,7 +41,7 @@ class Reply:
 
 
 def as_json(task: Task, last: bool) -> str:
-    """Return what a worker is told of a task."""
+    """The message that tells a worker its task."""
     return json.dumps({**asdict(task.submission), "last": last})
 
 

@@ -100,7 +100,7 @@ def _done(client, futures):
 
 
 def _reply(future):
-    """Return what came of a task; where its workers were killed again and again, that."""
+    """The outcome of a task; where its workers were killed again and again, that."""
     return Reply(died=True) if future.exception() is not None else Reply.from_json(future.result())
 
 

@@ -293,5 +293,5 @@ class _Work:
 
 
 def _said(found):
-    """Return what an answer gave, to be compared: NaN is NaN."""
+    """The value of an answer, to be compared: NaN is NaN."""
     return repr(found and (found.ended, [(outcome.value, outcome.problem) for outcome in found.outcomes]))

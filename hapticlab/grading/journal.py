@@ -104,7 +104,7 @@ def _entry(line):
 
 
 def key_of(submission, assignment, limits, sandbox):
-    """Return what a report is found again by: all that it depends on.
+    """The key of a report: all that it depends on.
 
     Parameters
     ----------

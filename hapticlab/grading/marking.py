@@ -106,7 +106,7 @@ def _verdict(exercise, case, outcome):
 
 
 def _wrong(exercise, cases, outcomes, verdicts, slips):
-    """Return what a report says of the first wrong case."""
+    """The report on the first wrong case."""
     if not any(outcome.answered for outcome in outcomes):
         return {"words": "no answer", "hint": exercise.hint}
     first = next(number for number, one in enumerate(verdicts) if not one.right)
@@ -119,7 +119,7 @@ def _wrong(exercise, cases, outcomes, verdicts, slips):
 
 
 def _noted(exercise, outcomes):
-    """Return what a report says of what carries no points: the text, and what it lacks."""
+    """The report on a part that carries no points: the text, and what it lacks."""
     outcome = next(iter(outcomes), None)
     if outcome is None or not outcome.answered:
         return {"words": "no answer"}
@@ -132,6 +132,6 @@ def _noted(exercise, outcomes):
 
 
 def _printed(cases, outcomes, most):
-    """Return what was printed in public cases; in the others it would tell their givens."""
+    """Output in public cases; in the others it would tell their givens."""
     shown = (outcome.printed for (_, public), outcome in zip(cases, outcomes, strict=False) if public)
     return text_of("".join(shown), most)

@@ -26,7 +26,7 @@ GRACE = 60.0
 
 
 def processor_seconds():
-    """Return what this process and those it waited for took of processors [s]."""
+    """Processor time of this process and those it waited for [s]."""
     times = os.times()
     return times.user + times.system + times.children_user + times.children_system
 
@@ -140,7 +140,7 @@ class _Worker:
             self.connection.send_bytes(as_json(task, last).encode())
 
     def reply(self):
-        """Return what came of its task."""
+        """The outcome of its task."""
         if not self.connection.poll():
             return Reply(died=True)
         try:

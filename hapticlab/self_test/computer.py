@@ -35,7 +35,7 @@ def packages(folder):
 
 
 def clocks(folder):
-    """Return what the clock resolves, and how late a sleep of 1 ms ends."""
+    """Resolution of the clock, and how late a sleep of 1 ms ends."""
     steps, late = [], []
     for _ in range(200):
         begun = now = time.perf_counter()
@@ -67,7 +67,7 @@ def consoles(folder):
 
 
 def ports(folder):
-    """Return how many serial ports are listed, and the known boards among them; never the names of other ports."""
+    """Number of serial ports, and the known boards among them; never the names of other ports."""
     found = available_ports()
     known = ", ".join(port.known for port in found if port.known) or "no known board"
     return f"{len(found)} listed: {known}"

@@ -52,7 +52,7 @@ def front(session):
 
 
 def about(session):
-    """Return what a view has to know of a session before its first frame."""
+    """Facts that a view needs of a session before its first frame."""
     told = session.description()
     if told["kind"] == "board":
         told["help"] += " So it does where nobody sees this browser tab for 3 s."
@@ -157,7 +157,7 @@ class Age:
 
 
 def take_apart(picture):
-    """Return what the items of a picture are, each with its number of points; and all points, shape (points, 2)."""
+    """Items of a picture, each with its number of points; and all points, shape (points, 2)."""
     shape, points = [], []
     for kind, *rest in picture:
         if kind == "text":

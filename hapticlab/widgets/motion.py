@@ -158,7 +158,7 @@ class Motion:
         return self.traces.add(samples)
 
     def values(self, wanted=None):
-        """Return what a picture is drawn from: the last sample, the parameters, and where the hand is wanted now [m]."""
+        """Values that a picture is drawn from: the last sample, the parameters, and where the hand is wanted now [m]."""
         parameters = self._replay.parameters if self._replay is not None else named_values(self.source.program)
         led = wanted is not None and self.source.kind == "simulated" and self.held and not self.replaying
         pointer = {"intent": wanted} if led else {}

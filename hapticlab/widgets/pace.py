@@ -60,7 +60,7 @@ class Pace:
             self._cost += 0.2 * (seconds / ticks - self._cost)
 
     def behind(self, now):
-        """Return how much of the clock was dropped within the last second [s]."""
+        """Time of the clock that was dropped within the last second [s]."""
         while self._dropped and self._dropped[0][0] < now - TOLD:
             self._dropped.popleft()
         return sum(late for _, late in self._dropped)

@@ -21,7 +21,7 @@ HAND = COLD
 
 
 def moving_picture(scene, paddle=None, picture=None):
-    """Return what draws a scene in motion, in items for a canvas.
+    """A function that draws a scene in motion, in items for a canvas.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class MovingPicture:
         return axes
 
     def _marks(self, values, items):
-        """Return what the hand means to do and what the motor does, at the handle."""
+        """Marks of the hand's intent and of the motor's force, at the handle."""
         handle = _handle(items)
         if handle is None:
             return ()

@@ -140,7 +140,7 @@ class Session:
             return self.stage.words() if self._views else f"Not on view, so nothing moves. {self.stage.note}".rstrip()
 
     def recorded(self):
-        """Return what was recorded last, or None."""
+        """The last record, or None."""
         with self._lock:
             return self.motion.recorded()
 

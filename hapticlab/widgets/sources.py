@@ -8,7 +8,7 @@ from ..errors import PaddleError
 
 
 def source_of(paddle, scene, **options):
-    """Return what gives samples of a scene on a paddle."""
+    """A source of samples of a scene on a paddle."""
     kinds = {SimulatedPaddle: Stepping, SerialPaddle: Streaming}
     for kind, source in kinds.items():
         if isinstance(paddle, kind):

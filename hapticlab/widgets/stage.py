@@ -60,7 +60,7 @@ class Stage:
         return named_values(self.source.program)
 
     def description(self):
-        """Return what a front end is told once: a dict of what JSON can carry.
+        """Facts that a front end is told once: a dict of what JSON can carry.
 
         ``title``; ``kind``, "simulated" or "board"; ``parameters``, a list of {name, unit, value, low, high, limit_words};
         ``traces``, a list of {name, label, unit_shown, scale}, where shown = scale * value in SI, in the order of a frame's

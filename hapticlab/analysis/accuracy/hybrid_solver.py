@@ -73,7 +73,7 @@ class Field:
         return out[start : start + self.guards]
 
     def surfaces(self, t, y, mode):
-        """Return what is positive while the mode lasts: one number per guard, one per reaction."""
+        """Numbers that are positive while the mode lasts: one per guard, one per reaction."""
         out = self(t, y, mode)
         kinds = np.array([kind == "floor" for kind in self.instant.kinds], bool)
         u = self.measures(out)

@@ -280,7 +280,7 @@ class Tradeoff:
         return replace(self, table=Table(new if one is row else one for one in self.table))
 
     def explain(self, row: Row) -> str:
-        """Return what a row says, in sentences."""
+        """The row in sentences."""
         instance("row", row, Row, "a row, such as found.explain(found.table[0]) or found.front('pc')[0]")
         return explained(row, self.table, self.bench.every)
 

@@ -40,7 +40,7 @@ class Configuration:
     notes: tuple[str, ...] = ()
 
     def facts(self) -> dict[str, Any]:
-        """Return what was chosen as a dictionary for JSON."""
+        """The choice as a dictionary for JSON."""
         row = self.row
         told = {name: getattr(row, name) for name in ("err_max", "err_hold", "load")}
         told |= {"tolerance": self.tolerance, "notes": list(self.notes)}
@@ -77,7 +77,7 @@ class NotFeasible:
         return False
 
     def facts(self) -> dict[str, Any]:
-        """Return what is missing as a dictionary for JSON."""
+        """The shortfall as a dictionary for JSON."""
         return {"feasible": False, "nearest": self.nearest and self.nearest.name, "relax": list(self.relax)}
 
     def __str__(self) -> str:

@@ -177,7 +177,7 @@ class Table(tuple):
 
 
 def _cells(row):
-    """Return what a line shows of a row, by the head of its column."""
+    """The cells of a row as a line shows them, by the head of the column."""
     order = f"{_plain(row.order_seen, '.1f')}/{_plain(row.order_claimed, 'g')}"
     cells = (
         "none needed" if row.static else row.method, f"{row.T * 1e3:g}", *_step_of(row), row.force_at,

@@ -134,7 +134,7 @@ def _floor(group):
 
 
 def _beaten(setting, group):
-    """Return which cheaper method already has the error of the hold itself, or an empty text.
+    """The cheaper method that already has the error of the hold itself, or an empty text.
 
     That is the error of an exact method, or one that methods of two different orders agree on.
     """

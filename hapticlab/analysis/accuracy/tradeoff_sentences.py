@@ -9,7 +9,7 @@ SAME = 1.2
 
 
 def explained(row, others, every):
-    """Return what a row says, one sentence a line.
+    """The row in words, one sentence a line.
 
     Parameters
     ----------

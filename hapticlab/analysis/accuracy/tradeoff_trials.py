@@ -81,7 +81,7 @@ def tried(bench, settings, again=False):
 
 
 def _pair(one, other):
-    """Return what says that two settings that differ in the hold are one program, for every period."""
+    """A function that tells whether two settings that differ in the hold are one program, for every period."""
     return one.method, one.substeps, one.force_at, one.precision, one.hold, other.hold
 
 
@@ -133,7 +133,7 @@ def of_program(program, samples):
 
 
 def sensor_floor(bench, key):
-    """Return which part of the greatest force an encoder alone makes of error, with a period and a hold.
+    """The error that an encoder alone makes, as a part of the greatest force, with a period and a hold.
 
     It is the difference of two runs of one program without error of its own steps, on true positions and on counted
     ones; nan where such a program is refused, or goes wild.

@@ -75,7 +75,7 @@ def around(p, band):
 
 
 def outside(f, poles):
-    """Return which frequencies are not beside a pole of an infinite impedance."""
+    """Mask of the frequencies that are not beside a pole of an infinite impedance."""
     near = np.abs(np.subtract.outer(f, poles)) < BESIDE * np.asarray(poles) * (1 - 1e-9)
     return ~near.any(axis=1)
 

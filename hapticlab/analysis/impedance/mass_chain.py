@@ -83,7 +83,7 @@ def network_of(scene, port):
 
 
 def _row_scale(scene, port):
-    """Return what each equation is to be multiplied by for the matrices to be symmetric: how it was written is free."""
+    """Factors of the equations that make the matrices symmetric: how an equation was written is free."""
     N, rows, right = len(port.coordinates), [], []
     for inside, by_handle, on_handle in ((port.M, None, None), (port.C, port.Cx, port.CF), (port.K, port.Kx, port.KF)):
         for i in range(N):

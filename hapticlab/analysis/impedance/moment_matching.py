@@ -49,7 +49,7 @@ def candidates(stiffness, damping, count):
 
 
 def soar(stiffness, damping, count):
-    """Return how handle and masses move in the first terms of z(s)/x(s) in powers of s, shape (1 + N, found).
+    """Motion of handle and masses in the first terms of z(s)/x(s) in powers of s, shape (1 + N, found).
 
     Each column is a combination of the terms so far, the handle's own motion its first entry; the masses' parts are
     orthonormal, or zero where a term repeats others. About s = 0, or s = 1 where the stiffness alone holds no mass.

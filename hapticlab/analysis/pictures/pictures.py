@@ -77,7 +77,7 @@ def picture(name: str | Scene | Callable[..., Scene], **state: float | str) -> F
 
 
 def _scene_of(name):
-    """Return what a scene is called, the scene, and what draws it."""
+    """The name of a scene, the scene, and the function that draws it."""
     if isinstance(name, Scene):
         return name.name, name, drawing_of(name)
     name = getattr(name, "__name__", name)  # hl.library.detents itself

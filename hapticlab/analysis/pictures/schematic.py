@@ -185,7 +185,7 @@ def _coupled(scene, first, second):
 
 
 def _acting(scene, q):
-    """Return what accelerates a coordinate, without what acts in cases alone."""
+    """The force on a coordinate, without terms that act in cases alone."""
     try:
         form = scene.explicit()
     except HapticlabError:
@@ -202,7 +202,7 @@ def _apart(expr):
 
 
 def _held_by(scene):
-    """Return what ties the handle itself to the ground, "spring" and "damper", wherever it is.
+    """The elements between the handle and the ground, "spring" and "damper", wherever it is.
 
     A force that a shift of everything changes is a spring; one that a speed of the handle changes is a damper.
     """
@@ -216,7 +216,7 @@ def _held_by(scene):
 
 
 def _carrier(scene, q):
-    """Return what an angle's pivot moves with: a coordinate in metres whose inertia it shares, the handle, or ""."""
+    """The body an angle's pivot moves with: a coordinate in metres whose inertia it shares, the handle, or ""."""
     try:
         form = scene.explicit()
     except HapticlabError:

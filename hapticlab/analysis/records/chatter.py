@@ -89,7 +89,7 @@ def chatter(log: Telemetry, driven: Hand | Callable[[Array], ArrayLike] | str | 
 
 
 def _found(log, driven):
-    """Return what the last half of a record shows."""
+    """The chatter of the last half of a record."""
     t, x, F = (np.asarray(a, float) for a in (log.t, log.channels.get("x_true", log.x), log.F))
     if len(t) < SHORTEST:
         raise AnalysisError(f"the record has {len(t)} samples; chatter needs at least {SHORTEST}: run longer")
@@ -179,7 +179,7 @@ def decaying(largest, least_before, largest_before):
 
 
 def _compare_swings(x, quarter):
-    """Return what a few swings show, and the logarithm of the ratio of the largest of the last two quarters."""
+    """The state that a few swings show, and the logarithm of the ratio of the largest of the last two quarters."""
     ends, swings = _swings(x)
     last = swings[ends >= len(x) - quarter]
     before = swings[(ends < len(x) - quarter) & (ends >= len(x) - 2 * quarter)]
@@ -203,7 +203,7 @@ def _swings(x):
 
 
 def _reversals(x):
-    """Return how often the handle turns round; standing still between is no turn."""
+    """Number of turns of the handle; standing still between is no turn."""
     moves = np.sign(np.diff(x))
     moves = moves[moves != 0]
     return int(np.count_nonzero(moves[1:] != moves[:-1]))

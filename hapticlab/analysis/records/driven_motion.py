@@ -14,7 +14,7 @@ ORDER = 6
 
 
 def drive_of(log, driven):
-    """Return what drives, one number a sample, from a Hand, a function of t [s], a watched channel's name or an array."""
+    """The drive, one number a sample, from a Hand, a function of t [s], a watched channel's name or an array."""
     if isinstance(driven, Hand):
         if not driven.moves:
             raise AnalysisError(f"driven by a hand with {driven}: it does not move; needs a hand whose intent is a function of t")
@@ -62,7 +62,7 @@ def by_memory(x, drive):
 
 
 def by_loop(x, drive):
-    """Return what a linear loop makes of the drive in the last half, from rest at its first sample; None if unstable.
+    """Response of a linear loop to the drive in the last half, from rest at its first sample; None if unstable.
 
     x[n] = a_1 x[n-1] + ... + b_0 d[n] + ... by least squares; its own past then comes from the model alone.
     """

@@ -195,7 +195,7 @@ def _as_dict(limits):
 
 
 def _short_axis(result):
-    """Return which axis has few enough values for a line each, 0 where there is one axis, or None."""
+    """The axis with few enough values for a line each, 0 where there is one axis, or None."""
     lengths = [len(a) for a in result.axes.values()]
     if len(lengths) == 1:
         return 0

@@ -178,7 +178,7 @@ def probes_of(points):
 
 
 def kind_of(scene, points, probes, slopes):
-    """Return what a linearisation is worth, from the slopes at the points and then at the probes, first axis.
+    """The worth of a linearisation, from the slopes at the points and then at the probes, first axis.
 
     ``"linear"``, ``"piecewise linear"``, or ``"small-signal"`` where slopes change within a mode, or with time.
     """
@@ -197,7 +197,7 @@ def _alike(one, other):
 
 
 def telling(points, slopes):
-    """Return which points to look at closer: all but sampled ones whose slopes are no numbers, or those of another in the mode.
+    """Points to look at closer: all but sampled ones whose slopes are no numbers, or those of another in the mode.
 
     Parameters
     ----------

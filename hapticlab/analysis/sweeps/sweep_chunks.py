@@ -80,7 +80,7 @@ def linked(program, paddle, ticks, metric):
 
 
 def chunk_size(program, ticks, points, workers):
-    """Return how many points a chunk of a group gets, from what a point costs; enough chunks for every worker."""
+    """Points of a chunk, from the cost of a point; enough chunks for every worker."""
     size = WORK / (ticks * (len(program) + 1))
     if isinstance(workers, int):
         size = min(size, points / (4 * workers)) if workers > 1 else size

@@ -121,7 +121,7 @@ class Plan:
 
 
 def _shown(given):
-    """Return what was given in some words, however long it is."""
+    """An argument in a few words, however long it is."""
     return textwrap.shorten(repr(given), 80, placeholder=" ...")
 
 
@@ -133,7 +133,7 @@ def _pieces(ranges, size):
 
 
 def identity(plan, scene):
-    """Return what tells a sweep from another, part by part; the programs' digests say the rest."""
+    """The facts that tell a sweep from another, part by part; the programs' digests say the rest."""
     grid = plan.grid
     parts = {
         "hapticlab": __version__,

@@ -121,7 +121,7 @@ def _offers(scene, taken, promise, beside, options):
 
 
 def _seldom(taken, promise, beside):
-    """Return how seldom a sample may be sent for all the rest to fit, in words, or None."""
+    """The decimation with which all the rest fits, in words, or None."""
     for ticks in (2, 5, 10):
         found = cost(taken.program, taken.board, **beside | {"every": max(beside["every"], ticks)})
         if found.promised if promise else found.fits:

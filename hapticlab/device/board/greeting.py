@@ -11,7 +11,7 @@ AGAIN = 0.2
 
 
 def say_hello(exchange, url, seconds):
-    """Return what the board says of itself, the fields of WELCOME.
+    """The board's answer to HELLO, the fields of WELCOME.
 
     Raises
     ------

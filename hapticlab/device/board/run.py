@@ -81,7 +81,7 @@ class Run:
                 self.last_tick = tick
 
     def take(self):
-        """Return what came since the last look, a dict of columns, and forget it; what is left is the telemetry."""
+        """Take the samples since the last look, a dict of columns; those that are left make the telemetry."""
         rows = self._table([self._rows.popleft() for _ in range(len(self._rows))])
         found = self._columns(rows, self._taken)
         self._taken = int(rows["tick"][-1]) if len(rows) else self._taken

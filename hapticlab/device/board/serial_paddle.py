@@ -160,7 +160,7 @@ class SerialPaddle(Paddle):
             return self.stop(ticks=ticks)
 
     def cost(self, scene: Scene | Program, **options: Any) -> Cost:
-        """Return what a scene or a program takes of this board: cycles, memory, share of the period; print it."""
+        """The cost of a scene or a program on this board: cycles, memory, share of the period; print it."""
         return cost(self.program(scene, **options), **self._board())
 
     def start(

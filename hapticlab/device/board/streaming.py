@@ -90,7 +90,7 @@ class Streaming:
                 raise
 
     def advance(self, intent):
-        """Return what was sampled since the last look, a dict of columns; None where nothing was.
+        """The samples since the last look, a dict of columns; None where there are none.
 
         Where time is virtual it passes for as many ticks as there are places less one; nobody looks at the places.
         """
@@ -169,7 +169,7 @@ class Streaming:
         return "another cell began a scene on this paddle, or ended this one"
 
     def _delay(self):
-        """Return how long a step takes on the board [s]."""
+        """Mean time of a step on the board [s]."""
         state = self.paddle.state() if self.motor else None
         if state is not None and state["state"] == STATES["RUN"]:
             return state["step_mean"] / self.paddle.board["clock_hz"]

@@ -105,7 +105,7 @@ class Reacting(Intent):
     __add__ = __radd__ = with_path
 
     def asked(self, t: float, seen: Any, intent: Array) -> float:
-        """Return what the plan says, checked."""
+        """The plan's next intent [m], checked."""
         place: Any = self.plan(t, seen, intent)
         if not np.isscalar(place) or not np.isfinite(place):
             raise PaddleError(f"plan gave {place!r} at t = {t:g} s; needs one position [m].")

@@ -91,7 +91,7 @@ def rules_file():
 
 
 def permission_cure():
-    """Return what lets this user open serial ports, as one instruction for this system."""
+    """The right to open serial ports, as one instruction for this system."""
     if not sys.platform.startswith("linux"):
         return "close every other program that uses it, and install the USB driver of the board's maker"
     group = next((g for g in ("dialout", "uucp") if _has_group(g)), "dialout")

@@ -25,7 +25,7 @@ class ForceFit:
     residuals: dict
 
     def words(self, was):
-        """Return what was found, in lines; ``was`` is the law the board had."""
+        """The fit in lines; ``was`` is the law the board had."""
         rms = ", ".join(f"{1e3 * a:.1f} mN with {law}" for law, a in self.residuals.items() if np.isfinite(a))
         error = f" +- {self.error:.2g}" if np.isfinite(self.error) else ""
         lines = [f"measured   force_full = {self.force_full:.4g}{error} N", f"measured   residual {rms}"]

@@ -34,7 +34,7 @@ class Stops:
         return changed(settings, metres_per_count=self.metres_per_count, travel_min=-half, travel_max=half, checked=0)
 
     def words(self):
-        """Return what was found, in lines."""
+        """The stops in lines."""
         return [
             f"measured   {abs(self.span):.0f} counts between the stops ({self.spread:.0f} counts between two sweeps)",
             f"measured   travel {self.travel * 1e3:g} mm, so {abs(self.metres_per_count) * 1e6:.4g} um a count",

@@ -146,7 +146,7 @@ class _Loop:
         return {op: {c.name: builder.leaf(op, k, c.type) for k, c in enumerate(group)} for op, group in groups.items()}
 
     def _sense(self, p, inputs, x, v, before):
-        """Return what the scene sees of the handle; before is the position sensed last, None at the first sample."""
+        """The handle as the scene senses it; before is the position sensed last, None at the first sample."""
         if not (self.encoder or self.noisy):
             return {"x": cast(x, self.real), "v": cast(v, self.real), "x_true": x, "v_true": v}
         seen = x + inputs["noise"] if self.noisy else x

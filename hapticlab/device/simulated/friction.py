@@ -37,7 +37,7 @@ class Piece(NamedTuple):
 
 
 def resolution(length, M, b, k):
-    """Return how many pieces to cut a stretch [s] into, and how many Taylor terms each needs; arrays for arrays.
+    """Number of pieces of a stretch [s], and of Taylor terms in each; arrays for arrays.
 
     The derivatives of v grow by at most g h from one to the next, where g solves g^2 = (b/M) g + k/M; h is chosen so
     that g h <= 1, which also leaves room for one zero of a homogeneous solution only.
@@ -104,7 +104,7 @@ def slide(piece, x, v, u, d=None):
 
 
 def _wait(stuck, net, d, coulomb, rest):
-    """Return how long the handle stays stuck, at most rest."""
+    """Time that the handle stays stuck [s], at most rest."""
     if d is None:
         return select(stuck, rest, 0.0)
     still = equal(d, 0.0)

@@ -26,7 +26,7 @@ def not_finite(program, code, tick, T):
 
 
 def _likely_cause(program):
-    """Return what to look for where a program stopped: what its notes say, an angle past all sines; else nothing."""
+    """The likely cause of a program's stop: what its notes say, an angle past all sines; else nothing."""
     left = [note.where for note in program.notes if isinstance(note, UndefinedForceNote)]
     likely = f". Most likely {' or '.join(left)}" if left else ""
     if not any(i.op in ("sin", "cos") for i in program.tick.instructions):

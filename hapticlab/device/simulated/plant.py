@@ -143,7 +143,7 @@ def plant_of(paddle):
 
 
 def decided(paddle):
-    """Return what the numbers of a paddle decide in its Plant: whole, split, coulomb, pieces and terms, as arrays."""
+    """Parts of the Plant that a paddle's numbers decide: whole, split, coulomb, pieces and terms, as arrays."""
     whole, fraction = delay_parts(paddle)
     pieces, terms, coulomb = 1, 0, np.asarray(paddle.coulomb) > 0
     if coulomb.any():
@@ -170,7 +170,7 @@ def delay_parts(paddle):
 
 
 def part_lengths(paddle):
-    """Return how long each part of a period lasts [s]."""
+    """Durations of the parts of a period [s]."""
     fraction = delay_parts(paddle)[1]
     return (fraction * paddle.T, (1 - fraction) * paddle.T) if paddle.plant.split else (paddle.T,)
 

@@ -42,7 +42,7 @@ def results(reports: Sequence[Report], roster: Roster | None = None, assignment:
 
 
 def _output(report):
-    """Return what is said of the whole submission."""
+    """The text on the whole submission."""
     if report.problem:
         return f"Not graded: {clean(report.problem)}"
     noted = [one for one in report.exercises if not one.points]

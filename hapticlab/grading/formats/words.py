@@ -73,7 +73,7 @@ def state(one: ExerciseReport) -> str:
 
 
 def for_student(one: ExerciseReport) -> str:
-    """Return what a student is told who may hand in again: of a case that is hidden, that it is wrong, and the slip's sentence.
+    """The words to a student who may hand in again: of a hidden case, that it is wrong, and the slip's sentence.
 
     Its numbers, sentences with numbers worked out from them, what a program raised with these in its words, and how it ended
     would tell the case. A value or a choice has no numbers but the student's own.
@@ -90,7 +90,7 @@ def for_student(one: ExerciseReport) -> str:
 
 
 def printed(one: ExerciseReport) -> str:
-    """Return what an exercise printed, bounded."""
+    """The output of an exercise, bounded."""
     return clean(one.printed, BLOCK, lines=True)
 
 

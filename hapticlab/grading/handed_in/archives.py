@@ -146,7 +146,7 @@ def _opened(entry):
 
 
 def _reason(problem):
-    """Return what went wrong, without the path, which tells a student about the grader's computer."""
+    """The error in words, without the path, which tells a student about the grader's computer."""
     return problem.strerror if isinstance(problem, OSError) and problem.strerror else f"{type(problem).__name__}: {problem}"
 
 
@@ -198,7 +198,7 @@ def _zip(file):
 
 
 def _contents_size(file):
-    """Return how large the table of contents says it is, which zipfile would read as a whole; APPNOTE 4.3.14 to 4.3.16."""
+    """Size that the table of contents claims, which zipfile would read as a whole; APPNOTE 4.3.14 to 4.3.16."""
     length = file.seek(0, os.SEEK_END)
     file.seek(max(0, length - 2**16 - 100))
     tail = file.read()

@@ -86,7 +86,7 @@ def find_submissions(paths, lab=None):
 
 
 def left_aside(paths, lab=None):
-    """Return what lies beside the submissions and is in none: files that are no work, texts and PDFs beside somebody's work.
+    """Files that are in no submission: those that are no work, texts and PDFs beside somebody's work.
 
     Parameters
     ----------

@@ -122,10 +122,10 @@ def program(processes=False, machine=None):
 
 
 def _asked(number, which, steps):
-    """Return what decides on a call by one of its arguments, each path of which ends."""
+    """Instructions that decide on a call by one of its arguments; each path of them ends."""
     return [(EQUAL, 0, 1 + len(steps), number), (LOAD, 0, 0, ARGUMENTS + 8 * which), *steps]
 
 
 def _one_of(values):
-    """Return what allows a call where what was loaded is one of these, and else refuses it."""
+    """Instructions that allow a call where the value loaded is one of these, and else refuse it."""
     return [*(step for value in values for step in ((EQUAL, 0, 1, value), PASS)), REFUSE]

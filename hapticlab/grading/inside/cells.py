@@ -164,7 +164,7 @@ def _close_figures():
 
 
 def _flags(names):
-    """Return how to compile: what a cell imported from the future holds for all after it."""
+    """Compiler flags: an import from the future holds for all cells after it."""
     future = __future__.annotations
     return ast.PyCF_ALLOW_TOP_LEVEL_AWAIT | (future.compiler_flag if names.get("annotations") is future else 0)
 

@@ -23,7 +23,7 @@ _libc = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
 
 
 def _call(function, *arguments):
-    """Return what a function of the C library returns; raise OSError where it says -1."""
+    """Result of a function of the C library; OSError where it is -1."""
     converted = [a.encode() if isinstance(a, str) else ctypes.c_long(a) if isinstance(a, int) else a for a in arguments]
     found = getattr(_libc, function)(*converted)
     if found == -1:
@@ -98,7 +98,7 @@ def filter_calls(program):
 
 
 def landlock_version():
-    """Return what the kernel's Landlock knows: 0 where there is none, 1 since Linux 5.13."""
+    """Version of the kernel's Landlock: 0 where there is none, 1 since Linux 5.13."""
     return max(0, _libc.syscall(LANDLOCK_CREATE, None, ctypes.c_long(0), 1)) if _libc else 0
 
 

@@ -72,7 +72,7 @@ def needed(cells, names):
 
 
 def _states(one, imports):
-    """Return what stands for the states that a statement reaches by what was imported."""
+    """Names that stand for the states a statement reaches by what was imported."""
     words = (word for name in one.now | one.later for word in imports.get(name, "").split("."))
     return {STATE[word] for word in words if word in STATE}
 
@@ -104,12 +104,12 @@ def _parsed(source):
 
 @lru_cache(maxsize=4 * MOST)
 def _reads_in(text):
-    """Return what statements on the same lines read and bind; of those of the lab's own notebook it is known before a session."""
+    """Effects of statements on the same lines; those of the lab's own notebook are known before a session."""
     return _merged([reads_of(node) for node in _parsed(text).body])
 
 
 def _merged(several):
-    """Return what statements on the same lines read and bind together."""
+    """Effects of statements on the same lines, together."""
     if len(several) == 1:
         return several[0]
     merged = Reads(star=any(one.star for one in several), opaque=any(one.opaque for one in several))

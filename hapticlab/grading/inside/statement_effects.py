@@ -71,7 +71,7 @@ class Reads:
 
 
 def reads_of(node):
-    """Return what a statement reads and binds.
+    """Names that a statement reads and binds.
 
     Parameters
     ----------

@@ -124,7 +124,7 @@ class Meter:
 
 
 def _waited(process):
-    """Return how long the first thread of a process waited for a processor [s]; proc(5), schedstat."""
+    """Time that the first thread of a process waited for a processor [s]; proc(5), schedstat."""
     try:
         return int((PROC / str(process) / "schedstat").read_text().split()[1]) / 1e9
     except (OSError, IndexError):  # a kernel without it: all of the wall clock is charged
@@ -147,7 +147,7 @@ def kill_descendants(root):
 
 
 def size(folder, deepest=64):
-    """Return what is in a folder: bytes on the disk, and how many files and folders.
+    """Size of a folder: bytes on the disk, and how many files and folders.
 
     One that is nested deeper, or whose folders cannot be looked into, has infinitely many.
     """
@@ -189,7 +189,7 @@ def writable_folders(top="/", deepest=4):
 
 
 def left_by(user, folders):
-    """Return what in these folders is a user's."""
+    """Files of a user in these folders."""
     found = []
     for folder in folders:
         with suppress(OSError):
@@ -198,7 +198,7 @@ def left_by(user, folders):
 
 
 def unlinked(process):
-    """Return what a process holds of files that have no name any more [bytes]."""
+    """Bytes that a process holds in files without a name any more."""
     total = 0
     with suppress(OSError):
         for descriptor in os.scandir(PROC / str(process) / "fd"):

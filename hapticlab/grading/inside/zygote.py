@@ -91,7 +91,7 @@ def settle(request):
 
 
 def probe(request):
-    """Return what a session would find: {"read": a file it must not read, "missing": one it must}; or {"problem": ...}."""
+    """A session's view: {"read": a file it must not read, "missing": one it must}; or {"problem": ...}."""
     outlet, inlet = os.pipe()
     child = os.fork()
     if child == 0:

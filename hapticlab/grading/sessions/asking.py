@@ -149,14 +149,14 @@ class Session:
                 look = meter.wall + PERIOD
 
     def received(self):
-        """Return what has come; nothing at the end of the socket."""
+        """Bytes that have come; none at the end of the socket."""
         try:
             return self.channel.recv(1 << 20)
         except OSError:
             return b""
 
     def sent(self, line):
-        """Return how much could be sent; where the other end is gone, that is seen next."""
+        """Number of bytes that could be sent; where the other end is gone, that is seen next."""
         try:
             return self.channel.send(line)
         except BlockingIOError:
@@ -188,7 +188,7 @@ class Session:
         return bool(self.starter.group) and self.starter.group.ended() > self.killed
 
     def _files(self, processes):
-        """Return what its files take [bytes], infinitely much where there are too many."""
+        """Size of its files [bytes], infinite where there are too many."""
         places = [self.folder.name, *watch.left_by(self.starter.user, self.starter.writable)]
         total, count = map(sum, zip(*map(watch.size, places), strict=True))
         return total + sum(map(watch.unlinked, processes)) if count <= self.limits.files else math.inf

@@ -38,7 +38,7 @@ class MemoryGroup:
         (self.folder / "cgroup.procs").write_text(str(process))
 
     def ended(self):
-        """Return how many processes were ended for their memory."""
+        """Number of processes that were ended for their memory."""
         lines = (self.folder / EVENTS[self.version]).read_text().split("\n")
         return sum(int(line.split()[1]) for line in lines if line.startswith("oom_kill "))
 

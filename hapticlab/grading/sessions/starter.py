@@ -269,7 +269,7 @@ def _delete(places):
 
 
 def seen(programs=False):
-    """Return what sessions read beside their own files: Python, its packages, this one, and what the system links.
+    """Folders that sessions read beside their own: Python, its packages, this one, and the system's libraries.
 
     Parameters
     ----------
