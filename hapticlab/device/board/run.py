@@ -13,7 +13,7 @@ from ...compiler.ir.program import Program
 from ...errors import PaddleError
 from ...records import Telemetry
 from ..link.messages import FAULTS, SAMPLE_FLAGS, row_of
-from ..live_parameters import in_portions, named_values, send
+from ..live_parameters import named_values
 from .upload import upload
 
 #: part of the link that samples may take; state and requests need the rest
@@ -37,11 +37,9 @@ class Loaded:
 
 
 def load(exchange, program, word_bytes):
-    """Put a program and its parameters on the board; nothing runs until the board has verified it."""
+    """Put a program on the board, its parameters still without value; nothing runs until the board has verified it."""
     data = encode(program, word_bits=8 * word_bytes)
     upload(exchange, "PROGRAM", data)
-    for some in in_portions(named_values(program)):
-        send(exchange, program, some)
     return Loaded(program, zlib.crc32(data[:-4]))
 
 

@@ -17,7 +17,7 @@ from ..hand.hand import require
 from ..link.exchange import Exchange
 from ..link.messages import OPTIONS, SENSORS, STATES, TARGETS
 from ..link.serial_ports import open_port
-from ..live_parameters import check_margin, checked, send
+from ..live_parameters import check_margin, checked, in_portions, named_values, send
 from ..paddle import Paddle
 from ..progress import progress_bar
 from .greeting import cleared, explain_silence, introduction, say_hello, what_happened
@@ -392,7 +392,10 @@ class SerialPaddle(Paddle):
         fed, before, earlier = self.exchange.beating, self._loaded, self._run
         try:
             if program is not None:
+                # noted before its values are sent: where the board refuses one, SET already means this program
                 self._loaded = load(self.exchange, program, self.board["word_bytes"])
+                for some in in_portions(named_values(program)):
+                    send(self.exchange, program, some)
             run = Run(self._loaded, decimation(self._loaded.program, self.exchange.port, every))
             self._listen(run)
             self.exchange.beating = True

@@ -166,6 +166,17 @@ def test_after_a_refused_start_set_means_the_scene_that_runs(board):
     assert again.scene == "lean" and np.allclose(again.F, 0.2, atol=1e-7)
 
 
+def test_after_a_refused_value_set_means_the_scene_that_runs(board, monkeypatch):
+    board.start(LEAN(k=0, push=0.1))
+    failing(board, monkeypatch, "SET", LinkError("the board refused SET: RANGE", "RANGE"))
+    with pytest.raises(LinkError, match="RANGE"):
+        board.start(OTHER(k=20, push=-0.1))
+    board.set(push=0.2)
+    board.wait(0.05)
+    log = board.stop()
+    assert log.scene == "lean" and log.F[-1] == np.float32(0.2)
+
+
 def test_a_refused_start_with_nothing_running_may_be_started_again(board):
     with pytest.raises(LinkError, match="RANGE"):
         board._begin(board.program(LEAN(k=0, push=0.1)), None, 0, -1.0)
