@@ -176,5 +176,7 @@ def computed(instructions, wanted, leaf):
             if i.args:
                 done[k] = OPERATIONS[i.op].compute(*[done[a] for a in i.args])
             else:
-                done[k] = NUMPY_TYPE[i.type](i.value) if i.op == "const" else np.asarray(leaf(i), float)
+                # a condition that is a state stays one: floats have no "not"
+                real = bool if i.type == "bool" else float
+                done[k] = NUMPY_TYPE[i.type](i.value) if i.op == "const" else np.asarray(leaf(i), real)
     return done

@@ -177,9 +177,9 @@ def test_a_stale_file_is_refused_and_says_why(tmp_path, monkeypatch):
 KILLED = """
 import os, sys
 sys.path[:0] = {path!r}
-import test_partial as t
-from hapticlab.analysis import chunks, plan
-chunks.MOST = 64
+import test_sweep_file as t
+from hapticlab.analysis.sweeps import sweep_chunks
+sweep_chunks.MOST = 64
 def dies(function, pieces):
     for piece in pieces[:3]:
         yield function(piece)
@@ -192,7 +192,7 @@ t.swept(workers=dies, resume={file!r})
 def test_a_sweep_goes_on_after_its_process_was_killed(tmp_path):
     """In another process, with other hashes: what it measured is the same to the bit, or the file would be refused."""
     path = tmp_path / "map.sweep"
-    here = [str(Path(__file__).parents[1]), *sys.path]
+    here = [str(Path(__file__).parent), *sys.path]
     done = subprocess.run([sys.executable, "-c", KILLED.format(path=here, file=str(path))], env={"PYTHONHASHSEED": "9"})
     assert done.returncode == 9
     before = path.stat().st_size
