@@ -39,7 +39,8 @@ def tangents(instructions, wanted, leaves, directions, points=1):
     with np.errstate(all="ignore"):
         for p in value:
             i = instructions[p]
-            if (i.op, i.index) in directions:
+            # a constant is none, though ("const", 0) stands among the directions for the impulse of force_at="mean"
+            if i.op != "const" and (i.op, i.index) in directions:
                 slope[p] = np.eye(len(directions))[directions.index((i.op, i.index))][:, None]
             if not i.args:
                 continue

@@ -208,3 +208,10 @@ def test_a_pendulum_is_looked_at_at_rest_too():
     assert program.facts["margin"] == pytest.approx(2 / (1e-3 / 0.01 / 1e-4) / T, rel=0.01)
     assert program.limits["c"][2] == pytest.approx(2 * 1e-4 * 0.01 / T, rel=0.01)
     assert any("stable for small motions about the places looked at" in note for note in program.notes)
+
+
+def test_when_the_force_is_computed_does_not_change_what_is_stable():
+    """The impulse of ``force_at="mean"`` is fed back to nothing."""
+    before, mean = (hl.compile(coupler(wall=True), "rk4", T=1e-3, force_at=when) for when in ("before", "mean"))
+    assert dict(mean.limits) == dict(before.limits) and set(mean.limits) == {"K", "B", "k", "m"}
+    assert mean.facts["margin"] == before.facts["margin"]
