@@ -39,7 +39,8 @@ def pytest_collection_modifyitems(items):
             item.add_marker("wide")
         if item.get_closest_marker("slow") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(LONGEST))
-    if IN_CI and asked != met:  # elsewhere who asks for one case may collect only that
+    # elsewhere who asks for one case may collect only that, and where an engine may be missing so may its cases
+    if IN_CI and not ALLOWED and asked != met:
         raise pytest.UsageError(f"always names no case of: {sorted((f.__name__, case) for f, case in asked - met)}")
 
 
