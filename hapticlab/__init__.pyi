@@ -76,7 +76,6 @@ from .limits.admittance import admittance_design
 from .limits.bounds import abbott_okamura_limit, bounds, diolaiti_limit, gil_limit
 from .limits.colgate import equivalent_damper, passivity_margin, wall_damping
 from .limits.coupler import coupler_design
-from .limits.damper import damper_limit
 from .limits.diolaiti import diolaiti
 from .limits.excess import passivity_ledger
 from .limits.indices import passivity_indices
@@ -86,7 +85,7 @@ from .limits.nyquist_disk import nyquist_disk
 from .limits.passivity import passivity_limit
 from .limits.port import port_damping
 from .limits.root_locus import root_locus
-from .limits.stability import closed_loop_matrix, closed_loop_poles, stability_limit
+from .limits.stability import closed_loop_matrix, closed_loop_poles, damper_limit, stability_limit
 from .limits.two_port import TwoPort
 from .measurement.impedance import measured_impedance
 from .measurement.largest_stiffness import largest_stiffness

@@ -9,6 +9,7 @@ sign along a logarithmic scale; each gives one K, and the poles between two of t
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -118,6 +119,38 @@ def _intervals(loop):
     between = [k / 2 for k in K[:1]] + [math.sqrt(a * b) for a, b in zip(K, K[1:], strict=False)]
     between.append(max([0.1 * loop.scale, *(2 * k for k in K[-1:])]))
     return edges, [not loop.unstable(k) for k in between]
+
+
+def damper_limit(*, m: float, b: float, T: float, delay: float = 0.0) -> float:
+    """Largest B [N s/m] at which a handle with the damper F = B (x[n] - x[n-1])/T alone is stable; exact, linear.
+
+    Without device damping and delay it is 2 m/T. A hand adds mass, which raises it, and may add stiffness, which lowers
+    it. Up to B = b the damper is moreover passive in any hand, Eq. (23.10).
+
+    Parameters
+    ----------
+    m : float
+        Mass of the handle [kg], > 0.
+    b : float
+        Its viscous damping [N s/m], >= 0.
+    T : float
+        Sampling period [s], > 0.
+    delay : float
+        Computational delay [s], whole and fractional periods alike, >= 0.
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> round(damper_limit(m=0.05, b=0.0, T=1e-3), 9)
+    100.0
+    """
+    m = number("m", m, "kg", "a handle", above=0)
+    b = number("b", b, "N s/m", "a device", least=0)
+    handle = SimpleNamespace(m=m, b=b, T=T, delay=delay, hand=None)
+    return stability_limit(handle, law=lambda B: LinearLaw.of("zoh", K=0.0, T=T, B=B)).K  # B takes the place of K
 
 
 def closed_loop_matrix(
