@@ -73,10 +73,9 @@ from .identification.handle_records import HandleRecord, chirp_response, identif
 from .identification.paddle import identify_paddle
 from .identification.pushes import push_hand
 from .limits.admittance import admittance_design
-from .limits.bounds import abbott_okamura_limit, bounds, diolaiti_limit, gil_limit
+from .limits.bounds import abbott_okamura_limit, bounds, diolaiti, diolaiti_limit, gil_limit
 from .limits.colgate import equivalent_damper, passivity_margin, wall_damping
 from .limits.coupler import coupler_design
-from .limits.diolaiti import diolaiti
 from .limits.excess import passivity_ledger
 from .limits.indices import passivity_indices
 from .limits.linear_law import LinearLaw

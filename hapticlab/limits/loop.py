@@ -11,7 +11,6 @@ import numpy as np
 from ..arguments import having, number, period
 from .affine_law import AffineLaw, affine_law
 from .limit import A_PADDLE, MOST_PERIODS, whole_and_fraction
-from .matrix import held
 
 #: |w| below which an eigenvalue's absolute rounding would show, so that it is moved onto the characteristic equation
 SLOW = 0.1
@@ -175,6 +174,33 @@ class Loop:
             term = np.convolve(numerator, motion)
             p[: len(term)] += term
         return p0, p1
+
+
+def held(A, duration):
+    """Return Phi = e^(A h) and Psi, the integral of e^(A s) over 0 <= s <= h, with Phi = I + A Psi.
+
+    Parameters
+    ----------
+    A : array of shape (n, n)
+        In units of time in which A h is of order one, so that no entry is lost beside another.
+    duration : float
+        h, in that unit.
+
+    Returns
+    -------
+    Phi, Psi : array of shape (n, n)
+
+    Examples
+    --------
+    >>> Phi, Psi = held(np.array([[0.0, 1.0], [0.0, 0.0]]), 2.0)
+    >>> Psi.tolist()
+    [[2.0, 2.0], [0.0, 2.0]]
+    """
+    from scipy.linalg import expm
+
+    n = len(A)
+    both = expm(np.block([[A * duration, np.eye(n) * duration], [np.zeros((n, 2 * n))]]))
+    return both[:n, :n], both[:n, n:]
 
 
 def numerators(law, T, shift):

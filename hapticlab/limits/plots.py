@@ -13,10 +13,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .admittance import AdmittanceDesign
-    from .bounds import Bounds
+    from .bounds import Bounds, DiolaitiPoint
     from .colgate import PassivityMargin
     from .coupler import CouplerDesign
-    from .diolaiti import DiolaitiPoint
     from .limit import Limit
     from .linear_law import LinearLaw
     from .nyquist_disk import NyquistDisk

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hapticlab.limits.matrix import held
+from hapticlab.limits.loop import held
 
 
 def test_a_damped_free_mass():
