@@ -101,6 +101,6 @@ UNO = Board(
 )
 CORTEX_M0 = Board(name="cortex-m0+", hz=125e6, word_bits=8, arena=16_384, channels=16)
 CORTEX_M4 = Board(name="cortex-m4f", hz=168e6, word_bits=8, arena=16_384, channels=16)
-HOST = Board(name="host", hz=None, word_bits=16, arena=1 << 20, channels=16)
+HOST = Board(name="host", hz=None, word_bits=16, arena=32_768, channels=10, T_max=30e-3)
 
 BOARDS = {board.name: board for board in (UNO, CORTEX_M0, CORTEX_M4, HOST)}
