@@ -17,6 +17,7 @@ from serial.tools.list_ports_common import ListPortInfo
 from hapticlab.device.link import port_faults
 from hapticlab.device.link.port_faults import explain, permission_cure, rules_file
 from hapticlab.device.link.serial_ports import KNOWN, Port, available_ports, open_port, port_watched, read_available
+from hapticlab.device.link.udev_rules import rules
 from hapticlab.errors import PortError
 
 NOBODY = 65534
@@ -282,6 +283,7 @@ def test_ports_are_listed_by_what_they_are(monkeypatch):
 
 def test_the_udev_rules_are_for_the_same_boards():
     text = rules_file().read_text()
+    assert text == rules(), "run python -m hapticlab.device.link.udev_rules"
     pairs = re.findall(r'idVendor}=="(\w+)", ATTRS{idProduct}=="(\w+)", ENV{ID_HAPTICLAB}="1"', text)
     assert {(int(vendor, 16), int(product, 16)) for vendor, product in pairs} == set(KNOWN)
     assert 'TAG+="uaccess"' in text and 'ENV{ID_MM_DEVICE_IGNORE}="1"' in text
