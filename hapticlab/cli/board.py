@@ -46,9 +46,9 @@ def doctor(parser, options):
 
 
 def flash(parser, options):
-    """Write the firmware into an Uno."""
+    """Write the firmware into a board."""
     port = options.port or _only_port()
-    print(write_firmware(port, options.image, tell=partial(print, file=sys.stderr)))
+    print(write_firmware(port, options.image, options.board, tell=partial(print, file=sys.stderr)))
     return 0
 
 

@@ -154,7 +154,7 @@ def _add_board_commands(commands, shared):
     words = {
         "ports": "list the serial ports, and which of them connect() asks",
         "doctor": "walk from the cable to the motor and say what is wrong",
-        "flash": "write the firmware into an Arduino Uno over its bootloader",
+        "flash": "write the firmware into a board, such as an Arduino Uno, over its bootloader",
         "calibrate": "measure stops, motor sign and force constant, and store them on the board",
     }
     made = {}
@@ -168,6 +168,7 @@ def _add_board_commands(commands, shared):
     made["doctor"].add_argument("--self-test", **command, help=words)
     words = "where the self-test writes what it found (default: %(default)s)"
     made["doctor"].add_argument("--out", metavar="FILE", default="hapticlab-self-test.json", help=words)
+    made["flash"].add_argument("--board", metavar="NAME", default="uno", help="which board it is (default: %(default)s)")
     made["flash"].add_argument("--image", metavar="FILE.hex", help="by default the one that came with hapticlab")
     made["calibrate"].add_argument("--only", choices=STEPS, help="this step alone")
     made["calibrate"].add_argument("--yes", action="store_true", help="do not ask before the motor moves")

@@ -529,15 +529,15 @@ def test_flash_takes_the_only_board_or_the_one_named(monkeypatch, capsys):
     written, found = [], [Port("COM3", known="Arduino Uno R3"), Port("COM9", "a mill")]
     monkeypatch.setattr(board_command, "available_ports", lambda: found)
 
-    def writes(port, image, tell):
+    def writes(port, image, board, tell):
         tell(port)
-        written.append((port, image))
+        written.append((port, image, board))
         return "written"
 
     monkeypatch.setattr(board_command, "write_firmware", writes)
     assert main.main(["flash"]) == 0
-    assert main.main(["flash", "--port", "COM9", "--image", "own.hex"]) == 0
-    assert written == [("COM3", None), ("COM9", "own.hex")]
+    assert main.main(["flash", "--board", "mill", "--port", "COM9", "--image", "own.hex"]) == 0
+    assert written == [("COM3", None, "uno"), ("COM9", "own.hex", "mill")]
     assert capsys.readouterr() == ("written\nwritten\n", "COM3\nCOM9\n")
     found.append(Port("COM4", known="Arduino Uno R3"))
     assert main.main(["flash"]) == 1

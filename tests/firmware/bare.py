@@ -22,7 +22,7 @@ HERE = Path(__file__).resolve().parent
 SOURCES = ("core/vm.c", "core/verify.c", "generated/elementary.c")
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections")
 FLAGS += ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
-UNO = ("-mmcu=atmega328p", "-DF_CPU=16000000UL")
+UNO = build_image.chip_flags("uno")
 OK = 0
 
 

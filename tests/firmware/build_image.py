@@ -8,4 +8,4 @@ _SPEC = importlib.util.spec_from_file_location("build_image_of_firmware", FIRMWA
 build_image = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(build_image)
 build, symbols, sizes, tool = build_image.build, build_image.symbols, build_image.sizes, build_image.tool
-FLASH, RAM = build_image.FLASH, build_image.RAM
+FLASH, RAM = build_image.room("uno")

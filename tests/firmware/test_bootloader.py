@@ -10,9 +10,10 @@ from bootloader import Board, BoardPort, bootloader_folder, build_shim, hex_file
 
 from hapticlab.compiler.engines.firmware_library import firmware_folder
 from hapticlab.device.link.serial_ports import KNOWN
-from hapticlab.device.setup.flash import PAGE, STAND_STILL, flash
+from hapticlab.device.setup.flash import STAND_STILL, flash
 from hapticlab.errors import PaddleError, PortError
 
+PAGE = 128
 DDRD = 0x2A
 UCSR0A, UCSR0B, UBRR0L, UDR0 = 0xC0, 0xC1, 0xC4, 0xC6
 
@@ -175,7 +176,7 @@ def test_a_cut_leaves_a_board_that_stands_still(connect, tmp_path, page, bytes_o
     with pytest.raises(PortError, match=f"left during use.*was on the board is gone.*{state}. Flash it again") as caught:
         flash("test://", new)
     assert caught.value.cause == "left"
-    assert stands_still(board) and bytes(board.flash[:PAGE]) == STAND_STILL
+    assert stands_still(board) and bytes(board.flash[:PAGE]) == STAND_STILL * 64
     cut_at[0] = None
     flash("test://", new)
     assert heard(board) == {ord("n")}

@@ -1,8 +1,8 @@
 """The boards, one record each: what a program has there, how it is found on a USB port, and how firmware comes onto it.
 
 What is measured of a board stands in ``costs.json``, its firmware in a folder of ``firmware/boards``. All else that knows
-boards reads these records: the cost model, ``hapticlab ports`` and ``flash``, the choices of the command line; tests
-compare them with the firmware's constants and with the rules for udev.
+boards reads these records: the cost model, ``hapticlab ports`` and ``flash``, the choices of the command line, the build
+of an image, the rules for udev; a test compares them with the firmware's constants.
 """
 
 from __future__ import annotations
@@ -30,11 +30,27 @@ class Bootloader:
 
 @dataclass(frozen=True)
 class Flashing:
-    """How firmware is written: the image in firmware/prebuilt, the chip's signature, its page [bytes], its bootloaders."""
+    """How firmware is built and written.
 
+    Attributes
+    ----------
+    called : str
+        The board in a sentence, with its article.
+    image : str
+        In firmware/prebuilt.
+    chip : str
+        As its compiler names it, but for capitals.
+    signature : bytes
+    ram, page : int
+        Of the chip [bytes].
+    bootloaders : tuple of Bootloader
+    """
+
+    called: str
     image: str
     chip: str
     signature: bytes
+    ram: int
     page: int
     bootloaders: tuple[Bootloader, ...]
 
@@ -92,9 +108,11 @@ UNO = Board(
         Usb(0x10C4, 0xEA60, "CP210x (copies of the Uno)"),
     ),
     flashing=Flashing(
+        called="an Uno",
         image="uno.hex",
         chip="ATmega328P",
         signature=bytes.fromhex("1e950f"),
+        ram=2048,
         page=128,
         bootloaders=(Bootloader("optiboot", 115200, 0x7E00), Bootloader("ATmegaBOOT (older Nano)", 57600, 0x7800)),
     ),

@@ -2,6 +2,7 @@
 
 import secrets
 import sys
+from contextlib import closing, suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from ...scene.scene import Scene
 from ..board.homing import state_flag
 from ..link.messages import RESET_CAUSES, SENSORS, row_of, table_hash
 from ..link.serial_ports import open_port
-from .flash import find_bootloader
+from .flash import FLASHED, find_bootloader
 from .person import agrees
 from .sign_check import check_sign
 from .stored_settings import lead_home
@@ -66,18 +67,11 @@ def _other_firmware(url, problem):
 
 
 def _bootloader_answers(url):
-    from_start = 115200  # what optiboot speaks; find_bootloader changes it for others
-    try:
-        port = open_port(url, baudrate=from_start)
-    except HapticlabError:
-        return False
-    try:
-        find_bootloader(port)
-        return True
-    except HapticlabError:
-        return False
-    finally:
-        port.close()
+    for how in FLASHED.values():
+        with suppress(HapticlabError), closing(open_port(url, baudrate=how.bootloaders[0].baudrate)) as port:
+            find_bootloader(port, how)
+            return True
+    return False
 
 
 def _reset_cause(number):

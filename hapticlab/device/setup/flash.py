@@ -4,7 +4,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...compiler.boards.board_records import UNO, Bootloader
+from ...compiler.boards.board_records import BOARDS, Bootloader
 from ...compiler.engines.firmware_library import firmware_folder
 from ...errors import PaddleError, PortError
 from ..link.serial_ports import open_port, port_watched
@@ -21,9 +21,8 @@ CHIPS = {
     bytes.fromhex("1e9587"): "ATmega32U4",
     bytes.fromhex("1e9801"): "ATmega2560",
 }
-HOW = UNO.flashing
-assert HOW is not None  # for a type checker: the Uno has firmware
-PAGE = HOW.page
+#: board -> how firmware comes onto it
+FLASHED = {name: board.flashing for name, board in BOARDS.items() if board.flashing}
 SYNC, ENTER, LEAVE, ADDRESS, WRITE, READ, SIGN = b"0", b"P", b"Q", b"U", b"d", b"t", b"u"
 END_OF_COMMAND, IN_SYNC, OK = b" ", b"\x14", b"\x10"
 #: s. The first is longer than optiboot blinks (0.4 s) before it listens: more than two bytes sent meanwhile are lost,
@@ -32,7 +31,7 @@ SYNC_WAITS, RESETS = (0.6, 0.2, 0.2), 3
 REPLY_WAIT = 1.0  # s; the bootloader's own watchdog
 #: rjmp to itself. It fills the first page until all others are verified, so that after a cut the board does nothing,
 #: with its motor pins off, and never runs half a program.
-STAND_STILL = b"\xff\xcf" * (PAGE // 2)
+STAND_STILL = b"\xff\xcf"
 
 
 @dataclass(frozen=True)
@@ -53,8 +52,8 @@ class VerificationError(PaddleError):
     """A byte reads back as another than was written."""
 
 
-def flash(port, image=None, *, progress=True, tell=lambda sentence: None):
-    """Write a firmware image into an Uno and compare every byte; the board then starts it.
+def flash(port, image=None, board="uno", *, progress=True, tell=lambda sentence: None):
+    """Write a firmware image into a board and compare every byte; the board then starts it.
 
     Parameters
     ----------
@@ -62,6 +61,8 @@ def flash(port, image=None, *, progress=True, tell=lambda sentence: None):
         The port of the board.
     image : path of an Intel HEX file, optional
         The one that comes with the package if None.
+    board : str
+        One of :data:`FLASHED`.
     progress : bool
         Show a bar if it lasts longer than two seconds.
     tell : callable
@@ -76,27 +77,31 @@ def flash(port, image=None, *, progress=True, tell=lambda sentence: None):
     PortError
         If the port does not open, no bootloader answers (``cause`` "silent") or the board left meanwhile.
     PaddleError
-        If the image is damaged or too large, the chip is another, or a byte reads back wrong.
+        If there is no firmware for the board, the image is damaged or too large, the chip is another, or a byte reads back
+        wrong.
     """
-    path = Path(image) if image is not None else prebuilt_image()
+    if board not in FLASHED:
+        raise PaddleError(f"board = {board!r} cannot be flashed from here; needs one of {', '.join(FLASHED)}")
+    how = FLASHED[board]
+    path = Path(image) if image is not None else prebuilt_image(how)
     content = read_image(path)
-    opened = open_port(port, baudrate=HOW.bootloaders[0].baudrate)
+    opened = open_port(port, baudrate=how.bootloaders[0].baudrate)
     try:
-        bootloader = find_bootloader(opened)
+        bootloader = find_bootloader(opened, how)
         check_fits(content, bootloader, path.name)
-        check_chip(opened)
+        check_chip(opened, how)
         tell(f"Writing {path.name} into {port}; its motor is off meanwhile. Leave the cable in.")
-        _write_and_verify(opened, content, progress)
+        _write_and_verify(opened, content, how.page, progress)
     finally:
         opened.close()
     return Flashed(port, path.name, len(content), bootloader)
 
 
-def prebuilt_image():
+def prebuilt_image(how):
     """Return the path of the image that comes with the package."""
-    path = firmware_folder() / "prebuilt" / HOW.image
+    path = firmware_folder() / "prebuilt" / how.image
     if not path.is_file():
-        raise PaddleError(f"this hapticlab came without {HOW.image}; give an image, or install a release")
+        raise PaddleError(f"this hapticlab came without {how.image}; give an image, or install a release")
     return path
 
 
@@ -123,9 +128,9 @@ def check_fits(content, bootloader, name):
         )
 
 
-def find_bootloader(port):
+def find_bootloader(port, how):
     """Reset the board and return the bootloader that answers."""
-    for bootloader in HOW.bootloaders:
+    for bootloader in how.bootloaders:
         with port_watched(port):
             port.baudrate = bootloader.baudrate
         for _ in range(RESETS):
@@ -136,43 +141,44 @@ def find_bootloader(port):
                     _receive(port, 256, 0.05)  # late answers to earlier tries
                     return bootloader
     raise PortError(
-        f"{port.port}: no bootloader answers. Is it this port, is it an Uno, is nothing wired to pins 0 and 1? "
+        f"{port.port}: no bootloader answers. Is it this port, is it {how.called}, is nothing wired to pins 0 and 1? "
         "Press the board's reset button just as you start again",
         "silent",
     )
 
 
-def check_chip(port):
+def check_chip(port, how):
     """Refuse a board with another chip than the image was built for."""
     signature = _ask(port, SIGN, 3)
-    if signature != HOW.signature:
+    if signature != how.signature:
         name = CHIPS.get(signature, "an unknown chip")
         raise PaddleError(
-            f"{port.port} is {name} (signature {signature.hex()}), needs {HOW.chip} ({HOW.signature.hex()}); "
-            "nothing was written. Choose the port of an Uno"
+            f"{port.port} is {name} (signature {signature.hex()}), needs {how.chip} ({how.signature.hex()}); "
+            f"nothing was written. Choose the port of {how.called}"
         )
 
 
-def _write_and_verify(port, content, progress):
+def _write_and_verify(port, content, size, progress):
     """Write the pages but the first, compare them, and only then let the board have a beginning."""
-    first, *rest = [(at, content[at : at + PAGE].ljust(PAGE, b"\xff")) for at in range(0, len(content), PAGE)]
+    first, *rest = [(at, content[at : at + size].ljust(size, b"\xff")) for at in range(0, len(content), size)]
+    stand_still = STAND_STILL * (size // len(STAND_STILL))
     _ask(port, ENTER)
     at = 0
     try:
-        _write(port, 0, STAND_STILL)
-        with progress_bar(2 * PAGE * (1 + len(rest)), progress, unit="B") as bar:
+        _write(port, 0, stand_still)
+        with progress_bar(2 * size * (1 + len(rest)), progress, unit="B") as bar:
             for pages in (rest, [first]):
                 for at, page in pages:
                     _write(port, at, page)
-                    bar.update(PAGE)
+                    bar.update(size)
                 for at, page in pages:
                     _verify(port, at, page)
-                    bar.update(PAGE)
+                    bar.update(size)
     except VerificationError:
-        _write(port, 0, STAND_STILL)
+        _write(port, 0, stand_still)
         raise
     except PortError as problem:
-        # the 20 ms in which the first page is erased and not yet written are the only ones without STAND_STILL
+        # the 20 ms in which the first page is erased and not yet written are the only ones without it
         state = "stands still with its motor off" if at else "has no beginning: switch its motor's supply off"
         raise PortError(
             f"{problem}. The firmware that was on the board is gone and the new one not complete; the board {state}. "
@@ -185,13 +191,13 @@ def _write_and_verify(port, content, progress):
 
 def _write(port, at, page):
     _ask(port, ADDRESS + (at // 2).to_bytes(2, "little"))
-    _ask(port, WRITE + PAGE.to_bytes(2, "big") + b"F" + page)
+    _ask(port, WRITE + len(page).to_bytes(2, "big") + b"F" + page)
 
 
 def _verify(port, at, page):
     _ask(port, ADDRESS + (at // 2).to_bytes(2, "little"))
-    found = _ask(port, READ + PAGE.to_bytes(2, "big") + b"F", PAGE)
-    wrong = next((i for i in range(PAGE) if found[i] != page[i]), None)
+    found = _ask(port, READ + len(page).to_bytes(2, "big") + b"F", len(page))
+    wrong = next((i for i in range(len(page)) if found[i] != page[i]), None)
     if wrong is not None:
         raise VerificationError(
             f"{port.port}: verification failed at 0x{at + wrong:04x}: it reads 0x{found[wrong]:02x}, needs "

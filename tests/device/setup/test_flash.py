@@ -111,7 +111,7 @@ def test_all_pages_are_written_and_the_first_comes_last(talk, image):
     assert told == [("Writing image.hex into test://; its motor is off meanwhile. Leave the cable in.", 0)]
     assert peer.content() == IMAGE.ljust(1024, b"\xff")
     assert [at for at, _ in peer.written] == [0, *range(128, 1024, 128), 0]
-    assert peer.written[0] == (0, STAND_STILL) and peer.written[-1] == (0, IMAGE[:128])
+    assert peer.written[0] == (0, STAND_STILL * 64) and peer.written[-1] == (0, IMAGE[:128])
     assert peer.commands.count(b"t") == 8 and peer.commands[-1] == b"Q"
     assert line.lines == (False, True)  # the pulse that resets
     assert str(done) == (
@@ -121,9 +121,8 @@ def test_all_pages_are_written_and_the_first_comes_last(talk, image):
 
 def test_stand_still_is_a_jump_to_itself():
     """AVR instruction set manual: RJMP k is 1100 kkkk kkkk kkkk and goes to PC + k + 1."""
-    word = int.from_bytes(STAND_STILL[:2], "little")
+    word = int.from_bytes(STAND_STILL, "little")
     assert (word >> 12, (word & 0xFFF) - 0x1000 + 1) == (0b1100, 0)
-    assert STAND_STILL == STAND_STILL[:2] * 64
 
 
 def test_no_bootloader(talk, image):
@@ -132,6 +131,12 @@ def test_no_bootloader(talk, image):
         flash("test://", image, tell=pytest.fail)
     assert caught.value.cause == "silent"
     assert line.rates == (115200, 57600) and line.lines == (False, True) * 6
+
+
+@pytest.mark.parametrize("board", ["host", "cortex-m4f", "due"])
+def test_a_board_without_firmware_is_refused_before_its_port_opens(board, image):
+    with pytest.raises(PaddleError, match=f"board = '{board}' cannot be flashed from here; needs one of uno"):
+        flash("/dev/no-such-port", image, board)
 
 
 def test_an_older_bootloader_is_found_at_its_rate(talk, image):
@@ -216,7 +221,7 @@ def test_a_wrong_byte_puts_the_board_to_rest(talk, image, at):
     words = f"failed at 0x{at:04x}: it reads 0x{IMAGE[at] ^ 0xFF:02x}, needs 0x{IMAGE[at]:02x}"
     with pytest.raises(PaddleError, match=words):
         flash("test://", image)
-    assert peer.written[-1] == (0, STAND_STILL)
+    assert peer.written[-1] == (0, STAND_STILL * 64)
 
 
 @pytest.mark.parametrize(
