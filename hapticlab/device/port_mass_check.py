@@ -17,6 +17,7 @@ import math
 import numpy as np
 
 from ..errors import PaddleError
+from ..roots import root
 
 
 def largest_port_mass(*, m, T, delay=0.0, velocity="backward_difference"):
@@ -49,11 +50,7 @@ def largest_port_mass(*, m, T, delay=0.0, velocity="backward_difference"):
         if velocity == "measured":
             return m
         return m / math.cos(math.pi / (2 * k + 3))
-    low, high = 0.0, 4.0
-    while high - low > 1e-12:
-        middle = (low + high) / 2
-        low, high = (middle, high) if largest_root(middle, k, part, velocity) < 1 else (low, middle)
-    return low * m
+    return m * root(lambda ratio: largest_root(ratio, k, part, velocity) - 1, 0.0, 4.0)
 
 
 def largest_root(ratio, k, part=0.0, velocity="backward_difference"):

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..device.simulated.moved_handle import Handle
 from ..errors import PaddleError
+from ..roots import root
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,26 +161,22 @@ def _one_period(handle, hand, display):
 
 
 def largest_stiffness(paddle, make, *, low=1.0, high=1e7):
-    """The largest k [N/m] up to which ``make(k)`` is stable, looked for upwards by steps of 16 %, then by bisection.
+    """The largest k [N/m] up to which ``make(k)`` is stable, looked for upwards by steps of 16 %, then between two.
 
     0 where it is unstable at ``low``, infinity where it is stable up to ``high``.
     """
     handle, hand = _resting(paddle)
 
-    def unstable(k):
-        return np.abs(np.linalg.eigvals(_one_period(handle, hand, make(k)))).max() >= 1
+    def growing(k):
+        return np.abs(np.linalg.eigvals(_one_period(handle, hand, make(k)))).max() - 1
 
     stable = None
     for k in np.geomspace(low, high, 111):
-        if unstable(k):
+        if growing(k) >= 0:
             break
         stable = k
     else:
         return math.inf
     if stable is None:
         return 0.0
-    bad = float(k)
-    for _ in range(40):
-        middle = (stable + bad) / 2
-        stable, bad = (stable, middle) if unstable(middle) else (middle, bad)
-    return float(stable)
+    return root(growing, stable, k)

@@ -27,6 +27,7 @@ import numpy as np
 
 from ..arguments import instance, number, period
 from ..errors import AnalysisError
+from ..roots import root
 from .limit import MOST_PERIODS, whole_and_fraction
 from .linear_law import LinearLaw
 from .plots import plot_passivity_margin
@@ -244,10 +245,12 @@ def _required(law, delay):
 
 
 def _cut(law, b, theta, delay, least, K):
-    """Return the stiffness from least to K at which theta asks for exactly b: by bisection, a convex function crosses once."""
-    low, high = least, K
-    while (middle := (low + high) / 2) not in (low, high):
-        here = law(middle)
-        too_much = asked(here.A, here.B, here.C, here.D, here.T, np.array([theta]), delay)[0] > b
-        low, high = (low, middle) if too_much else (middle, high)
-    return high
+    """Return the stiffness from least to K at which theta asks for exactly b: a convex function crosses once, or at an end."""
+
+    def excess(K):
+        here = law(K)
+        return float(asked(here.A, here.B, here.C, here.D, here.T, np.array([theta]), delay)[0]) - b
+
+    if excess(K) <= 0:
+        return K
+    return root(excess, least, K) if excess(least) < 0 else least

@@ -19,7 +19,6 @@ of it is ``k_c T/2 + b_c <= b``, which is Eq. (23.10) again.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -27,6 +26,7 @@ import numpy as np
 
 from ..arguments import having, number
 from ..errors import AnalysisError
+from ..roots import minimum
 from .limit import A_PADDLE, MOST_PERIODS, whole_and_fraction
 from .plots import plot_coupler
 from .two_port import TwoPort, frequencies, hertz, stopped
@@ -36,10 +36,6 @@ if TYPE_CHECKING:
 
     from ..annotations import Array
     from .limit import Device
-
-#: part of the damping to which the best pair is searched
-NARROW = 1e-10
-GOLDEN = (math.sqrt(5) - 1) / 2
 
 
 @dataclass(frozen=True)
@@ -200,9 +196,9 @@ def _least(curve):
 
 def _best_damping(b, T, delay, most):
     """Return the damper beside which the spring can be stiffest: k_c is a concave function of b_c."""
-    low, high = 0.0, most
-    while high - low > NARROW * most:
-        one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-        less = _stiffest(one, b, T, delay)[0] < _stiffest(two, b, T, delay)[0] * (1 - 1e-12)
-        low, high = (one, high) if less else (low, two)
-    return 0.0 if low == 0.0 else (low + high) / 2
+
+    def stiffness(b_c):
+        return _stiffest(b_c, b, T, delay)[0]
+
+    best = minimum(lambda b_c: -stiffness(b_c), 0.0, most)
+    return best if stiffness(best) > stiffness(0.0) else 0.0

@@ -9,6 +9,7 @@ sign along a logarithmic scale; each gives one K, and the poles between two of t
 from __future__ import annotations
 
 import math
+from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from numpy.polynomial import chebyshev
 
 from ..arguments import number
 from ..errors import AnalysisError
+from ..roots import root
 from ..scene.laws.taps import LEAD
 from ..scene.scene import Scene
 from .limit import Limit
@@ -272,28 +274,13 @@ def _slow_angles(loop):
     with np.errstate(invalid="ignore"):
         phase = (p0 * np.conj(p1)).imag / (abs(p0) * abs(p1))
     sign = np.where(abs(phase) > 1e-14, np.sign(phase), 0.0)
-    return [_bracketed(loop, *SLOW_ANGLES[i : i + 2]) for i in np.flatnonzero(sign[1:] * sign[:-1] < 0)]
+    imaginary = partial(_imaginary, loop)
+    return [root(imaginary, *SLOW_ANGLES[i : i + 2]) for i in np.flatnonzero(sign[1:] * sign[:-1] < 0)]
 
 
 def _imaginary(loop, theta):
     p0, p1 = loop.characteristic(complex(-2 * math.sin(theta / 2) ** 2, math.sin(theta)))
     return (p0 * p1.conjugate()).imag / math.sin(theta)
-
-
-def _bracketed(loop, low, high):
-    """Return the root between two angles: false position that halves the value of an end that stays (Illinois)."""
-    f_low, f_high, at = _imaginary(loop, low), _imaginary(loop, high), high
-    for _ in range(60):
-        before, at = at, (low * f_high - high * f_low) / (f_high - f_low)
-        value = _imaginary(loop, at)
-        if value == 0 or abs(at - before) <= 1e-15 * at:
-            break
-        if value * f_high < 0:
-            low, f_low = high, f_high
-        else:
-            f_low /= 2
-        high, f_high = at, value
-    return at
 
 
 def _polish(loop, theta):
