@@ -10,7 +10,6 @@ from ..errors import CourseError
 from ..grading import formats
 from ..grading.assignment import find_assignment
 from ..grading.export.gradebook import push
-from ..grading.formats.gradescope import GRADER_FAILED
 from ..grading.formats.words import clean
 from ..grading.handed_in.roster import read_roster
 from ..grading.handed_in.submission import find_submissions, lab_of, left_aside, read
@@ -193,7 +192,7 @@ def _tell(done, roster, beside=()):
         graded += f"; {statistics.median(done.seconds):.2f} s each (median), {each:.2f} s of a processor (mean, start included)"
     _say(graded)
     for report in done.failed:
-        again = "; the same command tries it again" if report.problem.startswith(GRADER_FAILED) else ""
+        again = "; the same command tries it again" if report.grader_failed else ""
         _say(f"not graded: {report.student}, {report.submission}: {report.problem}{again}")
     for words in done.foreign:
         _say(f"warning: {words}")

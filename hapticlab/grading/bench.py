@@ -8,7 +8,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from ..errors import HapticlabError
-from .formats.gradescope import GRADER_FAILED
 from .grade import Deferred, grade
 from .handed_in.submission import Submission
 from .report import Report
@@ -96,10 +95,10 @@ class Bench:
             try:
                 return grade(submission, self.assignment, self._starter, self.limits, last=last), ""
             except HapticlabError as problem:
-                return None, f"{GRADER_FAILED}: {problem}"
+                return None, f"the grader failed: {problem}"
             except Exception as problem:  # a student's code may end whatever it can reach; the class goes on
                 if again:
-                    return None, f"{GRADER_FAILED}: {type(problem).__name__}: {problem}"
+                    return None, f"the grader failed: {type(problem).__name__}: {problem}"
                 self.__exit__()
                 self.__enter__()
         return Deferred(submission.student), ""

@@ -84,6 +84,8 @@ class Report:
         Of what was handed in.
     problem : str
         Why nothing could be graded, else empty: no notebook inside, no JSON, too large.
+    grader_failed : bool
+        Whether ``problem`` is no fault of the student; another run may have more luck.
     cells : tuple of (int, str)
         Cells that failed, counted from 1 over code cells, and what they raised.
     exercises : tuple of ExerciseReport
@@ -96,6 +98,7 @@ class Report:
     submission: str
     sha256: str = ""
     problem: str = ""
+    grader_failed: bool = False
     cells: tuple[tuple[int, str], ...] = ()
     exercises: tuple[ExerciseReport, ...] = ()
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -171,7 +171,8 @@ class _Run:
             self._keep(reply.report)
         else:  # not into the journal: another run may have more luck
             problem = reply.problem or "the process that graded it ended twice; is there memory for it?"
-            self._keep(refused(task.submission, self.assignment, problem, self.limits))
+            report = refused(task.submission, self.assignment, problem, self.limits)
+            self._keep(replace(report, grader_failed=bool(reply.problem)))
 
     def _know(self, report):
         """Keep a report that takes no time, which would make the time left of the bar too short."""

@@ -226,7 +226,7 @@ def test_what_could_not_be_graded_is_no_zero(tmp_path):
     path = tmp_path / "gradebook.csv"
     path.write_text("Student,ID,SIS Login ID,Section,Email address\nAda,1,ada,G,a@b.c\nBob,2,bob,G,b@b.c\n", "utf-8")
     nothing = report(earned=(0.0, 0.0))
-    lost, roster = replace(nothing, problem="the grader failed: OSError: disc"), read_roster(path)
+    lost, roster = replace(nothing, problem="the grader failed: OSError: disc", grader_failed=True), read_roster(path)
     both = [lost, report("bob", (0.0, 0.0))]
     assert canvas(write("canvas", both, roster, "Lab"))[0] == {"2": {"Lab": "0"}}
     assert rows(write("moodle", both, roster, "Lab")) == [["Email address", "Lab"], ["b@b.c", "0"]]
@@ -282,7 +282,9 @@ def test_gradescope_reads_every_field():
     jsonschema.validate(lost, GRADESCOPE)
     assert (lost["score"], lost["output"]) == (0, "Not graded: no JSON")
     with pytest.raises(CourseError, match="no result for Gradescope.*OSError: disc"):
-        write("gradescope", [report(earned=(0.0, 0.0), problem="the grader failed: OSError: disc")])
+        write("gradescope", [report(earned=(0.0, 0.0), problem="OSError: disc", grader_failed=True)])
+    named = json.loads(write("gradescope", [report(earned=(0.0, 0.0), problem="the grader failed.docx is no notebook")]))
+    assert named["score"] == 0, "so a student may call a file"
 
 
 def test_prairielearn_reads_every_field():

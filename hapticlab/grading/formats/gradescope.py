@@ -15,9 +15,6 @@ if TYPE_CHECKING:
     from ..handed_in.roster import Roster
     from ..report import Report
 
-#: how a problem begins that is no fault of the student
-GRADER_FAILED = "the grader failed"
-
 
 def results(reports: Sequence[Report], roster: Roster | None = None, assignment: str = "") -> str:
     """Return the result of one submission, a test for each exercise that carries points.
@@ -26,7 +23,7 @@ def results(reports: Sequence[Report], roster: Roster | None = None, assignment:
     Gradescope tells of that, and writes no 0 points down.
     """
     report = only(reports, "Gradescope")
-    if report.problem.startswith(GRADER_FAILED):
+    if report.grader_failed:
         raise CourseError(f"no result for Gradescope, which would take it for 0 points: {report.problem}")
     told = {
         "score": points(report.earned),

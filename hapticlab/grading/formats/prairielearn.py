@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 #: bytes that PrairieLearn takes
 MOST = 1_000_000
+#: kinds of error that a session names first; the grader itself may not parse what students wrote
 NO_PYTHON = ("SyntaxError", "IndentationError", "TabError")
 
 
