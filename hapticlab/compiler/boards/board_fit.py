@@ -93,9 +93,9 @@ def _period(taken, promise):
 
 def _offers(scene, taken, promise, beside, options):
     """Yield what fits, in words: at the same rate what changes the motion least, then slower rates, fastest first."""
-    same, slower = [_seldom(taken, promise, beside)], []
-    for words, other, changed in _cheaper(scene, options):
-        if any(named and words.startswith(named) for named in same):
+    same, slower = [], []
+    for changes, other, changed in _cheaper(scene, options):
+        if any(set(enough) <= set(changes) for enough in same):
             continue  # a change more than one that is enough
         try:
             found = cost(compile(other, **changed), taken.board, **beside)
@@ -107,12 +107,13 @@ def _offers(scene, taken, promise, beside, options):
         except HapticlabError:
             continue
         if T == taken.T:
-            same.append(words)
-        elif not words:
+            same.append(changes)
+        elif not changes:
             slower.append((T, 0, f"at T = {T:g} s"))
         else:
-            slower.append((T, 1, f"{words} at T = {T:g} s"))
-    yield from same
+            slower.append((T, 1, f"with {', '.join(changes)} at T = {T:g} s"))
+    yield _seldom(taken, promise, beside)
+    yield from (f"with {', '.join(changes)}" for changes in same)
     rates = set()
     for T, _, words in sorted(slower):
         if T not in rates:
@@ -135,32 +136,30 @@ def _fits_at(T, scene, options, board, beside, promise):
 
 
 def _cheaper(scene, options):
-    """Yield (words, scene, options) of cheaper ways to the same force, the most faithful first."""
-    yield "", scene, options
+    """Yield (changes in words, scene, options) of cheaper ways to the same force, the most faithful first."""
+    yield (), scene, options
     defaults = {n: p.default for n, p in inspect.signature(compile).parameters.items()}
     used = {**defaults, **options}
     if used["substeps"] > 1:
-        yield "with substeps=1", scene, {**options, "substeps": 1}
+        yield ("substeps=1",), scene, {**options, "substeps": 1}
     bound = set(scene.parameters) <= set(scene.values)
     if used["live"] is None and bound and scene.parameters:
-        yield "with live='' (parameters fixed)", scene, {**options, "live": ()}
+        yield ("live='' (parameters fixed)",), scene, {**options, "live": ()}
     if scene.eom and bound and used["method"] in METHODS:
-        yield "with method='exact', live=''", scene, {**options, "method": "exact", "live": ()}
+        yield ("method='exact'", "live=''"), scene, {**options, "method": "exact", "live": ()}
     now = METHODS.get(used["method"])
     if scene.eom and now:
         below = [m for m in METHODS.values() if m.evaluations < now.evaluations and m.name != "euler"]
         for m in sorted(below, key=lambda m: -m.order):
-            yield f"with method={m.name!r}", scene, {**options, "method": m.name}
+            yield (f"method={m.name!r}",), scene, {**options, "method": m.name}
             if bound and used["live"] is None:
-                yield (
-                    f"with method={m.name!r}, live=''", scene, {**options, "method": m.name, "live": ()},
-                )  # fmt: skip
+                yield (f"method={m.name!r}", "live=''"), scene, {**options, "method": m.name, "live": ()}
         if used["hold"] != "zoh":
-            yield "with hold='zoh'", scene, {**options, "hold": "zoh"}
+            yield ("hold='zoh'",), scene, {**options, "hold": "zoh"}
     for law, other in _cheaper_laws(scene):
-        yield f"with law={law!r}", other(**scene.values), options
-    for words, other in _cheaper_velocities(scene):
-        yield words, other, options
+        yield (f"law={law!r}",), other(**scene.values), options
+    for name, other in _cheaper_velocities(scene):
+        yield (f"velocity={name!r}",), other, options
 
 
 def _cheaper_laws(scene):
@@ -175,7 +174,7 @@ def _cheaper_laws(scene):
 
 
 def _cheaper_velocities(scene):
-    """Yield (words, scene) with estimates of less work, where the scene holds one of hapticlab/scene/laws/estimators.py."""
+    """Yield (estimate, scene) with estimates of less work, where the scene holds one of hapticlab/scene/laws/estimators.py."""
     defined = {type(e.lhs): e for e in scene.eom if not is_model(e) and getattr(type(e.lhs), "role", None) == "signal"}
     for kind in [kind for kind in defined if hasattr(kind, "instead")]:
         own, waiting = set(), {kind}
@@ -190,7 +189,7 @@ def _cheaper_velocities(scene):
             if not own & {type(y) for y in applied([changed[0], *written_in(changed[1]), *watch.values()], "signal")}:
                 values = {k: v for k, v in scene.values.items() if k in scene.parameters}
                 new = Scene(changed[0], (*changed[1], *other.eom), watch, name=scene.name)
-                yield f"with velocity={other.name!r}", new(**{k: v for k, v in values.items() if k in new.parameters})
+                yield other.name, new(**{k: v for k, v in values.items() if k in new.parameters})
 
 
 def table(scenes, board="uno", periods=(1e-3, 2e-3)):
