@@ -17,6 +17,7 @@ from ...compiler.prune.constraint_lengths import held
 from ...compiler.prune.dependence import FORCE, Dependence, part_of
 from ...compiler.prune.excluded_modes import excluded, open_conditions
 from ...compiler.tick.compile_scene import compile, lowered
+from ...compiler.tick.handle_samples import is_past_sample
 from ...errors import HapticlabError, SceneError
 from ...scene.notation.symbols import n, t, v
 from ...scene.notation.written import no_scene
@@ -205,7 +206,7 @@ class _Report:
         names = {c.name for c in self.program.states}
         rates = {f"d{name}/dt" for name in self.graph.coordinates} & names
         coordinates = set(self.graph.coordinates) & names
-        past = {name for name in names if name.startswith(("x(n", "v(n"))}
+        past = {name for name in names if is_past_sample(name)}
         parts = [(len(coordinates), "coordinate"), (len(rates), "rate"), (len(past), "past sample")]
         parts.append((len(names) - len(coordinates) - len(rates) - len(past), "other"))
         return ", ".join(f"{count} {word}{'s' * (count > 1 and word != 'other')}" for count, word in parts if count)
@@ -218,7 +219,7 @@ class _Report:
         shown = [c for c in graph.channels if set(graph.paths(c)) - {c} - set(graph.paths(FORCE))]
         if not shown:
             return self.scene, None
-        watch = {c: c.removeprefix("watch ") for c in shown}
+        watch = {c: graph.channels[c] for c in shown}
         rest = {name: expr for name, expr in self.scene.watch.items() if name not in watch.values()}
         others = [c for c in graph.channels if c not in shown]
         felt = self._part(self.scene.force, rest, graph.paths(FORCE, *others), self.scene.name)
@@ -236,8 +237,8 @@ class _Report:
         """(what is offered, why exact is not, or None)."""
         offered, declined = [], None
         if view is not None:
-            names = sorted(set(self.whole.paths(*self.whole.channels)) - set(self.whole.paths(FORCE)))
-            names = [name for name in names if not name.startswith("watch ")]
+            seen = set(self.whole.paths(*self.whole.channels)) - set(self.whole.channels)
+            names = sorted(seen - set(self.whole.paths(FORCE)))
             more = self._more(felt)
             why = "only a view shows it: run .felt on the board, and hl.replay(.view, log) beside the record"
             offered.append(Item("view", ", ".join(names), why, None if more is None else -more))

@@ -12,6 +12,7 @@ from ...compiler.events.taylor_method import Taylor
 from ...compiler.methods.chosen_method import ChosenMethod, chosen_method
 from ...compiler.prune.excluded_modes import folded
 from ...compiler.tick.compile_scene import compile
+from ...compiler.tick.handle_samples import is_past_sample
 from ...compiler.tick.motion_program import moving_scene
 from ...compiler.tick.source import Options, Source
 from ...errors import AnalysisError
@@ -81,7 +82,7 @@ def forces_and_ticks_of(program, scene, points):
     directions = [*(("state", k) for k in kept), ("input", 0)]
     values, slopes = tangents(program.tick.instructions, wanted, leaves, directions, P)
     whole = np.moveaxis(slopes, 2, 0)
-    handle = np.array([k for k, state in enumerate(kept) if program.states[state].name.startswith(("x(n-", "v(n-"))], int)
+    handle = np.array([k for k, state in enumerate(kept) if is_past_sample(program.states[state].name)], int)
     return values[0], [(one[1:, :-1], one[1:, -1], one[0, :-1], one[0, -1]) for one in whole], handle
 
 

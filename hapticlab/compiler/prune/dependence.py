@@ -23,12 +23,14 @@ class Dependence:
     Attributes
     ----------
     on : dict name -> set of names
-        What each depends on directly. Channels are called ``"watch y"``.
+        What each depends on directly.
+    channels : dict of str to str
+        ``"watch y"``, as a channel is called among these names, which may have a y too, to the ``"y"`` of the scene.
     """
 
     def __init__(self, form, graph=None):
         self.form, self.graph = form, graph or Graph()
-        self.channels = tuple(f"watch {name}" for name in form.watch)
+        self.channels = {f"watch {name}": name for name in form.watch}
         self.coordinates = {type(q).__name__: q for q in form.coordinates}
         self.signals = {type(y).__name__: y for y in form.updates}
         self.on = {FORCE: self._moving([form.force])}

@@ -7,6 +7,21 @@ HOLDS = ("zoh", "foh", "soh")
 VELOCITIES = ("backward_difference", "measured")
 
 
+def is_past_sample(name):
+    """Whether a state of a program is a sample of the handle before the present one.
+
+    Examples
+    --------
+    >>> is_past_sample("x(n-1)"), is_past_sample("z")
+    (True, False)
+    """
+    return name.startswith((_past(x), _past(v)))
+
+
+def _past(signal):
+    return f"{signal.__name__}(n-"
+
+
 class Handle:
     """The handle's samples x(n-k) and v(n-k), and x(t), v(t) between them.
 
@@ -44,7 +59,7 @@ class Handle:
         tracing = self.tracing
         if lag:
             # history starts at the first measured sample, and with it an estimated velocity at rest
-            channel = Channel(f"{signal.__name__}(n-{lag})", signal.unit, tracing.real)
+            channel = Channel(f"{_past(signal)}{lag})", signal.unit, tracing.real)
             return tracing.state((signal, lag), channel, self.first(signal), lambda: self.sample(signal, lag - 1))
         if signal is x or self.velocity == "measured":
             return tracing.input(tracing.tick, signal)
