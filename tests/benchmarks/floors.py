@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hapticlab.compiler.engines.firmware_library import c_compiler
+from hapticlab.compiler.engines.toolchain import compilers, running_target
 
 SOURCE = Path(__file__).with_name("floors.c")
 
@@ -19,7 +19,8 @@ def floors():
     folder = tempfile.mkdtemp(prefix="hapticlab-floors-")
     target = Path(folder) / "floors.so"
     flags = ["-O3", "-march=native", "-std=gnu11", "-shared", "-fPIC"]
-    subprocess.run([*c_compiler(), *flags, str(SOURCE), "-o", str(target), "-lm"], check=True, capture_output=True)
+    command = [*compilers(running_target())[0], *flags, str(SOURCE), "-o", str(target), "-lm"]
+    subprocess.run(command, check=True, capture_output=True)
     return ctypes.CDLL(str(target))
 
 

@@ -19,7 +19,7 @@ from types import ModuleType
 import pytest
 import serial
 
-from hapticlab.compiler.engines.firmware_library import c_compiler
+from hapticlab.compiler.engines.toolchain import compilers, running_target
 from hapticlab.device.setup.intel_hex import parse_hex
 
 HERE = Path(__file__).parent
@@ -67,7 +67,7 @@ def run(*command):
 def build_shim(folder):
     """Return the shim as a library, built into a folder."""
     target = Path(folder, "bootloader_shim.so")
-    command = [*c_compiler(), "-shared", "-fPIC", "-O2", "-Wall", "-Wextra", "-o", str(target)]
+    command = [*compilers(running_target())[0], "-shared", "-fPIC", "-O2", "-Wall", "-Wextra", "-o", str(target)]
     command += [str(HERE / "bootloader_shim.c"), "-lsimavr", "-lelf"]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:

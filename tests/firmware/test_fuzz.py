@@ -269,7 +269,8 @@ def build(tmp_path, slots):
     path = tmp_path / (f"fuzz{slots}" + (".exe" if os.name == "nt" else ""))
     here = os.path.join(os.path.dirname(os.path.abspath(__file__)), "fuzz_link.c")
     flags = (*SANITIZERS, f"-DHL_SLOTS={slots}")
-    command = toolchain.build_command(firmware_library.c_compiler(), firmware, 16, path, *flags, files=[*files, here])
+    compiler = toolchain.compilers(toolchain.running_target())[0]
+    command = toolchain.build_command(compiler, firmware, 16, path, *flags, files=[*files, here])
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
         pytest.skip(f"no sanitizers here: {done.stderr.splitlines()[:1]}")

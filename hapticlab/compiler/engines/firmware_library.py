@@ -47,14 +47,6 @@ def firmware_folder():
     raise EngineMissingError("the C sources of the virtual machine are not installed; reinstall hapticlab")
 
 
-def c_compiler():
-    """Return the command of a C compiler for this computer; EngineMissingError says what to install."""
-    found = toolchain.compilers(toolchain.running_target())
-    if not found:
-        raise EngineMissingError(f"found no cc, gcc, clang or ziglang; {CURE}")
-    return found[0]
-
-
 def prebuilt(word_bits):
     """Return the library that came with the package, or None if it is missing or of other sources than are here."""
     target = toolchain.running_target()

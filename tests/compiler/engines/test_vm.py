@@ -296,7 +296,8 @@ def compiled(tmp_path, *flags, word_bits=16, target="check"):
     path = tmp_path / (target + (".exe" if os.name == "nt" else ""))
     firmware = firmware_library.firmware_folder()
     files = (*toolchain.sources(firmware), "boards/host/tools/check.c")
-    command = toolchain.build_command(firmware_library.c_compiler(), firmware, word_bits, path, *flags, files=files)
+    compiler = toolchain.compilers(toolchain.running_target())[0]
+    command = toolchain.build_command(compiler, firmware, word_bits, path, *flags, files=files)
     return path, subprocess.run(command, capture_output=True, text=True)
 
 
@@ -341,7 +342,8 @@ def test_the_sources_compile_without_a_warning(tmp_path, word_bits, dispatch):
 @pytest.mark.wide
 def test_nothing_of_the_c_library_but_the_square_root_is_called(tmp_path):
     path = tmp_path / "vm.o"
-    command = [*firmware_library.c_compiler(), "-c", *toolchain.FLAGS, "-Wall", "-Werror", "-fno-builtin", "-o", str(path)]
+    compiler = toolchain.compilers(toolchain.running_target())[0]
+    command = [*compiler, "-c", *toolchain.FLAGS, "-Wall", "-Werror", "-fno-builtin", "-o", str(path)]
     includes = [f"-I{firmware_library.firmware_folder() / name}" for name in ("core", "generated")]
     text = ""
     for source in ("core/vm.c", "core/verify.c", "generated/elementary.c"):
