@@ -12,7 +12,6 @@ import sympy as sp
 from ..scene.notation.symbols import n
 from ..scene.scene import Scene
 from .evaluate import evaluate
-from .exercise import Case
 from .expression import spelling, symbols
 
 ROUND = {sp.Gt: sp.Lt, sp.Ge: sp.Le, sp.Lt: sp.Gt, sp.Le: sp.Ge}
@@ -59,34 +58,6 @@ def points(random, ranges, count=4, boundary=()):
         near = 1e-3 * (ranges[moved][1] - ranges[moved][0])
         found += [{**point, moved: point[fixed] + step} for step in (-near, 0.0, near)]
     return {name: [point[name] for point in found] for name in ranges}
-
-
-def solved_case(exercise, solution, given, unit=""):
-    """Return a case with the value expected and the slips, all computed from a right answer.
-
-    Parameters
-    ----------
-    exercise : Exercise
-    solution : object
-        A right answer.
-    given : dict
-    unit : str
-
-    Returns
-    -------
-    Case
-        Its ``repr`` can be pasted into a file of checks.
-
-    Examples
-    --------
-    >>> from hapticlab.course.exercise import Exercise
-    >>> k, x_o, x = sp.symbols("k x_o x")
-    >>> given = {"at": {"k": [200.0], "x_o": [0.01], "x": [0.012]}}
-    >>> case = solved_case(Exercise("force", "expression"), k * (x - x_o), given)
-    >>> case.expected, case.slips[1]
-    ([0.4], ([2.4], 'You forgot x_o: it is what comes with x_o = 0.'))
-    """
-    return Case(given, evaluate(exercise.kind, solution, given).value, unit=unit, slips=slips(exercise, solution, given))
 
 
 def slips(exercise, solution, given):

@@ -51,26 +51,6 @@ def information(rest, sigma, quantum, counted):
     return np.where(told, np.sign(rest) * slope, score), np.where(told, np.maximum(slope**2 + bend, 0.0), info)
 
 
-def expected_information(position, sigma, quantum):
-    """The Fisher information of a count about the position in it, as if noise were drawn anew [1/m^2].
-
-    Examples
-    --------
-    >>> at = np.linspace(0, 1, 1000, endpoint=False)
-    >>> coarse = expected_information(at, 2.0, 1.0).mean()
-    >>> print(f"{1 / coarse - 2.0**2:.4f}")                 # Sheppard: a count adds 1/12
-    0.0833
-    """
-    reach = np.arange(-np.ceil(9 * sigma / quantum) - 1, np.ceil(9 * sigma / quantum) + 2)
-    low = (np.floor(np.asarray(position)[..., None] / quantum) + reach) * quantum - np.asarray(position)[..., None]
-    a, b = low / sigma, (low + quantum) / sigma
-    turned = a > 0
-    a, b = np.where(turned, -b, a), np.where(turned, -a, b)
-    p = np.maximum(normal(b) - normal(a), LEAST)
-    slope = (np.exp(-0.5 * b * b) - np.exp(-0.5 * a * a)) / np.sqrt(2 * np.pi) / sigma
-    return np.sum(slope**2 / p, axis=-1)
-
-
 def spread(rest, quantum):
     """The noise that makes counted residuals likeliest, shape (L,), by search and a parabola."""
     tried = TRIED * quantum

@@ -11,7 +11,7 @@ from hapticlab.course.check import checked
 from hapticlab.course.evaluate import evaluate
 from hapticlab.course.exercise import Case, Exercise
 from hapticlab.course.expression import unit_remark, values
-from hapticlab.course.variants import points, slips, solved_case
+from hapticlab.course.variants import points, slips
 
 k, x_o, b, m = hl.parameters("k x_o b m", units="N/m m N*s/m kg")
 z = hl.coordinate("z", unit="m", initial=x(n))
@@ -27,6 +27,11 @@ MOTION = Exercise(
     "motion", "expression", points=1,
     cases=[Case({"at": MOTION_AT, "solve_for": "z''"}, [(1.0 - 0.1) / 0.1, (-1.5 + 0.05) / 0.2], unit="m/s^2")],
 )  # fmt: skip
+
+
+def solved(exercise, right, given, unit=""):
+    """A case with the value expected and the slips, computed from a right answer."""
+    return Case(given, evaluate(exercise.kind, right, given).value, unit=unit, slips=slips(exercise, right, given))
 
 
 def said(exercise, answer):
@@ -205,7 +210,7 @@ def test_points_hold_the_pairs_and_the_boundary():
 def test_slips_of_a_known_answer_are_found_by_their_numbers():
     friction = RIGHT + hl.when(x(n) >= x_o, b * v(n))
     exercise = Exercise("damped", "expression", points=1)
-    case = solved_case(exercise, friction, {"at": AT, "unit": "N"}, unit="N")
+    case = solved(exercise, friction, {"at": AT, "unit": "N"}, unit="N")
     exercise = Exercise("damped", "expression", points=1, cases=[case])
     touched = x(n) >= x_o
     for answer, words in [
@@ -216,7 +221,7 @@ def test_slips_of_a_known_answer_are_found_by_their_numbers():
         (hl.when(touched, k * x(n)) + hl.when(touched, b * v(n)), "The term with x_o is missing."),
     ]:
         assert words in said(exercise, answer), said(exercise, answer)
-    pendulum = solved_case(exercise, m * 9.81 * sp.sin(x_o / b), {"at": {"m": [0.1], "x_o": [0.05], "b": [0.1]}})
+    pendulum = solved(exercise, m * 9.81 * sp.sin(x_o / b), {"at": {"m": [0.1], "x_o": [0.05], "b": [0.1]}})
     sentences = {sentence: wrong for wrong, sentence in pendulum.slips}
     assert sentences["An angle in radians was taken for degrees."] == pytest.approx([0.981 * np.sin(np.radians(0.5))])
     assert sentences["sin and cos are swapped."] == pytest.approx([0.981 * np.cos(0.5)])
