@@ -75,20 +75,6 @@ class Psychometric:
         q = (self.threshold if self.shape == "normal" else math.log(self.threshold), math.log(self.slope))
         return self.guess + (1 - self.guess - self.lapse) * rise(self.shape, np.asarray(levels, float), *q)[0]
 
-    def level_at(self, part: float) -> float:
-        """The level at which this part of the answers is right, by bisection."""
-        top = 1 - self.lapse
-        if not self.guess < part < top:
-            raise AnalysisError(f"{part:g} of the answers right; this curve needs a part between {self.guess:g} and {top:g}")
-        if self.shape == "normal":
-            low, high = self.threshold - 10 / self.slope, self.threshold + 10 / self.slope
-        else:
-            low, high = 0.0, self.threshold * 1e3 ** (1 / self.slope)
-        for _ in range(100):
-            middle = (low + high) / 2
-            low, high = (middle, high) if self(middle) < part else (low, middle)
-        return high
-
 
 def rise(shape, levels, place, log_slope):
     """F and its derivatives with respect to place and log_slope.

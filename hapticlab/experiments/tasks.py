@@ -88,7 +88,7 @@ class Task:
         return show
 
 
-def stiffness_task(*, standard: float = 200.0, press: float = 0.015, force: None = None) -> Task:
+def stiffness_task(*, standard: float = 200.0, press: float = 0.015) -> Task:
     """Tell two walls apart by their stiffness, pressed twice a second.
 
     Parameters

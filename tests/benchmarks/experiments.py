@@ -14,6 +14,7 @@ if __name__ == "__main__":
 import numpy as np
 
 import hapticlab as hl
+from hapticlab.roots import root
 
 WEBER = 0.2
 TRIALS = 60
@@ -32,6 +33,8 @@ PROCEDURES = {
 def thresholds(name, observers):
     """Return ln(estimate/truth) for each observer, by the procedure's rule, its trials, and by a fit of slope 1."""
     curve = hl.SimulatedObserver(weber=WEBER).curve()
+    target = getattr(PROCEDURES[name](0), "target", None)
+    aim = TRUE if target is None else root(lambda level: float(curve(level)) - target, 0.0, 100 * TRUE)
     own, fitted, trials = [], [], []
     for seed in range(observers):
         procedure, observer = PROCEDURES[name](seed), hl.SimulatedObserver(weber=WEBER, seed=seed)
@@ -43,7 +46,6 @@ def thresholds(name, observers):
             levels.append(level)
             right.append(answer)
         if hasattr(procedure, "estimate"):
-            aim = curve.level_at(procedure.target) if hasattr(procedure, "target") else TRUE
             own.append(math.log(procedure.estimate() / aim))
         fitted.append(math.log(hl.psychometric(levels, right, slope=1.0, lapse=0.0, bootstrap=2).curve.threshold / TRUE))
         trials.append(len(levels))

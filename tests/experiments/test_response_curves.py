@@ -41,12 +41,6 @@ def test_derivatives_are_those_of_the_curve(shape):
     np.testing.assert_allclose(steeper, (turned[0] - turned[1]) / (2 * h), atol=1e-9)
 
 
-@pytest.mark.parametrize("shape", SHAPES)
-def test_level_at_undoes_the_curve(shape):
-    curve = Psychometric(threshold=0.3, slope=1.7, guess=0.5, lapse=0.02, shape=shape)
-    assert float(curve(curve.level_at(0.8))) == pytest.approx(0.8, abs=1e-12)
-
-
 def test_what_is_no_curve_is_refused():
     with pytest.raises(AnalysisError, match="d_prime, weibull, normal"):
         Psychometric(0.2, 1.0, shape="probit")
@@ -54,5 +48,3 @@ def test_what_is_no_curve_is_refused():
         Psychometric(-0.2, 1.0)
     with pytest.raises(AnalysisError, match="guess \\+ lapse < 1"):
         Psychometric(0.2, 1.0, 0.9, 0.2)
-    with pytest.raises(AnalysisError, match="between 0.5 and 0.98"):
-        Psychometric(0.2, 1.0, 0.5, 0.02).level_at(0.99)
