@@ -7,10 +7,11 @@ import signal
 import sys
 import threading
 import time
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, nullcontext, suppress
 from dataclasses import asdict
 from multiprocessing.connection import wait
 
+from ..analysis.sweeps.workers import safe_path
 from ..errors import CourseError, HapticlabError
 from .bench import Bench, Reply, as_json
 from .grade import MOST_WALL
@@ -112,12 +113,11 @@ class _Worker:
     def __init__(self, bench, preloaded):
         # a fork has all that this process loaded; on other systems a new interpreter, which takes nothing from the working folder
         context = multiprocessing.get_context("fork" if preloaded else "spawn")
-        if not preloaded:
-            os.environ["PYTHONSAFEPATH"] = "1"
         zygote = preloaded.zygote() if preloaded else None
         self.connection, there = context.Pipe()
         self._process = context.Process(target=_work, args=(there, bench, zygote), name="hapticlab grade")
-        self._process.start()
+        with nullcontext() if preloaded else safe_path():
+            self._process.start()
         there.close()
         if zygote:
             zygote[0].close()

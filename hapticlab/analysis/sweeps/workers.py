@@ -10,6 +10,7 @@ import threading
 from collections.abc import Iterable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 
 from ...errors import AnalysisError
 
@@ -98,13 +99,20 @@ class _Processes(ProcessPoolExecutor):
     """Processes that import nothing from the working folder before they have the import path of this one."""
 
     def submit(self, *task):
-        before = os.environ.get("PYTHONSAFEPATH")
-        os.environ["PYTHONSAFEPATH"] = "1"  # a process starts where there is a task for it
-        try:
+        with safe_path():  # a process starts where there is a task for it
             return super().submit(*task)
-        finally:
-            os.environ.pop("PYTHONSAFEPATH")
-            os.environ.update({} if before is None else {"PYTHONSAFEPATH": before})
+
+
+@contextmanager
+def safe_path():
+    """Have the processes that start meanwhile import nothing from the working folder; they take the environment along."""
+    before = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"
+    try:
+        yield
+    finally:
+        os.environ.pop("PYTHONSAFEPATH")
+        os.environ.update({} if before is None else {"PYTHONSAFEPATH": before})
 
 
 def _in_processes(function, pieces, workers):

@@ -19,7 +19,7 @@ from hapticlab.analysis.sweeps import sweep as module
 from hapticlab.analysis.sweeps import sweep_chunks
 from hapticlab.analysis.sweeps import workers as workers_module
 from hapticlab.analysis.sweeps.sweep_chunks import measured
-from hapticlab.analysis.sweeps.workers import number_of, spread
+from hapticlab.analysis.sweeps.workers import number_of, safe_path, spread
 
 pytestmark = pytest.mark.interpreter
 
@@ -308,3 +308,13 @@ def test_a_cluster_survives_a_killed_worker(monkeypatch):
 
         np.testing.assert_array_equal(swept(workers=killing, **given), swept(**given))
         assert client.run(os.getpid) != before
+
+
+@pytest.mark.parametrize("before", [{}, {"PYTHONSAFEPATH": "0"}])
+def test_only_processes_that_start_meanwhile_are_kept_from_the_working_folder(monkeypatch, before):
+    monkeypatch.delenv("PYTHONSAFEPATH", raising=False)
+    for name, value in before.items():
+        monkeypatch.setenv(name, value)
+    with safe_path():
+        assert os.environ["PYTHONSAFEPATH"] == "1"
+    assert os.environ.get("PYTHONSAFEPATH") == before.get("PYTHONSAFEPATH")
