@@ -119,10 +119,11 @@ class Found:
 
     def __str__(self) -> str:
         lines = [f"{self.about} identified from {len(self.measured)} samples, {self.confidence:.0%} confidence:"]
-        lines += [f"  {self.constants[name][0]:<20}{found}" for name, found in self.estimates.items()]
+        width = 2 + max(map(len, ("sensor", *(self.constants[name][0] for name in self.estimates))))
+        lines += [f"  {self.constants[name][0]:<{width}}{found}" for name, found in self.estimates.items()]
         how = "noise" if self.dithered else "noise and counting"
         counts = f", counts of {1e6 * self.quantum:.3g} um" if self.quantum else ""
-        lines.append(f"  {'sensor':<20}{how} {1e6 * self.sigma:.3g} um{counts}")
+        lines.append(f"  {'sensor':<{width}}{how} {1e6 * self.sigma:.3g} um{counts}")
         if not self.explained:
             lines.append(
                 f"  NOT EXPLAINED: neighbouring residuals correlate by {self.correlation:.2f}; something moves the handle that "
