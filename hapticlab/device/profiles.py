@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ..errors import PaddleError
 from ..records import PaddleProfile
-
-if TYPE_CHECKING:
-    from ..records import PaddleProfile
 
 #: nothing here was measured by this package on anyone's device: a lab identifies m, b and friction
 hapkit = PaddleProfile(

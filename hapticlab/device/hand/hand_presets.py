@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...errors import PaddleError
 from .hand import Hand, require
-
-if TYPE_CHECKING:
-    from .hand import Hand
 
 ILLUSTRATIVE = "illustrative round numbers, measured on nobody"
 

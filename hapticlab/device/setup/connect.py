@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from typing import TYPE_CHECKING
 
 from ...errors import LinkError, PaddleError, PortError
 from ..board.serial_paddle import SerialPaddle
 from ..link.serial_ports import available_ports, open_port
 from ..simulated.simulated_paddle import SimulatedPaddle
-
-if TYPE_CHECKING:
-    from ..simulated.simulated_paddle import SimulatedPaddle
 
 
 def connect(

@@ -31,8 +31,6 @@ from .shapes import Circle, Placed, Shape
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from .shapes import Placed
-
 #: points of each curve that are looked at for where the search starts
 GRID = 128
 #: part of the size of the curves by which a residual, divided by its speed, may differ from zero
