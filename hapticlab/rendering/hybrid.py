@@ -213,7 +213,10 @@ class _Path:
 
 
 def _bisect(true, high):
-    """Return the first number found from which on a condition is true, which it is at ``high``."""
+    """Return the first number found from which on a condition is true, which it is at ``high``.
+
+    Not by SciPy: after a crossing the motion starts at p = 0, which a search for a change of sign would take for the next.
+    """
     low = 0.0
     while low < (middle := (low + high) / 2) < high:
         low, high = (low, middle) if true(middle) else (middle, high)

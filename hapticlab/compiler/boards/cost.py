@@ -142,7 +142,7 @@ class Cost:
         low, high = 0.0, 1e-3
         while not self._holds(high, promise) and high < 1e3:
             high *= 2
-        while high - low > 1e-9:
+        while high - low > 1e-9:  # by halves: a period is enough or not, and the answer must be enough
             middle = (low + high) / 2
             low, high = (low, middle) if self._holds(middle, promise) else (middle, high)
         return high

@@ -138,7 +138,7 @@ def largest_feedback(method, most=100.0):
         low, high = high, high * 1.05
     if high >= most:
         return most
-    for _ in range(60):
+    for _ in range(60):  # by halves, not by SciPy: half of it is written into programs, which keep their bits
         middle = (low + high) / 2
         low, high = (middle, high) if _radius(method, middle) < 1 else (low, middle)
     return low
