@@ -154,6 +154,7 @@ def _coulomb(W, c, N, u, slip, e, mu):
     p_stick, s_stick = (N * aim + c * slip) / determinant, -(c * aim + W * slip) / determinant
     side = select(s_stick < 0.0, -1.0, 1.0)
     resistance = W + mu * side * c
+    # where friction undoes more of the gap's rate than the impulse makes, no impulse of sliding is large enough: it sticks
     jams = resistance <= 1e-6 * W
     p_slide = aim / select(jams, W, resistance)
     holds = (abs(s_stick) <= mu * p_stick) | jams

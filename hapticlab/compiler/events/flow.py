@@ -124,6 +124,7 @@ class Flow:
         rows = {leaf.id: [value] for group in leaves for leaf, value in group}
         for leaf, w in zip(motion.q, state[1], strict=True):
             rows[leaf.id].append(times(h, w))
+        # time is linear, and a mode constant, to any order that is asked: 20 of a method, 2 more of a gap
         rows[motion.tau.id] = [tau, h] + [0.0] * 40
         rows |= {leaf.id: [value] + [0.0] * 40 for leaf, value in modes.items()}
         rows |= {r.leaf.id: [] for r in motion.reactions}
@@ -169,7 +170,7 @@ class Flow:
         n = len(self.motion.reactions)
         self._start = self.series.lengths()
         self._rest, a = self._left(0, [0.0] * n), self._a
-        ones = []
+        ones = []  # accelerations are linear in the reactions, so one trial of each tells all, whatever is held later
         self._pushes = []  # how each reaction changes the rates of w and s
         for i in range(n):
             ones.append(self._left(0, [1.0 if j == i else 0.0 for j in range(n)]))

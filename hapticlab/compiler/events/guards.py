@@ -77,6 +77,7 @@ class Reaction:
 def coulomb(new, slip, F_c, F_s, leaf):
     """The Reaction of a Coulomb friction that is F_c against the slip, or up to F_s while it sticks."""
     side = new("bool")
+    # what is left of the cone as a product: its zeros are a polynomial's, while F_s - |leaf| would be one more case
     return Reaction(leaf, slip, 1, select(side, F_c, -F_c), (F_s - leaf) * (F_s + leaf), leaf, side)
 
 

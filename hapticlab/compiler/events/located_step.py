@@ -291,6 +291,7 @@ class Stepper:
         after, speed = self._fresh(replace(now, state=state)), size(w)
         for i, r in enumerate(motion.reactions):
             if r.side is not None:  # a slip that an impact stopped is tried, one that it set off is let go
+                # a slip that is stopped keeps the rounding of its impulse, which is as large as that of the rates
                 stopped = abs(after.at(r.measure)) <= 100 * TOGETHER[motion.builder.real] * speed
                 held[i] = stopped
                 sides[i] = either(struck, sides[i], now.sides[i])

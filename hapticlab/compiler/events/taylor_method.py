@@ -170,7 +170,7 @@ def advance(
     impact = contacts and contacts.impact(motion)
     stepper = Stepper(motion, h, order, events, impact, steps=steps, remainder=remainder)
     now, missed = [held_state(tracing, k) for k in range(len(motion.reactions))], None
-    for step in range(substeps):
+    for step in range(substeps):  # within a period the handle moves as its hold has it, and jumps at a sample only
         groups, now, left_out = stepper.step(builder.const(step * h), groups, now, jumped=step == 0)
         check_size(motion, builder, name)
         count = select(left_out, builder.const(1.0), 0.0)

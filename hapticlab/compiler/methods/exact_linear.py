@@ -161,7 +161,7 @@ class ExactPeriod:
         """What the program keeps, at tau [s] after the sample."""
         if not self.now:
             return []
-        space, effects = self.space, {}  # value -> its effect on all of them
+        space, effects = self.space, {}  # value -> its effect on all of them: what drives in several ways takes one product
         Phi, Psi = space.over(tau)
 
         def add(value, effect):

@@ -45,6 +45,7 @@ class Exchange:
         self.lockstep = getattr(port, "lockstep", False)
         self.now = port.now if self.lockstep else time.monotonic
         self.decoder = Decoder()
+        # never 0, a board's word for no session; drawn, so that no frame left over from another session passes for this one's
         self.session = secrets.randbits(31) + 1
         self.state, self.broken, self.beating = None, None, False
         # guarded requests count by themselves: a board refuses one older than the last it obeyed
@@ -200,7 +201,7 @@ class Exchange:
             if frame.message in ("SAMPLE", "FAULTED"):
                 self.on_frame(frame)
             elif self._is_wanted(frame, known):
-                self._reply, self._wanted = frame, None
+                self._reply, self._wanted = frame, None  # a request sent twice is answered twice; the second is nobody's
                 if not known.get("result"):
                     self._then()
 

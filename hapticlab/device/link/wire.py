@@ -45,6 +45,7 @@ def encode(message, sequence, *values, rest=b"", session=0):
     body = bytes([PROTOCOL << 5 | row.number, sequence & 255]) + row.struct.pack(*values) + rest
     if row.guarded:
         body += struct.pack("<I", zlib.crc32(body, session + (sequence >> 8) & 0xFFFFFFFF))
+    # big endian, unlike all else: so the CRC of a frame with its own CRC is 0, which is what both ends ask
     return stuff(body + struct.pack(">H", crc_hqx(body, 0xFFFF))) + b"\0"
 
 
