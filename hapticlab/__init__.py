@@ -7,8 +7,6 @@
 200.0
 """
 
-from difflib import get_close_matches
-
 import lazy_loader
 
 # Each public name is loaded on first use, as Scientific Python's SPEC 1 describes: a command line or a notebook server
@@ -17,14 +15,16 @@ _load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
 def __getattr__(name):
+    if name in __all__:
+        return _load(name)
+    if name.startswith("_"):  # what Python and notebooks ask of every module
+        raise AttributeError(f"hapticlab has no {name}")
     try:
         return _load(name)
     except AttributeError:
-        words = {public.lower(): public for public in __all__}
-        near = [words[word] for word in get_close_matches(name.lower(), words, 2, 0.75)]
-        if name in __all__ or not near:
-            raise
-        raise AttributeError(f"hapticlab has no {name}; did you mean hl.{' or hl.'.join(near)}?") from None
+        from .vocabulary import unknown
+
+        raise AttributeError(unknown(name)) from None
 
 
 __version__ = "0.1.0"

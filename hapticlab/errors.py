@@ -24,6 +24,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from .vocabulary import page
+
+__all__ = [
+    "AnalysisError",
+    "CourseError",
+    "EngineMissingError",
+    "HapticlabError",
+    "LinkError",
+    "LiveConstantError",
+    "LongStepError",
+    "MassError",
+    "PaddleError",
+    "ParameterError",
+    "PortError",
+    "ProgramError",
+    "ProgramLimitError",
+    "SceneError",
+    "SignalError",
+    "UnitsError",
+]
+
 
 class HapticlabError(Exception):
     """Base of everything hapticlab raises on purpose."""
@@ -110,3 +131,6 @@ class CourseError(HapticlabError, ValueError):
 
 class EngineMissingError(HapticlabError, ImportError):
     """An engine cannot run on this machine."""
+
+
+page(__name__)

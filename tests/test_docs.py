@@ -35,7 +35,7 @@ def test_readme_python_runs(capsys):
     # 2 N over 10 mm and on into 150 N/m: without damping 75 d^2 = 2 (0.01 + d), so 150 d = 5.16 N
     assert "at most 5.1 N" in printed
     assert names["felt"].F.max() > 0
-    assert abs(hl.balance(names["bounced"]).leak).max() < 1e-6  # J of 20 mJ: the handle is known at samples only
+    assert abs(hl.records.balance(names["bounced"]).leak).max() < 1e-6  # J of 20 mJ: the handle is known at samples only
     assert "theta  state" in printed  # what the pendulum requires
 
 
@@ -112,9 +112,9 @@ def test_the_map_shows_every_room():
 
 
 def test_a_misspelt_name_is_answered_with_those_that_come_near():
-    with pytest.raises(AttributeError, match=r"hapticlab has no Contac; did you mean hl.Contact\?"):
+    with pytest.raises(AttributeError, match=r"hapticlab has no Contac; did you mean hl.contact.Contact\?"):
         hl.Contac  # noqa: B018
-    with pytest.raises(AttributeError, match=r"did you mean hl.lagrange\?"):
+    with pytest.raises(AttributeError, match=r"did you mean hl.mechanics.lagrange\?"):
         hl.Lagrange  # noqa: B018
     with pytest.raises(AttributeError, match="No hapticlab attribute zzzz"):
         hl.zzzz  # noqa: B018

@@ -39,7 +39,7 @@ def test_23_1_the_plain_wall():
 
 
 def test_23_2_and_23_4_the_mean_of_now_and_the_predicted_sample():
-    average = hl.Scene(force=k / 2 * (x(n) + hl.predicted_sample()))
+    average = hl.Scene(force=k / 2 * (x(n) + hl.laws.predicted_sample()))
     np.testing.assert_allclose(forces(average), K / 2 * (depth() + 2 * depth() - depth(1) + 2 * BOUNDARY), rtol=1e-13)
 
 
@@ -52,7 +52,7 @@ def test_23_3_a_virtual_damper_of_half_a_period():
 
 def test_23_4_the_line_through_two_samples_is_its_own_continuation():
     line = 0.3 + 0.02 * np.arange(6.0)
-    program = hl.compile(hl.Scene(force=k * hl.predicted_sample())(k=1.0), T=PERIOD, dtype="float64")
+    program = hl.compile(hl.Scene(force=k * hl.laws.predicted_sample())(k=1.0), T=PERIOD, dtype="float64")
     predicted = load(program).run(6, line[:, None]).outputs[:, 0, 0]
     np.testing.assert_allclose(predicted[1:-1], line[2:], rtol=1e-14)
 
@@ -66,7 +66,7 @@ def test_23_5_follows_from_23_3_with_the_backward_difference():
 
 def test_23_6_the_correction_enters_with_half_its_weight():
     """Eq. (23.7) follows from (23.4) and (23.6) with F = k/2 (x(n) + xp(n+1) + (x(n) - xp(n))), xp the prediction."""
-    predicted_next = hl.predicted_sample()
+    predicted_next = hl.laws.predicted_sample()
     predicted_now = 2 * x(n - 1) - x(n - 2)
     corrected = sp.expand(k / 2 * (x(n) + predicted_next + x(n) - predicted_now))
     taps = [corrected.coeff(x(n - lag)) / k for lag in range(3)]
@@ -79,16 +79,16 @@ def test_23_7_ellis():
 
 
 def test_23_8_the_filter_around_a_wall_and_around_a_body():
-    plain, filtered = forces(hl.wall()(x_o=BOUNDARY)), forces(hl.force_filter(hl.wall())(x_o=BOUNDARY))
+    plain, filtered = forces(hl.wall()(x_o=BOUNDARY)), forces(hl.laws.force_filter(hl.wall())(x_o=BOUNDARY))
     past = [plain[np.maximum(np.arange(len(plain)) - lag, 0)] for lag in range(3)]
     np.testing.assert_allclose(filtered, 2 * past[0] - 1.5 * past[1] + 0.5 * past[2], rtol=1e-12, atol=1e-13)
-    always = hl.force_filter(hl.wall(unilateral=None))
+    always = hl.laws.force_filter(hl.wall(unilateral=None))
     np.testing.assert_allclose(forces(always(x_o=BOUNDARY)), forces(hl.wall("ellis", None)(x_o=BOUNDARY)), rtol=1e-11, atol=1e-13)
     z = hl.coordinate("z", unit="m")
     m, b = hl.parameters("m b", units="kg N*s/m", values=(0.05, 1.0))
-    F = hl.virtual_coupler(z, K=k, b=b)
+    F = hl.laws.virtual_coupler(z, K=k, b=b)
     body = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)])
-    raw, smooth = forces(body), forces(hl.force_filter(body))
+    raw, smooth = forces(body), forces(hl.laws.force_filter(body))
     past = [raw[np.maximum(np.arange(len(raw)) - lag, 0)] for lag in range(3)]
     np.testing.assert_allclose(smooth, 2 * past[0] - 1.5 * past[1] + 0.5 * past[2], rtol=1e-10, atol=1e-12)
 
@@ -114,7 +114,7 @@ def test_fig_23_4_the_coupler_pulls_body_and_handle_equally():
     """A handle held still: the body rings at sqrt(K/m) and its energy falls by what the coupler's damper takes."""
     z = hl.coordinate("z", unit="m", initial=0.01 * hl.parameters("unit_length", units="m", values=1.0))
     m, b, K_c = hl.parameters("m b K_c", units="kg N*s/m N/m", values=(0.05, 0.2, 500.0))
-    F = hl.virtual_coupler(z, K=K_c, b=b)
+    F = hl.laws.virtual_coupler(z, K=K_c, b=b)
     program = hl.compile(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)]), "rk4", T=1e-4, dtype="float64")
     felt = load(program).run(401, np.zeros((401, 1))).outputs[:, 0, 0]
     decay, natural = 0.2 / 0.1, math.sqrt(500 / 0.05)

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 
 from ..analysis.sweeps.sweep import Sweep, sweep
+from ..base.drawing import STYLES, house_style, new_figure
 from ..compiler.engines.engine import load
 from ..device.hand.hand import Hand
 from ..device.profiles import profile
 from ..device.progress import progress_bar
 from ..device.simulated.simulated_paddle import SimulatedPaddle
-from ..drawing import STYLES, house_style, new_figure
 from ..limits.limit import Limit
 from ..limits.passivity import passivity_limit
 from ..limits.stability import stability_limit

@@ -11,12 +11,12 @@ import numpy as np
 
 from ..analysis.records.chatter import chatter
 from ..analysis.records.energy import energy
+from ..base.telemetry import Telemetry
 from ..compiler.ir.program import Program
 from ..device.hand.hand import Hand
 from ..device.paddle import Paddle
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError, SceneError
-from ..records import Telemetry
 from ..scene.scene import Scene
 
 

@@ -8,10 +8,10 @@ contact.
 >>> from hapticlab import x, n
 >>> K, b_c, m, g, h = hl.parameters("K b_c m g h", units="N/m N*s/m kg m/s^2 m", values=(200, 0.1, 0.05, 9.81, 0.02))
 >>> z, y = hl.coordinate("z", unit="m", initial=x(n)), hl.coordinate("y", unit="m", initial=h - x(n))
->>> t, F_c = hl.t, hl.virtual_coupler(z, K=K, b=b_c)
+>>> t, F_c = hl.t, hl.laws.virtual_coupler(z, K=K, b=b_c)
 >>> L = m * (z.diff(t) ** 2 + y.diff(t) ** 2) / 2 - m * g * y
->>> lands = hl.Contact(y, hl.impulse(e=0.5), name="lands")
->>> motion = hl.lagrange(L, forces={z: F_c}, constraints=[z + y - h], contacts=[lands])
+>>> lands = hl.contact.Contact(y, hl.contact.impulse(e=0.5), name="lands")
+>>> motion = hl.mechanics.lagrange(L, forces={z: F_c}, constraints=[z + y - h], contacts=[lands])
 >>> scene = hl.Scene(force=F_c, eom=[motion], watch=[z, y])
 
 **Scene -> ExplicitForm.** ``scene.mechanics.lagrange`` derives M a = f of the Lagrangian, ``scene.explicit`` gathers it with

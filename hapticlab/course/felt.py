@@ -12,7 +12,7 @@ from ..scene.scene import check_scene
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..scene.scene import Scene
 
 #: what may be given beside the motion, as hl.compile takes it

@@ -13,7 +13,7 @@ from .marks import SOLUTION, hidden_cases, instructor_names, marks
 from .notebook import code_of, read, run, solved
 
 if TYPE_CHECKING:
-    from ..annotations import File
+    from ..base.annotations import File
     from .labs import LabFolder
     from .marks import Mark
     from .notebook import Problem

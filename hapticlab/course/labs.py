@@ -17,7 +17,7 @@ from .exercise import Lab
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..annotations import File
+    from ..base.annotations import File
 
 PACKAGE = Path(__file__).resolve().parents[1]
 #: of a wheel, and of a checkout

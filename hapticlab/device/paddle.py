@@ -16,7 +16,7 @@ from ..scene.scene import Scene
 from .port_mass_check import check_port_mass
 
 if TYPE_CHECKING:
-    from ..records import Telemetry
+    from ..base.telemetry import Telemetry
 
 
 class Paddle(ABC):

@@ -16,8 +16,8 @@ import math
 
 import numpy as np
 
+from ..base.roots import root
 from ..errors import PaddleError
-from ..roots import root
 
 
 def largest_port_mass(*, m, T, delay=0.0, velocity="backward_difference"):

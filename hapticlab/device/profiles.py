@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ..base.telemetry import PaddleProfile
 from ..errors import PaddleError
-from ..records import PaddleProfile
 
 #: nothing here was measured by this package on anyone's device: a lab identifies m, b and friction
 hapkit = PaddleProfile(
@@ -46,5 +46,5 @@ def profile(name: str) -> PaddleProfile:
     0.166
     """
     if name not in PROFILES:
-        raise PaddleError(f"no profile {name!r}; there are {', '.join(PROFILES)}. Others: hl.PaddleProfile(...)")
+        raise PaddleError(f"no profile {name!r}; there are {', '.join(PROFILES)}. Others: hl.devices.PaddleProfile(...)")
     return PROFILES[name]

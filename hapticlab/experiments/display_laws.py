@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.roots import root
 from ..device.simulated.moved_handle import Handle
 from ..errors import PaddleError
-from ..roots import root
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,7 +137,7 @@ def growth(paddle, display):
 def _resting(paddle):
     """A handle without friction and noise, its hand at rest at x = 0, and that hand."""
     if paddle.hand is None:
-        raise PaddleError("a display is felt by a hand; give hl.SimulatedPaddle(..., hand=hl.hand('grip'))")
+        raise PaddleError("a display is felt by a hand; give hl.SimulatedPaddle(..., hand=hl.Hand('grip'))")
     hand = replace(paddle.hand, intent=None, push=0.0, noise=0.0)
     return Handle(replace(paddle, hand=hand, coulomb=0.0, noise=0.0, counts_per_metre=None, delay=0.0)), hand
 

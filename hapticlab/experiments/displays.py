@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..device.hand.hand import require
-from ..device.hand.hand_presets import hand as named_hand
-from ..drawing import house_style, new_figure, scale_axis, style_of
+from ..base.drawing import house_style, new_figure, scale_axis, style_of
+from ..device.hand.hand import Hand, require
 from ..errors import AnalysisError
 from .display_laws import Admittance, Impedance, display_motion, largest_stiffness
 from .paddle_needs import check_simulated
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 #: the hand moves freely, presses, and holds until [s]
@@ -178,7 +177,7 @@ def compare_displays(
     Parameters
     ----------
     paddle : SimulatedPaddle
-        Its hand's m, b and k are kept; ``hl.hand("grip")`` if it has none.
+        Its hand's m, b and k are kept; ``hl.Hand("grip")`` if it has none.
     stiffnesses : sequence of float
         [N/m]
     m_v, b : float
@@ -197,7 +196,7 @@ def compare_displays(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> found = hl.compare_displays(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), [300])
+    >>> found = hl.people.compare_displays(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), [300])
     >>> [(row.display, round(row.k), round(row.mass, 2)) for row in found.rows]
     [('impedance', 300, 0.05), ('admittance', 300, 0.2)]
     """
@@ -206,7 +205,7 @@ def compare_displays(
     stiffnesses = [float(k) for k in stiffnesses]
     if not stiffnesses or not all(0 < k < math.inf for k in stiffnesses):
         raise AnalysisError(f"stiffnesses = {stiffnesses}; needs some k > 0 N/m, each a finite number")
-    paddle = replace(paddle, hand=paddle.hand or named_hand("grip"))
+    paddle = replace(paddle, hand=paddle.hand or Hand("grip"))
     k_p = 0.03 * paddle.m / paddle.T**2 if k_p is None else k_p
     k_d = 2 * math.sqrt(k_p * paddle.m) if k_d is None else k_d
     makes: dict[str, Callable[[float], Impedance | Admittance]] = {

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.drawing import FRAME, house_style, new_figure, style_of
 from ..device.hand.intents import Intent
 from ..device.hand.reacting_hand import REACTION, Reacting
-from ..drawing import FRAME, house_style, new_figure, style_of
 from ..errors import AnalysisError
 from ..scene.notation.symbols import n, parameters, x
 from ..scene.scene import Scene
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ..annotations import Array, File
+    from ..base.annotations import Array, File
     from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 #: in the target for so long, it is selected [s]
@@ -181,8 +181,8 @@ def fitts(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.hand("grip"))
-    >>> found = hl.fitts(paddle, distances=[0.03], widths=[0.005, 0.01], movements=3)
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("grip"))
+    >>> found = hl.people.fitts(paddle, distances=[0.03], widths=[0.005, 0.01], movements=3)
     >>> [round(a.difficulty, 2) for a in found.targets]
     [2.81, 2.0]
     """

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arguments import instance
+from ..base.arguments import instance
+from ..base.drawing import COLD, WARM, house_style, new_figure, scale_axis
 from ..device.setup.person import Person
-from ..drawing import COLD, WARM, house_style, new_figure, scale_axis
 from ..errors import AnalysisError
 from .observers import PersonObserver, SimulatedObserver
 from .psychometric import psychometric
@@ -24,7 +24,7 @@ from .up_down import UpDown
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..annotations import File
+    from ..base.annotations import File
     from ..device.board.serial_paddle import SerialPaddle
     from ..device.simulated.simulated_paddle import SimulatedPaddle
     from .observers import Answer
@@ -73,7 +73,7 @@ class ForcedChoice:
     stopped: str | None = None
 
     def fit(self, **options: Any) -> PsychometricFit:
-        """Fit the psychometric function of all answers; options of :func:`hapticlab.psychometric`."""
+        """Fit the psychometric function of all answers; options of :func:`hapticlab.people.psychometric`."""
         return psychometric([t.level for t in self.trials], [t.right for t in self.trials], **options)
 
     def weber(self, **options: Any) -> tuple[float, float, float]:
@@ -176,16 +176,16 @@ def forced_choice(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
-    >>> asked = hl.ConstantLevels([0.1, 0.5], repeats=2)
-    >>> found = hl.forced_choice(paddle, hl.stiffness_task(), hl.SimulatedObserver(weber=0.05), asked)
+    >>> asked = hl.people.ConstantLevels([0.1, 0.5], repeats=2)
+    >>> found = hl.people.forced_choice(paddle, hl.people.stiffness_task(), hl.people.SimulatedObserver(weber=0.05), asked)
     >>> len(found.trials), found.trials[-1].right
     (4, True)
     """
-    instance("task", task, Task, "a Task, such as hl.stiffness_task()")
+    instance("task", task, Task, "a Task, such as hl.people.stiffness_task()")
     observer = observer or SimulatedObserver(weber=task.weber, seed=seed)
     observer = PersonObserver(observer) if isinstance(observer, Person) else observer
     if not hasattr(observer, "compare"):
-        raise AnalysisError(f"observer = {observer!r}; needs hl.SimulatedObserver(weber=...) or a Person")
+        raise AnalysisError(f"observer = {observer!r}; needs hl.people.SimulatedObserver(weber=...) or a Person")
     procedure = procedure or UpDown(start=math.log(2))
     if procedure.done:
         raise AnalysisError("the procedure has had all its answers already; make a fresh one")

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments import choice
+from ..base.arguments import choice
+from ..base.drawing import house_style, new_figure, style_of
+from ..base.telemetry import Telemetry
 from ..device.hand.hand import require
 from ..device.hand.reacting_hand import REACTION, Reacting
-from ..drawing import house_style, new_figure, style_of
 from ..library.contacts import ball_on_the_paddle
-from ..records import Telemetry
 from .arm import Arm
 from .juggler import SENSES, Juggler, Senses
 from .paddle_needs import check_held
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..device.simulated.simulated_paddle import SimulatedPaddle
 
 WORDS = {"vision": "sight", "touch": "touch", "both": "sight and touch", "none": "neither sight nor touch"}
@@ -156,8 +156,8 @@ def juggle(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.hand("grip"))
-    >>> found = hl.juggle(paddle, senses="none", duration=1.0)
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("grip"))
+    >>> found = hl.people.juggle(paddle, senses="none", duration=1.0)
     >>> len(found.impacts)
     2
     """

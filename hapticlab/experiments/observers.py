@@ -15,7 +15,7 @@ from .response_curves import Psychometric
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..records import Telemetry
+    from ..base.telemetry import Telemetry
     from .tasks import Task
 
 Answer = Literal["first", "second"]

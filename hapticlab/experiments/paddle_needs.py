@@ -23,7 +23,7 @@ def check_held(paddle: SimulatedPaddle, asker: str) -> Hand:
     check_simulated(paddle, asker)
     if paddle.hand is None or paddle.hand.k <= 0:
         raise PaddleError(
-            f"{asker} needs a hand that holds the handle by a spring; give hl.SimulatedPaddle(..., hand=hl.hand('grip')) or "
+            f"{asker} needs a hand that holds the handle by a spring; give hl.SimulatedPaddle(..., hand=hl.Hand('grip')) or "
             "hl.Hand(k=...)."
         )
     return paddle.hand

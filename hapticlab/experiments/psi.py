@@ -13,7 +13,7 @@ from .response_curves import rise
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..annotations import Array
+    from ..base.annotations import Array
 
 
 class Psi:

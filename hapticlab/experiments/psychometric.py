@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arguments import choice
-from ..drawing import COLD, WARM, house_style, new_figure, scale_axis, style_of
+from ..base.arguments import choice
+from ..base.drawing import COLD, WARM, house_style, new_figure, scale_axis, style_of
+from ..base.statistics import chi_squared
 from ..errors import AnalysisError
-from ..statistics import chi_squared
 from .likelihood import MOST_LAPSES, Likelihood
 from .response_curves import SHAPES, Psychometric
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from .response_curves import Shape
 
 #: samples from which on they say how much less likely than the best an interval's end may be

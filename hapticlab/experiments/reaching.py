@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 import numpy as np
 
-from ..arguments import choice
+from ..base.arguments import choice
+from ..base.drawing import house_style, new_figure, style_of
+from ..base.telemetry import Telemetry
 from ..device.hand.hand import UNITS, require
 from ..device.hand.intents import Intent, MinimumJerk
 from ..device.hand.reacting_hand import REACTION, Reacting
-from ..drawing import house_style, new_figure, style_of
 from ..errors import PaddleError
-from ..records import Telemetry
 from .arm import Arm
 from .paddle_needs import check_held
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..compiler.ir.program import Program
     from ..device.simulated.simulated_paddle import SimulatedPaddle
     from ..scene.scene import Scene
@@ -154,7 +154,7 @@ def reach(
     reaction : float
         [s]
     tremor : callable, optional
-        Beside whatever is intended, of times [s], in metres: ``hl.Tremor(rms=1e-4)``.
+        Beside whatever is intended, of times [s], in metres: ``hl.people.Tremor(rms=1e-4)``.
     **how
         These five, and options of hapticlab.compile.
 
@@ -171,7 +171,7 @@ def reach(
     --------
     >>> import hapticlab as hl
     >>> from hapticlab.experiments.reaching import reach
-    >>> paddle = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.hand("grip"))
+    >>> paddle = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.Hand("grip"))
     >>> free = hl.wall()(k=0, x_o=1)
     >>> known = reach(paddle, free, end=0.02)
     >>> round(known.settled, 3), known.error < 1e-6
@@ -209,7 +209,7 @@ def follow(
     Parameters
     ----------
     path : object with ``at(t)`` that returns position [m], velocity [m/s], acceleration [m/s^2]
-        ``hl.MinimumJerk`` or an :class:`~hapticlab.analysis.accuracy.handle_motions.HandleMotion`. The others are those
+        ``hl.people.MinimumJerk`` or an :class:`~hapticlab.analysis.accuracy.handle_motions.HandleMotion`. The others are those
         of :func:`reach`.
     """
     hand = check_held(paddle, "reach")
@@ -219,7 +219,7 @@ def follow(
     gain = 1 / (math.e * (reaction + every)) if gain is None else require("gain", gain, "1/s", "feedback", low=0)
     known = Load(m=paddle.m, b=paddle.b) if expects is None else expects
     if not isinstance(known, Load):
-        raise PaddleError(f"expects = {expects!r}; needs what the person believes to move, hl.Load(m=0.5) in kg.")
+        raise PaddleError(f"expects = {expects!r}; needs what the person believes to move, hl.people.Load(m=0.5) in kg.")
     times = np.arange(paddle.ticks(record) + 1) * paddle.T
     ahead = Anticipated(times, inverse_dynamics(hand, known, path, times))
 
@@ -250,7 +250,7 @@ class Anticipated(Intent):
 def check_path(path: object) -> None:
     """Refuse what is no path."""
     if not hasattr(path, "at"):
-        raise PaddleError(f"path = {path!r}; needs a path of time, as hl.MinimumJerk(end=0.02, duration=0.4).")
+        raise PaddleError(f"path = {path!r}; needs a path of time, as hl.people.MinimumJerk(end=0.02, duration=0.4).")
 
 
 def inverse_dynamics(hand, load, path, times):

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from ..arguments import choice
+from ..base.arguments import choice
+from ..base.statistics import normal
 from ..errors import AnalysisError
-from ..statistics import normal
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..annotations import Array
+    from ..base.annotations import Array
 
 Shape = Literal["d_prime", "weibull", "normal"]
 SHAPES: tuple[Shape, ...] = get_args(Shape)

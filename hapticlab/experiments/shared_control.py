@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..analysis.records.energy import energy
+from ..base.drawing import house_style, new_figure, style_of
+from ..base.telemetry import Telemetry
 from ..device.hand.hand import require
 from ..device.hand.intents import Tremor
-from ..drawing import house_style, new_figure, style_of
 from ..errors import PaddleError
-from ..records import Telemetry
 from ..scene.notation.symbols import n, parameters, x
 from ..scene.scene import Scene
 from .paddle_needs import check_held
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..device.simulated.simulated_paddle import SimulatedPaddle
     from .reaching import Path
 
@@ -106,9 +106,9 @@ def assistance(
     paddle : SimulatedPaddle
         With a hand that has k > 0.
     scenes : sequence of Scene
-        Such as ``hl.tremor_filter()(B=20)``, ``hl.guidance(path)(...)``, ``hl.library.virtual_fixture()``.
+        Such as ``hl.laws.tremor_filter()(B=20)``, ``hl.laws.guidance(path)(...)``, ``hl.library.virtual_fixture()``.
     path : object with ``at(t)``
-        As ``hl.MinimumJerk``.
+        As ``hl.people.MinimumJerk``.
     tremor : callable, optional
         Of times [s], in metres; 0.3 mm root mean square within 8 to 12 Hz by default.
     record : float
@@ -126,8 +126,8 @@ def assistance(
     --------
     >>> import hapticlab as hl
     >>> from hapticlab.experiments.shared_control import assistance
-    >>> paddle = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.hand("pinch"))
-    >>> found = assistance(paddle, [hl.tremor_filter()(B=10)], hl.MinimumJerk(end=0.02, duration=1.0, begin=1.0))
+    >>> paddle = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.Hand("pinch"))
+    >>> found = assistance(paddle, [hl.laws.tremor_filter()(B=10)], hl.people.MinimumJerk(end=0.02, duration=1.0, begin=1.0))
     >>> alone, filtered = found.rows
     >>> bool(filtered.tremor < 0.4 * alone.tremor), bool(filtered.error < 0.0003)
     (True, True)
@@ -136,7 +136,7 @@ def assistance(
     check_path(path)
     scenes = (scenes,) if isinstance(scenes, Scene) else scenes
     if not (tremor is None or callable(tremor)):
-        raise PaddleError(f"tremor = {tremor!r}; needs a path of times in metres, as hl.Tremor(rms=3e-4).")
+        raise PaddleError(f"tremor = {tremor!r}; needs a path of times in metres, as hl.people.Tremor(rms=3e-4).")
     low, high = (require("band", edge, "Hz", "a tremor", above=0) for edge in band)
     tremor = Tremor(rms=3e-4) if tremor is None else tremor
     times = np.arange(paddle.ticks(record) + 1) * paddle.T

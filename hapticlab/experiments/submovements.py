@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from ..base.statistics import normal
 from ..errors import AnalysisError
-from ..statistics import normal
 
 #: shortest and longest submovement thought of [s], and how many between; distances between half a width and the longest
 SHORTEST, LONGEST, DURATIONS, DISTANCES = 0.08, 3.0, 80, 80

@@ -19,8 +19,8 @@ from ..scene.laws.chapter_laws import virtual_damper, wall
 from ..scene.scene import Scene
 
 if TYPE_CHECKING:
+    from ..base.telemetry import Telemetry
     from ..device.board.serial_paddle import SerialPaddle
-    from ..records import Telemetry
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,7 +154,7 @@ def felt_stiffness(log: Telemetry) -> float:
 
     Examples
     --------
-    >>> from hapticlab.records import Telemetry
+    >>> from hapticlab.base.telemetry import Telemetry
     >>> x = 1e-3 * np.sin(np.linspace(0, 6, 60))
     >>> log = Telemetry(t=np.arange(60) * 1e-3, x=x, v=0 * x, F=np.maximum(150 * x, 0), T=1e-3)
     >>> round(felt_stiffness(log), 9)

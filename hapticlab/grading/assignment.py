@@ -18,7 +18,7 @@ from ..course.variants import slips
 from ..errors import CourseError
 
 if TYPE_CHECKING:
-    from ..annotations import File
+    from ..base.annotations import File
     from ..course.exercise import Case
 
 

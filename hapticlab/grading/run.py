@@ -21,7 +21,7 @@ from .workers import Workers, processor_seconds
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from ..annotations import File
+    from ..base.annotations import File
     from .assignment import Assignment
     from .report import Report
     from .sessions.preloaded import Preloaded

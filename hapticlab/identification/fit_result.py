@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ..drawing import COLD, FRAME, STYLES, house_style, new_figure
+from ..base.drawing import COLD, FRAME, STYLES, house_style, new_figure
 from ..errors import AnalysisError
 from .sensor import DITHERED
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..annotations import Array
+    from ..base.annotations import Array
 
 #: share of the largest from which on a constant is part of what a record leaves open
 PART = 0.05

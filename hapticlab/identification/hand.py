@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..base.telemetry import Telemetry, check_record
 from ..device.board.serial_paddle import SerialPaddle
 from ..device.hand.hand import Hand
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
-from ..records import Telemetry, check_record
 from .fit_result import Found, told
 from .hand_motion import hand_positions
 from .paddle import counts_per_metre_of
@@ -19,7 +19,7 @@ from .pushes import FORCE, push_hand
 from .scoring import fit
 
 if TYPE_CHECKING:
-    from ..records import PaddleProfile
+    from ..base.telemetry import PaddleProfile
 
 #: s that a hand is taken not to react; a stretch reflex begins after 25 to 50 ms, the will after 100 and more
 WINDOW = 0.06

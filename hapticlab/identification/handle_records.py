@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.telemetry import Telemetry, check_record
 from ..errors import AnalysisError
-from ..records import Telemetry, check_record
 from .fit_result import told
 from .paddle_fit import PaddleFit
 from .problem import CONSTANTS, Problem, Trace
@@ -45,7 +45,7 @@ class HandleRecord:
 
     Examples
     --------
-    >>> from hapticlab.records import Telemetry
+    >>> from hapticlab.base.telemetry import Telemetry
     >>> log = Telemetry(t=[0, 1e-3], x=[0, 0], v=[0, 0], F=[0, 0], T=1e-3)
     >>> HandleRecord.hanging(log, 0.05).push           # a weight of 50 g on a thread along the handle's path
     0.4903325
@@ -98,7 +98,7 @@ def spin_down(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, coulomb=0.05, noise=1e-5)
-    >>> found = spin_down(paddle.run(hl.virtual_damper()(B=0), duration=0.3, v=0.4), m=0.03)
+    >>> found = spin_down(paddle.run(hl.laws.virtual_damper()(B=0), duration=0.3, v=0.4), m=0.03)
     >>> 0.1 in found["b"], 0.05 in found["coulomb"]
     (True, True)
     """

@@ -18,7 +18,7 @@ from ..scene.scene import Scene
 from .held_force_motion import positions
 
 if TYPE_CHECKING:
-    from ..annotations import Array
+    from ..base.annotations import Array
 
 #: samples of rest before a force begins
 LEAD = 20

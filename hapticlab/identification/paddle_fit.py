@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
+from ..base.telemetry import PaddleProfile
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
-from ..records import PaddleProfile
 from .fit_result import Found
 
 

@@ -14,7 +14,7 @@ from .start import begin
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from .scoring import Fitted
 
 #: constants of a paddle; scale is newtons at the handle for each commanded

@@ -19,8 +19,8 @@ from ..scene.scene import Scene
 from .paddle import after, given
 
 if TYPE_CHECKING:
+    from ..base.telemetry import Telemetry
     from ..device.simulated.simulated_paddle import SimulatedPaddle
-    from ..records import Telemetry
 
 #: s that a push lasts, and s from one push to the next: least and most
 LASTS, APART = 0.015, (0.45, 0.75)

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..statistics import student
+from ..base.statistics import student
 from .sensor import DITHERED, information, log_likelihood, run_weights, spread
 
 if TYPE_CHECKING:
-    from ..annotations import Array, Flags
+    from ..base.annotations import Array, Flags
 
 #: of a parameter's scale: the step of central differences
 STEP = 1e-5

@@ -5,7 +5,7 @@ A residual r is the middle of a count less the position, so the count is where r
 
 import numpy as np
 
-from ..statistics import normal
+from ..base.statistics import normal
 
 #: of a count: noise from which on counts are dithered, each telling something of its own
 DITHERED = 0.2

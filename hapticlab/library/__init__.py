@@ -6,13 +6,13 @@
 detents: Detents, as of a knob that clicks: F = A sin(2 pi x/p), minima of U at every multiple of the pitch p.
   passive on a paddle with b >= 0.19 N s/m; on an Uno: 1000 Hz
 
-``print(hl.library)`` lists them all, ``hl.picture("detents")`` draws one. Their values are made for :data:`nominal`, a
+``print(hl.library)`` lists them all, ``hl.mechanics.picture("detents")`` draws one. Their values are made for :data:`nominal`, a
 paddle of 50 g with 50 mm of travel to either side and at most 5 N; another may ask for others, ``scene(k=..., m=...)``.
 """
 
 import sys
-from types import ModuleType
 
+from ..vocabulary import Page
 from .bodies import mass_spring_damper, tuned_absorber, two_masses
 from .contacts import ball_on_the_paddle, stick_slip
 from .entries import CATALOGUE as catalogue
@@ -43,17 +43,14 @@ __all__ = [
 ]
 
 
-class _Library(ModuleType):
-    """A module that prints as the list of what it holds, and refuses any other name with those that come near."""
+class _Library(Page):
+    """The page of a library: it prints as its catalogue, and knows in which words a scene may be asked for."""
 
     def __repr__(self):
         return str(catalogue)
 
     def __getattr__(self, name):
         raise AttributeError(unknown(name, catalogue))
-
-    def __dir__(self):
-        return __all__
 
 
 sys.modules[__name__].__class__ = _Library

@@ -17,7 +17,7 @@ from .sketch import SOFT, Sketch, clearance
 if TYPE_CHECKING:
     from typing import Any
 
-    from ..annotations import Number
+    from ..base.annotations import Number
 
 
 def ball_on_the_paddle(law: Any = None) -> Scene:
@@ -35,7 +35,7 @@ def ball_on_the_paddle(law: Any = None) -> Scene:
     Parameters
     ----------
     law : contact law, optional
-        ``impulse(e=e)`` unless given; ``hl.penalty(k=k_b)``, with a parameter k_b, runs with any method.
+        ``impulse(e=e)`` unless given; ``hl.contact.penalty(k=k_b)``, with a parameter k_b, runs with any method.
 
     Returns
     -------

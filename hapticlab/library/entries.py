@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 
+from ..base.telemetry import PaddleProfile
 from ..errors import SceneError
-from ..records import PaddleProfile
 from ..scene.scene import Scene
 from . import bodies, contacts, mechanisms, pendulums, surfaces
 

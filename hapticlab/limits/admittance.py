@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments import having, number
+from ..base.arguments import having, number
 from ..errors import AnalysisError
 from .limit import A_PADDLE
 from .loop import Loop

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..arguments import choice
+from ..base.arguments import choice
 from ..compiler.engines.engine import load
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
@@ -18,7 +18,7 @@ from .linear_law import LinearLaw
 from .port import SMALL, tick_map
 
 if TYPE_CHECKING:
-    from ..annotations import Array
+    from ..base.annotations import Array
 
 #: part of the largest entry below which a difference between laws is rounding; a scene's tick is measured to 1e-9
 ROUNDING = 1e-8

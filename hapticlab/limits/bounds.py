@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from ..arguments import choice, having, number, period
+from ..base.arguments import choice, having, number, period
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
 from .limit import A_PADDLE, AnyHand, Limit, whole_and_fraction

@@ -25,9 +25,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments import instance, number, period
+from ..base.arguments import instance, number, period
+from ..base.roots import root
 from ..errors import AnalysisError
-from ..roots import root
 from .limit import MOST_PERIODS, whole_and_fraction
 from .linear_law import LinearLaw
 from .plots import plot_passivity_margin
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from ..annotations import Array
+    from ..base.annotations import Array
 
 #: a stiffness beside which the next cut has nothing to add
 SETTLED = 1e-13
@@ -136,7 +136,7 @@ def passivity_margin(law: LinearLaw, *, b: float, delay: float = 0.0) -> Passivi
     """
     b = number("b", b, "N s/m", "a device", least=0, why="its damping pays for the hold")
     delay = number("delay", delay, "s", least=0, why="a force cannot come before its sample")
-    instance("law", law, LinearLaw, "a LinearLaw: hl.LinearLaw.of('zoh', K=200, T=1e-3) or .of_scene(scene)")
+    instance("law", law, LinearLaw, "a LinearLaw: hl.laws.LinearLaw.of('zoh', K=200, T=1e-3) or .of_scene(scene)")
     whole_and_fraction(delay, law.T, most=MOST_PERIODS)
     pole = unstable_pole(law.A, law.B, law.C)
     if pole is not None:

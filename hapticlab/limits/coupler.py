@@ -24,9 +24,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments import having, number
+from ..base.arguments import having, number
+from ..base.roots import minimum
 from ..errors import AnalysisError
-from ..roots import minimum
 from .limit import A_PADDLE, MOST_PERIODS, whole_and_fraction
 from .plots import plot_coupler
 from .two_port import TwoPort, frequencies, hertz, stopped
@@ -34,7 +34,7 @@ from .two_port import TwoPort, frequencies, hertz, stopped
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from .limit import Device
 
 
@@ -88,7 +88,7 @@ def coupler_design(paddle: Device, *, b_c: float | None = None) -> CouplerDesign
     """Design a virtual coupler for an impedance display by Llewellyn's criterion (after Adams and Hannaford 1999).
 
     Exact for the sampled device in any passive hand; the environment must be passive at the sample rate, which explicit
-    integration is not (:func:`hapticlab.port_passivity` asks that of a scene as it is compiled).
+    integration is not (:func:`hapticlab.passivity.port` asks that of a scene as it is compiled).
 
     Parameters
     ----------

@@ -24,8 +24,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..arguments import number, period
-from ..drawing import STYLES, house_style, new_figure
+from ..base.arguments import number, period
+from ..base.drawing import STYLES, house_style, new_figure
 from ..errors import AnalysisError
 from .limit import whole_and_fraction
 
@@ -130,8 +130,8 @@ def passivity_ledger(
         Sampling period [s], > 0.
     K : float, or (k_min, k_max)
         Stiffness of the environment [N/m], or the range of its local stiffness dF/dx; a part of it may be negative, as
-        of a latch or a detent, where its energy is ``bounded``; :func:`hapticlab.local_stiffness` finds it. A unilateral
-        wall has (0, K).
+        of a latch or a detent, where its energy is ``bounded``; :func:`hapticlab.stability.local_stiffness` finds it. A
+        unilateral wall has (0, K).
     B : float, or (B_min, B_max)
         Virtual damping [N s/m] by backward difference, of either sign, or the range of its local damping.
     delay : float

@@ -9,7 +9,7 @@ meanwhile, so that a linear law H(z) of position is the impedance ``Z(theta) = T
 
 Parts that share the velocity, as the device and what is rendered on it, add their nu: passive with b + nu >= 0, which is
 Eq. (23.10). Parts that share the force, a law and a dashpot in line with it, add their eps. They are the two forms of a
-passivity controller (:func:`hapticlab.passivity_controller`), series and parallel.
+passivity controller (:func:`hapticlab.laws.passivity_controller`), series and parallel.
 
 Where H is zero, 1/Z has a pole, and eps falls without bound on one side of it: a motion that hardly makes a force draws
 energy all the same, and no dashpot, which yields to a force alone, pays. Unless what is left of the pole is imaginary, as of
@@ -23,7 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import instance
+from ..base.arguments import instance
 from ..errors import AnalysisError
 from .colgate import passivity_margin
 from .linear_law import LinearLaw
@@ -90,17 +90,17 @@ def passivity_indices(law: LinearLaw) -> PassivityIndices:
     Raises
     ------
     AnalysisError
-        As of :func:`hapticlab.passivity_margin`, and for a law that gives no force at all.
+        As of :func:`hapticlab.passivity.margin`, and for a law that gives no force at all.
 
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(passivity_indices(hl.LinearLaw.of("backward_difference", K=200.0, T=1e-3)))
+    >>> print(passivity_indices(hl.laws.LinearLaw.of("backward_difference", K=200.0, T=1e-3)))
     backward_difference, K = 200 N/m
       input-strict   nu = -0.2 N s/m, at 500 Hz: short, a damper of 0.2 N s/m beside it pays
       output-strict eps = -5 m/(N s), at 500 Hz: short, a dashpot in line that yields 5 m/s a newton pays
     """
-    instance("law", law, LinearLaw, "a LinearLaw, as hl.LinearLaw.of('zoh', K=200, T=1e-3)")
+    instance("law", law, LinearLaw, "a LinearLaw, as hl.laws.LinearLaw.of('zoh', K=200, T=1e-3)")
     margin = passivity_margin(law, b=0.0)
     theta = math.pi * np.arange(1, GRID + 1) / GRID
     size = np.abs(law.at(theta)).max()

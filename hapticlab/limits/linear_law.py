@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arguments import choice, number, period
+from ..base.arguments import choice, number, period
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..scene.laws.taps import LawName
     from ..scene.scene import Scene
 

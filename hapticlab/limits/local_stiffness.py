@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
-from ..arguments import number
+from ..base.arguments import number
 from ..errors import AnalysisError
 from ..scene.notation.symbols import n, x
 

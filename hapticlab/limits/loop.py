@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..arguments import having, number, period
+from ..base.arguments import having, number, period
 from .affine_law import AffineLaw, affine_law
 from .limit import A_PADDLE, MOST_PERIODS, whole_and_fraction
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments import number
+from ..base.arguments import number
 from ..errors import AnalysisError
 from .colgate import passivity_margin
 from .limit import whole_and_fraction
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
 
 #: |M| past which 1 + H c is rounding
 INFINITE = 1e9

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ..arguments import choice, number, period
+from ..base.arguments import choice, number, period
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
 from .affine_law import affine_law
@@ -102,7 +102,7 @@ def passivity_limit(
         if tau:
             raise AnalysisError(
                 f"velocity_filter = {tau:g} s beside a law of its own; only a named law takes one: put the filter into the law, "
-                'as hl.wall(velocity=hl.filtered_velocity(tau="4 ms"), unilateral=None)'
+                'as hl.wall(velocity=hl.velocity.filtered(tau="4 ms"), unilateral=None)'
             )
         _checked(T, B, delay, "zoh")
         if b == 0:

@@ -18,7 +18,7 @@ from ..errors import AnalysisError
 from .limit import whole_and_fraction
 
 if TYPE_CHECKING:
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..compiler.ir.program import Program
     from ..scene.scene import Scene
 

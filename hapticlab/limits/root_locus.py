@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..drawing import STYLES, house_style, new_figure
+from ..base.drawing import STYLES, house_style, new_figure
 from ..errors import AnalysisError
 from .limit import Limit
 from .loop import Loop
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from .affine_law import StiffnessLaw
     from .limit import Plant
 

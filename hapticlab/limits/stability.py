@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ..arguments import number
+from ..base.arguments import number
+from ..base.roots import root
 from ..errors import AnalysisError
-from ..roots import root
 from ..scene.laws.taps import LEAD
 from ..scene.scene import Scene
 from .limit import Limit
@@ -29,7 +29,7 @@ from .port import static_stiffness
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from .affine_law import StiffnessLaw
     from .limit import Plant
 
@@ -60,7 +60,7 @@ def stability_limit(paddle: Plant, *, law: StiffnessLaw = "zoh", B: float = 0.0,
         Eqs. (23.1), (23.3), (23.5), (23.7) by name: "zoh", "half_sample", "backward_difference", "ellis"; half_sample uses
         the exact velocity at the sample where the paddle measures it. Where it is estimated (``paddle.velocity``: an
         encoder, a board) Eq. (23.3) is Eq. (23.5), and so is its limit. Or a linear scene with its stiffness unbound:
-        filters, estimated velocities, ``hl.force_filter`` (23.8); a stiffness that it holds is not used. Or a function of
+        filters, estimated velocities, ``hl.laws.force_filter`` (23.8); a stiffness that it holds is not used. Or a function of
         K [N/m] that returns a LinearLaw.
     B : float
         Virtual damper of either sign [N s/m]: its force is ``B*(x[n] - x[n-1])/T``, beside a named law, not through it.
@@ -84,7 +84,7 @@ def stability_limit(paddle: Plant, *, law: StiffnessLaw = "zoh", B: float = 0.0,
     >>> round(stability_limit(paddle).K, 6)
     200.066689
     >>> import hapticlab as hl
-    >>> filtered = hl.force_filter(hl.wall(unilateral=None))        # Eq. (23.8) around (23.1) is Eq. (23.7)
+    >>> filtered = hl.laws.force_filter(hl.wall(unilateral=None))        # Eq. (23.8) around (23.1) is Eq. (23.7)
     >>> round(stability_limit(paddle, law=filtered).K / stability_limit(paddle, law="ellis").K, 9)
     1.0
     """
@@ -94,7 +94,7 @@ def stability_limit(paddle: Plant, *, law: StiffnessLaw = "zoh", B: float = 0.0,
     if not any(part.any() for part in (loop.law.B1, loop.law.C1, loop.law.D1)):
         raise AnalysisError(
             f"{loop.law.name} does not depend on a stiffness; give a scene with {parameter} unbound, or look at "
-            "hl.closed_loop_poles"
+            "hl.stability.poles"
         )
     edges, stable = _intervals(loop)
     if stable[0] and all(stable):

@@ -18,7 +18,7 @@ from .signals import chirp, multisine
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..scene.scene import Scene
 
 How = Literal["multisine", "swept_sine"]

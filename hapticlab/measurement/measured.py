@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
 
 #: part of an impedance by which blocks may differ without a word
 UNSURE = 0.02

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..drawing import FRAME, WARM, house_style, new_figure, style_of
+from ..base.drawing import FRAME, WARM, house_style, new_figure, style_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,7 +15,7 @@ from ..errors import AnalysisError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
 
 #: rounds of clipping; most of the gain comes in the first hundred
 ROUNDS = 150

@@ -12,7 +12,7 @@ from ..errors import AnalysisError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..compiler.ir.program import Program
 
 #: of the motion [m], and samples of the answer that are followed

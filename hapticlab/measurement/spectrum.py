@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
 
 #: of the circle that is stated around every number
 CONFIDENCE = 0.95

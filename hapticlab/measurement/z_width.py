@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..device.board.serial_paddle import SerialPaddle
     from ..device.simulated.simulated_paddle import SimulatedPaddle
     from ..scene.laws.taps import LawName
@@ -82,9 +82,9 @@ def z_width(paddle: SimulatedPaddle | SerialPaddle, *, B: ArrayLike, law: LawNam
     B : sequence of float
         Virtual damping [N s/m], of either sign.
     law : str or Scene
-        As :func:`hapticlab.largest_stiffness` takes it.
+        As :func:`hapticlab.measure.largest_stiffness` takes it.
     **options
-        Of :func:`hapticlab.largest_stiffness`: push, first, most, growth, tolerance, duration, longest, energy_max,
+        Of :func:`hapticlab.measure.largest_stiffness`: push, first, most, growth, tolerance, duration, longest, energy_max,
         speed_max, place.
 
     Returns

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments import number
-from ..drawing import house_style, new_figure
+from ..base.arguments import number
+from ..base.drawing import house_style, new_figure
 from ..errors import AnalysisError
 from ..limits.loop import Loop
 from ..limits.stability import crossings, stability_limit
@@ -217,7 +217,7 @@ def compensation_limit(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, coulomb=0.02, delay=0.5e-3)
-    >>> limit = hl.compensation_limit(paddle)
+    >>> limit = hl.design.compensation(paddle)
     >>> print(limit)
     damping compensation: m = 0.05 kg, b = 0.1 N s/m, k = 0 N/m, T = 0.001 s
       viscous    up to 1 of 0.1 N s/m, drifting off: exact linear stability of this plant
@@ -225,12 +225,12 @@ def compensation_limit(
     >>> round(limit.speed(viscous=0.5, dry=1.5), 6)
     0.2
 
-    Friction that is identified first, ``found = hl.identify_paddle(paddle)``, is known within an interval. With
+    Friction that is identified first, ``found = hl.identify.paddle(paddle)``, is known within an interval. With
     ``found.paddle()``, ``b_least=found["b"].low`` and ``coulomb_least=found["coulomb"].low`` the parts are those of
-    ``hl.damping_compensation(b=found["b"].value, coulomb=found["coulomb"].value, ...)`` that are safe whatever the friction
+    ``hl.laws.damping_compensation(b=found["b"].value, coulomb=found["coulomb"].value, ...)`` that are safe whatever the friction
     is inside the intervals. For instance b = 0.1 N s/m, between 0.095 and 0.105:
 
-    >>> safe = hl.compensation_limit(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), b_least=0.095)
+    >>> safe = hl.design.compensation(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), b_least=0.095)
     >>> round(safe.viscous, 9)
     0.95
     """

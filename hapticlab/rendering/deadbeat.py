@@ -77,7 +77,7 @@ def deadbeat_wall(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.35, b=0, T=0.01, hand=hl.Hand(m=0.006, k=500, intent=0.01))
-    >>> log = paddle.run(hl.deadbeat_wall(paddle, K=5000), duration=0.2, x=-0.02, progress=False)
+    >>> log = paddle.run(hl.laws.deadbeat_wall(paddle, K=5000), duration=0.2, x=-0.02, progress=False)
     >>> log.pair[:10].astype(int).tolist()
     [0, 0, 0, 1, 2, 1, 2, 0, 0, 0]
     """
@@ -179,7 +179,7 @@ def deadbeat_gains(paddle: Plant, *, hand: Hand | None = None) -> DeadbeatGains:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(hl.deadbeat_gains(hl.SimulatedPaddle(m=0.05, b=0, T=1e-3, counts_per_metre=1e5, force_max=5)))
+    >>> print(hl.design.deadbeat_gains(hl.SimulatedPaddle(m=0.05, b=0, T=1e-3, counts_per_metre=1e5, force_max=5)))
     the pair's forces change by 5e+04 and -5e+04 N per metre, 75 and -25 N per m/s;
     one encoder count changes them by 1.25 N of the 5 N the motor has
     """

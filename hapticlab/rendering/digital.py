@@ -66,7 +66,7 @@ def digital_gains(paddle: Plant, *, K: float, B: float = 0.0, hand: Hand | None 
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(hl.digital_gains(hl.SimulatedPaddle(m=0.05, b=0, T=0.01), K=500))
+    >>> print(hl.design.digital_gains(hl.SimulatedPaddle(m=0.05, b=0, T=0.01), K=500))
     k1 = 459.698 N/m (91.940% of K), k2 = 2.29849 N s/m (0.4597 K T); poles 0.5403+0.8415j, 0.5403-0.8415j
       M = 0.05 kg, b = 0 N s/m, k = 0 N/m, push = 0 N; wall K = 500 N/m, B = 0 N s/m, T = 0.01 s, delay = 0 s
     """
@@ -125,7 +125,7 @@ def digital_wall(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0, T=0.01)
-    >>> log = paddle.run(hl.digital_wall(paddle, K=500), duration=0.5, v=0.2, x=1e-3, progress=False)
+    >>> log = paddle.run(hl.laws.digital_wall(paddle, K=500), duration=0.5, v=0.2, x=1e-3, progress=False)
     >>> round(float(log.F.max()), 3)
     0.994
     """

@@ -86,7 +86,7 @@ def wall_for_board(paddle: SimulatedPaddle, *, K: float, board: str | Board = "u
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=2e-3, counts_per_metre=1e5)
-    >>> print(hl.wall_for_board(paddle, K=500).name)
+    >>> print(hl.laws.wall_for_board(paddle, K=500).name)
     half a sample, dead-beat pairs at crossings, to 5 %
     """
     # what is wrong with the constants is said once, as itself

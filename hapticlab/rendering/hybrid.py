@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..drawing import axis_label, house_style, new_figure, style_of
+from ..base.drawing import axis_label, house_style, new_figure, style_of
 from ..errors import AnalysisError
 from .model import WallModel
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from ..annotations import Array
+    from ..base.annotations import Array
+    from ..base.telemetry import Telemetry
     from ..device.hand.hand import Hand
     from ..limits.limit import Plant
-    from ..records import Telemetry
 
 #: of a mode's own time, how long a piece of the motion is: it turns round once at most, and few terms are all its digits
 PART = math.pi / 8
@@ -130,7 +130,7 @@ def hybrid_wall(
     Half a swing in a wall lasts pi/w:
 
     >>> import hapticlab as hl
-    >>> motion = hl.hybrid_wall(hl.SimulatedPaddle(m=0.05, b=0, T=1e-3), K=500, duration=0.1, x=-0.01, v=0.5)
+    >>> motion = hl.laws.hybrid_wall(hl.SimulatedPaddle(m=0.05, b=0, T=1e-3), K=500, duration=0.1, x=-0.01, v=0.5)
     >>> motion.crossings.round(9).tolist(), round(0.02 + 3.141592653589793 / 100, 9)
     ([0.02, 0.051415927], 0.051415927)
     """

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments import number, period
+from ..base.arguments import number, period
 from ..device.hand.hand import Hand
 from ..device.simulated.transition import transition
 from ..errors import AnalysisError
 from ..limits.limit import MOST_PERIODS, whole_and_fraction
 
 if TYPE_CHECKING:
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..limits.limit import Plant
 
 
@@ -65,7 +65,7 @@ class WallModel:
                 f"a {type(paddle).__name__} has no {lacking[0]}; needs its constants, as hl.SimulatedPaddle has them"
             )
         if hand is not None and not isinstance(hand, Hand):
-            raise AnalysisError(f'hand = {hand!r}; needs a Hand, as hl.hand("pinch") or hl.Hand(m=0.02, b=1, k=200)')
+            raise AnalysisError(f'hand = {hand!r}; needs a Hand, as hl.Hand("pinch") or hl.Hand(m=0.02, b=1, k=200)')
         hand = paddle.hand if hand is None else hand
         of_hand = dict.fromkeys(("m", "b", "k", "push"), 0.0)
         if hand is not None:

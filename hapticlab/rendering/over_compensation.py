@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..arguments import number
+from ..base.arguments import number
+from ..base.drawing import WARM, house_style, new_figure
 from ..device.simulated.closed_loop import link, load_linked
 from ..device.simulated.simulated_paddle import SimulatedPaddle
-from ..drawing import WARM, house_style, new_figure
 from ..errors import AnalysisError
 from ..scene.laws.compensation import damping_compensation
 from ..scene.notation.units import in_si
@@ -20,7 +20,7 @@ from .compensation_limit import CompensationLimit, compensation_limit
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..annotations import Array
+    from ..base.annotations import Array
     from ..scene.laws.estimators import VelocityEstimate
 
 #: parts of the Coulomb friction looked at side by side, and how often the gap around the limit is divided again
@@ -132,7 +132,7 @@ def over_compensation(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.4, T=1e-3, coulomb=0.02)
-    >>> round(hl.over_compensation(paddle, speed="2 mm/s").limit, 3)  # doctest: +SKIP
+    >>> round(hl.design.over_compensation(paddle, speed="2 mm/s").limit, 3)  # doctest: +SKIP
     1.04
     """
     if not isinstance(paddle, SimulatedPaddle):

@@ -47,7 +47,7 @@ def predictive_wall(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0, T=1e-3, hand=hl.Hand(m=0.02, b=1, k=200))
-    >>> print(hl.predictive_wall(paddle, K=500).name)
+    >>> print(hl.laws.predictive_wall(paddle, K=500).name)
     predictive wall (made for T = 1 ms)
     """
     lines = Lines(WallModel.of(paddle, K=K, B=B, hand=hand))

@@ -73,7 +73,7 @@ class Lines:
         if given not in VELOCITY:
             raise SceneError(
                 f"velocity = {given!r}; needs 'handle' (v(n) of the paddle), 'model' (from two positions and the forces "
-                "between them) or an estimate, as in velocity=hl.filtered_velocity(tau='4 ms')"
+                "between them) or an estimate, as in velocity=hl.velocity.filtered(tau='4 ms')"
             )
         return v(n) if given == "handle" else self._from_positions()
 

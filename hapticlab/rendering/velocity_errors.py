@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.drawing import house_style, new_figure, style_of
+from ..base.telemetry import Telemetry
 from ..compiler.boards.cost import cost
 from ..compiler.engines.engine import load
 from ..compiler.tick.compile_scene import compile
-from ..drawing import house_style, new_figure, style_of
 from ..errors import AnalysisError
-from ..records import Telemetry
 from ..scene.laws.chapter_laws import virtual_damper
 from ..scene.laws.estimators import VelocityEstimate, backward_velocity
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ..annotations import Array
+    from ..base.annotations import Array
 
 MARKERS = "osD^v*P"
 
@@ -147,7 +147,7 @@ def velocity_errors(
     >>> hand = hl.Hand(k=400, b=3, intent=lambda t: 0.01 * np.sin(6 * t))
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, counts_per_metre=5e4, hand=hand)
     >>> log = paddle.run(hl.wall()(k=0), duration=1.0)
-    >>> found = hl.velocity_errors(log, [hl.filtered_velocity(tau="4 ms")])
+    >>> found = hl.velocity.compare(log, [hl.velocity.filtered(tau="4 ms")])
     >>> [row.name for row in found.rows]
     ['backward difference', 'filtered difference']
     """
@@ -160,7 +160,7 @@ def velocity_errors(
     estimates = [estimates] if isinstance(estimates, VelocityEstimate) else list(estimates)
     wrong = next((e for e in estimates if not isinstance(e, VelocityEstimate)), None)
     if wrong is not None:
-        raise AnalysisError(f"{wrong!r} is no estimate of a velocity; needs those such as hl.filtered_velocity(tau='4 ms')")
+        raise AnalysisError(f"{wrong!r} is no estimate of a velocity; needs those such as hl.velocity.filtered(tau='4 ms')")
     rows = tuple(_row(estimate, log, board) for estimate in (backward_velocity(), *estimates))
     return VelocityErrors(rows, log.t, log.v_true, log.T, board)
 

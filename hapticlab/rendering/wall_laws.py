@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import sympy as sp
 
-from ..arguments import choice
+from ..base.arguments import choice
 from ..errors import AnalysisError
 from ..scene.laws.chapter_laws import wall
 from ..scene.laws.taps import SPRING_LAWS
@@ -76,7 +76,9 @@ def checked_laws(laws):
     for name in names:
         if not isinstance(name, str) or name not in LAWS:
             given = repr(name) if isinstance(name, str) else f"a {type(name).__name__}"
-            raise AnalysisError(f"laws hold {given}; needs names, of {', '.join(LAWS)}; of a scene, hl.wall_map draws a map")
+            raise AnalysisError(
+                f"laws hold {given}; needs names, of {', '.join(LAWS)}; of a scene, hl.stability.wall_map draws a map"
+            )
     if not names:
         raise AnalysisError(f"laws = {laws!r}; needs one name or more, of {', '.join(LAWS)}")
     return names
@@ -116,7 +118,7 @@ def wall_law(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> law = hl.wall_law("damped", hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), K=400)
+    >>> law = hl.laws.wall_law("damped", hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), K=400)
     >>> round(law.paddle.b, 9)
     0.3
     """

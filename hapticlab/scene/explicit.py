@@ -119,7 +119,7 @@ def _check_models(modelled):
     twice = next((q for q in modelled if modelled.count(q) > 1), None)
     if twice is not None:
         name = type(twice).__name__
-        raise SceneError(f"two Lagrangians move {name}; add the energies and give one hl.lagrange(L_1 + L_2)")
+        raise SceneError(f"two Lagrangians move {name}; add the energies and give one hl.mechanics.lagrange(L_1 + L_2)")
 
 
 def _check_unmodelled(equations, modelled):

@@ -28,7 +28,7 @@ from .notation.units import unit_of
 from .notation.written import expression, no_scene
 
 if TYPE_CHECKING:
-    from ..annotations import Number
+    from ..base.annotations import Number
     from .explicit import ExplicitForm
     from .notation.parameters import Parameter
 

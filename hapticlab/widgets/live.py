@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.telemetry import Telemetry
 from ..compiler.tick.compile_scene import compile
 from ..device.board.serial_paddle import SerialPaddle
 from ..device.hand.intents import MinimumJerk
 from ..device.simulated.stepping import with_grip
 from ..errors import EngineMissingError, PaddleError
-from ..records import Telemetry
 from ..scene.scene import check_scene
 from .browser_view import front as canvas
 from .plain_view import front as plain
@@ -51,7 +51,7 @@ def live(
     """Show a paddle and a scene in a notebook: it moves, can be pushed, and every parameter has a slider.
 
     On a simulated paddle the pointer, a finger or the arrow keys say where the hand means to be; the hand is the paddle's
-    own, its intent and push replaced, or ``hl.hand("pinch")`` where that has no spring. On a board the hand is yours, and
+    own, its intent and push replaced, or ``hl.Hand("pinch")`` where that has no spring. On a board the hand is yours, and
     the motor goes on only when Start is pressed. Nothing runs before a notebook shows the view; all ends when its last view
     closes or falls silent for 2 s. Where a notebook's widgets wait for the cell that runs (no subshells: ipykernel before 7,
     and editors other than JupyterLab), a cell longer than that is such a silence: a simulation then goes on after it, a
@@ -90,7 +90,7 @@ def live(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.hand("pinch"))
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("pinch"))
     >>> view = hl.live(paddle, hl.wall()(k=300, x_o=0.01), duration=1.0)
     >>> view.set(k=600)
     >>> print(view)
@@ -178,13 +178,13 @@ class LiveView:
         self._session.pressed("stop")
 
     def save(self, path):
-        """Write :attr:`log` to a file and return its path; ``hl.Telemetry.load`` reads it."""
+        """Write :attr:`log` to a file and return its path; ``hl.records.Telemetry.load`` reads it."""
         return self.log.save(path)
 
     def replay(self, log=None):
         """Play a log in the view, the last one recorded by default; a board's motor is off meanwhile."""
         if log is not None and not isinstance(log, Telemetry):
-            raise PaddleError(f"replay of a {type(log).__name__}; needs a record: view.log, or hl.Telemetry.load(path)")
+            raise PaddleError(f"replay of a {type(log).__name__}; needs a record: view.log, or hl.records.Telemetry.load(path)")
         log = self.log if log is None else log
         if not len(log):
             raise PaddleError("replay of a record without samples; record a while first, or give another one")
@@ -241,7 +241,7 @@ def _check_rehearsal(rehearsal):
     except Exception as problem:
         raise PaddleError(
             f"rehearsal = {rehearsal!r}; needs an intent: a function of an array of times [s] that returns places [m], as "
-            f"hl.MinimumJerk(end=0.02, duration=1.0) is. At 0 s: {type(problem).__name__}: {problem}"
+            f"hl.people.MinimumJerk(end=0.02, duration=1.0) is. At 0 s: {type(problem).__name__}: {problem}"
         ) from problem
     if at_zero.size != 1 or not np.isfinite(at_zero).all():
         raise PaddleError(f"rehearsal at 0 s is {at_zero}; needs one finite place [m] for each time")

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from ..base.telemetry import FLAGS
 from ..device.live_parameters import named_values
-from ..records import FLAGS
 from .pace import Pace
 from .traces import RECENT, Traces
 from .view_recorder import Recorder, Replay

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..analysis.pictures.pictures import drawing_of, named_by
 from ..analysis.pictures.schematic import Schematic
-from ..drawing import COLD
+from ..base.drawing import COLD
 from ..errors import AnalysisError
 from ..library.entries import CATALOGUE
 from ..library.sketch import HANDLE, INK, ring
@@ -26,12 +26,12 @@ def moving_picture(scene, paddle=None, picture=None):
     Parameters
     ----------
     scene : Scene
-        A scene of the library is drawn as ``hl.picture`` does; any other as a schematic: the handle, walls where its
+        A scene of the library is drawn as ``hl.mechanics.picture`` does; any other as a schematic: the handle, walls where its
         force and equations switch, a block for each coordinate in m, a pendulum or a dial for each in rad.
     paddle : Paddle, optional
         Its largest force scales the force arrow.
     picture : str, sequence of Placed, or callable, optional
-        Instead: a name in ``hl.library``; shapes in their places, as ``hl.Circle("5 mm").at(y=z)``, drawn beside the
+        Instead: a name in ``hl.library``; shapes in their places, as ``hl.shapes.Circle("5 mm").at(y=z)``, drawn beside the
         handle; or a function ``draw(axes, *, x, ...)`` of its own, which takes what it names of coordinates and
         parameters, and draws with :class:`~hapticlab.library.sketch.Sketch`.
 
@@ -156,8 +156,8 @@ def _drawing(scene, picture):
     shapes = tuple(picture) if isinstance(picture, (list, tuple)) else (picture,)
     if not all(hasattr(shape, "shape") for shape in shapes):
         raise AnalysisError(
-            f"picture = {picture!r}; needs a name of hl.library, shapes in their places, [hl.Circle('5 mm').at(y=z)], or a "
-            "function draw(axes, *, x, ...)"
+            f"picture = {picture!r}; needs a name of hl.library, shapes in their places, [hl.shapes.Circle('5 mm').at(y=z)], or "
+            "a function draw(axes, *, x, ...)"
         )
     return Schematic(scene, shapes)
 

@@ -6,9 +6,9 @@ import sys
 from typing import Any
 
 from ..analysis.records.plots import plot
-from ..drawing import bundle, describe, forget
+from ..base.drawing import bundle, describe, forget
+from ..base.telemetry import Telemetry
 from ..errors import AnalysisError
-from ..records import Telemetry
 
 
 def show(figure: Any, alt: str | None = None) -> None:

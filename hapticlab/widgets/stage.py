@@ -199,7 +199,7 @@ class Stage:
 
     def save(self):
         log = self._recorded()
-        self.tell(f"Saved {log.save(_free_name(log.scene))} in the folder {Path.cwd().name}: hl.Telemetry.load reads it")
+        self.tell(f"Saved {log.save(_free_name(log.scene))} in the folder {Path.cwd().name}: hl.records.Telemetry.load reads it")
 
     def replay(self, log=None):
         """Play a log, or what was recorded last; pressed again, end it."""

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..analysis.records.chatter import SHORTEST, chatter
+from ..base.telemetry import Telemetry
 from ..errors import AnalysisError
-from ..records import Telemetry
 
 #: a hand moves slower than this, chatter is faster [Hz]; and larger than this [m]
 SLOWEST, SMALLEST = 8.0, 2e-5

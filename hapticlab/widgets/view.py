@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 #: what a slider may move beside what a map may be over, and its unit
 MORE = {"hand_k": "N/m", "hand_push": "N", "force_max": "N"}
 _CURE = (
-    "hl.explore draws sliders with ipywidgets, which does not import here; do: pip install ipywidgets, in the "
-    "environment of the notebook. hl.wall_map(...).plot() draws one map without it"
+    "hl.stability.explore draws sliders with ipywidgets, which does not import here; do: pip install ipywidgets, in the "
+    "environment of the notebook. hl.stability.wall_map(...).plot() draws one map without it"
 )
 
 
@@ -41,7 +41,7 @@ def explore(
         In SI, of T, delay, m, b, coulomb, counts_per_metre, force_max, hand_m, hand_b, hand_k, hand_push: all that the
         paddle has and the map is not over. By default m, b, delay, and what the paddle has of coulomb and of a hand.
     law, over, **given
-        As for :func:`hapticlab.wall_map`; the axes stay as they are at first.
+        As for :func:`hapticlab.stability.wall_map`; the axes stay as they are at first.
 
     Returns
     -------

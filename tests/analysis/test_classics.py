@@ -177,10 +177,10 @@ def test_an_impact_oscillator_bounces_where_the_closed_form_does():
     """A driven spring and mass before a wall, e = 0.7: the pieces between impacts are known, their ends roots."""
     e, wall, F, w, until, T = 0.7, 0.2, 1.0, 2.3, 20.0, 1e-2
     X = hl.coordinate("X", unit="m")
-    stop = hl.Contact(sp.Float(wall) * m - X, hl.impulse(e=e), name="stop")
+    stop = hl.contact.Contact(sp.Float(wall) * m - X, hl.contact.impulse(e=e), name="stop")
     L = kg * X.diff(t) ** 2 / 2 - k * X**2 / 2
     push = hl.parameters("push", units="N", values=F)
-    body = hl.lagrange(L, forces={X: push * sp.cos(w * t / s)}, contacts=[stop])
+    body = hl.mechanics.lagrange(L, forces={X: push * sp.cos(w * t / s)}, contacts=[stop])
     times, (found,) = run([body], [X], until, "taylor", T)
     pieces, at = impacts(e, wall, F, w, until)
     assert len(pieces) > 5
@@ -193,8 +193,8 @@ def test_an_impact_oscillator_bounces_where_the_closed_form_does():
 def test_dry_friction_stops_a_spring_in_whole_half_swings(start, halves):
     """F_c = k * 0.1 m: every half swing ends 0.2 m nearer, and the first that ends within 0.1 m ends for ever."""
     X = hl.coordinate("X", unit="m", initial=f"{start} m")
-    rub = hl.friction(slip=X.diff(t), F_c="0.1 N")
-    body = hl.lagrange(kg * X.diff(t) ** 2 / 2 - k * X**2 / 2, contacts=[rub])
+    rub = hl.contact.friction(slip=X.diff(t), F_c="0.1 N")
+    body = hl.mechanics.lagrange(kg * X.diff(t) ** 2 / 2 - k * X**2 / 2, contacts=[rub])
     times, (found, speed) = run([body], [X, X.diff(t)], math.pi * (halves + 1), "taylor", 1e-2)
     half = np.floor(times / math.pi)
     centre, swing = 0.1 * (-1) ** half, (-1) ** half * (start - 0.2 * half - 0.1)

@@ -9,9 +9,9 @@ import pytest
 import sympy as sp
 
 import hapticlab as hl
+from hapticlab.base.drawing import STYLES, describe
+from hapticlab.base.telemetry import Telemetry
 from hapticlab.compiler.boards.cost import cost as cost_of
-from hapticlab.drawing import STYLES, describe
-from hapticlab.records import Telemetry
 
 pytest.importorskip("matplotlib")
 
@@ -96,10 +96,10 @@ def test_energy_books_are_drawn_so_that_they_add_up():
     m, K, c = hl.parameters("m K c", units="kg N/m N*s/m", values=(0.05, 200, 0.3))
     z = hl.coordinate("z", unit="m")
     L = m * z.diff(hl.t) ** 2 / 2 - K * (hl.x(hl.t) - z) ** 2 / 2
-    motion = hl.lagrange(L, dissipation=c * z.diff(hl.t) ** 2 / 2)
-    books = hl.energy_books(hl.Scene(force=K * (hl.x(hl.t) - z), eom=[motion]))
+    motion = hl.mechanics.lagrange(L, dissipation=c * z.diff(hl.t) ** 2 / 2)
+    books = hl.records.energy_books(hl.Scene(force=K * (hl.x(hl.t) - z), eom=[motion]))
     paddle = hl.SimulatedPaddle(m=0.05, b=1.0, T=1e-3, hand=hl.Hand(push=1.0))
-    found = hl.balance(paddle.run(books, duration=0.05, progress=False))
+    found = hl.records.balance(paddle.run(books, duration=0.05, progress=False))
     above, below = found.plot().axes
     top = above.collections[1].get_paths()[0].vertices[:, 1].max()
     supplied = line(above, "supplied").get_ydata()
@@ -108,18 +108,18 @@ def test_energy_books_are_drawn_so_that_they_add_up():
 
 
 def test_a_reference_is_drawn_with_the_errors_of_programs():
-    scene, motion = hl.library.mass_spring_damper(), hl.handle_motions()[1]
-    reference, program = hl.reference(scene, motion), hl.compile(scene, T=1e-3, hold="zoh")
+    scene, motion = hl.library.mass_spring_damper(), hl.methods.handle_motions()[1]
+    reference, program = hl.methods.reference(scene, motion), hl.compile(scene, T=1e-3, hold="zoh")
     assert len(reference.plot().axes) == 2
     errors = reference.plot(program).axes[2].lines[0].get_ydata()
-    assert np.nanmax(errors) == pytest.approx(hl.force_error(program, reference).max, rel=1e-12)
+    assert np.nanmax(errors) == pytest.approx(hl.methods.force_error(program, reference).max, rel=1e-12)
 
 
 def test_an_impedance_is_drawn_and_told_by_what_it_is_like():
     m, k = hl.parameters("m k", units="kg N/m", values=(0.1, 50.0))
     z = hl.coordinate("z", unit="m", initial=hl.x(hl.n))
-    F = hl.virtual_coupler(z, K=k, b=hl.parameters("b", units="N*s/m", values=0.0))
-    curve = hl.impedance(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)], name="mass on a spring"))
+    F = hl.laws.virtual_coupler(z, K=k, b=hl.parameters("b", units="N*s/m", values=0.0))
+    curve = hl.passivity.impedance(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)], name="mass on a spring"))
     s = 2j * np.pi * curve.frequency
     np.testing.assert_allclose(curve.Z, 1 / (1 / (m.value * s) + s / k.value), rtol=1e-9)  # near resonance digits are lost
     above, below = curve.plot().axes
@@ -129,15 +129,15 @@ def test_an_impedance_is_drawn_and_told_by_what_it_is_like():
 
 
 def test_a_law_is_drawn_as_a_sinusoid_feels_it():
-    law = hl.LinearLaw.of("ellis", K=300.0, T=1e-3)
+    law = hl.laws.LinearLaw.of("ellis", K=300.0, T=1e-3)
     above, below = law.plot().axes
     assert above.lines[0].get_ydata()[0] == pytest.approx(300.0, rel=1e-6)
     theta = 2 * np.pi * 1e-3 * below.lines[0].get_xdata()
-    np.testing.assert_allclose(below.lines[0].get_ydata(), hl.equivalent_damper(law, theta), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(below.lines[0].get_ydata(), hl.passivity.equivalent_damper(law, theta), rtol=1e-9, atol=1e-9)
 
 
 def test_a_two_port_is_drawn_with_its_verdict():
-    design = hl.coupler_design(hl.SimulatedPaddle(m=0.05, b=0.2, T=1e-3))
+    design = hl.design.coupler(hl.SimulatedPaddle(m=0.05, b=0.2, T=1e-3))
     (axes,) = design.two_port.plot().axes
     assert axes.get_title().endswith("absolutely stable") and axes.lines[0].get_ydata().min() >= -1e-9
 
@@ -152,7 +152,7 @@ def test_a_cost_is_drawn_part_by_part():
 
 
 def test_a_motion_is_drawn():
-    position, velocity = hl.handle_motions()[2].plot().axes
+    position, velocity = hl.methods.handle_motions()[2].plot().axes
     t, x = position.lines[0].get_data()
     np.testing.assert_allclose(np.gradient(x, t)[5:-5], velocity.lines[0].get_ydata()[5:-5], atol=1.0)  # of 322 mm/s
 
@@ -162,13 +162,13 @@ def test_figures_in_words():
     assert "Panel 1 of 2" in said and "Handle position x [mm] over time t [s], 0 to 2" in said
     assert "found: 20 Hz: x at 20" in said
     assert "Amplitude [mm] over frequency [Hz], 0 to 100:" in said  # as the axis ends, not the spectrum at 500 Hz
-    ledger = describe(hl.bounds(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)).plot())
+    ledger = describe(hl.bounds.table(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)).plot())
     assert "Largest stiffness K [N/m]" in ledger and "Colgate, Schenkel 200" in ledger
-    drawing = describe(hl.picture("detents"))
+    drawing = describe(hl.mechanics.picture("detents"))
     assert drawing == "Detents. A drawing: handle, x, U(x), pitch p."
 
 
 def test_a_paddle_without_dry_friction_shows_the_one_part_it_has():
-    found = hl.compensation_limit(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3))
+    found = hl.design.compensation(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3))
     (axes,) = found.plot().axes
     assert axes.lines[0].get_xdata()[0] == found.viscous and "runs away" in {text.get_text() for text in axes.texts}

@@ -19,25 +19,25 @@ from hapticlab.roots import root
 WEBER = 0.2
 TRIALS = 60
 TRUE = math.log1p(WEBER)
-PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.hand("grip"))
+PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("grip"))
 #: name -> a fresh procedure of about 60 trials, and the part of right answers that its own estimate stands for
 PROCEDURES = {
-    "2 down, 1 up (Levitt)": lambda seed: hl.UpDown(start=0.5, factor=1.25, reversals=18),
-    "1 down, weight 3 (Kaernbach)": lambda seed: hl.UpDown(start=0.5, factor=1.15, down=1, weight=3, reversals=26),
-    "psi, slope known": lambda seed: hl.Psi(low=0.02, high=1.5, slopes=(1.0,), lapse=0.01, trials=TRIALS),
-    "psi, slope looked for": lambda seed: hl.Psi(low=0.02, high=1.5, lapse=0.01, trials=TRIALS),
-    "constant stimuli": lambda seed: hl.ConstantLevels(np.geomspace(0.05, 0.7, 6), repeats=TRIALS // 6, seed=seed),
+    "2 down, 1 up (Levitt)": lambda seed: hl.people.UpDown(start=0.5, factor=1.25, reversals=18),
+    "1 down, weight 3 (Kaernbach)": lambda seed: hl.people.UpDown(start=0.5, factor=1.15, down=1, weight=3, reversals=26),
+    "psi, slope known": lambda seed: hl.people.Psi(low=0.02, high=1.5, slopes=(1.0,), lapse=0.01, trials=TRIALS),
+    "psi, slope looked for": lambda seed: hl.people.Psi(low=0.02, high=1.5, lapse=0.01, trials=TRIALS),
+    "constant stimuli": lambda seed: hl.people.ConstantLevels(np.geomspace(0.05, 0.7, 6), repeats=TRIALS // 6, seed=seed),
 }
 
 
 def thresholds(name, observers):
     """Return ln(estimate/truth) for each observer, by the procedure's rule, its trials, and by a fit of slope 1."""
-    curve = hl.SimulatedObserver(weber=WEBER).curve()
+    curve = hl.people.SimulatedObserver(weber=WEBER).curve()
     target = getattr(PROCEDURES[name](0), "target", None)
     aim = TRUE if target is None else root(lambda level: float(curve(level)) - target, 0.0, 100 * TRUE)
     own, fitted, trials = [], [], []
     for seed in range(observers):
-        procedure, observer = PROCEDURES[name](seed), hl.SimulatedObserver(weber=WEBER, seed=seed)
+        procedure, observer = PROCEDURES[name](seed), hl.people.SimulatedObserver(weber=WEBER, seed=seed)
         levels, right = [], []
         while not procedure.done and len(levels) < 400:
             level = procedure.level
@@ -47,7 +47,7 @@ def thresholds(name, observers):
             right.append(answer)
         if hasattr(procedure, "estimate"):
             own.append(math.log(procedure.estimate() / aim))
-        fitted.append(math.log(hl.psychometric(levels, right, slope=1.0, lapse=0.0, bootstrap=2).curve.threshold / TRUE))
+        fitted.append(math.log(hl.people.psychometric(levels, right, slope=1.0, lapse=0.0, bootstrap=2).curve.threshold / TRUE))
         trials.append(len(levels))
     return own, fitted, trials
 
@@ -64,13 +64,13 @@ def print_thresholds(observers):
 def print_juggling():
     print("\njuggling 10 s: rms error of the height [%], two seeds; a hand with 0.5 N of noise; above 50 % the ball is lost")
     print(f"{'stroke at impact':<18}{'height':>8}{'neither':>12}{'touch':>14}{'sight':>14}{'both':>14}")
-    shaky = replace(PADDLE, force_max=20.0, hand=hl.hand("grip", noise=0.5))
+    shaky = replace(PADDLE, force_max=20.0, hand=hl.Hand("grip", noise=0.5))
     for acceleration in (-5.0, -1.0, 2.0, 5.0):
         for height in (0.2, 0.35):
             row = []
             for senses in ("none", "touch", "vision", "both"):
                 how = {"senses": senses, "height": height, "acceleration": acceleration}
-                found = [hl.juggle(shaky, duration=10.0, seed=seed, **how) for seed in (0, 1)]
+                found = [hl.people.juggle(shaky, duration=10.0, seed=seed, **how) for seed in (0, 1)]
                 row.append(" ".join(f"{100 * one.error:.1f}" for one in found))
             print(f"{acceleration:>+8g} m/s^2{'':<5}{height:>6g} m{row[0]:>12}{row[1]:>14}{row[2]:>14}{row[3]:>14}")
 
@@ -78,14 +78,14 @@ def print_juggling():
 def print_targets():
     print()
     for name, scene in (("empty handle", None), ("a detent at each target, 1 N", lambda d, w: hl.library.detents()(p=d, A=1.0))):
-        print(f"{name}\n{hl.fitts(PADDLE, scene, movements=30)}")
+        print(f"{name}\n{hl.people.fitts(PADDLE, scene, movements=30)}")
 
 
 def print_displays():
     print()
-    print(hl.compare_displays(replace(PADDLE, coulomb=0.1), [50, 300, 1000, 3000, 9000, 30_000]))
+    print(hl.people.compare_displays(replace(PADDLE, coulomb=0.1), [50, 300, 1000, 3000, 9000, 30_000]))
     for m_v in (0.02, 0.05, 0.1, 0.2, 0.5):
-        limits = hl.compare_displays(PADDLE, [300], m_v=m_v).limits
+        limits = hl.people.compare_displays(PADDLE, [300], m_v=m_v).limits
         print(f"virtual mass {m_v:g} kg: admittance stable below {limits['admittance']:.4g} N/m")
 
 

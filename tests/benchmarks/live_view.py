@@ -30,7 +30,7 @@ ROUTES = {  # name: whether the server extension is on, and what a notebook does
 }
 SCENE = """
 import os, hapticlab as hl
-paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch"))
+paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
 view = hl.live(paddle, hl.wall()(k=300, x_o=0.01))
 print("kernel", os.getpid())
 """

@@ -50,7 +50,7 @@ class Column:
 
 
 def hapticlab(model):
-    """hl.lagrange of the balls, a penalty contact below each."""
+    """hl.mechanics.lagrange of the balls, a penalty contact below each."""
     import hapticlab as hl
 
     m, x0, v0 = model.numbers()
@@ -60,8 +60,8 @@ def hapticlab(model):
     starts = zip(names, declared("a", ["m"] * N, x0), declared("r", ["m/s"] * N, v0), strict=True)
     x = [hl.coordinate(name, unit="m", initial=a, rate=r) for name, a, r in starts]
     L = sum(mass * a.diff(hl.t) ** 2 / 2 - mass * g * a for mass, a in zip(m, x, strict=True))
-    contacts = [hl.Contact(gap, hl.penalty(k=k), name=f"c{i}") for i, gap in enumerate(model.gaps(x, radius))]
-    scene = hl.Scene(force=k * sum(x), eom=[hl.lagrange(L, contacts=contacts)])
+    contacts = [hl.contact.Contact(gap, hl.contact.penalty(k=k), name=f"c{i}") for i, gap in enumerate(model.gaps(x, radius))]
+    scene = hl.Scene(force=k * sum(x), eom=[hl.mechanics.lagrange(L, contacts=contacts)])
     return scene_made(scene, names, v0, model.h)
 
 

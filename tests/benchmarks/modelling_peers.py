@@ -103,7 +103,7 @@ def rk4(rates, h):
 
 
 def hapticlab(model):
-    """hl.lagrange, hl.compile, and machine code by LLVM."""
+    """hl.mechanics.lagrange, hl.compile, and machine code by LLVM."""
     import hapticlab as hl
 
     m, l, q0, w0 = model.numbers()
@@ -114,7 +114,7 @@ def hapticlab(model):
     starts = zip(lengths, declared("a", lengths, q0), declared("r", [f"{u}/s" for u in lengths], w0), strict=True)
     q = [hl.coordinate(f"q{k}", unit=u, initial=a, rate=r) for k, (u, a, r) in enumerate(starts)]
     L = model.lagrangian(sp.sin, sp.cos, q, [a.diff(hl.t) for a in q], m, l, g)
-    scene = hl.Scene(force=K * q[0], eom=[hl.lagrange(L)])
+    scene = hl.Scene(force=K * q[0], eom=[hl.mechanics.lagrange(L)])
     return scene_made(scene, [f"q{k}" for k in range(model.size)], w0, model.h)
 
 

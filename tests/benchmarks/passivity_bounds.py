@@ -43,7 +43,7 @@ def place(margin):
 def laws():
     rows = []
     for law, equation in LAWS.items():
-        asked = [hl.passivity_margin(hl.LinearLaw.of(law, K=1 / T, T=T), b=1, delay=d * T) for d in DELAYS]
+        asked = [hl.passivity.margin(hl.laws.LinearLaw.of(law, K=1 / T, T=T), b=1, delay=d * T) for d in DELAYS]
         rows.append([f"{law} {equation}", *(f"{m.required:.4f} {place(m)}" for m in asked)])
     return table(["law, b/(K T) at part of Nyquist", *(f"delay {d:g} T" for d in DELAYS)], rows)
 
@@ -60,7 +60,7 @@ def named():
     rows = []
     for name, device in DEVICES.items():
         for words, hand, delay in (("", None, 0.0), (", pinched", PINCH, 0.0), (", T/2 late", None, T / 2)):
-            found = hl.bounds(hl.SimulatedPaddle(T=T, hand=hand, delay=delay, **device))
+            found = hl.bounds.table(hl.SimulatedPaddle(T=T, hand=hand, delay=delay, **device))
             cells = ["-" if isinstance(limit, str) else f"{limit.K:.4g}" for limit in found.found.values()]
             rows.append([name + words, *cells])
     return table(["K [N/m]", *found.found], rows)
@@ -68,7 +68,7 @@ def named():
 
 def between():
     fractions = (0.1, 0.25, 0.5, 0.75, 0.9)
-    ratio = [hl.diolaiti_limit(b=1, T=T, delay=f * T).K / hl.passivity_limit(b=1, T=T, delay=f * T).K for f in fractions]
+    ratio = [hl.bounds.diolaiti(b=1, T=T, delay=f * T).K / hl.passivity_limit(b=1, T=T, delay=f * T).K for f in fractions]
     return table(["delay", *(f"{f:g} T" for f in fractions)], [["Diolaiti over exact", *(f"{r:.4f}" for r in ratio)]])
 
 
@@ -97,7 +97,7 @@ def couplers():
     rows = []
     for delay in DELAYS:
         paddle = hl.SimulatedPaddle(m=0.05, b=0.2, T=T, delay=delay * T)
-        best, bare = hl.coupler_design(paddle), hl.coupler_design(paddle, b_c=0.0)
+        best, bare = hl.design.coupler(paddle), hl.design.coupler(paddle, b_c=0.0)
         wall = hl.passivity_limit(b=0.2, T=T, delay=delay * T).K
         cells = [f"{K * T / 0.2:.4f}" for K in (best.k_c, best.b_c / T, bare.k_c, wall)]
         cells.insert(2, f"{2 * best.frequency * T:.3f}" if delay else "everywhere")
@@ -109,11 +109,11 @@ def couplers():
 def compiled():
     z = hl.coordinate("z", unit="m")
     K, B, m = hl.parameters("K B m", units="N/m N*s/m kg", values=(300, 0.05, 0.05))
-    F = hl.virtual_coupler(z, K=K, b=B)
+    F = hl.laws.virtual_coupler(z, K=K, b=B)
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)])
     paddle, rows = hl.SimulatedPaddle(m=0.05, b=0.2, T=T), []
     for method, hold in (("semi_implicit_euler", "zoh"), ("exact", "zoh"), ("exact", "soh"), ("rk4", "soh")):
-        asked = [hl.port_passivity(scene(m=mass), paddle, method=method, hold=hold).b_req for mass in (0.002, 0.05, 0.5)]
+        asked = [hl.passivity.port(scene(m=mass), paddle, method=method, hold=hold).b_req for mass in (0.002, 0.05, 0.5)]
         rows.append([f"{method}, {hold}", *(f"{b:.4f}" for b in asked)])
     return table(["method, hold", "2 g", "50 g", "500 g"], rows)
 
@@ -125,7 +125,7 @@ def admittance():
         for b, delay in ((0.5, 0.0), (0.5, 0.2), (2.0, 0.0), (2.0, 0.2)):
             paddle = hl.SimulatedPaddle(m=0.05, b=b, T=T, delay=delay * T)
             try:
-                cells.append(f"{1e3 * hl.admittance_design(paddle, servo=part * b).m_a:.0f}")
+                cells.append(f"{1e3 * hl.design.admittance(paddle, servo=part * b).m_a:.0f}")
             except AnalysisError as refused:
                 cells.append("diverges alone" if "diverges" in str(refused) else "active in some hand")
         rows.append([f"{part:g}", *cells])
@@ -138,11 +138,11 @@ Written by `tests/benchmarks/passivity_bounds.py`; theory only. T = 1 ms where a
 
 ## What each law asks of the device's damping
 
-Passivity in any passive hand, the spring always acting (Colgate and Schenkel 1997; `hl.passivity_margin`):
+Passivity in any passive hand, the spring always acting (Colgate and Schenkel 1997; `hl.passivity.margin`):
 
 {laws}
 
-With x(n), v(n) exact at the samples, Eq. (23.3) is passive on no device: the velocity jumps there. `hl.bounds` refuses the
+With x(n), v(n) exact at the samples, Eq. (23.3) is passive on no device: the velocity jumps there. `hl.bounds.table` refuses the
 formulas below for it, which are for laws in position; on a paddle with an encoder it is Eq. (23.5), in every row.
 
 **No linear law is passive with K > 2 b/T.** Averaged over frequency every stable law of stiffness K at rest asks for
@@ -165,14 +165,14 @@ b > K T/2 + B/(1 + 2 tau/T). A negative one asks for slow motion, which no filte
 
 ## The bounds of the field by name
 
-`hl.bounds(paddle)`; a dash where an assumption fails, and the object then holds the sentence that says which.
+`hl.bounds.table(paddle)`; a dash where an assumption fails, and the object then holds the sentence that says which.
 
 {named}
 
 * **Colgate, Schenkel**: passivity, any passive hand; viscous damping alone.
 * **Abbott, Okamura** (2005): passivity with an encoder, min(2 b/T, 2 f_c/Delta); no delay, no virtual damping, Eq. (23.1).
 * **Diolaiti** (2006): the same with delay, passivity for whole periods; with a fraction (T/2 late above) it is a limit of
-  slow sinusoids and its kind says so. `hl.diolaiti` says which region of its plane a wall lies in.
+  slow sinusoids and its kind says so. `hl.bounds.diolaiti_plane` says which region of its plane a wall lies in.
 * **Gil** (2004, 2009): stability of this plant to first order in the delay; no passivity claim, and no bound in the strict
   sense: it errs to both sides.
 * **exact stability**: eigenvalues of the sampled loop.
@@ -190,14 +190,14 @@ Exact for whole periods. Between them a hand may move faster before the force ch
 
 135 plants without a hand, B from -0.9 b to 3 b; e = ((K + k_h) tau^2/M + |B| tau/M) (b + |B|)/(b + B) with tau = T/2 + delay.
 What the formula leaves out is an amount of stiffness, so a negative damper that leaves little of b makes it large beside K.
-`hl.gil_limit` refuses past e = 0.1.
+`hl.bounds.gil` refuses past e = 0.1.
 
 {gil}
 
 ## Virtual couplers for an impedance display
 
 The stiffest spring beside the best damper that is absolutely stable, every passive hand and every environment that is
-passive at the sample rate (Llewellyn's criterion; `hl.coupler_design`):
+passive at the sample rate (Llewellyn's criterion; `hl.design.coupler`):
 
 {couplers}
 
@@ -208,14 +208,14 @@ up for that: at one period the best is 4/sqrt(27) b/T beside b_c = 0.282 b, more
 ### What the compiled scene asks for
 
 Integrated environments are not passive at the sample rate, so a scene asks for a little more than the device's 0.2 N s/m.
-k_c = 300 N/m, b_c = 0.05 N s/m and one body (`hl.port_passivity`). The exact map under a held sample asks most at the body's
+k_c = 300 N/m, b_c = 0.05 N s/m and one body (`hl.passivity.port`). The exact map under a held sample asks most at the body's
 own resonance (15 Hz for 50 g), where the hold lags and the coupler damps little:
 
 {compiled}
 
 ## Virtual couplers for an admittance display
 
-The dual: not the stiffest spring but the lightest body that can be shown (`hl.admittance_design`; a device of 50 g,
+The dual: not the stiffest spring but the lightest body that can be shown (`hl.design.admittance`; a device of 50 g,
 simulated only, since a paddle has no force sensor). A continuous approximation: frequencies below Nyquist, the servo late by
 half a period of hold, by the delay, and by half a period more for its velocity, a backward difference. The servo alone,
 the environment at rest, is held to Eq. (23.10) exactly: b >= k_s T/2 + b_s without delay. Where
@@ -225,8 +225,8 @@ late, sensor and servo both are.
 
 Nothing in the table is lighter than the device itself: the servo lags, and only inertia pays for a lag. A servo firmer than
 the device's own damping is unstable in the hand of some spring before any environment is shown, though many a hand of
-flesh bears it; far beyond, it diverges alone (`hl.damper_limit`). The approximation has been seen to fail on a device of
-50 g and 10 N s/m, m/b = 5 T: sampled loops of springs and bodies grow there by up to 1 % a sample beside the mass it gives.
+flesh bears it; far beyond, it diverges alone (`hl.stability.damper_limit`). The approximation has been seen to fail on a device
+of 50 g and 10 N s/m, m/b = 5 T: sampled loops of springs and bodies grow there by up to 1 % a sample beside the mass it gives.
 """
 
 

@@ -17,11 +17,11 @@ from hapticlab.compiler.boards.cost import cost
 
 PAGE = Path(__file__).parents[2] / "docs" / "passivity_control.md"
 M, B, T = 0.05, 0.1, 1e-3
-E = hl.wall_energy()
+E = hl.laws.wall_energy()
 
 
 def controlled(wall=None, *args, **options):
-    return hl.passivity_controller(wall or hl.wall(), *args, **({"alpha_max": 20.0} | options))
+    return hl.laws.passivity_controller(wall or hl.wall(), *args, **({"alpha_max": 20.0} | options))
 
 
 def variants():
@@ -32,7 +32,7 @@ def variants():
         "series, predict": controlled(predict=True),
         "series, stored": controlled(stored=E),
         "series, stored, predict": controlled(stored=E, predict=True),
-        "parallel, stored": hl.passivity_controller(hl.wall(), "parallel", beta_max=20.0, stored=E),
+        "parallel, stored": hl.laws.passivity_controller(hl.wall(), "parallel", beta_max=20.0, stored=E),
     }
 
 
@@ -87,7 +87,7 @@ def stiffest():
 
 def dampers():
     """The same hand, 1000 N/m: how strong a damper the series form may use."""
-    limit = hl.damper_limit(m=M + 0.02, b=B, T=T)
+    limit = hl.stability.damper_limit(m=M + 0.02, b=B, T=T)
     rows = []
     for part in (B / limit, 0.01, 0.1, 0.5, 0.9, 1.1, 2.0):
         cells = []
@@ -135,13 +135,13 @@ def stirred():
 def costs():
     """What an Uno has time for."""
     scenes = {
-        "wall": hl.wall(), "observer": hl.passivity_observer(hl.wall()), "series": controlled(),
+        "wall": hl.wall(), "observer": hl.laws.passivity_observer(hl.wall()), "series": controlled(),
         "series, force_max": controlled(force_max=2), "series, predict": controlled(predict=True),
         "series, credit_max": controlled(credit_max=1e-3), "series, forget": controlled(forget=0.1),
         "series, stored": controlled(stored=E),
         "series, stored, force_max, forget": controlled(stored=E, force_max=2, forget=0.1),
         "series, stored, predict": controlled(stored=E, predict=True),
-        "parallel, stored, force_max": hl.passivity_controller(hl.wall(), "parallel", beta_max=20.0, stored=E, force_max=2),
+        "parallel, stored, force_max": hl.laws.passivity_controller(hl.wall(), "parallel", beta_max=20.0, stored=E, force_max=2),
     }  # fmt: skip
     rows = []
     for name, scene in scenes.items():
@@ -156,8 +156,8 @@ def costs():
 TEXT = """# The passivity controller: what it changes, where it fails, what it costs
 
 Written by `tests/benchmarks/passivity_control.py`; simulated, so the same on every computer. A paddle of 50 g and
-0.1 N s/m at 1 kHz, whose plain wall chatters in some hand above 200 N/m, Eq. (23.10). `hl.passivity_controller` is
-Hannaford and Ryu's (2002), with the work of the force that was held; `stored=hl.wall_energy()` makes it act as soon as
+0.1 N s/m at 1 kHz, whose plain wall chatters in some hand above 200 N/m, Eq. (23.10). `hl.laws.passivity_controller` is
+Hannaford and Ryu's (2002), with the work of the force that was held; `stored=hl.laws.wall_energy()` makes it act as soon as
 energy is generated and not only when all that was stored has been given back (Ryu, Preusche, Hannaford, Hirzinger 2005).
 alpha_max = 20 N s/m, beta_max = 20 m/(N s).
 
@@ -191,8 +191,8 @@ is felt as nothing.
 
 {dampers}
 
-Up to the device's own b a sampled damper is passive in any hand, and too weak here; 1 % of `hl.damper_limit` of handle and
-hand is enough for this wall, a tenth for the stiffest. More changes little where x is exact, for the controller asks for no
+Up to the device's own b a sampled damper is passive in any hand, and too weak here; 1 % of `hl.stability.damper_limit` of handle
+and hand is enough for this wall, a tenth for the stiffest. More changes little where x is exact, for the controller asks for no
 more damping than takes back what is owed. Behind an encoder a count is felt as alpha_max count/T: half of the limit makes
 jumps of several newtons, all of it of tens, and beyond it the controller chatters by itself.
 

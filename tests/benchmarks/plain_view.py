@@ -19,7 +19,7 @@ SCENE = """
 import os, sys
 sys.modules["anywidget"] = None
 import hapticlab as hl
-paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch"))
+paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
 view = hl.live(paddle, hl.wall()(k=300, x_o=0.01))
 print("kernel", os.getpid())
 """

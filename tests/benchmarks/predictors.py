@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 import hapticlab as hl
+from hapticlab.base.drawing import colour_map, house_style, new_figure
 from hapticlab.compiler.boards.cost import cost
-from hapticlab.drawing import colour_map, house_style, new_figure
 from hapticlab.rendering.wall_laws import LAWS, wall_law
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -54,13 +54,13 @@ LIMITS = {
 def bounce(name, laws=tuple(LAWS), entries=16):
     """Return the comparison of one condition."""
     paddle, options = CONDITIONS[name]
-    return hl.compare_laws(paddle, laws=laws, entries=entries, **{"K": K, "speed": SPEED, **options})
+    return hl.design.compare_laws(paddle, laws=laws, entries=entries, **{"K": K, "speed": SPEED, **options})
 
 
 def limit(name, laws=tuple(LAWS)):
     """Return the limits of one condition."""
     paddle, options = LIMITS[name]
-    return hl.law_limits(paddle, laws=laws, **options)
+    return hl.design.law_limits(paddle, laws=laws, **options)
 
 
 def table(head, rows):
@@ -104,7 +104,7 @@ def costs():
     paddle = replace(BASE, counts_per_metre=1e5)
     taken = {law: cost(paddle.program(wall_law(law, paddle, K=K).scene)) for law in LAWS}
     slow = replace(paddle, T=2.5e-3)
-    rough = hl.deadbeat_wall(slow, K=K, accuracy=0.05, crossings=1, between="half_sample")
+    rough = hl.laws.deadbeat_wall(slow, K=K, accuracy=0.05, crossings=1, between="half_sample")
     taken["deadbeat_crossings, accuracy 5 %, 400 Hz"] = cost(slow.program(rough))
     rows = [
         [
@@ -152,7 +152,7 @@ def tables():
     """Compute every table; return name -> text, and the figure."""
     results = {name: bounce(name) for name in CONDITIONS}
     found = {name: limit(name) for name in LIMITS}
-    bed = hl.compare_laws(BED, K=5000.0, speed=0.5)
+    bed = hl.design.compare_laws(BED, K=5000.0, speed=0.5)
     made = {"plain": details(results["plain"]), "bed": details(bed), "conditions": bounces(results)}
     return made | {"worst": scatter(results), "limits": limits(found), "costs": costs()}, figure(results)
 

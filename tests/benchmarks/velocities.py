@@ -25,16 +25,16 @@ STIFFNESS = np.geomspace(300, 60e3, 97)
 
 def estimates():
     return {
-        "backward difference": hl.backward_velocity(),
-        "filtered, tau = 1 ms": hl.filtered_velocity(tau=1e-3),
-        "filtered, tau = 4 ms": hl.filtered_velocity(tau=4e-3),
-        "window of 2": hl.window_velocity(band=COUNT, most=2),
-        "window of 4": hl.window_velocity(band=COUNT, most=4),
-        "window of 8": hl.window_velocity(band=COUNT, most=8),
-        "window of 4, best fit": hl.window_velocity(band=COUNT, most=4, fit="best"),
-        "Kalman, 50 m/s^2": hl.kalman_velocity(acceleration=50, noise=SPREAD),
-        "Kalman, 5 m/s^2": hl.kalman_velocity(acceleration=5, noise=SPREAD),
-        "Kalman from the start, 5 m/s^2": hl.kalman_velocity(acceleration=5, noise=SPREAD, steady=False),
+        "backward difference": hl.velocity.backward(),
+        "filtered, tau = 1 ms": hl.velocity.filtered(tau=1e-3),
+        "filtered, tau = 4 ms": hl.velocity.filtered(tau=4e-3),
+        "window of 2": hl.velocity.window(band=COUNT, most=2),
+        "window of 4": hl.velocity.window(band=COUNT, most=4),
+        "window of 8": hl.velocity.window(band=COUNT, most=8),
+        "window of 4, best fit": hl.velocity.window(band=COUNT, most=4, fit="best"),
+        "Kalman, 50 m/s^2": hl.velocity.kalman(acceleration=50, noise=SPREAD),
+        "Kalman, 5 m/s^2": hl.velocity.kalman(acceleration=5, noise=SPREAD),
+        "Kalman from the start, 5 m/s^2": hl.velocity.kalman(acceleration=5, noise=SPREAD, steady=False),
     }
 
 
@@ -46,7 +46,7 @@ def table(head, rows):
 def errors():
     hand = hl.Hand(k=400, b=3, intent=lambda t: 0.006 * np.sin(3 * np.pi * t) ** 2 + 0.001 * np.sin(6 * np.pi * t) ** 2)
     log = hl.SimulatedPaddle(m=0.03, b=B, T=T, counts_per_metre=1 / COUNT, hand=hand).run(hl.wall()(k=0), duration=2.0)
-    found = hl.velocity_errors(log, list(estimates().values())[1:])
+    found = hl.velocity.compare(log, list(estimates().values())[1:])
     rows = [
         [name, f"{1e3 * row.lag:.1f}", f"{1e3 * row.noise:.1f}", row.cycles, "yes" if row.fits else "no"]
         for name, row in zip(estimates(), found.rows, strict=True)
@@ -76,12 +76,12 @@ def pulses():
     wall, paddle = hl.wall()(k=500, x_o=0.0101), hl.SimulatedPaddle(m=m, b=0.3, T=T)
     scenes = {
         "the spring alone": wall,
-        "braking pulse, 0.9 of the momentum in 1 period": hl.braking_pulse(wall, part=0.9, mass=m),
-        "the same in 3 periods": hl.braking_pulse(wall, part=0.9, mass=m, periods=3),
-        "the same, speed from 20 um counts, window of 3": hl.braking_pulse(
-            wall, part=0.9, mass=m, periods=3, velocity=hl.window_velocity(band=COUNT, most=3)
+        "braking pulse, 0.9 of the momentum in 1 period": hl.laws.braking_pulse(wall, part=0.9, mass=m),
+        "the same in 3 periods": hl.laws.braking_pulse(wall, part=0.9, mass=m, periods=3),
+        "the same, speed from 20 um counts, window of 3": hl.laws.braking_pulse(
+            wall, part=0.9, mass=m, periods=3, velocity=hl.velocity.window(band=COUNT, most=3)
         ),
-        "friction pulse, 2 N for 20 periods": hl.friction_pulse(wall, friction=2.0, mass=m, periods=20),
+        "friction pulse, 2 N for 20 periods": hl.laws.friction_pulse(wall, friction=2.0, mass=m, periods=20),
     }
     rows = []
     for name, scene in scenes.items():
@@ -100,7 +100,7 @@ def compensated():
     for delay in (0.0, 2e-3, 5e-3):
         for hand in (None, hl.Hand(k=200)):
             paddle = hl.SimulatedPaddle(m=0.05, b=0.4, T=T, coulomb=0.02, delay=delay, hand=hand)
-            ideal, found = hl.compensation_limit(paddle), hl.over_compensation(paddle, speed=2e-3)
+            ideal, found = hl.design.compensation(paddle), hl.design.over_compensation(paddle, speed=2e-3)
             where = "held by 200 N/m" if hand else "free"
             rows.append([f"{1e3 * delay:g} ms, {where}", f"{ideal.viscous:.4f}", f"{ideal.dry:.4f}", f"{found.limit:.3f}"])
     return table(["delay, handle", "viscous part, exact", "dry part, ideal", "dry part, simulated"], rows)
@@ -112,7 +112,7 @@ Written by `tests/benchmarks/velocities.py`. T = 1 ms, encoder counts of 20 um.
 
 ## What an estimate costs
 
-`hl.velocity_errors` on two seconds of a smooth motion at up to 60 mm/s, where a count in a period is 20 mm/s. The lag is the
+`hl.velocity.compare` on two seconds of a smooth motion at up to 60 mm/s, where a count in a period is 20 mm/s. The lag is the
 error's part along the acceleration, the noise the rest of it. The cycles are those of a virtual damper with this velocity.
 
 {errors}
@@ -142,8 +142,8 @@ needs a speed at one instant: from counts a difference over one period would be 
 
 ## Compensated friction
 
-50 g, 0.4 N s/m and 20 mN, `hl.compensation_limit` and `hl.over_compensation` with `speed` = 2 mm/s. A free handle drifts off
-where all its damping is compensated, whatever the delay. About a spring the delay turns the negative damper, so that more
+50 g, 0.4 N s/m and 20 mN, `hl.design.compensation` and `hl.design.over_compensation` with `speed` = 2 mm/s. A free handle drifts
+off where all its damping is compensated, whatever the delay. About a spring the delay turns the negative damper, so that more
 of it can be fed back before the oscillation grows. Dry friction may be compensated beyond its whole there, for at each turn
 the handle has to break away; the width of the sign's dead zone and a delay ask for more still.
 

@@ -55,7 +55,7 @@ def _double_scene(q, w):
     x, y = l1 * sp.cos(a[0]), l1 * sp.sin(a[0])
     ends = [(m1, x, y), (m2, x + l2 * sp.cos(a[1]), y + l2 * sp.sin(a[1]))]
     L = sum(m * (x.diff(t) ** 2 + y.diff(t) ** 2) / 2 - m * g * y for m, x, y in ends)
-    return hl.Scene(force=one * a[0], eom=[hl.lagrange(L)], watch=a)
+    return hl.Scene(force=one * a[0], eom=[hl.mechanics.lagrange(L)], watch=a)
 
 
 def _double_model(h, integrator, m=M, l=LENGTHS):
@@ -89,7 +89,7 @@ def _contact(K=0.0, b=0.0, g=0.0, wall=(0.0, 1e4, 0.0), m=0.1):
         rate = z.diff(t)
         push = hl.when(z <= z_w, -k_w * (z - z_w) - b_w * rate)
         L = mass * rate**2 / 2 - mass * gravity * z - K_s * z**2 / 2
-        return hl.Scene(force=one * z, eom=[hl.lagrange(L, forces={z: push - b_s * rate})], watch=[z])
+        return hl.Scene(force=one * z, eom=[hl.mechanics.lagrange(L, forces={z: push - b_s * rate})], watch=[z])
 
     def model(h, integrator):
         if c:  # MuJoCo's dead band has no damping

@@ -7,7 +7,7 @@ pytestmark = pytest.mark.wide  # the scripts and the silent view beside it alway
 
 BEGIN = """
 import hapticlab as hl
-paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch"))
+paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
 view = hl.live(paddle, hl.wall()(k=300, x_o=0.01))
 """
 STAGE, STATUS = "canvas.hl-stage", ".hl-status"

@@ -57,7 +57,7 @@ motor = lambda: paddle.state()["state"]
 """
 MAP = """
 held = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand(m=0.02, push=1.0))
-explored = hl.explore(held, sliders={"b": (0.05, 0.5)}, points=10, duration=0.2)
+explored = hl.stability.explore(held, sliders={"b": (0.05, 0.5)}, points=10, duration=0.2)
 explored
 """
 

@@ -300,7 +300,7 @@ def test_a_wrong_method_lists_all_that_there_are(capsys):
     with pytest.raises(SystemExit, match="2"):
         main.main(["run", str(EXAMPLE), "--method", "magic"])
     told = capsys.readouterr().err
-    assert [name for name in hl.methods() if name not in told] == []
+    assert [name for name in hl.methods.table() if name not in told] == []
 
 
 @pytest.mark.parametrize("arguments", [("demo", "--quick"), ("run", str(EXAMPLE))])

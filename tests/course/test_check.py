@@ -319,7 +319,7 @@ def test_wrong_scenes_are_told_why(answer, words):
 def test_a_scene_with_motion_is_run_as_asked():
     z = hl.coordinate("z", unit="m")
     m, K, b = hl.parameters("m K b", units="kg N/m N*s/m", values=(0.05, 300.0, 0.5))
-    F = hl.virtual_coupler(z, K=K, b=b)
+    F = hl.laws.virtual_coupler(z, K=K, b=b)
     body = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)], watch=[z])
     time = np.arange(20) * 1e-3
     given = {"x": list(1e-3 * np.sin(60 * time)), "v": list(0.06 * np.cos(60 * time)), "method": "exact", "channels": ["z"]}

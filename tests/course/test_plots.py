@@ -237,7 +237,7 @@ def test_slips_of_a_plot_are_curves_too():
 
 
 def test_what_the_package_plots_itself_is_read():
-    log = hl.Telemetry(t=TIME, x=Y, v=0 * Y, F=200 * Y, T=1e-2)
+    log = hl.records.Telemetry(t=TIME, x=Y, v=0 * Y, F=200 * Y, T=1e-2)
     found = list(curves(hl.plot(log, "x", "F")).values())
     assert [(curve["x_unit"], curve["y_unit"]) for curve in found] == [("s", "m"), ("s", "N")]
     np.testing.assert_allclose(found[0]["y"], Y, atol=1e-15)

@@ -10,12 +10,12 @@ import sympy as sp
 from emulated import emulated_uno
 from emulator import missing
 
+from hapticlab.base.telemetry import Telemetry
 from hapticlab.device.hand.hand import Hand
 from hapticlab.device.paddle import Paddle
 from hapticlab.device.setup.connect import connect
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import HapticlabError, ParameterError
-from hapticlab.records import Telemetry
 from hapticlab.scene.notation.symbols import coordinate, n, parameters, t, v, when, x
 from hapticlab.scene.scene import Scene
 

@@ -10,11 +10,11 @@ import hapticlab as hl
 def test_the_observer_of_a_board_keeps_the_books_of_its_telemetry(board, form):
     limit = board.settings.force_max
     if form == "observer":
-        scene = hl.passivity_observer(hl.wall())
+        scene = hl.laws.passivity_observer(hl.wall())
     elif form == "series":
-        scene = hl.passivity_controller(hl.wall(), alpha_max=2, force_max=limit)
+        scene = hl.laws.passivity_controller(hl.wall(), alpha_max=2, force_max=limit)
     else:
-        scene = hl.passivity_controller(hl.wall(), "parallel", beta_max=5, force_max=limit, stored=hl.wall_energy())
+        scene = hl.laws.passivity_controller(hl.wall(), "parallel", beta_max=5, force_max=limit, stored=hl.laws.wall_energy())
     x_o = board.run(hl.wall()(k=1), duration=0.01).x[-1] - 0.003  # the handle rests 3 mm inside and is pushed out
     log = board.run(scene(k=200, x_o=x_o), duration=0.3)
     assert log.fault is None and not log.gap.any()
@@ -25,4 +25,4 @@ def test_the_observer_of_a_board_keeps_the_books_of_its_telemetry(board, form):
     expected = work - (spring - spring[0]) if form == "parallel" else work
     # float32: 300 sums, and of a position of some centimetres the difference of two samples
     np.testing.assert_allclose(seen, expected, atol=1e-5 * abs(work).max())
-    assert hl.passivity_trace(log).drained == pytest.approx((np.maximum.accumulate(work) - work).max(), rel=1e-9)
+    assert hl.passivity.trace(log).drained == pytest.approx((np.maximum.accumulate(work) - work).max(), rel=1e-9)

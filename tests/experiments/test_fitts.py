@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hapticlab.device.hand.hand_presets import hand
+from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError, PaddleError
 from hapticlab.experiments.fitts import Fitts, Targets, fitts, selections
 
-PADDLE = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hand("grip"))
+PADDLE = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=Hand("grip"))
 
 
 def test_measures_by_hand():

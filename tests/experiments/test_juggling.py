@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from hapticlab.device.hand.hand_presets import hand
+from hapticlab.base.telemetry import Telemetry
+from hapticlab.device.hand.hand import Hand
 from hapticlab.device.hand.reacting_hand import Seen
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError, PaddleError
 from hapticlab.experiments.arm import Arm
 from hapticlab.experiments.juggler import Juggler
 from hapticlab.experiments.juggling import bounces, juggle, multipliers
-from hapticlab.records import Telemetry
 
-PADDLE = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, force_max=20.0, hand=hand("grip"))
+PADDLE = SimulatedPaddle(m=0.05, b=0.1, T=1e-3, force_max=20.0, hand=Hand("grip"))
 VALUES = {"m": 0.005, "M": 0.1, "K": 1000.0, "e": 0.8, "g": 9.81, "h": 0.2}
 G = 9.81
 

@@ -11,15 +11,15 @@ from hapticlab.errors import PaddleError
 from hapticlab.experiments.reaching import Load, follow, handle, inverse_dynamics, reach
 
 FREE = hl.wall()(k=0, x_o=1)
-PADDLE = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.hand("grip"))
-PINCH = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.hand("pinch"))
+PADDLE = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.Hand("grip"))
+PINCH = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=hl.Hand("pinch"))
 
 
 def test_inverse_dynamics_solves_its_own_equation():
     # the equation of motion of hand and load under the intent, by scipy, follows the path
     from scipy.integrate import solve_ivp
 
-    hand, load, path = hl.Hand(m=0.05, b=2.0, k=150.0), Load(m=0.2, b=0.5, k=40.0), hl.MinimumJerk(end=0.03, duration=0.5)
+    hand, load, path = hl.Hand(m=0.05, b=2.0, k=150.0), Load(m=0.2, b=0.5, k=40.0), hl.people.MinimumJerk(end=0.03, duration=0.5)
     times = np.arange(0, 1.0, 2e-4)
     intent = inverse_dynamics(hand, load, path, times)
     rates = np.gradient(intent, times, edge_order=2)
@@ -54,7 +54,7 @@ def test_feedback_alone_is_stable_up_to_the_limit_of_a_delayed_integrator(part):
 
 
 def test_a_trill_is_anticipated_and_cannot_be_followed():
-    trill = hl.HandleMotion("trill", 0.005 * sp.sin(2 * sp.pi * 8 * hl.t), 2.0)
+    trill = hl.methods.HandleMotion("trill", 0.005 * sp.sin(2 * sp.pi * 8 * hl.t), 2.0)
     errors = {}
     for how in ("anticipatory", "feedback"):
         log, wanted = follow(PADDLE, FREE, trill, how=how)
@@ -82,10 +82,10 @@ def test_boards_and_wrong_things_are_refused_in_words():
     with hl.connect("sim://hapkit", paddle=PADDLE) as board:
         for asker, call in {
             "reach": lambda: reach(board, FREE, end=0.02),
-            "assistance": lambda: hl.assistance(board, [], hl.MinimumJerk(end=0.02, duration=0.5)),
-            "juggle": lambda: hl.juggle(board),
-            "fitts": lambda: hl.fitts(board),
-            "compare_displays": lambda: hl.compare_displays(board, [300]),
+            "assistance": lambda: hl.people.assistance(board, [], hl.people.MinimumJerk(end=0.02, duration=0.5)),
+            "juggle": lambda: hl.people.juggle(board),
+            "fitts": lambda: hl.people.fitts(board),
+            "compare_displays": lambda: hl.people.compare_displays(board, [300]),
         }.items():
             with pytest.raises(PaddleError, match=f"{asker} runs in simulation alone; needs hl.SimulatedPaddle"):
                 call()

@@ -7,9 +7,9 @@ import hapticlab as hl
 from hapticlab.errors import PaddleError
 from hapticlab.experiments.shared_control import assistance
 
-HAND = hl.hand("pinch")
+HAND = hl.Hand("pinch")
 PADDLE = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, hand=HAND)
-REACH = hl.MinimumJerk(end=0.02, duration=1.0, begin=1.0)
+REACH = hl.people.MinimumJerk(end=0.02, duration=1.0, begin=1.0)
 
 
 class Rest:
@@ -23,7 +23,7 @@ def test_tremor_shrinks_as_the_loop_in_the_frequency_domain_says():
     B, f = 10.0, 8.0
     wave = hl.Scene(force=0 * hl.x(hl.n) * hl.parameters("k", units="N/m", values=1), name="free")
     found = assistance(
-        PADDLE, [hl.tremor_filter(centre=8, bandwidth=5)(B=B), wave], Rest(), record=5.0,
+        PADDLE, [hl.laws.tremor_filter(centre=8, bandwidth=5)(B=B), wave], Rest(), record=5.0,
         tremor=lambda t: 3e-4 * np.sin(2 * np.pi * f * t),
     )  # fmt: skip
     s, z = 2j * np.pi * f, np.exp(2j * np.pi * f * 1e-3)
@@ -39,7 +39,7 @@ def test_tremor_shrinks_as_the_loop_in_the_frequency_domain_says():
 
 
 def test_the_filter_leaves_a_slow_reach_alone_and_prints():
-    alone, filtered = (found := assistance(PADDLE, [hl.tremor_filter()(B=20)], REACH)).rows
+    alone, filtered = (found := assistance(PADDLE, [hl.laws.tremor_filter()(B=20)], REACH)).rows
     assert filtered.tremor < 0.35 * alone.tremor and filtered.error < 0.02 * 0.02
     assert filtered.work > 0 and alone.work == 0
     assert str(found).splitlines()[1].startswith("hand alone") and found.plot().axes[0].get_ylabel() == "handle position x [mm]"
@@ -50,7 +50,7 @@ def test_a_fixture_keeps_the_handle_out_and_guidance_leads_it():
 
     region = hl.library.virtual_fixture()(k=0, k_w=1000, x_o=0.01)
     A, w = hl.parameters("A w", units="m 1/s", values=(0.01, 2.0))
-    guided = hl.guidance(A * sp.sin(w * hl.t))(k=300, b=2, F_max=0.8)
+    guided = hl.laws.guidance(A * sp.sin(w * hl.t))(k=300, b=2, F_max=0.8)
     found = assistance(PADDLE, [region, guided], REACH, tremor=lambda t: 0.0 * t)
     kept, led = found.rows[1].log, found.rows[2].log
     # at rest the hand's spring and the wall's share the way: k_h (0.02 - x) = k (x - 0.01)
@@ -62,7 +62,7 @@ def test_a_fixture_keeps_the_handle_out_and_guidance_leads_it():
 
 def test_a_band_pass_has_its_gain_and_its_edges():
     # the filter's own answer to a sinusoid of velocity: 1 at the centre, half the power at edges bandwidth apart
-    program = hl.compile(hl.tremor_filter(centre=9, bandwidth=4)(B=1), T=1e-3, dtype="float64", velocity="measured")
+    program = hl.compile(hl.laws.tremor_filter(centre=9, bandwidth=4)(B=1), T=1e-3, dtype="float64", velocity="measured")
     from hapticlab.compiler.engines.engine import load
 
     def gain(f):
@@ -88,5 +88,5 @@ def test_a_hand_is_needed():
 
 @pytest.mark.parametrize(("given", "T"), [({}, 0.1), ({"bandwidth": 600}, 1e-3), ({"centre": 990}, 1e-3)])
 def test_a_filter_above_half_the_sampling_rate_leaves_the_motor_off(given, T):
-    log = hl.SimulatedPaddle(m=0.05, b=0.1, T=T).run(hl.tremor_filter(**given)(B=1), duration=20 * T, v=0.01)
+    log = hl.SimulatedPaddle(m=0.05, b=0.1, T=T).run(hl.laws.tremor_filter(**given)(B=1), duration=20 * T, v=0.01)
     assert "was not finite; the motor is off" in log.fault and not log.F.any()

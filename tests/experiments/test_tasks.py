@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hapticlab.base.telemetry import Telemetry
 from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError
 from hapticlab.experiments.tasks import damping_task, felt_damping, felt_roughness, felt_stiffness, stiffness_task, texture_task
-from hapticlab.records import Telemetry
 
 PADDLE = SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
 COUNTED = replace(PADDLE, counts_per_metre=50_000)

@@ -69,7 +69,7 @@ def test_an_angle_past_all_sines_stops_the_motor_and_is_named(dtype, angle, limi
     paddle = hl.SimulatedPaddle(m=0.05, b=0.5, T=1e-3)
     log = paddle.run(hl.Scene(force=F0 * sp.sin(w))(w=angle), duration=0.01, dtype=dtype)
     assert log.fault.startswith("tick 0 ") and not log.F.any()
-    assert hl.Telemetry is type(log) and f"angle beyond {limit.replace('[', '').replace(']', '')} rad" in log.fault
+    assert hl.records.Telemetry is type(log) and f"angle beyond {limit.replace('[', '').replace(']', '')} rad" in log.fault
 
 
 def test_a_wheel_that_turns_for_ever_stops_with_its_angle_named():

@@ -167,7 +167,9 @@ def test_equations_that_leave_an_acceleration_open_are_refused(equations, words)
 
 def test_a_massless_link_is_refused_by_name():
     with pytest.raises(MassError, match="p"):
-        hl.compile(hl.Scene(force=k * q, eom=[hl.lagrange(m * q.diff(t) ** 2 / 2 - k * (q - p) ** 2 / 2)], watch=[p]), T=1e-3)
+        hl.compile(
+            hl.Scene(force=k * q, eom=[hl.mechanics.lagrange(m * q.diff(t) ** 2 / 2 - k * (q - p) ** 2 / 2)], watch=[p]), T=1e-3
+        )
 
 
 def test_a_mass_that_is_gone_stops_the_motor():
@@ -204,7 +206,7 @@ def test_a_power_of_a_hundred_thousand_is_short():
 def test_a_nest_too_deep_says_how_to_write_it():
     deep = x(n)
     for _ in range(300):
-        deep = hl.delay(deep)
+        deep = hl.laws.delay(deep)
     with pytest.raises(ProgramError, match="nested too deeply.*name its parts as signals"):
         hl.compile(hl.Scene(force=k * deep), T=1e-3)
 

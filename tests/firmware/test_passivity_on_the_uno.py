@@ -15,18 +15,18 @@ HAND = hl.Hand(m=0.02, b=0.5, k=400, intent=lambda t: 0.004 * np.sin(40 * t))
 
 
 def controlled(**options):
-    return hl.passivity_controller(hl.wall(), **({"alpha_max": 3} | options))(k=400, x_o=0.001)
+    return hl.laws.passivity_controller(hl.wall(), **({"alpha_max": 3} | options))(k=400, x_o=0.001)
 
 
 @pytest.mark.parametrize(
     "options, T",
     [
         ({}, 1e-3),
-        ({"stored": hl.wall_energy()}, 1e-3),
+        ({"stored": hl.laws.wall_energy()}, 1e-3),
         ({"predict": True}, 1e-3),
-        ({"stored": hl.wall_energy(), "force_max": 2, "forget": 0.1}, 1.25e-3),
-        ({"stored": hl.wall_energy(), "predict": True}, 1.25e-3),
-        ({"stored": hl.wall_energy(), "form": "parallel", "alpha_max": None, "beta_max": 3, "force_max": 2}, 1.25e-3),
+        ({"stored": hl.laws.wall_energy(), "force_max": 2, "forget": 0.1}, 1.25e-3),
+        ({"stored": hl.laws.wall_energy(), "predict": True}, 1.25e-3),
+        ({"stored": hl.laws.wall_energy(), "form": "parallel", "alpha_max": None, "beta_max": 3, "force_max": 2}, 1.25e-3),
     ],
 )
 def test_the_periods_that_an_uno_has_time_for(options, T):

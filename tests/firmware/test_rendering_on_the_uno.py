@@ -16,7 +16,7 @@ HAND = hl.Hand(m=0.05, b=3.0, k=400, intent=0.004)
 def test_the_best_wall_that_fits_runs_and_holds(T, name):
     """A spring hand that leans 4 mm into 300 N/m: on the wall itself it rests at 400 * 4/700 mm, and comes to rest."""
     model = hl.SimulatedPaddle.from_profile("hapkit", T=T, hand=replace(HAND, k=0.0, intent=None))
-    wall = hl.wall_for_board(model, K=300.0)
+    wall = hl.laws.wall_for_board(model, K=300.0)
     assert wall.name.startswith(name)
     with emulated_uno(HAND, T=T) as paddle:
         log = paddle.run(wall.scene, duration=0.6)

@@ -85,8 +85,8 @@ def test_a_trial_is_what_a_paddle_of_that_seed_records():
 def test_damping_of_a_coasting_handle_is_told_as_well_as_the_curvature_of_a_parabola():
     """With nothing but b sought, x = x0 + v t - b/m v t^2/2 while b t/m is small."""
     t, noise, v = np.arange(200) * 1e-3, 1e-5, 0.1
-    log = hl.SimulatedPaddle(m=0.03, b=0.0, T=1e-3, noise=noise).run(hl.virtual_damper()(B=0), duration=0.2, v=v)
-    found = hl.identify(hl.HandleRecord(log, at_rest=False), known={"m": 0.03, "coulomb": 0.0, "delay": 0.0})
+    log = hl.SimulatedPaddle(m=0.03, b=0.0, T=1e-3, noise=noise).run(hl.laws.virtual_damper()(B=0), duration=0.2, v=v)
+    found = hl.identify.handle(hl.identify.HandleRecord(log, at_rest=False), known={"m": 0.03, "coulomb": 0.0, "delay": 0.0})
     columns = np.column_stack([np.ones(200), t, t**2 / 2])
     curvature = noise * np.sqrt(np.linalg.inv(columns.T @ columns)[2, 2])
     # 1.97 is Student's 97.5 % at 197; the noise is estimated, to its standard error of 5 %

@@ -26,7 +26,7 @@ def check(found, **true):
 
 def test_a_hand_is_told_from_a_paddle_that_pushes_it():
     paddle = replace(PADDLE, counts_per_metre=1 / 12.8e-6)
-    found = hl.identify_hand(paddle, pushes=4)
+    found = hl.identify.hand(paddle, pushes=4)
     check(found, **TRUE)
     assert found["k"].half_width < 0.05 * 500 and found.explained and found.converged
     hand = found.hand(push=1.0)
@@ -36,15 +36,15 @@ def test_a_hand_is_told_from_a_paddle_that_pushes_it():
 
 def test_friction_of_the_device_is_no_part_of_the_hand():
     paddle = replace(PADDLE, coulomb=0.05)
-    log = hl.push_hand(paddle, pushes=4)
-    check(hl.identify_hand(log, paddle), **TRUE)
-    blind = hl.identify_hand(log, replace(paddle, coulomb=0.0))
+    log = hl.identify.pushes(paddle, pushes=4)
+    check(hl.identify.hand(log, paddle), **TRUE)
+    blind = hl.identify.hand(log, replace(paddle, coulomb=0.0))
     assert not blind.explained or 5.0 not in blind["b"]
 
 
 def test_intervals_cover_the_hand():
     """Noise drawn anew over one true motion: 120 records fitted together."""
-    log = hl.push_hand(replace(PADDLE, noise=0.0), pushes=2)
+    log = hl.identify.pushes(replace(PADDLE, noise=0.0), pushes=2)
     windows, own = _windows(log, 0.06), {"m": 0.03, "b": 0.1, "coulomb": 0.0, "delay": 0.4e-3}
     clean = np.concatenate([log.x[a:z] for a, z in windows])[:, None]
     y = clean + 5e-6 * np.random.default_rng(0).standard_normal((len(clean), 120))
@@ -58,7 +58,7 @@ def test_intervals_cover_the_hand():
 
 def test_a_hand_that_does_not_hold_still_is_told():
     trembling = replace(PADDLE, hand=replace(GRIP, noise=0.3))
-    found = hl.identify_hand(hl.push_hand(trembling, pushes=4), PADDLE)
+    found = hl.identify.hand(hl.identify.pushes(trembling, pushes=4), PADDLE)
     assert not found.explained
     assert "NOT EXPLAINED" in str(found) and "tremor" in str(found)
 
@@ -67,16 +67,16 @@ def test_a_hand_on_a_board_is_identified_by_the_same_call():
     pytest.importorskip("serial")
     paddle = replace(PADDLE, counts_per_metre=1 / 12.8e-6)
     with hl.connect("sim://hapkit", paddle=paddle) as board:
-        found = hl.identify_hand(board, paddle, pushes=3)
+        found = hl.identify.hand(board, paddle, pushes=3)
     check(found, **TRUE)
 
 
 def test_refusals_say_what_to_do():
-    log = PADDLE.run(hl.virtual_damper()(B=0), duration=0.2)
+    log = PADDLE.run(hl.laws.virtual_damper()(B=0), duration=0.2)
     with pytest.raises(AnalysisError, match="no push in 200 samples.*push_hand"):
-        hl.identify_hand(log, PADDLE)
+        hl.identify.hand(log, PADDLE)
     with pytest.raises(AnalysisError, match="whose handle.*identify_paddle"):
-        hl.identify_hand(log)
+        hl.identify.hand(log)
 
 
 def board_of(paddle):
@@ -99,9 +99,9 @@ def test_a_handle_that_nobody_holds_is_not_pushed_with_all_force(coulomb):
     board, logs = board_of(free)
     with (
         board,
-        pytest.raises(hl.PaddleError, match="identify_hand: pushed by .* did not come back: somebody has to hold"),
+        pytest.raises(hl.errors.PaddleError, match="identify_hand: pushed by .* did not come back: somebody has to hold"),
     ):
-        hl.identify_hand(board)
+        hl.identify.hand(board)
     assert max(abs(log.F).max() for log in logs) <= 0.5
     assert max(np.ptp(log.x) for log in logs) < 0.03  # of 50 mm to the nearest stop
 
@@ -109,8 +109,8 @@ def test_a_handle_that_nobody_holds_is_not_pushed_with_all_force(coulomb):
 def test_a_push_counts_from_where_the_handle_is_and_ends_for_good():
     """30 mm from 15 mm on, where the board's zero would have left 15: the free handle goes 1 N 15 ms / 0.1 N s/m = 0.15 m."""
     free = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3)
-    with pytest.raises(hl.PaddleError, match="identify_hand: the motor was switched off .* further than 30 mm"):
-        hl.push_hand(free, pushes=2)
+    with pytest.raises(hl.errors.PaddleError, match="identify_hand: the motor was switched off .* further than 30 mm"):
+        hl.identify.pushes(free, pushes=2)
     scene = Excitation("kick", 0.5, 40, 400).scene(0.01)
     log = free.run(scene, duration=0.4, x=0.015)
     assert abs(log.x[log.cut > 0][0] - 0.015) > 0.01 >= abs(log.x[log.cut == 0] - 0.015).max()
@@ -120,15 +120,15 @@ def test_a_push_counts_from_where_the_handle_is_and_ends_for_good():
 def test_a_fault_names_the_call_and_an_interrupt_leaves_the_motor_off(monkeypatch):
     board, _ = board_of(replace(PADDLE, counts_per_metre=1 / 12.8e-6))
     with board:
-        with pytest.raises(hl.PaddleError, match="identify_hand: force = 99 N; the motor stands for"):
-            hl.identify_hand(board, force=99.0)
+        with pytest.raises(hl.errors.PaddleError, match="identify_hand: force = 99 N; the motor stands for"):
+            hl.identify.hand(board, force=99.0)
         patch = "hapticlab.device.board.serial_paddle.SerialPaddle._collect"
         monkeypatch.setattr(patch, lambda *given: (_ for _ in ()).throw(KeyboardInterrupt))
         with pytest.raises(KeyboardInterrupt):
-            hl.identify_hand(board)
+            hl.identify.hand(board)
         assert board.state()["state"] == 0 and board.state()["force"] == 0
-    log = PADDLE.run(hl.virtual_damper()(B=0), duration=0.2)
-    with pytest.raises(hl.PaddleError, match="identify_hand stopped: tick 3"):
+    log = PADDLE.run(hl.laws.virtual_damper()(B=0), duration=0.2)
+    with pytest.raises(hl.errors.PaddleError, match="identify_hand stopped: tick 3"):
         after(replace(log, fault="tick 3"), "identify_hand")
 
 
@@ -141,5 +141,5 @@ def test_all_pushes_on_their_leash_fit_the_slowest_board(monkeypatch):
 
     monkeypatch.setattr(hl.SimulatedPaddle, "run", kept)
     with pytest.raises(KeyboardInterrupt):
-        hl.push_hand(PADDLE)
+        hl.identify.pushes(PADDLE)
     assert cost(hl.compile(scenes[0], T=1e-3), board="uno").fits

@@ -25,7 +25,7 @@ def steps():
 
 @pytest.fixture(scope="module")
 def found(steps):
-    return hl.step_response(steps, counts_per_metre=COUNTS)
+    return hl.identify.step_response(steps, counts_per_metre=COUNTS)
 
 
 def check(found, part=0.02, **true):
@@ -43,30 +43,30 @@ def test_steps_tell_all_four(found):
 
 @pytest.mark.wide
 def test_a_chirp_tells_all_four():
-    check(hl.chirp_response(run(CHIRP), counts_per_metre=COUNTS), part=0.1, m=0.03, b=0.1, coulomb=0.05, delay=0.7e-3)
+    check(hl.identify.chirp_response(run(CHIRP), counts_per_metre=COUNTS), part=0.1, m=0.03, b=0.1, coulomb=0.05, delay=0.7e-3)
 
 
 def test_a_spin_down_after_a_kick_tells_ratios_or_with_the_mass_both():
     log = run(Excitation("kick", 1.0, 10, 330))
-    ratios = hl.spin_down(log, counts_per_metre=COUNTS)
+    ratios = hl.identify.spin_down(log, counts_per_metre=COUNTS)
     assert set(ratios.estimates) == {"b/m", "coulomb/m"}
     assert len(ratios.measured) == 330 - 20 - 10 - 5
     check(ratios, **{"b/m": 0.1 / 0.03, "coulomb/m": 0.05 / 0.03})
-    both = hl.spin_down(log, m=0.03, counts_per_metre=COUNTS)
+    both = hl.identify.spin_down(log, m=0.03, counts_per_metre=COUNTS)
     assert both["b"].value == pytest.approx(0.03 * ratios["b/m"].value, rel=1e-6)
     with pytest.raises(AnalysisError, match="mass was not found"):
         ratios.profile()
 
 
 def test_what_is_known_is_not_sought(steps):
-    found = hl.step_response(steps, counts_per_metre=COUNTS, known={"m": 0.03, "delay": 0.7e-3})
+    found = hl.identify.step_response(steps, counts_per_metre=COUNTS, known={"m": 0.03, "delay": 0.7e-3})
     assert list(found.estimates) == ["b", "coulomb"]
     check(found, b=0.1, coulomb=0.05)
 
 
 def test_the_force_constant_needs_a_reference(steps):
     with pytest.raises(AnalysisError, match="cannot be told from motion alone.*hanging"):
-        hl.identify(steps, force_constant=True, counts_per_metre=COUNTS)
+        hl.identify.handle(steps, force_constant=True, counts_per_metre=COUNTS)
 
 
 def weaker(log, scale):
@@ -77,7 +77,9 @@ def weaker(log, scale):
 @pytest.mark.wide
 def test_a_known_mass_tells_the_force_constant(steps):
     heavy = weaker(run(STEPS, replace(PADDLE, m=0.05, seed=1)), 0.8)
-    found = hl.identify(weaker(steps, 0.8), hl.HandleRecord(heavy, added=0.02), force_constant=True, counts_per_metre=COUNTS)
+    found = hl.identify.handle(
+        weaker(steps, 0.8), hl.identify.HandleRecord(heavy, added=0.02), force_constant=True, counts_per_metre=COUNTS
+    )
     check(found, m=0.03, b=0.1, coulomb=0.05, scale=0.8)
 
 
@@ -86,19 +88,19 @@ def test_a_hanging_weight_tells_the_force_constant():
     weight = 0.01
     loaded = replace(PADDLE, m=PADDLE.m + weight, hand=hl.Hand(push=weight * 9.80665))
     log = weaker(run(CHIRP, loaded), 1.25)
-    found = hl.identify(hl.HandleRecord.hanging(log, weight), force_constant=True, counts_per_metre=COUNTS)
+    found = hl.identify.handle(hl.identify.HandleRecord.hanging(log, weight), force_constant=True, counts_per_metre=COUNTS)
     check(found, m=0.03, scale=1.25)
 
 
 def test_what_a_record_does_not_tell_is_named(steps):
     held = replace(steps, F=np.zeros(len(steps)), x=0.4 * steps.t - steps.t**2 / 2)
     with pytest.raises(AnalysisError, match="do not tell .*(m|delay)"):
-        hl.identify(hl.HandleRecord(held, at_rest=False))
+        hl.identify.handle(hl.identify.HandleRecord(held, at_rest=False))
 
 
 @pytest.mark.wide
 def test_a_hand_on_the_handle_is_told_as_not_explained():
-    found = hl.step_response(run(STEPS, replace(PADDLE, hand=hl.Hand(m=0.02, b=0.5, k=60))), counts_per_metre=COUNTS)
+    found = hl.identify.step_response(run(STEPS, replace(PADDLE, hand=hl.Hand(m=0.02, b=0.5, k=60))), counts_per_metre=COUNTS)
     assert not found.explained
     assert "NOT EXPLAINED" in str(found) and "a hand" in str(found)
 
@@ -106,23 +108,23 @@ def test_a_hand_on_the_handle_is_told_as_not_explained():
 @pytest.mark.wide
 def test_a_sensor_without_dither_is_told_and_its_rounding_is_no_misfit():
     for seed in range(2):
-        found = hl.step_response(run(STEPS, replace(PADDLE, noise=5e-7, seed=seed)), counts_per_metre=COUNTS)
+        found = hl.identify.step_response(run(STEPS, replace(PADDLE, noise=5e-7, seed=seed)), counts_per_metre=COUNTS)
         assert found.explained and not found.dithered
         assert "NOT DITHERED" in str(found) and "too wide" in str(found)
 
 
 def test_refusals_say_what_to_do(steps):
     cases = {
-        "few steps": lambda: hl.step_response(run(CHIRP)),
-        "always changes": lambda: hl.chirp_response(steps),
-        "F = 0 until": lambda: hl.spin_down(replace(steps, F=np.ones(len(steps)))),
-        "constants of m": lambda: hl.identify(steps, known={"mass": 1}),
-        "of no record": lambda: hl.identify(),
-        "20 counts": lambda: hl.step_response(replace(steps, x=np.zeros(len(steps))), counts_per_metre=COUNTS),
-        "fault": lambda: hl.identify(replace(steps, fault="OVER_SPEED")),
-        "one sample in 2": lambda: hl.identify(replace(steps, every=2)),
-        "counts_per_metre": lambda: hl.identify(steps, counts_per_metre=0),
-        "not sought": lambda: hl.spin_down(run(Excitation("kick", 1.0, 10, 330)), m=0.03)["delay"],
+        "few steps": lambda: hl.identify.step_response(run(CHIRP)),
+        "always changes": lambda: hl.identify.chirp_response(steps),
+        "F = 0 until": lambda: hl.identify.spin_down(replace(steps, F=np.ones(len(steps)))),
+        "constants of m": lambda: hl.identify.handle(steps, known={"mass": 1}),
+        "of no record": lambda: hl.identify.handle(),
+        "20 counts": lambda: hl.identify.step_response(replace(steps, x=np.zeros(len(steps))), counts_per_metre=COUNTS),
+        "fault": lambda: hl.identify.handle(replace(steps, fault="OVER_SPEED")),
+        "one sample in 2": lambda: hl.identify.handle(replace(steps, every=2)),
+        "counts_per_metre": lambda: hl.identify.handle(steps, counts_per_metre=0),
+        "not sought": lambda: hl.identify.spin_down(run(Excitation("kick", 1.0, 10, 330)), m=0.03)["delay"],
     }
     for words, call in cases.items():
         with pytest.raises(AnalysisError, match=words):

@@ -20,7 +20,7 @@ def check(found, **true):
 @pytest.mark.wide
 def test_a_simulated_paddle_tells_its_constants_within_its_travel():
     paddle = hl.SimulatedPaddle(**BODY | {"b": 0.5}, delay=1.3e-3, counts_per_metre=COUNTS, force_max=1.0)
-    found = hl.identify_paddle(paddle, travel=0.012, kinds=("kick", "steps"))
+    found = hl.identify.paddle(paddle, travel=0.012, kinds=("kick", "steps"))
     check(found, m=0.03, b=0.5, coulomb=0.05, delay=1.3e-3)
     assert found["m"].half_width < 5e-3 * 0.03
     assert [len(record.log) > 0 for record in found.records] == [True, True]
@@ -31,12 +31,12 @@ def test_a_simulated_paddle_tells_its_constants_within_its_travel():
 def test_a_paddle_that_does_not_move_is_told():
     paddle = hl.SimulatedPaddle(**BODY | {"coulomb": 2.0}, force_max=1.0)
     with pytest.raises(AnalysisError, match="1 N moves the handle by .* mm only; needs 1 mm.*nobody holds"):
-        hl.identify_paddle(paddle)
+        hl.identify.paddle(paddle)
 
 
 def test_known_mass_and_records_belong_together():
     with pytest.raises(AnalysisError, match="give added="):
-        hl.identify_paddle(hl.SimulatedPaddle(**BODY), beside=(1,))
+        hl.identify.paddle(hl.SimulatedPaddle(**BODY), beside=(1,))
 
 
 @pytest.mark.wide
@@ -44,7 +44,7 @@ def test_a_board_is_identified_by_the_same_call():
     pytest.importorskip("serial")
     paddle = hl.SimulatedPaddle(**BODY, delay=0.4e-3, counts_per_metre=COUNTS)
     with hl.connect("sim://hapkit", paddle=paddle) as board:
-        found = hl.identify_paddle(board, kinds=("steps",), travel=0.02)
+        found = hl.identify.paddle(board, kinds=("steps",), travel=0.02)
         assert board.state()["state"] == 0
     check(found, m=0.03, b=0.1, coulomb=0.05, delay=0.4e-3)
     assert found["m"].half_width < 1e-3 * 0.03
@@ -58,8 +58,8 @@ def test_a_board_whose_force_is_not_what_it_reckons_is_found_out_by_a_known_mass
         body = hl.SimulatedPaddle(**BODY | {"m": m}, counts_per_metre=COUNTS)
         port, kept = open_port("sim://hapkit"), simulated(body)
         port.put_on(body, settings=changed(kept, force_full=0.8 * kept.force_full), store=kept.to_bytes())
-        with hl.SerialPaddle("sim://hapkit", port=port) as board:
-            return hl.identify_paddle(board, kinds=("steps",), travel=0.02, **more)
+        with hl.devices.SerialPaddle("sim://hapkit", port=port) as board:
+            return hl.identify.paddle(board, kinds=("steps",), travel=0.02, **more)
 
     alone = moved(0.03)
     assert alone["m"].value == pytest.approx(0.03 / 0.8, rel=1e-3)  # as the board reckons its newtons

@@ -29,7 +29,7 @@ def test_no_cell_starts_a_motor_where_nobody_presses_enter(number, asks, monkeyp
         raise EOFError
 
     monkeypatch.setattr(builtins, "input", nobody)
-    monkeypatch.setattr(hl.SerialPaddle, "start", lambda *_, **__: started.append("motor"))
+    monkeypatch.setattr(hl.devices.SerialPaddle, "start", lambda *_, **__: started.append("motor"))
     first, *rest = cells(number)
     with hl.connect("sim://hapkit") as board:
         names = {"board": board}
@@ -60,7 +60,7 @@ def test_a_throw_by_hand_gives_the_mass(finger):
         if i % 10 == 0:
             seen.append(np.floor(x / count) * count)
     x = np.array(seen)
-    log = hl.Telemetry(t=np.arange(len(x)) * 1e-3, x=x, v=0 * x, F=0 * x + A, T=1e-3)
+    log = hl.records.Telemetry(t=np.arange(len(x)) * 1e-3, x=x, v=0 * x, F=0 * x + A, T=1e-3)
     names = {"np": np, "hl": hl, "T": 1e-3, "beta": b / m}
     throw, lines = (next(c for c in cells("09") if f"def {name}" in c) for name in ("flight", "least_squares"))
     exec(lines.partition("\n\n\n")[0], names)

@@ -75,7 +75,7 @@ def test_a_block_sticks_then_slips_by_the_spring_it_had_stored(led):
 
 
 def penalty():
-    return hl.penalty(k=hl.parameters("k_b", units="N/m", values=500))
+    return hl.contact.penalty(k=hl.parameters("k_b", units="N/m", values=500))
 
 
 @pytest.mark.parametrize(

@@ -39,7 +39,7 @@ def test_the_library_lists_what_it_holds():
 def test_an_unknown_scene_is_refused_with_the_nearest():
     with pytest.raises(AttributeError, match="'cartpole'; did you mean cart_pole"):
         hl.library.cartpole  # noqa: B018
-    with pytest.raises(hl.SceneError, match="'gear'; did you mean gears"):
+    with pytest.raises(hl.errors.SceneError, match="'gear'; did you mean gears"):
         CATALOGUE["gear"]
     assert "gear" not in CATALOGUE
 

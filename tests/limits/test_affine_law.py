@@ -82,7 +82,7 @@ def test_the_filter_around_spring_and_damper(B):
         filtered = [mp.mpf(2), mp.mpf("-1.5"), mp.mpf("0.5")]
         return product(filtered, [K + B / mp.mpf(T), -B / mp.mpf(T)]), [1, 0, 0, 0]
 
-    scene = hl.force_filter(hl.wall(unilateral=None))(B=B)
+    scene = hl.laws.force_filter(hl.wall(unilateral=None))(B=B)
     found = stability_limit(paddle(), law=scene)
     assert found.K == pytest.approx(edge(law), rel=1e-8)  # a scene's tick is measured to 1e-9 or better
     assert stability_limit(paddle(), law=lambda K: LinearLaw.of(K=K, B=B, T=T, filtered=True)).K == pytest.approx(
@@ -163,7 +163,7 @@ def test_a_law_that_holds_its_stiffness_has_poles_and_no_limit():
         (lambda K: LinearLaw.of(K=K, T=T), None, "the law holds no stiffness"),
         (hl.wall(unilateral=None)(k=100), 300.0, "K = 300 N/m beside zoh wall with k = 100; leave K out"),
         (LinearLaw.of(K=100, T=T), 300.0, "holds its own stiffness"),
-        (hl.virtual_damper()(B=0.1), 300.0, "has no parameter k"),
+        (hl.laws.virtual_damper()(B=0.1), 300.0, "has no parameter k"),
     ],
 )
 def test_a_stiffness_given_twice_or_not_at_all_is_refused(law, K, words):
@@ -222,7 +222,7 @@ def test_a_slow_pole_keeps_its_digits():
         (hl.wall(), 0.0, "unilateral=None"),
         (hl.wall(unilateral=None), 0.3, "put the damper into the law"),
         (7, 0.0, "needs one of zoh"),
-        (hl.virtual_damper(), 0.0, 'parameter="B"'),
+        (hl.laws.virtual_damper(), 0.0, 'parameter="B"'),
     ],
 )
 def test_what_is_no_affine_law_is_refused(law, B, words):
@@ -264,7 +264,7 @@ def test_dampers_that_no_stiffness_saves(law, B):
         assert not inside or "stable again" in stability_limit(paddle(), law=law, B=B).reason
 
 
-@pytest.mark.parametrize("velocity", [hl.filtered_velocity(tau="3 ms"), hl.kalman_velocity(acceleration=50, noise=1e-5)])
+@pytest.mark.parametrize("velocity", [hl.velocity.filtered(tau="3 ms"), hl.velocity.kalman(acceleration=50, noise=1e-5)])
 def test_estimated_velocities(velocity):
     """The limit of a wall with an estimator, against poles of the compiled tick beside the plant by scipy's cont2discrete."""
     from scipy.signal import cont2discrete

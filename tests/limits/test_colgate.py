@@ -104,7 +104,7 @@ def test_a_filter_of_the_velocity_is_for_named_laws():
     for wrong in (-4e-3, float("nan"), "x"):
         with pytest.raises(AnalysisError, match=f"velocity_filter = {wrong!r}.*needs a time constant >= 0"):
             hl.passivity_limit(b=0.1, T=T, velocity_filter=wrong)
-    inside = hl.wall(velocity=hl.filtered_velocity(tau=4e-3), unilateral=None)(B=0.05)  # what the refusal says to do
+    inside = hl.wall(velocity=hl.velocity.filtered(tau=4e-3), unilateral=None)(B=0.05)  # what the refusal says to do
     expected = 2 / T * (0.1 - 0.05 / (1 + 2 * 4e-3 / T))
     assert hl.passivity_limit(b=0.1, T=T, law=inside).K == pytest.approx(expected, rel=1e-7)
 
@@ -139,7 +139,7 @@ def test_every_law_asks_for_the_same_on_average(delay):
 
 def test_a_scene_of_ones_own():
     """Eq. (23.8) around spring and damper, 4 B and 2 K T of it at Nyquist; a named law as a scene; an exact velocity."""
-    wall = hl.Scene(force=hl.force_filter(hl.wall(unilateral=None)(B=0.01, x_o=0)).force, values={"B": 0.01, "x_o": 0})
+    wall = hl.Scene(force=hl.laws.force_filter(hl.wall(unilateral=None)(B=0.01, x_o=0)).force, values={"B": 0.01, "x_o": 0})
     assert hl.passivity_limit(b=0.1, T=T, law=wall).K == pytest.approx((0.1 - 4 * 0.01) / (2 * T), rel=1e-9)
     for law in ("zoh", "backward_difference", "ellis"):
         limit = hl.passivity_limit(b=0.1, T=T, delay=0.4 * T, law=hl.wall(law, unilateral=None)(x_o=0))

@@ -159,8 +159,8 @@ def test_a_compiled_scene_asks_for_a_little_more_as_explicit_steps_are_not_passi
     design = coupler_design(paddle(), b_c=0.05)
     z = hl.coordinate("z", unit="m")
     K, B, m = hl.parameters("K B m", units="N/m N*s/m kg", values=(design.k_c, design.b_c, mass))
-    F = hl.virtual_coupler(z, K=K, b=B)
+    F = hl.laws.virtual_coupler(z, K=K, b=B)
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)])
-    held = hl.port_passivity(scene, paddle(), method="semi_implicit_euler", hold="zoh").b_req
+    held = hl.passivity.port(scene, paddle(), method="semi_implicit_euler", hold="zoh").b_req
     assert held == pytest.approx(b / (1 - b * T / 2 / mass), rel=1e-9)
-    assert b < hl.port_passivity(scene, paddle(), method="exact", hold="soh").b_req < b + 0.3 * (held - b)
+    assert b < hl.passivity.port(scene, paddle(), method="exact", hold="soh").b_req < b + 0.3 * (held - b)

@@ -12,9 +12,9 @@ from hapticlab.limits.stability import stability_limit
 
 T, M, DAMPING = 1e-3, 0.05, 0.4
 ESTIMATES = {
-    "filter": hl.filtered_velocity(tau=3e-3),
-    "kalman": hl.kalman_velocity(acceleration=20, noise=5e-6),
-    "difference": hl.backward_velocity(),
+    "filter": hl.velocity.filtered(tau=3e-3),
+    "kalman": hl.velocity.kalman(acceleration=20, noise=5e-6),
+    "difference": hl.velocity.backward(),
 }
 
 
@@ -49,7 +49,7 @@ def test_the_half_sample_wall_is_lost_where_its_characteristic_polynomial_says(n
 @pytest.mark.parametrize("tau", [0.0, 1e-3, 5e-3])
 def test_a_filtered_damper_asks_for_less_only_where_it_is_positive(tau, B):
     """b > B/(1 + 2 tau/T) for B >= 0, b > |B| for B < 0: of the scene as it is compiled."""
-    law = LinearLaw.of_scene(hl.virtual_damper(velocity=hl.filtered_velocity(tau=tau))(B=B), T=T)
+    law = LinearLaw.of_scene(hl.laws.virtual_damper(velocity=hl.velocity.filtered(tau=tau))(B=B), T=T)
     expected = B / (1 + 2 * tau / T) if B > 0 else abs(B)
     assert passivity_margin(law, b=1.0).required == pytest.approx(expected, rel=1e-6)
 
@@ -60,12 +60,12 @@ def test_the_compiled_estimate_has_its_own_transfer_function(name):
     theta = np.geomspace(1e-3, np.pi, 50)
     z = np.exp(1j * theta)
     expected = np.polyval(over[::-1], 1 / z) / np.polyval(under[::-1], 1 / z)
-    law = LinearLaw.of_scene(hl.virtual_damper(velocity=ESTIMATES[name])(B=1), T=T)
+    law = LinearLaw.of_scene(hl.laws.virtual_damper(velocity=ESTIMATES[name])(B=1), T=T)
     np.testing.assert_allclose(law.at(theta), expected, rtol=1e-7)  # a tick is measured to 1e-9
 
 
 def test_a_window_has_no_linear_limit():
-    scene = hl.wall("half_sample", None, velocity=hl.window_velocity(band=1e-5, most=4))
+    scene = hl.wall("half_sample", None, velocity=hl.velocity.window(band=1e-5, most=4))
     with pytest.raises(AnalysisError, match="not linear"):
         stability_limit(hl.SimulatedPaddle(m=M, b=DAMPING, T=T), law=scene)
 
@@ -76,5 +76,5 @@ def test_compensation_spends_what_a_wall_needs():
     at_limit = 2 * DAMPING * (1 - viscous) / T
     for part, passive in ((0.999, True), (1.001, False)):
         wall = hl.wall(unilateral=None)(k=part * at_limit)
-        scene = hl.damping_compensation(wall, b=DAMPING)(viscous=viscous)
+        scene = hl.laws.damping_compensation(wall, b=DAMPING)(viscous=viscous)
         assert passivity_margin(LinearLaw.of_scene(scene, T=T), b=DAMPING).passive == passive

@@ -26,7 +26,7 @@ def test_the_response_of_a_law_of_the_chapter(law, spring, filtered, tau):
 
 
 def test_a_scene_and_its_law_are_one():
-    scene = hl.Scene(force=hl.force_filter(hl.wall("backward_difference", unilateral=None)(k=80, B=0.1)).force)
+    scene = hl.Scene(force=hl.laws.force_filter(hl.wall("backward_difference", unilateral=None)(k=80, B=0.1)).force)
     found = LinearLaw.of_scene(scene(k=80, B=0.1, x_o=0), T=T)
     other = LinearLaw.of("backward_difference", K=80, B=0.1, T=T, filtered=True)
     assert found.taps() == pytest.approx(other.taps(), rel=1e-9)
@@ -94,5 +94,5 @@ def test_matrices_that_do_not_fit_are_refused():
 
 def test_a_late_force():
     stiffness = hl.parameters("a", units="N/m", values=7)
-    late = hl.Scene(force=hl.delay(stiffness * x(n)))
+    late = hl.Scene(force=hl.laws.delay(stiffness * x(n)))
     assert LinearLaw.of_scene(late, T=T).taps() == pytest.approx([0, 7])

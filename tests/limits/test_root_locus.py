@@ -61,7 +61,7 @@ def test_it_ends_at_the_zeros():
 
 
 def test_a_scene_and_what_is_refused():
-    scene = hl.force_filter(hl.wall(unilateral=None))
+    scene = hl.laws.force_filter(hl.wall(unilateral=None))
     assert root_locus(paddle(), law=scene).limit.K == pytest.approx(root_locus(paddle(), law="ellis").limit.K, rel=1e-8)
     for K in (5.0, [1.0], [-1.0, 2.0], [0.0, math.nan], "a"):
         with pytest.raises(AnalysisError, match="two or more finite stiffnesses"):

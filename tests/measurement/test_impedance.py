@@ -51,7 +51,7 @@ def test_every_law_is_rendered_as_its_own_response(law, taps):
     # the velocity at a sample has more of the images between samples than the position: 3 % at 151 Hz
     assert found.rendered == pytest.approx(found.law, rel=1e-8 if taps else 5e-2)
     if taps:
-        named = hl.LinearLaw.of(law, K=K, T=T).at(s.imag * T)
+        named = hl.laws.LinearLaw.of(law, K=K, T=T).at(s.imag * T)
         assert H == pytest.approx(named, rel=1e-12)
 
 
@@ -114,7 +114,7 @@ def test_the_motor_drives_the_mechanics_and_the_scene_alike():
     # sampled motion: what lies between the samples folds, as (f T)^2
     assert abs(found.mechanics / mechanics - 1) == pytest.approx(0.0, abs=2e-2)
     assert abs(found.mechanics / mechanics - 1)[:2] == pytest.approx(0.0, abs=2e-4)
-    with pytest.raises(hl.AnalysisError, match="no force sensor"):
+    with pytest.raises(hl.errors.AnalysisError, match="no force sensor"):
         _ = found.handle
 
 
@@ -159,7 +159,7 @@ def test_a_handle_that_leaves_the_wall_is_reported():
 def test_scenes_with_motion_of_their_own_have_an_ideal_in_continuous_time():
     z = hl.coordinate("z", unit="m")
     m, k, c = hl.parameters("m k c", units="kg N/m N*s/m", values=(0.1, 300.0, 2.0))
-    F = hl.virtual_coupler(z, K=k, b=c)
+    F = hl.laws.virtual_coupler(z, K=k, b=c)
     scene = hl.Scene(F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)], name="mass")
     found = measured_impedance(paddle(0.0), scene, frequency=[3.0, 11.0], dtype="float64", settle=4.0)
     s = 2j * np.pi * found.frequency
@@ -187,9 +187,9 @@ def test_the_same_call_on_a_board():
     ],
 )
 def test_refusals(arguments, words):
-    with pytest.raises(hl.AnalysisError, match=words):
+    with pytest.raises(hl.errors.AnalysisError, match=words):
         measured_impedance(paddle(), hl.wall()(k=K), **arguments)
-    with pytest.raises(hl.PaddleError, match="needs a simulated hand"):
+    with pytest.raises(hl.errors.PaddleError, match="needs a simulated hand"):
         measured_impedance(hl.SimulatedPaddle(m=0.05, b=0.1, T=T), hl.wall()(k=K), drive="hand")
 
 
@@ -203,7 +203,7 @@ def with_motor(stands, **changes):
     port, kept = open_port("sim://hapkit"), simulated(paddle)
     kept = changed(kept, force_continuous=stands)
     port.put_on(paddle, settings=kept, store=kept.to_bytes())
-    board, logs = hl.SerialPaddle("sim://hapkit", port=port), []
+    board, logs = hl.devices.SerialPaddle("sim://hapkit", port=port), []
     board.home(at=0.0)
     run = board.run
 
@@ -235,18 +235,18 @@ def test_a_wall_that_chatters_on_a_board_is_cut_and_told():
     """Unstable above 2 b/T = 200 N/m: force below its hold and twice the amplitude, and the call is named."""
     board, logs = with_motor(2.0, b=0.1)
     with board:
-        with pytest.raises(hl.PaddleError, match="measured_impedance: the .*softer wall"):
+        with pytest.raises(hl.errors.PaddleError, match="measured_impedance: the .*softer wall"):
             measured_impedance(board, hl.wall()(k=900), **SHORT)
         assert board.state()["state"] == 0 and board.state()["force"] == 0
     assert max(abs(log.F).max() for log in logs) <= 1.2 + 1e-6
     pulled, logs = with_motor(2.0, hand=hl.Hand(push=0.9))  # 45 mm of the 20 N/m that lead it
-    with pulled, pytest.raises(hl.PaddleError, match="measured_impedance: the handle was led to 2 mm and is at"):
+    with pulled, pytest.raises(hl.errors.PaddleError, match="measured_impedance: the handle was led to 2 mm and is at"):
         measured_impedance(pulled, hl.wall()(k=100), place=0.002, **SHORT)
     assert abs(logs[-1].F).max() == pytest.approx(0.2 + 2 * 0.1)
     limits = {"place": 0.003, "speed_max": 0.06, "force_max": 5.0}
     with (
         hl.connect("sim://hapkit", paddle=hl.SimulatedPaddle(**COUNTED | {"b": 0.1})) as slow,
-        pytest.raises(hl.PaddleError, match="measured_impedance: the motor was switched off after .*speed_max="),
+        pytest.raises(hl.errors.PaddleError, match="measured_impedance: the motor was switched off after .*speed_max="),
     ):
         measured_impedance(slow, hl.wall()(k=900), **limits, **SHORT)
 
@@ -254,7 +254,7 @@ def test_a_wall_that_chatters_on_a_board_is_cut_and_told():
 def test_a_board_refuses_more_than_its_motor_stands_and_an_interrupt_leaves_it_off(monkeypatch):
     board, logs = with_motor(2.0)
     with board:
-        with pytest.raises(hl.PaddleError, match="2.5 N to hold the place and 0.1 N .* more than the 2 N"):
+        with pytest.raises(hl.errors.PaddleError, match="2.5 N to hold the place and 0.1 N .* more than the 2 N"):
             measured_impedance(board, hl.wall()(k=500), place=0.005, **SHORT)
         assert not logs  # before anything moves
         patch = "hapticlab.device.board.serial_paddle.SerialPaddle._collect"
@@ -273,5 +273,5 @@ def test_a_board_refuses_more_than_its_motor_stands_and_an_interrupt_leaves_it_o
 )  # fmt: skip
 def test_a_number_that_measures_nothing_is_named(wrong):
     (name,) = wrong
-    with pytest.raises(hl.AnalysisError, match=f"{name} = "):
+    with pytest.raises(hl.errors.AnalysisError, match=f"{name} = "):
         measured_impedance(paddle(), hl.wall()(k=K), **wrong)

@@ -75,7 +75,7 @@ def test_a_motor_of_little_force_does_not_hide_the_limit():
     for push in (None, 0.09):
         found = largest_stiffness(weak, push=push, first=100.0, tolerance=0.1)
         assert 0.9 * hl.stability_limit(weak).K < found.K < hl.stability_limit(weak).K
-    with pytest.raises(hl.AnalysisError, match="push of 0.2 N .* 0.1 N at most: .* as push=0.025"):
+    with pytest.raises(hl.errors.AnalysisError, match="push of 0.2 N .* 0.1 N at most: .* as push=0.025"):
         largest_stiffness(weak, push=0.2)
 
 
@@ -85,7 +85,7 @@ def test_a_tremor_is_no_chatter():
     found = largest_stiffness(held, first=9000.0, growth=1.2, tolerance=0.2, duration=1.0, longest=1.0)
     assert found.K < hl.stability_limit(held).K < found.chatters_at <= 1.2 * found.K
     assert "pressed with 5 N" in found.about  # 500 N/m times 10 mm, and none of the motor
-    with pytest.raises(hl.AnalysisError, match="noise of 0.1 N"):
+    with pytest.raises(hl.errors.AnalysisError, match="noise of 0.1 N"):
         largest_stiffness(paddle(hand=hl.Hand(push=1.0, noise=0.1)))
 
 
@@ -112,7 +112,7 @@ def test_a_damper_that_is_unstable_alone_is_not_tried():
 
 
 def test_a_length_without_samples_is_refused_by_name():
-    with pytest.raises(hl.AnalysisError, match="duration = 0.001 s; a trial needs 128 samples, duration=0.128"):
+    with pytest.raises(hl.errors.AnalysisError, match="duration = 0.001 s; a trial needs 128 samples, duration=0.128"):
         largest_stiffness(paddle(), duration=0.001)
 
 
@@ -138,13 +138,13 @@ def test_a_scene_of_ones_own_and_its_parameter():
     scene = hl.Scene(force=hl.when(hl.x(hl.n) >= 0, stiffness * hl.x(hl.n)), name="mine")
     found = largest_stiffness(paddle(), law=scene, parameter="s", tolerance=0.1, longest=2.0)
     assert found.K == pytest.approx(200.0, rel=0.1) and found.theory == {} and found.law == "mine"
-    with pytest.raises(hl.PaddleError, match="no parameter k to search; it has s"):
+    with pytest.raises(hl.errors.PaddleError, match="no parameter k to search; it has s"):
         largest_stiffness(paddle(), law=scene)
-    with pytest.raises(hl.PaddleError, match="no parameter B"):
+    with pytest.raises(hl.errors.PaddleError, match="no parameter B"):
         largest_stiffness(paddle(), law=scene, parameter="s", B=1.0)
-    with pytest.raises(hl.AnalysisError, match="growth > 1"):
+    with pytest.raises(hl.errors.AnalysisError, match="growth > 1"):
         largest_stiffness(paddle(), growth=1.0)
-    with pytest.raises(hl.AnalysisError, match="0 < first < most"):
+    with pytest.raises(hl.errors.AnalysisError, match="0 < first < most"):
         largest_stiffness(paddle(), first=1e6)
 
 
@@ -159,7 +159,7 @@ def scripted(limit, hidden=math.inf):
 
 
 def test_a_hand_that_pulls_away_is_refused_with_the_push_that_would_do():
-    with pytest.raises(hl.AnalysisError, match="off the wall with 2 N; needs a push: push=2.2"):
+    with pytest.raises(hl.errors.AnalysisError, match="off the wall with 2 N; needs a push: push=2.2"):
         largest_stiffness(paddle(hand=hl.Hand(push=-2.0)))
 
 

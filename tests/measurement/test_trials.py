@@ -78,7 +78,7 @@ def test_a_fault_of_the_paddle_is_told():
 def test_a_handle_that_cannot_be_led_back_is_told():
     pushed = paddle(hand=hl.Hand(push=20.0))
     with hl.connect("sim://hapkit", paddle=pushed) as board:
-        with pytest.raises(hl.PaddleError, match="could not be led back to 0 mm with 20 N/m"):
+        with pytest.raises(hl.errors.PaddleError, match="could not be led back to 0 mm with 20 N/m"):
             lead_back(board, 0.0)
         assert board.state()["force"] == 0
 
@@ -109,5 +109,5 @@ def test_a_law_is_a_name_or_a_scene():
     assert wall_of("ellis").name == "ellis wall"
     own = hl.wall("zoh", "clip")
     assert wall_of(own) is own
-    with pytest.raises(hl.PaddleError, match="no parameter c"):
+    with pytest.raises(hl.errors.PaddleError, match="no parameter c"):
         wall_of(own, "c")

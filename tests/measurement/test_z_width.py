@@ -31,5 +31,5 @@ def test_beyond_the_stable_dampers_nothing_stands():
 
 
 def test_what_is_no_damping_is_refused():
-    with pytest.raises(hl.AnalysisError, match="finite numbers"):
+    with pytest.raises(hl.errors.AnalysisError, match="finite numbers"):
         z_width(PADDLE, B=[np.nan])

@@ -45,7 +45,7 @@ def radius(part, hand, delay, tau):
 @pytest.mark.parametrize("delay", [0.0, 2e-3])
 @pytest.mark.parametrize("hand", [hl.Hand(k=150), hl.Hand(m=0.05, b=1, k=400)], ids=["spring", "hand"])
 def test_about_a_spring_it_is_where_a_pole_leaves_the_circle(hand, delay, tau):
-    limit = compensation_limit(paddle(hand=hand, delay=delay), velocity=hl.filtered_velocity(tau=tau))
+    limit = compensation_limit(paddle(hand=hand, delay=delay), velocity=hl.velocity.filtered(tau=tau))
     at = (DAMPING + hand.b) / DAMPING
     expected = brentq(lambda part: radius(part, hand, delay, tau) - 1, 0.5 * at, 3 * at, xtol=1e-14)
     # the radius is known to 1e-15, and grows by 1e-4 or more over the part
@@ -56,11 +56,11 @@ def test_about_a_spring_it_is_where_a_pole_leaves_the_circle(hand, delay, tau):
 
 @quick
 @pytest.mark.parametrize("delay", [0.0, 3.5e-3])
-@pytest.mark.parametrize("velocity", [None, hl.filtered_velocity(tau=5e-3), hl.kalman_velocity(acceleration=2, noise=1e-5)])
+@pytest.mark.parametrize("velocity", [None, hl.velocity.filtered(tau=5e-3), hl.velocity.kalman(acceleration=2, noise=1e-5)])
 def test_a_free_handle_drifts_off_at_one_whatever_the_lag(velocity, delay):
     limit = compensation_limit(paddle(delay=delay), velocity=velocity)
     assert (limit.viscous, limit.frequency) == (1.0, 0.0)
-    scene = hl.damping_compensation(b=DAMPING, velocity=velocity)
+    scene = hl.laws.damping_compensation(b=DAMPING, velocity=velocity)
     for part, grows in ((0.97, False), (1.03, True)):
         log = paddle(delay=delay, coulomb=0).run(scene(viscous=part), duration=1.0, v=0.1)
         assert (abs(log.v[-1]) > abs(log.v[300])) == grows
@@ -73,10 +73,10 @@ def test_a_hand_s_damping_counts():
 def test_a_light_handle_under_a_slow_filter_turns_before_it_drifts():
     """A handle that settles within a period, and a filter that overshoots: another pole leaves first."""
     light = paddle(m=2e-5, b=0.5, coulomb=0, delay=2e-3)
-    limit = compensation_limit(light, velocity=hl.kalman_velocity(acceleration=100, noise=1e-5))
+    limit = compensation_limit(light, velocity=hl.velocity.kalman(acceleration=100, noise=1e-5))
     assert limit.frequency > 50
     assert limit.viscous < 1
-    scene = hl.damping_compensation(b=0.5, velocity=hl.kalman_velocity(acceleration=100, noise=1e-5))
+    scene = hl.laws.damping_compensation(b=0.5, velocity=hl.velocity.kalman(acceleration=100, noise=1e-5))
     for part, grows in ((0.97, False), (1.03, True)):
         poles = closed_loop_poles(light, K=part * limit.viscous, law=scene, parameter="viscous")
         assert (abs(poles).max() > 1 + 1e-6) == grows
@@ -87,7 +87,7 @@ def test_a_light_handle_under_a_slow_filter_turns_before_it_drifts():
 def test_over_compensated_a_free_handle_settles_at_the_speed_said(delay):
     """(dry - 1) coulomb/(damping left), whatever the delay: from below and from above."""
     here = paddle(delay=delay)
-    scene = hl.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=0.01, shape="dead_zone")(viscous=0.6, dry=1.5)
+    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=0.01, shape="dead_zone")(viscous=0.6, dry=1.5)
     expected = compensation_limit(here).speed(viscous=0.6, dry=1.5)
     assert expected == pytest.approx(0.5 * COULOMB / (0.4 * DAMPING), rel=1e-14)
     for start in (0.05, 0.6):
@@ -100,7 +100,7 @@ def test_it_runs_away_beyond_the_kick_said():
     limit = compensation_limit(paddle())
     kick = limit.kick(viscous=1.5, dry=0.5)
     assert kick == pytest.approx(0.2, rel=1e-14)
-    scene = hl.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=0.01, shape="dead_zone")(viscous=1.5, dry=0.5)
+    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=0.01, shape="dead_zone")(viscous=1.5, dry=0.5)
     for start, away in ((0.99 * kick, False), (1.01 * kick, True)):
         log = paddle().run(scene, duration=8.0, v=start)
         assert (log.v[-1] > 2 * kick) == away
@@ -129,7 +129,7 @@ def test_about_a_spring_it_hunts_with_the_amplitude_said(viscous, dry):
     assert limit.hunts_from(viscous) < dry
     expected = limit.hunting(viscous, dry)
     assert expected == pytest.approx(hunting_by_pieces(viscous, dry, k, M), rel=1e-12)
-    scene = hl.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=2e-4, shape="dead_zone")(viscous=viscous, dry=dry)
+    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=2e-4, shape="dead_zone")(viscous=viscous, dry=dry)
     log = here.run(scene, duration=6.0, x=0.95 * expected, dtype="float64", progress=False)
     last = log.x[log.t > 5]
     # the period, 0.1 ms of a swing of 0.3 s, and the width of the dead zone each take a part in a thousand
@@ -143,7 +143,7 @@ def test_it_hunts_from_the_part_said(part, hunts):
     limit = compensation_limit(here)
     dry = part * limit.dry
     assert limit.dry > 1.2
-    scene = hl.damping_compensation(b=0.4, coulomb=COULOMB, speed=2e-4, shape="dead_zone")(viscous=0, dry=dry)
+    scene = hl.laws.damping_compensation(b=0.4, coulomb=COULOMB, speed=2e-4, shape="dead_zone")(viscous=0, dry=dry)
     log = here.run(scene, duration=4.0, x=0.004, dtype="float64", progress=False)
     assert (np.ptp(log.x[log.t > 3.5]) > 0) == hunts
     assert (limit.hunting(0.0, dry) > 0) == hunts
@@ -153,7 +153,7 @@ def test_it_hunts_from_the_part_said(part, hunts):
 @pytest.mark.parametrize("hand", [hl.Hand(k=150), hl.Hand(m=0.05, b=1, k=400)], ids=["spring", "hand"])
 def test_a_damping_believed_too_high_leaves_less_to_cancel(hand, delay):
     """5 % too high: the loop of the true handle, by hand, is unstable from 1.05 times that part on."""
-    late = hl.filtered_velocity(tau=3e-3)
+    late = hl.velocity.filtered(tau=3e-3)
     limit = compensation_limit(paddle(hand=hand, delay=delay, b=1.05 * DAMPING), b_least=DAMPING, velocity=late)
     at = (DAMPING + hand.b) / DAMPING
     expected = brentq(lambda part: radius(part, hand, delay, 3e-3) - 1, 0.5 * at, 3 * at, xtol=1e-14)
@@ -169,7 +169,7 @@ def test_the_whole_of_a_friction_believed_too_high_runs_away():
     believed, true = paddle(b=1.05 * DAMPING, coulomb=1.1 * COULOMB), paddle()
     limit = compensation_limit(believed, b_least=DAMPING, coulomb_least=COULOMB)
     assert limit.dry == pytest.approx(1 / 1.1, rel=1e-15)
-    scene = hl.damping_compensation(b=believed.b, coulomb=believed.coulomb, speed=0.01, shape="dead_zone")
+    scene = hl.laws.damping_compensation(b=believed.b, coulomb=believed.coulomb, speed=0.01, shape="dead_zone")
     expected = limit.speed(viscous=0.5, dry=1.0)
     assert expected == pytest.approx(0.1 * COULOMB / (DAMPING - 0.5 * believed.b), rel=1e-12)
     assert true.run(scene(viscous=0.5, dry=1.0), duration=25.0, v=0.1).v[-1] == pytest.approx(expected, rel=1e-4)
@@ -185,12 +185,12 @@ def test_the_whole_of_a_friction_believed_too_high_runs_away():
 def test_friction_identified_then_cancelled_comes_to_rest_up_to_the_limit_of_its_intervals():
     """The intervals hold the truth here; so 0.99 of the limit rests, and 1.02 of all that is there keeps moving."""
     true = hl.SimulatedPaddle(m=M, b=0.4, T=T, coulomb=0.05, noise=5e-6, force_max=2.0)
-    found = hl.identify_paddle(true, kinds=("steps",))
+    found = hl.identify.paddle(true, kinds=("steps",))
     like = found.paddle()
     safe = compensation_limit(like, b_least=found["b"].low, coulomb_least=found["coulomb"].low)
     assert safe.viscous == pytest.approx(found["b"].low / found["b"].value, rel=1e-12) and 0.9 < safe.viscous < 1
     assert safe.dry == pytest.approx(found["coulomb"].low / found["coulomb"].value, rel=1e-12) and safe.dry < 1
-    scene = hl.damping_compensation(b=like.b, coulomb=like.coulomb, speed=0.01, shape="dead_zone")
+    scene = hl.laws.damping_compensation(b=like.b, coulomb=like.coulomb, speed=0.01, shape="dead_zone")
     exact = hl.SimulatedPaddle(m=M, b=0.4, T=T, coulomb=0.05)
     for part, rests in ((0.99, True), (1.02 / safe.viscous, False)):
         log = exact.run(scene(viscous=part * safe.viscous, dry=part * safe.dry), duration=15.0, v=0.05)
@@ -218,7 +218,7 @@ def test_it_says_what_it_is():
         (lambda: compensation_limit(paddle(), b_least=-1e-3), AnalysisError, "b_least = -0.001.*identify it better"),
         (lambda: compensation_limit(paddle(), coulomb_least=1), AnalysisError, "coulomb_least <= 0.02"),
         (
-            lambda: compensation_limit(paddle(), velocity=hl.window_velocity(band=1e-5)),
+            lambda: compensation_limit(paddle(), velocity=hl.velocity.window(band=1e-5)),
             SceneError,
             "no transfer function",
         ),

@@ -35,7 +35,7 @@ def crossings_by_mpmath(M, b, k, push, K, x, v, count):
 @pytest.mark.parametrize("b", [0.0, 0.4])
 def test_crossings_agree_with_mpmath(b):
     paddle = hl.SimulatedPaddle(m=0.35, b=b, T=0.01, hand=hl.Hand(m=0.006, k=500, intent=0.01))
-    motion = hl.hybrid_wall(paddle, K=5000, duration=1.0, x=-0.02, v=0.1)
+    motion = hl.laws.hybrid_wall(paddle, K=5000, duration=1.0, x=-0.02, v=0.1)
     expected = crossings_by_mpmath(0.356, b, 500, 5.0, 5000, -0.02, 0.1, 10)
     np.testing.assert_allclose(motion.crossings[:10], expected[:, 0], rtol=0, atol=1e-13)  # s; asked for: 1e-10
     np.testing.assert_allclose(motion.speeds[:10], expected[:, 1], rtol=1e-11)
@@ -44,7 +44,7 @@ def test_crossings_agree_with_mpmath(b):
 def test_a_damped_wall_agrees_with_scipy():
     hand = hl.Hand(m=0.02, b=1.0, k=150.0, push=2.0)
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hand)
-    motion = hl.hybrid_wall(paddle, K=3000.0, B=1.5, duration=0.15, x=-0.004, v=0.5, x_o=0.003)
+    motion = hl.laws.hybrid_wall(paddle, K=3000.0, B=1.5, duration=0.15, x=-0.004, v=0.5, x_o=0.003)
 
     def rate(t, s, inside):
         p = s[0] - 0.003
@@ -64,7 +64,7 @@ def test_a_damped_wall_agrees_with_scipy():
 
 def test_without_damping_no_bounce_makes_or_loses_energy():
     paddle = hl.SimulatedPaddle(m=0.35, b=0.0, T=0.01, hand=hl.Hand(m=0.006, k=500, intent=0.01))
-    motion = hl.hybrid_wall(paddle, K=5000, duration=5.0, x=-0.02)
+    motion = hl.laws.hybrid_wall(paddle, K=5000, duration=5.0, x=-0.02)
     assert len(motion.crossings) > 50
     assert np.ptp(motion.energy) < 1e-13 * 0.225  # 0.5 * 500 * 0.03^2 J, less a constant
     assert "22 times" not in str(motion) and "times into the wall, first at 0.0328" in str(motion)
@@ -74,7 +74,7 @@ def test_a_touch_between_two_samples_is_seen():
     """Thrown up against a pull, the handle passes the boundary by 1e-9 m, a few microseconds of a 1 ms period."""
     paddle = hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3, hand=hl.Hand(push=-0.5))  # 10 m/s^2 back
     speed = math.sqrt(2 * 10 * (1e-3 + 1e-9))
-    motion = hl.hybrid_wall(paddle, K=500, duration=0.05, x=-1e-3, v=speed)
+    motion = hl.laws.hybrid_wall(paddle, K=500, duration=0.05, x=-1e-3, v=speed)
     rise = (speed - math.sqrt(speed**2 - 20e-3)) / 10
     assert len(motion.crossings) == 2 and motion.crossings[0] == pytest.approx(rise, rel=1e-9)
     assert math.floor(motion.crossings[0] * 1e3) == math.floor(motion.crossings[1] * 1e3)
@@ -93,17 +93,17 @@ def test_a_touch_between_two_samples_is_seen():
 )
 def test_a_start_inside_counts_as_one_time_into_the_wall(x, v, push, words):
     paddle = hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3, hand=hl.Hand(push=push))
-    assert words in str(hl.hybrid_wall(paddle, K=500, duration=0.05, x=x, v=v))
+    assert words in str(hl.laws.hybrid_wall(paddle, K=500, duration=0.05, x=x, v=v))
 
 
 def test_less_than_a_period_is_refused():
     with pytest.raises(AnalysisError, match="needs at least one period"):
-        hl.hybrid_wall(hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3), K=500, duration=1e-4)
+        hl.laws.hybrid_wall(hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3), K=500, duration=1e-4)
 
 
 def test_it_draws_the_rendered_wall_beside_itself():
     paddle = hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3)
-    motion = hl.hybrid_wall(paddle, K=500, duration=0.05, x=-1e-3, v=0.1)
+    motion = hl.laws.hybrid_wall(paddle, K=500, duration=0.05, x=-1e-3, v=0.1)
     log = paddle.run(hl.wall()(k=500), duration=0.05, x=-1e-3, v=0.1, progress=False)
     (axes,) = motion.plot(log).axes
     assert axes.get_xlabel() == "time t [ms]" and axes.get_ylabel() == "handle position x [mm]"

@@ -10,7 +10,7 @@ from hapticlab.errors import AnalysisError
 from hapticlab.rendering.velocity_errors import velocity_errors
 
 T, NOISE = 1e-3, 4e-6
-LINEAR = [hl.backward_velocity(), hl.filtered_velocity(tau=3e-3), hl.kalman_velocity(acceleration=2, noise=NOISE)]
+LINEAR = [hl.velocity.backward(), hl.velocity.filtered(tau=3e-3), hl.velocity.kalman(acceleration=2, noise=NOISE)]
 IMPULSE = np.eye(1, 4000)[0]
 
 
@@ -40,7 +40,7 @@ def test_lag_and_noise_are_those_of_the_impulse_response(found, estimate):
 
 def test_the_load_is_that_of_a_damper_with_this_velocity(found):
     for row, estimate in zip(found.rows, LINEAR, strict=True):
-        taken = cost(hl.compile(hl.virtual_damper(velocity=estimate)(B=1), T=T))
+        taken = cost(hl.compile(hl.laws.virtual_damper(velocity=estimate)(B=1), T=T))
         assert (row.cycles, row.fits) == (taken.typical, taken.fits)
 
 
@@ -57,5 +57,5 @@ def test_what_cannot_be_compared_is_refused(log):
     exact = hl.SimulatedPaddle(m=0.05, b=0.1, T=T).run(hl.wall()(k=0), duration=0.01)
     with pytest.raises(AnalysisError, match="no true velocity; run a simulated paddle with an encoder"):
         velocity_errors(exact)
-    with pytest.raises(AnalysisError, match="needs those such as hl.filtered_velocity"):
+    with pytest.raises(AnalysisError, match="needs those such as hl.velocity.filtered"):
         velocity_errors(log, ["filter"])

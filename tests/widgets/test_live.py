@@ -19,7 +19,7 @@ from hapticlab.widgets.status_words import chatter_words
 from hapticlab.widgets.traces import Traces
 
 T = 1e-3
-PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.hand("pinch"))
+PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.Hand("pinch"))
 WALL = hl.wall()(k=300, x_o=0.01)
 
 
@@ -137,7 +137,7 @@ def test_paused_time_stands_still_and_goes_on_where_it_was():
 
 def test_what_was_recorded_is_bit_for_bit_what_a_run_gives():
     """A hand whose intent is what the pointer said, sample for sample, feels the same on a paddle without a view."""
-    stage = Stage(hl.SimulatedPaddle.from_profile("hapkit", delay=1.4e-3, hand=hl.hand("grip")))
+    stage = Stage(hl.SimulatedPaddle.from_profile("hapkit", delay=1.4e-3, hand=hl.Hand("grip")))
     stage.session.press("record")
     stage.open()
     stage.go(1.0, pointer=lead)
@@ -147,7 +147,7 @@ def test_what_was_recorded_is_bit_for_bit_what_a_run_gives():
     def intent(t):
         return led[np.clip(np.round(np.asarray(t) / T).astype(int), 0, len(led) - 1)]
 
-    alone = hl.SimulatedPaddle.from_profile("hapkit", delay=1.4e-3, hand=hl.hand("grip", intent=intent))
+    alone = hl.SimulatedPaddle.from_profile("hapkit", delay=1.4e-3, hand=hl.Hand("grip", intent=intent))
     again = alone.run(WALL, duration=len(log) * T)
     assert len(log) > 950
     assert log.F.max() > 1
@@ -158,7 +158,7 @@ def test_what_was_recorded_is_bit_for_bit_what_a_run_gives():
 
 @pytest.mark.parametrize("delay", [0.0, 0.4e-3, 1e-3, 2.3e-3])
 def test_the_energy_on_view_is_that_of_the_record(delay):
-    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.1, T=T, delay=delay, hand=hl.hand("pinch")))
+    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.1, T=T, delay=delay, hand=hl.Hand("pinch")))
     stage.session.press("record")
     stage.open()
     stage.go(0.7, pointer=lead)
@@ -239,7 +239,7 @@ def test_chatter_is_said_and_a_bounce_is_not():
 
 
 def test_a_stiff_wall_is_said_to_chatter_at_the_frequency_of_the_record():
-    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.hand("pinch")), hl.wall()(k=6000, x_o=0.01)).open()
+    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.Hand("pinch")), hl.wall()(k=6000, x_o=0.01)).open()
     stage.go(1.0, pointer=lambda now: 0.014)
     stage.session.press("record")
     stage.go(1.5, pointer=lambda now: 0.014)
@@ -250,7 +250,7 @@ def test_a_stiff_wall_is_said_to_chatter_at_the_frequency_of_the_record():
 
 @pytest.mark.wide
 def test_a_grating_that_a_hand_is_led_across_is_not_said_to_chatter():
-    paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch"))
+    paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
     stage = Stage(paddle, hl.library.detents()).open()
     frames = stage.go(2.0, pointer=lambda now: 0.02 * np.sin(np.pi * (now - 50)))
     said = " ".join(frame.status for frame in frames)
@@ -260,7 +260,7 @@ def test_a_grating_that_a_hand_is_led_across_is_not_said_to_chatter():
 
 def test_a_handle_that_leaves_the_picture_is_told_and_run_begins_anew():
     """Beyond stability by far: T = 5 ms, k = 3000 N/m."""
-    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.02, T=5e-3, hand=hl.hand("pinch")), hl.wall()(k=3000, x_o=0.005)).open()
+    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.02, T=5e-3, hand=hl.Hand("pinch")), hl.wall()(k=3000, x_o=0.005)).open()
     stage.go(3.0, pointer=lambda now: 0.012)
     assert not stage.flags["running"]
     assert stage.session.status.startswith("Paused. The handle left the picture, to ")
@@ -289,7 +289,7 @@ def test_a_fault_stops_and_says_why_and_start_begins_anew():
 
 
 def test_a_motor_at_its_limit_is_said():
-    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.1, T=T, force_max=0.5, hand=hl.hand("pinch"))).open()
+    stage = Stage(hl.SimulatedPaddle(m=0.05, b=0.1, T=T, force_max=0.5, hand=hl.Hand("pinch"))).open()
     stage.go(0.5, pointer=lambda now: 0.02)
     assert "The motor is at its limit" in stage.session.status
     stage.go(1.5, pointer=lambda now: 0.0)
@@ -335,8 +335,8 @@ def test_to_replay_or_save_nothing_is_refused_in_words(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     stage = Stage().open()
     none = np.zeros(0)
-    with pytest.raises(hl.PaddleError, match="without samples"):
-        hl.live(PADDLE, WALL).replay(hl.Telemetry(t=none, x=none, v=none, F=none, T=T))
+    with pytest.raises(hl.errors.PaddleError, match="without samples"):
+        hl.live(PADDLE, WALL).replay(hl.records.Telemetry(t=none, x=none, v=none, F=none, T=T))
     for press in ("replay", "save"):
         stage.session.press(press)
         stage.go(0.1)
@@ -347,7 +347,7 @@ def test_to_replay_or_save_nothing_is_refused_in_words(tmp_path, monkeypatch):
     stage.go(0.1)
     (saved,) = tmp_path.iterdir()
     assert saved.name in stage.session.status
-    assert len(hl.Telemetry.load(saved)) >= 90
+    assert len(hl.records.Telemetry.load(saved)) >= 90
 
 
 # --- who looks
@@ -415,7 +415,7 @@ def test_a_view_that_has_ended_says_so_and_runs_no_more():
     view.close()
     assert view.status == "This view has ended; run its cell again."
     for run in (view.start, view.resume, view.record):
-        with pytest.raises(hl.PaddleError, match="run its cell again"):
+        with pytest.raises(hl.errors.PaddleError, match="run its cell again"):
             run()
 
 
@@ -542,7 +542,7 @@ def test_what_nobody_recorded_is_rehearsed_at_the_sliders_values():
     assert view.log_from == "rehearsal: nobody recorded here"
     assert log is view.log
     assert log.parameters["k"] == 450
-    hand = hl.hand("pinch", intent=view._rehearsal)
+    hand = hl.Hand("pinch", intent=view._rehearsal)
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hand)
     again = paddle.run(hl.wall()(k=450, x_o=0.01), duration=1.0)
     assert np.array_equal(log.F, again.F)
@@ -599,11 +599,11 @@ def test_what_makes_no_sense_is_refused_at_once(given, word):
 
 
 def test_a_scene_without_values_and_a_stranger_are_refused():
-    with pytest.raises(hl.ParameterError, match="no value for k"):
+    with pytest.raises(hl.errors.ParameterError, match="no value for k"):
         hl.live(PADDLE, hl.Scene(force=hl.parameters("k", units="N/m") * hl.x(hl.n)))
-    with pytest.raises(hl.PaddleError, match="needs a SimulatedPaddle"):
+    with pytest.raises(hl.errors.PaddleError, match="needs a SimulatedPaddle"):
         hl.live("paddle", WALL)
-    with pytest.raises(hl.SceneError):
+    with pytest.raises(hl.errors.SceneError):
         hl.live(PADDLE, "wall")
 
 

@@ -13,7 +13,7 @@ from hapticlab.widgets.session import GAP, SILENCE, STEADY, Session
 from hapticlab.widgets.stage import CAME_LATE, TIMELY
 
 WALL = hl.wall("ellis")(k=150, x_o=0.002)
-HAND = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch", intent=0.01))
+HAND = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch", intent=0.01))
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def test_the_motor_goes_on_by_a_press_and_by_nothing_else(board):
     assert stage.session.status == "Motor off: press Start, and hold the handle."
     view = hl.live(board, WALL)
     for start in (view.start, view.resume):
-        with pytest.raises(hl.PaddleError, match="does not start because a cell ran"):
+        with pytest.raises(hl.errors.PaddleError, match="does not start because a cell ran"):
             start()
     assert not stage.is_running
     stage.press("start").go(0.2)
@@ -310,21 +310,21 @@ def test_a_record_is_played_with_the_motor_off(board):
 
 def test_without_a_record_a_board_has_no_log(board):
     view = hl.live(board, WALL)
-    with pytest.raises(hl.PaddleError, match="press Start and then Record"):
+    with pytest.raises(hl.errors.PaddleError, match="press Start and then Record"):
         view.log  # noqa: B018
 
 
 def test_a_board_has_no_slow_motion(board):
-    with pytest.raises(hl.PaddleError, match="real time"):
+    with pytest.raises(hl.errors.PaddleError, match="real time"):
         hl.live(board, WALL, speed=0.1)
 
 
 def test_a_scene_that_does_not_fit_is_refused_before_it_is_shown(board, monkeypatch):
     def too_long(*given, **options):
-        raise hl.ProgramLimitError("takes 140 % of the period")
+        raise hl.errors.ProgramLimitError("takes 140 % of the period")
 
     monkeypatch.setattr(type(board), "fitted", too_long)
-    with pytest.raises(hl.ProgramLimitError, match="140 %"):
+    with pytest.raises(hl.errors.ProgramLimitError, match="140 %"):
         hl.live(board, WALL)
 
 

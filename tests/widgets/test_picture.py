@@ -1,10 +1,10 @@
-"""The moving picture: the same drawing as hl.picture, the hand's intent and the motor's force where they are."""
+"""The moving picture: the same drawing as hl.mechanics.picture, the hand's intent and the motor's force where they are."""
 
 import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.drawing import new_figure
+from hapticlab.base.drawing import new_figure
 from hapticlab.library.entries import CATALOGUE
 from hapticlab.library.sketch import HANDLE
 from hapticlab.widgets.picture import COLD, moving_picture
@@ -136,12 +136,12 @@ def test_a_picture_of_ones_own():
     items = moving_picture(scene, picture=draw).draw(STATE)
     assert of_kind(items, "line")[0][1] == [[0.012, 0.0], [0.01, 0.0]]
     assert moving_picture(scene, picture="detents").draw({**STATE, "A": 0.6, "p": 0.01}) is not None
-    ball = hl.Circle("5 mm").at(x=hl.x(hl.t), y="20 mm", name="ball")
+    ball = hl.shapes.Circle("5 mm").at(x=hl.x(hl.t), y="20 mm", name="ball")
     outline = np.array(next(item[1] for item in moving_picture(scene, picture=[ball]).draw(STATE) if len(item[1]) == 33))
     np.testing.assert_allclose(np.hypot(*(outline - (0.012, 0.02)).T), 5e-3, rtol=1e-12)
-    with pytest.raises(hl.AnalysisError, match="picture = 3; needs a name of hl.library, shapes in their places"):
+    with pytest.raises(hl.errors.AnalysisError, match="picture = 3; needs a name of hl.library, shapes in their places"):
         moving_picture(scene, picture=3)
-    with pytest.raises(hl.SceneError, match="did you mean detents"):
+    with pytest.raises(hl.errors.SceneError, match="did you mean detents"):
         moving_picture(scene, picture="detent")
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.drawing import describe, new_figure
+from hapticlab.base.drawing import describe, new_figure
 from hapticlab.widgets import show as module
 
 pytest.importorskip("matplotlib")
@@ -16,7 +16,7 @@ ALT = 'Handle rests at "2 mm" <inside> the wall.'
 
 def record():
     t = np.arange(200) * 1e-3
-    return hl.Telemetry(t=t, x=1e-3 * np.sin(60 * t), v=0 * t, F=3 * t, T=1e-3)
+    return hl.records.Telemetry(t=t, x=1e-3 * np.sin(60 * t), v=0 * t, F=3 * t, T=1e-3)
 
 
 class Images(HTMLParser):
@@ -89,9 +89,9 @@ def test_a_result_and_a_record_plot_and_describe_themselves(capsys):
 
 
 def test_what_is_no_figure_and_no_text_is_refused():
-    with pytest.raises(hl.AnalysisError, match="hl.show of a int; needs a figure"):
+    with pytest.raises(hl.errors.AnalysisError, match="hl.show of a int; needs a figure"):
         hl.show(3)
-    with pytest.raises(hl.AnalysisError, match="hl.show of a Requirements; that is words and numbers"):
-        hl.show(hl.requires(hl.wall()(k=300)))
-    with pytest.raises(hl.AnalysisError, match="alt = ' '; needs what there is to see"):
+    with pytest.raises(hl.errors.AnalysisError, match="hl.show of a Requirements; that is words and numbers"):
+        hl.show(hl.mechanics.requires(hl.wall()(k=300)))
+    with pytest.raises(hl.errors.AnalysisError, match="alt = ' '; needs what there is to see"):
         hl.show(new_figure(height=1), alt=" ")

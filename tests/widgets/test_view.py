@@ -32,13 +32,13 @@ def view(maps):
 
 
 def test_the_map_follows_its_sliders(view):
-    np.testing.assert_array_equal(view.map.regions, hl.wall_map(PADDLE, **SMALL).regions)
+    np.testing.assert_array_equal(view.map.regions, hl.stability.wall_map(PADDLE, **SMALL).regions)
     first = bytes(view.image.value)
     view.set(b=0.3, hand_b=1.5, coulomb=0.06)
     assert view.wait(60)
     moved = replace(PADDLE, b=0.3, coulomb=0.06, hand=replace(PADDLE.hand, b=1.5))
     assert view.paddle.b == pytest.approx(0.3) and view.paddle.hand.b == pytest.approx(1.5)
-    np.testing.assert_array_equal(view.map.regions, hl.wall_map(moved, **SMALL).regions)
+    np.testing.assert_array_equal(view.map.regions, hl.stability.wall_map(moved, **SMALL).regions)
     assert view.image.value[:8] == b"\x89PNG\r\n\x1a\n" and view.image.value != first
     assert "6 contacts in" in view.text.value
 
@@ -51,7 +51,7 @@ def test_a_slider_of_the_period_compiles_nothing():
     kept = set(moved.maps.runs._loaded)
     moved.set(T=0.75e-3, hand_push=1.5)
     assert moved.wait(60) and moved.paddle.T == pytest.approx(0.75e-3) and set(moved.maps.runs._loaded) == kept
-    expected = hl.wall_map(moved.paddle, **SMALL)
+    expected = hl.stability.wall_map(moved.paddle, **SMALL)
     np.testing.assert_array_equal(moved.map.regions, expected.regions)
     np.testing.assert_array_equal(moved.map.limit("stability"), expected.limit("stability"))
 

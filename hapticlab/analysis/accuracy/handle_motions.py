@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
+from ...base.drawing import STYLES, house_style, new_figure
 from ...compiler.algebra.graph import Graph, driven
-from ...drawing import STYLES, house_style, new_figure
 from ...errors import AnalysisError
 from ...scene.notation.derivative import Partial
 from ...scene.notation.symbols import t
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from ...annotations import Array
+    from ...base.annotations import Array
 
 #: band of a hand's voluntary motion [Hz]; irrational, so that no period is a whole number of samples
 BAND = (math.sqrt(0.5), 5 * math.sqrt(2))

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from ...annotations import Array
+    from ...base.annotations import Array
     from ...compiler.ir.program import Program
     from ...scene.scene import Scene
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...drawing import STYLES, house_style, legend_above, new_figure, style_of
+from ...base.drawing import STYLES, house_style, legend_above, new_figure, style_of
 from .port_error import recorded
 
 

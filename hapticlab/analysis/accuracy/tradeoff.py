@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal
 
-from ...arguments import instance
+from ...base.arguments import instance
 from ...compiler.boards.cost import BOARDS
 from ...compiler.ir.options import choice, period, steps
 from ...compiler.methods.chosen_method import chosen_method
@@ -37,9 +37,9 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+    from ...base.telemetry import PaddleProfile
     from ...compiler.events.taylor_method import Taylor
     from ...device.simulated.simulated_paddle import SimulatedPaddle
-    from ...records import PaddleProfile
     from .tradeoff_choice import Configuration, NotFeasible
 
 #: the target that is no board: this computer
@@ -124,7 +124,7 @@ def tradeoff(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3)
-    >>> found = hl.tradeoff(hl.library.detents(), paddle, T=[1e-3], targets=["uno"], workers=1)
+    >>> found = hl.methods.tradeoff(hl.library.detents(), paddle, T=[1e-3], targets=["uno"], workers=1)
     >>> print(found.table[0].status, found.choose().row.T)
     ok 0.001
     """
@@ -149,7 +149,7 @@ def tradeoff(
 def _check(scene, paddle):
     """Refuse what is no scene with all its values, or no paddle."""
     if not isinstance(scene, Scene):
-        raise AnalysisError(no_scene(scene, "write hl.tradeoff(hl.Scene(force=...), paddle)"))
+        raise AnalysisError(no_scene(scene, "write hl.methods.tradeoff(hl.Scene(force=...), paddle)"))
     unbound = [str(name) for name in scene.parameters if name not in scene.values]
     if unbound:
         given, command = ", ".join(f"{name}=..." for name in unbound), " ".join(f"--set {name}=..." for name in unbound)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ...compiler.methods.chosen_method import chosen_method
 
 if TYPE_CHECKING:
-    from ...annotations import File
+    from ...base.annotations import File
 
 #: percentages below this are not told apart
 LEAST_PERCENT = 0.001

@@ -15,8 +15,8 @@ from ..stability.trial_limits import Limits
 from .tradeoff_rows import percent
 
 if TYPE_CHECKING:
+    from ...base.telemetry import PaddleProfile
     from ...device.simulated.simulated_paddle import SimulatedPaddle
-    from ...records import PaddleProfile
     from ...scene.scene import Scene
     from .reference import Reference
 

@@ -1,6 +1,6 @@
 """The figure of a trade-off: error against load, both logarithmic, a line for each method."""
 
-from ...drawing import FRAME, house_style, log_scales, new_figure, style_of
+from ...base.drawing import FRAME, house_style, log_scales, new_figure, style_of
 from .tradeoff_rows import TOO_LARGE
 
 MARKERS = {"zoh": "s", "foh": "^", "soh": "o"}

@@ -21,7 +21,7 @@ from .impedance_curve import LOOKED_AT, Impedance
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from ...annotations import Array
+    from ...base.annotations import Array
 
 #: the handle as a force sees it at the sample, and as an equation of motion sees it
 SEEN = ((x(t), x(n)), (v(t), v(n)))
@@ -98,7 +98,7 @@ def impedance(scene: Scene, frequency: ArrayLike | None = None) -> Impedance | N
         frequency = np.asarray(frequency, float)
     except (TypeError, ValueError):
         what = f"a {type(frequency).__name__}"
-        raise AnalysisError(f"frequency is {what}; needs numbers in Hz, hl.impedance(scene, [1, 10, 100])") from None
+        raise AnalysisError(f"frequency is {what}; needs numbers in Hz, hl.passivity.impedance(scene, [1, 10, 100])") from None
     if not (np.isfinite(frequency).all() and (frequency > 0).all()):
         raise AnalysisError(f"frequency = {frequency} Hz; an impedance needs finite frequencies > 0")
     return port_of(scene).impedance(frequency)

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...drawing import STYLES, house_style, log_scales, new_figure
+from ...base.drawing import STYLES, house_style, log_scales, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from ...annotations import Array
+    from ...base.annotations import Array
 
 #: where an impedance is looked at unless frequencies are given [Hz]
 LOOKED_AT = np.geomspace(0.1, 200.0, 600)

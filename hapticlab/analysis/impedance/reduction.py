@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...arguments import number
+from ...base.arguments import number
 from ...compiler.tick.compile_scene import compile
 from ...errors import AnalysisError
 from ...limits.port import port_damping
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from ...annotations import Array
+    from ...base.annotations import Array
+    from ...base.telemetry import PaddleProfile
     from ...limits.limit import Device
-    from ...records import PaddleProfile
 
 #: below what a hand tells from another force, 7 to 10 %
 TOLERANCE = 0.05

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...drawing import STYLES, house_style, new_figure
+from ...base.drawing import STYLES, house_style, new_figure
 
 
 def plot_reduction(offer):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...drawing import house_style, new_figure
+from ...base.drawing import house_style, new_figure
 from ...errors import AnalysisError
 from ...library.entries import CATALOGUE
 from ...scene.notation.units import in_si
@@ -47,10 +47,10 @@ def picture(name: str | Scene | Callable[..., Scene], **state: float | str) -> F
     Examples
     --------
     >>> import hapticlab as hl
-    >>> figure = hl.picture("detents", x="20 mm")
+    >>> figure = hl.mechanics.picture("detents", x="20 mm")
     >>> figure.axes[0].get_title()
     'detents'
-    >>> hl.picture(hl.wall()(k=300, x_o="10 mm"), x="12 mm").axes[0].get_title()
+    >>> hl.mechanics.picture(hl.wall()(k=300, x_o="10 mm"), x="12 mm").axes[0].get_title()
     'zoh wall'
     """
     name, scene, drawing = _scene_of(name)
@@ -83,7 +83,7 @@ def _scene_of(name):
     name = getattr(name, "__name__", name)  # hl.library.detents itself
     if not isinstance(name, str):
         raise AnalysisError(
-            f"a {type(name).__name__} has no picture; hl.picture draws a scene, or one of the library by name: 'detents'"
+            f"a {type(name).__name__} has no picture; hl.mechanics.picture draws a scene, or one of the library: 'detents'"
         )
     return name, CATALOGUE[name].scene(), CATALOGUE[name].draw
 

@@ -92,7 +92,7 @@ def order_of(
     >>> z = hl.coordinate("z", unit="m")
     >>> F = K * (hl.x(hl.t) - z)
     >>> scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F - b * z.diff(hl.t))])
-    >>> print(hl.order_of(scene, "rk4"))
+    >>> print(hl.methods.order_of(scene, "rk4"))
     3 (x(t) of hold soh; method rk4: 4)
     """
     form, _ = excluded(scene, options.get("T", 1e-3), ())

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.drawing import house_style, new_figure, style_of
 from ...compiler.ir.options import choice
 from ...compiler.methods.method_table import METHODS
-from ...drawing import house_style, new_figure, style_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -112,7 +112,7 @@ class Methods(Mapping[str, "Method | WithoutSteps"]):
         Examples
         --------
         >>> import hapticlab as hl
-        >>> figure = hl.methods().plot("rk4", "semi_implicit_euler_damped")
+        >>> figure = hl.methods.table().plot("rk4", "semi_implicit_euler_damped")
         >>> [axes.get_ylabel() for axes in figure.axes]
         ['Im(h λ)', 'largest stable ω h']
         """
@@ -160,7 +160,7 @@ def methods() -> Methods:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> known = hl.methods()
+    >>> known = hl.methods.table()
     >>> known["rk4"].order, round(known["rk4"].imaginary, 3), known["semi_implicit_euler_damped"].real
     (4, 2.828, inf)
     """

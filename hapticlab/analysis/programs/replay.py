@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ...base.drawing import STYLES, axis_label, house_style, new_figure
+from ...base.telemetry import Telemetry, check_record
 from ...compiler.engines.engine import load
 from ...compiler.prune.constant_coefficients import leaves
 from ...compiler.tick.compile_scene import compile
-from ...drawing import STYLES, axis_label, house_style, new_figure
 from ...errors import AnalysisError, ProgramError
-from ...records import Telemetry, check_record
 from ...scene.notation.symbols import T, delay, lag_of, n
 from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
@@ -76,7 +76,7 @@ def replay(
     Parameters
     ----------
     view : Scene
-        What is to be shown, such as ``hl.requires(scene).view``; its force is not used.
+        What is to be shown, such as ``hl.mechanics.requires(scene).view``; its force is not used.
     log : Telemetry
         x and v as the controller saw them move the view; parameters the record holds take its values and changes.
     every : int
@@ -106,7 +106,7 @@ def replay(
     """
     check_record(log, "replay")
     if not isinstance(view, Scene):
-        raise AnalysisError(no_scene(view, "needs one that watches something, as hl.requires(scene).view"))
+        raise AnalysisError(no_scene(view, "needs one that watches something, as hl.mechanics.requires(scene).view"))
     if not view.watch:
         raise AnalysisError(f"{view.name} watches nothing; needs hl.Scene(..., watch=[...])")
     every = _rows(every, view, len(log))

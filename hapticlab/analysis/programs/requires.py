@@ -58,7 +58,7 @@ def requires(scene: Scene, *, T: float = 1e-3, **options: Any) -> Requirements:
     m parameter folded to 0.05 kg
     """
     if not isinstance(scene, Scene):
-        raise SceneError(no_scene(scene, "write hl.requires(hl.Scene(force=...))"))
+        raise SceneError(no_scene(scene, "write hl.mechanics.requires(hl.Scene(force=...))"))
     compile(scene, T=T, **options)  # refuses what it does not know
     defaults = {name: p.default for name, p in inspect.signature(compile).parameters.items() if name != "scene"}
     return _Report(scene, {**defaults, **options, "T": T}).made()
@@ -240,7 +240,7 @@ class _Report:
             seen = set(self.whole.paths(*self.whole.channels)) - set(self.whole.channels)
             names = sorted(seen - set(self.whole.paths(FORCE)))
             more = self._more(felt)
-            why = "only a view shows it: run .felt on the board, and hl.replay(.view, log) beside the record"
+            why = "only a view shows it: run .felt on the board, and hl.records.replay(.view, log) beside the record"
             offered.append(Item("view", ", ".join(names), why, None if more is None else -more))
         if self.form.coordinates and not chosen_method(self.options["method"]).exact:
             linear, declined = self._linear()

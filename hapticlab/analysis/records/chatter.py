@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.telemetry import check_record
 from ...errors import AnalysisError
-from ...records import check_record
 from .chatter_findings import Chatter
 from .chatter_signs import leaves_its_drive, levels_off, runs_away, scatter, upward_crossings
 from .driven_motion import drive_of, following
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...annotations import Array
+    from ...base.annotations import Array
+    from ...base.telemetry import Telemetry
     from ...device.hand.hand import Hand
-    from ...records import Telemetry
 
 #: amplitudes of the last two quarters within this ratio count as one sustained oscillation
 LOCK = 0.01
@@ -77,7 +77,7 @@ def chatter(log: Telemetry, driven: Hand | Callable[[Array], ArrayLike] | str | 
     Examples
     --------
     >>> import numpy as np
-    >>> from hapticlab.records import Telemetry
+    >>> from hapticlab.base.telemetry import Telemetry
     >>> t = np.arange(2000) * 1e-3
     >>> x = 1e-3 * np.sin(2 * np.pi * 20 * t)
     >>> found = chatter(Telemetry(t=t, x=x, v=0 * t, F=np.maximum(100 * x, 0), T=1e-3))

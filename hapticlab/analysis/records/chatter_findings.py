@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-from ...records import Telemetry
+from ...base.telemetry import Telemetry
 from .finding_plots import plot_chatter
 
 if TYPE_CHECKING:

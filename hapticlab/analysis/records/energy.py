@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.telemetry import check_record
 from ...errors import AnalysisError
 from ...limits.limit import whole_and_fraction
-from ...records import check_record
 from .finding_plots import plot_energy
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ...annotations import Array
-    from ...records import Telemetry
+    from ...base.annotations import Array
+    from ...base.telemetry import Telemetry
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ def energy(log: Telemetry) -> Energy:
     A spring of 100 N/m pushed in by 2 mm a sample to 6 mm and out again gives K (v T) x_max too much:
 
     >>> import numpy as np
-    >>> from hapticlab.records import Telemetry
+    >>> from hapticlab.base.telemetry import Telemetry
     >>> x = 1e-3 * np.array([0, 2, 4, 6, 4, 2, 0, -2])
     >>> log = Telemetry(t=np.arange(8) * 1e-3, x=x, v=0 * x, F=np.maximum(100 * x, 0), T=1e-3)
     >>> round(energy(log).generated, 12)

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
+from ...base.telemetry import check_record
 from ...errors import AnalysisError, SceneError
-from ...records import check_record
 from ...scene.contact.contact import friction
 from ...scene.mechanics.lagrange import Mechanics
 from ...scene.notation.derivative import Partial, Rate
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ...annotations import Array
-    from ...records import Telemetry
+    from ...base.annotations import Array
+    from ...base.telemetry import Telemetry
     from ...scene.contact.contact import Contact
     from ...scene.scene import Scene
 
@@ -50,7 +50,7 @@ def energy_books(
     method (or the hold of the handle between samples) has lost energy, negative where it has made some. Sampling leaks at
     the port beside that: :func:`balance`. The books cost three first-order coordinates.
 
-    What ``hl.lagrange`` made brings its own energies: stored is sum q' dL/dq' - L and what the springs of its contacts
+    What ``hl.mechanics.lagrange`` made brings its own energies: stored is sum q' dL/dq' - L and what the springs of its contacts
     hold. For equations of motion written out, give them.
 
     Parameters
@@ -80,10 +80,10 @@ def energy_books(
     >>> from hapticlab import t, v, x
     >>> m, K, b = hl.parameters("m K b", units="kg N/m N*s/m")
     >>> z = hl.coordinate("z", unit="m")
-    >>> F = hl.virtual_coupler(z, K=K, b=b)
+    >>> F = hl.laws.virtual_coupler(z, K=K, b=b)
     >>> scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)])
     >>> energy = m * z.diff(t) ** 2 / 2 + K * (x(t) - z) ** 2 / 2
-    >>> list(hl.energy_books(scene, stored=energy, dissipated=b * (v(t) - z.diff(t)) ** 2).watch)
+    >>> list(hl.records.energy_books(scene, stored=energy, dissipated=b * (v(t) - z.diff(t)) ** 2).watch)
     ['supplied', 'stored', 'dissipated', 'leak']
     """
     if not scene.coordinates:
@@ -143,7 +143,7 @@ class _Account:
 
 
 def _of_mechanics(scene):
-    """Return the account of what hl.lagrange made."""
+    """Return the account of what hl.mechanics.lagrange made."""
     models = [e for e in scene.eom if isinstance(e, Mechanics)]
     covered = {q for model in models for q in model.coordinates}
     bare = [type(q).__name__ for q in scene.coordinates if q not in covered]
@@ -255,9 +255,9 @@ def balance(log: Telemetry) -> Balance:
     >>> z = hl.coordinate("z", unit="m")
     >>> pull = K * (hl.x(hl.t) - z)
     >>> L = m * z.diff(hl.t) ** 2 / 2 - K * (hl.x(hl.t) - z) ** 2 / 2
-    >>> books = hl.energy_books(hl.Scene(force=pull, eom=[hl.lagrange(L)]))
+    >>> books = hl.records.energy_books(hl.Scene(force=pull, eom=[hl.mechanics.lagrange(L)]))
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=1.0, T=1e-3, hand=hl.Hand(push=1.0))
-    >>> result = hl.balance(paddle.run(books, duration=0.05, progress=False))
+    >>> result = hl.records.balance(paddle.run(books, duration=0.05, progress=False))
     >>> bool(abs(result.leak[-1]) < 1e-3 * result.supplied[-1])
     True
     """
@@ -265,8 +265,8 @@ def balance(log: Telemetry) -> Balance:
     missing = [name for name in CHANNELS if name not in log.channels]
     if missing:
         raise AnalysisError(
-            f"balance: the record has no {', '.join(missing)}; run hl.energy_books(scene), which watches them, instead of the "
-            "scene alone"
+            f"balance: the record has no {', '.join(missing)}; run hl.records.energy_books(scene), which watches them, "
+            "instead of the scene alone"
         )
     kept = {name: np.asarray(log.channels[name], float) for name in CHANNELS}
     port = energy(log).W

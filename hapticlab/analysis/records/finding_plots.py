@@ -4,7 +4,7 @@ import textwrap
 
 import numpy as np
 
-from ...drawing import COLD, FRAME, STYLES, WARM, house_style, legend_above, new_figure
+from ...base.drawing import COLD, FRAME, STYLES, WARM, house_style, legend_above, new_figure
 from ...errors import AnalysisError
 
 
@@ -89,7 +89,7 @@ def plot_balance(books):
     Parameters
     ----------
     books : Balance
-        As :func:`hapticlab.balance` returns it.
+        As :func:`hapticlab.records.balance` returns it.
 
     Returns
     -------

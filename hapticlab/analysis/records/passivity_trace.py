@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...drawing import STYLES, house_style, new_figure
+from ...base.drawing import STYLES, house_style, new_figure
+from ...base.telemetry import check_record
 from ...errors import AnalysisError
-from ...records import check_record
 from .energy import energy
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ...annotations import Array
-    from ...records import Telemetry
+    from ...base.annotations import Array
+    from ...base.telemetry import Telemetry
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,8 +94,8 @@ def passivity_trace(log: Telemetry) -> PassivityTrace:
     Parameters
     ----------
     log : Telemetry
-        Of any scene; the channels W, credit and alpha of :func:`hapticlab.passivity_observer` and
-        :func:`hapticlab.passivity_controller` are shown where they were recorded.
+        Of any scene; the channels W, credit and alpha of :func:`hapticlab.laws.passivity_observer` and
+        :func:`hapticlab.laws.passivity_controller` are shown where they were recorded.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def passivity_trace(log: Telemetry) -> PassivityTrace:
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
-    >>> log = paddle.run(hl.passivity_observer(hl.wall()(k=500)), duration=0.05, x=-0.002, v=0.2, progress=False)
+    >>> log = paddle.run(hl.laws.passivity_observer(hl.wall()(k=500)), duration=0.05, x=-0.002, v=0.2, progress=False)
     >>> print(passivity_trace(log))
     W >= 0 broken by 0.1595 mJ at t = 0.042 s; -0.1595 mJ taken in the end
     at most 1.089 mJ drained, from t = 0.026 s to 0.042 s

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...drawing import FRAME, SHOWN, STYLES, axis_label, colour_map, house_style, new_figure, outline, scale_axis
+from ...base.drawing import FRAME, SHOWN, STYLES, axis_label, colour_map, house_style, new_figure, outline, scale_axis
+from ...base.telemetry import check_record
 from ...errors import AnalysisError
-from ...records import check_record
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from matplotlib.figure import Figure
 
+    from ...base.telemetry import Telemetry
     from ...limits.limit import Limit
-    from ...records import Telemetry
     from ..sweeps.sweep import Sweep
 
 #: forces, which a board holds from one sample to the next
@@ -48,7 +48,7 @@ def plot(log: Telemetry, *names: str) -> Figure:
 
     Examples
     --------
-    >>> from hapticlab.records import Telemetry
+    >>> from hapticlab.base.telemetry import Telemetry
     >>> log = Telemetry(t=[0, 1e-3], x=[0, 1e-3], v=[0, 1], F=[0, 0.1], T=1e-3)
     >>> [axes.get_ylabel() for axes in plot(log, "x", "F").axes]
     ['handle position x [mm]', 'force F [N]']

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...drawing import FRAME, STYLES, house_style, new_figure
+from ...base.drawing import FRAME, STYLES, house_style, new_figure
+from ...base.telemetry import check_record
 from ...errors import AnalysisError
 from ...limits.limit import whole_and_fraction
-from ...records import check_record
 from .energy import energy
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ...annotations import Array
-    from ...records import Telemetry
+    from ...base.annotations import Array
+    from ...base.telemetry import Telemetry
 
 #: periods of a penetration up to which each step's leak is written beside it
 NUMBERED = 16
@@ -156,7 +156,7 @@ def staircase(log: Telemetry, *, K: float | None = None, x_o: float | None = Non
     Examples
     --------
     >>> import numpy as np
-    >>> from hapticlab.records import Telemetry
+    >>> from hapticlab.base.telemetry import Telemetry
     >>> x = 1e-3 * np.array([-1, 1, 3, 5, 4, 2, -1])
     >>> log = Telemetry(t=np.arange(7) * 1e-3, x=x, v=0 * x, F=np.maximum(100 * x, 0), T=1e-3)
     >>> print(staircase(log, K=100))

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
-from ...drawing import STYLES, house_style, new_figure
+from ...base.drawing import STYLES, house_style, new_figure
+from ...base.telemetry import check_record
 from ...errors import AnalysisError
-from ...records import check_record
 from ...scene.notation.symbols import Parameter, lag_of, x
 from .energy import energy
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from ...annotations import Array
-    from ...records import Telemetry
+    from ...base.annotations import Array
+    from ...base.telemetry import Telemetry
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,8 +120,8 @@ def storage(
     ----------
     log : Telemetry
     stored : expression [J], array [J], shape (N,), or None
-        The storage function W: of x(n) and parameters that the record holds, such as :func:`hapticlab.wall_energy`; or its
-        values at the samples. None takes the watched channel ``stored`` of :func:`hapticlab.energy_books`, which brings
+        The storage function W: of x(n) and parameters that the record holds, such as :func:`hapticlab.laws.wall_energy`; or its
+        values at the samples. None takes the watched channel ``stored`` of :func:`hapticlab.records.energy_books`, which brings
         Lagrange's energies.
     b : float, optional
         The device's damping [N s/m], to be counted as well.
@@ -141,7 +141,8 @@ def storage(
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
     >>> log = paddle.run(hl.wall()(k=200), duration=0.1, x=-0.002, v=0.2, progress=False)
-    >>> hl.storage(log, hl.wall_energy()).holds, hl.storage(log, hl.wall_energy(), b=0.1, stiffness=200).holds
+    >>> stored = hl.laws.wall_energy()
+    >>> hl.records.storage(log, stored).holds, hl.records.storage(log, stored, b=0.1, stiffness=200).holds
     (False, True)
     """
     check_record(log, "storage")
@@ -160,8 +161,8 @@ def _values(log, stored):
     if stored is None:
         if "stored" not in log.channels:
             raise AnalysisError(
-                "storage: the record has no channel 'stored'; run hl.energy_books(scene), or give stored=, an energy of x(n) "
-                "such as hl.wall_energy()"
+                "storage: the record has no channel 'stored'; run hl.records.energy_books(scene), or give stored=, an energy of "
+                "x(n) such as hl.laws.wall_energy()"
             )
         return log.stored
     if not isinstance(stored, sp.Expr):

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 
-from ...drawing import STYLES, house_style, new_figure
+from ...base.drawing import STYLES, house_style, new_figure
 from ...limits.port import asked
 
 

@@ -14,7 +14,7 @@ from .linearization import motion_at
 from .operating_points import TRAVEL, borders, kind_of, operating_points, probes_of, telling
 
 if TYPE_CHECKING:
-    from ...annotations import Array
+    from ...base.annotations import Array
 
 #: why a mode asks for what it asks, unless it is worse
 WORST = "worst frequency"

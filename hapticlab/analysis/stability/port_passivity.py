@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ...arguments import number
+from ...base.arguments import number
 from ...compiler.ir.options import period
 from ...errors import AnalysisError
 from ...scene.notation.written import no_scene
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+    from ...base.telemetry import PaddleProfile
     from ...limits.limit import Device
-    from ...records import PaddleProfile
     from .port_limits import PortLimit
 
 
@@ -154,12 +154,12 @@ def port_passivity(
     >>> import hapticlab as hl
     >>> wall = hl.wall()(k=200, x_o="10 mm")
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.15, T=1e-3)
-    >>> port = hl.port_passivity(wall, paddle)
+    >>> port = hl.passivity.port(wall, paddle)
     >>> round(port.b_req, 9), port.worst.mode, port.passive
     (0.1, 'x(n) >= x_o', True)
     """
     if not isinstance(scene, Scene):
-        raise AnalysisError(no_scene(scene, "needs hl.port_passivity(hl.Scene(force=...), T=1e-3)"))
+        raise AnalysisError(no_scene(scene, "needs hl.passivity.port(hl.Scene(force=...), T=1e-3)"))
     given = getattr(paddle, "T", None) if T is None else T
     if given is None:
         raise AnalysisError("T is missing; needs a sampling period, T=1e-3, or a paddle that has one")

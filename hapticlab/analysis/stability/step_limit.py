@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from ...annotations import Array
+    from ...base.annotations import Array
     from ...compiler.events.taylor_method import Taylor
 
 #: states past which eigenvalues take their time
@@ -208,11 +208,11 @@ def step_limit(
     >>> z = hl.coordinate("z", unit="m")
     >>> F = k * (hl.x(hl.t) - z)
     >>> scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)])
-    >>> round(hl.step_limit(scene, "semi_implicit_euler", T=1e-3).margin, 3)
+    >>> round(hl.stability.step_limit(scene, "semi_implicit_euler", T=1e-3).margin, 3)
     20.0
     """
     if not isinstance(scene, Scene):
-        raise AnalysisError(no_scene(scene, "needs hl.step_limit(hl.Scene(force=...), T=1e-3)"))
+        raise AnalysisError(no_scene(scene, "needs hl.stability.step_limit(hl.Scene(force=...), T=1e-3)"))
     T, h = period(T), period(T) / steps(substeps)
     chosen = chosen_method(method)
     known = switched(scene)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ...arguments import choice
+from ...base.arguments import choice
 from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.prune.constraint_lengths import held
 from ...device.progress import progress_bar
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ...annotations import Array, File
+    from ...base.annotations import Array, File
     from ...device.simulated.simulated_paddle import SimulatedPaddle
     from ...limits.limit import Limit
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ...arguments import count, number
+from ...base.arguments import count, number
+from ...base.drawing import COLD, WARM, house_style, new_figure
+from ...base.telemetry import Telemetry
 from ...device.simulated.closed_loop import link, load_linked
 from ...device.simulated.simulated_paddle import SimulatedPaddle
-from ...drawing import COLD, WARM, house_style, new_figure
 from ...errors import AnalysisError
-from ...records import Telemetry
 from ...rendering.hybrid import hybrid_wall
 from ...rendering.wall_laws import LAWS, checked_laws, wall_law
 from ..records.energy import energy
@@ -170,7 +170,7 @@ def compare_laws(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0, T=1e-3)
-    >>> result = hl.compare_laws(paddle, K=500, laws=["zoh", "half_sample"], entries=4)
+    >>> result = hl.design.compare_laws(paddle, K=500, laws=["zoh", "half_sample"], entries=4)
     >>> result["zoh"].rebound > 1.05 > result["half_sample"].rebound
     True
     """

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from ...base.drawing import COLD, house_style, new_figure, scale_axis
 from ...device.hand.hand import Hand, require
-from ...drawing import COLD, house_style, new_figure, scale_axis
 from ...errors import AnalysisError, HapticlabError
 from ...rendering.wall_laws import LAWS, wall_law
 from ..records.chatter import SHORTEST, chatter
@@ -143,7 +143,7 @@ def law_limits(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
-    >>> found = hl.law_limits(paddle, laws=["zoh"])["zoh"]
+    >>> found = hl.design.law_limits(paddle, laws=["zoh"])["zoh"]
     >>> found.K <= hl.stability_limit(paddle).K * 1.03 and found.beyond >= hl.stability_limit(paddle).K * 0.97
     True
     """

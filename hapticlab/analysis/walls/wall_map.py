@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...arguments import number
+from ...base.arguments import number
 from ...device.simulated.simulated_paddle import SimulatedPaddle
 from ...errors import AnalysisError
 from ...scene.laws.chapter_laws import wall

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...drawing import WARM, axis_label, house_style, new_figure, outline, scale_axis
+from ...base.drawing import WARM, axis_label, house_style, new_figure, outline, scale_axis
 
 #: light to dark, so that grey print keeps their order
 COLOURS = ("#eef4d4", "#a9cfa0", "#4f93a8", "#2b2f5c")

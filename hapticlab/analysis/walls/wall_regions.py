@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from ...arguments import choice
+from ...base.arguments import choice
 from ...errors import AnalysisError
 from ...limits.passivity import SWITCHING_NOT_COVERED
 from .wall_map_plot import plot_wall_map
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from ...annotations import Array, Flags
+    from ...base.annotations import Array, Flags
     from ...limits.limit import Limit
 
 Region = Literal["passive", "stable", "chatters", "unusable"]

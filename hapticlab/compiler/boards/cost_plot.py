@@ -1,6 +1,6 @@
 """A figure of what a program takes of a board."""
 
-from ...drawing import COLD, FRAME, WARM, house_style, new_figure
+from ...base.drawing import COLD, FRAME, WARM, house_style, new_figure
 from ...errors import ProgramError
 
 

@@ -77,7 +77,7 @@ def enforcement(
     if M is not None and not np.allclose(M, np.transpose(M), rtol=1e-9, atol=1e-12 * np.abs(M).max()):
         raise MassError(
             "the mass matrix is not symmetric, so its rows are no generalized forces, and a reaction has no place in them; "
-            "take the equations from hl.lagrange"
+            "take the equations from hl.mechanics.lagrange"
         )
     check_start(assembly, constraints, positions, coordinates, start)
     faults = check_rank(assembly, constraints, coordinates, real)

@@ -144,8 +144,8 @@ def contacts_between(
     --------
     >>> import hapticlab as hl
     >>> z = hl.coordinate("z", unit="m", initial=1)
-    >>> balls = [hl.Circle(0.1).at(x=k, y=z, name=f"ball{k}") for k in range(2)]
-    >>> print(hl.contacts_between([hl.ground(), *balls], law=hl.rigid()))
+    >>> balls = [hl.shapes.Circle(0.1).at(x=k, y=z, name=f"ball{k}") for k in range(2)]
+    >>> print(hl.contact.between([hl.shapes.ground(), *balls], law=hl.contact.rigid()))
     2 contacts: ground_ball0, ground_ball1
     left out ball0 and ball1: ball0 stays within -0.1 <= x <= 0.1 m, ball1 within 0.9 <= x <= 1.1 m
     """
@@ -166,7 +166,7 @@ def contacts_between(
             if thickness[name] == 0:
                 warnings.warn(
                     f"{a.name} and {b.name} have no thickness: between two samples they pass through each other at any "
-                    "speed; give one of them a radius, such as hl.Capsule",
+                    "speed; give one of them a radius, such as hl.shapes.Capsule",
                     stacklevel=2,
                 )
     check_apart(made, values or {})
@@ -180,7 +180,7 @@ def possible_pairs(bodies, *, ignore=(), handle=(-math.inf, math.inf)):
     --------
     >>> import hapticlab as hl
     >>> z = hl.coordinate("z", unit="m")
-    >>> two = [hl.Box(1, 1).at(name="left"), hl.Box(1, 1).at(x=3, y=z, name="right")]
+    >>> two = [hl.shapes.Box(1, 1).at(name="left"), hl.shapes.Box(1, 1).at(x=3, y=z, name="right")]
     >>> possible_pairs(two).dropped[0].why
     'left stays within -0.5 <= x <= 0.5 m, right within 2.5 <= x <= 3.5 m'
     """

@@ -201,7 +201,7 @@ def unfelt(form):
     read = {leaf for e in (form.force, *form.updates.values()) for leaf in e.atoms(sp.Function)}
     for c in (c for model in form.models for c in model.contacts if not isinstance(c, friction)):
         if c.is_located and c.gap.has(x(t)) and c.impulse not in read:
-            pulse = f"hl.felt_impulse({c.name}, tau='5 ms') makes them felt"
+            pulse = f"hl.contact.felt_impulse({c.name}, tau='5 ms') makes them felt"
             yield f"{c.name} acts by impulses, which {c.name}.force does not hold; {pulse}"
 
 

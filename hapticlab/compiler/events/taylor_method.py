@@ -201,7 +201,7 @@ def switched(method, tracing, motion, groups, h, name, impact, number):
         raise ProgramLimitError(
             f"{name}: its fastest part turns with omega = {maps.omega:.4g} rad/s, by {turns:.4g} rad in a period of {h:g} s; "
             f"method='exact' locates switches in pieces of a radian, {MOST_TURNS} at most: take T <= "
-            f"{MOST_TURNS / maps.omega:.2g} s, a softer contact, or one that does not give (hl.impulse, hl.rigid)"
+            f"{MOST_TURNS / maps.omega:.2g} s, a softer contact, or one that does not give (hl.contact.impulse, hl.contact.rigid)"
         )
     _check_pieces(name, surfaces, turns, h, tracing.real)
     order, events, pieces = _pieces(surfaces, turns, tracing.real)

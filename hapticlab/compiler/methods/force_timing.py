@@ -53,7 +53,7 @@ def hints(form, graph, options):
     if options.force_at == "after" and options.hold != "zoh":
         yield (
             f"force_at = 'after' with hold = {options.hold!r}: lightly damped bodies ask a device for more damping than with "
-            "'before', or with hold='zoh'; hl.port_passivity tells how much"
+            "'before', or with hold='zoh'; hl.passivity.port tells how much"
         )
     if options.substeps > 1 and options.hold == "zoh" and options.method.rest is not None:
         yield (

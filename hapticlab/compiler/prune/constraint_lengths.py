@@ -29,7 +29,7 @@ def held(scene):
     >>> import hapticlab as hl
     >>> m, k, l = hl.parameters("m k l", units="kg N/m m", values=(0.1, 50, 0.2))
     >>> q, u = hl.coordinate("q", unit="m"), hl.coordinate("u", unit="m", initial=l)
-    >>> rod = hl.lagrange(m * (q.diff(hl.t) ** 2 + u.diff(hl.t) ** 2) / 2, constraints=[u - q - l])
+    >>> rod = hl.mechanics.lagrange(m * (q.diff(hl.t) ** 2 + u.diff(hl.t) ** 2) / 2, constraints=[u - q - l])
     >>> list(held(hl.Scene(force=k * (hl.x(hl.n) - q), eom=[rod])))
     ['l']
     """

@@ -24,7 +24,7 @@ from .source import Options, Source
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ...annotations import Number
+    from ...base.annotations import Number
     from ...scene.notation.parameters import Parameter
     from ..events.taylor_method import Taylor
     from ..ir.program import Program
@@ -55,8 +55,8 @@ def compile(
     scene : Scene
     method : {"euler", "semi_implicit_euler", "semi_implicit_euler_damped", "verlet", "midpoint", "heun", "ssprk3", "rk4", \
 "nystrom4", "adams_bashforth2", "adams_bashforth3", "taylor", "exact", "exact+rk4", ...}
-        ``hl.methods()`` tables the explicit ones: order, cost, where each is stable; ``hl.order_of`` says what order
-        the error of a scene's force has. "semi_implicit_euler_damped" takes dampers implicitly, however stiff.
+        ``hl.methods.table()`` tables the explicit ones: order, cost, where each is stable; ``hl.methods.order_of`` says what
+        order the error of a scene's force has. "semi_implicit_euler_damped" takes dampers implicitly, however stiff.
         "nystrom4" is for accelerations free of velocities, the Adams-Bashforth methods are for motion without cases.
         "taylor" locates the instants at which walls, contacts and friction change the motion; between them it is exact
         to rounding where the motion is linear. :class:`~hapticlab.compiler.events.taylor_method.Taylor` sets its order

@@ -107,7 +107,7 @@ class Equations:
                 name = type(form.coordinates[k]).__name__
                 raise SceneError(
                     f"the equation of {name} holds the acceleration of {held[0]}, which a constraint determines; "
-                    f"put {name} into the same hl.lagrange(...)"
+                    f"put {name} into the same hl.mechanics.lagrange(...)"
                 )
         return [[form.M[k][j] for j in at] for k in at], [form.f[k] for k in at]
 

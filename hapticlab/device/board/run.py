@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...base.telemetry import Telemetry
 from ...compiler.engines.bytecode import encode
 from ...compiler.ir.program import Program
 from ...errors import PaddleError
-from ...records import Telemetry
 from ..link.messages import FAULTS, SAMPLE_FLAGS, row_of
 from ..live_parameters import named_values
 from .upload import upload

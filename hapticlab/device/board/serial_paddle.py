@@ -28,8 +28,8 @@ from .upload import STORE_PATIENCE, check_period, check_room, read_settings, upl
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from ...base.telemetry import Telemetry
     from ...compiler.boards.cost import Cost
-    from ...records import Telemetry
     from ...scene.scene import Scene
 
 #: seconds a board may be silent in a run, beyond the time to the next look, before the host gives up

@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import PaddleError
+from .hand_presets import PRESETS, HandPreset
 
 if TYPE_CHECKING:
-    from ...annotations import Array
+    from ...base.annotations import Array
 
+_NOTHING = HandPreset(0.0, 0.0, 0.0, "", "")
 UNITS = {"m": "kg", "b": "N s/m", "k": "N/m", "push": "N", "noise": "N"}
 _REASONS = {
     "m": "A negative mass is no mass.",
@@ -23,7 +25,7 @@ _REASONS = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, init=False)
 class Hand:
     """A hand lumped on the handle: (m + m_hand) x'' = push - b_hand (x' - intent') - k_hand (x - intent) - ...
 
@@ -32,6 +34,12 @@ class Hand:
 
     Parameters
     ----------
+    preset : {"pinch", "grip", "arm", "test bed finger"}, optional
+        Where mass, damping and stiffness come from unless given; ``hl.people.hand_presets()`` has the sources.
+    grip : float
+        Times as firm as the preset, > 0. A firmer grip stiffens and damps and leaves the mass as it is (found for a pinched
+        knob by Hasser and Cutkosky, 2002). Here stiffness and damping both grow in proportion to ``grip``: the simplest law
+        of that kind, fitted to nobody. Identify your own hand where it matters.
     m : float
         Mass [kg], m >= 0.
     b : float
@@ -57,6 +65,8 @@ class Hand:
     >>> from hapticlab.device.hand.hand import Hand
     >>> print(Hand(m=0.02, b=1, k=200, intent=lambda t: 0.01 * np.sin(6 * t)))
     m = 0.02 kg, b = 1 N s/m, k = 200 N/m, a moving intent
+    >>> print(Hand("pinch", grip=2.0, push=1.5))
+    m = 0.02 kg, b = 2 N s/m, k = 400 N/m, push = 1.5 N
     """
 
     m: float = 0.0
@@ -66,7 +76,31 @@ class Hand:
     intent: float | Callable[..., Any] | None = None
     noise: float = 0.0
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        preset: str | None = None,
+        *,
+        grip: float = 1.0,
+        m: float | None = None,
+        b: float | None = None,
+        k: float | None = None,
+        push: float = 0.0,
+        intent: float | Callable[..., Any] | None = None,
+        noise: float = 0.0,
+    ) -> None:
+        if preset is not None and preset not in PRESETS:
+            raise PaddleError(f"no hand {preset!r}; there are {', '.join(PRESETS)}. Others: hl.Hand(m=..., b=..., k=...)")
+        grip = require("grip", grip, "times the preset's", "a hand", "It is the firmness beside the preset's.", above=0)
+        if preset is None and grip != 1:
+            raise PaddleError(f"grip = {grip:g}: it makes a preset firmer, as in hl.Hand('pinch', grip=2); give b and k instead")
+        known = PRESETS[preset] if preset is not None else _NOTHING
+        numbers = {"m": known.m, "b": grip * known.b, "k": grip * known.k}
+        given = {name: value for name, value in (("m", m), ("b", b), ("k", k)) if value is not None}
+        for name, value in {**numbers, **given, "push": push, "intent": intent, "noise": noise}.items():
+            object.__setattr__(self, name, value)
+        self._check()
+
+    def _check(self) -> None:
         for name, reason in _REASONS.items():
             number = require(name, getattr(self, name), UNITS[name], "a hand", reason, low=0)
             object.__setattr__(self, name, number)

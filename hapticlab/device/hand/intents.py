@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...annotations import Array
+    from ...base.annotations import Array
 
 
 class Intent:

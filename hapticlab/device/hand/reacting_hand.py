@@ -15,7 +15,7 @@ from .intents import Intent, Together
 if TYPE_CHECKING:
     from typing import NoReturn
 
-    from ...annotations import Array
+    from ...base.annotations import Array
 
 #: between a signal and the press of a button it tells of, Section 23.3.3 [s]
 REACTION = 0.18
@@ -64,14 +64,15 @@ class Reacting(Intent):
     start : float
         The intent at t = 0 [m].
     beside : callable, optional
-        A path that is added, of an array of times: ``hl.Reacting(plan=...) + hl.Tremor(rms=1e-4)``. The plan does not know it.
+        A path that is added, of an array of times: ``hl.people.Reacting(plan=...) + hl.people.Tremor(rms=1e-4)``. The
+        plan does not know it.
 
     Examples
     --------
     >>> import hapticlab as hl
     >>> def home(t, seen, intent):
     ...     return 0.01 if len(seen) else 0.0
-    >>> paddle = hl.SimulatedPaddle(m=0.05, b=1.0, T=1e-3, hand=hl.Hand(k=200, b=5, intent=hl.Reacting(plan=home)))
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=1.0, T=1e-3, hand=hl.Hand(k=200, b=5, intent=hl.people.Reacting(plan=home)))
     >>> log = paddle.run(hl.wall()(k=100, x_o=0.05), duration=0.5)
     >>> bool(log.x[180] == 0.0), bool(abs(log.x[-1] - 0.01) < 1e-4)
     (True, True)
@@ -93,7 +94,7 @@ class Reacting(Intent):
     def __call__(self, t: Any) -> NoReturn:
         raise PaddleError(
             "this hand reacts to what happens, so its intent is no function of time; it runs on SimulatedPaddle.run alone. "
-            "Give a path instead, such as hl.MinimumJerk(...)."
+            "Give a path instead, such as hl.people.MinimumJerk(...)."
         )
 
     def with_path(self, path: Callable[..., Any]) -> Reacting:

@@ -24,7 +24,7 @@ def notebook():
         except PackageNotFoundError:
             missing.append(name)
     if missing:
-        words = f"{', '.join(missing)} not installed; needed for the labs, hl.live and hl.explore"
+        words = f"{', '.join(missing)} not installed; needed for the labs, hl.live and hl.stability.explore"
         return Check("notebook", "attention", words, f"do: {Path(sys.executable).name} -m pip install {' '.join(missing)}")
     return Check("notebook", "ok", ", ".join(found))
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.telemetry import PaddleProfile, Telemetry
 from ...errors import PaddleError
-from ...records import PaddleProfile, Telemetry
 from ..hand.hand import Hand, require
 from ..hand.reacting_hand import Reacting, run_reacting
 from ..paddle import Paddle
@@ -22,7 +22,7 @@ from .plant import delay_parts, dynamics, plant_of
 from .transition import smallest_mass
 
 if TYPE_CHECKING:
-    from ...annotations import Array
+    from ...base.annotations import Array
     from ...compiler.ir.program import Program
     from ...scene.scene import Scene
 

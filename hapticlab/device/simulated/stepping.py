@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...base.telemetry import Telemetry
 from ...errors import PaddleError
-from ...records import Telemetry
-from ..hand.hand_presets import hand as named_hand
 from ..live_parameters import MOST_AT_ONCE, checked, in_portions, named_values
 from .closed_loop import link, load_linked
 from .not_finite import not_finite
@@ -22,7 +21,7 @@ class Stepping:
     ----------
     paddle : SimulatedPaddle
         Its hand's mass, damping, spring and noise hold the handle; its intent and push are replaced by what
-        :meth:`advance` is told. Without a spring the hand is ``hl.hand("pinch")``.
+        :meth:`advance` is told. Without a spring the hand is ``hl.Hand("pinch")``.
     scene : Scene or Program
     x, v : float
         Position [m] and velocity [m/s] at the first sample.
@@ -50,7 +49,7 @@ class Stepping:
     Examples
     --------
     >>> import hapticlab as hl, numpy as np
-    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.hand("pinch"))
+    >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("pinch"))
     >>> stepping = Stepping(paddle, hl.wall()(k=300, x_o=0.01))
     >>> some = stepping.advance(np.linspace(0.0, 0.02, 201))
     >>> stepping.set(k=600.0)                       # from this time on [s]
@@ -208,5 +207,5 @@ def with_grip(paddle, intent=told):
     """Return a simulated paddle whose hand holds the handle by a spring, with an intent and without a push."""
     hand = paddle.hand
     if hand is None or hand.k == 0:
-        hand = named_hand(GRIP)
+        hand = Hand(GRIP)
     return replace(paddle, hand=replace(hand, intent=intent, push=0.0))

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...base.drawing import axis_label
 from ...course.plotted_curves import UNIT
-from ...drawing import axis_label
 from .page_figures import POINT, SAMPLE, bounded, chart
 from .page_text import pair
 

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from ...drawing import COLD, WARM
+from ...base.drawing import COLD, WARM
 from .page_text import clean
 
 #: of a picture, and above and below its axes, in pixels

@@ -19,7 +19,7 @@ from .page_text import BLOCK, SENTENCE, clean, file_name, shown
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ...annotations import File
+    from ...base.annotations import File
     from ...course.exercise import Lab
     from ..report import Report
 

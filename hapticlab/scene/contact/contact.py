@@ -48,7 +48,7 @@ class Contact(_InASum):
         Names the contact in messages and records; two contacts of a scene need two names.
     slip : expression [m/s]
         Tangential velocity of the surfaces on each other, linear in rates; for a law with friction mu in its impacts. Friction
-        of a body that stays in touch is ``hl.friction(slip=..., F_c=mu*contact.force)`` beside the contact.
+        of a body that stays in touch is ``hl.contact.friction(slip=..., F_c=mu*contact.force)`` beside the contact.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Contact(_InASum):
 
     >>> import hapticlab as hl
     >>> q = hl.coordinate("q", unit="m"); k = hl.parameters("k", units="N/m")
-    >>> hl.Contact(q, hl.penalty(k=k), name="table").force
+    >>> hl.contact.Contact(q, hl.contact.penalty(k=k), name="table").force
     Piecewise((-k*q(t), q(t) <= 0), (0, True))
     """
 
@@ -90,7 +90,7 @@ class Contact(_InASum):
         if not self.is_force and not applied([gap], "coordinate"):
             raise SceneError(
                 f"{self.name}: gap = {gap} holds the handle alone, which no impulse can turn round; put a body behind a "
-                "virtual coupler, or take a penalty, hunt_crossley, or hl.proxy_wall"
+                "virtual coupler, or take a penalty, hunt_crossley, or hl.laws.proxy_wall"
             )
         self.law.check(gap, self.name)
         mu = getattr(self.law, "mu", sp.S.Zero)
@@ -99,7 +99,7 @@ class Contact(_InASum):
         if slip != 0:
             _check_slip(slip, self.name)
             if not hasattr(self.law, "mu"):
-                cure = "add hl.friction(slip=..., F_c=mu*contact.force) beside the contact"
+                cure = "add hl.contact.friction(slip=..., F_c=mu*contact.force) beside the contact"
                 raise SceneError(f"{self.name}: a {type(self.law).__name__} has no friction of its own; {cure}")
 
     @property
@@ -197,7 +197,7 @@ class friction(_InASum):
     --------
     >>> import hapticlab as hl
     >>> q = hl.coordinate("q", unit="m"); F_c, v_s = hl.parameters("F_c v_s", units="N m/s")
-    >>> hl.friction(slip=q.diff(hl.t), F_c=F_c, stick_speed=v_s).force
+    >>> hl.contact.friction(slip=q.diff(hl.t), F_c=F_c, stick_speed=v_s).force
     F_c*Max(-1, Min(1, Derivative(q(t), t)/v_s))
     """
 

@@ -17,7 +17,7 @@ from ..notation.units import in_si
 from .contact import Contact
 
 if TYPE_CHECKING:
-    from ...annotations import Number, Term
+    from ...base.annotations import Number, Term
 
 
 @dataclass(frozen=True)
@@ -71,8 +71,8 @@ def felt_impulse(contact: Contact, *, tau: Term, F_max: Term | None = None) -> F
     >>> import hapticlab as hl
     >>> from hapticlab import t, x
     >>> q = hl.coordinate("q", unit="m", initial=x(hl.n))
-    >>> ball = hl.Contact(q - x(t), hl.impulse(e=0.8), name="ball")
-    >>> felt = hl.felt_impulse(ball, tau="4 ms", F_max="5 N")
+    >>> ball = hl.contact.Contact(q - x(t), hl.contact.impulse(e=0.8), name="ball")
+    >>> felt = hl.contact.felt_impulse(ball, tau="4 ms", F_max="5 N")
     >>> [str(e.lhs) for e in felt.equations], list(felt.watch)
     (['ball_rise(n)', 'ball_pulse(n)'], ['ball_saturates'])
     """
@@ -112,7 +112,7 @@ def pulse_time(*, impulse: Number, F_max: Number) -> float:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> round(hl.pulse_time(impulse=0.09, F_max="5 N"), 6)
+    >>> round(hl.contact.pulse_time(impulse=0.09, F_max="5 N"), 6)
     0.006622
     """
     p, limit = in_si(impulse, "N*s", "impulse"), in_si(F_max, "N", "F_max")

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import sympy as sp
 
-from ...arguments import choice
+from ...base.arguments import choice
 from ...errors import SceneError
 from ..notation.amount import amount
 from ..notation.checks import agree_with
@@ -49,7 +49,7 @@ class impulse(ContactLaw):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.impulse(e=1.3)
+    >>> hl.contact.impulse(e=1.3)
     Traceback (most recent call last):
     hapticlab.errors.SceneError: e = 1.3; restitution lies in 0..1: above 1 every bounce would feed energy to the user
     """
@@ -103,7 +103,7 @@ class micro_impulse(ContactLaw):
     --------
     >>> import hapticlab as hl
     >>> e = hl.parameters("e", units="1", values=0.5, ranges=(0, 1))
-    >>> hl.micro_impulse(e=e, envelope="0.1 mm").e
+    >>> hl.contact.micro_impulse(e=e, envelope="0.1 mm").e
     e
     """
 
@@ -146,7 +146,7 @@ class rigid(ContactLaw):
 
     >>> import hapticlab as hl
     >>> z = hl.coordinate("z", unit="m", initial=0.1)
-    >>> hl.Contact(z, hl.rigid(), name="floor").law
+    >>> hl.contact.Contact(z, hl.contact.rigid(), name="floor").law
     rigid(mu=0)
     """
 

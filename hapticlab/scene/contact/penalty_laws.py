@@ -35,7 +35,7 @@ class penalty(ContactLaw):
     --------
     >>> import hapticlab as hl
     >>> k = hl.parameters("k", units="N/m")
-    >>> hl.penalty(k=k)
+    >>> hl.contact.penalty(k=k)
     penalty(k=k, b=0)
     """
 
@@ -93,7 +93,7 @@ class hunt_crossley(ContactLaw):
     --------
     >>> import hapticlab as hl
     >>> k, c = hl.parameters("k c", units="N/m^1.5 s/m")
-    >>> hl.hunt_crossley(k=k, c=c)
+    >>> hl.contact.hunt_crossley(k=k, c=c)
     hunt_crossley(k=k, c=c, exponent=3/2)
     """
 
@@ -136,7 +136,7 @@ class hunt_crossley(ContactLaw):
         --------
         >>> import hapticlab as hl
         >>> k_h, c = hl.parameters("k_h c", units="N/m^1.5 s/m")
-        >>> round(hl.hunt_crossley(k=k_h, c=c).duration(1e6, 0.05, 1.0) * 1e3, 4)
+        >>> round(hl.contact.hunt_crossley(k=k_h, c=c).duration(1e6, 0.05, 1.0) * 1e3, 4)
         3.8653
         """
         power = float(self.exponent) + 1
@@ -158,7 +158,7 @@ class hunt_crossley(ContactLaw):
         Examples
         --------
         >>> import hapticlab as hl
-        >>> round(hl.hunt_crossley.restitution(0.3), 9)
+        >>> round(hl.contact.hunt_crossley.restitution(0.3), 9)
         0.832869792
         """
         if cv < 1e-4:  # where the two sides cancel, their series

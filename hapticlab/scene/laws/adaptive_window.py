@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ...arguments import choice, count
+from ...base.arguments import choice, count
 from ...errors import SceneError
 from ..notation.amount import Amount, amount
 from ..notation.parameters import T
@@ -14,7 +14,7 @@ from ..notation.symbols import n, signal, when, x
 from .estimators import VelocityEstimate, backward_velocity
 
 if TYPE_CHECKING:
-    from ...annotations import Term
+    from ...base.annotations import Term
 
 
 #: samples back that a window may reach: each takes a dozen instructions of every tick
@@ -49,7 +49,7 @@ def window_velocity(*, band: Term, most: int = 8, fit: str = "end", name: str = 
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.window_velocity(band="20 um", most=3).name
+    >>> hl.velocity.window(band="20 um", most=3).name
     'adaptive window of 3, end fit'
     """
     most = count("most", most, "a window", of="periods", most=LONGEST_WINDOW, error=SceneError)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ...arguments import choice, instance
+from ...base.arguments import choice, instance
 from ...errors import SceneError
 from ..notation.symbols import T, delay, n, parameters, t, v, when, x
 from ..scene import Scene, check_scene
@@ -17,7 +17,7 @@ from .taps import LEAD, TAPS, LawName
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...annotations import Term
+    from ...base.annotations import Term
 
 
 UNILATERAL = ("gate", "clip", None)
@@ -66,7 +66,7 @@ def wall(law: LawName = "zoh", unilateral: str = "gate", clamp: bool = False, ve
     >>> import hapticlab as hl
     >>> hl.wall("ellis")(k=150, x_o="10 mm").values
     {'B': 0.0, 'x_o': 0.01, 'k': 150.0}
-    >>> hl.wall("half_sample", velocity=hl.filtered_velocity(tau="4 ms")).name
+    >>> hl.wall("half_sample", velocity=hl.velocity.filtered(tau="4 ms")).name
     'half_sample wall, filtered difference'
     """
     choice("law", law, TAPS, error=SceneError)
@@ -123,7 +123,7 @@ def force_filter(scene: Scene, clamp: bool = False) -> Scene:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.force_filter(hl.wall(unilateral=None)).name
+    >>> hl.laws.force_filter(hl.wall(unilateral=None)).name
     'filtered zoh wall'
     """
     check_scene(scene)
@@ -152,7 +152,7 @@ def virtual_damper(velocity: VelocityEstimate | None = None) -> Scene:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.virtual_damper()(B=-0.02).values
+    >>> hl.laws.virtual_damper()(B=-0.02).values
     {'B': -0.02}
     """
     B = parameters("B", units="N*s/m", ranges=(-math.inf, math.inf))
@@ -183,7 +183,7 @@ def virtual_coupler(z: sp.Expr, *, K: Term, b: Term) -> sp.Expr:
     --------
     >>> import hapticlab as hl
     >>> z = hl.coordinate("z", unit="m"); K, b = hl.parameters("K b", units="N/m N*s/m")
-    >>> hl.virtual_coupler(z, K=K, b=b)
+    >>> hl.laws.virtual_coupler(z, K=K, b=b)
     K*(-z(t) + x(t)) + b*(v(t) - Derivative(z(t), t))
     """
     return K * (x(t) - z) + b * (v(t) - z.diff(t))
@@ -195,7 +195,7 @@ def predicted_sample(signal: Callable[[sp.Expr], sp.Expr] = x) -> sp.Expr:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.predicted_sample()
+    >>> hl.laws.predicted_sample()
     2*x(n) - x(n - 1)
     """
     return 2 * signal(n) - signal(n - 1)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ...arguments import choice, instance
+from ...base.arguments import choice, instance
 from ...errors import SceneError
 from ..notation.amount import amount
 from ..notation.parameters import parameters
@@ -16,7 +16,7 @@ from ..scene import Scene
 from .estimators import AN_ESTIMATE, VelocityEstimate
 
 if TYPE_CHECKING:
-    from ...annotations import Term
+    from ...base.annotations import Term
 
 
 SHAPES = ("smooth", "dead_zone")
@@ -63,10 +63,10 @@ def damping_compensation(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> free = hl.damping_compensation(b=0.1, coulomb=0.05, speed="5 mm/s")(viscous=0.9, dry=0.8)
+    >>> free = hl.laws.damping_compensation(b=0.1, coulomb=0.05, speed="5 mm/s")(viscous=0.9, dry=0.8)
     >>> sorted(free.values)
     ['dry', 'viscous']
-    >>> wall = hl.damping_compensation(hl.wall(), b=0.1)(k=20, viscous=0.9)
+    >>> wall = hl.laws.damping_compensation(hl.wall(), b=0.1)(k=20, viscous=0.9)
     """
     choice("shape", shape, SHAPES, error=SceneError)
     instance("velocity", velocity, VelocityEstimate | None, AN_ESTIMATE, error=SceneError)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ...arguments import count, instance
+from ...base.arguments import count, instance
 from ...errors import SceneError
 from ..notation.amount import amount
 from ..notation.parameters import T
@@ -21,7 +21,7 @@ from ..scene import Scene
 from .estimators import AN_ESTIMATE, VelocityEstimate
 
 if TYPE_CHECKING:
-    from ...annotations import Term
+    from ...base.annotations import Term
 
 
 #: periods that a pulse may last
@@ -75,7 +75,7 @@ def braking_pulse(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.braking_pulse(hl.wall(), part=0.8, mass="50 g", periods=2).name
+    >>> hl.laws.braking_pulse(hl.wall(), part=0.8, mass="50 g", periods=2).name
     'zoh wall with a braking pulse'
     """
     moving, eom = _speed(velocity)
@@ -143,7 +143,7 @@ def friction_pulse(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.friction_pulse(hl.wall(), friction=2.0, mass="50 g", periods=20).name
+    >>> hl.laws.friction_pulse(hl.wall(), friction=2.0, mass="50 g", periods=20).name
     'zoh wall with a friction pulse'
     """
     moving, eom = _speed(velocity)

@@ -28,10 +28,10 @@ from ..notation.parameters import T
 from ..notation.symbols import n, signal, x
 
 if TYPE_CHECKING:
-    from ...annotations import Term
+    from ...base.annotations import Term
 
 
-AN_ESTIMATE = "an estimate, as in velocity=hl.filtered_velocity(tau='4 ms')"
+AN_ESTIMATE = "an estimate, as in velocity=hl.velocity.filtered(tau='4 ms')"
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class VelocityEstimate:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> estimate = hl.filtered_velocity(tau="4 ms")
+    >>> estimate = hl.velocity.filtered(tau="4 ms")
     >>> B = hl.parameters("B", units="N*s/m")
     >>> damper = hl.Scene(force=B * estimate.velocity, eom=estimate.eom)
     """
@@ -77,7 +77,7 @@ class VelocityEstimate:
         Examples
         --------
         >>> import hapticlab as hl
-        >>> hl.backward_velocity().transfer(1e-3)
+        >>> hl.velocity.backward().transfer(1e-3)
         ([1000.0, -1000.0], [1.0])
         """
         if not self._transfer:
@@ -102,7 +102,7 @@ def backward_velocity() -> VelocityEstimate:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(hl.backward_velocity())
+    >>> print(hl.velocity.backward())
     backward difference: v = (x(n) - x(n - 1))/T
     """
     return VelocityEstimate(_difference(), (), "backward difference", (), ((1 / T, -1 / T), (1,)))
@@ -132,7 +132,7 @@ def filtered_velocity(*, tau: Term, name: str = "v_filtered") -> VelocityEstimat
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(hl.filtered_velocity(tau="4 ms"))
+    >>> print(hl.velocity.filtered(tau="4 ms"))
     filtered difference: v = v_filtered(n)
       v_filtered(n) = (v_filtered(n - 1)*(0.004 s) + x(n) - x(n - 1))/(T + (0.004 s))
     """

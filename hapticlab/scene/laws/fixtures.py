@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ...arguments import instance, number
+from ...base.arguments import instance, number
 from ...errors import SceneError
 from ..notation.amount import Amount
 from ..notation.parameters import T
@@ -16,7 +16,7 @@ from ..notation.units import in_si
 from ..scene import Scene
 
 if TYPE_CHECKING:
-    from ...annotations import Term
+    from ...base.annotations import Term
 
 
 def guidance(path: sp.Expr) -> Scene:
@@ -41,7 +41,7 @@ def guidance(path: sp.Expr) -> Scene:
     >>> import sympy as sp
     >>> import hapticlab as hl
     >>> A, w = hl.parameters("A w", units="m 1/s", values=(0.01, 2))
-    >>> guided = hl.guidance(A * sp.sin(w * hl.t))(k=200, b=1, F_max=1.5)
+    >>> guided = hl.laws.guidance(A * sp.sin(w * hl.t))(k=200, b=1, F_max=1.5)
     >>> log = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3).run(guided, duration=3.0)   # nobody holds the handle
     >>> bool(abs(log.x[2000:] - 0.01 * np.sin(2 * log.t[2000:])).max() < 1e-4)
     True
@@ -74,8 +74,8 @@ def tremor_filter(centre: Term = "10 Hz", bandwidth: Term = "6 Hz") -> Scene:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> scene = hl.tremor_filter()(B=20)
-    >>> round(hl.port_damping(scene, T=1e-3), 3)       # what it asks of the device, in N s/m
+    >>> scene = hl.laws.tremor_filter()(B=20)
+    >>> round(hl.passivity.port_damping(scene, T=1e-3), 3)       # what it asks of the device, in N s/m
     0.631
     """
     centre, bandwidth = (_frequency(name, given) for name, given in (("centre", centre), ("bandwidth", bandwidth)))

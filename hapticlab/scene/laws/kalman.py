@@ -41,7 +41,7 @@ def kalman_velocity(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> estimate = hl.kalman_velocity(acceleration=50, noise="10 um")
+    >>> estimate = hl.velocity.kalman(acceleration=50, noise="10 um")
     >>> [round(c, 6) for c in estimate.transfer(1e-3)[1]]
     [1.0, 0.117218, 0.05496]
     """

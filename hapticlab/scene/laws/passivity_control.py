@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ...arguments import choice
+from ...base.arguments import choice
 from ...errors import SceneError
 from ..notation.symbols import T, delay, n, parameters, signal, v, when, x
 from ..notation.written import expression
 from ..scene import check_scene
 
 if TYPE_CHECKING:
-    from ...annotations import Number, Term
+    from ...base.annotations import Number, Term
     from ..scene import Scene
 
 
@@ -35,7 +35,7 @@ def wall_energy() -> sp.Expr:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.wall_energy()
+    >>> hl.laws.wall_energy()
     k*Max(0, -x_o + x(n))**2/2
     """
     k, x_o = parameters("k x_o", units="N/m m", values=(None, 0))
@@ -63,7 +63,7 @@ def passivity_observer(scene: Scene, *, lag: int = 0) -> Scene:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> watched = hl.passivity_observer(hl.wall()(k=500))
+    >>> watched = hl.laws.passivity_observer(hl.wall()(k=500))
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
     >>> log = paddle.run(watched, duration=0.05, x=-0.002, v=0.2, progress=False)
     >>> bool(abs(log.W[-1] + hl.energy(log).generated) < 1e-9)
@@ -120,7 +120,7 @@ def passivity_controller(
     form : {"series", "parallel"}
     alpha_max : float [N s/m]
         For "series": the largest damper, to be bound here or later; what it cannot take back at once waits. A
-        hundredth to a tenth of :func:`hapticlab.damper_limit` is enough; one count of an encoder is felt as
+        hundredth to a tenth of :func:`hapticlab.stability.damper_limit` is enough; one count of an encoder is felt as
         alpha_max count/T, and beyond that limit the controller chatters by itself.
     beta_max : float [m/(N s)]
         For "parallel": the fastest slip, in m/s for each newton; to be bound here or later. A spring K that slips by
@@ -155,7 +155,7 @@ def passivity_controller(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> wall = hl.passivity_controller(hl.wall(), alpha_max=5.0)(k=500)
+    >>> wall = hl.laws.passivity_controller(hl.wall(), alpha_max=5.0)(k=500)
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
     >>> bare, kept = (paddle.run(s, duration=0.2, x=-0.002, v=0.2, progress=False) for s in (hl.wall()(k=500), wall))
     >>> [bool(hl.energy(log).W[-1] < -1e-4) for log in (bare, kept)]
@@ -268,7 +268,7 @@ def _check(form, scene, stored, predict, lag):
     if form == "parallel" and (stored == 0 or not alone):
         raise SceneError(
             f"stored = {stored}; the parallel form lets go of what the environment stores and needs it as a function of "
-            "x(n) alone: stored=hl.wall_energy() for hl.wall()"
+            "x(n) alone: stored=hl.laws.wall_energy() for hl.wall()"
         )
     if form == "parallel" and scene.coordinates:
         moving = ", ".join(type(q).__name__ for q in scene.coordinates)

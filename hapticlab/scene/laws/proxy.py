@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ...arguments import choice, count
+from ...base.arguments import choice, count
 from ...errors import SceneError
 from ..notation.amount import amount
 from ..notation.cases import when
@@ -17,7 +17,7 @@ from ..scene import Scene
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...annotations import Term
+    from ...base.annotations import Term
 
 
 def proxy_wall(sides: str = "one") -> Scene:
@@ -43,7 +43,7 @@ def proxy_wall(sides: str = "one") -> Scene:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.proxy_wall("both")(K=500, x_o="10 mm").values
+    >>> hl.laws.proxy_wall("both")(K=500, x_o="10 mm").values
     {'B': 0.0, 'x_o': 0.01, 'K': 500.0}
     """
     choice("sides", sides, ("one", "both"), need="'one' (solid beyond x_o) or 'both' (a plate at x_o)", error=SceneError)
@@ -95,7 +95,7 @@ def proxy_curve(height: Callable[[sp.Expr], sp.Expr], *, load: Term, mu: Term = 
     >>> import hapticlab as hl
     >>> import sympy as sp
     >>> A, w = hl.parameters("A w", units="m m")
-    >>> ridges = hl.proxy_curve(lambda z: A * sp.cos(2 * sp.pi * z / w), load="1 N", mu=0.1)
+    >>> ridges = hl.laws.proxy_curve(lambda z: A * sp.cos(2 * sp.pi * z / w), load="1 N", mu=0.1)
     >>> sorted(ridges.parameters)
     ['A', 'K', 'w']
     """

@@ -57,7 +57,7 @@ def device_image(constraint: Any, *, name: str = "image") -> Any:
     >>> import hapticlab as hl
     >>> from hapticlab import t, x
     >>> q = hl.coordinate("q", unit="m")
-    >>> hl.device_image(q - x(t)).force
+    >>> hl.mechanics.device_image(q - x(t)).force
     image(t)
     """
     check_name(name, "device image")

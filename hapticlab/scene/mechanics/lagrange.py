@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ...arguments import choice
+from ...base.arguments import choice
 from ...errors import MassError, SceneError
 from ..contact.contact import Contact, friction
 from ..notation.checks import agree_with, applied
@@ -82,7 +82,7 @@ class Mechanics:
         names = [c.name for c in self.contacts]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice:
-            raise SceneError(f"two contacts are called {twice}; give each its own, hl.Contact(..., name='...')")
+            raise SceneError(f"two contacts are called {twice}; give each its own, hl.contact.Contact(..., name='...')")
 
     def __getitem__(self, name: Any) -> sp.Expr:
         """The coordinate of a name; the coordinate or parameter that a symbol of SymPy became."""
@@ -171,7 +171,7 @@ def lagrange(
     >>> from hapticlab import t
     >>> m, k = hl.parameters("m k", units="kg N/m")
     >>> z = hl.coordinate("z", unit="m")
-    >>> hl.lagrange(m * z.diff(t) ** 2 / 2 - k * z**2 / 2).equations
+    >>> hl.mechanics.lagrange(m * z.diff(t) ** 2 / 2 - k * z**2 / 2).equations
     (Eq(m*Derivative(z(t), (t, 2)), -k*z(t)),)
     """
     L, R = expression(L, "L"), expression(dissipation, "dissipation")
@@ -182,7 +182,7 @@ def lagrange(
     contacts = _listed(contacts)
     for c in contacts:
         if not isinstance(c, (Contact, friction)):
-            raise SceneError(f"contacts holds {c!r}; needs hl.Contact(gap, law) or hl.friction(slip=...)")
+            raise SceneError(f"contacts holds {c!r}; needs hl.contact.Contact(gap, law) or hl.contact.friction(slip=...)")
     forces = {q: expression(Q, f"force on {q}") for q, Q in _forces(forces).items()}
     moved = [L, R, *zeros, *forces, *(part for c in contacts for part in _parts(c)[:1])]
     coordinates = tuple(applied(moved, "coordinate"))

@@ -16,7 +16,7 @@ from .sympy_symbols import Vocabulary, gathered
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from ...annotations import Number
+    from ...base.annotations import Number
     from .lagrange import Mechanics
 
 
@@ -72,7 +72,7 @@ def from_mechanics(
     >>> from sympy.physics.mechanics import LagrangesMethod, dynamicsymbols
     >>> theta, (m, l, g) = dynamicsymbols("theta"), sp.symbols("m l g")
     >>> L = m * l**2 * theta.diff() ** 2 / 2 + m * g * l * sp.cos(theta)
-    >>> mech = hl.from_mechanics(
+    >>> mech = hl.mechanics.from_mechanics(
     ...     LagrangesMethod(L, [theta]), units={theta: "rad", m: "kg", l: "m", g: "m/s^2"},
     ...     values={m: 0.1, l: 0.2, g: 9.81}, initial={theta: "30 deg"},
     ... )
@@ -96,7 +96,7 @@ def from_mechanics(
         return of_kane(system, given, enforce)
     raise SceneError(
         f"{type(system).__name__}: needs a LagrangesMethod, KanesMethod or System of sympy.physics.mechanics; "
-        "for energies alone write hl.lagrange(L)"
+        "for energies alone write hl.mechanics.lagrange(L)"
     )
 
 

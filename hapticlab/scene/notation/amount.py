@@ -6,7 +6,7 @@ import math
 
 import sympy as sp
 
-from ...arguments import number
+from ...base.arguments import number
 from ...errors import SceneError
 from .checks import agree_with
 from .parameters import Parameter
@@ -66,7 +66,7 @@ class Amount(sp.Expr):
 def amount(given, unit, where, owner="", **limits):
     """An expression in a unit, from a number, a text such as '5 mm' or an expression; refuse any other unit.
 
-    A value that is known is held to the ``limits`` of :func:`hapticlab.arguments.number`.
+    A value that is known is held to the ``limits`` of :func:`hapticlab.base.arguments.number`.
     """
     expr = _in_unit(given, unit, where)
     known = number_of(expr)

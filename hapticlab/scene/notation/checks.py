@@ -34,7 +34,7 @@ def check_size(expressions):
         if len(seen) > MOST_PARTS:
             raise SceneError(
                 f"the force and the equations have more than {MOST_PARTS} different parts, each an instruction of every tick "
-                "or more; a long sum or series needs fewer terms, a table of values a hl.Curve"
+                "or more; a long sum or series needs fewer terms, a table of values a hl.shapes.Curve"
             )
 
 
@@ -53,10 +53,13 @@ def equations(eom):
             continue
         if hasattr(equation, "generalized_force"):
             raise SceneError(
-                f"eom holds {equation.name}, which is no equation; it goes to those of its bodies: hl.lagrange(L, contacts=[...])"
+                f"eom holds {equation.name}, which is no equation; it goes to those of its bodies: "
+                "hl.mechanics.lagrange(L, contacts=[...])"
             )
         if not isinstance(equation, sp.Eq):
-            raise SceneError(f"eom holds {equation!r}; needs equations, sp.Eq(left side, right side), or hl.lagrange(...)")
+            raise SceneError(
+                f"eom holds {equation!r}; needs equations, sp.Eq(left side, right side), or hl.mechanics.lagrange(...)"
+            )
         left = equation.lhs
         for side in equation.args:
             expression(side, "a side of an equation")

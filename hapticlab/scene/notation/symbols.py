@@ -18,7 +18,7 @@ from .written import CONDITIONS, check_name, expression
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from ...annotations import Term
+    from ...base.annotations import Term
     from ..laws.estimators import VelocityEstimate
 
 
@@ -230,7 +230,7 @@ class delay(sp.Function):
     --------
     >>> import hapticlab as hl
     >>> k = hl.parameters("k", units="N/m")
-    >>> hl.delay(k * hl.x(hl.n))
+    >>> hl.laws.delay(k * hl.x(hl.n))
     delay(k*x(n))
     """
 
@@ -241,9 +241,9 @@ class delay(sp.Function):
     @classmethod
     def eval(cls, argument: Any) -> sp.Expr | None:
         if isinstance(argument, CONDITIONS):
-            raise SignalError(f"delay({argument}): a condition has no delay; write hl.delay(hl.when({argument}, 1, 0)) > 0")
+            raise SignalError(f"delay({argument}): a condition has no delay; write hl.laws.delay(hl.when({argument}, 1, 0)) > 0")
         if not isinstance(argument, sp.Expr):
-            raise SignalError(f"delay({argument!r}): needs an expression, such as hl.delay(k * x(n))")
+            raise SignalError(f"delay({argument!r}): needs an expression, such as hl.laws.delay(k * x(n))")
         return argument if argument.is_number else None
 
     def _eval_derivative(self, s):

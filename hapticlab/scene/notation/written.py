@@ -13,7 +13,7 @@ from ...errors import SceneError
 #: SymPy counts every symbol as a Boolean too; these are conditions and nothing else
 CONDITIONS = (Relational, BooleanFunction, BooleanAtom)
 
-#: what a scene, a record of a run (hapticlab/records.py) and the loop around a scene call their own
+#: what a scene, a record of a run (hapticlab/base/telemetry.py) and the loop around a scene call their own
 RESERVED = frozenset(
     "n t T x v F x_true v_true F_applied x_switch tick intent noise unlocated "
     "delay channels units paddle scene parameters fault saturated gap overrun every changes columns save load to_csv".split()

@@ -54,7 +54,7 @@ class Curve(Shape):
     >>> import hapticlab as hl
     >>> import sympy as sp
     >>> a, b = hl.parameters("a b", units="m m", values=(0.1, 0.05))
-    >>> cam = hl.Curve(lambda u: (a * sp.cos(u), b * sp.sin(u))).at(name="cam")
+    >>> cam = hl.shapes.Curve(lambda u: (a * sp.cos(u), b * sp.sin(u))).at(name="cam")
     """
 
     tracked = True
@@ -110,7 +110,7 @@ class Tracked:
         return when(self.gap <= 0, law.force(self.gap, self.rate))
 
     def generalized_force(self, law, q):
-        """Generalized force along a coordinate q, for ``forces={q: ...}`` of :func:`hapticlab.lagrange`, or along x(t).
+        """Generalized force along a coordinate q, for ``forces={q: ...}`` of :func:`hapticlab.mechanics.lagrange`, or along x(t).
 
         The closest points stay where they are on their curves: the distance is stationary there.
         """
@@ -158,7 +158,7 @@ def track(
     >>> import sympy as sp
     >>> a, b = hl.parameters("a b", units="m m", values=(0.1, 0.05))
     >>> z = hl.coordinate("z", unit="m", initial=0.2)
-    >>> found = hl.track(hl.Curve(lambda u: (a * sp.cos(u), b * sp.sin(u))).at(), hl.Circle(0.01).at(y=z))
+    >>> found = hl.shapes.track(hl.shapes.Curve(lambda u: (a * sp.cos(u), b * sp.sin(u))).at(), hl.shapes.Circle(0.01).at(y=z))
     >>> found.coordinates, float(type(found.coordinates[0]).initial)
     ((u(t),), 1.5707963267948966)
     """
@@ -182,7 +182,9 @@ def _checked(a, b):
         if not isinstance(body, Placed):
             raise SceneError(f"{body!r} is no shape in its place; write Curve(...).at(x=..., y=...)")
     if not isinstance(a.shape, Curve) or not isinstance(b.shape, (Curve, Circle)):
-        raise SceneError(f"{a.name} and {b.name}: track takes a Curve, and a Curve or a Circle; for the others there is hl.gap")
+        raise SceneError(
+            f"{a.name} and {b.name}: track takes a Curve, and a Curve or a Circle; for the others there is hl.shapes.gap"
+        )
     return [body for body in (a, b) if isinstance(body.shape, Curve)]
 
 

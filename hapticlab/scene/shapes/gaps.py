@@ -13,7 +13,7 @@ from typing import Any
 import sympy as sp
 from sympy.core.symbol import Str
 
-from ...arguments import choice
+from ...base.arguments import choice
 from ...errors import SceneError
 from ..notation.cases import when
 from .closest_points import PARTS, ClosestPoints
@@ -81,7 +81,7 @@ def gap(a: Placed, b: Placed, *, method: str = "faces") -> sp.Expr:
     --------
     >>> import hapticlab as hl
     >>> z = hl.coordinate("z", unit="m")
-    >>> hl.gap(hl.ground(), hl.Circle("5 mm").at(y=z))
+    >>> hl.shapes.gap(hl.shapes.ground(), hl.shapes.Circle("5 mm").at(y=z))
     z(t) - (0.005 m)
     """
     return closest(a, b, method=method).gap
@@ -94,7 +94,7 @@ def closest(a: Placed, b: Placed, *, method: str = "faces") -> Any:
     --------
     >>> import hapticlab as hl
     >>> z = hl.coordinate("z", unit="m")
-    >>> found = hl.closest(hl.ground(), hl.Circle("5 mm").at(y=z))
+    >>> found = hl.shapes.closest(hl.shapes.ground(), hl.shapes.Circle("5 mm").at(y=z))
     >>> found.gap, found.normal
     (z(t) - (0.005 m), (0, 1))
     """
@@ -103,7 +103,7 @@ def closest(a: Placed, b: Placed, *, method: str = "faces") -> Any:
     choice("method", method, METHODS, error=SceneError)
     if isinstance(b.shape, HalfPlane) or (isinstance(a.shape, Circle) and not isinstance(b.shape, Circle)):
         if isinstance(a.shape, HalfPlane):
-            raise SceneError(f"{a.name} and {b.name} are two half-planes, which always overlap; bound one of them: hl.Box")
+            raise SceneError(f"{a.name} and {b.name} are two half-planes, which always overlap; bound one of them: hl.shapes.Box")
         distance, (n_x, n_y), point = _closest(b, a, method)
         normal = (-n_x, -n_y)
     else:
@@ -114,9 +114,9 @@ def closest(a: Placed, b: Placed, *, method: str = "faces") -> Any:
 def check_placed(body):
     """Refuse what is no shape in its place, and a curve, whose gap takes equations of its own."""
     if not isinstance(body, Placed):
-        raise SceneError(f"{body!r} is no shape in its place; write hl.Circle(0.01).at(x=..., y=..., name='ball')")
+        raise SceneError(f"{body!r} is no shape in its place; write hl.shapes.Circle(0.01).at(x=..., y=..., name='ball')")
     if body.shape.tracked:
-        raise SceneError(f"{body.name} is a curve, whose closest point is followed by an equation of motion: hl.track")
+        raise SceneError(f"{body.name} is a curve, whose closest point is followed by an equation of motion: hl.shapes.track")
 
 
 def corners(a, b):

@@ -37,7 +37,9 @@ def outline(points):
     _check_simple(corners)
     corners = _without_collinear(corners)
     if len(corners) < 3:
-        raise SceneError(f"the {len(points)} points of the polygon lie on one line; a thin bar is hl.Segment or hl.Capsule")
+        raise SceneError(
+            f"the {len(points)} points of the polygon lie on one line; a thin bar is hl.shapes.Segment or hl.shapes.Capsule"
+        )
     if _area(corners) < 0:
         corners.reverse()
     first = corners.index(min(corners))

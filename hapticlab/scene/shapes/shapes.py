@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from typing import Any
 
-    from ...annotations import Term
+    from ...base.annotations import Term
 
 ZERO = sp.S.Zero
 #: the outline of a half-plane is its edge
@@ -83,7 +83,7 @@ class Circle(Shape):
     --------
     >>> import hapticlab as hl
     >>> z = hl.coordinate("z", unit="m")
-    >>> hl.Circle("20 mm").at(y=z, name="ball")
+    >>> hl.shapes.Circle("20 mm").at(y=z, name="ball")
     ball: Circle(radius=(0.02 m)) at (0, z(t)), turned by 0
     """
 
@@ -100,7 +100,7 @@ class Box(Shape):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.Box("40 mm", "20 mm").at(y="15 mm", name="book")
+    >>> hl.shapes.Box("40 mm", "20 mm").at(y="15 mm", name="book")
     book: Box(width=(0.04 m), height=(0.02 m)) at (0, (0.015 m)), turned by 0
     """
 
@@ -128,7 +128,7 @@ class Capsule(Shape):
     --------
     >>> import hapticlab as hl
     >>> z = hl.coordinate("z", unit="m")
-    >>> hl.Capsule("40 mm", "5 mm").at(y=z, name="bar")
+    >>> hl.shapes.Capsule("40 mm", "5 mm").at(y=z, name="bar")
     bar: Capsule(length=(0.04 m), radius=(0.005 m)) at (0, z(t)), turned by 0
     """
 
@@ -153,7 +153,7 @@ class Segment(Shape):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.Segment("40 mm").at(name="edge")
+    >>> hl.shapes.Segment("40 mm").at(name="edge")
     edge: Segment(length=(0.04 m)) at (0, 0), turned by 0
     """
 
@@ -184,7 +184,7 @@ class Polygon(Shape):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hook = hl.Polygon([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)])
+    >>> hook = hl.shapes.Polygon([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)])
     >>> [len(part) for part in hook.parts]
     [4, 4]
     """
@@ -219,7 +219,8 @@ class HalfPlane(Shape):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> floor, wall = hl.HalfPlane().at(name="floor"), hl.HalfPlane().at(x=0.1, angle=1.5707963267948966, name="wall")
+    >>> floor = hl.shapes.HalfPlane().at(name="floor")
+    >>> wall = hl.shapes.HalfPlane().at(x=0.1, angle=1.5707963267948966, name="wall")
     >>> floor.direction(0, 1), wall.direction(0, 1)
     ((0, 1), (-1, 0))
     """
@@ -235,7 +236,7 @@ def ground(y: Term = 0, *, name: str = "ground") -> Placed:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.ground("-20 mm")
+    >>> hl.shapes.ground("-20 mm")
     ground: HalfPlane() at (0, (-0.02 m)), turned by 0
     """
     return HalfPlane().at(y=y, name=name)
@@ -293,7 +294,7 @@ def replacement(body: Placed, forces: Iterable[Any]) -> Any:
     --------
     >>> import hapticlab as hl
     >>> N, a = hl.parameters("N a", units="N m")
-    >>> hl.replacement(hl.Box(1, 1).at(), [((0, N), (a, 0)), ((0, -N), (0, 0))])
+    >>> hl.shapes.replacement(hl.shapes.Box(1, 1).at(), [((0, N), (a, 0)), ((0, -N), (0, 0))])
     (0, 0, N*a)
     """
     F_x, F_y = sp.Add(*(f[0] for f, _ in forces)), sp.Add(*(f[1] for f, _ in forces))

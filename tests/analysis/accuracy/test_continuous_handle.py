@@ -29,10 +29,10 @@ def test_what_samples_become_as_the_period_goes_to_zero():
     assert without_samples((x(n) - x(n - 2)) / (2 * T)) == v(n)
     assert without_samples(x(n) + T / 2 * v(n)) == x(n)
     assert without_samples(k * sp.sin(3 * n * T)) == k * sp.sin(3 * t)
-    assert without_samples(hl.delay(hl.delay(k * v(n)))) == k * v(n)
+    assert without_samples(hl.laws.delay(hl.laws.delay(k * v(n)))) == k * v(n)
     assert "acceleration" in str(without_samples((v(n) - v(n - 1)) / T))
     with pytest.raises(ProgramError, match="difference of a delay"):
-        without_samples((k * x(n) - hl.delay(k * x(n))) / T)
+        without_samples((k * x(n) - hl.laws.delay(k * x(n))) / T)
 
 
 def test_a_driven_program_sees_the_handle_move_within_the_period():
@@ -51,7 +51,7 @@ def test_a_driven_program_sees_the_handle_move_within_the_period():
 def test_one_tick_on_arrays_is_a_tick_of_a_run(engine):
     z = hl.coordinate("z", unit="m")
     m, K, b = hl.parameters("m K b", units="kg N/m N*s/m", values=(0.08, 310, 0.6))
-    F = hl.virtual_coupler(z, K=K, b=b)
+    F = hl.laws.virtual_coupler(z, K=K, b=b)
     program = hl.compile(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)]), T=1e-3, dtype="float64")
     loaded, samples = load(program, engine), np.sin(np.arange(6.0))
     first = loaded.run(1, samples[:1, None])

@@ -35,13 +35,15 @@ def body(law, **start):
     """Return (coordinate, model) of a body of 30 g that falls on the handle."""
     y = hl.coordinate("y", unit="m", **start)
     m, g = hl.parameters("m g", units="kg m/s^2", values=(0.03, 9.81))
-    return y, hl.lagrange(m * y.diff(t) ** 2 / 2 - m * g * y, contacts=[hl.Contact(y - x(t), law, name="touch")])
+    return y, hl.mechanics.lagrange(
+        m * y.diff(t) ** 2 / 2 - m * g * y, contacts=[hl.contact.Contact(y - x(t), law, name="touch")]
+    )
 
 
 def test_a_body_on_the_handle_leaves_where_the_handle_falls_faster_than_it():
     w, A, g = 20.0, 0.04, 9.81
     motion = HandleMotion("shake", A * (1 - sp.cos(sp.Float(w) * t)), 0.3)
-    y, falls = body(hl.rigid())
+    y, falls = body(hl.contact.rigid())
     times = np.linspace(0, 0.3, 601)
     handle = A * (1 - np.cos(w * times))
     t_0 = np.arccos(-g / (A * w**2)) / w  # where x'' = -g
@@ -55,7 +57,7 @@ def test_a_body_on_the_handle_leaves_where_the_handle_falls_faster_than_it():
 
 
 def test_a_bounce_is_newtons():
-    y, falls = body(hl.impulse(e=hl.parameters("e", units="1", values=0.6, ranges=(0, 1))), initial=0.02)
+    y, falls = body(hl.contact.impulse(e=hl.parameters("e", units="1", values=0.6, ranges=(0, 1))), initial=0.02)
     times = np.linspace(0, 0.15, 301)
     hit = np.sqrt(2 * 0.02 / 9.81)
     since = times - hit
@@ -72,7 +74,9 @@ def test_stick_and_slip_have_the_period_of_the_closed_form():
     z = hl.coordinate("z", unit="m")
     p = hl.parameters("m K F_s F_c", units="kg N/m N N", values=(m, K, F_s, F_c))
     F = p[1] * (x(t) - z)
-    drawn = hl.lagrange(p[0] * z.diff(t) ** 2 / 2, forces={z: F}, contacts=[hl.friction(slip=z.diff(t), F_c=p[3], F_s=p[2])])
+    drawn = hl.mechanics.lagrange(
+        p[0] * z.diff(t) ** 2 / 2, forces={z: F}, contacts=[hl.contact.friction(slip=z.diff(t), F_c=p[3], F_s=p[2])]
+    )
     scene, motion = hl.Scene(force=F, eom=[drawn]), HandleMotion("draw", sp.Float(u) * t, 3.0)
     times = np.linspace(0, 3.0, 30001)
     found = second(scene, motion, times)
@@ -92,12 +96,12 @@ def test_stick_and_slip_have_the_period_of_the_closed_form():
 
 @pytest.mark.wide
 def test_two_contacts_at_once_have_one_solver():
-    y, _ = body(hl.rigid())
+    y, _ = body(hl.contact.rigid())
     m, g = hl.parameters("m g", units="kg m/s^2", values=(0.03, 9.81))
     z = hl.coordinate("z", unit="m", initial=0.01)
-    law = hl.impulse(e=0)
-    contacts = [hl.Contact(y - x(t), law, name="low"), hl.Contact(z - y, law, name="high")]
-    stack = hl.lagrange(m * (y.diff(t) ** 2 + z.diff(t) ** 2) / 2 - m * g * (y + z), contacts=contacts)
+    law = hl.contact.impulse(e=0)
+    contacts = [hl.contact.Contact(y - x(t), law, name="low"), hl.contact.Contact(z - y, law, name="high")]
+    stack = hl.mechanics.lagrange(m * (y.diff(t) ** 2 + z.diff(t) ** 2) / 2 - m * g * (y + z), contacts=contacts)
     found = reference(hl.Scene(force=seen(z), eom=[stack]), STILL)
     assert not found.certified and "two contacts touch at once" in found.how
 
@@ -119,7 +123,7 @@ def test_friction_that_is_stiff_goes_to_a_solver_for_it():
 @pytest.mark.parametrize(("values", "peak"), [({"k_b": 2e3}, 1e-6), ({"k_b": 2e5}, 1e-6)])
 def test_penalty_contacts_shorter_than_a_sample_are_certified(values, peak):
     k_b = hl.parameters("k_b", units="N/m", values=1e3)
-    scene = hl.library.ball_on_the_paddle(hl.penalty(k=k_b))(**values)  # 2e5 N/m: in contact for 1.1 ms
+    scene = hl.library.ball_on_the_paddle(hl.contact.penalty(k=k_b))(**values)  # 2e5 N/m: in contact for 1.1 ms
     motion = HandleMotion("sine", 0.004 * sp.sin(2 * sp.pi * 5.3 * t) * (1 - sp.exp(-((t / 0.05) ** 2))), 0.6)
     found = reference(scene, motion)
     assert found.agreement < peak * found.peak, str(found)

@@ -20,7 +20,7 @@ TRUE = reference(SPRING, SINE)
 def coupled(hl=hl):
     z = hl.coordinate("z", unit="m")
     m, k, b = hl.parameters("m k b", units="kg N/m N*s/m", values=(0.05, 500, 1.0))
-    F = hl.virtual_coupler(z, K=k, b=b)
+    F = hl.laws.virtual_coupler(z, K=k, b=b)
     return hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)])
 
 
@@ -95,7 +95,7 @@ def test_the_sensor_floor_of_a_spring_is_a_count(rounding, most):
 
 def test_the_sensor_floor_of_a_damper_is_a_count_a_period():
     B, c, T = 1.7, 2e4, 1e-3
-    damper = hl.virtual_damper()(B=B)
+    damper = hl.laws.virtual_damper()(B=B)
     floor = sensor_floor(damper, reference(damper, SINE), c, T)
     # the difference of two floors is off by less than a count either way
     assert 0.8 * B / (c * T) < floor.max < B / (c * T)

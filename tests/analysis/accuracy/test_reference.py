@@ -20,7 +20,7 @@ def mass_on_a_coupler():
     """Return the scene m z'' = K (x - z) + b (x' - z'), F the coupler's force."""
     z = hl.coordinate("z", unit="m")
     m, K, b = hl.parameters("m K b", units="kg N/m N*s/m", values=(0.08, 310, 0.6))
-    F = hl.virtual_coupler(z, K=K, b=b)
+    F = hl.laws.virtual_coupler(z, K=K, b=b)
     return hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)], name="mass on a coupler")
 
 
@@ -66,7 +66,7 @@ def test_a_clipped_wall_has_the_same_limit_to_what_a_difference_keeps():
 
 def test_a_filter_of_the_force_has_the_force_as_its_limit():
     plain = hl.wall(unilateral=None)(k=200)
-    assert np.array_equal(reference(hl.force_filter(plain), SINE).F, 200 * SINE.at(reference(plain, SINE).t)[0])
+    assert np.array_equal(reference(hl.laws.force_filter(plain), SINE).F, 200 * SINE.at(reference(plain, SINE).t)[0])
 
 
 @pytest.mark.parametrize("clock", [hl.t, hl.n * hl.T])
@@ -94,7 +94,9 @@ def test_a_ball_bounces_as_the_closed_form_says():
     e, g, h = 0.7, 9.81, 0.05
     y = hl.coordinate("y", unit="m", initial=h)
     m, e_, g_ = hl.parameters("m e g", units="kg 1 m/s^2", values=(0.03, e, g), ranges=[None, (0, 1), None])
-    bounces = hl.lagrange(m * y.diff(t) ** 2 / 2 - m * g_ * y, contacts=[hl.Contact(y, hl.impulse(e=e_))])
+    bounces = hl.mechanics.lagrange(
+        m * y.diff(t) ** 2 / 2 - m * g_ * y, contacts=[hl.contact.Contact(y, hl.contact.impulse(e=e_))]
+    )
     found = reference(hl.Scene(force=seen(y), eom=[bounces]), STILL)
     t_hit, speed, expected = np.sqrt(2 * h / g), np.sqrt(2 * g * h), h - g * found.t**2 / 2
     for _ in range(12):
@@ -113,7 +115,7 @@ def test_a_block_on_a_rough_floor_stops_where_coulomb_says():
     v_0, F_c = 0.4, 1.5
     z = hl.coordinate("z", unit="m", rate=v_0)
     m, F_f = hl.parameters("m F_f", units="kg N", values=(0.2, F_c))
-    slides = hl.lagrange(m * z.diff(t) ** 2 / 2, contacts=[hl.friction(slip=z.diff(t), F_c=F_f)])
+    slides = hl.mechanics.lagrange(m * z.diff(t) ** 2 / 2, contacts=[hl.contact.friction(slip=z.diff(t), F_c=F_f)])
     found = reference(hl.Scene(force=seen(z), eom=[slides]), STILL)
     a = F_c / 0.2
     stop = np.minimum(found.t, v_0 / a)
@@ -177,7 +179,7 @@ def test_chaos_cuts_the_horizon():
     m, l, g = hl.parameters("m l g", units="kg m m/s^2", values=(0.05, 0.05, 9.81))
     da, db = a.diff(t), b.diff(t)
     kinetic = m * l**2 * (2 * da**2 + db**2 + 2 * da * db * sp.cos(a - b)) / 2
-    motion = hl.lagrange(kinetic + m * g * l * (2 * sp.cos(a) + sp.cos(b)))
+    motion = hl.mechanics.lagrange(kinetic + m * g * l * (2 * sp.cos(a) + sp.cos(b)))
     torque = hl.parameters("k_t", units="N", values=1.0) * sp.sin(a)
     found = reference(hl.Scene(force=torque, eom=[motion]), HandleMotion("still", sp.Float(0.0), 8.0))
     assert found.chaotic and 0.8 < found.horizon < 8.0
@@ -189,8 +191,8 @@ def test_chaos_cuts_the_horizon():
 def test_what_has_one_solver_is_not_certified():
     y = hl.coordinate("y", unit="m", initial=0.05)
     m, g = hl.parameters("m g", units="kg m/s^2", values=(0.03, 9.81))
-    law = hl.micro_impulse(e=0.5, envelope="0.1 mm")
-    falls = hl.lagrange(m * y.diff(t) ** 2 / 2 - m * g * y, contacts=[hl.Contact(y, law)])
+    law = hl.contact.micro_impulse(e=0.5, envelope="0.1 mm")
+    falls = hl.mechanics.lagrange(m * y.diff(t) ** 2 / 2 - m * g * y, contacts=[hl.contact.Contact(y, law)])
     found = reference(hl.Scene(force=seen(y), eom=[falls]), STILL)
     assert not found.certified and not found.certifies(1.0)
     assert "one solver" in found.how and "micro-impulses" in found.how

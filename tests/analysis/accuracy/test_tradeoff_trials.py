@@ -23,7 +23,7 @@ def paddle(**changes):
 
 def tradeoff(scene, device=None, **options):
     given = {"motions": [SWING], "targets": ["uno"], "T": [1e-3], "precision": ["float32"], "workers": 1, "progress": False}
-    return hl.tradeoff(scene, device or paddle(), **given | options)
+    return hl.methods.tradeoff(scene, device or paddle(), **given | options)
 
 
 def test_a_delay_of_the_paddle_asks_for_damping_and_moves_the_held_force():

@@ -9,7 +9,7 @@ from hapticlab import n
 from hapticlab.analysis.pictures.pictures import drawing_of
 from hapticlab.analysis.pictures.schematic import Schematic
 from hapticlab.analysis.pictures.shape_outlines import Outline
-from hapticlab.drawing import new_figure
+from hapticlab.base.drawing import new_figure
 from hapticlab.library.entries import CATALOGUE
 from hapticlab.library.sketch import BODY, HANDLE, Sketch
 from hapticlab.widgets.picture_items import RecordingAxes
@@ -41,7 +41,7 @@ FAR = [
 @pytest.mark.parametrize(("name", "state"), [*((name, {}) for name in CATALOGUE), *FAR])
 @pytest.mark.always("four_bar-*", "rolling-*", "gears-*")
 def test_a_picture_shows_handle_and_symbols_apart_from_each_other(name, state):
-    figure = hl.picture(name, **state)
+    figure = hl.mechanics.picture(name, **state)
     shown = texts(figure)
     words = " ".join(text for text, _ in shown)
     assert "handle" in words and "$x$" in words
@@ -70,26 +70,26 @@ def bodies(figure):
     ("name", "state"), [("mass_spring_damper", {"z": 0}), ("two_masses", {"z_1": 0}), ("tuned_absorber", {"z_1": 0})]
 )
 def test_the_handle_stays_out_of_the_mass(name, state):
-    handle, mass = bodies(hl.picture(name, x=0.04, **state))[:2]
+    handle, mass = bodies(hl.mechanics.picture(name, x=0.04, **state))[:2]
     assert handle[0] < 0.04 < handle[2] < mass[0] - 0.01
 
 
 def test_wheels_stay_on_the_ground_and_the_plate_is_tilted():
-    axes = hl.picture("rolling", z=-0.04, x=-0.03).axes[0]
+    axes = hl.mechanics.picture("rolling", z=-0.04, x=-0.03).axes[0]
     wheels = [box for box in bodies(axes.figure) if 0.006 < box[2] - box[0] < 0.008 and box[1] < -0.012]
     ground = next(line for line in axes.lines if line.get_linewidth() == 1.6)
     assert len(wheels) == 3
     assert ground.get_xdata()[0] < min(box[0] for box in wheels)
     assert ground.get_xdata()[1] > max(box[2] for box in wheels)
     (start, end) = next(
-        line.get_xydata() for line in hl.picture("rolling", alpha=0.2).axes[0].lines if line.get_linewidth() == 1.6
+        line.get_xydata() for line in hl.mechanics.picture("rolling", alpha=0.2).axes[0].lines if line.get_linewidth() == 1.6
     )
     assert np.arctan2(*(end - start)[::-1]) == pytest.approx(0.2, abs=1e-12)
 
 
 @pytest.mark.parametrize("k", [20, 150, 600])
 def test_the_wall_of_a_fixture_rises_to_the_edge_and_its_well_stays_above_the_letters(k):
-    axes = hl.picture("virtual_fixture", k=k).axes[0]
+    axes = hl.mechanics.picture("virtual_fixture", k=k).axes[0]
     at, U = next(line for line in axes.lines if len(line.get_xdata()) == 801).get_data()
     wall = U[at > 0.0351]
     assert np.all(np.diff(wall, 2) > 0)  # a parabola, no plateau
@@ -107,17 +107,19 @@ def test_a_picture_moves_with_its_handle(entry):
 
 
 def test_what_a_picture_does_not_know_is_refused():
-    with pytest.raises(hl.SceneError, match="did you mean detents"):
-        hl.picture("detent")
-    with pytest.raises(hl.AnalysisError, match="y: detents has no such quantity; it has x, A, p"):
-        hl.picture("detents", y=1)
-    with pytest.raises(hl.AnalysisError, match="four_bar cannot be put together with b = 0.005; take other lengths"):
-        hl.picture("four_bar", b=0.005)
-    with pytest.raises(hl.AnalysisError, match="a Telemetry has no picture; hl.picture draws a scene, or one of the library"):
-        hl.picture(hl.Telemetry(t=[0], x=[0], v=[0], F=[0], T=1e-3))
-    assert hl.picture(hl.library.detents).axes[0].get_title() == "detents"
-    with pytest.raises(hl.UnitsError, match="x = '3 N'"):
-        hl.picture("gears", x="3 N")
+    with pytest.raises(hl.errors.SceneError, match="did you mean detents"):
+        hl.mechanics.picture("detent")
+    with pytest.raises(hl.errors.AnalysisError, match="y: detents has no such quantity; it has x, A, p"):
+        hl.mechanics.picture("detents", y=1)
+    with pytest.raises(hl.errors.AnalysisError, match="four_bar cannot be put together with b = 0.005; take other lengths"):
+        hl.mechanics.picture("four_bar", b=0.005)
+    with pytest.raises(
+        hl.errors.AnalysisError, match="a Telemetry has no picture; hl.mechanics.picture draws a scene, or one of the library"
+    ):
+        hl.mechanics.picture(hl.records.Telemetry(t=[0], x=[0], v=[0], F=[0], T=1e-3))
+    assert hl.mechanics.picture(hl.library.detents).axes[0].get_title() == "detents"
+    with pytest.raises(hl.errors.UnitsError, match="x = '3 N'"):
+        hl.mechanics.picture("gears", x="3 N")
 
 
 # --- scenes of one's own, drawn from their equations
@@ -143,18 +145,18 @@ def hatched(figure):
 @pytest.mark.parametrize("unilateral", ["gate", "clip"])
 def test_the_handles_face_meets_the_wall_where_the_force_begins(law, unilateral):
     for place in (0.01, -0.012):
-        figure = hl.picture(hl.wall(law, unilateral=unilateral)(k=300, x_o=place), x=place)
+        figure = hl.mechanics.picture(hl.wall(law, unilateral=unilateral)(k=300, x_o=place), x=place)
         assert hatched(figure) == [pytest.approx(outline_of(figure, HANDLE)[1], abs=1e-12)]
 
 
 def test_walls_to_both_sides_each_hatched_on_its_own():
     force = hl.when(hl.x(n) >= x_o, k * (hl.x(n) - x_o)) + hl.when(hl.x(n) <= x_1, k * (hl.x(n) - x_1))
-    figure = hl.picture(hl.Scene(force=force))
+    figure = hl.mechanics.picture(hl.Scene(force=force))
     left, right = hatched(figure)
     half = np.diff(outline_of(figure, HANDLE))[0] / 2
     assert (left, right) == (pytest.approx(-0.02 - half, abs=1e-12), pytest.approx(0.01 + half, abs=1e-12))
     assert "$x_{o}$" in words(figure) and "$x_{1}$" in words(figure)
-    assert Schematic(hl.virtual_damper()).walls == ()
+    assert Schematic(hl.laws.virtual_damper()).walls == ()
 
 
 def words(figure):
@@ -164,16 +166,16 @@ def words(figure):
 def mass_on_a_coupler():
     z = hl.coordinate("z", unit="m", initial=hl.x(n))
     m, K, b_c = hl.parameters("m K b_c", units="kg N/m N*s/m", values=(0.05, 200, 0.2))
-    F = hl.virtual_coupler(z, K=K, b=b_c)
+    F = hl.laws.virtual_coupler(z, K=K, b=b_c)
     return z, m, F
 
 
 def test_a_mass_meets_its_wall_with_its_own_face():
     z, m, F = mass_on_a_coupler()
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F - hl.when(z >= x_o, k * (z - x_o)))])
-    figure = hl.picture(scene, x=0.011, z=0.01)
+    figure = hl.mechanics.picture(scene, x=0.011, z=0.01)
     assert hatched(figure) == [pytest.approx(outline_of(figure, BODY)[1], abs=1e-12)]
-    apart = hl.picture(scene, x=0.011, z=0.004)
+    apart = hl.mechanics.picture(scene, x=0.011, z=0.004)
     assert hatched(apart)[0] - outline_of(apart, BODY)[1] == pytest.approx(0.006, abs=1e-12)
     assert max(len(line.get_xdata()) for line in apart.axes[0].lines) > 12  # the coupler's spring
 
@@ -185,8 +187,8 @@ def test_a_pendulum_hangs_from_its_cart_and_a_pole_stands_on_it():
     dz, w = z.diff(hl.t), theta.diff(hl.t)
     kinetic = m * dz**2 / 2 + m * (dz**2 + 2 * l * dz * w * sp.cos(theta) + (l * w) ** 2) / 2
     for sign, below in ((1, True), (-1, False)):
-        scene = hl.Scene(force=F, eom=[hl.lagrange(kinetic + sign * m * g * l * sp.cos(theta), forces={z: F})])
-        figure = hl.picture(scene, theta=0.5)
+        scene = hl.Scene(force=F, eom=[hl.mechanics.lagrange(kinetic + sign * m * g * l * sp.cos(theta), forces={z: F})])
+        figure = hl.mechanics.picture(scene, theta=0.5)
         rod = next(line.get_xydata() for line in figure.axes[0].lines if line.get_linewidth() == 2.5)
         reach = rod[-1] - rod[0]
         assert bool(reach[1] < 0) is below
@@ -203,9 +205,9 @@ def test_a_scene_of_the_library_is_drawn_as_the_library_does_also_when_bound_ane
 @pytest.mark.parametrize(
     ("shape", "core", "radius"),
     [
-        (hl.Circle("5 mm"), [(0, 0)], 5e-3),
-        (hl.Capsule("20 mm", "4 mm"), [(-0.01, 0), (0.01, 0)], 4e-3),
-        (hl.Polygon([(0, 0), (0.02, 0), (0.01, 0.015)], radius="2 mm"), [(0, 0), (0.02, 0), (0.01, 0.015)], 2e-3),
+        (hl.shapes.Circle("5 mm"), [(0, 0)], 5e-3),
+        (hl.shapes.Capsule("20 mm", "4 mm"), [(-0.01, 0), (0.01, 0)], 4e-3),
+        (hl.shapes.Polygon([(0, 0), (0.02, 0), (0.01, 0.015)], radius="2 mm"), [(0, 0), (0.02, 0), (0.01, 0.015)], 2e-3),
     ],
 )
 def test_an_outline_is_its_radius_away_from_its_core(shape, core, radius):
@@ -231,7 +233,7 @@ def distance(point, a, b):
     ("scene", "ties"),
     [
         (hl.Scene(force=k * hl.x(n)), {"spring"}),
-        (hl.virtual_damper()(B=1.0), {"damper"}),
+        (hl.laws.virtual_damper()(B=1.0), {"damper"}),
         (hl.wall("ellis", unilateral=None)(k=100, B=1.0), {"spring", "damper"}),
         (hl.Scene(force=hl.parameters("B", units="N*s/m", values=1) * hl.v(n)), {"damper"}),
         (hl.wall()(k=100, B=1.0), set()),
@@ -245,10 +247,10 @@ def test_what_holds_the_handle_itself_is_tied_to_the_ground(scene, ties):
 def test_a_ball_that_the_handle_strikes_is_tied_to_nothing():
     y = hl.coordinate("y", unit="m", initial=0.03)
     m, g = hl.parameters("m g", units="kg m/s^2", values=(0.03, 9.81))
-    touch = hl.Contact(y - hl.x(hl.t), hl.penalty(k=k), name="touch")
-    scene = hl.Scene(force=touch.felt, eom=[hl.lagrange(m * y.diff(hl.t) ** 2 / 2 - m * g * y, contacts=[touch])])
+    touch = hl.contact.Contact(y - hl.x(hl.t), hl.contact.penalty(k=k), name="touch")
+    scene = hl.Scene(force=touch.felt, eom=[hl.mechanics.lagrange(m * y.diff(hl.t) ** 2 / 2 - m * g * y, contacts=[touch])])
     drawn = Schematic(scene)
     assert (drawn.springs, drawn.held_by, drawn.walls, drawn.start) == ([], set(), (), {"x": 0.0, "y": 0.03})
-    met, apart = (hl.picture(scene, x=0.01, y=y) for y in (0.01, 0.014))
+    met, apart = (hl.mechanics.picture(scene, x=0.01, y=y) for y in (0.01, 0.014))
     assert outline_of(met, HANDLE)[1] == pytest.approx(outline_of(met, BODY)[0], abs=1e-12)
     assert outline_of(apart, BODY)[0] - outline_of(apart, HANDLE)[1] == pytest.approx(0.004, abs=1e-12)

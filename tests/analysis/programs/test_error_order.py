@@ -147,7 +147,7 @@ def test_float32_has_the_order_where_truncation_dominates(force, method, hold, s
 def test_a_delay_costs_an_order(method):
     """A spring whose other end is felt a sample late: beside the one that feels it at once, by DOP853."""
     PULL_ = K * (x(t) - z)
-    scene = hl.Scene(force=PULL_, eom=[sp.Eq(m * z.diff(t, 2), PULL_ - c * z.diff(t) - K * hl.delay(z))])
+    scene = hl.Scene(force=PULL_, eom=[sp.Eq(m * z.diff(t, 2), PULL_ - c * z.diff(t) - K * hl.laws.delay(z))])
     rates = lambda s, y: [y[1], (K_ * (handle(s)[0] - 2 * y[0]) - C_ * y[1]) / M_]  # noqa: E731
     end = solve_ivp(rates, (0, SPAN), [0.01, 0], method="DOP853", rtol=1e-12, atol=1e-15).y[0, -1]
     errors = []

@@ -11,7 +11,7 @@ from hapticlab.errors import ProgramError
 
 
 def test_the_table_has_every_method_with_its_numbers():
-    known, lines = hl.methods(), {line.split()[0]: line.split() for line in str(hl.methods()).splitlines()}
+    known, lines = hl.methods.table(), {line.split()[0]: line.split() for line in str(hl.methods.table()).splitlines()}
     assert list(known) == [*METHODS, "exact", "taylor"] and set(known) <= set(lines)
     assert lines["rk4"][1:5] == ["4", "4", "2.785", "2.828"]
     assert lines["nystrom4"][1:5] == ["4", "3", "-", "2.587"]
@@ -32,12 +32,14 @@ def test_what_takes_no_steps_has_the_limits_that_a_scene_finds(zeta):
     F = K * (hl.x(hl.t) - z)
     scene = hl.Scene(force=F, eom=[sp.Eq(mass * z.diff(hl.t, 2), F - B * z.diff(hl.t))])
     for name in ("exact", "taylor"):
-        assert hl.methods()[name].longest_step(zeta) == pytest.approx(w * hl.step_limit(scene, name, T=1e-3).h_max, rel=1e-9)
+        assert hl.methods.table()[name].longest_step(zeta) == pytest.approx(
+            w * hl.stability.step_limit(scene, name, T=1e-3).h_max, rel=1e-9
+        )
 
 
 def test_the_picture_shows_the_region_and_the_longest_step():
     """RK4's boundary crosses the real axis at -2.785; the line of semi-implicit Euler is 2 (sqrt(1 + s^2) - s)."""
-    left, right = hl.methods().plot("rk4", "semi_implicit_euler").axes
+    left, right = hl.methods.table().plot("rk4", "semi_implicit_euler").axes
     contours = [c for c in left.collections if isinstance(c, matplotlib.contour.ContourSet)]
     boundary = contours[0].get_paths()[0].vertices
     assert boundary[:, 0].min() == pytest.approx(-2.785, abs=0.01)

@@ -150,7 +150,7 @@ def test_a_view_is_replayed_at_a_slower_rate():
 def test_a_replay_follows_what_was_set_while_it_ran():
     rate = hl.parameters("r", units="1/s", values=5.0)
     view = hl.Scene(force=0, eom=[sp.Eq(y.diff(t), rate * (x(t) - y))], watch=[y])
-    log = hl.Telemetry(
+    log = hl.records.Telemetry(
         t=np.arange(200) * T, x=np.full(200, 0.02), v=np.zeros(200), F=np.zeros(200), T=T, parameters={"r": 10.0},
         changes=((0.1, {"r": 50.0}),),
     )  # fmt: skip
@@ -227,7 +227,7 @@ def test_the_printout():
 
 
 def test_what_it_refuses():
-    with pytest.raises(SceneError, match="k is not a scene; write hl.requires"):
+    with pytest.raises(SceneError, match="k is not a scene; write hl.mechanics.requires"):
         requires(k)
     with pytest.raises(SceneError, match=r"cart_pole is a function, not a scene; call it: hl.library.cart_pole\(\)"):
         requires(hl.library.cart_pole)
@@ -255,7 +255,7 @@ def test_a_decision_on_a_coordinate_is_watched_over():
 def test_energies_of_several_bodies():
     """One Lagrangian of a mass that is felt and a pendulum that is not: the graph tells them apart, blocks of M included."""
     L = m * z.diff(t) ** 2 / 2 + m * length**2 * th.diff(t) ** 2 / 2 + m * g * length * sp.cos(th) - k * (x(t) - z) ** 2 / 2
-    scene = hl.Scene(force=k * (x(t) - z), eom=[hl.lagrange(L, dissipation=b * (v(t) - z.diff(t)) ** 2 / 2)])
+    scene = hl.Scene(force=k * (x(t) - z), eom=[hl.mechanics.lagrange(L, dissipation=b * (v(t) - z.diff(t)) ** 2 / 2)])
     report = requires(scene, live="g l")
     assert found(report, "th").why == "no path to F or a watched channel" and found(report, "th").saves > 30
     assert next(i for i in report.offered if i.kind == "linear").name == "z"
@@ -272,7 +272,7 @@ def test_energies_of_several_bodies():
 def test_what_a_constraint_ties_is_kept():
     """A pendulum whose mass slides on a rail of the felt mass: the constraint alone ties what the force needs."""
     L = m * (z.diff(t) ** 2 + w.diff(t) ** 2) / 2 - k * (x(t) - z) ** 2 / 2
-    tied = hl.lagrange(L, constraints=[sp.Eq(w, 2 * z)], enforce="kkt")
+    tied = hl.mechanics.lagrange(L, constraints=[sp.Eq(w, 2 * z)], enforce="kkt")
     report = requires(hl.Scene(force=k * (x(t) - z), eom=[tied]))
     assert found(report, "w").kind == "state"
     assert not [i for i in report.dropped if i.kind == "state"]
@@ -284,16 +284,18 @@ def test_the_cause_is_an_inertia_that_changes():
     at_1 = length * sp.sin(th), -length * sp.cos(th)
     at_2 = at_1[0] + length * sp.sin(ph), at_1[1] - length * sp.cos(ph)
     L = sum(m * p.diff(t) ** 2 / 2 for p in (*at_1, *at_2)) - m * g * (at_1[1] + at_2[1])
-    report = requires(hl.Scene(force=k * (x(t) - at_1[0]), eom=[hl.lagrange(L)]))
+    report = requires(hl.Scene(force=k * (x(t) - at_1[0]), eom=[hl.mechanics.lagrange(L)]))
     assert "that couples ph and th changes with ph(t), th(t)" in report.declined
     turned = sum(m * p.diff(t) ** 2 / 2 for p in at_1) - k * length**2 * th**2 / 2
-    plain = requires(hl.Scene(force=k * (x(t) - length * th), eom=[hl.lagrange(turned)]))
+    plain = requires(hl.Scene(force=k * (x(t) - length * th), eom=[hl.mechanics.lagrange(turned)]))
     assert plain.declined.startswith("what comes to -k*l**2*th(t) in the equation of th is written with Deriv")
 
 
 def test_friction_may_stick():
     F_c = hl.parameters("F_c", units="N", values=0.5)
-    model = hl.lagrange(m * z.diff(t) ** 2 / 2 - k * (x(t) - z) ** 2 / 2, contacts=[hl.friction(slip=z.diff(t), F_c=F_c)])
+    model = hl.mechanics.lagrange(
+        m * z.diff(t) ** 2 / 2 - k * (x(t) - z) ** 2 / 2, contacts=[hl.contact.friction(slip=z.diff(t), F_c=F_c)]
+    )
     report = requires(hl.Scene(force=k * (x(t) - z), eom=[model]), method="taylor")
     assert next(i.why for i in report.kept if i.kind == "contact") == "may stick: friction"
     assert report.declined == "z is a coordinate of a model with friction, which may stick"
@@ -304,9 +306,9 @@ def test_pairs_that_cannot_meet():
 
     heights = [hl.coordinate(f"h{i}", unit="m", initial=0.03, range=(0.0, 0.1)) for i in range(3)]
     balls = [Circle(0.01).at(x=0.05 * i, y=h, name=f"ball{i}") for i, h in enumerate(heights)]
-    contacts = contacts_between([ground(), *balls], law=hl.penalty(k=k))
+    contacts = contacts_between([ground(), *balls], law=hl.contact.penalty(k=k))
     L = sum(m * h.diff(t) ** 2 / 2 - m * g * h for h in heights) - k * (x(t) - heights[1]) ** 2 / 2
-    scene = hl.Scene(force=k * (x(t) - heights[1]), eom=[hl.lagrange(L, contacts=contacts)])
+    scene = hl.Scene(force=k * (x(t) - heights[1]), eom=[hl.mechanics.lagrange(L, contacts=contacts)])
     report = requires(scene)
     assert [i.name for i in report.dropped if i.kind == "pair"] == ["ball0, ball1", "ball0, ball2", "ball1, ball2"]
     assert [i.name for i in report.kept if i.kind == "contact"] == ["ground_ball0", "ground_ball1", "ground_ball2"]
@@ -325,7 +327,7 @@ def test_a_contact_of_what_nobody_sees_is_left_out_with_it():
     m, k, K = hl.parameters("m k K", units="kg N/m N/m", values=(0.05, 500, 200))
     kinetic = m * (a.diff(hl.t) ** 2 + b.diff(hl.t) ** 2) / 2
     pull = K * (hl.x(hl.t) - a)
-    model = hl.lagrange(kinetic, forces={a: pull}, contacts=[hl.Contact(b, hl.penalty(k=k))])
-    alone = hl.lagrange(m * a.diff(hl.t) ** 2 / 2, forces={a: pull})
+    model = hl.mechanics.lagrange(kinetic, forces={a: pull}, contacts=[hl.contact.Contact(b, hl.contact.penalty(k=k))])
+    alone = hl.mechanics.lagrange(m * a.diff(hl.t) ** 2 / 2, forces={a: pull})
     both, one = (hl.compile(hl.Scene(pull, eom), T=1e-3, method="exact", live="") for eom in (model, alone))
     assert both.tick == one.tick

@@ -7,8 +7,8 @@ import pytest
 
 import hapticlab as hl
 from hapticlab.analysis.records.chatter import chatter
+from hapticlab.base.telemetry import Telemetry
 from hapticlab.errors import AnalysisError
-from hapticlab.records import Telemetry
 
 T = 1e-3
 

@@ -5,7 +5,7 @@ import pytest
 
 import hapticlab as hl
 from hapticlab.analysis.records.driven_motion import by_loop, following
-from hapticlab.records import Telemetry
+from hapticlab.base.telemetry import Telemetry
 
 pytest.importorskip("llvmlite")  # some ten thousand ticks
 T = 1e-3
@@ -94,11 +94,11 @@ def test_a_linear_loop_is_found_exactly():
 
 def test_what_does_not_drive_is_refused():
     _, log = run(500, seconds=0.5, intent=tremor)
-    with pytest.raises(hl.AnalysisError, match="it does not move"):
+    with pytest.raises(hl.errors.AnalysisError, match="it does not move"):
         hl.chatter(log, driven=hl.Hand(push=1.0))
-    with pytest.raises(hl.AnalysisError, match="one finite number a sample"):
+    with pytest.raises(hl.errors.AnalysisError, match="one finite number a sample"):
         hl.chatter(log, driven=np.ones(3))
-    with pytest.raises(hl.AnalysisError, match="the drive is constant"):
+    with pytest.raises(hl.errors.AnalysisError, match="the drive is constant"):
         hl.chatter(log, driven=np.ones(len(log)))
     with pytest.raises(AttributeError, match="Watch it"):
         hl.chatter(log, driven="hum")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hapticlab.analysis.records.energy import energy
+from hapticlab.base.telemetry import Telemetry
 from hapticlab.errors import AnalysisError
-from hapticlab.records import Telemetry
 
 K, T, v = 450.0, 1e-3, 0.31
 

@@ -19,12 +19,12 @@ k, b, k_h, c, F_c, e = hl.parameters(
     "k b k_h c F_c e", units="N/m N*s/m N/m^2 s/m N 1", values=(2000, 1, 2e5, 0.3, 0.4, 0.8), ranges={"e": (0, 1)}
 )
 LAWS = {
-    "penalty": hl.penalty(k=k, b=b),
-    "hunt_crossley": hl.hunt_crossley(k=k_h, c=c, exponent=2),
-    "impulse": hl.impulse(e=e),
-    "simultaneous": hl.impulse(e=e, order="simultaneous"),
-    "rigid": hl.rigid(),
-    "micro_impulse": hl.micro_impulse(e=e),
+    "penalty": hl.contact.penalty(k=k, b=b),
+    "hunt_crossley": hl.contact.hunt_crossley(k=k_h, c=c, exponent=2),
+    "impulse": hl.contact.impulse(e=e),
+    "simultaneous": hl.contact.impulse(e=e, order="simultaneous"),
+    "rigid": hl.contact.rigid(),
+    "micro_impulse": hl.contact.micro_impulse(e=e),
 }
 
 
@@ -39,7 +39,7 @@ def run(scene, ticks, handle=None, **options):
 
 
 def dropped(law):
-    return energy_books(hl.Scene(force=0, eom=[lagrange(FALL, contacts=[hl.Contact(q, law, name="floor")])], watch=[q]))
+    return energy_books(hl.Scene(force=0, eom=[lagrange(FALL, contacts=[hl.contact.Contact(q, law, name="floor")])], watch=[q]))
 
 
 # the largest leak of a drop of 0.49 J within 1.2 s, measured with room to spare: (model, method, substeps) -> [J]
@@ -89,7 +89,7 @@ def test_friction_turns_work_into_heat():
     V, K, F_s = hl.parameters("V K F_s", units="m/s N/m N", values=(0.05, 200, 2))
     F_d = hl.parameters("F_d", units="N", values=1)
     z = hl.coordinate("z", unit="m")
-    rub = hl.friction(slip=z.diff(t), F_c=F_d, F_s=F_s)
+    rub = hl.contact.friction(slip=z.diff(t), F_c=F_d, F_s=F_s)
     motion = lagrange(m * z.diff(t) ** 2 / 2 - K * (V * t - z) ** 2 / 2, contacts=[rub])
     log = run(energy_books(hl.Scene(force=0, eom=[motion], watch={"z": z})), 900, method="taylor")
     assert np.abs(log["leak"]).max() < 1e-14
@@ -102,7 +102,7 @@ def test_a_belt_does_the_work_of_its_friction():
     """A block on a belt at V, held by a spring too stiff to ride along: F V t goes in, F (V t - z) is lost."""
     V, K = hl.parameters("V K", units="m/s N/m", values=(0.3, 50))
     z = hl.coordinate("z", unit="m")
-    rub = hl.friction(slip=z.diff(t) - V, F_c=F_c)
+    rub = hl.contact.friction(slip=z.diff(t) - V, F_c=F_c)
     motion = lagrange(m * z.diff(t) ** 2 / 2 - K * z**2 / 2, contacts=[rub])
     log = run(energy_books(hl.Scene(force=0, eom=[motion], watch={"z": z})), 1500, method="taylor")
     assert np.abs(log["leak"]).max() < 1e-13
@@ -117,7 +117,7 @@ def coupled(**more):
     z = hl.coordinate("z", unit="m", initial=x(n))
     L = m * z.diff(t) ** 2 / 2 - K * (x(t) - z) ** 2 / 2
     motion = lagrange(L, dissipation=B * (v(t) - z.diff(t)) ** 2 / 2, **more)
-    return hl.Scene(hl.virtual_coupler(z, K=K, b=B), [motion], watch=[z]), (K, B, z)
+    return hl.Scene(hl.laws.virtual_coupler(z, K=K, b=B), [motion], watch=[z]), (K, B, z)
 
 
 def moved(ticks):
@@ -141,7 +141,7 @@ def test_the_work_of_the_handle_is_booked():
 
 def test_written_out_equations_have_the_same_books():
     scene, (K, B, z) = coupled()
-    F = hl.virtual_coupler(z, K=K, b=B)
+    F = hl.laws.virtual_coupler(z, K=K, b=B)
     plain = hl.Scene(F, [sp.Eq(m * z.diff(t, 2), F)], watch=[z])
     stored = m * z.diff(t) ** 2 / 2 + K * (x(t) - z) ** 2 / 2
     logs = [
@@ -157,7 +157,7 @@ def test_a_moving_floor_does_its_work_through_force_laws():
     """The handle lifts a ball on a stiff floor: what the spring carries is booked as its work."""
     ball = hl.coordinate("ball", unit="m", initial=x(n) - m * g / k)
     L = m * ball.diff(t) ** 2 / 2 - m * g * ball
-    floor = hl.Contact(ball - x(t), hl.penalty(k=k, b=b), name="floor")
+    floor = hl.contact.Contact(ball - x(t), hl.contact.penalty(k=k, b=b), name="floor")
     scene = hl.Scene(-floor.generalized_force(x(t)), [lagrange(L, contacts=[floor])], watch={"ball": ball})
     log = run(energy_books(scene), 400, moved(400), method="taylor", velocity="measured")
     assert np.abs(np.diff(log["leak"])[2:]).max() < 1e-14
@@ -166,7 +166,7 @@ def test_a_moving_floor_does_its_work_through_force_laws():
 
 
 OSCILLATING = {
-    "penalty": hl.penalty(k=k, b=b), "impulse": hl.impulse(e=e), "rigid": hl.rigid(), "spring": None,
+    "penalty": hl.contact.penalty(k=k, b=b), "impulse": hl.contact.impulse(e=e), "rigid": hl.contact.rigid(), "spring": None,
 }  # fmt: skip
 
 
@@ -179,7 +179,7 @@ def test_what_oscillates_in_time_puts_work_in(law):
     if law == "spring":
         motion = lagrange(m * z.diff(t) ** 2 / 2 - k * (1 + sp.cos(om * t) / 4) * z**2 / 2)
     else:
-        plate = hl.Contact(z - A * sp.sin(om * t), OSCILLATING[law], name="plate")
+        plate = hl.contact.Contact(z - A * sp.sin(om * t), OSCILLATING[law], name="plate")
         motion = lagrange(m * z.diff(t) ** 2 / 2 - m * g * z, contacts=[plate])
     log = run(energy_books(hl.Scene(force=0, eom=[motion])), 400, method="taylor")
     put_in = log["supplied"] - log["supplied"][0]
@@ -191,7 +191,7 @@ def test_impacts_of_the_handle_put_work_in():
     """A ball that the moving handle strikes: the work of the blow is booked, and the books close through it."""
     ball = hl.coordinate("ball", unit="m", initial=x(n) + h0 / 5)
     L = m * ball.diff(t) ** 2 / 2 - m * g * ball
-    hit = hl.Contact(ball - x(t), hl.impulse(e=e), name="hit")
+    hit = hl.contact.Contact(ball - x(t), hl.contact.impulse(e=e), name="hit")
     scene = hl.Scene(force=0, eom=[lagrange(L, contacts=[hit])], watch={"p": hit.impulse, "work": hit.impact_work})
     log = run(energy_books(scene), 400, moved(400), method="taylor", velocity="measured")
     assert np.abs(np.diff(log["leak"])[2:]).max() < 1e-13
@@ -233,5 +233,5 @@ def test_what_has_no_books_is_refused():
     with pytest.raises(AnalysisError, match=r"the constraint .* = 0 moves with the handle or with time"):
         energy_books(hl.Scene(force=0, eom=[held]))
     log = hl.SimulatedPaddle(m=0.05, b=0.1, T=T).run(hl.wall()(k=100), duration=0.01, progress=False)
-    with pytest.raises(AnalysisError, match=r"balance: the record has no supplied, .* leak; run hl.energy_books"):
+    with pytest.raises(AnalysisError, match=r"balance: the record has no supplied, .* leak; run hl.records.energy_books"):
         balance(log)

@@ -7,9 +7,9 @@ import pytest
 
 from hapticlab.analysis.records.plots import plot, plot_sweep
 from hapticlab.analysis.sweeps.sweep import Sweep
+from hapticlab.base.telemetry import Telemetry
 from hapticlab.errors import AnalysisError
 from hapticlab.limits.limit import Limit
-from hapticlab.records import Telemetry
 
 pytest.importorskip("matplotlib")
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
+from hapticlab.base.telemetry import Telemetry
 from hapticlab.errors import AnalysisError
-from hapticlab.records import Telemetry
 
 K, T, X_O = 620.0, 1e-3, 0.004
 
@@ -21,7 +21,7 @@ def swinging(amplitude=6e-3, samples=400, period=0.0713):
 def test_every_step_within_the_wall_leaks_half_k_d_squared():
     x = swinging()
     p = np.maximum(x - X_O, 0)
-    found = hl.staircase(record(x, K * p), K=K, x_o=X_O)
+    found = hl.records.staircase(record(x, K * p), K=K, x_o=X_O)
     within = (p[:-1] > 0) & (p[1:] > 0)
     assert within.sum() > 100
     np.testing.assert_allclose(found.leak[within], K * np.diff(x)[within] ** 2 / 2, rtol=0, atol=1e-15)
@@ -36,7 +36,7 @@ def test_every_step_within_the_wall_leaks_half_k_d_squared():
 def test_the_bounces_sum_to_what_the_port_gave():
     x = swinging()
     log = record(x, np.maximum(K * (x - X_O), 0))
-    found = hl.staircase(log, K=K, x_o=X_O)
+    found = hl.records.staircase(log, K=K, x_o=X_O)
     assert len(found.bounces) == 6
     for bounce in found.bounces:
         part = slice(bounce.first, bounce.last)
@@ -52,7 +52,7 @@ def test_the_corners_enclose_what_was_generated(whole, fraction):
     """The shoelace area of the drawn loop, whatever the delay, is the energy of the bounce."""
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, delay=(whole + fraction) * T)
     log = paddle.run(hl.wall()(k=K, x_o=X_O), duration=0.12, v=0.3, progress=False)
-    found = hl.staircase(log)
+    found = hl.records.staircase(log)
     (bounce,) = found.bounces
     per = (len(found.x) - 1) // len(found.moved)
     assert per == (4 if fraction else 2)
@@ -75,7 +75,7 @@ def test_a_bounce_begins_outside_whatever_the_delay(unilateral, delay):
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, delay=delay * T)
     scene = hl.wall(unilateral=unilateral)(k=300, x_o=X_O)
     log = paddle.run(scene, duration=0.3, x=X_O - 2e-3, v=0.2, progress=False, dtype="float64")
-    found = hl.staircase(log)
+    found = hl.records.staircase(log)
     first = found.bounces[0]
     assert log.x[first.first] <= X_O < log.x[first.first + 1] and log.x[first.last] <= X_O
     assert first.v_in == pytest.approx(0.2 - 0.1 * (log.x[first.first] - log.x[0]) / 0.05, rel=1e-12)
@@ -88,16 +88,16 @@ def test_a_bounce_begins_outside_whatever_the_delay(unilateral, delay):
 
 def test_an_unfinished_penetration_is_no_bounce():
     x = X_O + 1e-3 * np.array([-1, 1, 2, 1, -1, 1, 2])
-    found = hl.staircase(record(x, np.maximum(K * (x - X_O), 0)), K=K, x_o=X_O)
+    found = hl.records.staircase(record(x, np.maximum(K * (x - X_O), 0)), K=K, x_o=X_O)
     assert len(found.bounces) == 1
-    assert "no completed" in str(hl.staircase(record(x[:4], K * (x - X_O)[:4].clip(0)), K=K, x_o=X_O))
+    assert "no completed" in str(hl.records.staircase(record(x[:4], K * (x - X_O)[:4].clip(0)), K=K, x_o=X_O))
     with pytest.raises(AnalysisError, match="bounce = 2"):
         found.plot(2)
 
 
 def test_the_picture():
     x = X_O + 1e-3 * np.array([-1, 1, 3, 5, 4, 2, -1])
-    found = hl.staircase(record(x, np.maximum(K * (x - X_O), 0)), K=K, x_o=X_O)
+    found = hl.records.staircase(record(x, np.maximum(K * (x - X_O), 0)), K=K, x_o=X_O)
     (axes,) = found.plot().axes
     assert f"{1e3 * found.bounces[0].generated:.4g} mJ generated" in axes.get_title()
     written = [text.get_text() for text in axes.texts if text.get_text()]
@@ -110,6 +110,6 @@ def test_the_picture():
 def test_it_needs_a_spring_and_what_acted():
     x = swinging()
     with pytest.raises(AnalysisError, match="give K="):
-        hl.staircase(record(x, np.maximum(K * (x - X_O), 0)))
+        hl.records.staircase(record(x, np.maximum(K * (x - X_O), 0)))
     with pytest.raises(AnalysisError, match="inside the periods"):
-        hl.staircase(record(x, np.maximum(K * (x - X_O), 0), delay=T / 3), K=K)
+        hl.records.staircase(record(x, np.maximum(K * (x - X_O), 0), delay=T / 3), K=K)

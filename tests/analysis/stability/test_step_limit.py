@@ -46,7 +46,7 @@ def grows(scene, method, T, ticks):
 @pytest.mark.always("coupler-*", "chain-verlet")
 def test_blow_ups_are_found_where_they_are_predicted(scene, method):
     """Within 2 % on linear scenes: no growth just below, a thousandfold growth just above."""
-    limit = hl.step_limit(scene, method, T=1e-3)
+    limit = hl.stability.step_limit(scene, method, T=1e-3)
     assert limit.kind == "linear" and 0 < limit.h_max < 0.1
     assert not grows(scene, method, 0.98 * limit.h_max, 200)
     assert grows(scene, method, 1.02 * limit.h_max, 600)
@@ -56,7 +56,7 @@ def test_blow_ups_are_found_where_they_are_predicted(scene, method):
 def test_without_an_interval_the_gain_of_energy_is_predicted(method):
     """By the spectral radius of the compiled tick; numbers of the spring at w h = 0.1."""
     scene = coupler(B=0)
-    limit = hl.step_limit(scene, method, T=1e-3)
+    limit = hl.stability.step_limit(scene, method, T=1e-3)
     assert limit.h_max == 0 and limit.verdict == "unstable"
     A, *_ = tick_map(hl.compile(scene, method, T=1e-3, hold="zoh", dtype="float64", live=()))
     assert limit.energy_gain == pytest.approx(np.abs(np.linalg.eigvals(A)).max() ** 2 - 1, rel=1e-6)
@@ -69,7 +69,7 @@ def test_without_an_interval_the_gain_of_energy_is_predicted(method):
 @pytest.mark.always("1-rk4", "1-verlet", "3-adams_bashforth3")
 def test_the_step_matrix_is_that_of_the_compiled_tick(method, substeps):
     """The tick, run from unit states, leaves the unit circle within a thousandth of the predicted longest step."""
-    h = hl.step_limit(chain(), method, T=1e-3).h_max
+    h = hl.stability.step_limit(chain(), method, T=1e-3).h_max
 
     def radius(h):
         program = hl.compile(chain(), method, T=h * substeps, substeps=substeps, hold="zoh", dtype="float64", live=())
@@ -82,7 +82,7 @@ def test_each_mode_has_its_limit():
     """A body that meets a wall: semi-implicit Euler in contact, 2 (sqrt(1 + zeta^2) - zeta)/w with both springs."""
     F = K * (x(t) - z) + B * (v(t) - z.diff(t))
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F - hl.when(z >= x_o, k * (z - x_o)))])
-    limit = hl.step_limit(scene, "semi_implicit_euler", T=1e-3)
+    limit = hl.stability.step_limit(scene, "semi_implicit_euler", T=1e-3)
     apart, touching = limit.modes
     for mode, stiffness in ((apart, 500), (touching, 40_500)):
         w = np.sqrt(stiffness / 0.05)
@@ -100,7 +100,7 @@ def test_a_scene_that_is_not_linear_says_where_it_was_looked_at():
     g, l = hl.parameters("g l", units="m/s^2 m", values=(9.81, 0.2))
     swing = sp.Eq(l * theta.diff(t, 2), -g * sp.sin(theta) + F / m)
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F), swing], watch=[theta], name="pendulum")
-    limit = hl.step_limit(scene, "verlet", T=1e-3, at=[{"theta": 0.0}, {"theta": 1.0}, {"theta": 3.0}])
+    limit = hl.stability.step_limit(scene, "verlet", T=1e-3, at=[{"theta": 0.0}, {"theta": 1.0}, {"theta": 3.0}])
     assert limit.small_signal and "small motions" in str(limit)
     for mode, angle in zip(limit.modes, (0.0, 1.0, 3.0), strict=True):
         squares = np.sort([-(100.0**2)] * 2 + [-9.81 / 0.2 * np.cos(angle)] * 2)
@@ -114,8 +114,8 @@ def test_what_changes_with_time_and_what_strikes_is_not_called_exact():
     """Mathieu's spring; a ball that bounces by impulses, looked at in the air."""
     f = hl.parameters("f", units="Hz", values=3)
     F = K * (x(t) - z) * (1 + sp.sin(2 * sp.pi * f * t) / 2)
-    assert hl.step_limit(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)]), T=1e-3).small_signal
-    ball = hl.step_limit(hl.library.ball_on_the_paddle(), "taylor", T=1e-3)
+    assert hl.stability.step_limit(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)]), T=1e-3).small_signal
+    ball = hl.stability.step_limit(hl.library.ball_on_the_paddle(), "taylor", T=1e-3)
     assert ball.kind == "piecewise linear" and ball.worst.mode == "everywhere, touch free"
 
 
@@ -124,7 +124,7 @@ def test_a_hardening_spring_is_looked_at_where_it_is_stiff():
     k_3 = hl.parameters("k_3", units="N/m^3", values=1e6)
     F = K * (x(t) - z)
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F - k_3 * z**3)])
-    limit = hl.step_limit(scene, "semi_implicit_euler", T=1e-3)
+    limit = hl.stability.step_limit(scene, "semi_implicit_euler", T=1e-3)
     assert limit.h_max == pytest.approx(2 * np.sqrt(0.05 / (500 + 3e6 * 0.05**2)), rel=1e-3)
     assert limit.small_signal and "within 50 mm" in str(limit) and "0.05" in limit.worst.point
     assert len(limit.modes) == 2  # the start, and where it is worst
@@ -136,12 +136,12 @@ def test_what_is_held_and_felt_is_looked_at_in_the_tick(kind):
     felt = hl.signal("felt", unit="m")
     k_d, c = hl.parameters("k_d c", units="N/m N*s/m", values=(2000, 0.1))
     F = K * (x(t) - z)
-    late = hl.delay(z) if kind == "delay" else felt(hl.n - 1)
+    late = hl.laws.delay(z) if kind == "delay" else felt(hl.n - 1)
     body = sp.Eq(m * z.diff(t, 2), F - c * z.diff(t) - k_d * late)
     scene = hl.Scene(force=F, eom=[body] if kind == "delay" else [body, sp.Eq(felt(hl.n), z)])
     verdicts = set()
     for damping in (0.1, 10.0):
-        limit = hl.step_limit(scene(c=damping), T=1e-3)
+        limit = hl.stability.step_limit(scene(c=damping), T=1e-3)
         program = hl.compile(scene(c=damping), T=1e-3, dtype="float64", live=())
         expected = np.abs(np.linalg.eigvals(tick_map(program)[0])).max()
         assert limit.held == pytest.approx(expected, rel=1e-9) and limit.margin > 1
@@ -151,7 +151,7 @@ def test_what_is_held_and_felt_is_looked_at_in_the_tick(kind):
 
 
 def test_the_picture_crosses_one_at_the_longest_step():
-    limit = hl.step_limit(coupler(), "rk4", T=1e-3)
+    limit = hl.stability.step_limit(coupler(), "rk4", T=1e-3)
     line, step = limit.plot().axes[0].lines
     h, radius = line.get_data()
     assert h[np.argmax(radius > 1)] == pytest.approx(1e3 * limit.h_max, rel=0.05)
@@ -160,10 +160,10 @@ def test_the_picture_crosses_one_at_the_longest_step():
 
 def test_what_is_exact_has_no_longest_step_and_taylor_takes_a_radian():
     scene = coupler(B=0)
-    assert hl.step_limit(scene, "exact", T=0.5).h_max == np.inf
-    assert hl.step_limit(scene, "taylor", T=1e-3).h_max == pytest.approx(1 / 100, rel=1e-9)
-    assert hl.step_limit(scene, "exact+rk4", T=1e-3).h_max == np.inf
-    assert hl.step_limit(hl.wall()(k=150, x_o=0.01), T=1e-3).h_max == np.inf
+    assert hl.stability.step_limit(scene, "exact", T=0.5).h_max == np.inf
+    assert hl.stability.step_limit(scene, "taylor", T=1e-3).h_max == pytest.approx(1 / 100, rel=1e-9)
+    assert hl.stability.step_limit(scene, "exact+rk4", T=1e-3).h_max == np.inf
+    assert hl.stability.step_limit(hl.wall()(k=150, x_o=0.01), T=1e-3).h_max == np.inf
 
 
 def test_beside_the_exact_part_the_rest_alone_has_a_longest_step():
@@ -175,19 +175,19 @@ def test_beside_the_exact_part_the_rest_alone_has_a_longest_step():
     scene = hl.Scene(force=F + K * y, eom=[sp.Eq(m * z.diff(t, 2), F), stiffens])(K=500)
     alone = hl.Scene(force=K * y, eom=[sp.Eq(m * y.diff(t, 2), -K * y - c * y**3)])(K=500)
     at = {"x": 0.0, "z": 0.0, "y": 0.0}
-    limit = hl.step_limit(scene, "exact+rk4", T=1e-3, at=at)
-    assert limit.h_max == pytest.approx(hl.step_limit(alone, "rk4", T=1e-3, at={"x": 0.0, "y": 0.0}).h_max, rel=1e-6)
+    limit = hl.stability.step_limit(scene, "exact+rk4", T=1e-3, at=at)
+    assert limit.h_max == pytest.approx(hl.stability.step_limit(alone, "rk4", T=1e-3, at={"x": 0.0, "y": 0.0}).h_max, rel=1e-6)
     assert limit.h_max == pytest.approx(np.sqrt(8 * 0.05 / 500), rel=1e-3)
 
 
 def test_refusals():
     with pytest.raises(AnalysisError, match=r"hl\.step_limit"):
-        hl.step_limit("scene", T=1e-3)
+        hl.stability.step_limit("scene", T=1e-3)
     with pytest.raises(HapticlabError, match="rk9"):
-        hl.step_limit(coupler(), "rk9", T=1e-3)
+        hl.stability.step_limit(coupler(), "rk9", T=1e-3)
     with pytest.raises(AnalysisError, match=r"there are x, v, z, dz/dt"):
-        hl.step_limit(coupler(), T=1e-3, at={"y": 1.0})
+        hl.stability.step_limit(coupler(), T=1e-3, at={"y": 1.0})
     free = hl.parameters("k_free", units="N/m")
     F = free * (x(t) - z)
     with pytest.raises(ParameterError, match="k_free"):
-        hl.step_limit(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)]), T=1e-3)
+        hl.stability.step_limit(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)]), T=1e-3)

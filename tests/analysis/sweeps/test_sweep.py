@@ -226,10 +226,10 @@ def bouncing():
     """A ball that falls on the handle, and loses 1 - e^2 of its energy each time."""
     m, g, h, e = hl.parameters("m_b g h e", units="kg m/s^2 m 1", values=(0.02, 9.81, 0.01, 0.5), ranges={"e": (0, 1)})
     q = hl.coordinate("q", unit="m", initial=x(n) + h)
-    hit = hl.Contact(q - x(t), hl.impulse(e=e), name="hit")
-    free = hl.lagrange(m * q.diff(t) ** 2 / 2 - m * g * q, contacts=[hit])
+    hit = hl.contact.Contact(q - x(t), hl.contact.impulse(e=e), name="hit")
+    free = hl.mechanics.lagrange(m * q.diff(t) ** 2 / 2 - m * g * q, contacts=[hit])
     k = hl.parameters("k", units="N/m", values=200)
-    felt = hl.felt_impulse(hit, tau="4 ms")
+    felt = hl.contact.felt_impulse(hit, tau="4 ms")
     return Scene(force=k * x(n) + felt.force, eom=[free, *felt.equations], watch=[q])
 
 

@@ -88,15 +88,17 @@ def test_what_is_left():
 
 def test_other_files_are_refused(tmp_path):
     (tmp_path / "letter").write_text("Dear all,\n")
-    with pytest.raises(hl.AnalysisError, match=r"letter' is no file of a sweep; name another"):
+    with pytest.raises(hl.errors.AnalysisError, match=r"letter' is no file of a sweep; name another"):
         Partial(tmp_path / "letter", WHAT)
     assert (tmp_path / "letter").read_text() == "Dear all,\n"
     written(tmp_path / "other", RECORDS)
-    with pytest.raises(hl.AnalysisError, match=r"another sweep \(axis k: 4 from 1 to 2 there, none here; axis b: 9 here\)|there"):
+    with pytest.raises(
+        hl.errors.AnalysisError, match=r"another sweep \(axis k: 4 from 1 to 2 there, none here; axis b: 9 here\)|there"
+    ):
         Partial(tmp_path / "other", {"scene": "wall", "axis b": "9"})
-    with pytest.raises(hl.AnalysisError, match="cannot open it"):
+    with pytest.raises(hl.errors.AnalysisError, match="cannot open it"):
         Partial(tmp_path / "no folder" / "a", WHAT)
-    with pytest.raises(hl.AnalysisError, match="resume = True; needs the path of a file"):
+    with pytest.raises(hl.errors.AnalysisError, match="resume = True; needs the path of a file"):
         Partial(True, WHAT)
 
 
@@ -163,14 +165,14 @@ def test_a_stale_file_is_refused_and_says_why(tmp_path, monkeypatch):
         ({"method": "heun"}, "options: none there, method = heun here"),
         ({"paddle": hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, noise=1e-5)}, "paddle: "),
     ]:
-        with pytest.raises(hl.AnalysisError, match=said):
+        with pytest.raises(hl.errors.AnalysisError, match=said):
             swept(resume=path, **change)
     for change in ({"x_o": 1e-9}, {"paddle": hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=PUSHED.hand, noise=1e-5, seed=8)}):
-        with pytest.raises(hl.AnalysisError, match="another sweep"):  # what a line does not show is in the program
+        with pytest.raises(hl.errors.AnalysisError, match="another sweep"):  # what a line does not show is in the program
             swept(resume=path, **change)
     np.testing.assert_array_equal(swept(resume=path).values, swept().values)
     monkeypatch.setattr(sweep_plan, "__version__", "99.0")
-    with pytest.raises(hl.AnalysisError, match=r"hapticlab: \d+\.\d+\.\d+ there, 99.0 here"):
+    with pytest.raises(hl.errors.AnalysisError, match=r"hapticlab: \d+\.\d+\.\d+ there, 99.0 here"):
         swept(resume=path)
 
 

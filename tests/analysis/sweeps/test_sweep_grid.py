@@ -96,11 +96,11 @@ def test_a_cut_has_the_same_points():
 
 def test_values_out_of_range_are_found_at_either_end_of_an_axis():
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
-    with pytest.raises(hl.PaddleError, match="m = 0 kg"):
+    with pytest.raises(hl.errors.PaddleError, match="m = 0 kg"):
         Grid(paddle, {"m": np.array([0.1, 0.0, 0.2])})
-    with pytest.raises(hl.PaddleError, match="delay = -0.001"):
+    with pytest.raises(hl.errors.PaddleError, match="delay = -0.001"):
         Grid(paddle, {"delay": np.array([1e-3, -1e-3])})
-    with pytest.raises(hl.PaddleError, match="delay = 0.6 s is 6000 samples"):
+    with pytest.raises(hl.errors.PaddleError, match="delay = 0.6 s is 6000 samples"):
         Grid(paddle, {"delay": np.array([0.0, 0.6]), "T": np.array([1e-3, 1e-4])})
 
 

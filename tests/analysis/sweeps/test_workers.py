@@ -72,7 +72,7 @@ def test_any_map_will_do(alone):
 
 
 def test_a_map_that_loses_results_is_found_out():
-    with pytest.raises(hl.AnalysisError, match=r"workers gave back \d+ of 540 points; needs a map that returns every"):
+    with pytest.raises(hl.errors.AnalysisError, match=r"workers gave back \d+ of 540 points; needs a map that returns every"):
         swept(workers=lambda function, pieces: map(function, pieces[1:]))
 
 
@@ -116,7 +116,7 @@ def test_only_what_was_measured_is_taken(wrong, words, tmp_path, monkeypatch):
     alone = swept(**few)
     monkeypatch.setattr(sweep_chunks, "MOST", 20)
     monkeypatch.setattr(sweep_chunks, "FEWEST", 20)
-    with pytest.raises(hl.AnalysisError, match=f"workers gave back {words}"):
+    with pytest.raises(hl.errors.AnalysisError, match=f"workers gave back {words}"):
         swept(workers=wrong, resume=tmp_path / "a", **few)
     np.testing.assert_array_equal(swept(resume=tmp_path / "a", **few), alone)
 
@@ -141,16 +141,21 @@ def test_a_map_gets_the_chunks_in_lists_that_grow(monkeypatch):
 
 
 def test_a_map_of_promises_is_refused():
-    with ThreadPoolExecutor(1) as pool, pytest.raises(hl.AnalysisError, match=r"not promises.*client\.get_executor\(\)\.map"):
+    with (
+        ThreadPoolExecutor(1) as pool,
+        pytest.raises(hl.errors.AnalysisError, match=r"not promises.*client\.get_executor\(\)\.map"),
+    ):
         swept(workers=lambda function, pieces: [pool.submit(function, piece) for piece in pieces])
 
 
 def test_what_workers_may_be():
     assert (number_of(3), number_of(np.int64(2)), number_of(-1)) == (3, 2, os.cpu_count())
     for wrong in (0, -2, 2.0, "two", None, True):
-        with pytest.raises(hl.AnalysisError, match="needs a whole number >= 1, -1 for every processor, or a function like map"):
+        with pytest.raises(
+            hl.errors.AnalysisError, match="needs a whole number >= 1, -1 for every processor, or a function like map"
+        ):
             number_of(wrong)
-    with ThreadPoolExecutor(1) as pool, pytest.raises(hl.AnalysisError, match=r"give its map: workers=pool\.map"):
+    with ThreadPoolExecutor(1) as pool, pytest.raises(hl.errors.AnalysisError, match=r"give its map: workers=pool\.map"):
         number_of(pool)
 
 
@@ -199,7 +204,7 @@ def test_processes_measure_the_same(alone):
     given = {"T": 1e-3, "k": AXES["k"][::9], "duration": 0.05}
     np.testing.assert_array_equal(swept(engine="interpreter", workers=2, **given), swept(**given))
     moving = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand(k=50, intent=lambda t: 0 * t))
-    with pytest.raises(hl.AnalysisError, match="cannot be sent to worker processes: .*lambda.*def in a module"):
+    with pytest.raises(hl.errors.AnalysisError, match="cannot be sent to worker processes: .*lambda.*def in a module"):
         swept(engine="interpreter", workers=2, paddle=moving, **given)
 
 
@@ -214,7 +219,7 @@ def test_a_killed_process_is_replaced():
 
 
 def test_processes_that_die_again_and_again_are_given_up():
-    with pytest.raises(hl.AnalysisError, match="died 3 times in a row.*if __name__ == '__main__':"):
+    with pytest.raises(hl.errors.AnalysisError, match="died 3 times in a row.*if __name__ == '__main__':"):
         list(spread(os._exit, [3, 3, 3], 2, threads=False))
 
 
@@ -223,7 +228,7 @@ def test_a_pool_that_breaks_says_so(tmp_path):
         yield function(pieces[0])
         raise BrokenProcessPool("a process was terminated abruptly")
 
-    with pytest.raises(hl.AnalysisError, match="worker of the pool given as workers was killed.*resume=") as stop:
+    with pytest.raises(hl.errors.AnalysisError, match="worker of the pool given as workers was killed.*resume=") as stop:
         swept(workers=breaks, resume=tmp_path / "a")
     assert "points are in" in stop.value.__notes__[0]
 

@@ -14,7 +14,7 @@ K = 500.0  # wT = 0.1
 
 @pytest.fixture(scope="module")
 def bounce():
-    return hl.compare_laws(FREE, K=K, speed=0.1, entries=8)
+    return hl.design.compare_laws(FREE, K=K, speed=0.1, entries=8)
 
 
 @pytest.mark.wide
@@ -49,7 +49,7 @@ def test_each_step_of_the_chapter_leaves_less(bounce):
     ("given", "words"),
     [
         ({"laws": "zho"}, "hold 'zho'; needs names, of zoh, half_sample"),
-        ({"laws": [hl.wall()]}, "a Scene; needs names, .* hl.wall_map draws a map"),
+        ({"laws": [hl.wall()]}, "a Scene; needs names, .* hl.stability.wall_map draws a map"),
         ({"laws": ()}, "needs one name or more"),
         ({"laws": 3}, "hold a int"),
         ({"K": -1}, "a wall needs K > 0"),
@@ -59,13 +59,13 @@ def test_each_step_of_the_chapter_leaves_less(bounce):
 )
 def test_what_no_bounce_has_is_refused_before_any_run(given, words):
     with pytest.raises(AnalysisError, match=words):
-        hl.compare_laws(FREE, **{"K": K, **given})
+        hl.design.compare_laws(FREE, **{"K": K, **given})
 
 
 def test_one_law_needs_no_list_and_a_board_is_refused(bounce):
-    assert hl.compare_laws(FREE, K=K, laws="zoh", entries=8)["zoh"] == bounce["zoh"]
+    assert hl.design.compare_laws(FREE, K=K, laws="zoh", entries=8)["zoh"] == bounce["zoh"]
     with pytest.raises(AnalysisError, match="needs a SimulatedPaddle, not a Scene"):
-        hl.compare_laws(hl.wall(), K=K)
+        hl.design.compare_laws(hl.wall(), K=K)
 
 
 def test_a_law_prints_in_words():
@@ -75,7 +75,7 @@ def test_a_law_prints_in_words():
 
 def test_half_a_period_of_delay_undoes_the_prediction_of_the_chapter_alone():
     late = hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3, delay=5e-4)
-    result = hl.compare_laws(late, K=K, laws=["half_sample", "digital", "deadbeat"], entries=4)
+    result = hl.design.compare_laws(late, K=K, laws=["half_sample", "digital", "deadbeat"], entries=4)
     assert result["half_sample"].rebound == pytest.approx(math.exp(math.pi * 0.1 / 4), rel=6e-3)  # as the plain wall without
     assert abs(result["digital"].rebound - 1) < 4e-3 and abs(result["deadbeat"].rebound - 1) < 1e-5
 
@@ -89,7 +89,7 @@ def test_it_prints_and_draws(bounce):
 
 
 def test_a_law_that_cannot_render_the_wall_is_listed_with_the_reason():
-    result = hl.compare_laws(FREE, K=6e5, laws=["zoh", "deadbeat"], entries=1)
+    result = hl.design.compare_laws(FREE, K=6e5, laws=["zoh", "deadbeat"], entries=1)
     assert [b.law for b in result.bounces] == ["zoh"]
     assert "turns round within T" in result.refused["deadbeat"] and "refused: K" in str(result)
 
@@ -100,6 +100,6 @@ def test_what_is_no_comparison_is_refused(bounce):
     with pytest.raises(AnalysisError, match="no bounce of 'best'"):
         bounce["best"]
     with pytest.raises(AnalysisError, match="speed = 0 m/s"):
-        hl.compare_laws(FREE, K=K, speed=0)
+        hl.design.compare_laws(FREE, K=K, speed=0)
     with pytest.raises(AnalysisError, match="entries = 0"):
-        hl.compare_laws(FREE, K=K, entries=0)
+        hl.design.compare_laws(FREE, K=K, entries=0)

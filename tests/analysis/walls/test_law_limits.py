@@ -13,7 +13,7 @@ PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
 
 @pytest.fixture(scope="module")
 def found():
-    return hl.law_limits(PADDLE, laws=["zoh", "predictive"], first=120.0, most=500.0)
+    return hl.design.law_limits(PADDLE, laws=["zoh", "predictive"], first=120.0, most=500.0)
 
 
 def test_a_pushed_handle_finds_the_linear_limits(found):
@@ -26,7 +26,7 @@ def test_a_pushed_handle_finds_the_linear_limits(found):
 @pytest.mark.slow
 def test_a_predictor_s_limit_too():
     """2 sqrt(bm/T^3) for little damping."""
-    found = hl.law_limits(PADDLE, laws=["backward_difference"], first=2000.0)
+    found = hl.design.law_limits(PADDLE, laws=["backward_difference"], first=2000.0)
     assert found["backward_difference"].K == pytest.approx(2 * math.sqrt(0.1 * 0.05 / 1e-9), rel=0.05)
 
 
@@ -55,26 +55,26 @@ def test_it_refuses_what_no_trial_can_answer(given, words):
     given = dict(given)
     paddle = replace(PADDLE, force_max=given.pop("force_max", None))
     with pytest.raises(HapticlabError, match=words):
-        hl.law_limits(paddle, **given)
+        hl.design.law_limits(paddle, **given)
 
 
 def test_it_goes_softer_than_a_first_wall_that_does_not_stand():
     """The exact limit is 200.07 N/m; a name alone is one law."""
     pytest.importorskip("llvmlite")  # some minutes at the interpreter
-    found = hl.law_limits(PADDLE, laws="zoh", first=1000.0)["zoh"]
+    found = hl.design.law_limits(PADDLE, laws="zoh", first=1000.0)["zoh"]
     assert found.K == pytest.approx(200.07, rel=0.04)
 
 
 def test_a_decay_that_the_motor_clips_is_followed_until_it_is_linear():
     """Clipped, 285 N/m decays from 0.2 N onto a cycle that stays; linear it stands to 200.07 N/m."""
     pytest.importorskip("llvmlite")  # some minutes at the interpreter
-    found = hl.law_limits(replace(PADDLE, force_max=0.25), laws="zoh", push=0.2)["zoh"]
+    found = hl.design.law_limits(replace(PADDLE, force_max=0.25), laws="zoh", push=0.2)["zoh"]
     assert found.K == pytest.approx(200.07, rel=0.04)
 
 
 def test_what_neither_dies_out_nor_grows_is_not_told():
     """Without any damping Eq. (23.3) is neutral: no stiffness stands, and none is unstable, below 4 m/T^2 = 2e5 N/m."""
     pytest.importorskip("llvmlite")  # some minutes at the interpreter
-    found = hl.law_limits(replace(PADDLE, b=0.0), laws="half_sample")
+    found = hl.design.law_limits(replace(PADDLE, b=0.0), laws="half_sample")
     assert math.isnan(found["half_sample"].K) and "neither dies out nor grows" in str(found)
     assert found.plot().axes

@@ -110,7 +110,7 @@ def test_an_encoder_chatters_within_the_passivity_limit():
     paddle = hl.SimulatedPaddle(m=0.05, b=0.5, T=1e-3, counts_per_metre=500, hand=hl.Hand(push=1.0))
     found = wall_map(paddle, over=("K", "coulomb"), K=np.linspace(200, 980, 8), coulomb=[0.0, 0.5, 1.2])
     assert found.surprises[:, 0].sum() > 3 and not found.surprises[:, 1:].any()
-    assert hl.abbott_okamura_limit(b=0.5, T=1e-3, coulomb=1.2, resolution=2e-3).K > 980
+    assert hl.bounds.abbott_okamura(b=0.5, T=1e-3, coulomb=1.2, resolution=2e-3).K > 980
     assert "within the passivity limit chatter" in str(found)
 
 
@@ -168,7 +168,7 @@ def test_a_line_left_of_the_picture_is_not_in_its_legend():
 
 def test_a_scene_of_its_own():
     """Eq. (23.8) around a wall with its boundary is felt; around the wall without one it is law ellis, Eq. (23.7)."""
-    filtered, linear = hl.force_filter(hl.wall()), hl.force_filter(hl.wall(unilateral=None))
+    filtered, linear = hl.laws.force_filter(hl.wall()), hl.laws.force_filter(hl.wall(unilateral=None))
     axes = {"K": [100.0, 2000.0, 60000.0], "B": [0.0, 0.1], "duration": 0.2}
     found = wall_map(BARE, law=filtered, linear=linear, **axes)
     assert found.limit("stability")[0] == pytest.approx(hl.stability_limit(BARE, law="ellis").K, rel=1e-7)
@@ -224,7 +224,7 @@ def test_passivity_of_a_law_with_a_memory_says_where_it_ends():
     ],
 )
 def test_what_makes_no_map_is_refused(given, words):
-    with pytest.raises((AnalysisError, hl.SceneError), match=words):
+    with pytest.raises((AnalysisError, hl.errors.SceneError), match=words):
         wall_map(FULL, **given)
 
 
@@ -259,11 +259,11 @@ def test_straight_lines_between_rows():
 def test_a_large_swing_of_an_unstable_loop_that_happens_to_shrink_is_no_rest():
     pytest.importorskip("llvmlite")
     # 16 Hz, 10 mm from peak to peak for ever; the fourth second quarter's swings are 0.3 % smaller than the third's
-    hand = hl.hand("pinch", push=1.0)
+    hand = hl.Hand("pinch", push=1.0)
     delay = 0.002482758620689655
     paddle = hl.SimulatedPaddle.from_profile("hapkit", coulomb=0.03, delay=delay, hand=hand)
     K = 1104.416772563491
     x = paddle.run(hl.wall()(k=K), duration=5.0, v=0.1, progress=False).x_true
     assert abs(np.ptp(x[4000:]) / np.ptp(x[2000:3000]) - 1) < 0.01 and np.ptp(x[4000:]) > 0.01
-    found = hl.wall_map(paddle, over=("K", "delay"), K=[K, K + 1], delay=[delay, 1.001 * delay])
+    found = hl.stability.wall_map(paddle, over=("K", "delay"), K=[K, K + 1], delay=[delay, 1.001 * delay])
     assert found.regions[0, 0] == 3 and found.amplitude[0, 0] > 5e-3

@@ -71,5 +71,5 @@ def test_several_cases():
 
 def test_an_amount_with_a_unit_is_its_number():
     k = hl.parameters("k", units="N/m", ranges=(100, 200))
-    law = hl.penalty(k=k + amount("50 N/m", "N/m", "k"))
+    law = hl.contact.penalty(k=k + amount("50 N/m", "N/m", "k"))
     assert Ranges()(law.k) == pytest.approx((150, 250), abs=1e-9)

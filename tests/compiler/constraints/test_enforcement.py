@@ -39,7 +39,7 @@ def slider_crank(**how):
     turning = J * theta.diff(t) ** 2 / 2 + m * L**2 / 24 * phi.diff(t) ** 2
     kinetic = turning + m * (X.diff(t) ** 2 + Y.diff(t) ** 2) / 2 + M * s.diff(t) ** 2 / 2
     k = hl.parameters("k", units="N/m", values=0)
-    model = hl.lagrange(kinetic - m * g * Y, constraints=loop, **how)
+    model = hl.mechanics.lagrange(kinetic - m * g * Y, constraints=loop, **how)
     return hl.Scene(force=k * x(t), eom=[model], watch=[theta, phi, s]), own
 
 
@@ -57,7 +57,7 @@ def four_bar(**how):
     X, Y = a * sp.cos(q2) + b / 2 * sp.cos(q3), a * sp.sin(q2) + b / 2 * sp.sin(q3)
     kinetic = J * q2.diff(t) ** 2 + m * (X.diff(t) ** 2 + Y.diff(t) ** 2) + m * b**2 / 12 * q3.diff(t) ** 2
     k = hl.parameters("k", units="N/m", values=0)
-    model = hl.lagrange((kinetic + J_c * q4.diff(t) ** 2) / 2 - m * g * Y, constraints=loop, **how)
+    model = hl.mechanics.lagrange((kinetic + J_c * q4.diff(t) ** 2) / 2 - m * g * Y, constraints=loop, **how)
     return hl.Scene(force=k * x(t), eom=[model], watch=[q2, q3, q4]), own
 
 
@@ -132,7 +132,7 @@ def test_chaplygin_sleigh():
     k = hl.parameters("k", units="N/m", values=0)
     forward = X.diff(t) * sp.cos(angle) + Y.diff(t) * sp.sin(angle)
     scene = hl.Scene(
-        force=k * x(t), eom=[hl.lagrange(energy, constraints=[blade])],
+        force=k * x(t), eom=[hl.mechanics.lagrange(energy, constraints=[blade])],
         watch={"angle": angle, "forward": forward, "aside": blade},
     )  # fmt: skip
     # Bloch, Nonholonomic Mechanics and Control, section 1.7: u' = d w^2, w' = -(d/K) u w with K = d^2 + I/m
@@ -155,7 +155,7 @@ def test_rolling_disc_goes_in_a_circle():
     energy = m * (X.diff(t) ** 2 + Y.diff(t) ** 2) / 2 + m * r**2 / 4 * roll.diff(t) ** 2 + m * r**2 / 8 * turn.diff(t) ** 2
     rolling = (X.diff(t) - r * roll.diff(t) * sp.cos(turn), Y.diff(t) - r * roll.diff(t) * sp.sin(turn))
     k = hl.parameters("k", units="N/m", values=0)
-    scene = hl.Scene(force=k * x(t), eom=[hl.lagrange(energy, constraints=rolling)], watch=[X, Y])
+    scene = hl.Scene(force=k * x(t), eom=[hl.mechanics.lagrange(energy, constraints=rolling)], watch=[X, Y])
     _, channels = run(scene)
     at = np.linspace(0, 1, 1001)
     radius = 0.05 * 4.0 / 1.5
@@ -166,9 +166,9 @@ def test_rolling_disc_goes_in_a_circle():
 def driven_mass(enforce="auto"):
     q, z = hl.coordinate("q", unit="m"), hl.coordinate("z", unit="m")
     m, M, k = hl.parameters("m M k", units="kg kg N/m", values=(0.02, 0.1, 300))
-    image = hl.device_image(q - x(t))
+    image = hl.mechanics.device_image(q - x(t))
     L = m * q.diff(t) ** 2 / 2 + M * z.diff(t) ** 2 / 2 - k * (q - z) ** 2 / 2
-    model = hl.lagrange(L, constraints=[image.constraint], enforce=enforce)
+    model = hl.mechanics.lagrange(L, constraints=[image.constraint], enforce=enforce)
     return hl.Scene(force=image.force, eom=[model], watch=[z])
 
 
@@ -205,8 +205,8 @@ def test_a_mechanism_on_the_handle_is_felt_as_its_heaviest():
     # a scotch yoke: the handle turns a flywheel J through r sin(theta) = x, felt as J/(r cos(theta))^2
     J, r, a = hl.parameters("J r a", units="kg*m^2 m rad", values=(2e-5, 0.05, 0.0))
     theta = hl.coordinate("theta", unit="rad", initial=a)
-    image = hl.device_image(r * sp.sin(theta) - x(t))
-    scene = hl.Scene(force=image.force, eom=[hl.lagrange(J * theta.diff(t) ** 2 / 2, constraints=[image.constraint])])
+    image = hl.mechanics.device_image(r * sp.sin(theta) - x(t))
+    scene = hl.Scene(force=image.force, eom=[hl.mechanics.lagrange(J * theta.diff(t) ** 2 / 2, constraints=[image.constraint])])
     program = hl.compile(scene, T=1e-3, velocity="measured")
     assert program.facts["port_mass"] == pytest.approx(2e-5 / 0.05**2)
     paddle = hl.SimulatedPaddle(m=0.1, b=0, T=1e-3, hand=hl.Hand(push=0.1))
@@ -222,8 +222,8 @@ def test_a_mechanism_on_the_handle_is_felt_as_its_heaviest():
 def test_a_loop_that_opens_while_it_runs_turns_the_motor_off():
     r, J = hl.parameters("r J", units="m kg*m^2", values=(0.02, 1e-6))
     theta = hl.coordinate("theta", unit="rad")
-    image = hl.device_image(r * sp.sin(theta) - x(t))
-    scene = hl.Scene(force=image.force, eom=[hl.lagrange(J * theta.diff(t) ** 2 / 2, constraints=[image.constraint])])
+    image = hl.mechanics.device_image(r * sp.sin(theta) - x(t))
+    scene = hl.Scene(force=image.force, eom=[hl.mechanics.lagrange(J * theta.diff(t) ** 2 / 2, constraints=[image.constraint])])
     log = hl.SimulatedPaddle(m=0.1, b=0, T=1e-3, hand=hl.Hand(push=1.0)).run(scene, duration=0.3, progress=False)
     assert "was not finite; the motor is off" in log.fault
     first = int(np.argmax(np.abs(log.x) > 0.02))
@@ -233,8 +233,8 @@ def test_a_loop_that_opens_while_it_runs_turns_the_motor_off():
 def test_a_reaction_whose_constraint_is_missing():
     q = hl.coordinate("q", unit="m")
     m = hl.parameters("m", units="kg", values=0.1)
-    image = hl.device_image(q - x(t))
-    scene = hl.Scene(force=image.force, eom=[hl.lagrange(m * q.diff(t) ** 2 / 2)])
+    image = hl.mechanics.device_image(q - x(t))
+    scene = hl.Scene(force=image.force, eom=[hl.mechanics.lagrange(m * q.diff(t) ** 2 / 2)])
     with pytest.raises(SceneError, match="add it to the constraints"):
         hl.compile(scene, T=1e-3)
 
@@ -247,7 +247,7 @@ def test_a_slider_without_mass_is_carried_by_its_rod():
     loop = (r * sp.cos(theta) + L * sp.cos(phi) - s, r * sp.sin(theta) - L * sp.sin(phi))
     channels = {}
     for enforce in ("embed", "kkt"):
-        model = hl.lagrange(J * theta.diff(t) ** 2 / 2 - k * (s - L) ** 2 / 2, constraints=loop, enforce=enforce)
+        model = hl.mechanics.lagrange(J * theta.diff(t) ** 2 / 2 - k * (s - L) ** 2 / 2, constraints=loop, enforce=enforce)
         channels[enforce] = run(hl.Scene(force=k * (x(t) - s) * 0, eom=[model], watch=[theta, s]))[1]
 
     class Crank:
@@ -266,9 +266,9 @@ def test_a_slider_without_mass_is_carried_by_its_rod():
 def test_a_rank_lost_by_a_live_parameter_turns_the_motor_off():
     q, z = hl.coordinate("q", unit="m"), hl.coordinate("z", unit="m")
     m, c = hl.parameters("m c", units="kg 1", values=(0.02, 0.5), ranges={"c": (0.1, 1)})
-    image = hl.device_image(q - x(t))
+    image = hl.mechanics.device_image(q - x(t))
     L = m * (q.diff(t) ** 2 + z.diff(t) ** 2) / 2
-    scene = hl.Scene(force=image.force, eom=[hl.lagrange(L, constraints=[image.constraint, q - c * z], enforce="kkt")])
+    scene = hl.Scene(force=image.force, eom=[hl.mechanics.lagrange(L, constraints=[image.constraint, q - c * z], enforce="kkt")])
     paddle = hl.SimulatedPaddle(m=0.2, b=0, T=1e-3, hand=hl.Hand(push=0.1))
     program = hl.compile(scene, T=1e-3, velocity="measured", live="c")
     assert paddle.run(program, duration=0.05, progress=False).fault is None
@@ -283,7 +283,7 @@ def test_a_support_that_time_moves(enforce):
     A, f, m, k = hl.parameters("A f m k", units="m Hz kg N/m", values=(0.01, 2.0, 0.1, 20.0))
     q, z = hl.coordinate("q", unit="m", rate=A * 2 * sp.pi * f), hl.coordinate("z", unit="m")
     L = m * (q.diff(t) ** 2 + z.diff(t) ** 2) / 2 - k * (q - z) ** 2 / 2
-    model = hl.lagrange(L, constraints=[q - A * sp.sin(2 * sp.pi * f * t)], enforce=enforce)
+    model = hl.mechanics.lagrange(L, constraints=[q - A * sp.sin(2 * sp.pi * f * t)], enforce=enforce)
     _, channels = run(hl.Scene(force=0 * k * x(t), eom=[model], watch={"q": q, "dq": q.diff(t), "z": z}))
     at, w, own = np.linspace(0, 1, 1001), 4 * math.pi, math.sqrt(200)
     np.testing.assert_allclose(channels[:, 0], 0.01 * np.sin(w * at), atol=1e-16)

@@ -90,7 +90,7 @@ def swinging(enforce):
     m, g, l = hl.parameters("m g l", units="kg m/s^2 m", values=(0.1, 9.81, 0.1))
     X, Y = hl.coordinate("X", unit="m", initial=0.1), hl.coordinate("Y", unit="m")
     L = m * (X.diff(hl.t) ** 2 + Y.diff(hl.t) ** 2) / 2 - m * g * Y
-    return hl.Scene(0, [hl.lagrange(L, constraints=[X**2 + Y**2 - l**2], enforce=enforce)], watch={"X": X, "Y": Y})
+    return hl.Scene(0, [hl.mechanics.lagrange(L, constraints=[X**2 + Y**2 - l**2], enforce=enforce)], watch={"X": X, "Y": Y})
 
 
 def test_multipliers_past_the_limit_say_what_takes_less(monkeypatch):

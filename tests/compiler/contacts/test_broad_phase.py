@@ -165,7 +165,7 @@ def test_values_that_are_bound_later_are_looked_at_when_a_scene_is_compiled():
     r, m = hl.parameters("r m", units="m kg", ranges=((0, 1), None), values=(0.1, 0.2))
     z = hl.coordinate("z", unit="m", initial=Amount(0.3, "m"))
     contacts = contacts_between([ground(), Circle(r).at(y=z, name="ball")], law=penalty(k=m * Amount(1e4, "1/s^2")))
-    rubbing = contacts + (hl.friction(slip=z.diff(t), F_c=m * Amount(1.0, "m/s^2"), stick_speed=Amount(1.0, "m/s")),)
+    rubbing = contacts + (hl.contact.friction(slip=z.diff(t), F_c=m * Amount(1.0, "m/s^2"), stick_speed=Amount(1.0, "m/s")),)
     assert isinstance(rubbing, Contacts) and rubbing.ranges == contacts.ranges
     scene = hl.Scene(force=0, eom=[lagrange(m * z.diff(t) ** 2 / 2, contacts=rubbing)], watch=["z"])
     assert len(hl.compile(scene(r=0.2), T=1e-3)) > 10

@@ -13,17 +13,19 @@ m, g, k, k_h, c, h0, F_c, F_s, mu, mu_s = hl.parameters(
 )  # fmt: skip
 h = hl.coordinate("h", unit="m", initial=h0)
 s = hl.coordinate("s", unit="m")
-SOFT = [hl.penalty(k=k), hl.hunt_crossley(k=k_h, c=c)]
-LAWS = [hl.impulse(e=0.5), hl.rigid(), hl.micro_impulse(e=0.5), *SOFT]
+SOFT = [hl.contact.penalty(k=k), hl.contact.hunt_crossley(k=k_h, c=c)]
+LAWS = [hl.contact.impulse(e=0.5), hl.contact.rigid(), hl.contact.micro_impulse(e=0.5), *SOFT]
 
 
 def scene(gap, law, **more):
     L = m * h.diff(t) ** 2 / 2 - m * g * h
-    return hl.Scene(force=0, eom=[hl.lagrange(L, contacts=[hl.Contact(gap, law, name="top")], **more)], watch=[h])
+    return hl.Scene(
+        force=0, eom=[hl.mechanics.lagrange(L, contacts=[hl.contact.Contact(gap, law, name="top")], **more)], watch=[h]
+    )
 
 
 def compiled(scene, law=None):
-    method = "taylor" if isinstance(law, (hl.impulse, hl.rigid)) else "verlet"
+    method = "taylor" if isinstance(law, (hl.contact.impulse, hl.contact.rigid)) else "verlet"
     return hl.compile(scene, T=1e-3, method=method)
 
 
@@ -59,13 +61,16 @@ def test_a_pile_may_start_at_rest_on_springs():
     upper = hl.coordinate("upper", unit="m", initial=-3 * m * g / k)
     lower = hl.coordinate("lower", unit="m", initial=-2 * m * g / k)
     L = m * (lower.diff(t) ** 2 + upper.diff(t) ** 2) / 2 - m * g * (lower + upper)
-    contacts = [hl.Contact(lower, hl.penalty(k=k), name="floor"), hl.Contact(upper - lower, hl.penalty(k=k), name="between")]
-    compiled(hl.Scene(force=0, eom=[hl.lagrange(L, contacts=contacts)], watch=[lower, upper]))
+    contacts = [
+        hl.contact.Contact(lower, hl.contact.penalty(k=k), name="floor"),
+        hl.contact.Contact(upper - lower, hl.contact.penalty(k=k), name="between"),
+    ]
+    compiled(hl.Scene(force=0, eom=[hl.mechanics.lagrange(L, contacts=contacts)], watch=[lower, upper]))
 
 
 def test_a_wall_for_the_handle_alone_may_start_anywhere():
-    wall = hl.Contact(-0.5 * h0 - x(t), hl.penalty(k=k), name="wall")
-    body = hl.lagrange(m * h.diff(t) ** 2 / 2, contacts=[wall])
+    wall = hl.contact.Contact(-0.5 * h0 - x(t), hl.contact.penalty(k=k), name="wall")
+    body = hl.mechanics.lagrange(m * h.diff(t) ** 2 / 2, contacts=[wall])
     hl.compile(hl.Scene(force=-wall.generalized_force(x(t)), eom=[body], watch=[h]), T=1e-3)
 
 
@@ -77,23 +82,23 @@ def test_a_wall_for_the_handle_alone_may_start_anywhere():
     ],
 )
 def test_friction_that_breaks_away_below_its_sliding_force_is_refused(law, words):
-    rub = hl.friction(slip=s.diff(t), name="rub", **law)
-    sliding = hl.Scene(force=0, eom=[hl.lagrange(m * s.diff(t) ** 2 / 2, contacts=[rub])], watch=[s])
+    rub = hl.contact.friction(slip=s.diff(t), name="rub", **law)
+    sliding = hl.Scene(force=0, eom=[hl.mechanics.lagrange(m * s.diff(t) ** 2 / 2, contacts=[rub])], watch=[s])
     with pytest.raises(SceneError, match=words):
-        compiled(sliding(F_s=0.2) if "F_s" in law else sliding, hl.rigid())
+        compiled(sliding(F_s=0.2) if "F_s" in law else sliding, hl.contact.rigid())
     if "F_s" in law:
-        compiled(sliding, hl.rigid())
+        compiled(sliding, hl.contact.rigid())
 
 
 def test_friction_of_a_contact_is_compared_as_if_it_pressed():
-    table = hl.Contact(h, hl.rigid(), name="table")
-    rub = hl.friction(slip=s.diff(t), F_c=mu * table.force, F_s=mu_s * table.force, name="rub")
+    table = hl.contact.Contact(h, hl.contact.rigid(), name="table")
+    rub = hl.contact.friction(slip=s.diff(t), F_c=mu * table.force, F_s=mu_s * table.force, name="rub")
     L = m * (h.diff(t) ** 2 + s.diff(t) ** 2) / 2 - m * g * h
-    block = hl.Scene(force=0, eom=[hl.lagrange(L, contacts=[table, rub])], watch=[s])
-    compiled(block, hl.rigid())
+    block = hl.Scene(force=0, eom=[hl.mechanics.lagrange(L, contacts=[table, rub])], watch=[s])
+    compiled(block, hl.contact.rigid())
     with pytest.raises(SceneError, match=r"rub: F_s = mu_s\*.* is below F_c = mu\*.* at the start, 0.2 < 0.3"):
-        compiled(block(mu_s=0.2), hl.rigid())
+        compiled(block(mu_s=0.2), hl.contact.rigid())
 
 
 def test_a_delayed_gap_has_a_start():
-    assert numbers([hl.delay(2 * h) + h], {}) == pytest.approx([0.12])
+    assert numbers([hl.laws.delay(2 * h) + h], {}) == pytest.approx([0.12])

@@ -57,7 +57,7 @@ def landing(law):
     m, g = hl.parameters("m g", units="kg m/s^2", values=(0.05, 9.81))
     h = hl.coordinate("h", unit="m", initial=0.01)
     floor = Contact(h, law, name="floor")
-    return hl.Scene(force=0, eom=[hl.lagrange(m * h.diff(t) ** 2 / 2 - m * g * h, contacts=[floor])], watch=[h])
+    return hl.Scene(force=0, eom=[hl.mechanics.lagrange(m * h.diff(t) ** 2 / 2 - m * g * h, contacts=[floor])], watch=[h])
 
 
 MOST = 0.05 * (math.pi / 10e-3) ** 2  # pi sqrt(m/k) = 10 T
@@ -97,7 +97,7 @@ def test_the_heavier_of_two_bodies_leaves_the_lighter_its_limit():
     h, y = (hl.coordinate(name, unit="m", initial=0.01) for name in "hy")
     L = (m * h.diff(t) ** 2 + M * y.diff(t) ** 2) / 2 - g * (m * h + M * y)
     contacts = [Contact(y, penalty(k=K), name="heavy"), Contact(h, penalty(k=K), name="light")]
-    program = hl.compile(hl.Scene(force=0, eom=[hl.lagrange(L, contacts=contacts)], watch=[h, y])(k=1000), T=1e-3)
+    program = hl.compile(hl.Scene(force=0, eom=[hl.mechanics.lagrange(L, contacts=contacts)], watch=[h, y])(k=1000), T=1e-3)
     assert any(c.high == pytest.approx(MOST) for c in program.parameters)
     assert [note.split(",")[0] for note in program.notes if "at most" in note] == ["k: at most 4935 N/m"]
 

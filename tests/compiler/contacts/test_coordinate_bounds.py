@@ -59,9 +59,9 @@ def test_what_a_program_leaves_out_is_not_watched_over():
 
 def test_what_rests_at_the_end_of_its_range_stays_in_it():
     h = hl.coordinate("h", unit="m", initial=0.02, range=(0, 0.03))
-    floor = hl.Contact(h, hl.impulse(e=0.5), name="floor")
+    floor = hl.contact.Contact(h, hl.contact.impulse(e=0.5), name="floor")
     g = hl.parameters("g", units="m/s^2", values=9.81)
-    scene = hl.Scene(force=0, eom=[hl.lagrange(m * h.diff(t) ** 2 / 2 - m * g * h, contacts=[floor])], watch={"h": h})
+    scene = hl.Scene(force=0, eom=[hl.mechanics.lagrange(m * h.diff(t) ** 2 / 2 - m * g * h, contacts=[floor])], watch={"h": h})
     for dtype in ("float32", "float64"):
         program = hl.compile(scene, method="taylor", T=T, dtype=dtype)
         run = load(program).run(600, np.zeros((600, len(program.inputs))))
@@ -74,7 +74,7 @@ def test_a_coordinate_that_a_constraint_determines_keeps_to_its_range(enforce):
     angle = hl.coordinate("angle", unit="rad")
     side = hl.coordinate("side", unit="m", range=(-0.05, 0.05))  # 30 degrees
     pull = k * (x(t) - l * angle)
-    model = hl.lagrange(m * side.diff(t) ** 2 / 2 + m * l**2 * angle.diff(t) ** 2 / 2, forces={angle: l * pull},
+    model = hl.mechanics.lagrange(m * side.diff(t) ** 2 / 2 + m * l**2 * angle.diff(t) ** 2 / 2, forces={angle: l * pull},
                         constraints=[sp.Eq(side, l * sp.sin(angle))], enforce=enforce)  # fmt: skip
     scene = hl.Scene(force=pull, eom=[model], watch={"angle": angle})
     _, log = forces(scene, 0.02)

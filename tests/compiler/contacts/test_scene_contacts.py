@@ -32,13 +32,13 @@ def run(scene, ticks, method="taylor", x=None, **options):
 
 
 def dropped(law, **watch):
-    floor = hl.Contact(q, law, name="floor")
+    floor = hl.contact.Contact(q, law, name="floor")
     watch = {"q": q, "w": q.diff(t), **{name: getattr(floor, part) for name, part in watch.items()}}
     return hl.Scene(force=0, eom=[lagrange(FALL, contacts=[floor])], watch=watch)
 
 
 def test_a_dropped_ball_bounces_and_comes_to_rest_on_its_weight():
-    log = run(dropped(hl.impulse(e=0.8), N="force", p="impulse"), 1400)
+    log = run(dropped(hl.contact.impulse(e=0.8), N="force", p="impulse"), 1400)
     v, s, rebound = np.sqrt(2 * G * H), np.sqrt(2 * H / G), 0.8
     flight = (s < log["t"]) & (log["t"] < s + 2 * 0.8 * v / G)
     tau = log["t"][flight] - s
@@ -51,7 +51,7 @@ def test_a_dropped_ball_bounces_and_comes_to_rest_on_its_weight():
 
 
 def test_a_rigid_contact_stays_where_it_lands():
-    log = run(dropped(hl.rigid(), N="force"), 400)
+    log = run(dropped(hl.contact.rigid(), N="force"), 400)
     landed = np.sqrt(2 * H / G)
     resting = log["t"] > landed
     assert np.abs(log["q"][resting]).max() < 1e-14
@@ -75,7 +75,7 @@ def penetration(law_force, until):
 def test_a_penalty_floor_gives_back_what_its_integration_does(method, tolerance):
     """Spring and damper, the damper's jump at touch and the end of the push located; rk4 keeps to its order."""
     k, b = hl.parameters("k b", units="N/m N*s/m", values=(3000, 4))
-    log = run(dropped(hl.penalty(k=k, b=b)), 260, method=method)
+    log = run(dropped(hl.contact.penalty(k=k, b=b)), 260, method=method)
     lasts, out = penetration(lambda d, w: max(0.0, 3000 * d + 4 * w), 0.2)
     leaves = np.sqrt(2 * H / G) + lasts
     flying = (log["t"] > leaves + T) & (log["t"] < leaves + 0.1)
@@ -89,10 +89,10 @@ def test_hunt_crossley_rebounds_with_its_restitution(exponent, unit):
     """Thrown at a wall without weight at c v = 0.42: e is the closed form's, to the fourth order of the method."""
     k, c, u = hl.parameters("k_h c u", units=f"{unit} s/m m/s", values=(1e5, 0.3, 1.4))
     z = hl.coordinate("z", unit="m", initial=h0 / 10, rate=-u)
-    wall = hl.Contact(z, hl.hunt_crossley(k=k, c=c, exponent=exponent), name="wall")
+    wall = hl.contact.Contact(z, hl.contact.hunt_crossley(k=k, c=c, exponent=exponent), name="wall")
     motion = lagrange(m * z.diff(t) ** 2 / 2, contacts=[wall])
     log = run(hl.Scene(force=0, eom=[motion], watch={"w": z.diff(t)}), 100, method="rk4", substeps=20)
-    assert log["w"][-1] / 1.4 == pytest.approx(hl.hunt_crossley.restitution(0.42), rel=1e-7)
+    assert log["w"][-1] / 1.4 == pytest.approx(hl.contact.hunt_crossley.restitution(0.42), rel=1e-7)
 
 
 @pytest.mark.wide
@@ -101,7 +101,10 @@ def test_newtons_cradle_of_three_swings_without_loss():
     k_p, lift = hl.parameters("k_p lift", units="N/m m", values=(20, -0.03))
     balls = [hl.coordinate(f"q_{i}", unit="m", initial=lift if i == 1 else 0) for i in (1, 2, 3)]
     L = sum(m * q.diff(t) ** 2 / 2 - k_p * q**2 / 2 for q in balls)
-    touching = [hl.Contact(b - a, hl.impulse(e=1), name=f"c_{i}") for i, (a, b) in enumerate(zip(balls, balls[1:], strict=False))]
+    touching = [
+        hl.contact.Contact(b - a, hl.contact.impulse(e=1), name=f"c_{i}")
+        for i, (a, b) in enumerate(zip(balls, balls[1:], strict=False))
+    ]
     log = run(hl.Scene(force=0, eom=[lagrange(L, contacts=touching)], watch=balls), 1500)
     angle = np.sqrt(20 / M) * log["t"]
     assert np.abs(log["q_1"] + 0.03 * np.maximum(np.cos(angle), 0)).max() < 1e-13
@@ -112,7 +115,7 @@ def test_newtons_cradle_of_three_swings_without_loss():
 def test_a_block_slides_to_a_stop_and_stays():
     F_c, w0 = hl.parameters("F_c w0", units="N m/s", values=(1.2, 0.8))
     z = hl.coordinate("z", unit="m", rate=w0)
-    rub = hl.friction(slip=z.diff(t), F_c=F_c)
+    rub = hl.contact.friction(slip=z.diff(t), F_c=F_c)
     scene = hl.Scene(
         force=0, eom=[lagrange(m * z.diff(t) ** 2 / 2, contacts=[rub])], watch={"z": z, "w": z.diff(t), "F_f": rub.force}
     )
@@ -128,8 +131,8 @@ def test_dry_friction_carries_its_share_of_a_reaction():
     """A block that slides on a floor it rests on, F_c = mu N with N found while it runs: it stops after w^2/(2 mu g)."""
     mu, w0 = hl.parameters("mu w0", units="1 m/s", values=(0.3, 0.8))
     y, s = hl.coordinate("y", unit="m"), hl.coordinate("s", unit="m", rate=w0)
-    floor = hl.Contact(y, hl.impulse(e=0.5), name="floor")
-    rub = hl.friction(slip=s.diff(t), F_c=mu * floor.force, name="rub")
+    floor = hl.contact.Contact(y, hl.contact.impulse(e=0.5), name="floor")
+    rub = hl.contact.friction(slip=s.diff(t), F_c=mu * floor.force, name="rub")
     L = m * (y.diff(t) ** 2 + s.diff(t) ** 2) / 2 - m * g * y
     scene = hl.Scene(force=0, eom=[lagrange(L, contacts=[floor, rub])], watch={"s": s, "N": floor.force, "F_f": rub.force})
     log = run(scene, 500)
@@ -146,13 +149,13 @@ def test_a_constrained_body_strikes_as_the_same_body_in_one_coordinate():
     d, r = hl.parameters("d r", units="m m", values=(0.05, 0.3))
     X, Y = hl.coordinate("X", unit="m", initial=r), hl.coordinate("Y", unit="m")
     angle = hl.coordinate("angle", unit="rad", initial=np.pi / 2)
-    law, logs = hl.impulse(e=0.7), []
+    law, logs = hl.contact.impulse(e=0.7), []
     flat = lagrange(
         m * (X.diff(t) ** 2 + Y.diff(t) ** 2) / 2 - m * g * Y, constraints=[X**2 + Y**2 - r**2],
-        contacts=[hl.Contact(X + d, law, name="stop")],
+        contacts=[hl.contact.Contact(X + d, law, name="stop")],
     )  # fmt: skip
     turned = lagrange(
-        m * r**2 * angle.diff(t) ** 2 / 2 + m * g * r * sp.cos(angle), contacts=[hl.Contact(r * sp.sin(angle) + d, law)]
+        m * r**2 * angle.diff(t) ** 2 / 2 + m * g * r * sp.cos(angle), contacts=[hl.contact.Contact(r * sp.sin(angle) + d, law)]
     )
     for motion, place in ((flat, X), (turned, r * sp.sin(angle))):
         logs.append(run(hl.Scene(force=0, eom=[motion], watch={"place": place}), 1200))
@@ -166,7 +169,7 @@ def test_stick_slip_breaks_away_slides_and_sticks_as_in_closed_form():
     names = hl.parameters("m_b K F_s F_c V", units="kg N/m N N m/s", values=(mass, K, F_s, F_c, V))
     z = hl.coordinate("z", unit="m")
     pull = names[1] * (names[4] * t - z)
-    rub = hl.friction(slip=z.diff(t), F_c=names[3], F_s=names[2])
+    rub = hl.contact.friction(slip=z.diff(t), F_c=names[3], F_s=names[2])
     motion = lagrange(names[0] * z.diff(t) ** 2 / 2, forces={z: pull}, contacts=[rub])
     log = run(hl.Scene(force=0, eom=[motion], watch={"z": z, "w": z.diff(t), "F_f": rub.force}), 500)
     away, omega = F_s / (K * V), np.sqrt(K / mass)
@@ -196,7 +199,7 @@ def test_a_blow_with_friction_takes_from_the_slip():
     r = hl.parameters("r", units="m", values=0.03)
     spin = hl.coordinate("phi", unit="rad")
     L = m * (y.diff(t) ** 2 + s.diff(t) ** 2) / 2 + m * r**2 * spin.diff(t) ** 2 / 5
-    wall = hl.Contact(y, hl.impulse(e=e, mu=mu), name="wall", slip=s.diff(t) - r * spin.diff(t))
+    wall = hl.contact.Contact(y, hl.contact.impulse(e=e, mu=mu), name="wall", slip=s.diff(t) - r * spin.diff(t))
     scene = hl.Scene(force=0, eom=[lagrange(L, contacts=[wall])], watch={"y": y.diff(t), "s": s.diff(t), "phi": spin.diff(t)})
     log = run(scene, 120)
     taken = mu * (1 + e) * u0
@@ -207,7 +210,7 @@ def test_a_blow_with_friction_takes_from_the_slip():
 
 @pytest.mark.parametrize("method", ["rk4", "verlet", "taylor"])
 def test_micro_impulses_run_with_every_method(method):
-    log = run(dropped(hl.micro_impulse(e=0.3), p="impulse", N="force"), 1500, method=method)
+    log = run(dropped(hl.contact.micro_impulse(e=0.3), p="impulse", N="force"), 1500, method=method)
     assert log["p"][1000:].mean() == pytest.approx(M * G * T, rel=2e-3)
     assert log["N"][1000:].mean() == pytest.approx(M * G, rel=2e-3)
     assert np.abs(log["q"][1000:]).max() < 2e-4
@@ -216,8 +219,8 @@ def test_micro_impulses_run_with_every_method(method):
 def test_the_hand_feels_the_momentum_that_the_ball_takes():
     """A ball falls on a handle held at x = 0: the felt force integrates to the momentum it gave, and then to its weight."""
     ball = hl.coordinate("ball", unit="m", initial=x(n) + h0)
-    law = hl.Contact(ball - x(t), hl.impulse(e=0.5), name="hit")
-    felt = hl.felt_impulse(law, tau="20 ms")
+    law = hl.contact.Contact(ball - x(t), hl.contact.impulse(e=0.5), name="hit")
+    felt = hl.contact.felt_impulse(law, tau="20 ms")
     motion = lagrange(m * ball.diff(t) ** 2 / 2 - m * g * ball, contacts=[law])
     scene = hl.Scene(felt.force, [motion, *felt.equations], watch={"w": ball.diff(t), "q": ball, "p": law.impulse})
     log = run(scene, 1200, x=np.zeros(1200))
@@ -230,25 +233,25 @@ def test_the_hand_feels_the_momentum_that_the_ball_takes():
 
 def test_contacts_too_short_and_rests_too_slow_for_the_period_are_refused():
     k = hl.parameters("k", units="N/m", values=1e5)
-    scene = dropped(hl.penalty(k=k))
+    scene = dropped(hl.contact.penalty(k=k))
     with pytest.raises(SceneError, match=r"floor: the contact lasts 7.02 ms .* 7.0 steps of 1 ms; rk4 needs 10. Take substeps=2"):
         hl.compile(scene, T=T)
     hl.compile(scene, T=T, substeps=2)
     hl.compile(scene(k=4e4), T=T)
     with pytest.raises(SceneError, match=r"floor: rest_speed = 0.004 m/s; needs at least a T/2 = 0.004905 m/s"):
-        hl.compile(dropped(hl.impulse(e=0.8, rest_speed=0.004)), method="taylor", T=T)
-    hl.compile(dropped(hl.impulse(e=0.8, rest_speed="6 mm/s")), method="taylor", T=T)
+        hl.compile(dropped(hl.contact.impulse(e=0.8, rest_speed=0.004)), method="taylor", T=T)
+    hl.compile(dropped(hl.contact.impulse(e=0.8, rest_speed="6 mm/s")), method="taylor", T=T)
 
 
 def test_what_cannot_run_is_refused():
     with pytest.raises(ProgramError, match=r"floor needs events located .* is method='taylor'; .* impact is late .*penalty"):
-        run(dropped(hl.impulse(e=0.8)), 1, method="rk4")
+        run(dropped(hl.contact.impulse(e=0.8)), 1, method="rk4")
     pull = hl.parameters("F_c", units="N", values=1)
-    brake = hl.friction(slip=q.diff(t), F_c=pull, name="brake")
+    brake = hl.contact.friction(slip=q.diff(t), F_c=pull, name="brake")
     rubbed = hl.Scene(force=0, eom=[lagrange(FALL, contacts=[brake])], watch=[q])
     with pytest.raises(ProgramError, match=r"brake needs events .*a friction never comes to rest. Other methods take a friction"):
         run(rubbed, 1, method="rk4")
-    both = lagrange(FALL, contacts=[hl.Contact(q, hl.rigid(), name="floor"), brake])
+    both = lagrange(FALL, contacts=[hl.contact.Contact(q, hl.contact.rigid(), name="floor"), brake])
     with pytest.raises(ProgramError, match=r"floor, brake need events"):
         run(hl.Scene(force=0, eom=[both]), 1, method="rk4")
     with pytest.raises(ProgramError, match=r"with brake, which may stick; use method='taylor', which locates that"):
@@ -257,28 +260,28 @@ def test_what_cannot_run_is_refused():
         run(rubbed, 1, method="exat")
     z = hl.coordinate("z", unit="m", initial=h0)
     L = FALL + m * z.diff(t) ** 2 / 2
-    e = hl.impulse(e=0.5)
+    e = hl.contact.impulse(e=0.5)
 
     def scene(*contacts):
         return hl.Scene(force=0, eom=[lagrange(L, contacts=contacts)])
 
-    pair = [hl.Contact(q, e, name="a"), hl.Contact(z, hl.impulse(e=0.5, order="simultaneous"), name="b")]
+    pair = [hl.contact.Contact(q, e, name="a"), hl.contact.Contact(z, hl.contact.impulse(e=0.5, order="simultaneous"), name="b")]
     with pytest.raises(SceneError, match=r"a: sequential; b: simultaneous: the impacts of a scene are all sequential, or all"):
         run(scene(*pair), 1)
-    rough = hl.impulse(e=0.5, order="simultaneous", mu=0.1)
-    pair = [hl.Contact(q, rough, name="a", slip=z.diff(t)), hl.Contact(z, hl.rigid(), name="b")]
+    rough = hl.contact.impulse(e=0.5, order="simultaneous", mu=0.1)
+    pair = [hl.contact.Contact(q, rough, name="a", slip=z.diff(t)), hl.contact.Contact(z, hl.contact.rigid(), name="b")]
     with pytest.raises(SceneError, match=r"a: friction in impacts at several contacts at once has no unique outcome"):
         run(scene(*pair), 1)
     with pytest.raises(SceneError, match=r"two contacts are called a"):
-        scene(hl.Contact(q, e, name="a"), hl.Contact(z, e, name="a"))
+        scene(hl.contact.Contact(q, e, name="a"), hl.contact.Contact(z, e, name="a"))
 
 
 def test_a_contact_that_no_model_has_is_refused():
     ball = hl.coordinate("ball", unit="m", initial=x(n) + h0)
-    top = hl.Contact(ball - x(t), hl.impulse(e=0.5), name="top")
-    felt = hl.felt_impulse(top, tau="20 ms")
+    top = hl.contact.Contact(ball - x(t), hl.contact.impulse(e=0.5), name="top")
+    felt = hl.contact.felt_impulse(top, tau="20 ms")
     motion = lagrange(m * ball.diff(t) ** 2 / 2 - m * g * ball)
-    rub = hl.friction(slip=ball.diff(t), F_c=0.1 * top.force, name="rub")
+    rub = hl.contact.friction(slip=ball.diff(t), F_c=0.1 * top.force, name="rub")
     for scene in (
         hl.Scene(force=-top.force, eom=[motion], watch=[ball]),
         hl.Scene(force=-top.force),
@@ -286,26 +289,28 @@ def test_a_contact_that_no_model_has_is_refused():
         hl.Scene(force=0, eom=[motion], watch={"loss": top.impact_loss}),
         hl.Scene(force=0, eom=[lagrange(m * ball.diff(t) ** 2 / 2, contacts=[rub])], watch=[ball]),
     ):
-        with pytest.raises(SceneError, match=r"top is used but no model has it: hl.lagrange\(..., contacts=\[top\]\)"):
+        with pytest.raises(SceneError, match=r"top is used but no model has it: hl.mechanics.lagrange\(..., contacts=\[top\]\)"):
             hl.compile(scene, method="taylor", T=T)
 
 
 def test_impulses_that_are_not_felt_are_noted():
     ball = hl.coordinate("ball", unit="m", initial=x(n) + h0)
-    note = "top acts by impulses, which top.force does not hold; hl.felt_impulse(top, tau='5 ms') makes them felt"
+    note = "top acts by impulses, which top.force does not hold; hl.contact.felt_impulse(top, tau='5 ms') makes them felt"
 
     def notes(law, force, plate=HANDLE, extra=lambda top: ()):
-        top = hl.Contact(ball - plate, law, name="top")
+        top = hl.contact.Contact(ball - plate, law, name="top")
         motion = lagrange(m * ball.diff(t) ** 2 / 2 - m * g * ball, contacts=[top])
         scene = hl.Scene(force(top), [motion, *extra(top)], watch={"ball": ball, "p": top.impulse})
         return hl.compile(scene, method="taylor", T=T).notes
 
     def felt(top):
-        return hl.felt_impulse(top, tau="5 ms")
+        return hl.contact.felt_impulse(top, tau="5 ms")
 
-    for law in (hl.impulse(e=0.5), hl.rigid()):
+    for law in (hl.contact.impulse(e=0.5), hl.contact.rigid()):
         assert note in notes(law, lambda top: top.force)
         assert note in notes(law, lambda top: 0)
         assert note not in notes(law, lambda top: felt(top).force, extra=lambda top: felt(top).equations)
-    assert note not in notes(hl.impulse(e=0.5), lambda top: 0, plate=0)  # a floor that the handle has no part in
-    assert note not in notes(hl.micro_impulse(e=0.5), lambda top: top.force)  # its force is what its impulses give a period
+    assert note not in notes(hl.contact.impulse(e=0.5), lambda top: 0, plate=0)  # a floor that the handle has no part in
+    assert note not in notes(
+        hl.contact.micro_impulse(e=0.5), lambda top: top.force
+    )  # its force is what its impulses give a period

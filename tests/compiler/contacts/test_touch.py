@@ -343,9 +343,9 @@ def squeezed(law, path, gravity=9.81, hold="soh", real="float64", ticks=450):
     """A puck between a floor at -30 mm and a handle above it that goes along ``path``; returns places and log of a run."""
     m, g, o = hl.parameters("m g o", units="kg m/s^2 m", values=(0.1, gravity, 0.03))
     y = hl.coordinate("y", unit="m", initial=-0.01)
-    floor, hand = hl.Contact(y + o, law, name="floor"), hl.Contact(hl.x(hl.t) - y, law, name="hand")
-    felt = hl.felt_impulse(hand, tau="5 ms")
-    motion = hl.lagrange(m * y.diff(hl.t) ** 2 / 2 - m * g * y, contacts=[floor, hand])
+    floor, hand = hl.contact.Contact(y + o, law, name="floor"), hl.contact.Contact(hl.x(hl.t) - y, law, name="hand")
+    felt = hl.contact.felt_impulse(hand, tau="5 ms")
+    motion = hl.mechanics.lagrange(m * y.diff(hl.t) ** 2 / 2 - m * g * y, contacts=[floor, hand])
     scene = hl.Scene(felt.force, [motion, *felt.equations], watch={"y": y})
     program = hl.compile(scene, T=T, method="taylor", dtype=real, hold=hold, live=())
     x = path(T * np.arange(ticks))
@@ -353,7 +353,7 @@ def squeezed(law, path, gravity=9.81, hold="soh", real="float64", ticks=450):
     return load(program).run(ticks, rows).outputs[:, 1, 0], x, program
 
 
-LAWS = [hl.rigid(), hl.impulse(e=0.5), hl.impulse(e=0.5, order="simultaneous")]
+LAWS = [hl.contact.rigid(), hl.contact.impulse(e=0.5), hl.contact.impulse(e=0.5, order="simultaneous")]
 
 
 @pytest.mark.parametrize("law, gravity", [*((law, 9.81) for law in LAWS), (LAWS[0], 0.001)], ids=str)
@@ -376,9 +376,12 @@ def test_a_handle_that_only_comes_near_is_no_fault(law):
 def test_a_paddle_that_presses_a_puck_on_a_wall_stops_with_what_to_do():
     m, o = hl.parameters("m o", units="kg m", values=(0.1, 0.03))
     y = hl.coordinate("y", unit="m", initial=0.01)
-    wall, hand = hl.Contact(o - y, hl.rigid(), name="wall"), hl.Contact(y - hl.x(hl.t), hl.rigid(), name="hand")
-    felt = hl.felt_impulse(hand, tau="5 ms")
-    motion = hl.lagrange(m * y.diff(hl.t) ** 2 / 2, contacts=[wall, hand])
+    wall, hand = (
+        hl.contact.Contact(o - y, hl.contact.rigid(), name="wall"),
+        hl.contact.Contact(y - hl.x(hl.t), hl.contact.rigid(), name="hand"),
+    )
+    felt = hl.contact.felt_impulse(hand, tau="5 ms")
+    motion = hl.mechanics.lagrange(m * y.diff(hl.t) ** 2 / 2, contacts=[wall, hand])
     scene = hl.Scene(felt.force, [motion, *felt.equations], watch={"y": y})
     log = hl.SimulatedPaddle(m=0.05, b=0.5, T=T, hand=hl.Hand(push=1.0)).run(scene, duration=0.2, method="taylor")
     assert "no force keeps contacts apart" in log.fault and "use penalty" in log.fault

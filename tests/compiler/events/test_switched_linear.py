@@ -188,8 +188,8 @@ def of_rubbed():
 def struck():
     """Return a ball that bounces to rest on a floor that does not give."""
     u, g = hl.coordinate("u", unit="m", initial=x(n)), hl.parameters("g", units="m/s^2", values=9.81)
-    floor = hl.Contact(u + 0.5 * x_o, hl.impulse(e=0.6, rest_speed=0.02), name="floor")
-    model = hl.lagrange(m * u.diff(t) ** 2 / 2 - m * g * u, forces={u: K * (x(t) - u)}, contacts=[floor])
+    floor = hl.contact.Contact(u + 0.5 * x_o, hl.contact.impulse(e=0.6, rest_speed=0.02), name="floor")
+    model = hl.mechanics.lagrange(m * u.diff(t) ** 2 / 2 - m * g * u, forces={u: K * (x(t) - u)}, contacts=[floor])
     return hl.Scene(K * (x(n) - u), [model])
 
 

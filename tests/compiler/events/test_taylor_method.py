@@ -179,8 +179,8 @@ def resting(x, hold="soh"):
     """A ball of 50 g that lies on the handle, which goes along x; returns its place and the reaction."""
     m, g = hl.parameters("m g", units="kg m/s^2", values=(0.05, 9.81))
     y = hl.coordinate("y", unit="m")
-    on_hand = hl.Contact(y - hl.x(hl.t), hl.impulse(e=0.3), name="hand")
-    ball = hl.lagrange(m * y.diff(hl.t) ** 2 / 2 - m * g * y, contacts=(on_hand,))
+    on_hand = hl.contact.Contact(y - hl.x(hl.t), hl.contact.impulse(e=0.3), name="hand")
+    ball = hl.mechanics.lagrange(m * y.diff(hl.t) ** 2 / 2 - m * g * y, contacts=(on_hand,))
     _, out = run(hl.Scene(on_hand.force, [ball], watch={"y": y}), len(x), x, method="taylor", dtype="float64", hold=hold)
     assert not out[:, 2].any()
     return out[:, 1], out[:, 0]

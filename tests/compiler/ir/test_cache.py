@@ -150,7 +150,7 @@ def different_scenes():
     ]
     scenes += [coupler(value=200.0), coupler()(K=401.0), coupler()(K=np.nextafter(400.0, 1)), coupler()(m=0.2)]
     forces = [
-        k * x(n), 2 * k * x(n), 2.0 * k * x(n), k * x(n - 1), k * x(t), k * hl.delay(x(n)), k * x(n) + b * v(n),
+        k * x(n), 2 * k * x(n), 2.0 * k * x(n), k * x(n - 1), k * x(t), k * hl.laws.delay(x(n)), k * x(n) + b * v(n),
         k * x(n) + b * v(t), hl.when(x(n) > x_o, k * x(n)), hl.when(x(n) >= x_o, k * x(n)),
         hl.when(x(n) >= longer, k * x(n)), sp.Mul(k, sp.Add(x(n), x(n), evaluate=False), evaluate=False),
     ]  # fmt: skip
@@ -242,8 +242,8 @@ def test_unevaluated_arithmetic_is_kept_apart():
 def test_a_key_does_not_change_when_the_scene_is_used():
     K, m, g = hl.parameters("K m g", units="N/m kg m/s^2", values=(200, 0.05, 9.81))
     y = hl.coordinate("y", unit="m", initial=x(n))
-    lands = hl.Contact(y, hl.impulse(e=0.5), name="lands")
-    motion = hl.lagrange(m * y.diff(t) ** 2 / 2 - m * g * y, forces={y: K * (x(t) - y)}, contacts=[lands])
+    lands = hl.contact.Contact(y, hl.contact.impulse(e=0.5), name="lands")
+    motion = hl.mechanics.lagrange(m * y.diff(t) ** 2 / 2 - m * g * y, forces={y: K * (x(t) - y)}, contacts=[lands])
     contact = hl.Scene(force=K * (x(t) - y), eom=[motion], watch=[y])
     for scene, method in ((coupler(), "rk4"), (hl.wall()(k=3, x_o=0), "rk4"), (contact, "taylor")):
         first = hl.compile(scene, method, T=T)

@@ -14,7 +14,7 @@ T, TICKS = 1e-3, 240
 M_, K_, B_ = 0.05, 500.0, 1.0
 m, K, B, g = hl.parameters("m K B g", units="kg N/m N*s/m m/s^2", values=(M_, K_, B_, 9.81))
 z = hl.coordinate("z", unit="m")
-F = hl.virtual_coupler(z, K=K, b=B)
+F = hl.laws.virtual_coupler(z, K=K, b=B)
 BODY = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)], watch={"z": z, "w": z.diff(t)}, name="body")
 SPRUNG = hl.Scene(
     force=K * (x(t) - z), eom=[sp.Eq(m * z.diff(t, 2), K * (x(t) - z))], watch={"z": z, "w": z.diff(t)}, name="sprung"
@@ -70,8 +70,8 @@ def test_the_impulse_is_kept_where_what_is_not_linear_is_left_to_rk4():
 def test_a_contact_that_is_located_gives_the_mean_of_its_reaction():
     """A ball that has come to rest on the ground: its weight, whatever the instant; while it flies, nothing."""
     high = hl.coordinate("z", unit="m", initial=hl.parameters("h", units="m", values=0.01))
-    lands = hl.Contact(high, hl.impulse(e=0.4), name="lands")
-    falls = hl.lagrange(m * high.diff(t) ** 2 / 2 - m * g * high, contacts=[lands])
+    lands = hl.contact.Contact(high, hl.contact.impulse(e=0.4), name="lands")
+    falls = hl.mechanics.lagrange(m * high.diff(t) ** 2 / 2 - m * g * high, contacts=[lands])
     scene = hl.Scene(force=lands.force, eom=[falls], watch={"z": high})
     for force_at in ("before", "after", "mean"):
         force = ran(scene, "taylor", force_at)[:, 0]
@@ -92,8 +92,8 @@ def test_the_mean_of_a_wall_that_is_entered_within_the_period():
 def test_the_reaction_of_a_constraint_on_average():
     """A body on a spring that the handle carries, x = t^2: F = 2 m + k x, and k x has the mean k (x + v T/2 + T^2/3)."""
     q = hl.coordinate("q", unit="m")
-    image = hl.device_image(q - x(t))
-    carried = hl.lagrange(m * q.diff(t) ** 2 / 2 - K * q**2 / 2, constraints=[image.constraint])
+    image = hl.mechanics.device_image(q - x(t))
+    carried = hl.mechanics.lagrange(m * q.diff(t) ** 2 / 2 - K * q**2 / 2, constraints=[image.constraint])
     s = np.arange(40) * T
     for force_at, expected in (("before", s**2), ("after", s**2), ("mean", s**2 + s * T + T**2 / 3)):
         scene = hl.Scene(force=image.force, eom=[carried])
@@ -112,7 +112,7 @@ def test_the_damping_a_device_needs_is_the_closed_form(damping):
     ratio = b_0 * T / 2 / M_
     closed = {"before": b_0 / (1 - ratio), "after": b_0 * (1 - 2 * ratio) / (1 - ratio), "mean": b_0 / (1 - ratio)}
     for force_at, needed in closed.items():
-        found = hl.port_damping(BODY(B=damping), T=T, method="semi_implicit_euler", hold="zoh", force_at=force_at)
+        found = hl.passivity.port_damping(BODY(B=damping), T=T, method="semi_implicit_euler", hold="zoh", force_at=force_at)
         assert found == pytest.approx(needed, rel=1e-12)
 
 
@@ -135,7 +135,7 @@ def test_what_goes_badly_together_is_said():
     """After with a hold that foresees asks for more of a lightly damped body; under zoh substeps leave the error as it is."""
     light = BODY(B=0.05)
     asked = {
-        (force_at, hold): hl.port_damping(light, T=T, force_at=force_at, hold=hold)
+        (force_at, hold): hl.passivity.port_damping(light, T=T, force_at=force_at, hold=hold)
         for force_at in ("before", "after") for hold in ("zoh", "foh", "soh")
     }  # fmt: skip
     for (force_at, hold), b in asked.items():
@@ -153,8 +153,8 @@ def test_what_goes_badly_together_is_said():
 
 def test_a_micro_impulse_has_no_mean():
     high = hl.coordinate("z", unit="m", initial=hl.parameters("h", units="m", values=0.01))
-    hovers = hl.Contact(high, hl.micro_impulse(e=0.4), name="hovers")
-    falls = hl.lagrange(m * high.diff(t) ** 2 / 2 - m * g * high, contacts=[hovers])
+    hovers = hl.contact.Contact(high, hl.contact.micro_impulse(e=0.4), name="hovers")
+    falls = hl.mechanics.lagrange(m * high.diff(t) ** 2 / 2 - m * g * high, contacts=[hovers])
     with pytest.raises(ProgramError, match=r"hovers\(t\) acts in an instant"):
         hl.compile(hl.Scene(force=hovers.force, eom=[falls]), T=T, force_at="mean")
 

@@ -83,7 +83,9 @@ def test_a_step_is_the_linear_solve_of_a_chain():
     force = {q[0]: k * (q[1] - q[0]) + b * (w[1] - w[0]) - g * w[0],
              q[1]: k * (q[0] - 2 * q[1] + q[2]) + b * (w[0] - 2 * w[1] + w[2]),
              q[2]: k * (q[1] - q[2]) + b * (w[1] - w[2])}  # fmt: skip
-    scene = hl.Scene(force=k * hl.x(n), eom=[hl.lagrange(T_, forces=force)], watch={f"w{i}": a for i, a in enumerate(w)})
+    scene = hl.Scene(
+        force=k * hl.x(n), eom=[hl.mechanics.lagrange(T_, forces=force)], watch={f"w{i}": a for i, a in enumerate(w)}
+    )
     chain = np.array([[-1.0, 1, 0], [1, -2, 1], [0, 1, -1]])
     M = np.array([[0.02, 0.005, 0], [0.005, 0.02, 0.005], [0, 0.005, 0.02]])
     D = 40.0 * chain - np.diag([15.0, 0, 0])
@@ -125,7 +127,7 @@ def test_an_embedded_joint_is_damped_through_its_constraint():
     u = hl.coordinate("u", unit="m", initial=l, rate=r)
     m, b = hl.parameters("m b", units="kg N*s/m", values=(0.01, 50.0))
     for enforce in ("embed", "kkt"):
-        rod = hl.lagrange(
+        rod = hl.mechanics.lagrange(
             m * (q.diff(t) ** 2 + u.diff(t) ** 2) / 2, forces={q: -b * q.diff(t), u: -3 * b * u.diff(t)},
             constraints=[u - q - l], enforce=enforce,
         )  # fmt: skip

@@ -27,7 +27,7 @@ def swinging(*angles):
         horizontal, vertical = horizontal + l * sp.sin(angle), vertical - l * sp.cos(angle)
         kinetic += m * (sp.diff(horizontal, t) ** 2 + sp.diff(vertical, t) ** 2) / 2
         potential += m * g * vertical
-    return hl.lagrange(kinetic - potential)
+    return hl.mechanics.lagrange(kinetic - potential)
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_nystroms_method_sees_through_what_only_looks_like_a_velocity():
     turned = hl.Scene(force=PULL, eom=[sp.Eq(m * z.diff(t, 2), PULL + B * z.diff(t) - z.diff(t) * B)])
     hl.compile(turned, "nystrom4", T=T)
     with pytest.raises(ProgramError, match="square of velocities"):
-        hl.compile(hl.Scene(force=PULL, eom=[hl.lagrange(
+        hl.compile(hl.Scene(force=PULL, eom=[hl.mechanics.lagrange(
             m * (z.diff(t) ** 2 + y.diff(t) ** 2) / 2, forces={z: PULL}, constraints=[z - y])]), "nystrom4", T=T)  # fmt: skip
 
 
@@ -69,8 +69,8 @@ def test_multistep_methods_refuse_cases(method, term, said):
 
 
 def test_multistep_methods_refuse_contacts_and_what_is_exact_beside_them():
-    contact = hl.Contact(z_o - z, hl.penalty(k=K), name="stop")
-    model = hl.lagrange(m * z.diff(t) ** 2 / 2, forces={z: PULL}, contacts=[contact])
+    contact = hl.contact.Contact(z_o - z, hl.contact.penalty(k=K), name="stop")
+    model = hl.mechanics.lagrange(m * z.diff(t) ** 2 / 2, forces={z: PULL}, contacts=[contact])
     with pytest.raises(ProgramError, match="stop starts and ends within a step: adams_bashforth3 carries rates"):
         hl.compile(scene(model), "adams_bashforth3", T=T)
     rows = [sp.Eq(m * z.diff(t, 2), PULL), sp.Eq(m * y.diff(t, 2), K * (z - y) - K * l * sp.sin(y / l))]

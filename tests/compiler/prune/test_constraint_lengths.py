@@ -18,7 +18,7 @@ def pendulum(**of_length):
     length = hl.parameters("l", units="m", values=0.2, **of_length)
     Z = hl.coordinate("Z", unit="m", initial=-length)
     L = m * (X.diff(t) ** 2 + Z.diff(t) ** 2) / 2 - m * g * Z - K * (x(t) - X) ** 2 / 2
-    model = hl.lagrange(L, constraints=[sp.Eq(X**2 + Z**2, length**2)])
+    model = hl.mechanics.lagrange(L, constraints=[sp.Eq(X**2 + Z**2, length**2)])
     return hl.Scene(force=K * (x(n) - X), eom=[model], watch={"X": X, "Z": Z}, name="pendulum")
 
 
@@ -28,7 +28,7 @@ def slider_crank(ranges, **enforce):
     theta, s = hl.coordinate("theta", unit="rad"), hl.coordinate("s", unit="m", initial=r + rod)
     L = J * theta.diff(t) ** 2 / 2 + m * s.diff(t) ** 2 / 2 - K * (x(t) + rod - s) ** 2 / 2
     loop = (s - r * sp.cos(theta)) ** 2 + r**2 * sp.sin(theta) ** 2 - rod**2
-    return hl.Scene(force=K * (x(n) - s), eom=[hl.lagrange(L, constraints=[loop], **enforce)], watch={"s": s})
+    return hl.Scene(force=K * (x(n) - s), eom=[hl.mechanics.lagrange(L, constraints=[loop], **enforce)], watch={"s": s})
 
 
 def test_a_length_is_a_constant_that_the_scene_binds():

@@ -15,7 +15,7 @@ from hapticlab.errors import HapticlabError, ParameterError, ProgramError, Scene
 
 k, m, K, b, tau = hl.parameters("k m K b tau", units="N/m kg N/m N*s/m s", values=(100.0, 0.1, 400.0, 2.0, 4e-3))
 z = hl.coordinate("z", unit="m")
-F_c = hl.virtual_coupler(z, K=K, b=b)
+F_c = hl.laws.virtual_coupler(z, K=K, b=b)
 mass = hl.Scene(force=F_c, eom=[sp.Eq(m * z.diff(t, 2), F_c)], name="mass")
 MOTION = 0.01 * np.random.default_rng(1).normal(size=40).cumsum()
 
@@ -52,7 +52,7 @@ def test_a_measured_velocity_is_an_input_with_its_own_history():
 
 def test_delay_of_any_expression_is_its_past_value():
     inner = k * x(n) ** 2 / hl.parameters("L", units="m", values=1.0)
-    computed = force(hl.Scene(force=hl.delay(inner) + hl.delay(hl.delay(inner))))
+    computed = force(hl.Scene(force=hl.laws.delay(inner) + hl.laws.delay(hl.laws.delay(inner))))
     np.testing.assert_allclose(computed, 100 * (past(MOTION, 1) ** 2 + past(MOTION, 2) ** 2), rtol=1e-13)
 
 
@@ -97,7 +97,7 @@ def test_time_inside_a_step_is_the_time_of_the_stage():
 
 def test_initial_values_may_start_at_the_handle():
     start = hl.coordinate("z", unit="m", initial=x(n), rate=hl.parameters("r", units="m/s", values=0.5))
-    F = hl.virtual_coupler(start, K=K, b=b)
+    F = hl.laws.virtual_coupler(start, K=K, b=b)
     scene = hl.Scene(force=F, eom=[sp.Eq(m * start.diff(t, 2), F)], watch={"z": start, "w": start.diff(t)})
     program = hl.compile(scene, T=1e-3, dtype="float64")
     first = load(program).run(1, np.array([[0.07]])).outputs[0, :, 0]
@@ -127,7 +127,7 @@ def test_what_is_not_live_becomes_a_constant():
 
 def test_a_massless_coupler_is_a_first_order_scene():
     """b z' = K (x - z) + b v - K z, a closed form for a step: F = K (x - z) + b (v - z')."""
-    F = hl.virtual_coupler(z, K=K, b=b)
+    F = hl.laws.virtual_coupler(z, K=K, b=b)
     scene = hl.Scene(force=K * (x(t) - z), eom=[sp.Eq(F, K * z)], watch="z")
     program = hl.compile(scene, "rk4", T=1e-4, hold="zoh", dtype="float64")
     run = load(program).run(101, np.full((101, 1), 0.01)).outputs[-1, 1, 0]

@@ -23,14 +23,14 @@ def kapitza():
     """A pendulum on a support that shakes, a sin(2 pi f t): the rate of the angle is in its Lagrangian."""
     lifted = a * sp.sin(2 * sp.pi * f * t)
     vx, vy = (l * sp.sin(phi)).diff(t), lifted.diff(t) + l * sp.sin(phi) * phi.diff(t)
-    return hl.lagrange(m * (vx**2 + vy**2) / 2 - m * g * (lifted - l * sp.cos(phi)))
+    return hl.mechanics.lagrange(m * (vx**2 + vy**2) / 2 - m * g * (lifted - l * sp.cos(phi)))
 
 
 def kapitza_with_rate():
     """The same, the rate of the support left for the compiler to take."""
     lifted = a * sp.sin(2 * sp.pi * f * t)
     vy = Rate(lifted) + l * sp.sin(phi) * phi.diff(t)
-    return hl.lagrange(m * ((l * sp.cos(phi) * phi.diff(t)) ** 2 + vy**2) / 2 - m * g * (lifted - l * sp.cos(phi)))
+    return hl.mechanics.lagrange(m * ((l * sp.cos(phi) * phi.diff(t)) ** 2 + vy**2) / 2 - m * g * (lifted - l * sp.cos(phi)))
 
 
 def swung(mech, late, dtype="float64", ticks=40, T=1e-3):
@@ -77,10 +77,10 @@ PENDULUM = m * (l * phi.diff(t)) ** 2 / 2 + m * g * l * sp.cos(phi)
 
 def test_a_model_beside_an_equation():
     """A pendulum by its Lagrangian, a mass on a spring to it by an equation; and both by one Lagrangian."""
-    model = hl.lagrange(PENDULUM, forces={phi: k * l * (z - l * phi)})
+    model = hl.mechanics.lagrange(PENDULUM, forces={phi: k * l * (z - l * phi)})
     own = sp.Eq(m * z.diff(t, 2), k * (l * phi - z))
     outputs = []
-    for eom in ([model, own], [hl.lagrange(PENDULUM + m * z.diff(t) ** 2 / 2 - SPRING)]):
+    for eom in ([model, own], [hl.mechanics.lagrange(PENDULUM + m * z.diff(t) ** 2 / 2 - SPRING)]):
         program = hl.compile(hl.Scene(force=0, eom=eom, watch=["phi", "z"]), T=1e-3, dtype="float64")
         outputs.append(load(program).run(50, np.zeros((50, len(program.inputs)))).outputs)
     np.testing.assert_allclose(outputs[0], outputs[1], rtol=1e-12)
@@ -88,25 +88,25 @@ def test_a_model_beside_an_equation():
 
 def test_a_coordinate_is_moved_once():
     own = sp.Eq(m * z.diff(t, 2), k * (l * phi - z))
-    scene = hl.Scene(force=0, eom=[hl.lagrange(PENDULUM - SPRING), own], watch=["phi"])
+    scene = hl.Scene(force=0, eom=[hl.mechanics.lagrange(PENDULUM - SPRING), own], watch=["phi"])
     with pytest.raises(MassError, match="z is moved by a Lagrangian, which moves every coordinate it holds, and by an equation"):
         hl.compile(scene, T=1e-3)
 
 
 def test_notes_of_a_model_are_in_the_listing():
-    mech = replace(hl.lagrange(m * z.diff(t) ** 2 / 2 - k * z**2 / 2), notes=("q of the model is called z here",))
+    mech = replace(hl.mechanics.lagrange(m * z.diff(t) ** 2 / 2 - k * z**2 / 2), notes=("q of the model is called z here",))
     assert "q of the model is called z here" in hl.compile(hl.Scene(force=0, eom=[mech], watch=["z"]), T=1e-3).notes
 
 
 def test_constraints_need_numbers():
     r = hl.parameters("r", units="m")
-    mech = hl.lagrange(m * (z.diff(t) ** 2 + y.diff(t) ** 2) / 2, constraints=[z - 2 * y - r])
+    mech = hl.mechanics.lagrange(m * (z.diff(t) ** 2 + y.diff(t) ** 2) / 2, constraints=[z - 2 * y - r])
     with pytest.raises(ParameterError, match=r"r needs a value to check the constraints: scene\(r=...\)"):
         hl.compile(hl.Scene(force=0, eom=[mech], watch=["z"]), T=1e-3)
 
 
 def test_an_equation_may_not_hold_what_a_constraint_determines():
-    mech = hl.lagrange(m * (z.diff(t) ** 2 + y.diff(t) ** 2) / 2, constraints=[z - 2 * y])
+    mech = hl.mechanics.lagrange(m * (z.diff(t) ** 2 + y.diff(t) ** 2) / 2, constraints=[z - 2 * y])
     other = hl.coordinate("w", unit="m")
     scene = hl.Scene(force=0, eom=[mech, sp.Eq(m * other.diff(t, 2) + m * z.diff(t, 2), 0)], watch=[other])
     with pytest.raises(SceneError, match=r"equation of w holds the acceleration of z, which a constraint determines"):
@@ -116,7 +116,7 @@ def test_an_equation_may_not_hold_what_a_constraint_determines():
 def test_a_handle_in_an_energy_pulls_by_its_motion():
     """A mass on a spring to the handle, by energy and by equation, is one program's motion."""
     q = hl.coordinate("q", unit="m", initial=x(n))
-    by_energy = hl.lagrange(m * q.diff(t) ** 2 / 2 - k * (q - x(t)) ** 2 / 2)
+    by_energy = hl.mechanics.lagrange(m * q.diff(t) ** 2 / 2 - k * (q - x(t)) ** 2 / 2)
     by_hand = sp.Eq(m * q.diff(t, 2), k * (x(t) - q))
     lead = 0.01 * np.sin(np.arange(60) / 7.0)[:, None]
     runs = [

@@ -111,7 +111,7 @@ def test_the_margin_is_that_of_step_limit(name):
     places = [{}, {"theta": 0.0}] if name.startswith("pendulum") else {}
     for method in ("semi_implicit_euler_damped", "rk4"):
         margin = hl.compile(scene, method, T=T).facts["margin"]
-        assert margin == pytest.approx(hl.step_limit(scene, method, T=T, at=places).margin, rel=0.01)
+        assert margin == pytest.approx(hl.stability.step_limit(scene, method, T=T, at=places).margin, rel=0.01)
 
 
 def test_rolling_is_stable_at_2_ms():
@@ -174,7 +174,7 @@ def test_what_rises_slowly_hides_no_blow_up():
 
 def test_nothing_is_claimed_of_what_is_fed_back_by_samples():
     y = hl.signal("y", unit="m")
-    for held, more in ((hl.delay(z), []), (y(hl.n), [sp.Eq(y(hl.n), z)])):
+    for held, more in ((hl.laws.delay(z), []), (y(hl.n), [sp.Eq(y(hl.n), z)])):
         F = K * (x(t) - z)
         scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F - k * held), *more])
         program = hl.compile(scene, "semi_implicit_euler", T=T, live="K")

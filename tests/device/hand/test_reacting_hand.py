@@ -14,11 +14,11 @@ FREE = hl.wall()(k=100, x_o=1.0)
 
 def paddle(plan, m=0.05, b=2.0, k=300.0, b_hand=4.0, **given):
     mind = {name: given.pop(name) for name in ("reaction", "every", "start") if name in given}
-    return hl.SimulatedPaddle(m=m, b=b, T=T, hand=hl.Hand(b=b_hand, k=k, intent=hl.Reacting(plan=plan, **mind)), **given)
+    return hl.SimulatedPaddle(m=m, b=b, T=T, hand=hl.Hand(b=b_hand, k=k, intent=hl.people.Reacting(plan=plan, **mind)), **given)
 
 
 def test_a_plan_of_time_alone_is_the_same_as_a_path():
-    path = hl.MinimumJerk(end=0.02, duration=0.3, begin=0.05)
+    path = hl.people.MinimumJerk(end=0.02, duration=0.3, begin=0.05)
     log = paddle(lambda t, seen, intent: float(path(t)), every=0.001).run(FREE, duration=0.5)
     known = hl.SimulatedPaddle(m=0.05, b=2.0, T=T, hand=hl.Hand(b=4.0, k=300.0, intent=path)).run(FREE, duration=0.5)
     assert np.allclose(log.x, known.x, atol=1e-15, rtol=0)
@@ -84,14 +84,14 @@ def test_bad_plans_are_told(plan, said):
 
 def test_a_hand_that_reacts_runs_nowhere_else():
     with pytest.raises(PaddleError, match="plan = 3; needs a function"):
-        hl.Reacting(plan=3)
+        hl.people.Reacting(plan=3)
     with pytest.raises(PaddleError, match="runs on SimulatedPaddle.run alone"):
         hl.sweep(hl.wall(), paddle(lambda t, seen, intent: 0.0), k=[10.0, 20.0], progress=False)
 
 
 def test_tremor_beside_a_plan_is_added_to_what_it_intends():
-    tremor, plan = hl.Tremor(rms=1e-3), (lambda t, seen, intent: 0.01 * t)
-    mind = hl.Reacting(plan=plan)
+    tremor, plan = hl.people.Tremor(rms=1e-3), (lambda t, seen, intent: 0.01 * t)
+    mind = hl.people.Reacting(plan=plan)
     both = (mind + tremor, tremor + mind, (lambda t: 0 * t) + (mind + tremor))
     runs = [
         hl.SimulatedPaddle(m=0.05, b=2.0, T=T, hand=hl.Hand(b=4.0, k=300.0, intent=intent)).run(FREE, duration=0.3)
@@ -99,6 +99,6 @@ def test_tremor_beside_a_plan_is_added_to_what_it_intends():
     ]
     assert all(np.allclose(log.x, runs[-1].x, atol=1e-15, rtol=0) for log in runs[:-1]) and np.ptp(runs[-1].x) > 1e-3
     with pytest.raises(PaddleError, match="two plans for one hand"):
-        hl.Reacting(plan=plan) + hl.Reacting(plan=plan)
+        hl.people.Reacting(plan=plan) + hl.people.Reacting(plan=plan)
     with pytest.raises(TypeError):
         tremor + 3

@@ -84,7 +84,7 @@ import hapticlab.course.labs as labs
 try:
     names = [folder.number for folder in labs.find_labs()]
     stiffness = labs.find_lab("42").exercise("stiffness").cases[0].expected
-except hl.CourseError:
+except hl.errors.CourseError:
     pass""",
     ),
     _spy(

@@ -10,7 +10,7 @@ z = hl.coordinate("z", unit="m", initial=x(n))
 theta = hl.coordinate("theta", unit="rad", initial=0.3)
 M, m, l, g, c = hl.parameters("M m l g c", units="kg kg m m/s^2 N*m*s/rad", values=(0.05, 0.05, 0.15, 9.81, 1e-4))
 K, b_c = hl.parameters("K b_c", units="N/m N*s/m")
-F_c = hl.virtual_coupler(z, K=K, b=b_c)
+F_c = hl.laws.virtual_coupler(z, K=K, b=b_c)
 
 prediction = 1.64
 who_pays = "c"
@@ -25,7 +25,7 @@ def euler_step(z, w, x, v, m, K, b_c, T):
 pendulum = hl.Scene(
     force=F_c,
     eom=[
-        hl.lagrange(
+        hl.mechanics.lagrange(
             M * z.diff(t) ** 2 / 2
             + m * ((z + l * sp.sin(theta)).diff(t) ** 2 + (l * sp.cos(theta)).diff(t) ** 2) / 2
             + m * g * l * sp.cos(theta),

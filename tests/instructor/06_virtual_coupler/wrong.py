@@ -14,10 +14,10 @@ def pendulum(weight, product, z=z):
     """A pendulum with gravity's sign, and the product of the velocities, as given."""
     theta = hl.coordinate("theta", unit="rad", initial=0.3)
     M, l, g, c = hl.parameters("M l g c", units="kg m m/s^2 N*m*s/rad", values=(0.05, 0.15, 9.81, 1e-4))
-    F_c = hl.virtual_coupler(z, K=K, b=b_c)
+    F_c = hl.laws.virtual_coupler(z, K=K, b=b_c)
     square = z.diff(t) ** 2 + product * z.diff(t) * l * theta.diff(t) + (l * theta.diff(t)) ** 2
     energy = M * z.diff(t) ** 2 / 2 + m * square / 2 + weight * m * g * l * sp.cos(theta)
-    model = hl.lagrange(energy, dissipation=c * theta.diff(t) ** 2 / 2, forces={z: F_c})
+    model = hl.mechanics.lagrange(energy, dissipation=c * theta.diff(t) ** 2 / 2, forces={z: F_c})
     return hl.Scene(force=F_c, eom=[model], watch=[z, theta])
 
 

@@ -72,7 +72,7 @@ def test_an_estimated_velocity_turns_half_sample_into_the_backward_difference():
 
 @pytest.mark.parametrize("strength", [0.3, -0.3])
 def test_a_virtual_damper_of_either_sign(strength):
-    scene = hl.virtual_damper()(B=strength)
+    scene = hl.laws.virtual_damper()(B=strength)
     np.testing.assert_allclose(forces(scene, velocity="measured"), strength * VELOCITY, rtol=1e-15)
     estimated = (MOTION - past(MOTION, 1)) / T
     np.testing.assert_allclose(forces(scene), strength * estimated, rtol=1e-11, atol=1e-13)
@@ -81,16 +81,16 @@ def test_a_virtual_damper_of_either_sign(strength):
 def test_the_coupler_is_the_spring_and_damper_of_fig_23_4():
     z = hl.coordinate("z", unit="m")
     stiffness, damping = hl.parameters("K b", units="N/m N*s/m")
-    assert hl.virtual_coupler(z, K=stiffness, b=damping) == stiffness * (x(t) - z) + damping * (v(t) - z.diff(t))
+    assert hl.laws.virtual_coupler(z, K=stiffness, b=damping) == stiffness * (x(t) - z) + damping * (v(t) - z.diff(t))
 
 
 def test_the_filter_keeps_what_it_filters():
     z = hl.coordinate("z", unit="m")
     m, k = hl.parameters("m k", units="kg N/m", values=(0.1, 50.0))
     body = hl.Scene(force=k * (x(t) - z), eom=[sp.Eq(m * z.diff(t, 2), k * (x(t) - z))], watch="z", name="body")
-    filtered = hl.force_filter(body)
+    filtered = hl.laws.force_filter(body)
     assert (filtered.eom, filtered.watch, filtered.values) == (body.eom, body.watch, body.values)
-    assert hl.predicted_sample(v) == 2 * v(n) - v(n - 1)
+    assert hl.laws.predicted_sample(v) == 2 * v(n) - v(n - 1)
 
 
 def by_filter(force):
@@ -101,15 +101,15 @@ def by_filter(force):
 def scenes_to_filter():
     y = hl.signal("y", unit="N", initial=0)
     k3 = hl.parameters("k3", units="N/m^3", values=1e6)
-    boundary = hl.Amount(BOUNDARY, "m")
+    boundary = hl.shapes.Amount(BOUNDARY, "m")
     hardening = hl.when(x(n) >= boundary, k3 * (x(n) - boundary) ** 3)
     return {
         "gated": hl.wall("half_sample")(k=K, B=B, x_o=BOUNDARY),
         "clipped": hl.wall("ellis", "clip", clamp=True)(k=K, x_o=BOUNDARY),
         "hardening": hl.Scene(hardening, name="hardening spring"),
         "with a memory": hl.Scene(y(n), [sp.Eq(y(n), sp.Rational(4, 5) * y(n - 1) + hl.wall().force)])(k=K, x_o=BOUNDARY),
-        "braked": hl.braking_pulse(hl.wall()(k=K, x_o=BOUNDARY), impulse=1e-3, periods=3),
-        "estimated": hl.wall("half_sample", velocity=hl.window_velocity(band=1e-4, most=3))(k=K, B=B, x_o=BOUNDARY),
+        "braked": hl.laws.braking_pulse(hl.wall()(k=K, x_o=BOUNDARY), impulse=1e-3, periods=3),
+        "estimated": hl.wall("half_sample", velocity=hl.velocity.window(band=1e-4, most=3))(k=K, B=B, x_o=BOUNDARY),
     }
 
 
@@ -123,13 +123,13 @@ def test_the_filter_filters_whatever_is_felt(name, clamp):
     expected = by_filter(plain)
     assert (expected.min() < 0) == (name != "with a memory")  # a switch pulls after leaving
     expected = np.maximum(expected, 0) if clamp else expected
-    np.testing.assert_allclose(forces(hl.force_filter(scene, clamp), velocity="measured"), expected, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(forces(hl.laws.force_filter(scene, clamp), velocity="measured"), expected, rtol=1e-12, atol=1e-12)
 
 
 def test_a_gated_wall_is_filtered_and_not_an_ellis_wall():
     """(23.8) around (23.1) forgets what lies outside; (23.7) takes the raw past: equal deep inside, not at the entry."""
     path = BOUNDARY + 0.002 * np.sin(0.3 * np.arange(100))
-    scenes = hl.force_filter(hl.wall()), hl.wall("ellis")
+    scenes = hl.laws.force_filter(hl.wall()), hl.wall("ellis")
     programs = [hl.compile(scene(k=K, x_o=BOUNDARY), T=T, dtype="float64") for scene in scenes]
     filtered, ellis = (load(program).run(100, path[:, None]).outputs[:, 0, 0] for program in programs)
     deep = np.all([past(path, lag) > BOUNDARY for lag in range(3)], axis=0)
@@ -139,14 +139,14 @@ def test_a_gated_wall_is_filtered_and_not_an_ellis_wall():
 
 
 def test_a_filter_of_a_filter_is_the_product():
-    twice = hl.force_filter(hl.force_filter(hl.wall(unilateral=None)))(k=K, x_o=BOUNDARY)
+    twice = hl.laws.force_filter(hl.laws.force_filter(hl.wall(unilateral=None)))(k=K, x_o=BOUNDARY)
     expected = by_filter(by_filter(K * (MOTION - BOUNDARY)))
     np.testing.assert_allclose(forces(twice), expected, rtol=1e-11, atol=1e-12)
 
 
 @pytest.mark.parametrize("name", scenes_to_filter())
 def test_a_filtered_scene_runs_in_the_firmware_core(name):
-    program = hl.compile(hl.force_filter(scenes_to_filter()[name]), T=T)
+    program = hl.compile(hl.laws.force_filter(scenes_to_filter()[name]), T=T)
     path = MOTION.astype(np.float32)[:, None]
     there, here = (load(program, engine).run(len(path), path).outputs for engine in ("vm", "interpreter"))
     np.testing.assert_array_equal(there, here)

@@ -258,9 +258,9 @@ def test_an_estimate_goes_through_a_pickle_and_its_constants_may_be_live():
 def test_two_estimates_of_one_name_are_refused():
     wall_of_one = wall(velocity=filtered_velocity(tau=1e-3))
     with pytest.raises(SceneError, match=r"two equations define v_filtered\(n\)"):
-        hl.damping_compensation(wall_of_one, b=0.1, velocity=filtered_velocity(tau=2e-3))
+        hl.laws.damping_compensation(wall_of_one, b=0.1, velocity=filtered_velocity(tau=2e-3))
     other = filtered_velocity(tau=2e-3, name="v_slow")
-    assert len(hl.damping_compensation(wall_of_one, b=0.1, velocity=other).eom) == 2
+    assert len(hl.laws.damping_compensation(wall_of_one, b=0.1, velocity=other).eom) == 2
 
 
 # ---------------------------------------------------------------- refusals and costs

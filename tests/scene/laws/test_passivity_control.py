@@ -13,6 +13,7 @@ T, K = 1e-3, 700.0
 GENERATOR = np.random.default_rng(3)
 #: a wandering handle: in and out of a wall at 0, back and forth within it, resting for two samples
 MOTION = np.r_[np.full(3, -1e-3), -1e-3 + np.cumsum(3e-4 * GENERATOR.normal(size=400)), np.zeros(2)]
+ENERGY = hl.laws.wall_energy()
 WALL = hl.wall()(k=K)
 
 
@@ -35,7 +36,7 @@ def elastic(motion=MOTION, stiffness=K):
 
 @pytest.mark.parametrize("lag", [0, 1, 3])
 def test_the_observer_is_the_work_of_the_held_force(lag):
-    F, seen = played(hl.passivity_observer(WALL, lag=lag))
+    F, seen = played(hl.laws.passivity_observer(WALL, lag=lag))
     np.testing.assert_array_equal(F, np.maximum(K * MOTION, 0))  # the scene's own, in every bit
     # rounding: 400 sums of some 1e-4 J
     np.testing.assert_allclose(seen["W"], taken(F, lag=lag), atol=1e-17, rtol=1e-13)
@@ -45,7 +46,7 @@ def test_the_observer_of_one_push_finds_the_area_of_the_staircase():
     """In and out at v T a sample: K v T x_max, Fig. 23.6; and -K v T x_max if paired with the displacement before."""
     step = 2.3e-4
     inside = np.r_[np.arange(-2, 9), np.arange(9, -4, -1)] * step + 0.4 * step
-    F, seen = played(hl.passivity_observer(WALL), inside)
+    F, seen = played(hl.laws.passivity_observer(WALL), inside)
     assert seen["W"][-1] == pytest.approx(-K * step * inside.max(), abs=1e-17)
     wrong = np.cumsum(F * np.diff(inside, prepend=inside[0]))[-1]
     assert wrong == pytest.approx(K * step * inside.max(), abs=1e-17)
@@ -73,8 +74,8 @@ def by_hand_series(f, motion, alpha_max, stored, keep=lambda credit: credit, lim
         ({"force_max": 0.8}, {"limit": 0.8}),
         ({"forget": 0.02}, {"keep": lambda c: c / (1 + T / 0.02) if c > 0 else c}),
         ({"credit_max": 2e-5}, {"keep": lambda c: min(c, 2e-5)}),
-        ({"stored": hl.wall_energy()}, {"stored": elastic()}),
-        ({"stored": hl.wall_energy(), "predict": True}, {"stored": elastic(), "ahead": elastic}),
+        ({"stored": hl.laws.wall_energy()}, {"stored": elastic()}),
+        ({"stored": hl.laws.wall_energy(), "predict": True}, {"stored": elastic(), "ahead": elastic}),
         ({"predict": True}, {"ahead": lambda place: 0.0}),
     ],
     ids=["plain", "weak", "limited", "forgets", "bounded", "reference", "predicts", "predicts the work"],
@@ -83,7 +84,7 @@ def test_the_series_form_is_its_lines_written_out(options, hand):
     f = np.maximum(K * MOTION, 0)
     hand = {"alpha_max": 30.0, "stored": np.zeros(len(f))} | hand
     expected, credit, damper = by_hand_series(f, MOTION, **hand)
-    F, seen = played(hl.passivity_controller(WALL, **({"alpha_max": 30.0} | options)))
+    F, seen = played(hl.laws.passivity_controller(WALL, **({"alpha_max": 30.0} | options)))
     assert (damper > 0).sum() > 10
     np.testing.assert_allclose(F, expected, rtol=1e-9, atol=1e-10)
     np.testing.assert_allclose(seen["credit"], credit, rtol=0, atol=1e-13)  # a division by small D multiplies rounding
@@ -94,7 +95,7 @@ def test_the_series_form_takes_back_what_was_generated():
     """An unbounded damper repays in the next sample what the same displacement would repay, whatever came before."""
     step = 2e-4
     motion = np.r_[np.arange(-2, 9), np.arange(9, -12, -1)] * step + 0.4 * step
-    F, seen = played(hl.passivity_controller(WALL, alpha_max=1e4), motion)
+    F, seen = played(hl.laws.passivity_controller(WALL, alpha_max=1e4), motion)
     W = taken(F, motion)
     assert taken(np.maximum(K * motion, 0), motion)[-1] < -1e-4
     assert W[-1] == pytest.approx(0.0, abs=1e-17)
@@ -109,7 +110,7 @@ def test_any_scene_owes_no_more_than_some_periods_of_its_work_while_the_handle_m
     scene = hl.Scene(force=k * sp.Add(*(c * hl.x(n - lag) for lag, c in enumerate(taps))))
     motion = 5e-3 * np.sin(2 * np.pi * 4.3 * T * np.arange(3000)) + 2e-3 * np.sin(2 * np.pi * 11.7 * T * np.arange(3000))
     bare, _ = played(scene, motion)
-    F, _ = played(hl.passivity_controller(scene, alpha_max=1e5), motion)
+    F, _ = played(hl.laws.passivity_controller(scene, alpha_max=1e5), motion)
     period = abs(bare[:-1] * np.diff(motion)).max()
     assert taken(bare, motion).min() < -10 * period
     assert taken(F, motion).min() > -3 * period
@@ -119,7 +120,7 @@ def test_with_prediction_and_reference_a_steady_push_feels_the_half_sample_lead(
     """What the coming period would generate, K D^2/2, is a damper K T/2: Eq. (23.5), inside the wall."""
     step = 2e-4
     motion = np.r_[np.arange(1, 9), np.arange(9, 1, -1)] * step
-    scene = hl.passivity_controller(WALL, alpha_max=30, stored=hl.wall_energy(), predict=True)
+    scene = hl.laws.passivity_controller(WALL, alpha_max=30, stored=hl.laws.wall_energy(), predict=True)
     F, seen = played(scene, motion)
     law = K * (1.5 * motion - 0.5 * np.r_[motion[0], motion[:-1]])
     # at sample 0 nothing moves, and sample 1 repays; then the handle goes in at a steady step
@@ -146,7 +147,7 @@ def by_hand_parallel(motion, beta_max):
 
 @pytest.mark.parametrize("beta_max", [1e4, 0.2])
 def test_the_parallel_form_is_its_lines_written_out(beta_max):
-    scene = hl.passivity_controller(WALL, "parallel", beta_max=beta_max, stored=hl.wall_energy())
+    scene = hl.laws.passivity_controller(WALL, "parallel", beta_max=beta_max, stored=hl.laws.wall_energy())
     force, credit, slip = by_hand_parallel(MOTION, beta_max)
     F, seen = played(scene)
     assert slip.max() > 1e-4
@@ -159,7 +160,7 @@ def test_the_parallel_form_gives_back_no_more_than_was_stored():
     """What the port took covers what is left in the spring, to the leak of one period, K (D - slip)^2/2."""
     step = 2e-4
     motion = np.r_[np.arange(-2, 12), np.arange(12, -4, -1)] * step + 0.3 * step
-    F, seen = played(hl.passivity_controller(WALL, "parallel", beta_max=1e4, stored=hl.wall_energy()), motion)
+    F, seen = played(hl.laws.passivity_controller(WALL, "parallel", beta_max=1e4, stored=hl.laws.wall_energy()), motion)
     W = taken(F, motion)
     bound = K * np.diff(motion - seen["slip"]) ** 2 / 2
     inside = F[:-1] > 0  # the first period inside has no force that could slip
@@ -172,7 +173,7 @@ def test_a_spring_that_is_loaded_at_the_start_is_known_by_what_it_stores():
     """Let go from 3 mm inside: without ``stored`` what it gives back looks generated, with it nothing does but the hold."""
     motion = np.linspace(3e-3, -1e-3, 41)
     without, known = (
-        played(hl.passivity_controller(WALL, alpha_max=50, **o), motion) for o in ({}, {"stored": hl.wall_energy()})
+        played(hl.laws.passivity_controller(WALL, alpha_max=50, **o), motion) for o in ({}, {"stored": hl.laws.wall_energy()})
     )
     loaded = K * 3e-3**2 / 2
     assert known[1]["credit"].min() > -0.06 * loaded  # two periods' leak, K D^2/2 each, while it repays
@@ -196,7 +197,7 @@ def active_until(scene, t1, period=0.1, amplitude=2e-3, ticks=4000):
 
 @pytest.mark.parametrize("t1", [0.5, 1.7])
 def test_a_human_who_was_active_for_long_lets_the_environment_be_active_as_long(t1):
-    assert active_until(hl.passivity_controller(honey(), alpha_max=50), t1) == pytest.approx(t1, abs=0.05)  # half a period
+    assert active_until(hl.laws.passivity_controller(honey(), alpha_max=50), t1) == pytest.approx(t1, abs=0.05)  # half a period
 
 
 @pytest.mark.parametrize("t1", [0.5, 1.7])
@@ -204,21 +205,21 @@ def test_a_human_who_was_active_for_long_lets_the_environment_be_active_as_long(
 def test_a_credit_that_is_forgotten_ends_that_soon(forget, t1):
     """At a power P the credit is forget*P (1 - e^(-t1/forget)); drained at P and forgotten it lasts forget*ln(2 - ...)."""
     expected = forget * np.log(2 - np.exp(-t1 / forget))
-    found = active_until(hl.passivity_controller(honey(), alpha_max=50, forget=forget), t1)
+    found = active_until(hl.laws.passivity_controller(honey(), alpha_max=50, forget=forget), t1)
     assert found == pytest.approx(expected, abs=0.05)
     assert found < forget * np.log(2) + 0.05  # however long the human was active
 
 
 def test_a_bounded_credit_ends_when_it_is_spent():
     P = 2.0 * (2e-3 * 2 * np.pi / 0.1) ** 2 / 2  # of the honey, averaged
-    found = active_until(hl.passivity_controller(honey(), alpha_max=50, credit_max=0.2 * P), 1.7)
+    found = active_until(hl.laws.passivity_controller(honey(), alpha_max=50, credit_max=0.2 * P), 1.7)
     assert found == pytest.approx(0.2, abs=0.05)
 
 
 @pytest.mark.parametrize("cure", [{"forget": 0.004}, {"credit_max": 1e-6}])
 def test_the_cures_strike_off_credit_and_never_debt(cure):
     """Whatever is struck off, the energy taken at the port stays above the credit that is left."""
-    F, seen = played(hl.passivity_controller(WALL, alpha_max=30, **cure))
+    F, seen = played(hl.laws.passivity_controller(WALL, alpha_max=30, **cure))
     assert (taken(F) >= seen["credit"] - 1e-15).all()
     assert (seen["credit"] < 0).any() and taken(F)[-1] > seen["credit"][-1] + 1e-4
 
@@ -230,7 +231,7 @@ def test_a_reset_strikes_off_what_one_contact_left_for_the_next(form, bound):
     motion = np.r_[there, np.full(40, -1e-3), there]
     damped = hl.wall()(k=100, B=0.5)
     plain, reset = (
-        played(hl.passivity_controller(damped, form, **{bound: 5}, **o, stored=hl.wall_energy()), motion)[1]["credit"]
+        played(hl.laws.passivity_controller(damped, form, **{bound: 5}, **o, stored=hl.laws.wall_energy()), motion)[1]["credit"]
         for o in ({}, {"reset": 0.02})
     )
     last = len(there) - 1
@@ -243,7 +244,9 @@ def test_a_reset_strikes_off_what_one_contact_left_for_the_next(form, bound):
 
 @pytest.mark.parametrize("form, bound", [("series", "alpha_max"), ("parallel", "beta_max")])
 def test_the_firmware_gives_the_same_bits(form, bound):
-    scene = hl.passivity_controller(WALL, form, **{bound: 5.0}, stored=hl.wall_energy(), forget=0.1, credit_max=1e-3, force_max=2)
+    scene = hl.laws.passivity_controller(
+        WALL, form, **{bound: 5.0}, stored=hl.laws.wall_energy(), forget=0.1, credit_max=1e-3, force_max=2
+    )
     (F, seen), (felt, there) = (played(scene, dtype="float32", engine=engine) for engine in ("interpreter", "vm"))
     assert abs(F).max() > 0.5
     np.testing.assert_array_equal(F, felt)
@@ -252,20 +255,20 @@ def test_the_firmware_gives_the_same_bits(form, bound):
 
 
 def test_float32_keeps_the_books_to_a_millionth():
-    exact, single = (played(hl.passivity_observer(WALL), dtype=dtype)[1]["W"] for dtype in ("float64", "float32"))
+    exact, single = (played(hl.laws.passivity_observer(WALL), dtype=dtype)[1]["W"] for dtype in ("float64", "float32"))
     np.testing.assert_allclose(single, exact, atol=1e-6 * abs(exact).max())
 
 
 def mass_on_a_coupler():
     m, c = hl.parameters("m c", units="kg N*s/m", values=(0.05, 1.0))
     z = hl.coordinate("z", unit="m")
-    pull = hl.virtual_coupler(z, K=hl.parameters("K", units="N/m", values=300), b=c)
+    pull = hl.laws.virtual_coupler(z, K=hl.parameters("K", units="N/m", values=300), b=c)
     return hl.Scene(force=pull, eom=[sp.Eq(m * z.diff(t, 2), pull)], watch=["z"])
 
 
 def test_it_goes_around_scenes_with_bodies():
     body = mass_on_a_coupler()
-    F, seen = played(hl.passivity_controller(body, alpha_max=5))
+    F, seen = played(hl.laws.passivity_controller(body, alpha_max=5))
     bare, _ = played(body)
     np.testing.assert_allclose(seen["credit"], taken(F), atol=1e-15)
     np.testing.assert_allclose(F - bare, seen["alpha"] * np.diff(MOTION, prepend=MOTION[0]) / T, atol=1e-12)
@@ -274,18 +277,18 @@ def test_it_goes_around_scenes_with_bodies():
 @pytest.mark.parametrize(
     "call, error, words",
     [
-        (lambda: hl.passivity_controller(WALL, "bogus"), SceneError, "'series'"),
-        (lambda: hl.passivity_controller(WALL, "parallel"), SceneError, "stored=hl.wall_energy"),
-        (lambda: hl.passivity_controller(mass_on_a_coupler(), "parallel", stored=hl.wall_energy()), SceneError, "moves z"),
-        (lambda: hl.passivity_controller(WALL, beta_max=2), SceneError, "give alpha_max"),
-        (lambda: hl.passivity_controller(WALL, predict=True, lag=1), SceneError, "lag = 0"),
-        (lambda: hl.passivity_controller(WALL, stored=hl.x(n)), UnitsError, "in m but"),
-        (lambda: hl.passivity_controller("wall"), SceneError, "needs a Scene"),
-        (lambda: hl.passivity_observer(3), SceneError, "needs a Scene"),
-        (lambda: hl.passivity_observer(WALL, lag=0.5), SceneError, "whole samples"),
-        (lambda: hl.passivity_observer(hl.passivity_observer(WALL)), SceneError, "F_sent|W"),
-        (lambda: hl.passivity_controller(WALL, alpha_max=-1), ParameterError, "alpha_max = -1"),
-        (lambda: hl.compile(hl.passivity_controller(WALL), T=T, live=()), ParameterError, "alpha_max"),
+        (lambda: hl.laws.passivity_controller(WALL, "bogus"), SceneError, "'series'"),
+        (lambda: hl.laws.passivity_controller(WALL, "parallel"), SceneError, "stored=hl.laws.wall_energy"),
+        (lambda: hl.laws.passivity_controller(mass_on_a_coupler(), "parallel", stored=ENERGY), SceneError, "moves z"),
+        (lambda: hl.laws.passivity_controller(WALL, beta_max=2), SceneError, "give alpha_max"),
+        (lambda: hl.laws.passivity_controller(WALL, predict=True, lag=1), SceneError, "lag = 0"),
+        (lambda: hl.laws.passivity_controller(WALL, stored=hl.x(n)), UnitsError, "in m but"),
+        (lambda: hl.laws.passivity_controller("wall"), SceneError, "needs a Scene"),
+        (lambda: hl.laws.passivity_observer(3), SceneError, "needs a Scene"),
+        (lambda: hl.laws.passivity_observer(WALL, lag=0.5), SceneError, "whole samples"),
+        (lambda: hl.laws.passivity_observer(hl.laws.passivity_observer(WALL)), SceneError, "F_sent|W"),
+        (lambda: hl.laws.passivity_controller(WALL, alpha_max=-1), ParameterError, "alpha_max = -1"),
+        (lambda: hl.compile(hl.laws.passivity_controller(WALL), T=T, live=()), ParameterError, "alpha_max"),
     ],
 )  # fmt: skip
 def test_it_says_what_it_needs(call, error, words):

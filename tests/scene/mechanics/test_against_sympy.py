@@ -15,7 +15,7 @@ t = dynamicsymbols._t
 
 def taken(method, values, starts, **given):
     states = [*method.q, *(p.diff(t) for p in method.q)]
-    return hl.from_mechanics(method, values=values, initial=dict(zip(states, starts, strict=True)), **given)
+    return hl.mechanics.from_mechanics(method, values=values, initial=dict(zip(states, starts, strict=True)), **given)
 
 
 def compare(method, values, starts, T, duration, error, inputs=None, **given):

@@ -46,7 +46,7 @@ def test_published_linear_equations():
     loads = [(frame, e * N.x) for frame, e in zip(frames, torque, strict=True)]
     starts = hl.parameters("a b c d", units="rad rad 1/s 1/s", values=(0, 0, 0, 0))
     initial = dict(zip([*q, *q.diff(t)], starts, strict=True))
-    mech = hl.from_mechanics(LagrangesMethod(L, q, forcelist=loads, frame=N), values={"v": SPEED}, initial=initial)
+    mech = hl.mechanics.from_mechanics(LagrangesMethod(L, q, forcelist=loads, frame=N), values={"v": SPEED}, initial=initial)
     moving = [mech[p] for p in q]
     watch = {f"s{k}": e for k, e in enumerate([*moving, *(p.diff(t) for p in moving)])}
     program = hl.compile(hl.Scene(force=0, eom=[mech], watch=watch), "exact", T=0.05, dtype="float64", live=list("abcd"))
@@ -108,7 +108,7 @@ def test_bicycle_by_kane():
     units = ["1"] * 4 + ["1/s"] * 6
     ahead = dict(zip(names, [0.0] * 8 + [-SPEED / 0.3, -SPEED / 0.35], strict=True))
     starts = hl.parameters(" ".join(names), units=" ".join(units), values=ahead)
-    mech = hl.from_mechanics(kane, initial=dict(zip([*q, *u], starts, strict=True)))
+    mech = hl.mechanics.from_mechanics(kane, initial=dict(zip([*q, *u], starts, strict=True)))
     assert len(mech.constraints) == 3
     states = [mech[q[1]], mech[q[3]], mech[q[1]].diff(t), mech[q[3]].diff(t)]
     watch = {f"s{k}": e for k, e in enumerate(states)} | {"height": mech.constraints[0]}

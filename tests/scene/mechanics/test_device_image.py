@@ -17,7 +17,7 @@ r = hl.parameters("r", units="m")
     [(q - x(t), -1), (r * sp.sin(theta) - x(t), -1), (theta - x(t) / r, -1 / r), (q**2 - x(t) ** 2, -2 * x(t))],
 )
 def test_the_force_is_the_reaction_on_the_handle(constraint, by_handle):
-    image = hl.device_image(constraint, name="grip")
+    image = hl.mechanics.device_image(constraint, name="grip")
     (reaction,) = (f for f in image.force.atoms(sp.Function) if type(f).__name__ == "grip")
     assert image.force == -reaction * by_handle
     assert image.constraint == constraint
@@ -25,11 +25,11 @@ def test_the_force_is_the_reaction_on_the_handle(constraint, by_handle):
 
 
 def test_an_equation_is_taken_as_the_constraints_of_a_model_are():
-    assert hl.device_image(sp.Eq(q, x(t))) == hl.device_image(q - x(t))
+    assert hl.mechanics.device_image(sp.Eq(q, x(t))) == hl.mechanics.device_image(q - x(t))
 
 
 def test_a_constraint_without_the_handle_is_no_image():
     with pytest.raises(SceneError, match=r"grip: q\(t\) = 0 does not hold x\(t\).*write q - x\(t\)"):
-        hl.device_image(q, name="grip")
+        hl.mechanics.device_image(q, name="grip")
     with pytest.raises(SceneError, match="cannot name a device image"):
-        hl.device_image(q - x(t), name="x")
+        hl.mechanics.device_image(q - x(t), name="x")

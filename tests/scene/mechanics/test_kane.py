@@ -23,7 +23,7 @@ def pendulum_on_cart(n):
 
 def taken(kane, values, starts, **given):
     states = [*kane.q, *kane.u]
-    return hl.from_mechanics(kane, values=values, initial=dict(zip(states, starts, strict=True)), **given)
+    return hl.mechanics.from_mechanics(kane, values=values, initial=dict(zip(states, starts, strict=True)), **given)
 
 
 def watched(mech, kane):

@@ -21,7 +21,7 @@ L = KINETIC - m * g * bob[1] - k * z**2 / 2
 
 
 def test_matrix_and_forces_are_those_of_sympy():
-    mech = hl.lagrange(L, dissipation=c * z.diff(t) ** 2 / 2, forces={phi: k * l * (x(t) - z)})
+    mech = hl.mechanics.lagrange(L, dissipation=c * z.diff(t) ** 2 / 2, forces={phi: k * l * (x(t) - z)})
     q = list(mech.coordinates)
     method = LagrangesMethod(L, q)
     method.form_lagranges_equations()
@@ -35,7 +35,7 @@ def test_matrix_and_forces_are_those_of_sympy():
 
 
 def test_energy_is_kept():
-    mech = hl.lagrange(L)
+    mech = hl.mechanics.lagrange(L)
     E = m * g * bob[1] + k * z**2 / 2 + KINETIC
     kept = sp.expand(mech.energy.doit() - E.doit())
     assert sp.simplify(kept) == 0
@@ -46,14 +46,14 @@ def test_energy_is_kept():
 
 
 def test_coordinates_by_name():
-    mech = hl.lagrange(L)
+    mech = hl.mechanics.lagrange(L)
     assert mech["phi"] == phi
     with pytest.raises(SceneError, match="no coordinate 'psi'; there are phi, z"):
         mech["psi"]
 
 
 def test_print():
-    mech = hl.lagrange(m * l**2 * phi.diff(t) ** 2 / 2 + m * g * l * sp.cos(phi))
+    mech = hl.mechanics.lagrange(m * l**2 * phi.diff(t) ** 2 / 2 + m * g * l * sp.cos(phi))
     (equation,) = mech.equations
     assert equation == sp.Eq(m * l**2 * phi.diff(t, 2), -m * g * l * sp.sin(phi))
     latex = mech._repr_latex_()
@@ -63,7 +63,7 @@ def test_print():
 
 
 def test_equations_with_multipliers():
-    mech = hl.lagrange(KINETIC - m * g * bob[1], constraints=[sp.Eq(z, l * phi)])
+    mech = hl.mechanics.lagrange(KINETIC - m * g * bob[1], constraints=[sp.Eq(z, l * phi)])
     forces = [e.rhs for e in mech.equations]
     one = sp.Symbol("lambda1")
     assert [sp.expand(f).coeff(one) for f in forces] == [-l, 1]
@@ -92,14 +92,14 @@ def test_equations_with_multipliers():
         ({"L": L, "constraints": [sp.Eq(z, l * phi), sp.Eq(z, phi)]}, UnitsError, r"constraint 2: .*in m but .*in 1"),
         ({"L": L, "constraints": [l * phi - z.diff(t)]}, UnitsError, r"constraint 1: .*in m/s"),
         ({"L": L, "constraints": [z - l * phi], "alpha": 50.0}, SceneError, r"alpha = 50.0 .*enforce = 'auto' has none"),
-        ({"L": L, "contacts": [z]}, SceneError, r"contacts holds z\(t\); needs hl.Contact"),
+        ({"L": L, "contacts": [z]}, SceneError, r"contacts holds z\(t\); needs hl.contact.Contact"),
         ({"L": L, "enforce": "glue"}, SceneError, r"enforce = 'glue'; needs one of auto, embed"),
         ({"L": "m*v"}, SceneError, r"L = 'm\*v'; needs a number, or an expression"),
     ],
 )
 def test_what_is_refused(arguments, error, words):
     with pytest.raises(error, match=words):
-        hl.lagrange(**arguments)
+        hl.mechanics.lagrange(**arguments)
 
 
 def compiled(mech, **options):
@@ -108,29 +108,31 @@ def compiled(mech, **options):
 
 def test_a_coordinate_that_nothing_determines():
     with pytest.raises(MassError, match="do not determine the accelerations of phi .a massless direction"):
-        compiled(hl.lagrange(M * z.diff(t) ** 2 / 2 - k * (z - l * sp.sin(phi)) ** 2 / 2))
+        compiled(hl.mechanics.lagrange(M * z.diff(t) ** 2 / 2 - k * (z - l * sp.sin(phi)) ** 2 / 2))
 
 
 def test_a_massless_direction():
     y = hl.coordinate("y", unit="m")
     with pytest.raises(MassError, match="do not determine the accelerations of y and z"):
-        compiled(hl.lagrange(M * (z.diff(t) - y.diff(t)) ** 2 / 2 - k * z**2 / 2))
+        compiled(hl.mechanics.lagrange(M * (z.diff(t) - y.diff(t)) ** 2 / 2 - k * z**2 / 2))
 
 
 def test_two_models_of_one_coordinate():
-    with pytest.raises(SceneError, match=r"two Lagrangians move z; add the energies and give one hl.lagrange"):
-        hl.compile(hl.Scene(force=0, eom=[hl.lagrange(L), hl.lagrange(M * z.diff(t) ** 2)], watch=["z"]), T=1e-3)
+    with pytest.raises(SceneError, match=r"two Lagrangians move z; add the energies and give one hl.mechanics.lagrange"):
+        hl.compile(
+            hl.Scene(force=0, eom=[hl.mechanics.lagrange(L), hl.mechanics.lagrange(M * z.diff(t) ** 2)], watch=["z"]), T=1e-3
+        )
 
 
 def test_a_model_without_energies_has_none():
     with pytest.raises(SceneError, match="came without a Lagrangian"):
-        replace(hl.lagrange(L), lagrangian=None).energy  # noqa: B018
+        replace(hl.mechanics.lagrange(L), lagrangian=None).energy  # noqa: B018
 
 
 def test_past_the_limit_the_term_that_grew_is_named(monkeypatch):
     monkeypatch.setattr("hapticlab.compiler.algebra.expressions.MOST_INSTRUCTIONS", 300)
     rough = sp.Add(*(sp.sin(j * phi) ** j for j in range(1, 80)))
-    mech = hl.lagrange(KINETIC - m * g * l * rough)
+    mech = hl.mechanics.lagrange(KINETIC - m * g * l * rough)
     with pytest.raises(ProgramLimitError, match=r"more than 300 instructions: \d+ of them for sin\(phi\(t\)\) \+ .*fewer terms"):
         compiled(mech)
     many = [hl.coordinate(f"q{j}", unit="m") for j in range(20)]

@@ -46,7 +46,7 @@ def test_cart_and_pendulum(method):
         system.form_eoms(LagrangesMethod)  # which hands the loads over, gravity among them
     starts = [0.1, 0.8, -0.2, 1.0]
     initial = dict(zip([*system.q, *(q.diff(t) for q in system.q)], starts, strict=True))
-    mech = hl.from_mechanics(system, values=values, initial=initial, replace=push)
+    mech = hl.mechanics.from_mechanics(system, values=values, initial=initial, replace=push)
     watch = {f"s{k}": mech[q] for k, q in enumerate(system.q)}
     check(mech, watch, lambda at: motion(system.eom_method, values | push, starts, at)[:, :2], 0.01, 0.2, 1e-6)
 
@@ -61,7 +61,7 @@ def test_simple_pendulum_of_a_joint():
     system.add_joints(PinJoint("pin", wall, rod, q, u, joint_axis=wall.z, child_point=l / 2 * rod.y))
     system.apply_uniform_gravity(-g * wall.y)
     units = {q: "rad", g: "m/s^2", l: "m", m: "kg"}
-    mech = hl.from_mechanics(system, units=units, values={g: 9.81, l: 0.4, m: 0.1}, initial={q: 1.0})
+    mech = hl.mechanics.from_mechanics(system, units=units, values={g: 9.81, l: 0.4, m: 0.1}, initial={q: 1.0})
     k, omega = np.sin(0.5), np.sqrt(1.5 * 9.81 / 0.4)
 
     def closed(at):
@@ -108,7 +108,7 @@ def test_four_bar_linkage():
         at[1:] -= np.linalg.solve(J(at)[:, 1:], gap(at)[:, 0])
     rates = [6.0, *np.linalg.solve(J(at)[:, 1:], -6.0 * J(at)[:, 0])]
     starts = [*at, *rates]
-    mech = hl.from_mechanics(kane, values=values, initial=dict(zip([*q, *u], starts, strict=True)))
+    mech = hl.mechanics.from_mechanics(kane, values=values, initial=dict(zip([*q, *u], starts, strict=True)))
     assert len(mech.constraints) == 2  # the rates of the loop are not asked for a second time
     assert mech.constraints[0].count(sp.cos) == 3  # cos(q1 + q2) instead of products, and so a closed form
     watch = {f"q{k}": mech[p] for k, p in enumerate(q)} | {"right": mech.constraints[0], "up": mech.constraints[1]}
@@ -117,5 +117,5 @@ def test_four_bar_linkage():
 
 
 def test_what_is_no_system_is_refused():
-    with pytest.raises(SceneError, match=r"Symbol: needs a LagrangesMethod, KanesMethod or System .*hl.lagrange"):
-        hl.from_mechanics(sp.Symbol("L"))
+    with pytest.raises(SceneError, match=r"Symbol: needs a LagrangesMethod, KanesMethod or System .*hl.mechanics.lagrange"):
+        hl.mechanics.from_mechanics(sp.Symbol("L"))

@@ -34,7 +34,7 @@ def by_kane(force=0, q=q, u=None, kd=None):
 
 def test_names_that_a_scene_has_itself_are_changed_and_said():
     clash = dynamicsymbols("x")
-    mech = hl.from_mechanics(sprung(m=sp.Symbol("T"), k=sp.Symbol("F"), q=clash))
+    mech = hl.mechanics.from_mechanics(sprung(m=sp.Symbol("T"), k=sp.Symbol("F"), q=clash))
     assert [type(e).__name__ for e in mech.coordinates] == ["x_1"]
     assert mech[clash] == mech["x_1"]
     assert mech[sp.Symbol("T")].name == "T_1"
@@ -50,23 +50,23 @@ def test_names_that_a_scene_has_itself_are_changed_and_said():
 )
 def test_names_that_are_no_words_are_made_words(given, made):
     symbol = sp.Symbol(given)
-    assert hl.from_mechanics(sprung(k=symbol))[symbol].name == made
+    assert hl.mechanics.from_mechanics(sprung(k=symbol))[symbol].name == made
 
 
 def test_a_constant_and_a_coordinate_of_one_name():
-    mech = hl.from_mechanics(sprung(m=sp.Symbol("q")))
+    mech = hl.mechanics.from_mechanics(sprung(m=sp.Symbol("q")))
     assert {type(mech[q]).__name__, mech[sp.Symbol("q")].name} == {"q", "q_1"}
 
 
 def test_a_name_of_two_symbols_is_no_key():
     with pytest.raises(SceneError, match="values has 'm', which two symbols of the model are called; give the symbol itself"):
-        hl.from_mechanics(sprung(k=sp.Symbol("m", positive=True)), values={"m": 1})
-    mech = hl.from_mechanics(sprung(k=sp.Symbol("m", positive=True)), values={m: 1, sp.Symbol("m", positive=True): 2})
+        hl.mechanics.from_mechanics(sprung(k=sp.Symbol("m", positive=True)), values={"m": 1})
+    mech = hl.mechanics.from_mechanics(sprung(k=sp.Symbol("m", positive=True)), values={m: 1, sp.Symbol("m", positive=True): 2})
     assert {p.name: p.value for p in (mech[m], mech[sp.Symbol("m", positive=True)])} == {"m": 1.0, "m_1": 2.0}
 
 
 def test_units_values_and_starts_by_symbol_or_name():
-    mech = hl.from_mechanics(
+    mech = hl.mechanics.from_mechanics(
         sprung(), units={q: "m", "m": "kg", k: "N/m"}, values={"m": "100 g", k: 40}, initial={"q": "5 mm", q.diff(t): 0.2}
     )
     assert (mech[m].unit, mech[m].value, mech[k].value) == ("kg", 0.1, 40.0)
@@ -77,15 +77,15 @@ def test_units_values_and_starts_by_symbol_or_name():
 
 def test_units_that_are_all_given_are_checked():
     with pytest.raises(UnitsError, match="L: "):
-        hl.from_mechanics(sprung(), units={"q": "m", "m": "kg", "k": "N"})
+        hl.mechanics.from_mechanics(sprung(), units={"q": "m", "m": "kg", "k": "N"})
     with pytest.raises(UnitsError, match="equation of q: "):
-        hl.from_mechanics(by_kane(), units={"q": "m", "m": "kg", "k": "N"})
-    hl.from_mechanics(by_kane(), units={"q": "m", "m": "kg", "k": "N/m"})
+        hl.mechanics.from_mechanics(by_kane(), units={"q": "m", "m": "kg", "k": "N"})
+    hl.mechanics.from_mechanics(by_kane(), units={"q": "m", "m": "kg", "k": "N/m"})
 
 
 def test_a_start_may_be_of_constants_and_parameters():
     a = hl.parameters("a", units="1", values=0.3)
-    mech = hl.from_mechanics(sprung(), values={m: 1, k: 2}, initial={q: m + a})
+    mech = hl.mechanics.from_mechanics(sprung(), values={m: 1, k: 2}, initial={q: m + a})
     program = hl.compile(hl.Scene(force=0, eom=[mech], watch=["q"]), T=1e-3, dtype="float64")
     assert load(program).run(1, np.zeros((1, len(program.inputs)))).outputs[0, 1, 0] == pytest.approx(1.3, rel=1e-15)
 
@@ -93,14 +93,16 @@ def test_a_start_may_be_of_constants_and_parameters():
 @pytest.mark.parametrize("method", [sprung, by_kane])
 def test_an_input_that_nobody_gave_is_refused(method):
     with pytest.raises(SceneError, match=r"F\(t\): neither a coordinate nor a speed, so an input .* replace=\{F\(t\): ...\}"):
-        hl.from_mechanics(method(F))
+        hl.mechanics.from_mechanics(method(F))
 
 
 @pytest.mark.parametrize("method", [sprung, by_kane])
 def test_a_coupler_as_an_input(method):
     """F = K (x - q) felt at the handle: the same motion as the equation by hand."""
     K = hl.parameters("K", units="N/m", values=300.0)
-    mech = hl.from_mechanics(method(F), replace={F: K * (x(t) - q)}, units={q: "m", m: "kg", k: "N/m"}, values={m: 0.1, k: 40.0})
+    mech = hl.mechanics.from_mechanics(
+        method(F), replace={F: K * (x(t) - q)}, units={q: "m", m: "kg", k: "N/m"}, values={m: 0.1, k: 40.0}
+    )
     z, M, c = hl.coordinate("z", unit="m"), *hl.parameters("M c", units="kg N/m", values=(0.1, 40.0))
     by_hand = sp.Eq(M * z.diff(t, 2), K * (x(t) - z) - c * z)
     lead = 0.01 * np.sin(np.arange(50) / 9)[:, None]
@@ -115,14 +117,14 @@ def test_a_coordinate_that_is_the_handle():
     """The cart of a pendulum in the hand: Kane's equations less those of the cart, and Lagrange's of the pendulum."""
     kane = n_link_pendulum_on_cart(1)
     values = {"m1": 0.2, "l0": 0.3, "g": 9.81}
-    mech = hl.from_mechanics(kane, replace={"q0": x(t), "F": 0, "m0": 1}, values=values, initial={"q1": 0.5})
+    mech = hl.mechanics.from_mechanics(kane, replace={"q0": x(t), "F": 0, "m0": 1}, values=values, initial={"q1": 0.5})
     assert [str(p) for p in mech.coordinates] == ["q1(t)"]
     phi, (mass, l, grav) = hl.coordinate("phi", unit="rad", initial=0.5), hl.parameters("w l a", units="kg m m/s^2")
     vx, vy = v(t) - l * sp.cos(phi) * phi.diff(t), -l * sp.sin(phi) * phi.diff(t)
     L = mass * (vx**2 + vy**2) / 2 - mass * grav * l * sp.cos(phi)
     lead = 0.01 * np.sin(np.arange(60) / 9)[:, None]
     runs = []
-    for model, name, bound in ((mech, "q1", {}), (hl.lagrange(L), "phi", {"w": 0.2, "l": 0.3, "a": 9.81})):
+    for model, name, bound in ((mech, "q1", {}), (hl.mechanics.lagrange(L), "phi", {"w": 0.2, "l": 0.3, "a": 9.81})):
         scene = hl.Scene(force=0, eom=[model], watch=[name], values=bound)
         runs.append(load(hl.compile(scene, T=1e-3, dtype="float64")).run(60, lead).outputs[:, 1])
     np.testing.assert_allclose(runs[0], runs[1], rtol=1e-11)
@@ -132,7 +134,7 @@ def test_a_coordinate_that_is_the_handle():
 def test_a_coordinate_of_ones_own():
     z = hl.coordinate("z", unit="m", initial=hl.x(hl.n), range=(-0.1, 0.1))
     M = hl.parameters("M", units="kg", values=0.5)
-    mech = hl.from_mechanics(by_kane(), replace={q: z, m: M}, values={k: 3})
+    mech = hl.mechanics.from_mechanics(by_kane(), replace={q: z, m: M}, values={k: 3})
     assert mech.coordinates == (z,)
     assert mech[dynamicsymbols("u")] == z.diff(t)
     assert mech.M == ((M,),)
@@ -140,35 +142,35 @@ def test_a_coordinate_of_ones_own():
 
 def test_words_of_a_scene_in_a_model_stay_what_they_are():
     z, (M, K) = hl.coordinate("z", unit="m"), hl.parameters("k K", units="kg N/m")
-    mech = hl.from_mechanics(sprung(K * (x(t) - z), m=M, q=z), values={k: 3}, units={k: "N/m"})
+    mech = hl.mechanics.from_mechanics(sprung(K * (x(t) - z), m=M, q=z), values={k: 3}, units={k: "N/m"})
     assert mech.coordinates == (z,)
     assert mech[k].name == "k_1"  # the model's k; a parameter of that name was there
     assert mech.forces[0][1].doit() == K * (x(t) - z)
     with pytest.raises(UnitsError, match="force on z"):
-        hl.from_mechanics(sprung(M * z, m=M, q=z), units={k: "N/m"})
+        hl.mechanics.from_mechanics(sprung(M * z, m=M, q=z), units={k: "N/m"})
 
 
 def test_speeds_that_are_no_rates_are_states_of_their_own():
     u = dynamicsymbols("u")
-    mech = hl.from_mechanics(by_kane(u=u, kd=q.diff(t) - 2 * u), values={m: 0.5, k: 8.0}, initial={q: 1.0, u: 0.25})
+    mech = hl.mechanics.from_mechanics(by_kane(u=u, kd=q.diff(t) - 2 * u), values={m: 0.5, k: 8.0}, initial={q: 1.0, u: 0.25})
     assert mech.orders == (1, 1)
     program = hl.compile(hl.Scene(force=0, eom=[mech], watch=["q", "u"]), "exact", T=0.1, dtype="float64", live=())
     got = load(program).run(20, np.zeros((20, len(program.inputs)))).outputs[:, 1:, 0]
     at, w = 0.1 * np.arange(20), np.sqrt(32.0)  # q'' = 2 u' = -2 (k/m) q
     np.testing.assert_allclose(got[:, 0], np.cos(w * at) + 0.5 / w * np.sin(w * at), atol=1e-12)
     with pytest.raises(SceneError, match=r"q\(t\) is replaced, which needs speeds that are rates"):
-        hl.from_mechanics(by_kane(u=u, kd=q.diff(t) - 2 * u), replace={q: x(t)})
+        hl.mechanics.from_mechanics(by_kane(u=u, kd=q.diff(t) - 2 * u), replace={q: x(t)})
 
 
 def test_driven_motions_are_differentiated():
     s = dynamicsymbols("s")
     L = m * (q.diff(t) + s.diff(t)) ** 2 / 2 - k * q**2 / 2
     f = hl.parameters("f", units="1/s", values=2.0)
-    mech = hl.from_mechanics(LagrangesMethod(L, [q]), replace={s: sp.sin(2 * sp.pi * f * t)})
+    mech = hl.mechanics.from_mechanics(LagrangesMethod(L, [q]), replace={s: sp.sin(2 * sp.pi * f * t)})
     assert mech.lagrangian.has(Rate)
     assert mech.equations[0].rhs.has(sp.sin)
     with pytest.raises(SceneError, match="asks for an acceleration of"):
-        hl.from_mechanics(LagrangesMethod(L, [q]), replace={s: q.diff(t)})
+        hl.mechanics.from_mechanics(LagrangesMethod(L, [q]), replace={s: q.diff(t)})
 
 
 @pytest.mark.parametrize(
@@ -186,40 +188,40 @@ def test_driven_motions_are_differentiated():
 )
 def test_what_is_refused(given, words):
     with pytest.raises(SceneError, match=words):
-        hl.from_mechanics(sprung(), **given)
+        hl.mechanics.from_mechanics(sprung(), **given)
 
 
 def test_speeds_follow_coordinates():
     with pytest.raises(SceneError, match=r"replace has u\(t\), the rate of q\(t\); replace that"):
-        hl.from_mechanics(by_kane(), replace={"u": x(t)})
+        hl.mechanics.from_mechanics(by_kane(), replace={"u": x(t)})
     with pytest.raises(SceneError, match=r"initial has both Derivative\(q\(t\), t\) and u\(t\), which are one"):
-        hl.from_mechanics(by_kane(), initial={"u": 1, q.diff(t): 1})
+        hl.mechanics.from_mechanics(by_kane(), initial={"u": 1, q.diff(t): 1})
 
 
 def test_another_time_is_refused():
     with pytest.raises(SceneError, match="t is another symbol than the time of SymPy's dynamicsymbols"):
-        hl.from_mechanics(sprung(m=sp.Symbol("t", positive=True)))
+        hl.mechanics.from_mechanics(sprung(m=sp.Symbol("t", positive=True)))
     with pytest.raises(SceneError, match=r"h\(q\(t\)\) is no function of time alone"):
-        hl.from_mechanics(sprung(m=sp.Function("h")(q)))
+        hl.mechanics.from_mechanics(sprung(m=sp.Function("h")(q)))
 
 
 def test_a_coordinate_of_nothing():
     y = dynamicsymbols("y")
     with pytest.raises(MassError, match=r"no energy, load or constraint holds y\(t\)"):
-        hl.from_mechanics(LagrangesMethod(m * q.diff(t) ** 2, [q, y]))
+        hl.mechanics.from_mechanics(LagrangesMethod(m * q.diff(t) ** 2, [q, y]))
 
 
 def test_loads_without_a_frame():
     method = sprung(F)
     method.inertial = None
     with pytest.raises(SceneError, match="loads but no frame"):
-        hl.from_mechanics(method, replace={F: 0})
+        hl.mechanics.from_mechanics(method, replace={F: 0})
 
 
 def test_kane_before_its_equations():
     N, u = ReferenceFrame("N"), dynamicsymbols("u")
     with pytest.raises(SceneError, match=r"has formed no equations; call kanes_equations\(bodies, loads\) first"):
-        hl.from_mechanics(KanesMethod(N, [q], [u], kd_eqs=[q.diff(t) - u]))
+        hl.mechanics.from_mechanics(KanesMethod(N, [q], [u], kd_eqs=[q.diff(t) - u]))
 
 
 @pytest.mark.parametrize(("method", "name"), [(sprung, "_L"), (by_kane, "_k_nh")])
@@ -227,16 +229,16 @@ def test_another_sympy_is_refused(method, name):
     model = method()
     delattr(model, name)
     with pytest.raises(SceneError, match=f"SymPy .* keeps no {name} in a .*; install sympy 1.14"):
-        hl.from_mechanics(model)
+        hl.mechanics.from_mechanics(model)
 
 
 def test_masses_are_masses():
     with pytest.raises(ParameterError, match="m = -1 kg; a mass needs m > 0"):
-        hl.from_mechanics(sprung(), units={m: "kg"}, values={m: -1})
+        hl.mechanics.from_mechanics(sprung(), units={m: "kg"}, values={m: -1})
 
 
 def test_a_model_of_kane_is_shown_as_equations():
-    mech = hl.from_mechanics(by_kane())
+    mech = hl.mechanics.from_mechanics(by_kane())
     (equation,) = mech.equations
     mass, stiffness, z = mech[m], mech[k], mech[q]
     assert equation == sp.Eq(mass * z.diff(t, 2), -stiffness * z)

@@ -116,5 +116,5 @@ def test_coordinates_that_differ_only_in_their_start_are_told_apart():
 def test_arithmetic_on_a_function_that_is_not_applied_is_refused(wrong):
     k = hl.parameters("k", units="N/m")
     for y in (hl.x, hl.v, hl.signal("y", unit="m")):
-        with pytest.raises(hl.SignalError, match=rf"{y.__name__} is a function of time; write {y.__name__}\(n\)"):
+        with pytest.raises(hl.errors.SignalError, match=rf"{y.__name__} is a function of time; write {y.__name__}\(n\)"):
             wrong(k, y)

@@ -24,7 +24,7 @@ z = hl.coordinate("z", unit="m")
         (hl.when(x(n) >= x_o, m * v(n) ** 2), "N*m"),
         (sp.Abs(x(n)) + sp.Max(x_o, 0), "m"),
         (sp.cos(A) * k * x_o, "N"),
-        (hl.delay(b * v(n)), "N"),
+        (hl.laws.delay(b * v(n)), "N"),
         (x(n) / hl.T, "m/s"),
         (sp.sin(sp.atan2(x(n), x_o)) * t, "s"),
     ],

@@ -18,8 +18,8 @@ y = hl.signal("y", unit="m")
 
 
 def test_every_name_of_a_record_and_of_the_loop_is_reserved():
-    of_a_record = {f.name for f in dataclasses.fields(hl.Telemetry)} | {
-        name for name in dir(hl.Telemetry) if not name.startswith("_")
+    of_a_record = {f.name for f in dataclasses.fields(hl.records.Telemetry)} | {
+        name for name in dir(hl.records.Telemetry) if not name.startswith("_")
     }
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, delay=1e-4, counts_per_metre=1e5, coulomb=0.1, force_max=5)
     loop = link(hl.compile(hl.wall()(k=100), T=1e-3), paddle)
@@ -180,7 +180,7 @@ def test_a_condition_that_is_none_is_refused(condition, words):
         ((b * x(n)).diff(t), r"write v\(n\)"),
         (b * x(n).diff(n), "has no derivative"),
         ((b * y(n - 1)).diff(t), r"write \(y\(n\) - y\(n-1\)\)/T"),
-        (b * hl.delay(x(n)).diff(t), r"delay\(x\(n\)\) has no derivative"),
+        (b * hl.laws.delay(x(n)).diff(t), r"delay\(x\(n\)\) has no derivative"),
         (b * hl.when(x(n) >= x_o, x(n)).diff(t), "has no derivative"),
         (m * x(t).diff(t, 2), r"acceleration of the handle.*write \(v\(n\) - v\(n-1\)\)/T"),
         (m * v(t).diff(t), "acceleration of the handle"),
@@ -217,9 +217,9 @@ def test_a_potential_with_cases_has_a_force():
 
 
 def test_the_delay_of_a_number_is_the_number_and_a_condition_has_none():
-    assert hl.delay(3) == 3
-    with pytest.raises(SignalError, match=r"write hl.delay\(hl.when\(x\(n\) > 0, 1, 0\)\) > 0"):
-        hl.delay(x(n) > 0)
+    assert hl.laws.delay(3) == 3
+    with pytest.raises(SignalError, match=r"write hl.laws.delay\(hl.when\(x\(n\) > 0, 1, 0\)\) > 0"):
+        hl.laws.delay(x(n) > 0)
 
 
 def test_numpy_numbers_are_numbers():

@@ -156,9 +156,9 @@ def test_a_cam_and_an_egg_collide_and_keep_their_energy():
         hl.coordinate("a2", unit="rad", initial=0.9),
     )
     found = track(CAM.at(angle=turn, name="cam"), EGG.at(x=0.02, y=y, angle=other, name="egg"))
-    law = hl.penalty(k=k)
+    law = hl.contact.penalty(k=k)
     L = m * y.diff(t) ** 2 / 2 + J * (turn.diff(t) ** 2 + other.diff(t) ** 2) / 2
-    motion = hl.lagrange(L, forces={c: found.generalized_force(law, c) for c in (y, turn, other)})
+    motion = hl.mechanics.lagrange(L, forces={c: found.generalized_force(law, c) for c in (y, turn, other)})
     depth = sp.Max(-found.gap, 0)
     watch = {"E": motion.energy + k * depth**2 / 2, "d": found.gap, "spin": turn.diff(t)}
     log = run(hl.Scene(force=0, eom=[motion, *found.eom], watch=watch), 1300, T=1e-4)

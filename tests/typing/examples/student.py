@@ -27,7 +27,9 @@ print(hl.stability_limit(paddle, law="zoh"))
 grid.plot()
 
 # lab 00: records are arrays, parameters a dict, a profile makes a paddle
-held = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("grip", grip=4, intent=hl.MinimumJerk(end=0.015, duration=0.5)))
+held = hl.SimulatedPaddle.from_profile(
+    "hapkit", hand=hl.Hand("grip", grip=4, intent=hl.people.MinimumJerk(end=0.015, duration=0.5))
+)
 spring = hl.Scene(force=hl.parameters("k", units="N/m") * x(n), name="centring spring")
 felt = held.run(spring(k=300), duration=0.1)
 print(f"x from {1e3 * felt.x.min():.2f} to {1e3 * felt.x.max():.2f} mm; asked for {felt.parameters['k']:g} N/m")
@@ -47,33 +49,33 @@ print(followed.y[-1], followed.channels["y"].mean())
 # labs 02 and 03: energy, chatter, limits
 thrown = hl.SimulatedPaddle(m=0.05, b=0, T=1e-3)
 bounce = thrown.run(hl.wall()(k=500), duration=0.05, x=-0.25e-3, v=0.1)
-stairs = hl.staircase(bounce)
+stairs = hl.records.staircase(bounce)
 print(f"generated {1e3 * hl.energy(bounce).generated:.4g} mJ in {stairs.bounces[0].last - stairs.bounces[0].first} periods")
 stairs.plot()
 for delay in (0.0, 0.5e-3):
-    slow = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.hand("pinch"), delay=delay)
+    slow = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"), delay=delay)
     exact = hl.stability_limit(slow)
     print(f"{exact.K:9.1f} N/m at {exact.frequency:4.1f} Hz")
 
 # lab 04: the laws of the chapter
 for law in ("zoh", "backward_difference", "ellis"):
     print(f"{law:20} {hl.passivity_limit(b=0.1, T=1e-3, law=law).K:10.0f} N/m", hl.compile(hl.wall(law)(k=500), T=1e-3))
-print(hl.compare_laws(thrown, K=500, laws=["zoh", "ellis"], entries=2))
+print(hl.design.compare_laws(thrown, K=500, laws=["zoh", "ellis"], entries=2))
 theta = np.linspace(1e-3, np.pi, 9)
-print(hl.passivity_margin(hl.LinearLaw.of("zoh", K=200, T=1e-3), b=0.1).asked(theta).mean())
+print(hl.passivity.margin(hl.laws.LinearLaw.of("zoh", K=200, T=1e-3), b=0.1).asked(theta).mean())
 
 # labs 05 and 06: a passivity controller, a virtual coupler, the library
-kept = thrown.run(hl.passivity_controller(hl.wall(), alpha_max=5.0)(k=500), duration=0.05, v=0.2)
+kept = thrown.run(hl.laws.passivity_controller(hl.wall(), alpha_max=5.0)(k=500), duration=0.05, v=0.2)
 print(hl.energy(kept))
 angle = hl.coordinate("angle", unit="rad", initial=0.3)
 M, l, g = hl.parameters("M l g", units="kg m m/s^2", values=(0.05, 0.15, 9.81))
-swing = hl.lagrange(M * (z.diff(t) + l * angle.diff(t)) ** 2 / 2 + M * g * l * sp.cos(angle), forces={z: F_c})
-print(hl.coupler_design(paddle, b_c=0.02), hl.port_passivity(mass(m=0.05, b=0.5, K=300), paddle, T=1e-3))
+swing = hl.mechanics.lagrange(M * (z.diff(t) + l * angle.diff(t)) ** 2 / 2 + M * g * l * sp.cos(angle), forces={z: F_c})
+print(hl.design.coupler(paddle, b_c=0.02), hl.passivity.port(mass(m=0.05, b=0.5, K=300), paddle, T=1e-3))
 print(hl.library.cart_pole().values, hl.library.catalogue["detents"].title)
 
 # lab 07: steps
 for method in ("semi_implicit_euler", "verlet", "rk4"):
-    print(f"{method:20s} {1e3 * hl.step_limit(mass(m=0.05, b=0.5, K=300), method, T=1e-3).h_max:6.3f} ms")
-motion = hl.handle_motions()[1]
-truth = hl.reference(mass(m=0.05, b=0.5, K=300), motion)
-print(hl.force_error(hl.compile(mass(m=0.05, b=0.5, K=300), T=1e-3, live=()), truth).relative)
+    print(f"{method:20s} {1e3 * hl.stability.step_limit(mass(m=0.05, b=0.5, K=300), method, T=1e-3).h_max:6.3f} ms")
+motion = hl.methods.handle_motions()[1]
+truth = hl.methods.reference(mass(m=0.05, b=0.5, K=300), motion)
+print(hl.methods.force_error(hl.compile(mass(m=0.05, b=0.5, K=300), T=1e-3, live=()), truth).relative)

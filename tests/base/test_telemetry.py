@@ -11,8 +11,8 @@ import pytest
 import hapticlab as hl
 from hapticlab.analysis.records.chatter import chatter
 from hapticlab.analysis.records.energy import energy
+from hapticlab.base.telemetry import PaddleProfile, Telemetry
 from hapticlab.errors import AnalysisError
-from hapticlab.records import PaddleProfile, Telemetry
 
 
 def make_log(**changes):

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from hapticlab.roots import minimum, root
+from hapticlab.base.roots import minimum, root
 
 
 @pytest.mark.parametrize("size", [1e-9, 1.0, 1e12])

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from hapticlab.arguments import choice, count, having, instance, number
+from hapticlab.base.arguments import choice, count, having, instance, number
 from hapticlab.errors import AnalysisError, SceneError
 
 

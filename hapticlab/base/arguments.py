@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from types import UnionType
 from typing import Any
 
-from .errors import AnalysisError, HapticlabError
+from ..errors import AnalysisError, HapticlabError
 
 
 def number(
@@ -34,7 +34,7 @@ def number(
 
     Examples
     --------
-    >>> from hapticlab.arguments import number
+    >>> from hapticlab.base.arguments import number
     >>> number("b", 1, "N s/m", "a device", least=0)
     1.0
     >>> number("b", -1, "N s/m", "a device", least=0, why="its damping pays for the hold")
@@ -80,7 +80,7 @@ def count(
 
     Examples
     --------
-    >>> from hapticlab.arguments import count
+    >>> from hapticlab.base.arguments import count
     >>> count("periods", 2.5, "a pulse", most=9, of="periods")
     Traceback (most recent call last):
     hapticlab.errors.AnalysisError: periods = 2.5; a pulse needs a whole number of periods, 1 to 9

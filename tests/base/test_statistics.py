@@ -2,7 +2,7 @@
 
 from scipy import stats
 
-from hapticlab.statistics import chi_squared, normal, student
+from hapticlab.base.statistics import chi_squared, normal, student
 
 
 def test_distributions():

@@ -1,0 +1,226 @@
+"""The immutable records that cross layers: what a paddle is, and what happened on it."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+from zipfile import BadZipFile
+
+import numpy as np
+
+from ..errors import AnalysisError
+
+if TYPE_CHECKING:
+    from .annotations import File
+
+UNITS = {"t": "s", "x": "m", "v": "m/s", "F": "N", "x_true": "m", "v_true": "m/s", "F_applied": "N", "x_switch": "m"}
+FLAGS = ("saturated", "gap", "overrun")
+
+
+@dataclass(frozen=True)
+class PaddleProfile:
+    """The constants of a kind of paddle, and where they come from.
+
+    Attributes
+    ----------
+    name : str
+    m : float
+        Effective mass at the handle [kg].
+    b : float
+        Viscous damping at the handle [N s/m].
+    counts_per_metre : float or None
+        Encoder counts per metre of handle travel [1/m].
+    rounding : {"floor", "nearest"}
+    coulomb : float
+        Coulomb friction at the handle [N].
+    force_max : float or None
+        Largest force magnitude [N].
+    T : float
+        Sampling period [s].
+    nominal : bool
+        True where no constant was measured on the very device: a lab identifies them.
+    source : str
+
+    Examples
+    --------
+    >>> from hapticlab.base.telemetry import PaddleProfile
+    >>> print(PaddleProfile("toy", m=0.05, b=0.1, source="made up"))
+    paddle toy: m = 0.05 kg, b = 0.1 N s/m, T = 0.001 s (nominal, not measured on this device; source: made up)
+    """
+
+    name: str
+    m: float
+    b: float
+    counts_per_metre: float | None = None
+    rounding: str = "floor"
+    coulomb: float = 0.0
+    force_max: float | None = None
+    T: float = 1e-3
+    nominal: bool = True
+    source: str = ""
+
+    def __str__(self) -> str:
+        parts = [f"m = {self.m:g} kg", f"b = {self.b:g} N s/m", f"T = {self.T:g} s"]
+        if self.counts_per_metre:
+            parts.append(f"{1e6 / self.counts_per_metre:g} um per count ({self.rounding})")
+        if self.coulomb:
+            parts.append(f"Coulomb friction {self.coulomb:g} N")
+        if self.force_max:
+            parts.append(f"|F| <= {self.force_max:g} N")
+        standing = "nominal, not measured on this device" if self.nominal else "measured"
+        return f"paddle {self.name}: {', '.join(parts)} ({standing}; source: {self.source or 'not given'})"
+
+
+@dataclass(frozen=True, eq=False)
+class Telemetry:
+    """What a paddle recorded, one row a sample.
+
+    Attributes
+    ----------
+    t, x, v, F : array, shape (N,), read-only
+        Time [s]; handle position [m] and velocity [m/s] as the controller saw them; force on the environment [N],
+        computed from sample n, after saturation. It is felt from ``t[n] + delay`` on, for one period.
+    T, delay : float
+        Sampling period and computational delay [s].
+    channels : dict of str to array
+        Watched states and, where they differ from what was sensed or commanded, ``x_true``, ``v_true``, ``F_applied``
+        and ``x_switch``. Each is also an attribute: ``log.z``.
+    units : dict of str to str
+    paddle, scene : str
+    parameters : dict of str to float
+        The scene's parameters, SI.
+    fault : str or None
+        What stopped the motor, when and why.
+    saturated, gap, overrun : array of bool, shape (N,)
+        Samples whose force was limited, that follow a lost sample, whose step missed its period.
+    every : int
+        Periods from one row to the next; above 1 the link carried no more. ``T`` is then the time between rows.
+    changes : tuple of (float, dict)
+        What was set while it ran: the time [s] from which it holds, and the parameters, SI.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hapticlab.base.telemetry import Telemetry
+    >>> log = Telemetry(t=[0, 1e-3], x=[0, 1e-6], v=[0, 1e-3], F=[0, 0], T=1e-3, channels={"z": [1, 2]})
+    >>> log.z
+    array([1., 2.])
+    >>> log
+    Telemetry(2 samples, 0.002 s at T = 0.001 s: t, x, v, F, z)
+    """
+
+    t: np.ndarray
+    x: np.ndarray
+    v: np.ndarray
+    F: np.ndarray
+    T: float
+    delay: float = 0.0
+    channels: dict[str, np.ndarray] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    paddle: str = ""
+    scene: str = ""
+    parameters: dict[str, float] = field(default_factory=dict)
+    fault: str | None = None
+    saturated: np.ndarray | None = None
+    gap: np.ndarray | None = None
+    overrun: np.ndarray | None = None
+    every: int = 1
+    changes: tuple[tuple[float, dict[str, float]], ...] = ()
+
+    def __post_init__(self) -> None:
+        samples = len(self.t)
+        for name in ("t", "x", "v", "F"):
+            object.__setattr__(self, name, _column(name, getattr(self, name), samples, float))
+        for name in FLAGS:
+            given = getattr(self, name)
+            object.__setattr__(self, name, _column(name, np.zeros(samples) if given is None else given, samples, bool))
+        columns = {name: _column(name, values, samples, float) for name, values in self.channels.items()}
+        object.__setattr__(self, "channels", columns)
+        object.__setattr__(self, "changes", tuple((float(t), dict(set_)) for t, set_ in self.changes))
+        known = {name: UNITS[name] for name in self.columns if name in UNITS}
+        object.__setattr__(self, "units", {**known, **self.units})
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The names of everything recorded, in order."""
+        return ("t", "x", "v", "F", *self.channels)
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __getattr__(self, name: str) -> np.ndarray:
+        channels = self.__dict__.get("channels", {})
+        if name in channels:
+            return channels[name]
+        if name.startswith("__"):
+            raise AttributeError(name)
+        if name == "plot":
+            raise AttributeError("a record has no .plot(); draw it: hl.plot(log), or what you name, hl.plot(log, 'x', 'v')")
+        recorded = ", ".join(("t", "x", "v", "F", *channels))
+        raise AttributeError(f"{name!r} was not recorded; this log has {recorded}. Watch it: hl.Scene(..., watch=[{name}])")
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.channels]
+
+    def __repr__(self) -> str:
+        stopped = f"; fault: {self.fault}" if self.fault else ""
+        seconds = f"{len(self) * self.T:g} s at T = {self.T:g} s"
+        missed = np.count_nonzero(self.channels.get("unlocated", 0))
+        left_out = f"; an event was not located in {missed} of them, see unlocated" if missed else ""
+        return f"Telemetry({len(self)} samples, {seconds}: {', '.join(self.columns)}{left_out}{stopped})"
+
+    def save(self, path: File) -> Path:
+        """Write everything to a NumPy archive and return its path (``.npz`` is added where missing)."""
+        path = Path(path)
+        path = path if path.suffix == ".npz" else path.with_name(path.name + ".npz")
+        plain = ("T", "delay", "units", "paddle", "scene", "parameters", "fault", "every", "changes")
+        about = json.dumps({"order": list(self.channels), **{name: getattr(self, name) for name in plain}})
+        arrays = {name: getattr(self, name) for name in ("t", "x", "v", "F", *FLAGS)}
+        np.savez(path, about=np.array(about), **arrays, **{f"channel.{k}": a for k, a in self.channels.items()})  # type: ignore[arg-type]
+        return path
+
+    @classmethod
+    def load(cls, path: File) -> Telemetry:
+        """Read what :meth:`save` wrote; the file can hold numbers and text only, never code."""
+        try:
+            with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as file:
+                about = json.loads(str(file["about"]))
+                channels = {name: file[f"channel.{name}"] for name in about.pop("order")}
+                arrays = {name: file[name] for name in ("t", "x", "v", "F", *FLAGS)}
+                return cls(**arrays, **about, channels=channels)
+        except (KeyError, TypeError, ValueError, EOFError, BadZipFile) as problem:
+            raise AnalysisError(f"{path} is not a telemetry file ({problem}); needs one of log.save()") from None
+
+    def to_csv(self, path: File) -> File:
+        """Write a table whose header carries the units, and return its path; flags appear where any is raised."""
+        raised = [name for name in FLAGS if getattr(self, name).any()]
+        header = [f"{name} [{self.units.get(name, '1')}]" for name in self.columns] + raised
+        columns = [getattr(self, name).tolist() for name in self.columns]
+        columns += [getattr(self, name).astype(int).tolist() for name in raised]
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            table = csv.writer(file, lineterminator="\n")
+            table.writerow(header)
+            table.writerows(zip(*columns, strict=True))
+        return Path(path)
+
+
+def _column(name, values, samples, type):
+    array = np.array(values, type)
+    if array.shape != (samples,):
+        raise AnalysisError(f"{name} has shape {array.shape}; needs one value a sample: ({samples},), as t has")
+    array.flags.writeable = False
+    return array
+
+
+def check_record(log, asker, whole=True):
+    """Refuse what is no Telemetry, with the call that makes one, and where it is to be whole one with lost samples."""
+    if not isinstance(log, Telemetry):
+        raise AnalysisError(f"{asker} of a {type(log).__name__}; needs a record, log = paddle.run(scene, duration=...)")
+    if whole and log.gap.any():
+        raise AnalysisError(
+            f"{asker}: {np.count_nonzero(log.gap)} times samples were lost, first before t = {log.t[np.argmax(log.gap)]:g} s; "
+            "needs every sample: run again, with fewer watched channels or a longer T"
+        )

@@ -1,0 +1,49 @@
+"""Force laws: walls, dampers and couplers as scenes, what filters and guards them, and walls designed on a model of the paddle.
+
+Each returns a Scene with parameters to bind: ``hl.laws.virtual_coupler(z, K="300 N/m", b="0.5 N*s/m")``. ``hl.wall`` is the
+chapter's wall, which stands in ``hl`` itself as well.
+"""
+
+from .limits.linear_law import LinearLaw
+from .rendering.deadbeat import deadbeat_wall
+from .rendering.digital import digital_wall
+from .rendering.for_board import wall_for_board
+from .rendering.hybrid import hybrid_wall
+from .rendering.predictive import predictive_wall
+from .rendering.wall_laws import wall_law
+from .scene.laws.chapter_laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
+from .scene.laws.compensation import damping_compensation
+from .scene.laws.entry_pulse import braking_pulse, friction_pulse
+from .scene.laws.fixtures import guidance, tremor_filter
+from .scene.laws.passivity_control import passivity_controller, passivity_observer, wall_energy
+from .scene.laws.proxy import proxy_curve, proxy_wall
+from .scene.notation.symbols import delay
+from .vocabulary import page
+
+__all__ = [
+    "LinearLaw",
+    "braking_pulse",
+    "damping_compensation",
+    "deadbeat_wall",
+    "delay",
+    "digital_wall",
+    "force_filter",
+    "friction_pulse",
+    "guidance",
+    "hybrid_wall",
+    "passivity_controller",
+    "passivity_observer",
+    "predicted_sample",
+    "predictive_wall",
+    "proxy_curve",
+    "proxy_wall",
+    "tremor_filter",
+    "virtual_coupler",
+    "virtual_damper",
+    "wall",
+    "wall_energy",
+    "wall_for_board",
+    "wall_law",
+]
+
+page(__name__)

@@ -1,0 +1,16 @@
+"""Measurements on a paddle, simulated or real: the stiffest wall, the Z-width, the impedance that is felt."""
+
+from .measurement.impedance import measured_impedance as impedance
+from .measurement.largest_stiffness import largest_stiffness
+from .measurement.signals import multisine
+from .measurement.z_width import z_width
+from .vocabulary import page
+
+__all__ = [
+    "impedance",
+    "largest_stiffness",
+    "multisine",
+    "z_width",
+]
+
+page(__name__)

@@ -1,0 +1,46 @@
+"""People: how a hand intends and reacts, and experiments on what it feels, reaches and follows."""
+
+from .device.hand.hand_presets import hand_presets
+from .device.hand.intents import MinimumJerk, Tremor
+from .device.hand.reacting_hand import Reacting
+from .experiments.displays import compare_displays
+from .experiments.fitts import fitts
+from .experiments.forced_choice import forced_choice
+from .experiments.juggling import juggle
+from .experiments.observers import PersonObserver, SimulatedObserver
+from .experiments.psi import ConstantLevels, Psi
+from .experiments.psychometric import psychometric
+from .experiments.reaching import Load, follow, reach
+from .experiments.response_curves import Psychometric
+from .experiments.shared_control import assistance
+from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
+from .experiments.up_down import UpDown
+from .vocabulary import page
+
+__all__ = [
+    "ConstantLevels",
+    "Load",
+    "MinimumJerk",
+    "PersonObserver",
+    "Psi",
+    "Psychometric",
+    "Reacting",
+    "SimulatedObserver",
+    "Task",
+    "Tremor",
+    "UpDown",
+    "assistance",
+    "compare_displays",
+    "damping_task",
+    "fitts",
+    "follow",
+    "forced_choice",
+    "hand_presets",
+    "juggle",
+    "psychometric",
+    "reach",
+    "stiffness_task",
+    "texture_task",
+]
+
+page(__name__)

@@ -1,0 +1,23 @@
+"""Estimates of the handle's velocity from its sampled positions, and a comparison of their errors.
+
+Pass one as ``velocity=`` to a law, or write ``estimate.velocity`` in a force of your own.
+"""
+
+from .rendering.velocity_errors import velocity_errors as compare
+from .scene.laws.adaptive_window import window_velocity as window
+from .scene.laws.estimators import VelocityEstimate
+from .scene.laws.estimators import backward_velocity as backward
+from .scene.laws.estimators import filtered_velocity as filtered
+from .scene.laws.kalman import kalman_velocity as kalman
+from .vocabulary import page
+
+__all__ = [
+    "VelocityEstimate",
+    "backward",
+    "compare",
+    "filtered",
+    "kalman",
+    "window",
+]
+
+page(__name__)

@@ -1,0 +1,107 @@
+"""The pages of public names, and ``hl.find``, which says what does what."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import sys
+from difflib import get_close_matches
+from types import ModuleType
+from typing import Any
+
+#: every namespace of ``hl``, in the order in which a course meets them
+PAGES = (
+    "library", "laws", "velocity", "contact", "shapes", "mechanics", "devices", "people", "records", "passivity", "stability",
+    "bounds", "design", "measure", "identify", "methods", "errors",
+)  # fmt: skip
+
+
+class Page(ModuleType):
+    """A module that prints as the list of what it holds, and answers a wrong name with those that come near."""
+
+    __all__: list[str]
+
+    def __dir__(self) -> list[str]:
+        return self.__all__
+
+    def __getattr__(self, name: str) -> Any:
+        title = self.__name__.replace("hapticlab", "hl", 1)
+        if name.startswith("_"):
+            raise AttributeError(f"{title} has no {name}")
+        raise AttributeError(f"{title} has no {name}; {_cure(name)}")
+
+    def __repr__(self) -> str:
+        title = self.__name__.replace("hapticlab", "hl", 1)
+        rows = {f"{title}.{name}": _first_line(getattr(self, name)) for name in self.__all__}
+        return "\n".join([str(self.__doc__).strip(), "", *_columns(rows)])
+
+
+def page(name: str) -> None:
+    """Make the module of this name a :class:`Page`."""
+    sys.modules[name].__class__ = Page
+
+
+class Found(dict[str, str]):
+    """Public names, each with the first line of what it says of itself."""
+
+    def __repr__(self) -> str:
+        return "\n".join(_columns(self)) or "nothing found; print(hl.laws) and the other pages list what there is"
+
+
+def find(words: str = "") -> Found:
+    """Public names whose own or whose description holds every one of the words.
+
+    Parameters
+    ----------
+    words : str
+        One word or more, such as "velocity" or "largest stiffness"; none lists every public name.
+
+    Returns
+    -------
+    Found
+        A dict from name to the first line of its docstring; it prints as a table.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> print(hl.find("estimate velocity kalman"))
+    hl.velocity.kalman  Velocity by a Kalman filter of constant velocity and random acceleration.
+    """
+    asked = words.lower().split()
+    return Found((name, line) for name, line in _lines().items() if all(word in f"{name} {line}".lower() for word in asked))
+
+
+def _lines():
+    """Every public name with its first line, those of ``hl`` itself first."""
+    house = importlib.import_module("hapticlab")
+    here = {f"hl.{name}": getattr(house, name) for name in house.__all__ if name not in PAGES}
+    pages = {name: importlib.import_module(f"hapticlab.{name}") for name in PAGES}
+    there = {f"hl.{title}.{name}": getattr(page, name) for title, page in pages.items() for name in page.__all__}
+    known = {id(value) for value in here.values()}
+    return {name: _first_line(value) for name, value in (here | {n: v for n, v in there.items() if id(v) not in known}).items()}
+
+
+def _first_line(value):
+    return (inspect.getdoc(value) or "").partition("\n")[0]
+
+
+def _columns(rows):
+    width = max(map(len, rows), default=0)
+    return [f"{name:<{width}}  {line}" for name, line in rows.items()]
+
+
+def _cure(wrong):
+    """The public names that a wrong one may mean, in words."""
+    asked = set(wrong.lower().split("_"))
+    paths = list(_lines())
+    holding = [path for path in paths if asked <= set(path.lower().replace(".", "_").split("_")[1:])]
+    ends = {path.rpartition(".")[2].lower(): path for path in paths}
+    near = [ends[end] for end in get_close_matches(wrong.lower(), ends, 2, 0.75)]
+    if found := sorted(holding, key=len)[:3] or near:
+        return f"did you mean {' or '.join(found)}?"
+    return "hl.find('a word') lists the names that speak of it"
+
+
+def unknown(name: str) -> str:
+    """What to say of a name that ``hl`` does not hold."""
+    return f"hapticlab has no {name}; {_cure(name)}"
