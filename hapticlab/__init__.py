@@ -22,7 +22,7 @@ def __getattr__(name):
     try:
         return _load(name)
     except AttributeError:
-        from .vocabulary import unknown
+        from .vocabulary import unknown  # opens every page, so only here
 
         raise AttributeError(unknown(name)) from None
 

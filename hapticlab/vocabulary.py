@@ -64,21 +64,22 @@ def find(words: str = "") -> Found:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(hl.find("estimate velocity kalman"))
-    hl.velocity.kalman  Velocity by a Kalman filter of constant velocity and random acceleration.
+    >>> print(hl.find("kalman"))
+    hl.velocity.kalman  Kalman filter of position and velocity under white acceleration, held over each period.
     """
     asked = words.lower().split()
-    return Found((name, line) for name, line in _lines().items() if all(word in f"{name} {line}".lower() for word in asked))
+    lines = {name: _first_line(value) for name, value in public().items()}
+    return Found((name, line) for name, line in lines.items() if all(word in f"{name} {line}".lower() for word in asked))
 
 
-def _lines():
-    """Every public name with its first line, those of ``hl`` itself first."""
+def public() -> dict[str, Any]:
+    """Every public name and what it stands for, those of ``hl`` itself first; what stands in both is there once."""
     house = importlib.import_module("hapticlab")
     here = {f"hl.{name}": getattr(house, name) for name in house.__all__ if name not in PAGES}
     pages = {name: importlib.import_module(f"hapticlab.{name}") for name in PAGES}
     there = {f"hl.{title}.{name}": getattr(page, name) for title, page in pages.items() for name in page.__all__}
     known = {id(value) for value in here.values()}
-    return {name: _first_line(value) for name, value in (here | {n: v for n, v in there.items() if id(v) not in known}).items()}
+    return here | {name: value for name, value in there.items() if id(value) not in known}
 
 
 def _first_line(value):
@@ -93,7 +94,7 @@ def _columns(rows):
 def _cure(wrong):
     """The public names that a wrong one may mean, in words."""
     asked = set(wrong.lower().split("_"))
-    paths = list(_lines())
+    paths = list(public())
     holding = [path for path in paths if asked <= set(path.lower().replace(".", "_").split("_")[1:])]
     ends = {path.rpartition(".")[2].lower(): path for path in paths}
     near = [ends[end] for end in get_close_matches(wrong.lower(), ends, 2, 0.75)]

@@ -11,6 +11,7 @@ import pytest
 import hapticlab as hl
 from hapticlab.cli.main import main
 from hapticlab.cli.options import parser
+from hapticlab.vocabulary import PAGES, public
 
 pytestmark = pytest.mark.interpreter
 
@@ -88,8 +89,10 @@ def test_readme_runs_on_a_simulated_board(tmp_path, capsys):
 
 def test_public_names_are_documented_and_exist():
     assert sorted(hl.__all__) == hl.__all__
-    undocumented = [name for name in hl.__all__ if callable(getattr(hl, name)) and not getattr(hl, name).__doc__]
-    assert not undocumented
+    assert len(hl.__all__) <= 45
+    assert all(page.__all__ == sorted(page.__all__) for page in (getattr(hl, name) for name in PAGES if name != "library"))
+    assert len(public()) > 180
+    assert not [name for name, value in public().items() if callable(value) and not value.__doc__]
     assert f"Version {'.'.join(hl.__version__.split('.')[:2])}," in README
 
 
@@ -116,5 +119,5 @@ def test_a_misspelt_name_is_answered_with_those_that_come_near():
         hl.Contac  # noqa: B018
     with pytest.raises(AttributeError, match=r"did you mean hl.mechanics.lagrange\?"):
         hl.Lagrange  # noqa: B018
-    with pytest.raises(AttributeError, match="No hapticlab attribute zzzz"):
+    with pytest.raises(AttributeError, match=r"hapticlab has no zzzz; hl.find"):
         hl.zzzz  # noqa: B018

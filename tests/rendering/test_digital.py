@@ -119,5 +119,5 @@ def test_they_run_bit_for_bit_in_the_firmware_core_and_fit_the_uno_at_1_khz(make
 
 @pytest.mark.parametrize("make", [hl.laws.digital_wall, hl.laws.predictive_wall, hl.laws.deadbeat_wall, hl.design.digital_gains])
 def test_the_name_of_a_hand_is_no_hand(make):
-    with pytest.raises(AnalysisError, match=r"hand = 'pinch'; needs a Hand, as hl\.hand\(\"pinch\"\)"):
+    with pytest.raises(AnalysisError, match=r"hand = 'pinch'; needs a Hand, as hl\.Hand\(\"pinch\"\)"):
         make(hl.SimulatedPaddle(m=0.05, b=0.0, T=1e-3), K=500, hand="pinch")

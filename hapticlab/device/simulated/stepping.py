@@ -6,6 +6,7 @@ import numpy as np
 
 from ...base.telemetry import Telemetry
 from ...errors import PaddleError
+from ..hand.hand import Hand
 from ..live_parameters import MOST_AT_ONCE, checked, in_portions, named_values
 from .closed_loop import link, load_linked
 from .not_finite import not_finite

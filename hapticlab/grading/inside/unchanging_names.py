@@ -6,7 +6,7 @@ import sys
 #: of hapticlab, what gives values that never change; of builtins the same
 FROZEN = frozenset(
     "Scene when delay parameters coordinate signal wall virtual_coupler virtual_damper lagrange damping_compensation friction "
-    "force_filter predicted_sample backward_velocity filtered_velocity n x v t T".split()
+    "force_filter predicted_sample backward filtered n x v t T".split()
 )
 BUILTINS = frozenset("abs bool complex float int len max min pow range round str sum tuple".split())
 #: attributes of modules that are numbers, and packages whose names are functions, types and numbers
@@ -50,7 +50,7 @@ def _is_solid(node, solid, imports):
         given = [*node.args, *(keyword.value for keyword in node.keywords)]
         return _gives_solid(node.func, imports, solid) and all(_is_kept(part, solid, imports) for part in given)
     if isinstance(node, ast.Attribute):
-        module = imports.get(node.value.id) if isinstance(node.value, ast.Name) else None
+        module = _module(node.value, imports)
         known = module is None or node.attr in NUMBERS or _is_known(module, node.attr)
         return known and _is_solid(node.value, solid, imports)
     if isinstance(node, ast.BinOp | ast.UnaryOp | ast.BoolOp | ast.Compare | ast.IfExp | ast.Tuple | ast.JoinedStr):
@@ -73,9 +73,18 @@ def _gives_solid(function, imports, solid):
         return (function.id in BUILTINS and not module) or _is_known(module, name)
     if not isinstance(function, ast.Attribute):
         return False
-    if isinstance(function.value, ast.Name) and function.value.id in imports:
-        return _is_known(imports[function.value.id], function.attr)
+    if module := _module(function.value, imports):
+        return _is_known(module, function.attr)
     return _is_solid(function.value, solid, imports)  # a method of an expression, z.diff(t)
+
+
+def _module(node, imports):
+    """The module that a name stands for, or a page of hapticlab behind it, as ``hl.laws``; None where it is no module."""
+    if isinstance(node, ast.Name):
+        return imports.get(node.id)
+    if isinstance(node, ast.Attribute) and _module(node.value, imports) == "hapticlab":
+        return f"hapticlab.{node.attr}"
+    return None
 
 
 def _is_known(module, name):

@@ -251,7 +251,7 @@ def test_the_picture_peaks_at_what_is_asked_for():
 
 
 def test_refusals():
-    with pytest.raises(AnalysisError, match=r"hl\.port_passivity"):
+    with pytest.raises(AnalysisError, match=r"hl\.passivity\.port"):
         hl.passivity.port("scene", T=T)
     with pytest.raises(AnalysisError, match="T is missing"):
         hl.passivity.port(coupler())

@@ -181,7 +181,7 @@ def test_beside_the_exact_part_the_rest_alone_has_a_longest_step():
 
 
 def test_refusals():
-    with pytest.raises(AnalysisError, match=r"hl\.step_limit"):
+    with pytest.raises(AnalysisError, match=r"hl\.stability\.step_limit"):
         hl.stability.step_limit("scene", T=1e-3)
     with pytest.raises(HapticlabError, match="rk9"):
         hl.stability.step_limit(coupler(), "rk9", T=1e-3)

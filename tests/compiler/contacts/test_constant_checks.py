@@ -49,7 +49,7 @@ SOFT = floor(hl.contact.penalty(k=named("k", "N/m", 300)))
         ([floor(HUNT)], {"k_h": -10.0}, r"floor: k = k_h is -10 N/m\^2 at the start; .* needs k >= 0"),
         ([floor(hl.contact.impulse(e=0.5, mu=mu), slip=X.diff(t))], {"mu": -0.3}, r"floor: mu = mu is -0\.3 at the start; fric"),
         ([floor(hl.contact.rigid(mu=mu), slip=X.diff(t))], {"mu": -0.3}, r"floor: mu = mu is -0\.3 at the start"),
-        ([floor(hl.contact.impulse(e=2 * e))], {"e": 1}, r"floor: e = 2\*e is 2 at the start; above 1 every bounce .* needs 0 <= e"),
+        ([floor(hl.contact.impulse(e=2 * e))], {"e": 1}, r"floor: e = 2\*e is 2 at the start; above 1 every bounce .* needs 0"),
         ([TABLE, PRESSED], {"mu": -0.3}, r"rub: F_c = .*mu.* is -0\.3 N at the start; friction opposes the slip"),
         ([SOFT, hl.contact.friction(slip=X.diff(t), F_c=mu * SOFT.force, name="rub")], {"mu": -0.3}, r"rub: F_c = .* is -0\.3 N"),
         ([hl.contact.friction(slip=X.diff(t), F_c=F_c * (1 - hl.x(t) / named("r", "m", 0.1)), name="rub")], {"F_c": -1},
@@ -117,7 +117,7 @@ def test_one_that_is_no_factor_stays_free():
         (hl.contact.friction(slip=X.diff(t), F_c=named("F_c", "N", 0.5, (-5, 5)), name="rub"),
          r"rub: F_c lies anywhere in -5\.\.5 while F_c may be set, .*hl\.parameters\('F_c', units='N', ranges=\(0, 5\)\), or "
          "leave F_c out of live="),
-        (floor(hl.contact.impulse(e=2 * e)), r"floor: e = 2\*e lies anywhere in 0\.\.2 while e may be set, .* needs 0 <= e"),
+        (floor(hl.contact.impulse(e=2 * e)), r"floor: e = 2\*e lies anywhere in 0\.\.2 while e may be set, .* needs 0"),
         (hl.contact.friction(slip=X.diff(t), F_c=named("a", "N", 1) - named("F_c", "N", 0.5), name="rub"),
          r"F_c = .* lies anywhere in -inf\.\.inf while \w+, \w+ may be set"),
     ],

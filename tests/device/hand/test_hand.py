@@ -29,8 +29,8 @@ def test_bad_values_are_refused(given, said):
         Hand(**given)
 
 
-def test_positional_arguments_are_refused():
-    with pytest.raises(TypeError):
+def test_a_number_is_no_preset():
+    with pytest.raises(PaddleError, match=r"no hand 0.1; there are pinch, .*hl.Hand\(m="):
         Hand(0.1)
 
 
