@@ -12,7 +12,8 @@ from collections.abc import Iterable
 from types import UnionType
 from typing import Any
 
-from ..errors import AnalysisError, HapticlabError
+from ..errors import AnalysisError, HapticlabError, UnitsError
+from .units import in_si
 
 
 def number(
@@ -28,7 +29,9 @@ def number(
     why: str = "",
     error: type[HapticlabError] = AnalysisError,
 ) -> float:
-    """The finite number given, as a float: ``least`` or more, ``above`` a limit, ``most`` or less.
+    """The finite number given, as a float in SI: ``least`` or more, ``above`` a limit, ``most`` or less.
+
+    A quantity with a unit may be a text, such as "1 ms".
 
     ``what`` is what an error calls the number besides its name, and ``why`` gives the reason for its limits.
 
@@ -40,21 +43,36 @@ def number(
     >>> number("b", -1, "N s/m", "a device", least=0, why="its damping pays for the hold")
     Traceback (most recent call last):
     hapticlab.errors.AnalysisError: b = -1 N s/m; a device needs b >= 0: its damping pays for the hold
+    >>> number("T", "1 ms", "s")
+    0.001
     """
+    has_unit = unit not in ("", "1")
+    if isinstance(given, str) and has_unit:
+        given = _quantity(name, given, unit, error)
     try:
-        value = None if isinstance(given, bool) else float(given)
+        value = None if isinstance(given, bool | str) else float(given)
     except (TypeError, ValueError, OverflowError):
         value = None
     finite = value is None or math.isfinite(value)
     if value is not None and finite and _within(value, least, above, most):
         return value
     need = _needs(owner, _range(what or name, least, above, most, finite))
-    has_unit = unit not in ("", "1")
     if value is None:
         reason = f": {why}" if why and not why.endswith(".") else ""
-        raise error(f"{name} = {given!r}; {need}{reason}, as a number{f' in {unit}' if has_unit else ''}")
+        form = f"a number in {unit}, or a text with its unit, as '2 {unit}'" if has_unit else "a number"
+        raise error(f"{name} = {given!r}; {need}{reason}, as {form}")
     reason = why and (f". {why}" if why[0].isupper() else f": {why}")
     raise error(f"{name} = {given}{f' {unit}' if has_unit else ''}; {need}{reason}")
+
+
+def _quantity(name, text, unit, error):
+    """The number in SI of a text such as "10 mm"; a text without any digit stays what it is, and is refused as no number."""
+    if not any(letter.isdigit() for letter in text):
+        return text
+    try:
+        return in_si(text, unit, name)
+    except UnitsError as refusal:
+        raise error(str(refusal)) from None
 
 
 def _within(value: float, least: float | None, above: float | None, most: float | None) -> bool:

@@ -15,9 +15,10 @@ import numpy as np
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from ..base.units import dimension, si_name
 from ..errors import UnitsError
 from ..scene.notation.symbols import delay, n
-from ..scene.notation.units import agree, dimension, si_name
+from ..scene.notation.units import agree
 from .plain_values import NotPlain, a
 
 #: how far an equation may be from a straight line in what it is solved for, of its largest term

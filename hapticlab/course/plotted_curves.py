@@ -7,8 +7,8 @@ import re
 
 import numpy as np
 
+from ..base.units import dimension, quantity, si_name
 from ..errors import UnitsError
-from ..scene.notation.units import dimension, quantity, si_name
 from .plain_values import NotPlain, a, numbers
 
 #: more curves than any exercise asks for: one of very many would fit whatever is expected

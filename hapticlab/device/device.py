@@ -51,8 +51,6 @@ class Device:
     >>> device = hl.Device(b=0.1, T="1 ms", delay="0.5 ms")
     >>> print(device)
     b = 0.1 N s/m, T = 0.001 s, delay = 0.0005 s
-    >>> float(hl.passivity_limit(device))
-    100.0
     """
 
     m: float | None = None

@@ -10,11 +10,11 @@ import numpy as np
 
 from ..base.arguments import number
 from ..base.drawing import WARM, house_style, new_figure
+from ..base.units import in_si
 from ..device.simulated.closed_loop import link, load_linked
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError
 from ..scene.laws.compensation import damping_compensation
-from ..scene.notation.units import in_si
 from .compensation_limit import CompensationLimit, compensation_limit
 
 if TYPE_CHECKING:

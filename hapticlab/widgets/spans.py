@@ -4,10 +4,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from ..base.units import dimension
 from ..compiler.ir.notes import why_of
 from ..compiler.tick.live_limits import NEAR
 from ..errors import ParameterError
-from ..scene.notation.units import dimension
 
 #: of a parameter that is zero and has no declared range, by unit; any other from -1 to 1
 FROM_ZERO = {

@@ -191,10 +191,11 @@ is felt as nothing.
 
 {dampers}
 
-Up to the device's own b a sampled damper is passive in any hand, and too weak here; 1 % of `hl.stability.damper_limit` of handle
-and hand is enough for this wall, a tenth for the stiffest. More changes little where x is exact, for the controller asks for no
-more damping than takes back what is owed. Behind an encoder a count is felt as alpha_max count/T: half of the limit makes
-jumps of several newtons, all of it of tens, and beyond it the controller chatters by itself.
+Up to the device's own b a sampled damper is passive in any hand, and too weak here; 1 % of `hl.stability.damper_limit` of
+handle and hand is enough for this wall, a tenth for the stiffest. More changes little where x is exact, for the controller
+asks for no more damping than takes back what is owed. Behind an encoder a count is felt as alpha_max
+count/T: half of the limit makes jumps of several newtons, all of it of tens, and beyond it the controller
+chatters by itself.
 
 ## A human who is active for long
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.drawing import house_style, new_figure
+from ...base.units import in_si
 from ...errors import AnalysisError
 from ...library.entries import CATALOGUE
-from ...scene.notation.units import in_si
 from ...scene.scene import Scene
 from .schematic import Schematic
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ...base.arguments import choice
+from ...base.units import in_si
 from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.prune.constraint_lengths import held
 from ...device.progress import progress_bar
 from ...errors import AnalysisError
-from ...scene.notation.units import in_si
 from ...scene.scene import Scene
 from ..records.plots import plot_sweep
 from .sweep_chunks import measured

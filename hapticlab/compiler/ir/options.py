@@ -4,9 +4,9 @@ import math
 import operator
 from numbers import Real
 
+from ...base.units import in_si
 from ...errors import ParameterError, ProgramError, ProgramLimitError
 from ...scene.notation.symbols import Parameter
-from ...scene.notation.units import in_si
 
 #: of a period, that an error may propose: more of any method are more instructions than a program may have
 MOST_SUBSTEPS = 1000

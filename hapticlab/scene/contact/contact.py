@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import sympy as sp
 
+from ...base.units import si_name
 from ...errors import SceneError, SignalError
 from ..notation.amount import number_of
 from ..notation.cases import when
 from ..notation.checks import applied, check_symbols
 from ..notation.derivative import Partial, Rate
 from ..notation.symbols import lag_of, t, v, x
-from ..notation.units import dimension_of, si_name
+from ..notation.units import dimension_of
 from ..notation.written import check_name, expression
 from . import instant_laws, penalty_laws  # noqa: F401 (law_names needs every law there is)
 from .contact_law import OPPOSING, Allowed, ContactLaw, check_constant, constant, gap_units, law_names, written_out

@@ -11,10 +11,11 @@ from typing import Any, ClassVar
 
 import sympy as sp
 
+from ...base.units import dimension, quantity
 from ...errors import SceneError, UnitsError
 from ..notation.amount import Amount
 from ..notation.checks import agree_with
-from ..notation.units import dimension, dimension_of, quantity
+from ..notation.units import dimension_of
 from ..notation.written import expression
 
 #: what a gap is measured in -> units of force, stiffness, damping and speed

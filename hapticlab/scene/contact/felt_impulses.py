@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from ...base.units import in_si
 from ...errors import SceneError
 from ..notation.amount import amount
 from ..notation.cases import when
 from ..notation.derivative import Partial
 from ..notation.symbols import T, n, signal, t, x
-from ..notation.units import in_si
 from .contact import Contact
 
 if TYPE_CHECKING:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from ...base.arguments import instance, number
+from ...base.units import in_si
 from ...errors import SceneError
 from ..notation.amount import Amount
 from ..notation.parameters import T
 from ..notation.symbols import n, parameters, signal, t, v, when, x
-from ..notation.units import in_si
 from ..scene import Scene
 
 if TYPE_CHECKING:

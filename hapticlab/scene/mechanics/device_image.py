@@ -7,11 +7,12 @@ from typing import Any
 
 import sympy as sp
 
+from ...base.units import si_name
 from ...errors import SceneError
 from ..notation.checks import agree_with
 from ..notation.derivative import Partial
 from ..notation.symbols import t, x
-from ..notation.units import dimension_of, si_name
+from ..notation.units import dimension_of
 from ..notation.written import check_name, zero_of
 
 

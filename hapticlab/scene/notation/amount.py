@@ -7,10 +7,10 @@ import math
 import sympy as sp
 
 from ...base.arguments import number
+from ...base.units import in_si
 from ...errors import SceneError
 from .checks import agree_with
 from .parameters import Parameter
-from .units import in_si
 from .written import expression
 
 

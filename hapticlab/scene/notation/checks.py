@@ -6,9 +6,10 @@ import sympy as sp
 from sympy.core.cache import cacheit
 from sympy.core.function import AppliedUndef
 
+from ...base.units import dimension
 from ...errors import ParameterError, SceneError, SignalError
 from .symbols import Parameter, T, delay, lag_of, n, t, v, x
-from .units import agree, dimension
+from .units import agree
 from .written import CONDITIONS, RESERVED, check_name, expression
 
 #: of a scene's expressions, a part that stands in several places counted once: each is an instruction or more of a tick

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from ...base.units import dimension, in_si, kind_of
 from ...errors import ParameterError
-from .units import dimension, in_si, kind_of
 from .written import check_name
 
 if TYPE_CHECKING:

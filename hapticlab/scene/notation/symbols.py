@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 from sympy.core.function import AppliedUndef, FunctionClass, UndefinedFunction
 
+from ...base.units import dimension, in_si
 from ...errors import SceneError, SignalError
 from .cases import when
 from .parameters import Parameter, T, parameters
-from .units import dimension, in_si
 from .written import CONDITIONS, check_name, expression
 
 if TYPE_CHECKING:

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from ...base.units import in_si
 from ...errors import SceneError
 from ..notation.amount import amount, take_lengths
 from ..notation.derivative import Partial, rates_of
-from ..notation.units import in_si
 from .polygons import convex_parts, outline, width
 
 if TYPE_CHECKING:

@@ -6,8 +6,9 @@ import sympy as sp
 
 import hapticlab as hl
 from hapticlab import n, t, v, x
+from hapticlab.base.units import dimension, si_name
 from hapticlab.errors import ParameterError, UnitsError
-from hapticlab.scene.notation.units import dimension, si_name, unit_of
+from hapticlab.scene.notation.units import unit_of
 
 k, x_o, m, b, A = hl.parameters("k x_o m b A", units="N/m m kg N*s/m rad")
 z = hl.coordinate("z", unit="m")

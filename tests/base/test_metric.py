@@ -5,9 +5,9 @@ import random
 import pint
 import pytest
 
-from hapticlab.scene.notation import metric as table
-from hapticlab.scene.notation import units
-from hapticlab.scene.notation.metric import metric
+from hapticlab.base import metric as table
+from hapticlab.base import units
+from hapticlab.base.metric import metric
 
 REGISTRY = pint.UnitRegistry()
 #: rounding: pint multiplies one size after another, and of a product of six each may be rounded
