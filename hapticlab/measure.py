@@ -2,11 +2,14 @@
 
 from .measurement.impedance import measured_impedance as impedance
 from .measurement.largest_stiffness import largest_stiffness
+from .measurement.search import Judgement, Search
 from .measurement.signals import multisine
 from .measurement.z_width import z_width
 from .vocabulary import page
 
 __all__ = [
+    "Judgement",
+    "Search",
     "impedance",
     "largest_stiffness",
     "multisine",

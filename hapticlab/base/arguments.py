@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Iterable
+from dataclasses import fields
 from types import UnionType
 from typing import Any
 
@@ -63,6 +64,27 @@ def number(
         raise error(f"{name} = {given!r}; {need}{reason}, as {form}")
     reason = why and (f". {why}" if why[0].isupper() else f": {why}")
     raise error(f"{name} = {given}{f' {unit}' if has_unit else ''}; {need}{reason}")
+
+
+def numbers(record: Any, owner: str, *, error: type[HapticlabError] = AnalysisError, **rules: Any) -> None:
+    """Make fields of a frozen record floats in SI, each by the rules of :func:`number`; where None is the default, it may stay.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> from hapticlab.base.arguments import numbers
+    >>> @dataclass(frozen=True)
+    ... class Rest:
+    ...     settle: float
+    ...     def __post_init__(self):
+    ...         numbers(self, "a rest", settle={"unit": "s", "least": 0})
+    >>> Rest("20 ms")
+    Rest(settle=0.02)
+    """
+    for field in fields(record):
+        given = getattr(record, field.name)
+        if field.name in rules and not (given is None and field.default is None):
+            object.__setattr__(record, field.name, number(field.name, given, owner=owner, error=error, **rules[field.name]))
 
 
 def _quantity(name, text, unit, error):

@@ -17,6 +17,7 @@ from ..scene.laws.taps import TAPS
 from ..scene.notation.symbols import parameters
 from ..scene.scene import Scene
 from .guard import guarded
+from .search import Judgement, Search
 from .search_plot import plot_search
 from .search_start import durations_of, first_of, hopeless, pushes_of
 from .trials import Trial, speed_limit, try_wall, wall_of
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
 #: parts of the first stiffness tried before none is said to stand
 SOFTER = 1e-2
+SEARCH, JUDGEMENT = Search(), Judgement()
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,21 +91,14 @@ class LargestStiffness:
 
 def largest_stiffness(
     paddle: SimulatedPaddle | SerialPaddle,
-    *,
     law: LawName | Scene = "zoh",
+    *,
     B: float = 0.0,
     parameter: str = "k",
     push: float | None = None,
-    first: float | None = None,
-    most: float = 1e5,
-    growth: float = 1.5,
-    tolerance: float = 0.02,
-    duration: float | None = None,
-    longest: float | None = None,
-    energy_max: float = 0.05,
-    speed_max: float = 1.0,
-    buzz_max: float = 0.05,
     place: float = 0.0,
+    search: Search = SEARCH,
+    judged: Judgement = JUDGEMENT,
 ) -> LargestStiffness:
     """Search the largest stiffness of a wall that comes to rest under a push: trials on the paddle, from soft to stiff.
 
@@ -137,24 +132,13 @@ def largest_stiffness(
     push : float, optional
         Constant force of the motor into the wall [N]. By default 0.2 N, at most a quarter of what the paddle's force limit
         leaves the wall, and none where a simulated hand pushes or leans. Friction above it hides what the wall does.
-    first : float, optional
-        The softest wall [N/m]; by default one that 10 mm withstand the push, 20 N/m for a push of 0.2 N.
-    most : float
-        The stiffest [N/m].
-    growth : float
-        Ratio from one trial to the next, > 1.
-    tolerance : float
-        Of the stiffness, relative.
-    duration, longest : float, optional
-        Of a trial [s], 128 samples at least; doubled up to the longest while the record does not tell. By default 1 s,
-        500 samples and ten periods at least, and four times that.
-    energy_max, speed_max : float
-        What trips the guard [J], [m/s]; the speed leaves room for three encoder counts a period.
-    buzz_max : float
-        The force [N] by which a handle at the edge of one encoder count may buzz and still stand: without friction some
-        count is always dithered over.
     place : float
         Of the wall's boundary [m].
+    search : Search
+        Which walls are tried: ``hl.measure.Search(first=, most=, growth=, tolerance=)``.
+    judged : Judgement
+        How long a trial lasts and what trips it:
+        ``hl.measure.Judgement(energy_max=, speed_max=, buzz_max=, duration=, longest=)``.
 
     Returns
     -------
@@ -174,13 +158,11 @@ def largest_stiffness(
     """
     scene = wall_of(law, parameter)
     name = law if isinstance(law, str) else scene.name
-    if not (growth > 1 and tolerance > 0 and most > 0):
-        raise AnalysisError(f"growth = {growth}, tolerance = {tolerance}, most = {most}; needs growth > 1 and the others > 0")
-    durations = durations_of(paddle, duration, longest)
-    push, leaning = pushes_of(paddle, push, place, durations(most)[1])
-    first = first_of(paddle, push + leaning, longest) if first is None else float(first)
-    if not 0 < first < most:
-        raise AnalysisError(f"first = {first:g} N/m, most = {most:g} N/m; needs 0 < first < most")
+    durations = durations_of(paddle, judged.duration, judged.longest)
+    push, leaning = pushes_of(paddle, push, place, durations(search.most)[1])
+    first = first_of(paddle, push + leaning, judged.longest) if search.first is None else search.first
+    if first >= search.most:
+        raise AnalysisError(f"first = {first:g} N/m, most = {search.most:g} N/m; needs 0 < first < most")
     known = {name: value for name, value in {"B": B, "x_o": place}.items() if name in scene.parameters and (B or name != "B")}
     if B and "B" not in scene.parameters:
         raise PaddleError(f"{scene.name} has no parameter B; leave B out, or give the scene one")
@@ -189,7 +171,7 @@ def largest_stiffness(
         return LargestStiffness(0.0, 0.0, (), name, B, theory, "no trial made")
     pressed = _pressed(scene(**known, **{parameter: first}), push)
     periods = whole_and_fraction(getattr(paddle, "delay", 0.0), paddle.T)[0]
-    limits = {"energy_max": energy_max, "speed_max": speed_limit(paddle, speed_max), "periods": periods}
+    limits = {"energy_max": judged.energy_max, "speed_max": speed_limit(paddle, judged.speed_max), "periods": periods}
     program = paddle.program(guarded(pressed, **limits))  # compiled once: only a parameter's value changes
 
     noise = getattr(paddle, "noise", 0.0)
@@ -200,18 +182,18 @@ def largest_stiffness(
         if push:  # softer than the first, it would sink in ever deeper
             values["pressed"] = push * min(1.0, K / first)
         tried = replace(program, values=tuple(values.values()))
-        options = {"duration": seconds, "longest": durations(K)[1], "buzz_max": buzz_max, "noise": noise}
+        options = {"duration": seconds, "longest": durations(K)[1], "buzz_max": judged.buzz_max, "noise": noise}
         made = try_wall(paddle, tried, K=K, place=place, **options)
         noise = max(noise, made.scatter)  # a board shows its sensor's noise where it rests
         return made
 
-    trials, good, bad = search(trial, first, most, growth, tolerance, durations)
+    trials, good, bad = searched(trial, first, search, durations)
     about = f"pressed with {push + leaning:.3g} N from rest at its boundary"
     about += "" if isinstance(paddle, SimulatedPaddle) else "; theory below is without a hand"
     return LargestStiffness(good, bad, trials, name, B, theory, about)
 
 
-def search(trial, first, most, growth, tolerance, durations):
+def searched(trial, first, asked, durations):
     """(trials, largest that stood, smallest that did not), from below, never further than one ratio beyond.
 
     A trial is as short as tells; the one that is the answer is repeated at full length. Where that finds a chatter which
@@ -226,7 +208,7 @@ def search(trial, first, most, growth, tolerance, durations):
             sure |= {K} if made[-1].duration >= 0.999 * durations(K)[1] else set()
         else:
             bad = K
-        while stood and (stood[-1] >= most or bad / stood[-1] <= 1 + tolerance):
+        while stood and (stood[-1] >= asked.most or bad / stood[-1] <= 1 + asked.tolerance):
             if stood[-1] in sure:
                 return tuple(made), stood[-1], bad
             made.append(trial(stood[-1], durations(stood[-1])[1]))
@@ -238,7 +220,7 @@ def search(trial, first, most, growth, tolerance, durations):
         if not stood:
             K = bad / 10
         else:
-            K = min(stood[-1] * (math.sqrt(bad / stood[-1]) if math.isfinite(bad) else growth), most)
+            K = min(stood[-1] * (math.sqrt(bad / stood[-1]) if math.isfinite(bad) else asked.growth), asked.most)
 
 
 def _pressed(scene, push):

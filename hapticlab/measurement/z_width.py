@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..errors import AnalysisError
 from ..scene.scene import Scene
-from .largest_stiffness import LargestStiffness, largest_stiffness
+from .largest_stiffness import SEARCH, LargestStiffness, largest_stiffness
 from .search_plot import plot_border
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..device.board.serial_paddle import SerialPaddle
     from ..device.simulated.simulated_paddle import SimulatedPaddle
     from ..scene.laws.taps import LawName
+    from .search import Search
 
 #: part of the last damping's border at which the search for the next one begins
 BELOW = 5.0
@@ -73,19 +74,28 @@ class ZWidth:
         return f"ZWidth({self.law}, {len(self.B)} dampings, K = {least:.4g} to {most:.4g} N/m)"
 
 
-def z_width(paddle: SimulatedPaddle | SerialPaddle, *, B: ArrayLike, law: LawName | Scene = "zoh", **options: Any) -> ZWidth:
+def z_width(
+    paddle: SimulatedPaddle | SerialPaddle,
+    law: LawName | Scene = "zoh",
+    *,
+    B: ArrayLike,
+    search: Search = SEARCH,
+    **options: Any,
+) -> ZWidth:
     """Measure the K-B border of a wall on a paddle: a search of the largest stiffness at every virtual damping.
 
     Parameters
     ----------
     paddle : SimulatedPaddle or SerialPaddle
-    B : sequence of float
-        Virtual damping [N s/m], of either sign.
     law : str or Scene
         As :func:`hapticlab.measure.largest_stiffness` takes it.
+    B : sequence of float
+        Virtual damping [N s/m], of either sign.
+    search : Search
+        As :func:`hapticlab.measure.largest_stiffness` takes it; where it says no ``first``, the search at each next damping
+        begins well below the border at the last.
     **options
-        Of :func:`hapticlab.measure.largest_stiffness`: push, first, most, growth, tolerance, duration, longest, energy_max,
-        speed_max, place.
+        Of :func:`hapticlab.measure.largest_stiffness`: push, place, judged.
 
     Returns
     -------
@@ -98,7 +108,8 @@ def z_width(paddle: SimulatedPaddle | SerialPaddle, *, B: ArrayLike, law: LawNam
     Examples
     --------
     >>> import hapticlab as hl
-    >>> found = z_width(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), B=[0.0, 1.0], tolerance=0.1, longest=1)
+    >>> paddle, coarse = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), hl.measure.Search(tolerance=0.1)
+    >>> found = hl.measure.z_width(paddle, B=[0.0, 1.0], search=coarse, judged=hl.measure.Judgement(longest=1))
     >>> bool(found.K[1] > 5 * found.K[0]), found.passivity.tolist()
     (True, [200.0, 0.0])
     """
@@ -107,10 +118,10 @@ def z_width(paddle: SimulatedPaddle | SerialPaddle, *, B: ArrayLike, law: LawNam
         raise AnalysisError(f"B = {B}; needs one or more finite numbers [N s/m], as in B=[0, 0.5, 1]")
     searches: list[LargestStiffness] = []
     for b in B.tolist():
-        if searches and searches[-1].K > 0 and "first" not in options:  # the next damping's border is near: begin well below
-            searches.append(largest_stiffness(paddle, law=law, B=b, **options, first=searches[-1].K / BELOW))
-        else:
-            searches.append(largest_stiffness(paddle, law=law, B=b, **options))
+        begin = search
+        if searches and searches[-1].K > 0 and search.first is None:  # the next damping's border is near: begin well below
+            begin = replace(search, first=searches[-1].K / BELOW)
+        searches.append(largest_stiffness(paddle, law, B=b, search=begin, **options))
 
     def column(name):
         return np.array([s.theory[name].K if name in s.theory else np.nan for s in searches])

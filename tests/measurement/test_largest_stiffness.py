@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.measurement.largest_stiffness import LargestStiffness, largest_stiffness, search
+from hapticlab.measurement.largest_stiffness import LargestStiffness, largest_stiffness, searched
 from hapticlab.measurement.trials import Trial
 
 pytest.importorskip("llvmlite")  # some hundred thousand ticks
@@ -35,7 +35,7 @@ def test_what_stands_and_what_chatters_enclose_the_exact_limit(law, changes):
     """A handle pressed on a wall moves inside it, where the wall is the linear law. A limit cycle and the slowest
     decays are not told apart: the pair may lie 2 % low."""
     tried = paddle(**changes)
-    found = largest_stiffness(tried, law=law, first=100.0)
+    found = largest_stiffness(tried, law=law, search=hl.measure.Search(first=100.0))
     exact = hl.stability_limit(tried, law=law).K
     assert 0.97 * exact < found.K < exact < 1.03 * found.chatters_at
     assert found.chatters_at / found.K <= 1.02
@@ -43,7 +43,7 @@ def test_what_stands_and_what_chatters_enclose_the_exact_limit(law, changes):
 
 
 def test_no_trial_goes_further_than_one_ratio_beyond_what_stood():
-    found = largest_stiffness(paddle(), longest=1.0, tolerance=0.1)
+    found = largest_stiffness(paddle(), judged=hl.measure.Judgement(longest=1.0), search=hl.measure.Search(tolerance=0.1))
     stood = found.trials[0].K
     for trial in found.trials:
         assert trial.K <= 1.5 * stood * (1 + 1e-9)
@@ -55,7 +55,7 @@ def test_without_damping_no_stiffness_stands():
     found = largest_stiffness(paddle(b=0.0))
     assert found.K == 0 and "no stiffness stood" in str(found)
     assert found.chatters_at == pytest.approx(0.2)
-    short = largest_stiffness(paddle(b=0.0), longest=1.0)
+    short = largest_stiffness(paddle(b=0.0), judged=hl.measure.Judgement(longest=1.0))
     assert math.isnan(short.K) and "undecided" in str(short) and "needs longest=3" in str(short)
     assert "undecided" in short.plot().axes[0].get_legend_handles_labels()[1]
 
@@ -64,7 +64,7 @@ def test_without_damping_no_stiffness_stands():
 def test_a_heavy_handle_is_given_the_time_that_it_swings(m):
     """On 200 N/m a handle of 2 kg takes 0.63 s a period, on the first wall, of 20 N/m, 2 s."""
     heavy = paddle(m=m)
-    found = largest_stiffness(heavy, tolerance=0.1)
+    found = largest_stiffness(heavy, search=hl.measure.Search(tolerance=0.1))
     assert found.K < hl.stability_limit(heavy).K <= found.chatters_at < 1.1 * found.K
     assert found.trials[0].duration >= 10 * 2 * math.pi * math.sqrt(m / 20.0)
 
@@ -73,7 +73,7 @@ def test_a_motor_of_little_force_does_not_hide_the_limit():
     """Force at its limit turns growth into a cycle, onto which a larger entry decays."""
     weak = paddle(force_max=0.1)
     for push in (None, 0.09):
-        found = largest_stiffness(weak, push=push, first=100.0, tolerance=0.1)
+        found = largest_stiffness(weak, push=push, search=hl.measure.Search(first=100.0, tolerance=0.1))
         assert 0.9 * hl.stability_limit(weak).K < found.K < hl.stability_limit(weak).K
     with pytest.raises(hl.errors.AnalysisError, match="push of 0.2 N .* 0.1 N at most: .* as push=0.025"):
         largest_stiffness(weak, push=0.2)
@@ -82,7 +82,11 @@ def test_a_motor_of_little_force_does_not_hide_the_limit():
 def test_a_tremor_is_no_chatter():
     tremor = hl.Hand(m=0.1, b=5, k=500, intent=lambda t: 0.01 + 0.0005 * np.sin(2 * np.pi * 9 * t))
     held = paddle(hand=tremor)
-    found = largest_stiffness(held, first=9000.0, growth=1.2, tolerance=0.2, duration=1.0, longest=1.0)
+    found = largest_stiffness(
+        held,
+        search=hl.measure.Search(first=9000.0, growth=1.2, tolerance=0.2),
+        judged=hl.measure.Judgement(duration=1.0, longest=1.0),
+    )
     assert found.K < hl.stability_limit(held).K < found.chatters_at <= 1.2 * found.K
     assert "pressed with 5 N" in found.about  # 500 N/m times 10 mm, and none of the motor
     with pytest.raises(hl.errors.AnalysisError, match="noise of 0.1 N"):
@@ -92,7 +96,8 @@ def test_a_tremor_is_no_chatter():
 def test_noise_of_the_sensor_gives_the_same_answer_on_a_board():
     """A simulated handle tells its noise; a board shows it where the handle rests in a softer wall."""
     noisy = paddle(b=1.0, noise=1e-5, counts_per_metre=78125)
-    options = {"first": 200.0, "growth": 2.5, "tolerance": 1.5, "longest": 1.0}
+    coarse = hl.measure.Search(first=200.0, growth=2.5, tolerance=1.5)
+    options = {"search": coarse, "judged": hl.measure.Judgement(longest=1.0)}
     with hl.connect("sim://hapkit", paddle=noisy) as board:
         both = [largest_stiffness(made, **options) for made in (noisy, board)]
     exact = hl.stability_limit(noisy).K
@@ -113,20 +118,23 @@ def test_a_damper_that_is_unstable_alone_is_not_tried():
 
 def test_a_length_without_samples_is_refused_by_name():
     with pytest.raises(hl.errors.AnalysisError, match="duration = 0.001 s; a trial needs 128 samples, duration=0.128"):
-        largest_stiffness(paddle(), duration=0.001)
+        largest_stiffness(paddle(), judged=hl.measure.Judgement(duration=0.001))
 
 
 @pytest.mark.slow  # what a buzz is called is in test_trials
 def test_coulomb_friction_stands_what_the_linear_limit_forbids():
     """A push whose oscillation dies below 2 f_c: stuck, as the quantiser's condition K <= 2 f_c/count reads too."""
     sticky = paddle(coulomb=0.05)
-    assert largest_stiffness(sticky, most=500.0, first=100.0, longest=1.0).K > 1.5 * hl.stability_limit(sticky).K
+    assert (
+        largest_stiffness(sticky, search=hl.measure.Search(most=500.0, first=100.0), judged=hl.measure.Judgement(longest=1.0)).K
+        > 1.5 * hl.stability_limit(sticky).K
+    )
 
 
 def test_the_same_call_on_a_board_finds_the_same():
     behind = paddle(counts_per_metre=1e6)
     with hl.connect("sim://hapkit", paddle=behind) as board:
-        found = largest_stiffness(board, first=100.0, tolerance=0.1)
+        found = largest_stiffness(board, search=hl.measure.Search(first=100.0, tolerance=0.1))
         state = board.state()
     assert found.K == pytest.approx(hl.stability_limit(behind).K, rel=0.1)
     assert state["force"] == 0  # the motor is off
@@ -136,16 +144,18 @@ def test_the_same_call_on_a_board_finds_the_same():
 def test_a_scene_of_ones_own_and_its_parameter():
     stiffness = hl.parameters("s", units="N/m")
     scene = hl.Scene(force=hl.when(hl.x(hl.n) >= 0, stiffness * hl.x(hl.n)), name="mine")
-    found = largest_stiffness(paddle(), law=scene, parameter="s", tolerance=0.1, longest=2.0)
+    found = largest_stiffness(
+        paddle(), law=scene, parameter="s", search=hl.measure.Search(tolerance=0.1), judged=hl.measure.Judgement(longest=2.0)
+    )
     assert found.K == pytest.approx(200.0, rel=0.1) and found.theory == {} and found.law == "mine"
     with pytest.raises(hl.errors.PaddleError, match="no parameter k to search; it has s"):
         largest_stiffness(paddle(), law=scene)
     with pytest.raises(hl.errors.PaddleError, match="no parameter B"):
         largest_stiffness(paddle(), law=scene, parameter="s", B=1.0)
     with pytest.raises(hl.errors.AnalysisError, match="growth > 1"):
-        largest_stiffness(paddle(), growth=1.0)
+        largest_stiffness(paddle(), search=hl.measure.Search(growth=1.0))
     with pytest.raises(hl.errors.AnalysisError, match="0 < first < most"):
-        largest_stiffness(paddle(), first=1e6)
+        largest_stiffness(paddle(), search=hl.measure.Search(first=1e6))
 
 
 def scripted(limit, hidden=math.inf):
@@ -167,30 +177,30 @@ def test_a_hand_that_pulls_away_is_refused_with_the_push_that_would_do():
 def test_a_buzz_of_one_encoder_count_does_not_stand():
     """Abbott and Okamura: passive up to K = min(2 b/T, 2 f_c/count); beyond, a rest is met or not, as the push falls."""
     coarse = paddle(b=0.5, counts_per_metre=1 / 0.5e-3, coulomb=0.02)
-    found = largest_stiffness(coarse, longest=1.0, tolerance=0.1)
+    found = largest_stiffness(coarse, judged=hl.measure.Judgement(longest=1.0), search=hl.measure.Search(tolerance=0.1))
     assert 2 * 0.02 / 0.5e-3 < found.chatters_at < 1000.0  # 80 N/m; 2 b/T alone is 1000
     assert any("one encoder count" in trial.verdict for trial in found.trials)
 
 
 @pytest.mark.parametrize("limit", [0.5, 21.0, 333.0, 98765.0])
 def test_the_search_encloses_any_limit(limit):
-    trials, good, bad = search(scripted(limit), 20.0, 1e5, 1.5, 0.02, lengths)
+    trials, good, bad = searched(scripted(limit), 20.0, hl.measure.Search(), lengths)
     assert good < limit <= bad <= good * 1.02 and any(t.K == good and t.duration == 4.0 for t in trials)
 
 
 def test_a_chatter_that_only_a_long_trial_sees_lowers_the_answer():
-    trials, good, bad = search(scripted(1000.0, hidden=700.0), 20.0, 1e5, 1.5, 0.02, lengths)
+    trials, good, bad = searched(scripted(1000.0, hidden=700.0), 20.0, hl.measure.Search(), lengths)
     assert good < 700.0 <= bad <= good * 1.02
     assert trials[-1].duration == 4.0
 
 
 def test_the_ends_of_a_search():
-    assert search(scripted(0.0), 20.0, 1e5, 1.5, 0.02, lengths)[1:] == (0.0, pytest.approx(0.2))
-    assert search(scripted(1e9), 20.0, 1e5, 1.5, 0.02, lengths)[1:] == (1e5, math.inf)
+    assert searched(scripted(0.0), 20.0, hl.measure.Search(), lengths)[1:] == (0.0, pytest.approx(0.2))
+    assert searched(scripted(1e9), 20.0, hl.measure.Search(), lengths)[1:] == (1e5, math.inf)
 
 
 def test_the_picture_has_trials_and_limits():
-    trials, good, bad = search(scripted(333.0), 20.0, 1e5, 1.5, 0.02, lengths)
+    trials, good, bad = searched(scripted(333.0), 20.0, hl.measure.Search(), lengths)
     figure = LargestStiffness(good, bad, trials, "zoh", theory={"stability": hl.stability_limit(paddle())}).plot()
     axes = figure.axes[0]
     labels = axes.get_legend_handles_labels()[1]

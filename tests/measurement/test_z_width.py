@@ -26,7 +26,7 @@ def test_the_border_follows_exact_stability(B):
 
 def test_beyond_the_stable_dampers_nothing_stands():
     """B < -b, and B past 2 m/T, where the damper alone is unstable at any stiffness."""
-    found = z_width(PADDLE, B=[-0.2, 110.0], longest=1.0, first=1000.0)
+    found = z_width(PADDLE, B=[-0.2, 110.0], judged=hl.measure.Judgement(longest=1.0), search=hl.measure.Search(first=1000.0))
     assert (found.K == 0).all() and (found.stability == 0).all()
 
 
