@@ -27,4 +27,4 @@ def __getattr__(name):
         raise AttributeError(unknown(name)) from None
 
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"

@@ -93,13 +93,15 @@ def test_a_type_checker_passes():
 
 
 @pytest.mark.wide
-def test_readme_passes(tmp_path):
-    """README's examples, one after the other in one file."""
-    examples = re.findall(r"```python\n(.*?)```", (PACKAGE.parent / "README.md").read_text("utf-8"), re.S)
-    assert examples
-    file = tmp_path / "readme.py"
-    file.write_text("\n".join(examples), "utf-8")
-    command = [sys.executable, "-m", "mypy", "--allow-redefinition", str(file)]
+def test_readme_and_the_manual_pass(tmp_path):
+    """The examples of each page, one after the other in one file."""
+    names = ("README", *(f"docs/{name}" for name in ("scenes", "live", "methods", "measuring", "people", "boards")))
+    files = [tmp_path / f"page_{Path(name).name}.py" for name in names]
+    for name, file in zip(names, files, strict=True):
+        examples = re.findall(r"```python\n(.*?)```", (PACKAGE.parent / f"{name}.md").read_text("utf-8"), re.S)
+        assert examples, name
+        file.write_text("\n".join(examples), "utf-8")
+    command = [sys.executable, "-m", "mypy", "--allow-redefinition", *map(str, files)]
     done = subprocess.run(command, cwd=PACKAGE.parent, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 

@@ -91,7 +91,7 @@ def gradescope_files(folder, answers, package, seed=0, wheel=None, personal=Fals
     answers : Path
         With solution.py and hidden.py.
     package : str
-        What pip installs, ``hapticlab==0.1.0``, where no wheel is given.
+        What pip installs, ``hapticlab==0.2.0``, where no wheel is given.
     seed : int
         Of the hidden cases.
     wheel : Path, optional
