@@ -39,7 +39,7 @@ class Entry:
     scene: Callable[..., Scene]
     draw: Callable[..., None]
     b: float
-    options: dict = field(default_factory=lambda: {"method": "rk4", "T": NOMINAL.T})
+    options: dict = field(default_factory=lambda: {"T": NOMINAL.T})
     uno: dict | None = None
     stored: float = 0.0
 
@@ -93,7 +93,6 @@ def _uno(method, rate):
 
 
 SEMI = "semi_implicit_euler"
-LOCATED = {"method": "taylor", "T": NOMINAL.T}
 CATALOGUE = Catalogue((
     Entry(bodies.mass_spring_damper, bodies.draw_mass_spring_damper, 0.21, uno=_uno(SEMI, 800)),
     Entry(bodies.two_masses, bodies.draw_two_masses, 0.21, uno=_uno(SEMI, 800)),
@@ -106,8 +105,8 @@ CATALOGUE = Catalogue((
     Entry(mechanisms.slider_crank, mechanisms.draw_slider_crank, 0.21, uno=_uno(SEMI, 400)),
     Entry(mechanisms.four_bar, mechanisms.draw_four_bar, 0.21, uno=_uno(SEMI, 250) | {"hold": "foh"}),
     Entry(mechanisms.rolling, mechanisms.draw_rolling, 0.21, uno=_uno(SEMI, 500)),
-    Entry(contacts.ball_on_the_paddle, contacts.draw_ball_on_the_paddle, 0.21, LOCATED, stored=0.0236),
-    Entry(contacts.stick_slip, contacts.draw_stick_slip, 0.21, LOCATED),
+    Entry(contacts.ball_on_the_paddle, contacts.draw_ball_on_the_paddle, 0.21, stored=0.0236),
+    Entry(contacts.stick_slip, contacts.draw_stick_slip, 0.21),
     Entry(surfaces.detents, surfaces.draw_detents, 0.19, uno=_uno(SEMI, 1000)),
     Entry(surfaces.texture, surfaces.draw_texture, 0.28, uno=_uno(SEMI, 800)),
     Entry(surfaces.virtual_fixture, surfaces.draw_virtual_fixture, 0.2, uno=_uno(SEMI, 1000)),

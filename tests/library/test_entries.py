@@ -54,6 +54,18 @@ def test_a_docstring_says_equation_lesson_source_damping_and_rate(entry):
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=names)
+def test_it_compiles_runs_and_opens_live_as_it_comes(entry):
+    scene, paddle = entry.scene(), hl.SimulatedPaddle.from_profile(hl.library.nominal)
+    program = hl.compile(scene, T=1e-3)
+    assert paddle.run(scene, duration=0.02, progress=False).fault is None
+    hl.live(paddle, scene).close()
+    located = [c for model in scene.explicit().models for c in model.contacts]
+    told = [note for note in program.notes if "taken automatically" in note]
+    assert program.facts.get("method") == ("taylor" if located else "rk4" if scene.coordinates else None)
+    assert len(told) == bool(scene.coordinates) and all(note in str(program) for note in told)
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=names)
 def test_it_runs_on_the_nominal_paddle_within_its_travel_and_force(entry):
     hand = hl.Hand(m=0.02, b=1, k=150, intent=lambda t: 0.025 * np.sin(2 * np.pi * t))
     paddle = hl.SimulatedPaddle.from_profile(NOMINAL, T=entry.options["T"], force_max=None, hand=hand)

@@ -61,7 +61,7 @@ class Order:
 
 def order_of(
     scene: Scene,
-    method: str | Taylor = "rk4",
+    method: str | Taylor | None = None,
     *,
     hold: Literal["zoh", "foh", "soh"] = "soh",
     velocity: Literal["backward_difference", "measured"] = "backward_difference",
@@ -100,7 +100,7 @@ def order_of(
     form = part_of(form, Dependence(form, graph).needed)
     moving = graph.variables_of([*form.f, *sum(form.M, ()), *(g for model in form.models for g in model.constraints)])
     felt = graph.variables_of([form.force])
-    chosen = chosen_method(method)
+    chosen = chosen_method(method, form)
     seen = _seen(hold, velocity, at_samples=_at_samples(chosen, options))
     limits: dict[str, float] = {}
     if form.coordinates:

@@ -68,9 +68,9 @@ class _Report:
     """One scene and its options, compiled with and without each item."""
 
     def __init__(self, scene, options):
-        self.scene, self.options = scene, options
-        self.program = lowered(scene, **options)
         self.form, self.decisions = excluded(scene, options["T"], live_names(options["live"]))
+        self.scene, self.options = scene, {**options, "method": chosen_method(options["method"], self.form)}
+        self.program = lowered(scene, **options)
         self.graph = Dependence(self.form)
         # the force comes first: what a channel sees too is kept for the force all the same
         self.paths = self.graph.paths(*self.graph.channels) | self.graph.paths(FORCE)
@@ -197,7 +197,7 @@ class _Report:
         """The instructions with nothing left out."""
         names = (*self.graph.coordinates, *self.graph.signals)
         all_of_it = self._seeing([*(s for name in names for s in self._states(name)), v(n)])
-        live = {} if chosen_method(self.options["method"]).exact else {"live": None}
+        live = {} if self.options["method"].exact else {"live": None}
         more = self._more(all_of_it, undecided=tuple(self.decisions), **live)
         return len(self.program) + (more or 0)
 
@@ -242,7 +242,7 @@ class _Report:
             more = self._more(felt)
             why = "only a view shows it: run .felt on the board, and hl.records.replay(.view, log) beside the record"
             offered.append(Item("view", ", ".join(names), why, None if more is None else -more))
-        if self.form.coordinates and not chosen_method(self.options["method"]).exact:
+        if self.form.coordinates and not self.options["method"].exact:
             linear, declined = self._linear()
             offered += linear
         return tuple(offered), declined
@@ -258,7 +258,7 @@ class _Report:
         settable = [name for name in self.scene.parameters if name not in held(self.scene)] if live is None else live
         kept = [name for name in settable if name not in found.live(rows)]
         method = self.options["method"]
-        exact = str(ChosenMethod(True, chosen_method(method).rest if reasons else None))
+        exact = str(ChosenMethod(True, method.rest if reasons else None))
         before, after = (self._more(live=kept, method=m) for m in (method, exact))
         names = ", ".join(type(form.coordinates[k]).__name__ for k in rows)
         why = f"method={exact!r}, live={' '.join(kept)!r}: no step error at any stiffness"

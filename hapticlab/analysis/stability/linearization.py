@@ -52,7 +52,7 @@ def tick_at(scene, points, T, **options):
 
 def forces_and_ticks_at(scene, points, T, **options):
     """(forces [N] of shape (P,), maps, handle): what :func:`tick_at` returns, and the force at each point."""
-    if not (chosen_method(options.get("method", "rk4")).exact and scene.switches):
+    if not (chosen_method(options.get("method")).exact and scene.switches):
         live = tuple(s.name for s in scene.switches)
         return forces_and_ticks_of(compile(scene, T=T, live=live, dtype="float64", **options), scene, points)
     forces, maps = np.zeros(len(points)), [None] * len(points)

@@ -166,7 +166,7 @@ class StepLimit:
 
 def step_limit(
     scene: Scene,
-    method: str | Taylor = "rk4",
+    method: str | Taylor | None = None,
     *,
     T: float,
     substeps: int = 1,
@@ -184,7 +184,8 @@ def step_limit(
     ----------
     scene : Scene
         Every parameter bound.
-    method : str or Taylor
+    method : str or Taylor, optional
+        By default the one that the scene needs, as of :func:`hapticlab.compile`.
     T : float
         Sampling period [s], > 0.
     substeps : int
@@ -214,7 +215,7 @@ def step_limit(
     if not isinstance(scene, Scene):
         raise AnalysisError(no_scene(scene, "needs hl.stability.step_limit(hl.Scene(force=...), T=1e-3)"))
     T, h = period(T), period(T) / steps(substeps)
-    chosen = chosen_method(method)
+    chosen = chosen_method(method, scene.explicit())
     known = switched(scene)
     points = operating_points(known, at, T, TRAVEL, far=True)
     probes = probes_of(points)

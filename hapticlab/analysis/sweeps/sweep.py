@@ -155,7 +155,7 @@ def sweep(
     scene = scene(**{name: a for name, a in fixed.items() if name in scene.parameters})
     for end in (np.min, np.max):  # the scene itself refuses what lies outside a parameter's range
         bound = scene(**{name: float(end(a)) for name, a in axes.items() if name in own})
-    if chosen_method(options.get("method", "rk4")).exact:
+    if chosen_method(options.get("method")).exact:
         options["live"] = [name for name in axes if name in own]
     paddle_here = replace(paddle, **{name: a for name, a in fixed.items() if name in PADDLE_AXES})
     starts = {name: fixed.get(name, 0.0) for name in START_AXES}

@@ -8,6 +8,7 @@ from ...scene.laws.chapter_laws import UNILATERAL, wall
 from ...scene.laws.taps import TAPS
 from ...scene.notation.checks import applied, is_model, written_in
 from ...scene.scene import Scene
+from ..methods.chosen_method import chosen_method
 from ..methods.method_table import METHODS
 from ..tick.compile_scene import compile
 from .cost import board_named, cost
@@ -140,6 +141,7 @@ def _cheaper(scene, options):
     yield (), scene, options
     defaults = {n: p.default for n, p in inspect.signature(compile).parameters.items()}
     used = {**defaults, **options}
+    used["method"] = str(chosen_method(used["method"], scene.explicit()))
     if used["substeps"] > 1:
         yield ("substeps=1",), scene, {**options, "substeps": 1}
     bound = set(scene.parameters) <= set(scene.values)

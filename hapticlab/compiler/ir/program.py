@@ -76,7 +76,7 @@ class Program:
     facts : dict, read-only
         How it was made (method, substeps, hold, velocity), for the listing and for whoever runs it.
     notes : tuple of str
-        What was left out and why.
+        What was left out, what was chosen, and why.
     limits : dict name -> (low, value, high), read-only
         Between what a live parameter keeps a step stable, the others as bound, and the value it was bound to.
     """

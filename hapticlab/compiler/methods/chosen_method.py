@@ -1,12 +1,16 @@
-"""What ``method=`` asks for, parsed once: "rk4", "taylor", "exact", "exact+rk4", or a Taylor of one's own."""
+"""What ``method=`` asks for, parsed once: "rk4", "taylor", "exact", "exact+rk4", a Taylor of one's own, or None: automatic."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ..events.taylor_method import Taylor
 from ..ir.options import choice
 from .method_table import METHODS, Method
+
+if TYPE_CHECKING:
+    from ...scene.explicit import ExplicitForm
 
 #: what a method's name begins with, where its linear parts are taken exactly; the rest follows a plus sign
 EXACT = "exact"
@@ -42,8 +46,8 @@ class ChosenMethod:
         return self.rest is None or isinstance(self.rest, Taylor)
 
 
-def chosen_method(given: str | Taylor | ChosenMethod) -> ChosenMethod:
-    """The method that a text or a :class:`Taylor` stands for.
+def chosen_method(given: str | Taylor | ChosenMethod | None, form: ExplicitForm | None = None) -> ChosenMethod:
+    """The method that a text or a :class:`Taylor` stands for; of None the one that the equations of motion need.
 
     Raises
     ------
@@ -52,6 +56,8 @@ def chosen_method(given: str | Taylor | ChosenMethod) -> ChosenMethod:
     """
     if isinstance(given, ChosenMethod):
         return given
+    if given is None:
+        return ChosenMethod(False, Taylor() if form is not None and to_locate(form) else METHODS["rk4"])
     if isinstance(given, Taylor):
         return ChosenMethod(False, given)
     first, plus, rest = given.partition("+") if isinstance(given, str) else (given, "", "")
@@ -59,3 +65,15 @@ def chosen_method(given: str | Taylor | ChosenMethod) -> ChosenMethod:
         return ChosenMethod(True, METHODS[choice("method", rest, METHODS)] if plus else None)
     choice("method", given, (*METHODS, Taylor.name, EXACT, f"{EXACT}+rk4"))
     return ChosenMethod(False, Taylor() if given == Taylor.name else METHODS[given])
+
+
+def to_locate(form: ExplicitForm) -> list[str]:
+    """The names of the contacts and frictions whose touch, impact, sticking or sliding must be located inside a step."""
+    return [element.name for model in form.models for element in model.contacts if element.is_located]
+
+
+def why_automatic(form: ExplicitForm) -> str:
+    """The sentence on the method that was taken because none was asked for."""
+    if names := to_locate(form):
+        return f"method = 'taylor', taken automatically: {', '.join(names)} must be located inside the step"
+    return "method = 'rk4', taken automatically: no contact or friction of this motion must be located inside the step"

@@ -13,7 +13,7 @@ from ..contacts.broad_phase import Contacts
 from ..ir.cache import Shared, content
 from ..ir.options import choice, live_names, period, steps, unusual
 from ..ir.program import Channel
-from ..methods.chosen_method import chosen_method
+from ..methods.chosen_method import chosen_method, why_automatic
 from ..methods.force_timing import FORCE_AT, averaged
 from ..prune.excluded_modes import excluded, folded, rests_on
 from .handle_samples import HOLDS, VELOCITIES
@@ -35,7 +35,7 @@ PROGRAMS = Shared(60_000, lambda program: 200 + program.size)
 
 def compile(
     scene: Scene,
-    method: str | Taylor = "rk4",
+    method: str | Taylor | None = None,
     *,
     T: Number,
     substeps: int = 1,
@@ -54,7 +54,9 @@ def compile(
     ----------
     scene : Scene
     method : {"euler", "semi_implicit_euler", "semi_implicit_euler_damped", "verlet", "midpoint", "heun", "ssprk3", "rk4", \
-"nystrom4", "adams_bashforth2", "adams_bashforth3", "taylor", "exact", "exact+rk4", ...}
+"nystrom4", "adams_bashforth2", "adams_bashforth3", "taylor", "exact", "exact+rk4", ...}, optional
+        By default the one that the scene needs: "taylor" where a contact or a friction must be located inside the step
+        (touch, impact, sticking), else "rk4". The program's notes say which was taken, and why.
         ``hl.methods.table()`` tables the explicit ones: order, cost, where each is stable; ``hl.methods.order_of`` says what
         order the error of a scene's force has. "semi_implicit_euler_damped" takes dampers implicitly, however stiff.
         "nystrom4" is for accelerations free of velocities, the Adams-Bashforth methods are for motion without cases.
@@ -115,14 +117,14 @@ def _key(scene, options):
 
 
 def _checked(method, T, substeps, hold, dtype, velocity, live, force_at):
-    """The :class:`Options` of what was asked for, or a refusal that names what is known."""
-    method = chosen_method(method)
+    """The :class:`Options` of what was asked for, or a refusal that names what is known; their method may be None still."""
+    method = None if method is None else chosen_method(method)
     choice("hold", hold, HOLDS)
     choice("dtype", dtype, REAL_OF)
     choice("velocity", velocity, VELOCITIES)
     choice("force_at", force_at, FORCE_AT)
     options = Options(method, period(T), steps(substeps), hold, dtype, velocity, live_names(live), force_at)
-    if method.exact and method.rest is None and options.substeps > 1:
+    if method and method.exact and method.rest is None and options.substeps > 1:
         raise ProgramError(f"substeps = {options.substeps}: method='exact' takes the whole period at once; leave substeps out")
     return options
 
@@ -135,12 +137,14 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at, u
         for model in form.models:
             if isinstance(model.contacts, Contacts):
                 model.contacts.check(scene.values)
+        automatic = [why_automatic(form)] if options.method is None and form.coordinates else []
+        options = replace(options, method=chosen_method(options.method, form))
         fixed = folded(scene, options.live)
         graph = Graph(fixed)
         form = averaged(form, graph) if options.force_at == "mean" else form
         source = Source(scene, form, options, fixed, graph)
         program = motion_program(source, rests_on(form, decisions)) if form.coordinates else force_program(source)
-        notes = unusual(options.T, len(program))
+        notes = [*automatic, *unusual(options.T, len(program))]
         return replace(program, notes=(*program.notes, *notes)) if notes else program
     except RecursionError:
         raise ProgramError(

@@ -244,7 +244,7 @@ def test_a_decision_on_a_coordinate_is_watched_over():
     pull = k * (x(t) - near)
     scene = hl.Scene(force=pull, eom=[sp.Eq(m * near.diff(t, 2), pull - hl.when(near > z_o, k * (near - z_o)))])
     program = hl.compile(scene, T=T)
-    assert program.notes == ("F is nan where near left -0.02..0.02 m",)
+    assert program.notes[0] == "F is nan where near left -0.02..0.02 m"
     assert found(requires(scene), "near(t) > z_o").saves > 10
     log = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.Hand(push=5)).run(scene, duration=0.3, progress=False)
     assert "Most likely near left -0.02..0.02 m" in log.fault

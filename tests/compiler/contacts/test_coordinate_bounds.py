@@ -54,7 +54,7 @@ def test_what_a_program_leaves_out_is_not_watched_over():
     with_it, without = (hl.Scene(force=pull, eom=[motion, *more]) for more in ([shown], []))
     assert len(hl.compile(with_it, T=T)) == len(hl.compile(without, T=T))
     watched = hl.compile(hl.Scene(force=pull, eom=[motion, shown], watch=[dead]), T=T)
-    assert watched.notes == ("F is nan where dead left -0.01..0.01 m",)
+    assert watched.notes[0] == "F is nan where dead left -0.01..0.01 m"
 
 
 def test_what_rests_at_the_end_of_its_range_stays_in_it():
