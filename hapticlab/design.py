@@ -9,10 +9,12 @@ from .rendering.compensation_limit import compensation_limit as compensation
 from .rendering.deadbeat import deadbeat_gains
 from .rendering.digital import digital_gains
 from .rendering.over_compensation import over_compensation
+from .rendering.wall_laws import Rendering
 from .vocabulary import page
 
 __all__ = [
     "CompensationLimit",
+    "Rendering",
     "admittance",
     "compare_laws",
     "compensation",

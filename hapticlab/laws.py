@@ -5,7 +5,7 @@ chapter's wall, which stands in ``hl`` itself as well.
 """
 
 from .limits.linear_law import LinearLaw
-from .rendering.deadbeat import deadbeat_wall
+from .rendering.deadbeat import Pairs, deadbeat_wall
 from .rendering.digital import digital_wall
 from .rendering.for_board import wall_for_board
 from .rendering.hybrid import hybrid_wall
@@ -13,15 +13,18 @@ from .rendering.predictive import predictive_wall
 from .rendering.wall_laws import wall_law
 from .scene.laws.chapter_laws import force_filter, predicted_sample, virtual_coupler, virtual_damper, wall
 from .scene.laws.compensation import damping_compensation
-from .scene.laws.entry_pulse import braking_pulse, friction_pulse
+from .scene.laws.entry_pulse import Entry, braking_pulse, friction_pulse
 from .scene.laws.fixtures import guidance, tremor_filter
-from .scene.laws.passivity_control import passivity_controller, passivity_observer, wall_energy
+from .scene.laws.passivity_control import Credit, passivity_controller, passivity_observer, wall_energy
 from .scene.laws.proxy import proxy_curve, proxy_wall
 from .scene.notation.symbols import delay
 from .vocabulary import page
 
 __all__ = [
+    "Credit",
+    "Entry",
     "LinearLaw",
+    "Pairs",
     "braking_pulse",
     "damping_compensation",
     "deadbeat_wall",

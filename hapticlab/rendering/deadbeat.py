@@ -28,18 +28,57 @@ BEGINS = ("predictive", "reactive")
 BETWEEN = {"pairs": None, "half_sample": half_sample_force, "digital": digital_force}
 
 
+@dataclass(frozen=True, kw_only=True)
+class Pairs:
+    """The pairs of held forces of a dead-beat wall.
+
+    Parameters
+    ----------
+    begins : {"predictive", "reactive"}
+        ``"predictive"``: in the period in which the model foresees a crossing. ``"reactive"``: at the sample that finds the
+        boundary crossed, with the goal that the handle of the sample before should have reached.
+    between : {"pairs", "half_sample", "digital"}
+        ``"pairs"``: every second sample lies on the motion of handle, hand and wall. ``"half_sample"`` as
+        :func:`predictive_wall`, ``"digital"`` as :func:`digital_wall`: they ask less of the sensor and keep energy on
+        the whole of a long contact only; of one that lasts a few periods they leave more or less, as its phase has it.
+    crossings : {1, 2}
+        Crossings the two periods of a pair may hold. 1 is cheaper: a crossing in the second of them is left until the pair
+        is over, which a handle that touches and leaves within two periods shows, and so does ``between="pairs"``.
+    accuracy : float
+        Of the motion and the crossing times, relative to what moves; a rougher one is cheaper.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.laws.Pairs(begins="reactive")
+    Pairs(begins='reactive', between='pairs', crossings=2, accuracy=1e-10)
+    """
+
+    begins: Literal["predictive", "reactive"] = "predictive"
+    between: Literal["pairs", "half_sample", "digital"] = "pairs"
+    crossings: Literal[1, 2] = 2
+    accuracy: float = 1e-10
+
+    def __post_init__(self) -> None:
+        if self.begins not in BEGINS or self.between not in BETWEEN or self.crossings not in (1, 2):
+            raise SceneError(
+                f"begins = {self.begins!r}, between = {self.between!r}, crossings = {self.crossings!r}; needs begins one of "
+                f"{', '.join(BEGINS)}, between one of {', '.join(BETWEEN)}, and 1 or 2 crossings"
+            )
+
+
+PAIRS = Pairs()
+
+
 def deadbeat_wall(
     paddle: Plant,
     *,
     K: float,
     B: float = 0.0,
     hand: Hand | None = None,
-    begins: Literal["predictive", "reactive"] = "predictive",
-    between: Literal["pairs", "half_sample", "digital"] = "pairs",
     velocity: Literal["handle", "model"] | VelocityEstimate = "handle",
     force_max: float | None = None,
-    accuracy: float = 1e-10,
-    crossings: Literal[1, 2] = 2,
+    pairs: Pairs = PAIRS,
 ) -> Scene:
     """Virtual wall that emulates handle, hand and wall across its boundary (Section 23.4.1): dead-beat in two steps.
 
@@ -51,21 +90,12 @@ def deadbeat_wall(
     ----------
     paddle, K, B, hand
         As in :func:`digital_gains`.
-    begins : {"predictive", "reactive"}
-        ``"predictive"``: in the period in which the model foresees a crossing. ``"reactive"``: at the sample that finds the
-        boundary crossed, with the goal that the handle of the sample before should have reached.
-    between : {"pairs", "half_sample", "digital"}
-        ``"pairs"``: every second sample lies on the motion of handle, hand and wall. ``"half_sample"`` as
-        :func:`predictive_wall`, ``"digital"`` as :func:`digital_wall`: they ask less of the sensor and keep energy on
-        the whole of a long contact only; of one that lasts a few periods they leave more or less, as its phase has it.
     velocity, force_max
         As in :func:`digital_wall`. Without a limit the forces are what the goal asks: an error e of the sensed position
         changes them by some M e/T^2 (:func:`deadbeat_gains`).
-    accuracy : float
-        Of the motion and the crossing times, relative to what moves; a rougher one is cheaper.
-    crossings : {1, 2}
-        Crossings the two periods of a pair may hold. 1 is cheaper: a crossing in the second of them is left until the pair
-        is over, which a handle that touches and leaves within two periods shows, and so does ``between="pairs"``.
+    pairs : Pairs
+        When a pair of forces begins, what acts between pairs and how exact they are:
+        ``hl.laws.Pairs(begins=, between=, crossings=, accuracy=)``.
 
     Returns
     -------
@@ -81,35 +111,30 @@ def deadbeat_wall(
     >>> log.pair[:10].astype(int).tolist()
     [0, 0, 0, 1, 2, 1, 2, 0, 0, 0]
     """
-    if begins not in BEGINS or between not in BETWEEN or crossings not in (1, 2):
-        raise SceneError(
-            f"begins = {begins!r}, between = {between!r}, crossings = {crossings!r}; needs begins one of {', '.join(BEGINS)}, "
-            f"between one of {', '.join(BETWEEN)}, and 1 or 2 crossings"
-        )
     lines = Lines(WallModel.of(paddle, K=K, B=B, hand=hand))
     p, w = lines.at_switch(velocity)
     due, second = signal("due", unit="1"), signal("second", unit="m")
-    flight = Flight(lines, accuracy)
+    flight = Flight(lines, pairs.accuracy)
     now = (p, w, lines.let("side", when(p >= 0, 1, -1), "1"))
-    if begins == "reactive":
+    if pairs.begins == "reactive":
         begin, *start = _crossed_before(lines, flight, now)
         begin = sp.And(begin, due(n - 2) < 0.5)  # a pair has dealt with what was crossed under it
     else:
         start = now
     *after, crossing = flight.period(1, *start)
-    goal = flight.period(2, *after)[:2] if crossings == 2 else flight.same(2, *after)
-    if begins == "predictive":
+    goal = flight.period(2, *after)[:2] if pairs.crossings == 2 else flight.same(2, *after)
+    if pairs.begins == "predictive":
         begin = crossing
-    if between == "pairs":
+    if pairs.between == "pairs":
         begin = sp.Or(begin, p >= 0)
     lines.let(due, when(due(n - 1) > 0.5, 0, when(begin, 1, 0)))
     one, two = pair_forces(lines, p, w, goal)
     lines.let(second, two)
-    inside = BETWEEN[between]
+    inside = BETWEEN[pairs.between]
     alone = when(p >= 0, inside(lines, p, w), 0) if inside else 0
     force = when(due(n - 1) > 0.5, second(n - 1), when(due(n) > 0.5, one, alone))
     watch = {"pair": when(due(n - 1) > 0.5, 2, due(n))}
-    return lines.scene(force, f"{begins} dead-beat wall", watch, motor_limit(paddle, force_max))
+    return lines.scene(force, f"{pairs.begins} dead-beat wall", watch, motor_limit(paddle, force_max))
 
 
 def _crossed_before(lines, flight, now):

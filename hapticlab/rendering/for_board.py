@@ -10,7 +10,7 @@ from ..compiler.boards.cost import Board, Cost, cost
 from ..compiler.tick.compile_scene import compile
 from ..errors import AnalysisError, ProgramLimitError
 from ..scene.scene import Scene
-from .deadbeat import deadbeat_wall
+from .deadbeat import Pairs, deadbeat_wall
 from .digital import digital_wall
 from .model import WallModel
 from .predictive import predictive_wall
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 #: dearest first: what it is, what makes it, with what
 CANDIDATES: tuple[tuple[str, Callable, dict], ...] = (
-    ("dead-beat pairs, crossings to 1e-6", deadbeat_wall, {"accuracy": 1e-6}),
-    ("dead-beat pairs, crossings to 1 %", deadbeat_wall, {"accuracy": 1e-2}),
-    ("dead-beat pairs, crossings to 5 %", deadbeat_wall, {"accuracy": 5e-2}),
+    ("dead-beat pairs, crossings to 1e-6", deadbeat_wall, {"pairs": Pairs(accuracy=1e-6)}),
+    ("dead-beat pairs, crossings to 1 %", deadbeat_wall, {"pairs": Pairs(accuracy=1e-2)}),
+    ("dead-beat pairs, crossings to 5 %", deadbeat_wall, {"pairs": Pairs(accuracy=5e-2)}),
     (
         "half a sample, dead-beat pairs at crossings, to 5 %",
         deadbeat_wall,
-        {"accuracy": 5e-2, "crossings": 1, "between": "half_sample"},
+        {"pairs": Pairs(accuracy=5e-2, crossings=1, between="half_sample")},
     ),
     ("half a sample by the model", predictive_wall, {}),
     ("poles of the wall", digital_wall, {}),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
@@ -15,7 +15,7 @@ from ..scene.laws.chapter_laws import wall
 from ..scene.laws.taps import SPRING_LAWS
 from ..scene.notation.symbols import T, n, parameters, x
 from ..scene.scene import Scene
-from .deadbeat import deadbeat_wall
+from .deadbeat import Pairs, deadbeat_wall
 from .digital import digital_wall
 from .predictive import predictive_wall
 
@@ -43,8 +43,41 @@ class WallLaw:
         return f"{self.name}: {LAWS[self.name]}\n  {self.scene.name} on {self.paddle}"
 
 
+@dataclass(frozen=True, kw_only=True)
+class Rendering:
+    """How laws that are compared render a wall, beside their own formulas.
+
+    Parameters
+    ----------
+    model : SimulatedPaddle, optional
+        What a model-based law believes; the paddle itself unless given.
+    unilateral : {"gate", "clip"}
+        Of the chapter's laws; the others act where the handle is, or is predicted, inside.
+    clamp : bool
+        Never pull; a dead-beat pair is not clamped.
+    velocity : {"handle", "model"}
+        Of the model-based laws.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.design.Rendering(clamp=True).unilateral
+    'gate'
+    """
+
+    model: SimulatedPaddle | None = None
+    unilateral: Literal["gate", "clip"] = "gate"
+    clamp: bool = False
+    velocity: Literal["handle", "model"] = "handle"
+
+    def options(self) -> dict[str, Any]:
+        """What :func:`wall_law` takes."""
+        return dict(vars(self))
+
+
 def _deadbeat(begins, between):
-    return lambda model, clamp, **options: deadbeat_wall(model, begins=begins, between=between, **options)
+    pairs = Pairs(begins=begins, between=between)
+    return lambda model, clamp, **options: deadbeat_wall(model, pairs=pairs, **options)
 
 
 #: name -> the law in the words of a table, and the scene of a wall by it
@@ -63,6 +96,8 @@ LAWS = {
     "damped": "Eq. (23.1), with a damper K T/2 on the paddle and B = -K T/2 everywhere",
     **{name: says for name, (says, _) in MODEL_LAWS.items()},
 }
+
+RENDERING = Rendering()
 
 
 def _damper():

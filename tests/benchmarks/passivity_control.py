@@ -6,6 +6,7 @@ Simulated, in virtual time: the same numbers on every computer. Some 20 s.
 """
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from hapticlab.compiler.boards.cost import cost
 
 PAGE = Path(__file__).parents[2] / "docs" / "passivity_control.md"
 M, B, T = 0.05, 0.1, 1e-3
-E = hl.laws.wall_energy()
+STORED = hl.laws.Credit(stored=hl.laws.wall_energy())
 
 
 def controlled(wall=None, *args, **options):
@@ -30,9 +31,9 @@ def variants():
         "backward difference, Eq. (23.5)": hl.wall("backward_difference"),
         "series": controlled(),
         "series, predict": controlled(predict=True),
-        "series, stored": controlled(stored=E),
-        "series, stored, predict": controlled(stored=E, predict=True),
-        "parallel, stored": hl.laws.passivity_controller(hl.wall(), "parallel", beta_max=20.0, stored=E),
+        "series, stored": controlled(credit=STORED),
+        "series, stored, predict": controlled(credit=STORED, predict=True),
+        "parallel, stored": hl.laws.passivity_controller(hl.wall(), "parallel", beta_max=20.0, credit=STORED),
     }
 
 
@@ -102,19 +103,18 @@ def dampers():
     return table(["alpha_max [N s/m]", "of damper_limit", *head], rows)
 
 
-def honey(stirring, **options):
+def honey(stirring, reference=False, **struck_off):
     """Return how long the wall chatters by more than 2 mm after a hand that stirred honey leans on it [s], and W then [J]."""
     k, b_h, x_h = hl.parameters("k B_honey x_h", units="N/m N*s/m m", values=(1000, 1, -0.005))
     inside = sp.Max(x(n), 0)
     scene = hl.Scene(k * inside + hl.when(x(n) < x_h, b_h * (x(n) - x(n - 1)) / hl.T), name="honey before a wall")
-    if options.pop("reference", False):
-        options["stored"] = k * inside**2 / 2
+    credit = hl.laws.Credit(stored=k * inside**2 / 2 if reference else 0, **struck_off)
 
     def intent(s):
         return np.where(s < stirring, -0.02 + 0.01 * np.sin(4 * np.pi * s), 0.006)
 
     paddle = hl.SimulatedPaddle(m=M, b=B, T=T, hand=hl.Hand(m=0.02, b=0.2, k=200, intent=intent))
-    log = paddle.run(controlled(scene, **options), duration=stirring + 4.0, x=-0.02, progress=False)
+    log = paddle.run(controlled(scene, credit=credit), duration=stirring + 4.0, x=-0.02, progress=False)
     late = log.t > stirring + 0.1
     away = abs(log.x[late] - np.median(log.x[-200:])) > 2e-3
     return log.t[late][away][-1] - stirring if away.any() else 0.0, hl.energy(log).W[round(stirring / T)]
@@ -137,11 +137,14 @@ def costs():
     scenes = {
         "wall": hl.wall(), "observer": hl.laws.passivity_observer(hl.wall()), "series": controlled(),
         "series, force_max": controlled(force_max=2), "series, predict": controlled(predict=True),
-        "series, credit_max": controlled(credit_max=1e-3), "series, forget": controlled(forget=0.1),
-        "series, stored": controlled(stored=E),
-        "series, stored, force_max, forget": controlled(stored=E, force_max=2, forget=0.1),
-        "series, stored, predict": controlled(stored=E, predict=True),
-        "parallel, stored, force_max": hl.laws.passivity_controller(hl.wall(), "parallel", beta_max=20.0, stored=E, force_max=2),
+        "series, credit_max": controlled(credit=hl.laws.Credit(credit_max=1e-3)),
+        "series, forget": controlled(credit=hl.laws.Credit(forget=0.1)),
+        "series, stored": controlled(credit=STORED),
+        "series, stored, force_max, forget": controlled(credit=replace(STORED, forget=0.1), force_max=2),
+        "series, stored, predict": controlled(credit=STORED, predict=True),
+        "parallel, stored, force_max": hl.laws.passivity_controller(
+            hl.wall(), "parallel", beta_max=20.0, credit=STORED, force_max=2
+        ),
     }  # fmt: skip
     rows = []
     for name, scene in scenes.items():
@@ -157,8 +160,9 @@ TEXT = """# The passivity controller: what it changes, where it fails, what it c
 
 Written by `tests/benchmarks/passivity_control.py`; simulated, so the same on every computer. A paddle of 50 g and
 0.1 N s/m at 1 kHz, whose plain wall chatters in some hand above 200 N/m, Eq. (23.10). `hl.laws.passivity_controller` is
-Hannaford and Ryu's (2002), with the work of the force that was held; `stored=hl.laws.wall_energy()` makes it act as soon as
-energy is generated and not only when all that was stored has been given back (Ryu, Preusche, Hannaford, Hirzinger 2005).
+Hannaford and Ryu's (2002), with the work of the force that was held; `credit=hl.laws.Credit(stored=hl.laws.wall_energy())`
+makes it act as soon as energy is generated and not only when all that was stored has been given back (Ryu, Preusche,
+Hannaford, Hirzinger 2005).
 alpha_max = 20 N s/m, beta_max = 20 m/(N s).
 
 ## One bounce

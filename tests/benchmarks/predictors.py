@@ -33,13 +33,13 @@ CONDITIONS = {
     "delay T/2": (replace(BASE, delay=5e-4), {}),
     "delay T": (replace(BASE, delay=1e-3), {}),
     "count 10 um": (replace(BASE, counts_per_metre=1e5), {}),
-    "count 10 um, model v": (replace(BASE, counts_per_metre=1e5), {"velocity": "model"}),
+    "count 10 um, model v": (replace(BASE, counts_per_metre=1e5), {"rendering": hl.design.Rendering(velocity="model")}),
     "friction 50 mN": (replace(BASE, coulomb=0.05), {}),
-    "clip": (BASE, {"unilateral": "clip"}),
-    "never pulls": (BASE, {"clamp": True}),
+    "clip": (BASE, {"rendering": hl.design.Rendering(unilateral="clip")}),
+    "never pulls": (BASE, {"rendering": hl.design.Rendering(clamp=True)}),
     "grip, known": (replace(BASE, hand=GRIP), {}),
-    "grip, unknown": (replace(BASE, hand=GRIP), {"model": BASE}),
-    "mass 20 % off": (BASE, {"model": replace(BASE, m=0.06)}),
+    "grip, unknown": (replace(BASE, hand=GRIP), {"rendering": hl.design.Rendering(model=BASE)}),
+    "mass 20 % off": (BASE, {"rendering": hl.design.Rendering(model=replace(BASE, m=0.06))}),
 }
 #: name of a column -> (paddle, options of law_limits)
 LIMITS = {
@@ -47,7 +47,7 @@ LIMITS = {
     "b = 1 N s/m": (replace(BASE, b=1.0), {}),
     "delay T": (replace(BASE, delay=1e-3), {}),
     "10 um, 20 mN, 10 N": (replace(BASE, counts_per_metre=1e5, coulomb=0.02, force_max=10.0), {}),
-    "grip, unknown": (replace(BASE, hand=GRIP), {"model": BASE}),
+    "grip, unknown": (replace(BASE, hand=GRIP), {"rendering": hl.design.Rendering(model=BASE)}),
 }
 
 
@@ -104,7 +104,7 @@ def costs():
     paddle = replace(BASE, counts_per_metre=1e5)
     taken = {law: cost(paddle.program(wall_law(law, paddle, K=K).scene)) for law in LAWS}
     slow = replace(paddle, T=2.5e-3)
-    rough = hl.laws.deadbeat_wall(slow, K=K, accuracy=0.05, crossings=1, between="half_sample")
+    rough = hl.laws.deadbeat_wall(slow, K=K, pairs=hl.laws.Pairs(accuracy=0.05, crossings=1, between="half_sample"))
     taken["deadbeat_crossings, accuracy 5 %, 400 Hz"] = cost(slow.program(rough))
     rows = [
         [

@@ -79,7 +79,7 @@ def pulses():
         "braking pulse, 0.9 of the momentum in 1 period": hl.laws.braking_pulse(wall, part=0.9, mass=m),
         "the same in 3 periods": hl.laws.braking_pulse(wall, part=0.9, mass=m, periods=3),
         "the same, speed from 20 um counts, window of 3": hl.laws.braking_pulse(
-            wall, part=0.9, mass=m, periods=3, velocity=hl.velocity.window(band=COUNT, most=3)
+            wall, part=0.9, mass=m, periods=3, entry=hl.laws.Entry(velocity=hl.velocity.window(band=COUNT, most=3))
         ),
         "friction pulse, 2 N for 20 periods": hl.laws.friction_pulse(wall, friction=2.0, mass=m, periods=20),
     }

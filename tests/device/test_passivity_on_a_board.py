@@ -14,7 +14,9 @@ def test_the_observer_of_a_board_keeps_the_books_of_its_telemetry(board, form):
     elif form == "series":
         scene = hl.laws.passivity_controller(hl.wall(), alpha_max=2, force_max=limit)
     else:
-        scene = hl.laws.passivity_controller(hl.wall(), "parallel", beta_max=5, force_max=limit, stored=hl.laws.wall_energy())
+        scene = hl.laws.passivity_controller(
+            hl.wall(), "parallel", beta_max=5, force_max=limit, credit=hl.laws.Credit(stored=hl.laws.wall_energy())
+        )
     x_o = board.run(hl.wall()(k=1), duration=0.01).x[-1] - 0.003  # the handle rests 3 mm inside and is pushed out
     log = board.run(scene(k=200, x_o=x_o), duration=0.3)
     assert log.fault is None and not log.gap.any()

@@ -23,7 +23,7 @@ def scenes():
         "window": hl.laws.virtual_damper(velocity=hl.velocity.window(band=COUNT, most=4))(B=0.4),
         "kalman": hl.wall("half_sample", velocity=hl.velocity.kalman(acceleration=20, noise=COUNT / 3))(**WALL),
         "from_start": hl.laws.virtual_damper(velocity=hl.velocity.kalman(acceleration=20, noise=COUNT / 3, steady=False))(B=0.4),
-        "brake": hl.laws.braking_pulse(hl.wall()(**WALL), part=0.5, mass=mass, periods=3, velocity=fast),
+        "brake": hl.laws.braking_pulse(hl.wall()(**WALL), part=0.5, mass=mass, periods=3, entry=hl.laws.Entry(velocity=fast)),
         "friction": hl.laws.friction_pulse(hl.wall()(**WALL), friction=0.5, mass=mass, periods=15),
         "compensation": hl.laws.damping_compensation(
             hl.wall()(**WALL), b=0.1, coulomb=0.02, speed="20 mm/s", shape="dead_zone", velocity=fast

@@ -1,5 +1,7 @@
 """The passivity controller on the real image in its emulator: the bits of the PC's program, and its books in order."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from emulated import emulated_uno
@@ -12,6 +14,7 @@ from hapticlab.device.paddle import Paddle
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 HAND = hl.Hand(m=0.02, b=0.5, k=400, intent=lambda t: 0.004 * np.sin(40 * t))
+STORED = hl.laws.Credit(stored=hl.laws.wall_energy())
 
 
 def controlled(**options):
@@ -22,11 +25,11 @@ def controlled(**options):
     "options, T",
     [
         ({}, 1e-3),
-        ({"stored": hl.laws.wall_energy()}, 1e-3),
+        ({"credit": STORED}, 1e-3),
         ({"predict": True}, 1e-3),
-        ({"stored": hl.laws.wall_energy(), "force_max": 2, "forget": 0.1}, 1.25e-3),
-        ({"stored": hl.laws.wall_energy(), "predict": True}, 1.25e-3),
-        ({"stored": hl.laws.wall_energy(), "form": "parallel", "alpha_max": None, "beta_max": 3, "force_max": 2}, 1.25e-3),
+        ({"credit": replace(STORED, forget=0.1), "force_max": 2}, 1.25e-3),
+        ({"credit": STORED, "predict": True}, 1.25e-3),
+        ({"credit": STORED, "form": "parallel", "alpha_max": None, "beta_max": 3, "force_max": 2}, 1.25e-3),
     ],
 )
 def test_the_periods_that_an_uno_has_time_for(options, T):

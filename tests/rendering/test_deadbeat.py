@@ -56,7 +56,7 @@ def test_the_test_bed_emulates_the_floor_for_two_seconds(delay, x_o):
 
 @pytest.mark.wide
 def test_a_reactive_pair_makes_good_what_the_entry_missed():
-    log = run(BED, hl.laws.deadbeat_wall(BED, K=5000, begins="reactive"), 2.0, -0.02)
+    log = run(BED, hl.laws.deadbeat_wall(BED, K=5000, pairs=hl.laws.Pairs(begins="reactive")), 2.0, -0.02)
     exact = hl.laws.hybrid_wall(BED, K=5000, duration=2.0, x=-0.02)
     late = np.r_[False, log.pair[:-1] == 2]
     assert np.count_nonzero(late) > 30
@@ -81,7 +81,7 @@ def test_between_crossings_half_a_sample_is_cheaper_and_second_best():
     exact = hl.laws.hybrid_wall(BALL, K=500, duration=0.05, x=-0.3e-3, v=0.2)
     stray = {}
     for between in ("pairs", "half_sample", "digital"):
-        log = run(BALL, hl.laws.deadbeat_wall(BALL, K=500, between=between), 0.05, -0.3e-3, 0.2)
+        log = run(BALL, hl.laws.deadbeat_wall(BALL, K=500, pairs=hl.laws.Pairs(between=between)), 0.05, -0.3e-3, 0.2)
         stray[between] = abs(log.x - exact.x[:-1])[np.r_[True, log.pair[:-1] != 1]].max() / exact.x.max()
     zoh = run(BALL, hl.wall()(k=500), 0.05, -0.3e-3, 0.2)
     assert stray["pairs"] < 1e-9
@@ -113,7 +113,7 @@ def test_the_gains_blow_up_and_the_limit_says_so():
 @pytest.mark.parametrize("begins", ["predictive", "reactive"])
 def test_it_runs_bit_for_bit_in_the_firmware_core(begins):
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, counts_per_metre=1e6, force_max=8.0)
-    program = paddle.program(hl.laws.deadbeat_wall(paddle, K=600.0, begins=begins, velocity="model"))
+    program = paddle.program(hl.laws.deadbeat_wall(paddle, K=600.0, pairs=hl.laws.Pairs(begins=begins), velocity="model"))
     path = (0.002 * np.sin(0.06 * np.arange(250))).astype(np.float32)[:, None]
     there, here = (load(program, engine).run(250, path).outputs for engine in ("vm", "interpreter"))
     np.testing.assert_array_equal(there, here)
@@ -122,7 +122,7 @@ def test_it_runs_bit_for_bit_in_the_firmware_core(begins):
 
 def test_the_uno_has_room_for_a_rough_one():
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=2.5e-3, counts_per_metre=1e5)
-    rough = hl.laws.deadbeat_wall(paddle, K=500, accuracy=0.05, crossings=1, between="half_sample")
+    rough = hl.laws.deadbeat_wall(paddle, K=500, pairs=hl.laws.Pairs(accuracy=0.05, crossings=1, between="half_sample"))
     fine = hl.laws.deadbeat_wall(paddle, K=500)
     assert cost(paddle.program(rough)).fits
     assert "needs" in cost(paddle.program(fine)).memory_problem
@@ -130,11 +130,11 @@ def test_the_uno_has_room_for_a_rough_one():
 
 def test_what_is_no_pair_is_refused():
     with pytest.raises(SceneError, match="begins = 'now', between = 'pairs', crossings = 2; needs begins one of"):
-        hl.laws.deadbeat_wall(BALL, K=500, begins="now")
+        hl.laws.deadbeat_wall(BALL, K=500, pairs=hl.laws.Pairs(begins="now"))
     with pytest.raises(AnalysisError, match=r"turns round within T = 0.001 s; .* needs T <= 0.0007"):
         hl.laws.deadbeat_wall(BALL, K=1e6)
     with pytest.raises(AnalysisError, match="accuracy = 1; needs a number from 1e-15 to 0.1"):
-        hl.laws.deadbeat_wall(BALL, K=500, accuracy=1)
+        hl.laws.deadbeat_wall(BALL, K=500, pairs=hl.laws.Pairs(accuracy=1))
 
 
 @pytest.mark.parametrize(

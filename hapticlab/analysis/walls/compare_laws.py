@@ -15,7 +15,7 @@ from ...device.simulated.closed_loop import link, load_linked
 from ...device.simulated.simulated_paddle import SimulatedPaddle
 from ...errors import AnalysisError
 from ...rendering.hybrid import hybrid_wall
-from ...rendering.wall_laws import LAWS, checked_laws, wall_law
+from ...rendering.wall_laws import LAWS, RENDERING, Rendering, checked_laws, wall_law
 from ..records.energy import energy
 
 if TYPE_CHECKING:
@@ -129,10 +129,7 @@ def compare_laws(
     speed: float = 0.1,
     laws: str | Iterable[str] = tuple(LAWS),
     entries: int = 16,
-    model: SimulatedPaddle | None = None,
-    unilateral: Literal["gate", "clip"] = "gate",
-    clamp: bool = False,
-    velocity: Literal["handle", "model"] = "handle",
+    rendering: Rendering = RENDERING,
     engine: Literal["auto", "llvm", "interpreter"] = "auto",
 ) -> LawComparison:
     """Render one wall by every law of the chapter, and compare a single bounce with the wall itself.
@@ -153,8 +150,8 @@ def compare_laws(
         Of :data:`hapticlab.rendering.wall_laws.LAWS`.
     entries : int
         Phases of the entry.
-    model, unilateral, clamp, velocity
-        Of :func:`~hapticlab.rendering.wall_laws.wall_law`.
+    rendering : Rendering
+        ``hl.design.Rendering(model=, unilateral=, clamp=, velocity=)``, the same for every law.
 
     Returns
     -------
@@ -184,7 +181,7 @@ def compare_laws(
     bounces, refused = [], {}
     for name in laws:
         try:
-            law = wall_law(name, paddle, K=K, model=model, unilateral=unilateral, clamp=clamp, velocity=velocity)
+            law = wall_law(name, paddle, K=K, **rendering.options())
         except AnalysisError as refusal:
             refused[name] = str(refusal)
             continue

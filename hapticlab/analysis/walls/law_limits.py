@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ...base.drawing import COLD, house_style, new_figure, scale_axis
 from ...device.hand.hand import Hand, require
 from ...errors import AnalysisError, HapticlabError
-from ...rendering.wall_laws import LAWS, wall_law
+from ...rendering.wall_laws import LAWS, RENDERING, Rendering, wall_law
 from ..records.chatter import SHORTEST, chatter
 
 if TYPE_CHECKING:
@@ -109,10 +109,7 @@ def law_limits(
     first: float = 50.0,
     most: float = 1e5,
     duration: float = 1.0,
-    model: SimulatedPaddle | None = None,
-    unilateral: Literal["gate", "clip"] = "gate",
-    clamp: bool = False,
-    velocity: Literal["handle", "model"] = "handle",
+    rendering: Rendering = RENDERING,
 ) -> LawLimits:
     """Search, law by law, the stiffest wall against which a pushed handle does not chatter.
 
@@ -132,8 +129,8 @@ def law_limits(
         The softest wall tried, and the stiffest [N/m].
     duration : float
         Of a trial [s].
-    model, unilateral, clamp, velocity
-        Of :func:`~hapticlab.rendering.wall_laws.wall_law`.
+    rendering : Rendering
+        ``hl.design.Rendering(model=, unilateral=, clamp=, velocity=)``, the same for every law.
 
     Returns
     -------
@@ -151,7 +148,7 @@ def law_limits(
     _check(paddle, laws, push, first, most, duration)
     hand = paddle.hand or Hand()
     pushed = replace(paddle, hand=replace(hand, push=hand.push + push))
-    options = dict(model=model or paddle, unilateral=unilateral, clamp=clamp, velocity=velocity)
+    options = rendering.options() | {"model": rendering.model or paddle}  # a model knows nothing of the push
     limits = tuple(_limit(name, pushed, first, most, push, duration, options) for name in laws)
     return LawLimits(limits, push, duration, str(paddle))
 

@@ -8,6 +8,7 @@ and static friction with a magnetically levitated input/output device*, J. Dynam
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -28,6 +29,37 @@ if TYPE_CHECKING:
 LONGEST_PULSE = 1000
 
 
+@dataclass(frozen=True, kw_only=True)
+class Entry:
+    """Where the handle enters, and the speed that it is taken to come in with.
+
+    Parameters
+    ----------
+    x_o : float, text or Parameter, optional
+        Where the boundary is [m]; the scene's own x_o unless given.
+    velocity : VelocityEstimate, optional
+        Instead of the paddle's v(n).
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.laws.Entry(x_o="10 mm").velocity is None
+    True
+    """
+
+    x_o: Term | None = None
+    velocity: VelocityEstimate | None = None
+
+    def __post_init__(self) -> None:
+        if self.velocity is not None:
+            instance("velocity", self.velocity, VelocityEstimate, AN_ESTIMATE, error=SceneError)
+        if self.x_o is not None:
+            amount(self.x_o, "m", "x_o")
+
+
+ENTRY = Entry()
+
+
 def braking_pulse(
     scene: Scene,
     *,
@@ -36,8 +68,7 @@ def braking_pulse(
     mass: Term | None = None,
     periods: int = 1,
     force_max: Term | None = None,
-    velocity: VelocityEstimate | None = None,
-    x_o: Term | None = None,
+    entry: Entry = ENTRY,
     name: str = "brake",
 ) -> Scene:
     """Add a braking pulse on entry: so much impulse, or so much of the momentum that the handle comes in with.
@@ -45,7 +76,7 @@ def braking_pulse(
     The pulse begins at the first sample inside and lasts ``periods`` T. It ends sooner where the handle has stopped or
     left, so that it brakes and does not throw. A free handle of this mass without friction comes out of it with the part
     (1 - part) of its speed, exactly where v(n) is exact and the delay zero; a damper b takes less than b periods T/mass
-    more. A speed from an encoder of count D is known to D/T only: give a ``velocity`` that is better.
+    more. A speed from an encoder of count D is known to D/T only: give the ``entry`` a velocity that is better.
 
     Parameters
     ----------
@@ -61,10 +92,8 @@ def braking_pulse(
         1 to 1000.
     force_max : float, text or Parameter, optional
         The pulse's greatest force [N]; what a motor cannot give is better left out than cut off.
-    velocity : VelocityEstimate, optional
-        Instead of the paddle's v(n).
-    x_o : float, text or Parameter, optional
-        Where the boundary is [m]; the scene's own x_o unless given.
+    entry : Entry
+        Where the boundary is, and which speed counts: ``hl.laws.Entry(x_o=, velocity=)``.
     name : str
         Of the pulse's signals.
 
@@ -78,7 +107,7 @@ def braking_pulse(
     >>> hl.laws.braking_pulse(hl.wall(), part=0.8, mass="50 g", periods=2).name
     'zoh wall with a braking pulse'
     """
-    moving, eom = _speed(velocity)
+    moving, eom = _speed(entry.velocity)
     periods = count("periods", periods, "a pulse", of="periods", most=LONGEST_PULSE, error=SceneError)
     if (impulse is None) == (part is None) or (mass is None) != (part is None):
         raise SceneError("a braking pulse needs impulse=..., in N s, or part=... of the momentum and mass=..., in kg")
@@ -90,7 +119,7 @@ def braking_pulse(
         taken = part * amount(mass, "kg", "mass", "a pulse", above=0) * sp.Max(moving, 0)
     force = taken / (periods * T)
     force = force if force_max is None else sp.Min(force, amount(force_max, "N", "force_max", "a pulse", above=0))
-    entered, inside = _crossing(scene, x_o)
+    entered, inside = _crossing(scene, entry.x_o)
     left, size = signal(f"{name}_left", unit="1"), signal(f"{name}_force", unit="N")
     going = when(inside & (moving > 0), sp.Max(left(n - 1) - 1, 0))
     eom += (
@@ -106,8 +135,7 @@ def friction_pulse(
     friction: Term,
     mass: Term,
     periods: int,
-    velocity: VelocityEstimate | None = None,
-    x_o: Term | None = None,
+    entry: Entry = ENTRY,
     name: str = "friction",
 ) -> Scene:
     """Add dry friction for a while after entry: it opposes the motion, either way, and holds what has stopped.
@@ -133,7 +161,7 @@ def friction_pulse(
         Of handle and hand [kg], > 0.
     periods : int
         1 to 1000.
-    velocity, x_o, name
+    entry, name
         As for :func:`braking_pulse`.
 
     Returns
@@ -146,10 +174,10 @@ def friction_pulse(
     >>> hl.laws.friction_pulse(hl.wall(), friction=2.0, mass="50 g", periods=20).name
     'zoh wall with a friction pulse'
     """
-    moving, eom = _speed(velocity)
+    moving, eom = _speed(entry.velocity)
     periods = count("periods", periods, "a pulse", of="periods", most=LONGEST_PULSE, error=SceneError)
     limit, mass = amount(friction, "N", "friction", "a pulse", above=0), amount(mass, "kg", "mass", "a pulse", above=0)
-    entered, inside = _crossing(scene, x_o)
+    entered, inside = _crossing(scene, entry.x_o)
     left = signal(f"{name}_left", unit="1")
     eom += (sp.Eq(left(n), when(entered, periods, when(inside, sp.Max(left(n - 1) - 1, 0)))),)
     force = sp.Max(-limit, sp.Min(limit, mass * moving / T))
@@ -159,14 +187,13 @@ def friction_pulse(
 def _speed(velocity):
     if velocity is None:
         return v(n), ()
-    instance("velocity", velocity, VelocityEstimate, AN_ESTIMATE, error=SceneError)
     return velocity.velocity, velocity.eom
 
 
 def _crossing(scene, x_o):
     """Two conditions: this sample is the first one inside, and it is inside."""
     if x_o is None and "x_o" not in scene.parameters:
-        raise SceneError(f"{scene.name} has no parameter x_o; say where its boundary is: x_o=0.01, in m")
+        raise SceneError(f"{scene.name} has no parameter x_o; say where its boundary is: entry=hl.laws.Entry(x_o=0.01), in m")
     boundary = scene.parameters["x_o"] if x_o is None else amount(x_o, "m", "x_o")
     return (x(n) >= boundary) & (x(n - 1) < boundary), x(n) >= boundary
 

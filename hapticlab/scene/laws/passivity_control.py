@@ -7,8 +7,8 @@ nobody felt, and calls a wall that generates energy a damper. The exact pairing 
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -78,6 +78,42 @@ def passivity_observer(scene: Scene, *, lag: int = 0) -> Scene:
     return replace(scene, force=sent(n), eom=eom, watch=watch, name=f"{scene.name} with observer")
 
 
+@dataclass(frozen=True, kw_only=True)
+class Credit:
+    """What counts as the credit of an environment that a passivity controller keeps, and what is struck off.
+
+    Parameters
+    ----------
+    stored : expression [J]
+        What the environment stores, such as :func:`wall_energy`, also at the first sample; zero lets every credit count.
+        With it the controller follows a reference energy (Ryu, Preusche, Hannaford and Hirzinger 2005): it acts as soon
+        as energy is generated, not only once everything stored was given back.
+    forget : float or text [s], optional
+        Time constant with which credit is forgotten: spent at the power at which it was earned, it lasts forget*ln 2 at most.
+    credit_max : float or text [J], optional
+        Credit beyond is struck off.
+    reset : float or text [s], optional
+        All credit is struck off once the scene's own force has been zero for so long: between two contacts.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.laws.Credit(stored=hl.laws.wall_energy(), forget="1 s").forget
+    '1 s'
+    """
+
+    stored: Term = 0
+    forget: Number | None = None
+    credit_max: Number | None = None
+    reset: Number | None = None
+
+    def __post_init__(self) -> None:
+        expression(self.stored, "stored")
+
+
+CREDIT = Credit()
+
+
 def passivity_controller(
     scene: Scene,
     form: str = "series",
@@ -85,10 +121,7 @@ def passivity_controller(
     alpha_max: Number | None = None,
     beta_max: Number | None = None,
     force_max: Number | None = None,
-    forget: Number | None = None,
-    credit_max: Number | None = None,
-    reset: Any = None,
-    stored: Term = 0,
+    credit: Credit = CREDIT,
     predict: bool = False,
     lag: int = 0,
 ) -> Scene:
@@ -111,8 +144,9 @@ def passivity_controller(
     with ``forget`` at 900 Hz, with several of them, and for the parallel form, at 800 Hz.
 
     A human who is active for long fills the credit of an environment that dissipates, which may then be active for as
-    long without being stopped. ``forget``, ``credit_max`` and ``reset`` are the cures: they strike off credit, never debt,
-    and so leave the environment passive. With ``stored`` given, what the environment stores is not forgotten.
+    long without being stopped. The cures are ``forget``, ``credit_max`` and ``reset`` of :class:`Credit`: they strike off
+    credit, never debt, and so leave the environment passive. With ``stored`` given, what the environment stores is not
+    forgotten.
 
     Parameters
     ----------
@@ -127,16 +161,8 @@ def passivity_controller(
         1/(K T) has let go of everything within a sample.
     force_max : float [N], optional
         Limit of the whole force, which the observer then knows of; the motor's.
-    forget : float [s], optional
-        Time constant with which credit is forgotten: spent at the power at which it was earned, it lasts forget*ln 2 at most.
-    credit_max : float [J], optional
-        Credit beyond is struck off.
-    reset : float [s], optional
-        All credit is struck off once the scene's own force has been zero for so long: between two contacts.
-    stored : expression [J]
-        What the environment stores, such as :func:`wall_energy`, also at the first sample; zero lets every credit count.
-        With it the controller follows a reference energy (Ryu, Preusche, Hannaford and Hirzinger 2005): it acts as soon
-        as energy is generated, not only once everything stored was given back.
+    credit : Credit
+        What the environment stores, and what is struck off: ``hl.laws.Credit(stored=, forget=, credit_max=, reset=)``.
     predict : bool
         For "series": count what the coming period will generate if the handle moves on as it did. With the energy of a
         spring K as ``stored`` this adds the half-sample lead of Eq. (23.5), K/2 (x(n) - x(n-1)), when nothing is owed.
@@ -162,11 +188,11 @@ def passivity_controller(
     [True, False]
     """
     check_scene(scene)
-    stored = expression(stored, "stored")
+    stored = expression(credit.stored, "stored")
     lag = _whole(lag)
     _check(form, scene, stored, predict, lag)
-    given = {"alpha_max": alpha_max, "beta_max": beta_max, "force_max": force_max, "forget": forget}
-    given |= {"credit_max": credit_max, "reset": reset}
+    given = {"alpha_max": alpha_max, "beta_max": beta_max, "force_max": force_max, "forget": credit.forget}
+    given |= {"credit_max": credit.credit_max, "reset": credit.reset}
     p = {name: parameters(name, units=unit, values=given) for name, unit, given in _asked(form, given)}
     make = _series if form == "series" else _parallel
     force, equations, watch = make(scene, p, stored, predict, lag)
@@ -268,7 +294,7 @@ def _check(form, scene, stored, predict, lag):
     if form == "parallel" and (stored == 0 or not alone):
         raise SceneError(
             f"stored = {stored}; the parallel form lets go of what the environment stores and needs it as a function of "
-            "x(n) alone: stored=hl.laws.wall_energy() for hl.wall()"
+            "x(n) alone: credit=hl.laws.Credit(stored=hl.laws.wall_energy()) for hl.wall()"
         )
     if form == "parallel" and scene.coordinates:
         moving = ", ".join(type(q).__name__ for q in scene.coordinates)

@@ -54,7 +54,7 @@ def honey_before_a_wall():
     return hl.Scene(k * inside + hl.when(x(n) < x_h, B * (x(n) - x(n - 1)) / hl.T)), k * inside**2 / 2
 
 
-def chatter_after(stirring, duration=1.6, **cure):
+def chatter_after(stirring, duration=1.6, credit=None):
     """Return how long the wall chatters by more than 2 mm after the hand has stirred so long and then leans on it [s]."""
 
     def intent(s):
@@ -64,7 +64,10 @@ def chatter_after(stirring, duration=1.6, **cure):
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hand)
     scene, _ = honey_before_a_wall()
     log = paddle.run(
-        hl.laws.passivity_controller(scene, alpha_max=20, **cure), duration=stirring + duration, x=-0.02, progress=False
+        hl.laws.passivity_controller(scene, alpha_max=20, credit=credit or hl.laws.Credit()),
+        duration=stirring + duration,
+        x=-0.02,
+        progress=False,
     )
     late = log.t > stirring + 0.1
     peaks = abs(log.x[late] - np.median(log.x[-200:])) > 2e-3
@@ -78,9 +81,9 @@ def test_a_human_who_stirs_for_long_makes_the_wall_chatter_for_long():
     assert W.min() > -1e-3 and hl.passivity.trace(log).drained > 0.03
 
 
-@pytest.mark.parametrize("cure, most", [({"credit_max": 1e-3}, 0.2), ({"forget": 0.05}, 0.5)])
+@pytest.mark.parametrize("cure, most", [(hl.laws.Credit(credit_max=1e-3), 0.2), (hl.laws.Credit(forget=0.05), 0.5)])
 def test_with_a_cure_the_past_does_not_matter(cure, most):
-    (short, _), (long, _) = chatter_after(0.5, **cure), chatter_after(2.0, **cure)
+    (short, _), (long, _) = chatter_after(0.5, credit=cure), chatter_after(2.0, credit=cure)
     assert short == pytest.approx(long, abs=0.01) and long < most
 
 

@@ -138,14 +138,17 @@ def test_a_speed_that_is_estimated_is_used():
     """With a window of 3 on an encoder of 20 um the speed is known to a count in 3 periods, 7 mm/s."""
     paddle = hl.SimulatedPaddle(m=M, b=0.0, T=T, counts_per_metre=5e4)
     estimate = hl.velocity.window(band="20 um", most=3)
-    log = run(hl.laws.braking_pulse(OPEN, part=1, mass=M, velocity=estimate), paddle)
+    log = run(hl.laws.braking_pulse(OPEN, part=1, mass=M, entry=hl.laws.Entry(velocity=estimate)), paddle)
     assert abs(log.v_true[-1]) < 20e-6 / (3 * T) + 1e-9
 
 
 def test_an_estimate_that_the_wall_has_already_is_taken_once():
     estimate = hl.velocity.filtered(tau="1 ms")
     wall = hl.wall("half_sample", velocity=estimate)(k=300, x_o=BOUNDARY)
-    assert len(hl.laws.friction_pulse(wall, friction=1, mass=M, periods=3, velocity=estimate).eom) == len(wall.eom) + 1
+    assert (
+        len(hl.laws.friction_pulse(wall, friction=1, mass=M, periods=3, entry=hl.laws.Entry(velocity=estimate)).eom)
+        == len(wall.eom) + 1
+    )
 
 
 SCENES = (
@@ -178,7 +181,7 @@ def test_pulses_fit_the_uno_at_1_khz(scene):
         (lambda: hl.laws.braking_pulse(OPEN, part=-0.1, mass=M), SceneError, "part = -0.1; a pulse needs part > 0"),
         (lambda: hl.laws.braking_pulse(OPEN, part=1.5, mass=M), SceneError, "throws the handle back: needs part <= 1"),
         (lambda: hl.laws.braking_pulse(OPEN, impulse=1, periods=0), SceneError, "whole number of periods, 1 to 1000"),
-        (lambda: hl.laws.braking_pulse(OPEN, impulse=1, velocity="window"), SceneError, "needs an estimate"),
+        (lambda: hl.laws.braking_pulse(OPEN, impulse=1, entry=hl.laws.Entry(velocity="window")), SceneError, "needs an estimate"),
         (lambda: hl.laws.friction_pulse(hl.laws.virtual_damper(), friction=1, mass=M, periods=2), SceneError, "no parameter x_o"),
         (lambda: hl.laws.friction_pulse(OPEN, friction=0, mass=M, periods=2), SceneError, "friction = 0 N"),
     ],

@@ -1,5 +1,7 @@
 """Passivity observer and controller against energies summed by hand over prescribed motions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -14,6 +16,7 @@ GENERATOR = np.random.default_rng(3)
 #: a wandering handle: in and out of a wall at 0, back and forth within it, resting for two samples
 MOTION = np.r_[np.full(3, -1e-3), -1e-3 + np.cumsum(3e-4 * GENERATOR.normal(size=400)), np.zeros(2)]
 ENERGY = hl.laws.wall_energy()
+STORED = hl.laws.Credit(stored=ENERGY)
 WALL = hl.wall()(k=K)
 
 
@@ -72,10 +75,10 @@ def by_hand_series(f, motion, alpha_max, stored, keep=lambda credit: credit, lim
         ({}, {}),
         ({"alpha_max": 0.4}, {"alpha_max": 0.4}),
         ({"force_max": 0.8}, {"limit": 0.8}),
-        ({"forget": 0.02}, {"keep": lambda c: c / (1 + T / 0.02) if c > 0 else c}),
-        ({"credit_max": 2e-5}, {"keep": lambda c: min(c, 2e-5)}),
-        ({"stored": hl.laws.wall_energy()}, {"stored": elastic()}),
-        ({"stored": hl.laws.wall_energy(), "predict": True}, {"stored": elastic(), "ahead": elastic}),
+        ({"credit": hl.laws.Credit(forget=0.02)}, {"keep": lambda c: c / (1 + T / 0.02) if c > 0 else c}),
+        ({"credit": hl.laws.Credit(credit_max=2e-5)}, {"keep": lambda c: min(c, 2e-5)}),
+        ({"credit": STORED}, {"stored": elastic()}),
+        ({"credit": STORED, "predict": True}, {"stored": elastic(), "ahead": elastic}),
         ({"predict": True}, {"ahead": lambda place: 0.0}),
     ],
     ids=["plain", "weak", "limited", "forgets", "bounded", "reference", "predicts", "predicts the work"],
@@ -120,7 +123,7 @@ def test_with_prediction_and_reference_a_steady_push_feels_the_half_sample_lead(
     """What the coming period would generate, K D^2/2, is a damper K T/2: Eq. (23.5), inside the wall."""
     step = 2e-4
     motion = np.r_[np.arange(1, 9), np.arange(9, 1, -1)] * step
-    scene = hl.laws.passivity_controller(WALL, alpha_max=30, stored=hl.laws.wall_energy(), predict=True)
+    scene = hl.laws.passivity_controller(WALL, alpha_max=30, credit=hl.laws.Credit(stored=hl.laws.wall_energy()), predict=True)
     F, seen = played(scene, motion)
     law = K * (1.5 * motion - 0.5 * np.r_[motion[0], motion[:-1]])
     # at sample 0 nothing moves, and sample 1 repays; then the handle goes in at a steady step
@@ -147,7 +150,7 @@ def by_hand_parallel(motion, beta_max):
 
 @pytest.mark.parametrize("beta_max", [1e4, 0.2])
 def test_the_parallel_form_is_its_lines_written_out(beta_max):
-    scene = hl.laws.passivity_controller(WALL, "parallel", beta_max=beta_max, stored=hl.laws.wall_energy())
+    scene = hl.laws.passivity_controller(WALL, "parallel", beta_max=beta_max, credit=hl.laws.Credit(stored=hl.laws.wall_energy()))
     force, credit, slip = by_hand_parallel(MOTION, beta_max)
     F, seen = played(scene)
     assert slip.max() > 1e-4
@@ -160,7 +163,9 @@ def test_the_parallel_form_gives_back_no_more_than_was_stored():
     """What the port took covers what is left in the spring, to the leak of one period, K (D - slip)^2/2."""
     step = 2e-4
     motion = np.r_[np.arange(-2, 12), np.arange(12, -4, -1)] * step + 0.3 * step
-    F, seen = played(hl.laws.passivity_controller(WALL, "parallel", beta_max=1e4, stored=hl.laws.wall_energy()), motion)
+    F, seen = played(
+        hl.laws.passivity_controller(WALL, "parallel", beta_max=1e4, credit=hl.laws.Credit(stored=hl.laws.wall_energy())), motion
+    )
     W = taken(F, motion)
     bound = K * np.diff(motion - seen["slip"]) ** 2 / 2
     inside = F[:-1] > 0  # the first period inside has no force that could slip
@@ -173,7 +178,7 @@ def test_a_spring_that_is_loaded_at_the_start_is_known_by_what_it_stores():
     """Let go from 3 mm inside: without ``stored`` what it gives back looks generated, with it nothing does but the hold."""
     motion = np.linspace(3e-3, -1e-3, 41)
     without, known = (
-        played(hl.laws.passivity_controller(WALL, alpha_max=50, **o), motion) for o in ({}, {"stored": hl.laws.wall_energy()})
+        played(hl.laws.passivity_controller(WALL, alpha_max=50, credit=o), motion) for o in (hl.laws.Credit(), STORED)
     )
     loaded = K * 3e-3**2 / 2
     assert known[1]["credit"].min() > -0.06 * loaded  # two periods' leak, K D^2/2 each, while it repays
@@ -205,21 +210,21 @@ def test_a_human_who_was_active_for_long_lets_the_environment_be_active_as_long(
 def test_a_credit_that_is_forgotten_ends_that_soon(forget, t1):
     """At a power P the credit is forget*P (1 - e^(-t1/forget)); drained at P and forgotten it lasts forget*ln(2 - ...)."""
     expected = forget * np.log(2 - np.exp(-t1 / forget))
-    found = active_until(hl.laws.passivity_controller(honey(), alpha_max=50, forget=forget), t1)
+    found = active_until(hl.laws.passivity_controller(honey(), alpha_max=50, credit=hl.laws.Credit(forget=forget)), t1)
     assert found == pytest.approx(expected, abs=0.05)
     assert found < forget * np.log(2) + 0.05  # however long the human was active
 
 
 def test_a_bounded_credit_ends_when_it_is_spent():
     P = 2.0 * (2e-3 * 2 * np.pi / 0.1) ** 2 / 2  # of the honey, averaged
-    found = active_until(hl.laws.passivity_controller(honey(), alpha_max=50, credit_max=0.2 * P), 1.7)
+    found = active_until(hl.laws.passivity_controller(honey(), alpha_max=50, credit=hl.laws.Credit(credit_max=0.2 * P)), 1.7)
     assert found == pytest.approx(0.2, abs=0.05)
 
 
-@pytest.mark.parametrize("cure", [{"forget": 0.004}, {"credit_max": 1e-6}])
+@pytest.mark.parametrize("cure", [hl.laws.Credit(forget=0.004), hl.laws.Credit(credit_max=1e-6)])
 def test_the_cures_strike_off_credit_and_never_debt(cure):
     """Whatever is struck off, the energy taken at the port stays above the credit that is left."""
-    F, seen = played(hl.laws.passivity_controller(WALL, alpha_max=30, **cure))
+    F, seen = played(hl.laws.passivity_controller(WALL, alpha_max=30, credit=cure))
     assert (taken(F) >= seen["credit"] - 1e-15).all()
     assert (seen["credit"] < 0).any() and taken(F)[-1] > seen["credit"][-1] + 1e-4
 
@@ -231,8 +236,8 @@ def test_a_reset_strikes_off_what_one_contact_left_for_the_next(form, bound):
     motion = np.r_[there, np.full(40, -1e-3), there]
     damped = hl.wall()(k=100, B=0.5)
     plain, reset = (
-        played(hl.laws.passivity_controller(damped, form, **{bound: 5}, **o, stored=hl.laws.wall_energy()), motion)[1]["credit"]
-        for o in ({}, {"reset": 0.02})
+        played(hl.laws.passivity_controller(damped, form, **{bound: 5}, credit=credit), motion)[1]["credit"]
+        for credit in (STORED, replace(STORED, reset=0.02))
     )
     last = len(there) - 1
     assert plain[last] > 1e-4
@@ -245,7 +250,7 @@ def test_a_reset_strikes_off_what_one_contact_left_for_the_next(form, bound):
 @pytest.mark.parametrize("form, bound", [("series", "alpha_max"), ("parallel", "beta_max")])
 def test_the_firmware_gives_the_same_bits(form, bound):
     scene = hl.laws.passivity_controller(
-        WALL, form, **{bound: 5.0}, stored=hl.laws.wall_energy(), forget=0.1, credit_max=1e-3, force_max=2
+        WALL, form, **{bound: 5.0}, credit=hl.laws.Credit(stored=hl.laws.wall_energy(), forget=0.1, credit_max=1e-3), force_max=2
     )
     (F, seen), (felt, there) = (played(scene, dtype="float32", engine=engine) for engine in ("interpreter", "vm"))
     assert abs(F).max() > 0.5
@@ -279,10 +284,10 @@ def test_it_goes_around_scenes_with_bodies():
     [
         (lambda: hl.laws.passivity_controller(WALL, "bogus"), SceneError, "'series'"),
         (lambda: hl.laws.passivity_controller(WALL, "parallel"), SceneError, "stored=hl.laws.wall_energy"),
-        (lambda: hl.laws.passivity_controller(mass_on_a_coupler(), "parallel", stored=ENERGY), SceneError, "moves z"),
+        (lambda: hl.laws.passivity_controller(mass_on_a_coupler(), "parallel", credit=STORED), SceneError, "moves z"),
         (lambda: hl.laws.passivity_controller(WALL, beta_max=2), SceneError, "give alpha_max"),
         (lambda: hl.laws.passivity_controller(WALL, predict=True, lag=1), SceneError, "lag = 0"),
-        (lambda: hl.laws.passivity_controller(WALL, stored=hl.x(n)), UnitsError, "in m but"),
+        (lambda: hl.laws.passivity_controller(WALL, credit=hl.laws.Credit(stored=hl.x(n))), UnitsError, "in m but"),
         (lambda: hl.laws.passivity_controller("wall"), SceneError, "needs a Scene"),
         (lambda: hl.laws.passivity_observer(3), SceneError, "needs a Scene"),
         (lambda: hl.laws.passivity_observer(WALL, lag=0.5), SceneError, "whole samples"),
