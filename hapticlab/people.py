@@ -6,21 +6,26 @@ from .device.hand.reacting_hand import Reacting
 from .experiments.displays import compare_displays
 from .experiments.fitts import fitts
 from .experiments.forced_choice import forced_choice
-from .experiments.juggling import juggle
+from .experiments.juggling import Perception, juggle
 from .experiments.observers import PersonObserver, SimulatedObserver
-from .experiments.psi import ConstantLevels, Psi
-from .experiments.psychometric import psychometric
-from .experiments.reaching import Load, follow, reach
+from .experiments.psi import ConstantLevels, Grid, Psi
+from .experiments.psychometric import Intervals, psychometric
+from .experiments.reaching import Control, Load, follow, reach
 from .experiments.response_curves import Psychometric
 from .experiments.shared_control import assistance
 from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
-from .experiments.up_down import UpDown
+from .experiments.up_down import Levels, UpDown
 from .vocabulary import page
 
 __all__ = [
     "ConstantLevels",
+    "Control",
+    "Grid",
+    "Intervals",
+    "Levels",
     "Load",
     "MinimumJerk",
+    "Perception",
     "PersonObserver",
     "Psi",
     "Psychometric",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.arguments import choice
+from ..base.arguments import choice, numbers
 from ..base.drawing import house_style, new_figure, style_of
 from ..base.telemetry import Telemetry
 from ..device.hand.hand import require
@@ -89,16 +89,46 @@ class Juggle:
         return figure
 
 
+@dataclass(frozen=True, kw_only=True)
+class Perception:
+    """How sharply a person sees and feels, and how late.
+
+    Parameters
+    ----------
+    vision : float or text
+        Standard deviation of each sight of the ball [m].
+    touch : float
+        Weber fraction of a felt impulse.
+    reaction : float or text
+        Time [s] until what is perceived changes what is done.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.people.Perception(vision="5 mm").vision
+    0.005
+    """
+
+    vision: float = 0.02
+    touch: float = 0.07
+    reaction: float = REACTION
+
+    def __post_init__(self) -> None:
+        place, weber, time = ({"unit": unit, "least": 0} for unit in ("m", "1", "s"))
+        numbers(self, "perception", vision=place, touch=weber, reaction=time)
+
+
+PERCEPTION = Perception()
+
+
 def juggle(
     paddle: SimulatedPaddle,
     *,
     senses: Senses = "both",
     height: float = 0.2,
     duration: float = 12.0,
-    vision: float = 0.02,
-    touch: float = 0.07,
     acceleration: float = -5.0,
-    reaction: float = REACTION,
+    perception: Perception = PERCEPTION,
     seed: int = 0,
     **values: float,
 ) -> Juggle:
@@ -110,8 +140,8 @@ def juggle(
     alone the eyes are closed. By sight alone the motor is off: the ball bounces on the screen and is not felt.
 
     S. Schaal, D. Sternad and C. G. Atkeson, *J. Motor Behavior* 28 (1996) 165, on people: touch alone is much better
-    than sight alone, and almost as good as both. What holds for this juggler depends on ``vision`` and ``touch``, which
-    are illustrative. With them and a slowing stroke each sense keeps the ball, and so does neither. With a stroke that
+    than sight alone, and almost as good as both. What holds for this juggler depends on the ``perception``, whose
+    numbers are illustrative. With them and a slowing stroke each sense keeps the ball, and so does neither. With a stroke that
     speeds up by 2 m/s^2 at impact, at 0.2 m and with 0.5 N of noise in the hand, sight alone loses it, touch alone keeps
     it in one run of two, both keep it within 7 % rms (tests/benchmarks/experiments.py).
 
@@ -130,15 +160,11 @@ def juggle(
         Aimed at [m].
     duration : float
         [s]
-    vision : float
-        Standard deviation of each sight of the ball [m].
-    touch : float
-        Weber fraction of a felt impulse.
     acceleration : float
         Of the plate at impact that strokes aim at [m/s^2]; :func:`multipliers` says for which a juggle is stable without
         looking.
-    reaction : float
-        [s]
+    perception : Perception
+        How sharp the senses are, and how late: ``hl.people.Perception(vision=, touch=, reaction=)``.
     seed : int
         Of what is seen and felt.
     **values
@@ -170,8 +196,8 @@ def juggle(
     values = dict(scene.values)
     carried = paddle.m + hand.m + (values["M"] if senses != "vision" else 0.0)
     arm = Arm(m=carried, b=paddle.b, b_hand=hand.b, k=hand.k)
-    juggler = Juggler(senses, height, values, arm, vision, touch, acceleration, seed)
-    held = replace(paddle, hand=replace(hand, intent=Reacting(plan=juggler.plan, reaction=reaction)))
+    juggler = Juggler(senses, height, values, arm, perception.vision, perception.touch, acceleration, seed)
+    held = replace(paddle, hand=replace(hand, intent=Reacting(plan=juggler.plan, reaction=perception.reaction)))
     log = held.run(scene, duration=duration, progress=False, method="taylor")
     impacts, heights = bounces(log)
     return Juggle(senses, height, impacts, heights, log)

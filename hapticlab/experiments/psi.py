@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -16,6 +17,39 @@ if TYPE_CHECKING:
     from ..base.annotations import Array
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Grid:
+    """The levels, thresholds and slopes over which the psi method keeps its belief.
+
+    Parameters
+    ----------
+    levels, thresholds : int
+        Points between the lowest and the highest level, >= 2.
+    slopes : sequence of float
+        Slopes that are thought possible, equally likely, > 0; one alone fixes it.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.people.Grid(slopes=[1.0]).levels
+    40
+    """
+
+    levels: int = 40
+    thresholds: int = 60
+    slopes: Sequence[float] | Array = (0.5, 0.71, 1.0, 1.41, 2.0, 2.83)
+
+    def __post_init__(self) -> None:
+        if not (self.levels >= 2 and self.thresholds >= 2 and all(s > 0 for s in self.slopes)):
+            raise AnalysisError(
+                f"{self.levels} levels, {self.thresholds} thresholds, slopes = {self.slopes}; psi needs two points of each, and "
+                "positive slopes"
+            )
+
+
+GRID = Grid()
+
+
 class Psi:
     """Bayesian adaptive estimation of threshold and slope; L. L. Kontsevich and C. W. Tyler, *Vision Res.* 39 (1999) 2729.
 
@@ -26,10 +60,8 @@ class Psi:
     ----------
     low, high : float
         Levels that may be asked, and thresholds that are thought possible, equally likely in their logarithm.
-    levels, thresholds : int
-        Points between them.
-    slopes : sequence of float
-        Slopes that are thought possible, equally likely; one of them fixes it.
+    grid : Grid
+        How many levels and thresholds between them, and which slopes: ``hl.people.Grid(levels=, thresholds=, slopes=)``.
     lapse : float
         Taken as known, 0 <= lapse < 1 - guess; a small one keeps a single slip from ruling out the truth.
     guess : float
@@ -59,29 +91,24 @@ class Psi:
         *,
         low: float,
         high: float,
-        levels: int = 40,
-        thresholds: int = 60,
-        slopes: Sequence[float] | Array = (0.5, 0.71, 1.0, 1.41, 2.0, 2.83),
+        grid: Grid = GRID,
         lapse: float = 0.02,
         guess: float = 0.5,
         shape: Literal["d_prime", "weibull"] = "d_prime",
         trials: int = 60,
     ) -> None:
-        if not (0 < low < high and trials >= 1 and levels >= 2 and thresholds >= 2 and all(s > 0 for s in slopes)):
-            raise AnalysisError(
-                f"low = {low:g}, high = {high:g}, trials = {trials}, {levels} levels, {thresholds} thresholds; psi needs "
-                "0 < low < high, positive slopes, a trial and two points of each"
-            )
+        if not (0 < low < high and trials >= 1):
+            raise AnalysisError(f"low = {low:g}, high = {high:g}, trials = {trials}; psi needs 0 < low < high and a trial")
         if shape not in ("d_prime", "weibull"):
             raise AnalysisError(f"shape = {shape!r}; psi needs 'd_prime' or 'weibull', whose levels are positive")
         if not (0 <= guess and 0 <= lapse and guess + lapse < 1):
             raise AnalysisError(f"guess = {guess!r}, lapse = {lapse!r}; psi needs both >= 0 and guess + lapse < 1")
-        self.levels, self.thresholds = np.geomspace(low, high, levels), np.geomspace(low, high, thresholds)
-        self.slopes, self.trials, self.told = np.array(slopes, float), int(trials), 0
+        self.levels, self.thresholds = (np.geomspace(low, high, many) for many in (grid.levels, grid.thresholds))
+        self.slopes, self.trials, self.told = np.array(grid.slopes, float), int(trials), 0
         place, log_slope = np.log(self.thresholds)[:, None, None], np.log(self.slopes)[None, :, None]
         right = guess + (1 - guess - lapse) * rise(shape, self.levels, place, log_slope)[0]
         self._right = np.clip(right, CERTAIN, 1 - CERTAIN)  # no answer is impossible, or one could rule out everything
-        self.belief = np.full((thresholds, len(self.slopes)), 1.0 / (thresholds * len(self.slopes)))
+        self.belief = np.full((grid.thresholds, len(self.slopes)), 1.0 / (grid.thresholds * len(self.slopes)))
 
     @property
     def done(self) -> bool:

@@ -87,6 +87,41 @@ class PsychometricFit:
         return figure
 
 
+@dataclass(frozen=True, kw_only=True)
+class Intervals:
+    """How sure the intervals of a fit are, and by how many samples drawn of it.
+
+    Parameters
+    ----------
+    confidence : float
+        Of the intervals, between 0 and 1.
+    bootstrap : int
+        Samples for the goodness of fit and the intervals, >= 1.
+    seed : int
+        Of the samples.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.people.Intervals(confidence=0.9)
+    Intervals(confidence=0.9, bootstrap=400, seed=0)
+    """
+
+    confidence: float = 0.95
+    bootstrap: int = 400
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.bootstrap, (int, np.integer)) and self.bootstrap >= 1 and 0 < self.confidence < 1):
+            raise AnalysisError(
+                f"bootstrap = {self.bootstrap!r}, confidence = {self.confidence!r}; needs a whole number of samples >= 1 and a "
+                "confidence between 0 and 1, such as 0.95"
+            )
+
+
+INTERVALS = Intervals()
+
+
 def psychometric(
     levels: ArrayLike,
     right: ArrayLike,
@@ -96,9 +131,7 @@ def psychometric(
     guess: float | None = 0.5,
     lapse: float | None = None,
     slope: float | None = None,
-    bootstrap: int = 400,
-    confidence: float = 0.95,
-    seed: int = 0,
+    intervals: Intervals = INTERVALS,
 ) -> PsychometricFit:
     """Fit a psychometric function by maximum likelihood to answers at several levels.
 
@@ -127,11 +160,8 @@ def psychometric(
     slope : float, optional
         Fixed; fitted if left out. 1 for ``d_prime`` is an observer whose noise does not depend on the level; few trials
         tell a threshold much better with it than without.
-    bootstrap : int
-        Samples for the goodness of fit and the intervals, >= 1.
-    confidence : float
-        Of the intervals, between 0 and 1.
-    seed : int
+    intervals : Intervals
+        How sure the intervals are, and by how many samples: ``hl.people.Intervals(confidence=, bootstrap=, seed=)``.
 
     Returns
     -------
@@ -144,21 +174,18 @@ def psychometric(
 
     Examples
     --------
-    >>> found = psychometric([0.05, 0.1, 0.2, 0.4], [22, 27, 32, 39], [40] * 4, lapse=0.0, bootstrap=100)
+    >>> few = Intervals(bootstrap=100)
+    >>> found = psychometric([0.05, 0.1, 0.2, 0.4], [22, 27, 32, 39], [40] * 4, lapse=0.0, intervals=few)
     >>> round(found.curve.threshold, 2)
     0.17
     """
+    bootstrap, confidence = intervals.bootstrap, intervals.confidence
     levels, right, trials = _counts(levels, right, trials)
     choice("shape", shape, SHAPES)
     if lapse is not None and not 0 <= lapse < 0.5:
         raise AnalysisError(f"lapse = {lapse:g}; needs 0 <= lapse < 0.5, or None to fit it")
     if slope is not None and not 0 < slope < math.inf:
         raise AnalysisError(f"slope = {slope:g}; needs slope > 0, or None to fit it")
-    if not (isinstance(bootstrap, (int, np.integer)) and bootstrap >= 1 and 0 < confidence < 1):
-        raise AnalysisError(
-            f"bootstrap = {bootstrap!r}, confidence = {confidence!r}; needs a whole number of samples >= 1 and a confidence "
-            "between 0 and 1, such as 0.95"
-        )
     if guess is not None and not 0 <= guess < 1 - (MOST_LAPSES if lapse is None else lapse):
         raise AnalysisError(f"guess = {guess:g}; needs guess >= 0 and guess + lapse < 1, or None for one as large as the lapse")
     _check_telling(levels, right, trials, shape)
@@ -166,7 +193,7 @@ def psychometric(
     starts = fitting.starts()
     climbed, losses = fitting.most_likely(np.tile(right, (len(starts), 1)), starts)
     found, curve = climbed[losses.argmin()], fitting.curve(climbed[losses.argmin()])
-    drawn = np.random.default_rng(seed).binomial(trials.astype(int), curve(levels), (bootstrap, len(levels)))
+    drawn = np.random.default_rng(intervals.seed).binomial(trials.astype(int), curve(levels), (bootstrap, len(levels)))
     _, its_losses = fitting.most_likely(drawn, np.tile(found, (bootstrap, 1)))
     deviance = 2 * float(losses.min() - fitting.saturated(right))
     p = float(np.mean(2 * (its_losses - fitting.saturated(drawn)) >= deviance))

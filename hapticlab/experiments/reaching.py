@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 import numpy as np
 
-from ..base.arguments import choice
+from ..base.arguments import choice, instance, numbers
 from ..base.drawing import house_style, new_figure, style_of
 from ..base.telemetry import Telemetry
 from ..device.hand.hand import UNITS, require
@@ -73,6 +73,47 @@ class Load:
             object.__setattr__(self, name, require(name, getattr(self, name), UNITS[name], "a load", low=0))
 
 
+@dataclass(frozen=True, kw_only=True)
+class Control:
+    """By what a person moves a handle: by knowing the load, by looking, or by both.
+
+    Parameters
+    ----------
+    how : {"anticipatory", "feedback", "both"}
+    expects : Load, optional
+        What the person believes to move; by default the paddle alone, with nothing rendered.
+    gain : float or text, optional
+        [1/s]; by default 1/(e (reaction + 10 ms)), the fastest without overshoot for a handle that follows its intent at
+        once. Such a loop is unstable from about pi/(2 reaction) on, 8.3 1/s with the chapter's 180 ms.
+    reaction : float or text
+        Time [s] until what is seen changes what is done.
+    tremor : callable, optional
+        Beside whatever is intended, of times [s], in metres: ``hl.people.Tremor(rms=1e-4)``.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.people.Control(how="feedback", reaction="200 ms").reaction
+    0.2
+    """
+
+    how: How = "anticipatory"
+    expects: Load | None = None
+    gain: float | None = None
+    reaction: float = REACTION
+    tremor: Callable[[Array], ArrayLike] | None = None
+
+    def __post_init__(self) -> None:
+        choice("how", self.how, HOW, error=PaddleError)
+        need = "what the person believes to move, hl.people.Load(m=0.5) in kg."
+        instance("expects", self.expects, Load | None, need, error=PaddleError)
+        gain, reaction = {"unit": "1/s", "least": 0}, {"unit": "s", "least": 0}
+        numbers(self, "a person", error=PaddleError, gain=gain, reaction=reaction)
+
+
+CONTROL = Control()
+
+
 @dataclass(frozen=True, eq=False)
 class Reach:
     """How a reach went.
@@ -127,13 +168,14 @@ def reach(
     duration: float = 0.4,
     begin: float = 0.1,
     record: float = 2.0,
-    **how: Any,
+    control: Control = CONTROL,
+    **options: Any,
 ) -> Reach:
     """Let the hand of a simulated paddle reach for a target, smoothly, from x = 0.
 
     "anticipatory" sends the intent that would move hand and expected load along a path of minimum jerk, and looks at
     nothing: exact where the expectation is right, too far where the suitcase was empty. "feedback" sees path and handle a
-    reaction time late and moves the intent by ``gain`` times their distance, per second. "both" does the first, and
+    reaction time late and moves the intent by a ``gain`` times their distance, per second. "both" does the first, and
     corrects by the second.
 
     Parameters
@@ -145,18 +187,10 @@ def reach(
         Target [m], length [s] and start [s] of the reach.
     record : float
         Length of the record [s].
-    how : {"anticipatory", "feedback", "both"}
-    expects : Load, optional
-        What the person believes to move; by default the paddle alone, with nothing rendered.
-    gain : float, optional
-        [1/s]; by default 1/(e (reaction + 10 ms)), the fastest without overshoot for a handle that follows its intent at
-        once. Such a loop is unstable from about pi/(2 reaction) on, 8.3 1/s with the chapter's 180 ms.
-    reaction : float
-        [s]
-    tremor : callable, optional
-        Beside whatever is intended, of times [s], in metres: ``hl.people.Tremor(rms=1e-4)``.
-    **how
-        These five, and options of hapticlab.compile.
+    control : Control
+        By what the person moves: ``hl.people.Control(how=, expects=, gain=, reaction=, tremor=)``.
+    **options
+        Of hapticlab.compile.
 
     Returns
     -------
@@ -176,19 +210,19 @@ def reach(
     >>> known = reach(paddle, free, end=0.02)
     >>> round(known.settled, 3), known.error < 1e-6
     (0.325, True)
-    >>> print(reach(paddle, free, end=0.02, how="feedback"))
+    >>> print(reach(paddle, free, end=0.02, control=hl.people.Control(how="feedback")))
     feedback: there after 1.26 s, overshoot 0 %, rms error 8.03 mm
     """
     if end == 0:
         raise PaddleError("end = 0 m; a reach goes from x = 0 to another place")
     path = MinimumJerk(end=end, duration=duration, begin=begin)
-    log, wanted = follow(paddle, scene, path, record=record, **how)
+    log, wanted = follow(paddle, scene, path, record=record, control=control, **options)
     x, distance = handle(log), abs(end)
     near = abs(x - end) <= ARRIVED * distance
     away = np.flatnonzero(~near)
     settled = None if not near[-1] else max(float(log.t[away[-1]] + log.T - begin) if len(away) else 0.0, 0.0)
     beyond = float(np.max((x - end) * math.copysign(1, end))) / distance
-    return Reach(how.get("how", HOW[0]), log, wanted, settled, max(beyond, 0.0), float(np.sqrt(np.mean((x - wanted) ** 2))))
+    return Reach(control.how, log, wanted, settled, max(beyond, 0.0), float(np.sqrt(np.mean((x - wanted) ** 2))))
 
 
 def follow(
@@ -196,12 +230,8 @@ def follow(
     scene: Scene | Program,
     path: Path,
     *,
-    how: How = "anticipatory",
-    expects: Load | None = None,
-    gain: float | None = None,
-    reaction: float = REACTION,
-    tremor: Callable[[Array], ArrayLike] | None = None,
     record: float = 2.0,
+    control: Control = CONTROL,
     **options: Any,
 ) -> tuple[Telemetry, Array]:
     """Let the hand of a simulated paddle follow a path; return (Telemetry, where the handle was meant to be [m]).
@@ -214,12 +244,10 @@ def follow(
     """
     hand = check_held(paddle, "reach")
     check_path(path)
-    choice("how", how, HOW, error=PaddleError)
+    how, reaction, tremor = control.how, control.reaction, control.tremor
     every = max(round(0.01 / paddle.T), 1) * paddle.T
-    gain = 1 / (math.e * (reaction + every)) if gain is None else require("gain", gain, "1/s", "feedback", low=0)
-    known = Load(m=paddle.m, b=paddle.b) if expects is None else expects
-    if not isinstance(known, Load):
-        raise PaddleError(f"expects = {expects!r}; needs what the person believes to move, hl.people.Load(m=0.5) in kg.")
+    gain = 1 / (math.e * (reaction + every)) if control.gain is None else control.gain
+    known = control.expects or Load(m=paddle.m, b=paddle.b)
     times = np.arange(paddle.ticks(record) + 1) * paddle.T
     ahead = Anticipated(times, inverse_dynamics(hand, known, path, times))
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.arguments import numbers
 from ..errors import AnalysisError
 
 if TYPE_CHECKING:
@@ -14,6 +16,34 @@ if TYPE_CHECKING:
 
 #: as many answers in a row, all right at the lowest level or all wrong at the highest, and it ends: 1 in a million by guessing
 ENOUGH = 20
+
+
+@dataclass(frozen=True, kw_only=True)
+class Levels:
+    """The lowest and the highest level that a staircase may ask.
+
+    Parameters
+    ----------
+    low, high : float
+        0 < low < high, in the unit of the level.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.people.Levels(low=0.02)
+    Levels(low=0.02, high=2.0)
+    """
+
+    low: float = 1e-3
+    high: float = 2.0
+
+    def __post_init__(self) -> None:
+        numbers(self, "a staircase", low={"above": 0}, high={"above": 0})
+        if self.low >= self.high:
+            raise AnalysisError(f"low = {self.low:g}, high = {self.high:g}; a staircase needs low < high")
+
+
+LEVELS = Levels()
 
 
 class UpDown:
@@ -38,10 +68,11 @@ class UpDown:
         Turning points after which it ends.
     skip : int
         First turning points that the estimate leaves out; until then steps are twice as long.
-    low, high : float
-        Levels stay between these. It ends after 20 answers in a row that are all right at ``low``, or all wrong at ``high``.
     most : int
         Trials after which it ends at the latest.
+    levels : Levels
+        What may be asked, ``hl.people.Levels(low=, high=)``. It ends after 20 answers in a row that are all right at the lowest
+        level, or all wrong at the highest.
 
     Attributes
     ----------
@@ -71,14 +102,14 @@ class UpDown:
         weight: float = 1.0,
         reversals: int = 12,
         skip: int = 4,
-        low: float = 1e-3,
-        high: float = 2.0,
         most: int = 300,
+        levels: Levels = LEVELS,
     ) -> None:
-        if not (1 < factor < math.inf and 0 < weight < math.inf and 0 < low < high < math.inf and low <= start <= high):
+        low, high = levels.low, levels.high
+        if not (1 < factor < math.inf and 0 < weight < math.inf and low <= start <= high):
             raise AnalysisError(
                 f"start = {start:g}, factor = {factor:g}, weight = {weight:g}, low = {low:g}, high = {high:g}; a staircase "
-                "needs 0 < low <= start <= high, low < high, factor > 1 and weight > 0, all finite"
+                "needs low <= start <= high, factor > 1 and weight > 0, both finite"
             )
         if not (int(down) == down and down >= 1 and 0 <= skip < reversals and most >= 1):
             raise AnalysisError(
@@ -86,7 +117,7 @@ class UpDown:
                 "0 <= skip < reversals and most >= 1"
             )
         self.start, self.factor, self.down, self.weight = float(start), float(factor), int(down), float(weight)
-        self.reversals, self.skip, self.low, self.high = int(reversals), int(skip), float(low), float(high)
+        self.reversals, self.skip, self.low, self.high = int(reversals), int(skip), low, high
         self.level, self._row, self._heading = float(start), 0, 0
         self.most, self.told, self._at_end = int(most), 0, 0
         self.turned: list[float] = []

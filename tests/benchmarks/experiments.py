@@ -24,7 +24,9 @@ PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("grip"))
 PROCEDURES = {
     "2 down, 1 up (Levitt)": lambda seed: hl.people.UpDown(start=0.5, factor=1.25, reversals=18),
     "1 down, weight 3 (Kaernbach)": lambda seed: hl.people.UpDown(start=0.5, factor=1.15, down=1, weight=3, reversals=26),
-    "psi, slope known": lambda seed: hl.people.Psi(low=0.02, high=1.5, slopes=(1.0,), lapse=0.01, trials=TRIALS),
+    "psi, slope known": lambda seed: hl.people.Psi(
+        low=0.02, high=1.5, grid=hl.people.Grid(slopes=(1.0,)), lapse=0.01, trials=TRIALS
+    ),
     "psi, slope looked for": lambda seed: hl.people.Psi(low=0.02, high=1.5, lapse=0.01, trials=TRIALS),
     "constant stimuli": lambda seed: hl.people.ConstantLevels(np.geomspace(0.05, 0.7, 6), repeats=TRIALS // 6, seed=seed),
 }
@@ -47,7 +49,14 @@ def thresholds(name, observers):
             right.append(answer)
         if hasattr(procedure, "estimate"):
             own.append(math.log(procedure.estimate() / aim))
-        fitted.append(math.log(hl.people.psychometric(levels, right, slope=1.0, lapse=0.0, bootstrap=2).curve.threshold / TRUE))
+        fitted.append(
+            math.log(
+                hl.people.psychometric(
+                    levels, right, slope=1.0, lapse=0.0, intervals=hl.people.Intervals(bootstrap=2)
+                ).curve.threshold
+                / TRUE
+            )
+        )
         trials.append(len(levels))
     return own, fitted, trials
 

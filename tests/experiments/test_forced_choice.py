@@ -13,9 +13,10 @@ from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import AnalysisError
 from hapticlab.experiments.forced_choice import ForcedChoice, Trial, forced_choice
 from hapticlab.experiments.observers import SimulatedObserver
-from hapticlab.experiments.psi import ConstantLevels, Psi
+from hapticlab.experiments.psi import ConstantLevels, Grid, Psi
+from hapticlab.experiments.psychometric import Intervals
 from hapticlab.experiments.tasks import damping_task, stiffness_task, texture_task
-from hapticlab.experiments.up_down import UpDown
+from hapticlab.experiments.up_down import Levels, UpDown
 from hapticlab.scene.laws.chapter_laws import wall
 
 PADDLE = SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
@@ -50,9 +51,9 @@ def test_the_recorded_force_decides():
                          ids=lambda task: task.name)  # fmt: skip
 def test_the_observers_weber_fraction_comes_back(task):
     observer = SimulatedObserver(weber=0.2, seed=2)
-    found = forced_choice(PADDLE, task, observer, Psi(low=0.03, high=1.0, slopes=(1.0,), trials=25))
+    found = forced_choice(PADDLE, task, observer, Psi(low=0.03, high=1.0, grid=Grid(slopes=(1.0,)), trials=25))
     assert math.log(found.estimate / math.log(1.2)) == pytest.approx(0.0, abs=0.9)  # 25 trials: deviation 0.32
-    value, low, high = found.weber(slope=1.0, lapse=0.0, bootstrap=100)
+    value, low, high = found.weber(slope=1.0, lapse=0.0, intervals=Intervals(bootstrap=100))
     assert low < 0.2 < high and low < value < high
 
 
@@ -114,7 +115,7 @@ def test_no_answers_are_not_plotted():
 
 
 def test_who_is_always_right_comes_to_an_end():
-    found = forced_choice(PADDLE, QUICK, SimulatedObserver(weber=1e-9), UpDown(start=0.5, factor=2, low=0.4))
+    found = forced_choice(PADDLE, QUICK, SimulatedObserver(weber=1e-9), UpDown(start=0.5, factor=2, levels=Levels(low=0.4)))
     assert len(found.trials) == 22 and found.estimate is None and "lowest level" in found.stopped
 
 

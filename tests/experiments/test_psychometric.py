@@ -9,7 +9,7 @@ from scipy.special import ndtr
 
 from hapticlab.errors import AnalysisError
 from hapticlab.experiments.likelihood import Likelihood
-from hapticlab.experiments.psychometric import psychometric
+from hapticlab.experiments.psychometric import Intervals, psychometric
 from hapticlab.experiments.response_curves import Psychometric
 
 LEVELS = np.geomspace(0.03, 0.8, 8)
@@ -33,14 +33,14 @@ def test_the_fit_is_the_minimum_that_another_search_finds(lapse):
     starts = [[math.log(a), b] + ([0.01] if lapse is None else []) for a in (0.1, 0.3) for b in (0.0, 0.5)]
     best = min((minimize(loss, s, method="Nelder-Mead", bounds=box, options={"xatol": 1e-9, "fatol": 1e-11, "maxiter": 4000})
                 for s in starts), key=lambda found: found.fun)  # fmt: skip
-    found = psychometric(LEVELS, right, np.full(8, 50), lapse=lapse, bootstrap=2)
+    found = psychometric(LEVELS, right, np.full(8, 50), lapse=lapse, intervals=Intervals(bootstrap=2))
     assert found.curve.threshold == pytest.approx(math.exp(best.x[0]), rel=1e-5)
     assert found.curve.slope == pytest.approx(math.exp(best.x[1]), rel=1e-5)
 
 
 def test_two_levels_are_met_exactly():
     """A Weibull of no lapses through two proportions: ln(-ln(1 - F)) is linear in ln(level)."""
-    found = psychometric([0.1, 0.4], [64, 90], [100, 100], shape="weibull", lapse=0.0, bootstrap=2)
+    found = psychometric([0.1, 0.4], [64, 90], [100, 100], shape="weibull", lapse=0.0, intervals=Intervals(bootstrap=2))
     u = [-math.log(1 - (2 * p - 1)) for p in (0.64, 0.90)]
     slope = math.log(u[1] / u[0]) / math.log(4)
     assert found.curve.slope == pytest.approx(slope, rel=1e-7)
@@ -51,7 +51,7 @@ def test_two_levels_are_met_exactly():
 def test_the_interval_is_as_wide_as_fisher_says():
     """Many trials: likelihood ratio against the Cramer-Rao bound from derivatives of the likelihood by finite differences."""
     truth, each = Psychometric(0.2, 1.0), 2000
-    found = psychometric(LEVELS, np.round(each * truth(LEVELS)), np.full(8, each), lapse=0.0, bootstrap=2)
+    found = psychometric(LEVELS, np.round(each * truth(LEVELS)), np.full(8, each), lapse=0.0, intervals=Intervals(bootstrap=2))
     h = 1e-5
     rows = [
         (Psychometric(0.2 * math.exp(h * a), math.exp(h * b))(LEVELS)
@@ -69,19 +69,26 @@ def test_the_interval_is_as_wide_as_fisher_says():
 
 def test_a_fixed_slope_and_guess_as_lapse():
     right = answers(Psychometric(0.2, 1.0))
-    assert psychometric(LEVELS, right, np.full(8, 50), slope=1.0, bootstrap=2).curve.slope == pytest.approx(1.0, rel=1e-12)
+    assert psychometric(LEVELS, right, np.full(8, 50), slope=1.0, intervals=Intervals(bootstrap=2)).curve.slope == pytest.approx(
+        1.0, rel=1e-12
+    )
     levels = np.linspace(-1, 1, 5)
     truth = Psychometric(0.1, 2.0, 0.02, 0.02, "normal")
-    found = psychometric(levels, np.round(1e5 * truth(levels)), np.full(5, 1e5), shape="normal", guess=None, bootstrap=2).curve
+    found = psychometric(
+        levels, np.round(1e5 * truth(levels)), np.full(5, 1e5), shape="normal", guess=None, intervals=Intervals(bootstrap=2)
+    ).curve
     assert (found.threshold, found.slope, found.lapse) == pytest.approx((0.1, 2.0, 0.02), abs=2e-3)
     assert found.guess == found.lapse
 
 
 def test_a_wrong_curve_has_a_large_deviance():
     levels, each = np.array([0.1, 0.2, 0.3, 0.4, 0.5]), np.full(5, 200)
-    assert psychometric(levels, [110, 180, 120, 190, 130], each, bootstrap=100).p_deviance == 0.0
+    assert psychometric(levels, [110, 180, 120, 190, 130], each, intervals=Intervals(bootstrap=100)).p_deviance == 0.0
     truth = Psychometric(0.2, 1.0)
-    p = [psychometric(LEVELS, answers(truth, seed=k), np.full(8, 50), lapse=0.0, bootstrap=60).p_deviance for k in range(12)]
+    p = [
+        psychometric(LEVELS, answers(truth, seed=k), np.full(8, 50), lapse=0.0, intervals=Intervals(bootstrap=60)).p_deviance
+        for k in range(12)
+    ]
     assert 0.2 < np.mean(p) < 0.8  # uniform: mean 0.5, standard deviation of the mean 0.08
 
 
@@ -100,7 +107,7 @@ def test_gradient_and_information_of_the_likelihood():
 def test_intervals_end_where_the_likelihood_ratio_says():
     """At each end, the other parameter by scipy's search: 2 log of the ratio is the chi-squared quantile, 3.8415."""
     right = answers(Psychometric(0.2, 1.2), each=40)
-    found = psychometric(LEVELS, right, np.full(8, 40), lapse=0.0, bootstrap=1)
+    found = psychometric(LEVELS, right, np.full(8, 40), lapse=0.0, intervals=Intervals(bootstrap=1))
 
     def loss(log_threshold, log_slope):
         P = 0.5 + 0.5 * (2 * ndtr((LEVELS / math.exp(log_threshold)) ** math.exp(log_slope) / math.sqrt(2)) - 1)
@@ -125,7 +132,9 @@ def test_samples_say_how_unlikely_an_end_may_be():
         held = minimize_scalar(lambda b, one=one: fitting.loss(np.array([[q[0], b]]), one[None])[0][0],
                                bounds=(fitting.low[1], fitting.high[1]), method="bounded", options={"xatol": 1e-9})  # fmt: skip
         assert ratio == pytest.approx(2 * (held.fun - least), abs=1e-8)
-    plain, sampled = (psychometric(LEVELS, right[0], each, lapse=0.0, bootstrap=n).interval for n in (1, 200))
+    plain, sampled = (
+        psychometric(LEVELS, right[0], each, lapse=0.0, intervals=Intervals(bootstrap=n)).interval for n in (1, 200)
+    )
     for name in ("threshold", "slope"):
         assert sampled[name][0] <= plain[name][0] < plain[name][1] <= sampled[name][1]
     assert sampled["threshold"] != plain["threshold"]
@@ -133,7 +142,7 @@ def test_samples_say_how_unlikely_an_end_may_be():
 
 def test_answers_without_an_error_leave_the_threshold_open_in_between():
     """Never right at 0.1, always at 0.2: a steep curve anywhere in between explains it, by hand for the steepest."""
-    found = psychometric([0.05, 0.1, 0.2, 0.4], [0, 0, 40, 40], [40] * 4, guess=0.0, lapse=0.0, bootstrap=2)
+    found = psychometric([0.05, 0.1, 0.2, 0.4], [0, 0, 40, 40], [40] * 4, guess=0.0, lapse=0.0, intervals=Intervals(bootstrap=2))
     low, high = found.interval["threshold"]
     # slope 20: 2*40*(-log(1 - F(0.1))) = 3.8415 and 2*40*(-log(F(0.2))) = 3.8415, F = 2 Phi(u/sqrt(2)) - 1 = erf(u/2)
     F = [1 - math.exp(-3.8415 / 80), math.exp(-3.8415 / 80)]
@@ -150,7 +159,9 @@ def test_intervals_cover_threshold_and_slope_at_forty_trials_a_level(sets):
     truth, levels, hits = Psychometric(0.2, 1.0), np.geomspace(0.05, 0.8, 7), np.zeros(2)
     for k in range(sets):
         right = np.random.default_rng(100 + k).binomial(40, truth(levels))
-        found = psychometric(levels, right, np.full(7, 40), lapse=0.0, bootstrap=100 if sets > 20 else 1).interval
+        found = psychometric(
+            levels, right, np.full(7, 40), lapse=0.0, intervals=Intervals(bootstrap=100 if sets > 20 else 1)
+        ).interval
         hits += [found["threshold"][0] <= 0.2 <= found["threshold"][1], found["slope"][0] <= 1.0 <= found["slope"][1]]
     assert np.all(np.abs(hits / sets - 0.95) < 3 * math.sqrt(0.95 * 0.05 / sets))
 
@@ -164,13 +175,16 @@ def test_answers_that_tell_nothing_are_refused_or_noted():
         psychometric([0.1, 0.2], [5])
     with pytest.raises(AnalysisError, match="shape='normal'"):
         psychometric([-0.1, 0.2], [1, 0])
-    for wrong in ({"confidence": 95}, {"bootstrap": 0}, {"guess": 1.2}, {"guess": 0.97}):
+    for wrong in ({"confidence": 95}, {"bootstrap": 0}):
+        with pytest.raises(AnalysisError, match=next(iter(wrong))):
+            Intervals(**wrong)
+    for wrong in ({"guess": 1.2}, {"guess": 0.97}):
         with pytest.raises(AnalysisError, match=next(iter(wrong))):
             psychometric([0.1, 0.2], [3, 5], [5, 6], **wrong)
-    steep = psychometric([0.1, 0.2], [10, 20], [20, 20], lapse=0.0, bootstrap=20)
+    steep = psychometric([0.1, 0.2], [10, 20], [20, 20], lapse=0.0, intervals=Intervals(bootstrap=20))
     assert any("slope" in note for note in steep.notes) and "slope is at the end" in str(steep)
 
 
 def test_the_picture():
-    figure = psychometric(LEVELS, answers(Psychometric(0.2, 1.0)), np.full(8, 50), bootstrap=20).plot()
+    figure = psychometric(LEVELS, answers(Psychometric(0.2, 1.0)), np.full(8, 50), intervals=Intervals(bootstrap=20)).plot()
     assert [a.get_xlabel() for a in figure.axes] == ["level [1]"]

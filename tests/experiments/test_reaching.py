@@ -35,10 +35,12 @@ def test_inverse_dynamics_solves_its_own_equation():
 def test_a_known_load_is_led_to_the_target_and_another_is_not():
     known = reach(PINCH, FREE, end=0.02)
     assert known.error < 1e-7 and known.overshoot < 1e-5 and known.settled == pytest.approx(0.324, abs=0.002)
-    suitcase = reach(PINCH, FREE, end=0.02, expects=Load(m=0.5, b=0.1))
+    suitcase = reach(PINCH, FREE, end=0.02, control=hl.people.Control(expects=Load(m=0.5, b=0.1)))
     assert suitcase.overshoot > 0.02 and suitcase.error > 1000 * known.error
-    corrected = reach(PINCH, FREE, end=0.02, expects=Load(m=0.03, b=0.1, k=200.0), how="both", record=6.0)
-    alone = reach(PINCH, FREE, end=0.02, expects=Load(m=0.03, b=0.1, k=200.0), record=6.0)
+    corrected = reach(
+        PINCH, FREE, end=0.02, control=hl.people.Control(expects=Load(m=0.03, b=0.1, k=200.0), how="both"), record=6.0
+    )
+    alone = reach(PINCH, FREE, end=0.02, control=hl.people.Control(expects=Load(m=0.03, b=0.1, k=200.0)), record=6.0)
     assert abs(handle(alone.log)[-1] - 0.04) < 1e-4  # twice the spring was expected, and the hand goes twice as far
     assert abs(handle(corrected.log)[-1] - 0.02) < 1e-4 and alone.settled is None
 
@@ -47,7 +49,7 @@ def test_a_known_load_is_led_to_the_target_and_another_is_not():
 def test_feedback_alone_is_stable_up_to_the_limit_of_a_delayed_integrator(part):
     # every 10 ms i[k+1] = i[k] + a (target - i[k-18]), stable for a < 2 sin(pi/(2 (2 18 + 1))) (Levin and May 1976)
     gain = part * 2 * math.sin(math.pi / 74) / 0.01
-    log = reach(PADDLE, FREE, end=0.01, how="feedback", gain=gain, record=12.0).log
+    log = reach(PADDLE, FREE, end=0.01, control=hl.people.Control(how="feedback", gain=gain), record=12.0).log
     error = abs(handle(log) - 0.01)
     ratio = error[10000:].max() / error[2000:4000].max()
     assert ratio < 0.7 if part < 1 else ratio > 1.5
@@ -57,7 +59,7 @@ def test_a_trill_is_anticipated_and_cannot_be_followed():
     trill = hl.methods.HandleMotion("trill", 0.005 * sp.sin(2 * sp.pi * 8 * hl.t), 2.0)
     errors = {}
     for how in ("anticipatory", "feedback"):
-        log, wanted = follow(PADDLE, FREE, trill, how=how)
+        log, wanted = follow(PADDLE, FREE, trill, control=hl.people.Control(how=how))
         errors[how] = np.std((handle(log) - wanted)[500:]) / np.std(wanted)
     # the reach starts with the velocity of the sine, which dies out; nothing of 8 Hz passes 180 ms of reaction
     assert errors["anticipatory"] < 1e-2 and errors["feedback"] > 0.95
@@ -67,7 +69,7 @@ def test_a_hand_without_a_spring_and_other_words_are_refused():
     with pytest.raises(PaddleError, match="reach needs a hand that holds the handle by a spring"):
         reach(hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3), FREE, end=0.02)
     with pytest.raises(PaddleError, match="how = 'blind'; needs one of anticipatory, feedback, both"):
-        reach(PADDLE, FREE, end=0.02, how="blind")
+        reach(PADDLE, FREE, end=0.02, control=hl.people.Control(how="blind"))
     with pytest.raises(PaddleError, match="end = 0 m"):
         reach(PADDLE, FREE, end=0)
 
@@ -92,6 +94,6 @@ def test_boards_and_wrong_things_are_refused_in_words():
     with pytest.raises(PaddleError, match=r"m = -1 kg; a load needs m >= 0"):
         Load(m=-1)
     with pytest.raises(PaddleError, match="expects = 0.1; needs what the person believes to move"):
-        reach(PADDLE, FREE, end=0.02, expects=0.1)
+        reach(PADDLE, FREE, end=0.02, control=hl.people.Control(expects=0.1))
     with pytest.raises(PaddleError, match="path = 3; needs a path of time"):
         follow(PADDLE, FREE, 3)

@@ -7,7 +7,7 @@ import pytest
 
 from hapticlab.errors import AnalysisError
 from hapticlab.experiments.response_curves import Psychometric
-from hapticlab.experiments.up_down import UpDown
+from hapticlab.experiments.up_down import Levels, UpDown
 
 
 def walk(stairs, curve, seed, trials):
@@ -47,7 +47,9 @@ def test_steps_by_hand():
 @pytest.mark.parametrize(("down", "factor", "weight"), [(2, 1.25, 1.0), (1, 1.2, 3.0), (3, 1.5, 1.0)])
 def test_where_it_settles_is_where_a_long_run_turns(down, factor, weight):
     curve = Psychometric(0.2, 1.0, lapse=0.01)
-    stairs = UpDown(start=0.2, factor=factor, down=down, weight=weight, skip=0, reversals=10**6, low=0.03, high=1.0)
+    stairs = UpDown(
+        start=0.2, factor=factor, down=down, weight=weight, skip=0, reversals=10**6, levels=Levels(low=0.03, high=1.0)
+    )
     settled = stairs.settles(curve)
     turned = np.log(walk(stairs, curve, 5, 16_000).turned[50:])
     deviation = turned[: len(turned) // 50 * 50].reshape(50, -1).mean(axis=1).std() / math.sqrt(50)
@@ -57,13 +59,15 @@ def test_where_it_settles_is_where_a_long_run_turns(down, factor, weight):
 
 def test_small_steps_settle_at_the_target_and_large_ones_below():
     curve = Psychometric(0.2, 1.0)
-    parts = [float(curve(UpDown(start=0.2, factor=f, low=0.02, high=1.0).settles(curve))) for f in (1.05, 1.3, 2.0)]
+    parts = [
+        float(curve(UpDown(start=0.2, factor=f, levels=Levels(low=0.02, high=1.0)).settles(curve))) for f in (1.05, 1.3, 2.0)
+    ]
     assert parts[0] == pytest.approx(math.sqrt(0.5), abs=0.006)
     assert parts[0] > parts[1] > parts[2]
 
 
 def test_levels_stay_within_their_range():
-    stairs = UpDown(start=0.5, factor=2, high=0.9, low=0.3)
+    stairs = UpDown(start=0.5, factor=2, levels=Levels(high=0.9, low=0.3))
     stairs.answer(False)
     assert stairs.level == 0.9
     for _ in range(10):
@@ -73,7 +77,7 @@ def test_levels_stay_within_their_range():
 
 @pytest.mark.parametrize(("right", "words"), [(True, "right 20 times in a row at the lowest"), (False, "wrong 20 times")])
 def test_who_is_always_right_or_wrong_is_let_go(right, words):
-    stairs, asked = UpDown(start=0.4, factor=2, low=0.1, high=0.8), 0
+    stairs, asked = UpDown(start=0.4, factor=2, levels=Levels(low=0.1, high=0.8)), 0
     while not stairs.done:
         stairs.answer(right)
         asked += 1
@@ -92,11 +96,14 @@ def test_no_more_trials_than_said():
 
 
 def test_what_is_no_staircase_is_refused():
-    for wrong in ({"factor": math.inf}, {"weight": math.inf}, {"weight": math.nan}, {"high": math.inf}):
-        with pytest.raises(AnalysisError, match="all finite"):
+    for wrong in ({"factor": math.inf}, {"weight": math.inf}, {"weight": math.nan}):
+        with pytest.raises(AnalysisError, match="both finite"):
             UpDown(start=0.5, **wrong)
     with pytest.raises(AnalysisError, match="low <= start <= high"):
         UpDown(start=3.0)
+    for wrong in ({"high": math.inf}, {"low": 0.0}, {"low": 3.0}):
+        with pytest.raises(AnalysisError, match="a staircase needs"):
+            Levels(**wrong)
     with pytest.raises(AnalysisError, match="0 <= skip < reversals"):
         UpDown(start=0.5, reversals=4)
     with pytest.raises(AnalysisError, match="ask on"):
