@@ -3,7 +3,7 @@
 >>> import hapticlab as hl
 >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand(push=2.0))
 >>> log = paddle.run(hl.wall()(k=150, x_o=0.01), duration=0.5)
->>> float(hl.passivity_limit(b=0.1, T=1e-3))
+>>> float(hl.passivity_limit(hl.Device(b=0.1, T="1 ms")))
 200.0
 """
 

@@ -106,7 +106,7 @@ def test_23_9_a_damped_paddle_on_a_passive_wall_never_gives_energy_back():
 
 @pytest.mark.parametrize("B", [0.0, 0.03, -0.03])
 def test_23_10_the_passivity_bound(B):
-    limit = hl.passivity_limit(b=0.1, T=PERIOD, B=B)
+    limit = hl.passivity_limit(hl.Device(b=0.1, T=PERIOD), B=B)
     assert float(limit) == pytest.approx(2 * (0.1 - abs(B)) / PERIOD, rel=1e-12)
 
 

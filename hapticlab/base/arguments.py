@@ -155,10 +155,13 @@ def instance(
 
 
 def having(given: Any, need: str, *names: str, error: type[HapticlabError] = AnalysisError) -> Any:
-    """The object given, which has these attributes."""
+    """The object given, which has these attributes; none of them may be None, which says that a number is not known."""
     lacking = [name for name in names if not hasattr(given, name)]
     if lacking:
         raise error(f"a {type(given).__name__} has no {lacking[0]}; needs {need}")
+    unknown = [name for name in names if getattr(given, name) is None]
+    if unknown:
+        raise error(f"the device has no {unknown[0]}; needs hl.Device({unknown[0]}=..., ...)")
     return given
 
 

@@ -69,7 +69,7 @@ def study(*, quick=False, progress=True):
     start = time.perf_counter()
     points, duration = (60, 8.0) if quick else (160, 40.0)
     constants = profile("eth")
-    passive = passivity_limit(b=constants.b, T=constants.T)
+    passive = passivity_limit(constants)
     paddles = {name: SimulatedPaddle.from_profile(constants, hand=hand) for name, hand in HANDS.items()}
     limits = {name: stability_limit(paddle) for name, paddle in paddles.items()}
     stiffnesses = np.geomspace(passive.K / 2, 2 * max(limit.K for limit in limits.values()), points)

@@ -1,19 +1,29 @@
-"""A paddle of which only numbers are known: what limits and bounds read of it."""
+"""A paddle of which only numbers are known, and the numbers that limits and bounds read of any paddle."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from ..base.arguments import number
-from ..errors import PaddleError
+from ..base.arguments import having, number
+from ..errors import AnalysisError, PaddleError
 
 if TYPE_CHECKING:
+    from ..base.telemetry import PaddleProfile
     from .hand.hand import Hand
+    from .paddle import Paddle
+
+#: whatever a limit takes first
+AnyDevice: TypeAlias = "Device | Paddle | PaddleProfile"
 
 _UNITS = {"m": "kg", "b": "N s/m", "T": "s", "delay": "s", "coulomb": "N", "counts_per_metre": "1/m"}
 _ABOVE_ZERO = ("m", "T", "counts_per_metre")
 _NEVER_UNKNOWN = ("delay", "coulomb")
+_WHY = {
+    "b": "its damping pays for the hold",
+    "delay": "a force cannot come before its sample",
+    "coulomb": "friction opposes motion",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,15 +73,48 @@ class Device:
     hand: Hand | None = None
 
     def __post_init__(self) -> None:
-        for name, unit in _UNITS.items():
+        for name in _UNITS:
             given = getattr(self, name)
             if given is not None or name in _NEVER_UNKNOWN:
-                least, above = (None, 0.0) if name in _ABOVE_ZERO else (0.0, None)
-                found = number(name, given, unit, "a device", least=least, above=above, error=PaddleError)
-                object.__setattr__(self, name, found)
+                object.__setattr__(self, name, _checked(name, given, PaddleError))
         if self.velocity not in ("backward_difference", "measured"):
             raise PaddleError(f"velocity = {self.velocity!r}; needs 'backward_difference' or 'measured'")
 
     def __str__(self) -> str:
         known = {f.name: getattr(self, f.name) for f in fields(self) if f.name in _UNITS}
         return ", ".join(f"{name} = {value:g} {_UNITS[name]}" for name, value in known.items() if value)
+
+
+def known(device: AnyDevice, *names: str, or_none: str = "") -> tuple[Any, ...]:
+    """The numbers of these names, of a paddle, its profile or a :class:`Device`; a number that is missing is refused in words.
+
+    A paddle on a board has those that its board keeps. A profile has no delay and no hand.
+
+    Parameters
+    ----------
+    or_none : str
+        Names of numbers that may be None, apart by blanks; they come last.
+
+    Examples
+    --------
+    >>> known(Device(b=0.1, T="1 ms"), "b", "T", "delay")
+    (0.1, 0.001, 0.0)
+    >>> known(Device(b=0.1), "b", "T")
+    Traceback (most recent call last):
+    hapticlab.errors.AnalysisError: the device has no T; needs hl.Device(T=..., ...)
+    """
+    given = getattr(device, "device", device)
+    having(given, _CURE, *(name for name in names if name not in _OPTIONAL))
+    values = {name: getattr(given, name, _DEFAULTS[name]) for name in (*names, *or_none.split())}
+    checked = _UNITS.keys() - {name for name, value in values.items() if value is None}
+    return tuple(_checked(name, value, AnalysisError) if name in checked else value for name, value in values.items())
+
+
+_CURE = "a paddle, as hl.SimulatedPaddle(...), or hl.Device(m=..., b=..., T=...)"
+_DEFAULTS = {f.name: f.default for f in fields(Device)}
+_OPTIONAL = {"delay", "coulomb", "counts_per_metre", "hand", "velocity"}
+
+
+def _checked(name, given, error):
+    least, above = (None, 0.0) if name in _ABOVE_ZERO else (0.0, None)
+    return number(name, given, _UNITS[name], "a device", least=least, above=above, why=_WHY.get(name, ""), error=error)

@@ -23,14 +23,13 @@ delay. A paddle has no force sensor: it is simulated only.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.arguments import having, number
+from ..base.arguments import number
+from ..device.device import Device, known
 from ..errors import AnalysisError
-from .limit import A_PADDLE
 from .loop import Loop
 from .passivity import required_damping
 from .plots import plot_admittance
@@ -39,7 +38,7 @@ from .two_port import TwoPort, frequencies, stopped
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from .limit import Device
+    from ..device.device import AnyDevice
 
 KIND = "continuous approximation below the Nyquist frequency; exact for the servo alone"
 #: w T of motion so slow that a ton of coupler is no resistance
@@ -81,7 +80,7 @@ class AdmittanceDesign:
         )
 
 
-def admittance_design(paddle: Device, *, servo: float, servo_stiffness: float = 0.0, b_a: float = 0.0) -> AdmittanceDesign:
+def admittance_design(device: AnyDevice, *, servo: float, servo_stiffness: float = 0.0, b_a: float = 0.0) -> AdmittanceDesign:
     """Design the virtual coupler of an admittance display by Llewellyn's criterion (after Adams and Hannaford 1999).
 
     The servo alone is held to Eq. (23.10), exactly: stable in every passive hand with the environment at rest. The coupler
@@ -90,7 +89,8 @@ def admittance_design(paddle: Device, *, servo: float, servo_stiffness: float = 
 
     Parameters
     ----------
-    paddle : SimulatedPaddle or any object with m [kg], b [N s/m], T [s], delay [s]
+    device : Device or paddle
+        Its m, b, T and delay are read.
     servo : float
         Damper b_s of the servo that makes the device follow [N s/m], > 0, by backward difference of positions.
     servo_stiffness : float
@@ -114,15 +114,15 @@ def admittance_design(paddle: Device, *, servo: float, servo_stiffness: float = 
     >>> design.two_port.absolutely_stable
     True
     """
-    having(paddle, A_PADDLE, "m", "b", "T", "delay")
-    values = {"m": paddle.m, "b": paddle.b, "T": paddle.T, "delay": paddle.delay}
+    m, b, T, delay = known(device, "m", "b", "T", "delay")
+    values = {"m": m, "b": b, "T": T, "delay": delay}
     b_s = number("servo", servo, "N s/m", "a device that follows", above=0)
     k_s = number("servo_stiffness", servo_stiffness, "N/m", least=0)
     b_a = number("b_a", b_a, "N s/m", "a coupler's damper", least=0)
     bare = admittance_display(**values, b_s=b_s, k_s=k_s, m_a=0.0, b_a=0.0)
     _servo_passive(bare, b_s, k_s, **values)
     theta = frequencies()
-    needed, body = _needed(bare, theta), 2 * np.sin(theta / 2) ** 2 / paddle.T
+    needed, body = _needed(bare, theta), 2 * np.sin(theta / 2) ** 2 / T
     slow = float(_needed(bare, np.array([SLOW]))[0])  # no body resists motion as slow as this: a damper has to
     if slow > b_a + SLOW:
         raise AnalysisError(f"b_a = {b_a:g} N s/m: slow motion against the servo's spring needs b_a >= {slow:.4g}")
@@ -130,7 +130,7 @@ def admittance_design(paddle: Device, *, servo: float, servo_stiffness: float = 
     worst = int(masses.argmax())
     m_a = max(float(masses[worst]), 0.0)
     display = admittance_display(**values, b_s=b_s, k_s=k_s, m_a=m_a * (1 + 1e-9), b_a=b_a)
-    at = 0.0 if theta[worst] < 1e-3 else float(theta[worst] / (2 * np.pi * paddle.T))  # the grid begins there
+    at = 0.0 if theta[worst] < 1e-3 else float(theta[worst] / (2 * np.pi * T))  # the grid begins there
     return AdmittanceDesign(m_a, b_a, at, display)
 
 
@@ -164,6 +164,6 @@ def admittance_display(
         rows = [1 / whole, servo / whole], [-np.exp(-s * delay), coupler]
         return np.moveaxis(np.array(rows), 2, 0)
 
-    alone = SimpleNamespace(m=m, b=b, T=T, delay=delay, hand=None)
+    alone = Device(m=m, b=b, T=T, delay=delay)
     stable = not Loop.of(alone, "zoh", b_s).unstable(k_s)  # the sampled servo, on the device alone
     return TwoPort(g, T, f"admittance display, m_a = {m_a:g} kg, b_a = {b_a:g} N s/m", stable)

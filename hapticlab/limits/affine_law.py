@@ -91,7 +91,7 @@ def affine_law(
     if isinstance(law, AffineLaw):
         return law
     if isinstance(law, LinearLaw):
-        _check_period(law, T)
+        law.require_period(T)
         A, B0, C0, D0 = _parts(law)
         return AffineLaw(A, B0, 0 * B0, C0, 0 * C0, D0, 0 * D0, law.name)
     if isinstance(law, Scene):
@@ -105,7 +105,7 @@ def affine_law(
         found = law(K)
         if not isinstance(found, LinearLaw):
             raise AnalysisError(f"the law's function gave a {type(found).__name__} at K = {K:g} N/m; needs a LinearLaw")
-        _check_period(found, T)
+        found.require_period(T)
         return _parts(found)
 
     return _fitted(of, getattr(law, "__name__", "law").replace("<lambda>", "law"))
@@ -194,11 +194,6 @@ def _cleaned(array, *near):
     """Make zero what rounding has left of a difference."""
     size = max(abs(a).max(initial=0) for part in near for a in part)
     return np.where(abs(array) > ROUNDING * 1e-3 * size, array, 0.0)
-
-
-def _check_period(law, T):
-    if not abs(law.T - T) <= 1e-9 * T:
-        raise AnalysisError(f"{law.name} is a law of T = {law.T:g} s; the paddle samples every {T:g} s: make the law for that")
 
 
 def _what(law):

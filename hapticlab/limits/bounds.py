@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from ..base.arguments import choice, having, number, period
+from ..base.arguments import choice, number
+from ..device.device import known
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
-from .limit import A_PADDLE, AnyHand, Limit, whole_and_fraction
+from .limit import AnyHand, Limit, whole_and_fraction
 from .passivity import passivity_limit, required_damping
 from .plots import plot_bounds, plot_diolaiti
 from .stability import stability_limit
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from matplotlib.figure import Figure
 
+    from ..device.device import AnyDevice
     from ..scene.laws.taps import LawName
-    from .limit import Plant
 
+#: numbers of a device whose hold viscous damping pays for, and whose encoder Coulomb friction
+TWO_MODES = ("b", "T", "delay", "coulomb", "counts_per_metre")
 #: what e of :func:`gil_limit` may be at most for Gil's formula
 SLOW_ENOUGH = 0.1
 PASSIVITY = AnyHand("passivity: any hand, sufficient")
@@ -35,23 +40,19 @@ REGIONS = {
 NOT_PASSIVE = "slow motions come to rest, not passive: a hand that moves faster before the force changes draws energy"
 
 
-def abbott_okamura_limit(
-    *, b: float, T: float, coulomb: float = 0.0, resolution: float = 0.0, B: float = 0.0, delay: float = 0.0, law: LawName = "zoh"
-) -> Limit:
+def abbott_okamura_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -> Limit:
     """Largest stiffness that is passive with a quantised position: K <= min(2 b/T, 2 f_c/Delta) (Abbott and Okamura 2005).
 
     Two modes of their own: the hold, paid for by viscous damping, and the encoder, paid for by Coulomb friction alone.
 
     Parameters
     ----------
-    b : float
-        Viscous damping of the device [N s/m], >= 0.
-    T : float
-        Sampling period [s], > 0.
-    coulomb : float
-        Coulomb friction f_c of the device [N], >= 0.
-    resolution : float
-        Displacement Delta of one encoder count at the handle [m], >= 0; 0 for a sensor without counts.
+    device : Device or paddle
+        Its b, T, coulomb, f_c of the equation, and counts_per_metre, 1/Delta, are read; its delay must be 0.
+    B : float
+        Virtual damper [N s/m], which must be 0.
+    law : str
+        Which must be "zoh".
 
     Returns
     -------
@@ -64,20 +65,19 @@ def abbott_okamura_limit(
 
     Examples
     --------
-    >>> print(abbott_okamura_limit(b=0.1, T=1e-3, coulomb=0.02, resolution=0.25e-3).K)
+    >>> import hapticlab as hl
+    >>> print(abbott_okamura_limit(hl.Device(b=0.1, T="1 ms", coulomb=0.02, counts_per_metre=4000)).K)
     160.0
     """
-    b, T, coulomb, resolution = _device(b, T, coulomb, resolution)
+    b, T, delay, coulomb, counts = known(device, *TWO_MODES)
     for name, value, unit in (("B", B, "N s/m"), ("delay", delay, "s")):
         if value:
             raise AnalysisError(f"{name} = {value:g} {unit}; Abbott and Okamura's bound is for a plain spring without {name}")
     _plain(law, "Abbott and Okamura")
-    return _two_modes(b, T, coulomb, resolution, 0.5, "Abbott and Okamura 2005")
+    return _two_modes(b, T, coulomb, counts, 0.5, "Abbott and Okamura 2005")
 
 
-def diolaiti_limit(
-    *, b: float, T: float, coulomb: float = 0.0, resolution: float = 0.0, delay: float = 0.0, B: float = 0.0, law: LawName = "zoh"
-) -> Limit:
+def diolaiti_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -> Limit:
     """Largest stiffness of the passive region of Diolaiti et al. (2006): b/(K T) >= 1/2 + delay/T and f_c/(K Delta) >= 1/2.
 
     With a whole number of periods of delay the first is exact. With a fraction it is what slow sinusoids ask for, and up
@@ -86,20 +86,22 @@ def diolaiti_limit(
 
     Parameters
     ----------
-    delay : float
-        Computational delay [s], >= 0. The other arguments are those of :func:`abbott_okamura_limit`.
+    device : Device or paddle
+        Its b, T, delay, coulomb and counts_per_metre are read.
+    B, law
+        As for :func:`abbott_okamura_limit`.
 
     Examples
     --------
-    >>> print(diolaiti_limit(b=0.1, T=1e-3, delay=0.5e-3).K)
+    >>> import hapticlab as hl
+    >>> print(diolaiti_limit(hl.Device(b=0.1, T="1 ms", delay="0.5 ms")).K)
     100.0
     """
-    b, T, coulomb, resolution = _device(b, T, coulomb, resolution)
-    delay = number("delay", delay, "s", least=0, why="a force cannot come before its sample")
+    b, T, delay, coulomb, counts = known(device, *TWO_MODES)
     if B:
         raise AnalysisError(f"B = {B:g} N s/m; Diolaiti's regions are for a plain spring without virtual damping")
     _plain(law, "Diolaiti")
-    found = _two_modes(b, T, coulomb, resolution, 0.5 + delay / T, "Diolaiti et al. 2006")
+    found = _two_modes(b, T, coulomb, counts, 0.5 + delay / T, "Diolaiti et al. 2006")
     if not whole_and_fraction(delay, T)[1]:
         return found
     note = "a fraction of a period of delay: a hand that moves faster before the force changes draws energy up to 8 % lower"
@@ -143,19 +145,16 @@ class DiolaitiPoint:
         return f"beta = b/(K T) = {self.beta:.4g}, sigma = f_c/(K Delta) = {self.sigma:.4g}: {self.region}{grow}"
 
 
-def diolaiti(
-    *, K: float, b: float, T: float, coulomb: float = 0.0, resolution: float = 0.0, delay: float = 0.0, m: float | None = None
-) -> DiolaitiPoint:
+def diolaiti(device: AnyDevice, *, K: float) -> DiolaitiPoint:
     """Return where a plain wall of stiffness K lies in the beta-sigma plane (Diolaiti, Niemeyer, Barbagli, Salisbury 2006).
 
     Parameters
     ----------
+    device : Device or paddle
+        Its b, T, delay, coulomb and counts_per_metre are read; and where it has one its m, with that of its hand, for the
+        amplitude above which a locally stable wall grows.
     K : float
         Stiffness [N/m], > 0.
-    b, T, coulomb, resolution, delay : float
-        As for :func:`~hapticlab.limits.bounds.diolaiti_limit`.
-    m : float, optional
-        Mass of handle and hand [kg], for the amplitude above which a locally stable wall grows.
 
     Returns
     -------
@@ -163,15 +162,15 @@ def diolaiti(
 
     Examples
     --------
-    >>> print(diolaiti(K=300, b=0.1, T=1e-3, coulomb=0.05, resolution=0.2e-3, m=0.05))
+    >>> import hapticlab as hl
+    >>> print(diolaiti(hl.Device(m=0.05, b=0.1, T="1 ms", coulomb=0.05, counts_per_metre=5000), K=300))
     beta = b/(K T) = 0.3333, sigma = f_c/(K Delta) = 0.8333: locally stable: comes to rest from small motions, large ones grow; \
 motions above 16.44 mm grow
     """
-    diolaiti_limit(b=b, T=T, coulomb=coulomb, resolution=resolution, delay=delay)  # refuses what is no device
+    b, T, delay, coulomb, counts, hand, m = known(device, *TWO_MODES, "hand", or_none="m")
     K = number("K", K, "N/m", "a wall", above=0)
-    if m is not None:
-        m = number("m", m, "kg", "the handle and hand", above=0, what="a mass m")
-    beta, sigma = b / (K * T), coulomb / (K * resolution) if resolution else math.inf
+    M = m and m + (hand.m if hand else 0.0)
+    beta, sigma = b / (K * T), coulomb / K * counts if counts else math.inf
     tau = delay / T
     calm, settled = beta >= 0.5 + tau, sigma >= 0.5
     region, amplitude = REGIONS[calm, settled], math.inf
@@ -179,12 +178,12 @@ motions above 16.44 mm grow
         region = NOT_PASSIVE
     if not calm:
         pull = K * T * (0.5 + tau) - b  # the negative damper of hold and delay that is left over [N s/m]
-        amplitude = 4 * coulomb / (math.pi * math.sqrt(K / m) * pull) if m else math.nan
+        amplitude = 4 * coulomb / (math.pi * math.sqrt(K / M) * pull) if M else math.nan
         amplitude = amplitude if settled else 0.0
     return DiolaitiPoint(beta, sigma, tau, region, amplitude)
 
 
-def gil_limit(paddle: Plant, *, B: float = 0.0, law: LawName = "zoh") -> Limit:
+def gil_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -> Limit:
     """Largest stable stiffness to first order in the delay, K < (b + B)/(T/2 + delay) (Gil et al. 2004, 2009).
 
     A stability claim for one plant, not a passivity claim; damping of the hand counts with the device's. It holds where
@@ -194,7 +193,8 @@ def gil_limit(paddle: Plant, *, B: float = 0.0, law: LawName = "zoh") -> Limit:
 
     Parameters
     ----------
-    paddle : SimulatedPaddle or any object with m, b, T, delay and hand
+    device : Device or paddle
+        Its m, b, T, delay and hand are read.
     B : float
         Virtual damper of either sign [N s/m].
 
@@ -209,12 +209,11 @@ def gil_limit(paddle: Plant, *, B: float = 0.0, law: LawName = "zoh") -> Limit:
     >>> print(round(gil_limit(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), B=0.05).K, 6))
     300.0
     """
-    having(paddle, A_PADDLE, "m", "b", "T", "delay", "hand")
-    hand = paddle.hand
+    m, own, T, delay, hand = known(device, "m", "b", "T", "delay", "hand")
     _plain(law, "Gil")
-    tau = paddle.T / 2 + paddle.delay
-    b = paddle.b + (hand.b if hand else 0.0)
-    M = number("m", paddle.m + (hand.m if hand else 0.0), "kg", "the handle", above=0, what="a mass m")
+    tau = T / 2 + delay
+    b = own + (hand.b if hand else 0.0)
+    M = number("m", m + (hand.m if hand else 0.0), "kg", "the handle", above=0, what="a mass m")
     K = max((b + B) / tau, 0.0)
     small = ((K + (hand.k if hand else 0.0)) * tau**2 / M + abs(B) * tau / M) * (b + abs(B))
     if small > SLOW_ENOUGH * (b + B):
@@ -255,12 +254,12 @@ class Bounds:
         return plot_bounds(self)
 
 
-def bounds(paddle: Plant, *, law: LawName = "zoh", B: float = 0.0) -> Bounds:
+def bounds(device: AnyDevice, *, law: LawName = "zoh", B: float = 0.0) -> Bounds:
     """Return every named bound on the stiffness of a wall beside the exact limit of this paddle's stability.
 
     Parameters
     ----------
-    paddle : SimulatedPaddle
+    device : Device or paddle
         Its m, b, T, delay, coulomb, counts_per_metre and hand are read.
     law : {"zoh", "half_sample", "backward_difference", "ellis"}
         Where the paddle estimates its velocity by backward difference, half_sample is backward_difference, in every row.
@@ -279,35 +278,23 @@ def bounds(paddle: Plant, *, law: LawName = "zoh", B: float = 0.0) -> Bounds:
     200.07
     """
     choice("law", law, TAPS)
-    having(paddle, A_PADDLE, "m", "b", "T", "delay", "hand")
-    if LEAD[law] and getattr(paddle, "velocity", "measured") == "backward_difference":
+    *_, velocity = known(device, "m", "b", "T", "velocity")
+    if LEAD[law] and velocity == "backward_difference":
         law = "backward_difference"  # Eq. (23.3) with the estimate is Eq. (23.5)
-    device: dict[str, Any] = {"b": paddle.b, "T": paddle.T, "B": B, "delay": paddle.delay, "law": law}
-    counts = getattr(paddle, "counts_per_metre", None)
-    quantised: dict[str, Any] = {"coulomb": getattr(paddle, "coulomb", 0.0), "resolution": 1 / counts if counts else 0.0}
-    asked = {
-        "Colgate, Schenkel": lambda: passivity_limit(**device),
-        "Abbott, Okamura": lambda: abbott_okamura_limit(**device, **quantised),
-        "Diolaiti": lambda: diolaiti_limit(**device, **quantised),
-        "Gil": lambda: gil_limit(paddle, B=B, law=law),
-        "exact stability": lambda: stability_limit(paddle, law=law, B=B),
+    asked: dict[str, Callable[..., Limit]] = {
+        "Colgate, Schenkel": passivity_limit,
+        "Abbott, Okamura": abbott_okamura_limit,
+        "Diolaiti": diolaiti_limit,
+        "Gil": gil_limit,
+        "exact stability": stability_limit,
     }
     found: dict[str, Limit | str] = {}
     for name, limit in asked.items():
         try:
-            found[name] = limit()
+            found[name] = limit(device, law=law, B=B)
         except AnalysisError as refusal:
             found[name] = f"does not apply: {refusal}"
     return Bounds(law, B, found)
-
-
-def _device(b, T, coulomb, resolution):
-    return (
-        number("b", b, "N s/m", "a device", least=0, why="its damping pays for the hold"),
-        period(T),
-        number("coulomb", coulomb, "N", least=0, why="friction opposes motion"),
-        number("resolution", resolution, "m", "an encoder count", least=0, what="a size"),
-    )
 
 
 def _plain(law, author):
@@ -317,10 +304,10 @@ def _plain(law, author):
         raise AnalysisError(f"law {law} {eq}; {author}'s formula is for the plain spring, Eq. (23.1): law zoh")
 
 
-def _two_modes(b, T, coulomb, resolution, periods, source):
+def _two_modes(b, T, coulomb, counts, periods, source):
     """Return the lesser of what viscous damping pays for the hold and Coulomb friction for the encoder."""
     hold = b / (T * periods)
-    encoder = 2 * coulomb / resolution if resolution else math.inf
+    encoder = 2 * coulomb * counts if counts else math.inf
     binds = f"b = {b:g} N s/m pays for the hold" if hold <= encoder else f"f_c = {coulomb:g} N pays for the encoder"
     notes = ("handle of mass, viscous and Coulomb friction, one encoder on the handle", "plain spring, no virtual damper")
     return Limit(min(hold, encoder), None, PASSIVITY, f"{source}: {binds}", notes)

@@ -25,8 +25,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.arguments import instance, number, period
+from ..base.arguments import instance, number
 from ..base.roots import root
+from ..device.device import known
 from ..errors import AnalysisError
 from .limit import MOST_PERIODS, whole_and_fraction
 from .linear_law import LinearLaw
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ..base.annotations import Array
+    from ..device.device import AnyDevice
 
 #: a stiffness beside which the next cut has nothing to add
 SETTLED = 1e-13
@@ -84,7 +86,7 @@ class PassivityMargin:
 
     def equivalent_damper(self, theta: ArrayLike) -> Array:
         """Return the damper [N s/m] as which a sinusoid of theta = w T feels the law; negative: it draws energy."""
-        return equivalent_damper(self.law, theta, delay=self.delay)
+        return _felt_damper(self.law, theta, self.delay)
 
     @property
     def flat(self) -> bool:
@@ -104,7 +106,7 @@ class PassivityMargin:
         )
 
 
-def passivity_margin(law: LinearLaw, *, b: float, delay: float = 0.0) -> PassivityMargin:
+def passivity_margin(device: AnyDevice, law: LinearLaw) -> PassivityMargin:
     """Passivity of a linear law on a device of damping b, frequency by frequency (Colgate and Schenkel 1997).
 
     Necessary and sufficient for a law that always acts; for a unilateral wall it says nothing about the switching, except
@@ -112,12 +114,10 @@ def passivity_margin(law: LinearLaw, *, b: float, delay: float = 0.0) -> Passivi
 
     Parameters
     ----------
+    device : Device or paddle
+        Its b and delay are read, the delay in whole and fractional periods alike; its T must be that of the law.
     law : LinearLaw
         Of a name, of taps or of a scene.
-    b : float
-        Viscous damping of the device [N s/m], >= 0.
-    delay : float
-        Computational delay [s], whole and fractional periods alike, >= 0.
 
     Returns
     -------
@@ -130,13 +130,14 @@ def passivity_margin(law: LinearLaw, *, b: float, delay: float = 0.0) -> Passivi
 
     Examples
     --------
-    >>> margin = passivity_margin(LinearLaw.of("backward_difference", K=100.0, T=1e-3), b=0.15)
+    >>> import hapticlab as hl
+    >>> margin = passivity_margin(hl.Device(b=0.15), LinearLaw.of("backward_difference", K=100.0, T=1e-3))
     >>> round(margin.required, 9), round(margin.frequency, 3), round(margin.margin, 9)
     (0.1, 500.0, 0.05)
     """
-    b = number("b", b, "N s/m", "a device", least=0, why="its damping pays for the hold")
-    delay = number("delay", delay, "s", least=0, why="a force cannot come before its sample")
     instance("law", law, LinearLaw, "a LinearLaw: hl.laws.LinearLaw.of('zoh', K=200, T=1e-3) or .of_scene(scene)")
+    b, delay, T = known(device, "b", "delay", or_none="T")
+    law.require_period(T)
     whole_and_fraction(delay, law.T, most=MOST_PERIODS)
     pole = unstable_pole(law.A, law.B, law.C)
     if pole is not None:
@@ -147,39 +148,62 @@ def passivity_margin(law: LinearLaw, *, b: float, delay: float = 0.0) -> Passivi
     return PassivityMargin(law, b, delay, most, theta / (2 * math.pi * law.T))
 
 
-def equivalent_damper(law: LinearLaw, theta: ArrayLike, *, delay: float = 0.0) -> Array:
+def equivalent_damper(device: AnyDevice, law: LinearLaw, theta: ArrayLike) -> Array:
     """Return the damper [N s/m] as which a sinusoid x of theta = w T > 0 feels a held law, past Nyquist too.
 
     The part of the held force in phase with the velocity, over the velocity: at whole multiples of theta = pi averaged
-    over the phase between motion and samples.
+    over the phase between motion and samples. Of the device the delay is read; its T must be that of the law.
 
     Examples
     --------
     >>> law = LinearLaw.of("zoh", K=100.0, T=1e-3)
-    >>> round(float(equivalent_damper(law, 1e-3)), 6)  # slow motion feels -K T/2
+    >>> import hapticlab as hl
+    >>> round(float(equivalent_damper(hl.Device(T="1 ms"), law, 1e-3)), 6)  # slow motion feels -K T/2
     -0.05
     """
+    delay, T = known(device, "delay", or_none="T")
+    law.require_period(T)
+    return _felt_damper(law, theta, delay)
+
+
+def _felt_damper(law, theta, delay):
     theta = np.asarray(theta, dtype=float)
     late = np.exp(-1j * theta * delay / law.T)
     return -law.T / theta**2 * ((1 - np.exp(-1j * theta)) * law.at(theta) * late).real
 
 
-def wall_damping(*, K: float, T: float, B: float = 0.0, velocity_filter: float = 0.0) -> float:
+def wall_damping(device: AnyDevice, *, K: float, B: float = 0.0, velocity_filter: float = 0.0) -> float:
     """Least device damping [N s/m] of a wall with a damper on a filtered velocity: Eq. (23.10) and its extension.
 
     ``K T/2 + |B|`` for a damper on the plain backward difference. A first-order filter of time constant tau leaves
     ``K T/2 + B/(1 + 2 tau/T)`` for B >= 0, which asks at Nyquist where the filter is small; for B < 0 it changes
-    nothing, as slow motion asks (after Brown 1995). No delay.
+    nothing, as slow motion asks (after Brown 1995). With a delay it is what :func:`passivity_margin` finds.
+
+    Parameters
+    ----------
+    device : Device or paddle
+        Its T and delay are read.
+    K : float
+        Stiffness [N/m], >= 0.
+    B : float
+        Virtual damper of either sign [N s/m].
+    velocity_filter : float
+        Time constant tau [s], >= 0.
 
     Examples
     --------
-    >>> round(wall_damping(K=100, T=1e-3, B=0.3, velocity_filter=1e-3), 9)
+    >>> import hapticlab as hl
+    >>> round(wall_damping(hl.Device(T="1 ms"), K=100, B=0.3, velocity_filter=1e-3), 9)
+    0.15
+    >>> round(wall_damping(hl.Device(T="1 ms", delay="1 ms"), K=100), 9)
     0.15
     """
+    T, delay = known(device, "T", "delay")
     K = number("K", K, "N/m", "a wall", least=0, why="A negative spring feeds energy to the user.")
-    T = period(T)
     tau = number("velocity_filter", velocity_filter, "s", least=0, what="a time constant")
     B = number("B", B, "N s/m", "a virtual damper")
+    if delay:
+        return _required(LinearLaw.of("zoh", K=K, T=T, B=B, velocity_filter=tau), delay)[0]
     return K * T / 2 + (B / (1 + 2 * tau / T) if B >= 0 else -B)
 
 

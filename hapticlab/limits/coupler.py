@@ -24,10 +24,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.arguments import having, number
+from ..base.arguments import number
 from ..base.roots import minimum
+from ..device.device import known
 from ..errors import AnalysisError
-from .limit import A_PADDLE, MOST_PERIODS, whole_and_fraction
+from .limit import MOST_PERIODS, whole_and_fraction
 from .plots import plot_coupler
 from .two_port import TwoPort, frequencies, hertz, stopped
 
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..base.annotations import Array
-    from .limit import Device
+    from ..device.device import AnyDevice
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ class CouplerDesign:
         )
 
 
-def coupler_design(paddle: Device, *, b_c: float | None = None) -> CouplerDesign:
+def coupler_design(device: AnyDevice, *, b_c: float | None = None) -> CouplerDesign:
     """Design a virtual coupler for an impedance display by Llewellyn's criterion (after Adams and Hannaford 1999).
 
     Exact for the sampled device in any passive hand; the environment must be passive at the sample rate, which explicit
@@ -92,8 +93,8 @@ def coupler_design(paddle: Device, *, b_c: float | None = None) -> CouplerDesign
 
     Parameters
     ----------
-    paddle : SimulatedPaddle or any object with b [N s/m], T [s], delay [s]
-        Its mass does not matter: a passive hand may take it away.
+    device : Device or paddle
+        Its b, T and delay are read. Its mass does not matter: a passive hand may take it away.
     b_c : float, optional
         Damping of the coupler [N s/m], >= 0. Without it the damper beside which the spring can be stiffest.
 
@@ -114,9 +115,8 @@ def coupler_design(paddle: Device, *, b_c: float | None = None) -> CouplerDesign
     >>> round(design.k_c, 6)  # 2 (b - b_c)/T
     300.0
     """
-    having(paddle, A_PADDLE, "b", "T", "delay")
-    b = number("b", paddle.b, "N s/m", "a coupler", above=0, what="a device of b", why="it pays for the hold")
-    T, delay = float(paddle.T), float(paddle.delay)
+    b, T, delay = known(device, "b", "T", "delay")
+    b = number("b", b, "N s/m", "a coupler", above=0, what="a device of b", why="it pays for the hold")
     most = _most_damping(b, T, delay)
     if b_c is None:
         b_c = _best_damping(b, T, delay, most)

@@ -24,8 +24,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..base.arguments import number, period
+from ..base.arguments import number
 from ..base.drawing import STYLES, house_style, new_figure
+from ..device.device import known
 from ..errors import AnalysisError
 from .limit import whole_and_fraction
 
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from matplotlib.figure import Figure
+
+    from ..device.device import AnyDevice
 
 
 @dataclass(frozen=True)
@@ -107,12 +110,10 @@ class Ledger:
 
 
 def passivity_ledger(
+    device: AnyDevice,
     *,
-    b: float,
-    T: float,
     K: float | tuple[float, float] | list[float] = 0.0,
     B: float | tuple[float, float] | list[float] = 0.0,
-    delay: float = 0.0,
     delayed: bool = False,
     bounded: bool = False,
     parts: Iterable[tuple[str, float, str]] = (),
@@ -124,18 +125,14 @@ def passivity_ledger(
 
     Parameters
     ----------
-    b : float
-        Viscous damping of the device [N s/m], >= 0.
-    T : float
-        Sampling period [s], > 0.
+    device : Device or paddle
+        Its b, T and delay are read.
     K : float, or (k_min, k_max)
         Stiffness of the environment [N/m], or the range of its local stiffness dF/dx; a part of it may be negative, as
         of a latch or a detent, where its energy is ``bounded``; :func:`hapticlab.stability.local_stiffness` finds it. A
         unilateral wall has (0, K).
     B : float, or (B_min, B_max)
         Virtual damping [N s/m] by backward difference, of either sign, or the range of its local damping.
-    delay : float
-        Computational delay [s], >= 0.
     delayed : bool
         The environment answers a sample late: the force of sample n comes from x(n-1), as an explicit integrator's does.
     bounded : bool
@@ -156,16 +153,15 @@ def passivity_ledger(
 
     Examples
     --------
-    >>> print(passivity_ledger(b=0.2, T=1e-3, K=200, B=0.05))
+    >>> import hapticlab as hl
+    >>> print(passivity_ledger(hl.Device(b=0.2, T="1 ms"), K=200, B=0.05))
     device              +0.2 N s/m   output-strictly passive by its own damping b
     hold                -0.1 N s/m   local stiffness at most 200 N/m, held: k T/2
     damper             -0.05 N s/m   local damping at most 0.05 N s/m in magnitude, held: |B|
     left               +0.05 N s/m   passive in every passive hand
       device damping b alone: no encoder, no Coulomb friction
     """
-    b = number("b", b, "N s/m", "a device", least=0, why="its damping pays for the hold")
-    T = period(T)
-    delay = number("delay", delay, "s", least=0, why="a force cannot come before its sample")
+    b, T, delay = known(device, "b", "T", "delay")
     (k_min, k_max), (B_min, B_max) = _range("K", K, "N/m"), _range("B", B, "N s/m")
     stiff, damped = max(abs(k_min), abs(k_max)), max(abs(B_min), abs(B_max))
     if k_max <= 0 > k_min:

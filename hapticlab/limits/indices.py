@@ -24,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.arguments import instance
+from ..device.device import Device
 from ..errors import AnalysisError
 from .colgate import passivity_margin
 from .linear_law import LinearLaw
@@ -101,7 +102,7 @@ def passivity_indices(law: LinearLaw) -> PassivityIndices:
       output-strict eps = -5 m/(N s), at 500 Hz: short, a dashpot in line that yields 5 m/s a newton pays
     """
     instance("law", law, LinearLaw, "a LinearLaw, as hl.laws.LinearLaw.of('zoh', K=200, T=1e-3)")
-    margin = passivity_margin(law, b=0.0)
+    margin = passivity_margin(Device(b=0.0), law)
     theta = math.pi * np.arange(1, GRID + 1) / GRID
     size = np.abs(law.at(theta)).max()
     if size == 0:

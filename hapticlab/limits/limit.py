@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from ..errors import AnalysisError
 from .plots import plot_limit
@@ -12,32 +12,8 @@ from .plots import plot_limit
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..device.hand.hand import Hand
-
 #: a limit's polynomials have a degree for each period of delay; past this their roots lose their digits
 MOST_PERIODS = 200
-
-A_PADDLE = "a paddle, as hl.SimulatedPaddle(...)"
-
-
-class Device(Protocol):
-    """The constants that a limit reads of a paddle, in SI units; every :class:`hapticlab.SimulatedPaddle` has them."""
-
-    @property
-    def m(self) -> float: ...
-    @property
-    def b(self) -> float: ...
-    @property
-    def T(self) -> float: ...
-    @property
-    def delay(self) -> float: ...
-
-
-class Plant(Device, Protocol):
-    """A device, and the hand that holds it."""
-
-    @property
-    def hand(self) -> Hand | None: ...
 
 
 class AnyHand(str):

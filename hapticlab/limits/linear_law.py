@@ -159,6 +159,13 @@ class LinearLaw:
         """Return a figure: the spring and the damper as which slow and fast sinusoids feel the law, the hold included."""
         return plot_law(self)
 
+    def require_period(self, T: float | None) -> None:
+        """Refuse a device of another sampling period [s]; None is not known."""
+        if T is not None and not abs(self.T - T) <= 1e-9 * T:
+            raise AnalysisError(
+                f"{self.name} is a law of T = {self.T:g} s; the paddle samples every {T:g} s: make the law for that"
+            )
+
     def named(self, name: str) -> LinearLaw:
         """Return the same law under another name."""
         return LinearLaw(self.A, self.B, self.C, self.D, self.T, name)

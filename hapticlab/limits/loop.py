@@ -8,9 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
-from ..base.arguments import having, number, period
+from ..base.arguments import number
+from ..device.device import known
 from .affine_law import AffineLaw, affine_law
-from .limit import A_PADDLE, MOST_PERIODS, whole_and_fraction
+from .limit import MOST_PERIODS, whole_and_fraction
 
 #: |w| below which an eigenvalue's absolute rounding would show, so that it is moved onto the characteristic equation
 SLOW = 0.1
@@ -53,20 +54,17 @@ class Loop:
     scale: float
 
     @classmethod
-    def of(cls, paddle, law, B=0.0, parameter="k"):
-        """Return the loop of any object with m [kg], b [N s/m], T [s], delay [s] and hand."""
-        having(paddle, A_PADDLE, "m", "b", "T", "delay", "hand")
+    def of(cls, device, law, B=0.0, parameter="k"):
+        """Return the loop of a Device, a paddle or its profile."""
+        m, b, T, delay, hand, velocity = known(device, "m", "b", "T", "delay", "hand", "velocity")
         B = number("B", B, "N s/m", "a virtual damper")
-        T = period(paddle.T)
-        law = affine_law(law, T=T, B=B, parameter=parameter, velocity=getattr(paddle, "velocity", "measured"))
-        hand = paddle.hand
+        law = affine_law(law, T=T, B=B, parameter=parameter, velocity=velocity)
         sums = {}
-        for name, unit in (("m", "kg"), ("b", "N s/m")):
-            own, added = getattr(paddle, name), 0.0 if hand is None else getattr(hand, name)
+        for name, own, unit in (("m", m, "kg"), ("b", b, "N s/m")):
+            added = 0.0 if hand is None else getattr(hand, name)
             sums[name] = number(name, own + added, unit, "a handle with its hand", least=0)
         M = number("m", sums["m"], "kg", "the handle", above=0, what="a mass m")
         k = 0.0 if hand is None else number("hand k", hand.k, "N/m", least=0, what="k")
-        delay = number("delay", paddle.delay, "s", least=0)
         whole, f = whole_and_fraction(delay, T, most=MOST_PERIODS)
         A = np.array([[0.0, 1.0], [-k * T**2 / M, -sums["b"] * T / M]])
         force = np.array([0.0, T**2 / M])

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ..base.annotations import Array
+    from ..device.device import AnyDevice
 
 #: |M| past which 1 + H c is rounding
 INFINITE = 1e9
@@ -98,16 +99,14 @@ class NyquistDisk:
         return f"{self.law.name} on b = {self.b:g} N s/m: |M| {self.size} {at}, {inside}"
 
 
-def nyquist_disk(law: LinearLaw, *, b: float, delay: float = 0.0) -> NyquistDisk:
+def nyquist_disk(device: AnyDevice, law: LinearLaw) -> NyquistDisk:
     """Return the disk of passive hands and the law against it (Colgate and Schenkel 1997; Eq. 23.10 is its result).
 
     Parameters
     ----------
+    device : Device or paddle
+        Its b > 0 and its delay are read, whole and fractional periods alike; its T must be that of the law.
     law : LinearLaw
-    b : float
-        Damping of the device [N s/m], > 0.
-    delay : float
-        [s], >= 0, whole and fractional periods alike.
 
     Returns
     -------
@@ -120,12 +119,13 @@ def nyquist_disk(law: LinearLaw, *, b: float, delay: float = 0.0) -> NyquistDisk
 
     Examples
     --------
-    >>> disk = nyquist_disk(LinearLaw.of("zoh", K=100.0, T=1e-3), b=0.1)
+    >>> import hapticlab as hl
+    >>> disk = nyquist_disk(hl.Device(b=0.1), LinearLaw.of("zoh", K=100.0, T=1e-3))
     >>> disk.passive, round(abs(complex(disk.mapped(3.141592653589793))), 9)
     (True, 0.333333333)
     """
-    number("b", b, "N s/m", "a disk of finite size", above=0)
-    margin = passivity_margin(law, b=b, delay=delay)
+    margin = passivity_margin(device, law)
+    number("b", margin.b, "N s/m", "a disk of finite size", above=0)
     if math.isinf(margin.required):
         raise AnalysisError(f"{law.name}: a resonance without damping reaches every circle; needs a law that damps its own")
     if float(margin.asked([math.pi])[0]) >= margin.required * (1 - 1e-9):  # all alike, or there alone

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..base.arguments import choice, number, period
+from ..device.device import known
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD, TAPS
 from .affine_law import affine_law
@@ -32,6 +33,7 @@ from .linear_law import LinearLaw
 from .port import unstable_pole
 
 if TYPE_CHECKING:
+    from ..device.device import AnyDevice
     from ..scene.laws.taps import LawName
     from .affine_law import StiffnessLaw
 
@@ -42,11 +44,9 @@ NO_VELOCITY = "its exact velocity jumps at the samples: a hand that moves only t
 
 
 def passivity_limit(
+    device: AnyDevice,
     *,
-    b: float,
-    T: float,
     B: float = 0.0,
-    delay: float = 0.0,
     law: StiffnessLaw = "zoh",
     velocity_filter: float = 0.0,
     parameter: str = "k",
@@ -58,14 +58,10 @@ def passivity_limit(
 
     Parameters
     ----------
-    b : float
-        Viscous damping of the device [N s/m], >= 0.
-    T : float
-        Sampling period [s], > 0.
+    device : Device or paddle
+        Its b, T and delay are read, the delay in whole and fractional periods alike.
     B : float
         Virtual damper of either sign [N s/m]: its force is ``B*(x[n] - x[n-1])/T``, beside the law, not through it.
-    delay : float
-        Computational delay [s], whole and fractional periods alike, >= 0.
     law : str, Scene or callable
         Eqs. (23.1), (23.3), (23.5), (23.7) by name: "zoh", "half_sample", "backward_difference", "ellis". Or a linear scene
         with its stiffness unbound, velocity by backward difference; or a function of K [N/m] that returns a LinearLaw.
@@ -88,14 +84,16 @@ def passivity_limit(
 
     Examples
     --------
-    >>> float(passivity_limit(b=0.1, T=1e-3))
+    >>> from hapticlab.device.device import Device
+    >>> device = Device(b=0.1, T="1 ms")
+    >>> float(passivity_limit(device))
     200.0
-    >>> round(float(passivity_limit(b=0.1, T=1e-3, B=0.05)), 9)
+    >>> round(float(passivity_limit(device, B=0.05)), 9)
     100.0
-    >>> passivity_limit(b=0.1, T=1e-3, law="half_sample").K
+    >>> passivity_limit(device, law="half_sample").K
     0.0
     """
-    b = number("b", b, "N s/m", "a device", least=0, why="its damping pays for the hold")
+    b, T, delay = known(device, "b", "T", "delay")
     tau = number("velocity_filter", velocity_filter, "s", least=0, what="a time constant")
     notes = ("device damping b alone: no encoder, no Coulomb friction",)
     if not isinstance(law, str):
@@ -133,7 +131,7 @@ def required_damping(*, K: float, T: float, B: float = 0.0, delay: float = 0.0, 
     Parameters
     ----------
     K : float
-        Stiffness [N/m], >= 0. The other arguments are those of :func:`passivity_limit`.
+        Stiffness [N/m], >= 0. The other arguments are as for :func:`passivity_limit`.
 
     Returns
     -------

@@ -14,12 +14,14 @@ import numpy as np
 from ..compiler.algebra.phase import is_timed
 from ..compiler.engines.engine import load
 from ..compiler.tick.compile_scene import compile
+from ..device.device import known
 from ..errors import AnalysisError
 from .limit import whole_and_fraction
 
 if TYPE_CHECKING:
     from ..base.annotations import Array
     from ..compiler.ir.program import Program
+    from ..device.device import AnyDevice
     from ..scene.scene import Scene
 
 #: a pole nearer to the unit circle does not decay, and its resonance has no bound
@@ -36,18 +38,18 @@ POINTS = 1000
 SLOWEST, ALIKE = 1e-5, 1e-9
 
 
-def port_damping(scene: Scene, *, T: float = 1e-3, **options: Any) -> float:
+def port_damping(device: AnyDevice, scene: Scene, **options: Any) -> float:
     """Least damping b [N s/m] of a device with which a linear scene is passive in every passive hand.
 
-    Necessary and sufficient for the sampled scene as compiled, without delay and encoder. A wall k x needs k T/2, and
+    Necessary and sufficient for the sampled scene as compiled, without encoder. A wall k x needs k T/2, and
     every damper of the scene's coupler as much again.
 
     Parameters
     ----------
+    device : Device or paddle
+        Its T and delay are read.
     scene : Scene
         Linear, every parameter bound.
-    T : float
-        Sampling period [s], > 0.
     **options
         Of :func:`hapticlab.compile`: method, substeps, hold. Velocity is the backward difference.
 
@@ -65,9 +67,10 @@ def port_damping(scene: Scene, *, T: float = 1e-3, **options: Any) -> float:
     --------
     >>> import hapticlab as hl
     >>> k, b = hl.parameters("k b", units="N/m N*s/m", values=(200, 0.05))
-    >>> round(port_damping(hl.Scene(force=k * hl.x(hl.n) + b * hl.v(hl.n))), 9)
+    >>> round(port_damping(hl.Device(T="1 ms"), hl.Scene(force=k * hl.x(hl.n) + b * hl.v(hl.n))), 9)
     0.15
     """
+    T, delay = known(device, "T", "delay")
     A, B, C, D = tick_map(compile(scene, T=T, live=(), dtype="float64", **options))
     pole = unstable_pole(A, B, C)
     if pole is not None:
@@ -77,7 +80,7 @@ def port_damping(scene: Scene, *, T: float = 1e-3, **options: Any) -> float:
         raise AnalysisError(
             f"{scene.name}: {negative(stiffness)}, and no damping of a device keeps it; needs k >= 0 felt at rest"
         )
-    return required(A, B, C, D, T)[0]
+    return required(A, B, C, D, T, delay)[0]
 
 
 def static_stiffness(A, B, C, D):

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ..base.annotations import Array
+    from ..device.device import AnyDevice
     from .affine_law import StiffnessLaw
-    from .limit import Plant
 
 #: damping ratios of the grid; and natural frequencies, in parts of the Nyquist frequency
 GRID_DAMPING, GRID_FREQUENCY = (0.1, 0.3, 0.5, 0.7, 0.9), (0.2, 0.4, 0.6, 0.8)
@@ -80,13 +80,14 @@ class RootLocus:
 
 
 def root_locus(
-    paddle: Plant, *, law: StiffnessLaw = "zoh", K: ArrayLike | None = None, B: float = 0.0, parameter: str = "k"
+    device: AnyDevice, *, law: StiffnessLaw = "zoh", K: ArrayLike | None = None, B: float = 0.0, parameter: str = "k"
 ) -> RootLocus:
     """Root locus of a paddle in a hand under a law against the stiffness K, in the z-plane.
 
     Parameters
     ----------
-    paddle : SimulatedPaddle or any object with m [kg], b [N s/m], T [s], delay [s] and hand
+    device : Device or paddle
+        Its m, b, T, delay, hand and velocity are read.
     law : str, Scene or callable
         As :func:`~hapticlab.limits.stability.stability_limit` takes it.
     K : array of shape (P,), optional
@@ -115,8 +116,8 @@ def root_locus(
     >>> bool(abs(np.interp(locus.limit.K, locus.K, locus.radius) - 1) < 1e-6)
     True
     """
-    limit = stability_limit(paddle, law=law, B=B, parameter=parameter)
-    loop = Loop.of(paddle, law, B, parameter)
+    limit = stability_limit(device, law=law, B=B, parameter=parameter)
+    loop = Loop.of(device, law, B, parameter)
     found = [(k, theta / (2 * math.pi * loop.T)) for k, theta in crossings(loop)]
     given = _stiffnesses(K, limit, found, loop)
     inside = [k for k, _ in found if given[0] < k < given[-1]]

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +17,7 @@ from numpy.polynomial import chebyshev
 
 from ..base.arguments import number
 from ..base.roots import root
+from ..device.device import known
 from ..errors import AnalysisError
 from ..scene.laws.taps import LEAD
 from ..scene.scene import Scene
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..base.annotations import Array
+    from ..device.device import AnyDevice
     from .affine_law import StiffnessLaw
-    from .limit import Plant
 
 KIND = "exact linear stability of this plant"
 NOTES = (
@@ -45,7 +45,7 @@ ON_CIRCLE = 1e-6
 SLOW_ANGLES = np.geomspace(1e-11, 0.05, 400)
 
 
-def stability_limit(paddle: Plant, *, law: StiffnessLaw = "zoh", B: float = 0.0, parameter: str = "k") -> Limit:
+def stability_limit(device: AnyDevice, *, law: StiffnessLaw = "zoh", B: float = 0.0, parameter: str = "k") -> Limit:
     """Largest stiffness at which this paddle in this hand is stable: the eigenvalues of the sampled loop.
 
     Linear, with the spring always acting: it ignores encoder, noise, Coulomb friction, force saturation and the hand's
@@ -54,11 +54,11 @@ def stability_limit(paddle: Plant, *, law: StiffnessLaw = "zoh", B: float = 0.0,
 
     Parameters
     ----------
-    paddle : SimulatedPaddle or any object with m [kg], b [N s/m], T [s], delay [s] and hand
-        ``hand`` is None or has m [kg], b [N s/m] and k [N/m]. The delay may hold whole and fractional periods.
+    device : Device or paddle
+        Its m, b, T, delay, hand and velocity are read. The delay may hold whole and fractional periods.
     law : str, Scene or callable
         Eqs. (23.1), (23.3), (23.5), (23.7) by name: "zoh", "half_sample", "backward_difference", "ellis"; half_sample uses
-        the exact velocity at the sample where the paddle measures it. Where it is estimated (``paddle.velocity``: an
+        the exact velocity at the sample where the paddle measures it. Where it is estimated (``device.velocity``: an
         encoder, a board) Eq. (23.3) is Eq. (23.5), and so is its limit. Or a linear scene with its stiffness unbound:
         filters, estimated velocities, ``hl.laws.force_filter`` (23.8); a stiffness that it holds is not used. Or a function of
         K [N/m] that returns a LinearLaw.
@@ -79,17 +79,16 @@ def stability_limit(paddle: Plant, *, law: StiffnessLaw = "zoh", B: float = 0.0,
 
     Examples
     --------
-    >>> from types import SimpleNamespace
-    >>> paddle = SimpleNamespace(m=0.05, b=0.1, T=1e-3, delay=0.0, hand=None)
-    >>> round(stability_limit(paddle).K, 6)
-    200.066689
     >>> import hapticlab as hl
+    >>> device = hl.Device(m=0.05, b=0.1, T="1 ms")
+    >>> round(stability_limit(device).K, 6)
+    200.066689
     >>> filtered = hl.laws.force_filter(hl.wall(unilateral=None))        # Eq. (23.8) around (23.1) is Eq. (23.7)
-    >>> round(stability_limit(paddle, law=filtered).K / stability_limit(paddle, law="ellis").K, 9)
+    >>> round(stability_limit(device, law=filtered).K / stability_limit(device, law="ellis").K, 9)
     1.0
     """
-    loop = Loop.of(paddle, law, B, parameter)
-    estimated = isinstance(law, str) and LEAD[law] and getattr(paddle, "velocity", "measured") == "backward_difference"
+    loop = Loop.of(device, law, B, parameter)
+    estimated = isinstance(law, str) and LEAD[law] and known(device, "velocity") == ("backward_difference",)
     notes = NOTES + (ESTIMATED,) * bool(estimated)
     if not any(part.any() for part in (loop.law.B1, loop.law.C1, loop.law.D1)):
         raise AnalysisError(
@@ -105,7 +104,7 @@ def stability_limit(paddle: Plant, *, law: StiffnessLaw = "zoh", B: float = 0.0,
         raise AnalysisError(
             f"{loop.law.name}: {len(loop.law.A)} states, whose polynomial loses its digits; read closed_loop_poles(K=...), K by K"
         )
-    reason = "a pole leaves the unit circle" if first else _why_none(paddle, law, B, any(stable))
+    reason = "a pole leaves the unit circle" if first else _why_none(device, law, B, any(stable))
     again = next((i for i in range(first, len(stable)) if stable[i]), None)
     if again is not None:  # such a wall has to be made stiff before it is touched
         top = f" to {edges[again][0]:.6g}" if again < len(edges) else " on"
@@ -123,7 +122,7 @@ def _intervals(loop):
     return edges, [not loop.unstable(k) for k in between]
 
 
-def damper_limit(*, m: float, b: float, T: float, delay: float = 0.0) -> float:
+def damper_limit(device: AnyDevice) -> float:
     """Largest B [N s/m] at which a handle with the damper F = B (x[n] - x[n-1])/T alone is stable; exact, linear.
 
     Without device damping and delay it is 2 m/T. A hand adds mass, which raises it, and may add stiffness, which lowers
@@ -131,14 +130,8 @@ def damper_limit(*, m: float, b: float, T: float, delay: float = 0.0) -> float:
 
     Parameters
     ----------
-    m : float
-        Mass of the handle [kg], > 0.
-    b : float
-        Its viscous damping [N s/m], >= 0.
-    T : float
-        Sampling period [s], > 0.
-    delay : float
-        Computational delay [s], whole and fractional periods alike, >= 0.
+    device : Device or paddle
+        Its m, b, T, delay and hand are read, the delay in whole and fractional periods alike.
 
     Returns
     -------
@@ -146,17 +139,16 @@ def damper_limit(*, m: float, b: float, T: float, delay: float = 0.0) -> float:
 
     Examples
     --------
-    >>> round(damper_limit(m=0.05, b=0.0, T=1e-3), 9)
+    >>> import hapticlab as hl
+    >>> round(damper_limit(hl.Device(m=0.05, b=0, T="1 ms")), 9)
     100.0
     """
-    m = number("m", m, "kg", "a handle", above=0)
-    b = number("b", b, "N s/m", "a device", least=0)
-    handle = SimpleNamespace(m=m, b=b, T=T, delay=delay, hand=None)
-    return stability_limit(handle, law=lambda B: LinearLaw.of("zoh", K=0.0, T=T, B=B)).K  # B takes the place of K
+    (T,) = known(device, "T")
+    return stability_limit(device, law=lambda B: LinearLaw.of("zoh", K=0.0, T=T, B=B)).K  # B takes the place of K
 
 
 def closed_loop_matrix(
-    paddle: Plant, *, K: float | None = None, law: StiffnessLaw | LinearLaw = "zoh", B: float = 0.0, parameter: str = "k"
+    device: AnyDevice, *, K: float | None = None, law: StiffnessLaw | LinearLaw = "zoh", B: float = 0.0, parameter: str = "k"
 ) -> Array:
     """One period of handle, hand and law as a matrix on [x, v, past forces, states of the law]; SI units.
 
@@ -174,28 +166,28 @@ def closed_loop_matrix(
 
     Examples
     --------
-    >>> from types import SimpleNamespace
-    >>> paddle = SimpleNamespace(m=1.0, b=0.0, T=0.1, delay=0.0, hand=None)
-    >>> closed_loop_matrix(paddle, K=100.0).round(9).tolist()
+    >>> import hapticlab as hl
+    >>> device = hl.Device(m=1, b=0, T=0.1)
+    >>> closed_loop_matrix(device, K=100.0).round(9).tolist()
     [[0.5, 0.1], [-10.0, 1.0]]
     """
-    loop, K = _loop_at(paddle, K, law, B, parameter)
+    loop, K = _loop_at(device, K, law, B, parameter)
     return loop.matrix(K)
 
 
 def closed_loop_poles(
-    paddle: Plant, *, K: float | None = None, law: StiffnessLaw | LinearLaw = "zoh", B: float = 0.0, parameter: str = "k"
+    device: AnyDevice, *, K: float | None = None, law: StiffnessLaw | LinearLaw = "zoh", B: float = 0.0, parameter: str = "k"
 ) -> NDArray[np.complex128]:
     """Eigenvalues of :func:`closed_loop_matrix`, largest magnitude first: complex array of shape (n,)."""
-    loop, K = _loop_at(paddle, K, law, B, parameter)
+    loop, K = _loop_at(device, K, law, B, parameter)
     poles = 1 + loop.poles(K)
     return poles[np.argsort(-abs(poles), kind="stable")]
 
 
-def _loop_at(paddle, K, law, B, parameter):
+def _loop_at(device, K, law, B, parameter):
     """Return the loop and the stiffness to take it at; refuse a stiffness given twice, or not at all."""
     if K is None and isinstance(law, (LinearLaw, Scene)):
-        return Loop.of(paddle, law, B, None), 0.0  # what holds its own is the same at every K
+        return Loop.of(device, law, B, None), 0.0  # what holds its own is the same at every K
     if K is None:
         raise AnalysisError("K = None, and the law holds no stiffness; needs one in N/m: closed_loop_poles(..., K=100)")
     K = number("K", K, "N/m", what="stiffness")
@@ -208,18 +200,19 @@ def _loop_at(paddle, K, law, B, parameter):
         )
     if isinstance(law, Scene) and parameter not in law.parameters and set(law.parameters) <= set(law.values):
         raise AnalysisError(f"K = {K:g} N/m, but {law.name} has no parameter {parameter}; leave K out, or name its stiffness")
-    return Loop.of(paddle, law, B, parameter), K
+    return Loop.of(device, law, B, parameter), K
 
 
-def _why_none(paddle, law, B, somewhere):
+def _why_none(device, law, B, somewhere):
     """Say why the smallest stiffness is unstable, and whether all are."""
     name = law if isinstance(law, str) else getattr(law, "name", "of its own")
-    undamped = paddle.b == 0 and (paddle.hand is None or paddle.hand.b == 0)
+    b, hand = known(device, "b", "hand")
+    undamped = b == 0 and (hand is None or hand.b == 0)
     which = "at the smallest stiffness" if somewhere else "at any stiffness"
     if undamped and not B:
         return f"without damping (b = 0) law {name} feeds energy in {which}"
     damper = f"B = {B:g} N s/m with " if B else ""
-    return f"{damper}b = {paddle.b:g} N s/m under law {name} is unstable {which}"
+    return f"{damper}b = {b:g} N s/m under law {name} is unstable {which}"
 
 
 def crossings(loop):

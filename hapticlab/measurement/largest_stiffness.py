@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 from ..device.live_parameters import named_values
@@ -233,17 +232,10 @@ def _pressed(scene, push):
 
 def theory_of(paddle, law, B):
     """The limits of theory, where they are known: a law with a name, a handle with constants."""
-    known = paddle if isinstance(paddle, SimulatedPaddle) else _from_settings(paddle)
-    if isinstance(law, Scene) or law not in TAPS or known is None:
+    device = getattr(paddle, "device", paddle)
+    if isinstance(law, Scene) or law not in TAPS or device.m is None:
         return {}
-    exact = known.velocity == "measured"
+    exact = paddle.velocity == "measured"
     named = law if law != "half_sample" or exact else "backward_difference"  # the estimate makes it Eq. (23.5)
-    passive = passivity_limit(b=known.b, T=known.T, B=B, delay=known.delay, law=named)
-    return {"passivity": passive, "stability": stability_limit(known, law=law, B=B)}
-
-
-def _from_settings(paddle):
-    settings = getattr(paddle, "settings", None)
-    if settings is None or not settings.m:
-        return None
-    return SimpleNamespace(m=settings.m, b=settings.b, T=paddle.T, delay=0.0, hand=None, velocity=paddle.velocity)
+    passive = passivity_limit(device, B=B, law=named)
+    return {"passivity": passive, "stability": stability_limit(device, law=law, B=B)}

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..base.arguments import number
 from ..base.drawing import house_style, new_figure
+from ..device.device import Device, known
 from ..errors import AnalysisError
 from ..limits.loop import Loop
 from ..limits.stability import crossings, stability_limit
@@ -19,7 +19,7 @@ from ..scene.laws.compensation import damping_compensation
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..limits.limit import Plant
+    from ..device.device import AnyDevice
     from ..scene.laws.estimators import VelocityEstimate
 
 #: relative distance from a crossing at which the poles say whether it counts
@@ -185,7 +185,11 @@ class CompensationLimit:
 
 
 def compensation_limit(
-    paddle: Plant, *, velocity: VelocityEstimate | None = None, b_least: float | None = None, coulomb_least: float | None = None
+    paddle: AnyDevice,
+    *,
+    velocity: VelocityEstimate | None = None,
+    b_least: float | None = None,
+    coulomb_least: float | None = None,
 ) -> CompensationLimit:
     """Largest part of a paddle's friction that :func:`~hapticlab.scene.laws.compensation.damping_compensation` may cancel.
 
@@ -196,8 +200,8 @@ def compensation_limit(
 
     Parameters
     ----------
-    paddle : SimulatedPaddle or any object with m [kg], b [N s/m], T [s], delay [s], coulomb [N] and hand
-        b > 0.
+    paddle : SimulatedPaddle or Device
+        Its m, b > 0, T, delay, coulomb, hand and velocity are read.
     velocity : VelocityEstimate, optional
         A linear one; the paddle's own v(n) unless given.
     b_least, coulomb_least : float, optional
@@ -234,29 +238,22 @@ def compensation_limit(
     >>> round(safe.viscous, 9)
     0.95
     """
-    lacking = [name for name in ("m", "b", "T", "delay", "hand") if not hasattr(paddle, name)]
-    if lacking:
-        raise AnalysisError(
-            f"a {type(paddle).__name__} has no {lacking[0]}; needs one whose constants are known, as "
-            "hl.SimulatedPaddle.from_profile(...)"
-        )
-    b = number("b", paddle.b, "N s/m", above=0, why="without damping there is nothing to compensate")
+    own, b, T, delay, coulomb, hand, source = known(paddle, "m", "b", "T", "delay", "coulomb", "hand", "velocity")
+    b = number("b", b, "N s/m", above=0, why="without damping there is nothing to compensate")
     if velocity is not None:
-        velocity.transfer(paddle.T)  # refuses, in words, what has no poles
-    coulomb = getattr(paddle, "coulomb", 0.0)
+        velocity.transfer(T)  # refuses, in words, what has no poles
     b_least, coulomb_least = _least(b, b_least, coulomb, coulomb_least)
-    scene, hand = damping_compensation(b=b, velocity=velocity), paddle.hand
-    m, damping, k = (getattr(paddle, q, 0.0) + (getattr(hand, q) if hand else 0.0) for q in ("m", "b", "k"))
+    scene = damping_compensation(b=b, velocity=velocity)
+    m, damping, k = (value + (getattr(hand, name) if hand else 0.0) for name, value in (("m", own), ("b", b), ("k", 0.0)))
     ends = []
     for true in {b_least, b}:
-        plant = SimpleNamespace(m=paddle.m, b=true, T=paddle.T, delay=paddle.delay, hand=hand)
-        plant.velocity = getattr(paddle, "velocity", "measured")
+        plant = Device(m=own, b=true, T=T, delay=delay, hand=hand, velocity=source)
         if k:
             limit = stability_limit(plant, law=scene, parameter="viscous")
             ends.append((limit.K, limit.frequency or 0.0))
         else:
             ends.append(_of_a_free_handle(plant, scene, (damping - b + true) / b))
-    return CompensationLimit(*min(ends), m, damping - b + b_least, k, b, coulomb, paddle.T, b_least, coulomb_least)
+    return CompensationLimit(*min(ends), m, damping - b + b_least, k, b, coulomb, T, b_least, coulomb_least)
 
 
 def _least(b, b_least, coulomb, coulomb_least):
@@ -273,5 +270,5 @@ def _of_a_free_handle(paddle, scene, drifting):
     loop = Loop.of(paddle, scene, parameter="viscous")
     for part, angle in crossings(loop):
         if part < drifting * (1 - NEAR) and loop.unstable(part * (1 + NEAR)):
-            return part, angle / (2 * math.pi * paddle.T)
+            return part, angle / (2 * math.pi * loop.T)
     return drifting, 0.0

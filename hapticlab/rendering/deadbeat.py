@@ -17,8 +17,8 @@ from .predictive import half_sample_force
 from .scene_lines import Lines, number
 
 if TYPE_CHECKING:
+    from ..device.device import AnyDevice
     from ..device.hand.hand import Hand
-    from ..limits.limit import Plant
     from ..scene.laws.estimators import VelocityEstimate
     from ..scene.scene import Scene
 
@@ -71,7 +71,7 @@ PAIRS = Pairs()
 
 
 def deadbeat_wall(
-    paddle: Plant,
+    paddle: AnyDevice,
     *,
     K: float,
     B: float = 0.0,
@@ -195,7 +195,7 @@ class DeadbeatGains:
         return f"{text};\none encoder count changes them by {self.count:.3g} N{most}"
 
 
-def deadbeat_gains(paddle: Plant, *, hand: Hand | None = None) -> DeadbeatGains:
+def deadbeat_gains(paddle: AnyDevice, *, hand: Hand | None = None) -> DeadbeatGains:
     """Gains from the sensed state to the two forces of a dead-beat pair: some M/T^2, so they blow up as T goes to 0.
 
     The error of a crossing that is located shrinks as T^3, faster than the gains grow; the errors of an encoder and of

@@ -12,8 +12,8 @@ from .model import WallModel
 from .scene_lines import Lines, number
 
 if TYPE_CHECKING:
+    from ..device.device import AnyDevice
     from ..device.hand.hand import Hand
-    from ..limits.limit import Plant
     from ..scene.laws.estimators import VelocityEstimate
     from ..scene.scene import Scene
 
@@ -44,7 +44,7 @@ class DigitalGains:
         )
 
 
-def digital_gains(paddle: Plant, *, K: float, B: float = 0.0, hand: Hand | None = None) -> DigitalGains:
+def digital_gains(paddle: AnyDevice, *, K: float, B: float = 0.0, hand: Hand | None = None) -> DigitalGains:
     """Gains of :func:`digital_wall`: those of a held force that give the poles of handle, hand and wall in continuous time.
 
     For a handle without damping in no hand, with w^2 = K/m: k1 = K sinc^2(wT/2) and k2 = k1 T/2, which is Eq. (23.3) on a
@@ -53,7 +53,7 @@ def digital_gains(paddle: Plant, *, K: float, B: float = 0.0, hand: Hand | None 
 
     Parameters
     ----------
-    paddle : SimulatedPaddle or any object with m [kg], b [N s/m], T [s], delay [s] and hand
+    paddle : SimulatedPaddle or Device
     K, B : float
         The wall that is meant, [N/m] > 0 and [N s/m] >= 0.
     hand : Hand, optional
@@ -85,7 +85,7 @@ def _row(model):
 
 
 def digital_wall(
-    paddle: Plant,
+    paddle: AnyDevice,
     *,
     K: float,
     B: float = 0.0,

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from ..base.annotations import Array
     from ..base.telemetry import Telemetry
+    from ..device.device import AnyDevice
     from ..device.hand.hand import Hand
-    from ..limits.limit import Plant
 
 #: of a mode's own time, how long a piece of the motion is: it turns round once at most, and few terms are all its digits
 PART = math.pi / 8
@@ -99,7 +99,7 @@ class HybridMotion:
 
 
 def hybrid_wall(
-    paddle: Plant,
+    paddle: AnyDevice,
     *,
     K: float,
     B: float = 0.0,

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.arguments import number, period
+from ..base.arguments import number
+from ..device.device import known
 from ..device.hand.hand import Hand
 from ..device.simulated.transition import transition
 from ..errors import AnalysisError
@@ -21,7 +22,7 @@ from ..limits.limit import MOST_PERIODS, whole_and_fraction
 
 if TYPE_CHECKING:
     from ..base.annotations import Array
-    from ..limits.limit import Plant
+    from ..device.device import AnyDevice
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,16 +58,12 @@ class WallModel:
     delay: float
 
     @classmethod
-    def of(cls, paddle: Plant, *, K: float, B: float = 0.0, hand: Hand | None = None) -> WallModel:
+    def of(cls, paddle: AnyDevice, *, K: float, B: float = 0.0, hand: Hand | None = None) -> WallModel:
         """Return the model of a paddle in a hand; without one, of the hand the paddle has."""
-        lacking = [name for name in ("m", "b", "T", "delay", "hand") if not hasattr(paddle, name)]
-        if lacking:
-            raise AnalysisError(
-                f"a {type(paddle).__name__} has no {lacking[0]}; needs its constants, as hl.SimulatedPaddle has them"
-            )
+        m, b, T, delay, held_by = known(paddle, "m", "b", "T", "delay", "hand")
         if hand is not None and not isinstance(hand, Hand):
             raise AnalysisError(f'hand = {hand!r}; needs a Hand, as hl.Hand("pinch") or hl.Hand(m=0.02, b=1, k=200)')
-        hand = paddle.hand if hand is None else hand
+        hand = held_by if hand is None else hand
         of_hand = dict.fromkeys(("m", "b", "k", "push"), 0.0)
         if hand is not None:
             of_hand = {name: getattr(hand, name) for name in of_hand}
@@ -77,14 +74,14 @@ class WallModel:
                 )
         intent = getattr(hand, "intent", None) or 0.0
         return cls(
-            M=number("m", paddle.m + of_hand["m"], "kg", "the handle", above=0, what="a mass m"),
-            b=number("b", paddle.b + of_hand["b"], "N s/m", "a handle with its hand", least=0),
+            M=number("m", m + of_hand["m"], "kg", "the handle", above=0, what="a mass m"),
+            b=number("b", b + of_hand["b"], "N s/m", "a handle with its hand", least=0),
             k=number("hand k", of_hand["k"], "N/m", least=0, what="k"),
             push=of_hand["push"] + of_hand["k"] * intent,
             K=number("K", K, "N/m", "a wall", above=0),
             B=number("B", B, "N s/m", "the wall that is meant", least=0),
-            T=period(paddle.T),
-            delay=number("delay", paddle.delay, "s", least=0),
+            T=T,
+            delay=delay,
         )
 
     @property

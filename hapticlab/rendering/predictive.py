@@ -10,14 +10,14 @@ from .model import WallModel
 from .scene_lines import Lines, number
 
 if TYPE_CHECKING:
+    from ..device.device import AnyDevice
     from ..device.hand.hand import Hand
-    from ..limits.limit import Plant
     from ..scene.laws.estimators import VelocityEstimate
     from ..scene.scene import Scene
 
 
 def predictive_wall(
-    paddle: Plant,
+    paddle: AnyDevice,
     *,
     K: float,
     B: float = 0.0,

@@ -73,12 +73,12 @@ def test_chatter_is_drawn_with_its_amplitude_and_frequency():
 
 
 def test_a_limit_is_drawn_with_what_it_promises():
-    found = hl.passivity_limit(b=0.1, T=1e-3)
+    found = hl.passivity_limit(hl.Device(b=0.1, T=1e-3))
     figure = found.plot()
     promised, beyond = (bars.patches[0] for bars in figure.axes[0].containers)
     assert (promised.get_width(), beyond.get_x()) == pytest.approx((200.0, 200.0))  # 2 b/T
     assert figure.alt.startswith(str(found)) and all(note in figure.get_supxlabel() for note in found.assumptions)
-    none = hl.passivity_limit(b=0.1, T=1e-3, B=1.0).plot()
+    none = hl.passivity_limit(hl.Device(b=0.1, T=1e-3), B=1.0).plot()
     assert none.legends[0].get_texts()[0].get_text() == "promised: nothing"
 
 
@@ -133,7 +133,9 @@ def test_a_law_is_drawn_as_a_sinusoid_feels_it():
     above, below = law.plot().axes
     assert above.lines[0].get_ydata()[0] == pytest.approx(300.0, rel=1e-6)
     theta = 2 * np.pi * 1e-3 * below.lines[0].get_xdata()
-    np.testing.assert_allclose(below.lines[0].get_ydata(), hl.passivity.equivalent_damper(law, theta), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(
+        below.lines[0].get_ydata(), hl.passivity.equivalent_damper(hl.Device(), law, theta), rtol=1e-9, atol=1e-9
+    )
 
 
 def test_a_two_port_is_drawn_with_its_verdict():

@@ -43,7 +43,7 @@ def place(margin):
 def laws():
     rows = []
     for law, equation in LAWS.items():
-        asked = [hl.passivity.margin(hl.laws.LinearLaw.of(law, K=1 / T, T=T), b=1, delay=d * T) for d in DELAYS]
+        asked = [hl.passivity.margin(hl.Device(b=1, delay=d * T), hl.laws.LinearLaw.of(law, K=1 / T, T=T)) for d in DELAYS]
         rows.append([f"{law} {equation}", *(f"{m.required:.4f} {place(m)}" for m in asked)])
     return table(["law, b/(K T) at part of Nyquist", *(f"delay {d:g} T" for d in DELAYS)], rows)
 
@@ -51,7 +51,7 @@ def laws():
 def filtered():
     rows = []
     for tau in (0.0, 0.5, 1.0, 3.0, 10.0):
-        limits = [hl.passivity_limit(b=0.1, T=T, B=B, velocity_filter=tau * T).K for B in (0.05, -0.05)]
+        limits = [hl.passivity_limit(hl.Device(b=0.1, T=T), B=B, velocity_filter=tau * T).K for B in (0.05, -0.05)]
         rows.append([f"{tau:g} T", *(f"{K:.1f}" for K in limits)])
     return table(["time constant", "B = +b/2: K [N/m]", "B = -b/2: K [N/m]"], rows)
 
@@ -68,7 +68,10 @@ def named():
 
 def between():
     fractions = (0.1, 0.25, 0.5, 0.75, 0.9)
-    ratio = [hl.bounds.diolaiti(b=1, T=T, delay=f * T).K / hl.passivity_limit(b=1, T=T, delay=f * T).K for f in fractions]
+    ratio = [
+        hl.bounds.diolaiti(hl.Device(b=1, T=T, delay=f * T)).K / hl.passivity_limit(hl.Device(b=1, T=T, delay=f * T)).K
+        for f in fractions
+    ]
     return table(["delay", *(f"{f:g} T" for f in fractions)], [["Diolaiti over exact", *(f"{r:.4f}" for r in ratio)]])
 
 
@@ -98,7 +101,7 @@ def couplers():
     for delay in DELAYS:
         paddle = hl.SimulatedPaddle(m=0.05, b=0.2, T=T, delay=delay * T)
         best, bare = hl.design.coupler(paddle), hl.design.coupler(paddle, b_c=0.0)
-        wall = hl.passivity_limit(b=0.2, T=T, delay=delay * T).K
+        wall = hl.passivity_limit(hl.Device(b=0.2, T=T, delay=delay * T)).K
         cells = [f"{K * T / 0.2:.4f}" for K in (best.k_c, best.b_c / T, bare.k_c, wall)]
         cells.insert(2, f"{2 * best.frequency * T:.3f}" if delay else "everywhere")
         rows.append([f"{delay:g} T", *cells])
@@ -113,7 +116,7 @@ def compiled():
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)])
     paddle, rows = hl.SimulatedPaddle(m=0.05, b=0.2, T=T), []
     for method, hold in (("semi_implicit_euler", "zoh"), ("exact", "zoh"), ("exact", "soh"), ("rk4", "soh")):
-        asked = [hl.passivity.port(scene(m=mass), paddle, method=method, hold=hold).b_req for mass in (0.002, 0.05, 0.5)]
+        asked = [hl.passivity.port(paddle, scene(m=mass), method=method, hold=hold).b_req for mass in (0.002, 0.05, 0.5)]
         rows.append([f"{method}, {hold}", *(f"{b:.4f}" for b in asked)])
     return table(["method, hold", "2 g", "50 g", "500 g"], rows)
 

@@ -88,7 +88,7 @@ def stiffest():
 
 def dampers():
     """The same hand, 1000 N/m: how strong a damper the series form may use."""
-    limit = hl.stability.damper_limit(m=M + 0.02, b=B, T=T)
+    limit = hl.stability.damper_limit(hl.Device(m=M + 0.02, b=B, T=T))
     rows = []
     for part in (B / limit, 0.01, 0.1, 0.5, 0.9, 1.1, 2.0):
         cells = []

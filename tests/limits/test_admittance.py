@@ -71,7 +71,7 @@ def test_a_servo_that_some_hand_makes_unstable_is_refused(b_s, k_s):
     """Eq. (23.10) with the environment at rest, b >= k_s T/2 + b_s: eigenvalues find the spring of the hand."""
     hands = np.geomspace(1e4, 1e6, 60)
     alone = radius(0.0, b=0.5, b_s=b_s, k_s=k_s) > 1 + 1e-6
-    assert alone == (b_s > hl.stability.damper_limit(m=0.05, b=0.5, T=T))
+    assert alone == (b_s > hl.stability.damper_limit(hl.Device(m=0.05, b=0.5, T=T)))
     assert max(radius(k, b=0.5, b_s=b_s, k_s=k_s) for k in hands) > 1 + 1e-4
     with pytest.raises(AnalysisError, match="diverges without a hand" if alone else "active in some hand"):
         admittance_design(paddle(), servo=b_s, servo_stiffness=k_s, b_a=10)

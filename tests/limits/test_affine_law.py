@@ -19,7 +19,7 @@ T = 0.8e-3
 
 
 def paddle(m=0.045, b=0.12, delay=0.0, hand=None, **more):
-    return SimpleNamespace(m=m, b=b, T=T, delay=delay, hand=hand, **more)
+    return hl.Device(**{"m": m, "b": b, "T": T, "delay": delay, "hand": hand, "velocity": "measured", **more})
 
 
 def product(*polynomials):
@@ -307,7 +307,7 @@ def test_random_plants():
         b = 10 ** rng.uniform(-9, 1.5) * m / period
         grip = SimpleNamespace(m=rng.uniform(0, 2) * m, b=rng.uniform(0, 3) * b, k=10 ** rng.uniform(-8, 0) * m / period**2)
         delay = rng.choice([0.0, period, rng.uniform(0, 3) * period, int(rng.integers(0, 30)) * period])
-        p = SimpleNamespace(m=m, b=b, T=period, delay=delay, hand=rng.choice([None, grip]))
+        p = hl.Device(m=m, b=b, T=period, delay=delay, hand=rng.choice([None, grip]), velocity="measured")
         B = rng.choice([0.0, rng.uniform(-1.5, 5) * b, rng.uniform(0, 2.5) * m / period])
         law = rng.choice(["zoh", "half_sample", "backward_difference", "ellis"])
         limit = stability_limit(p, law=law, B=B)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
-from hapticlab.errors import AnalysisError
+from hapticlab.errors import AnalysisError, PaddleError
 from hapticlab.limits.bounds import abbott_okamura_limit, bounds, diolaiti, diolaiti_limit, gil_limit
 from hapticlab.limits.limit import Limit
 
@@ -22,7 +22,7 @@ def test_abbott_and_okamura_is_where_no_alternation_across_counts_draws_energy(c
 
     Two samples a cycle, the quickest motion there is; the least over j and D of what it costs is zero at the bound.
     """
-    K = abbott_okamura_limit(b=b, T=T, coulomb=coulomb, resolution=resolution).K
+    K = abbott_okamura_limit(hl.Device(b=b, T=T, coulomb=coulomb, counts_per_metre=1 / resolution)).K
 
     def cheapest(K):
         j = np.arange(1, 2000)[:, None]
@@ -34,21 +34,24 @@ def test_abbott_and_okamura_is_where_no_alternation_across_counts_draws_energy(c
 
 
 def test_a_bound_without_an_encoder_is_the_holds():
-    assert abbott_okamura_limit(b=b, T=T).K == 200 == hl.passivity_limit(b=b, T=T).K
-    assert abbott_okamura_limit(b=b, T=T, resolution=1e-4).K == 0  # no friction: an encoder alone buzzes
-    assert "pays for the encoder" in abbott_okamura_limit(b=b, T=T, coulomb=0.001, resolution=1e-4).reason
+    assert abbott_okamura_limit(hl.Device(b=b, T=T)).K == 200 == hl.passivity_limit(hl.Device(b=b, T=T)).K
+    assert abbott_okamura_limit(hl.Device(b=b, T=T, counts_per_metre=1 / 1e-4)).K == 0  # no friction: an encoder alone buzzes
+    assert "pays for the encoder" in abbott_okamura_limit(hl.Device(b=b, T=T, coulomb=0.001, counts_per_metre=1 / 1e-4)).reason
 
 
 @pytest.mark.parametrize("periods", [0, 1, 3])
 def test_diolaiti_is_exact_for_whole_delays(periods):
-    exact = hl.passivity_limit(b=b, T=T, delay=periods * T).K
-    assert diolaiti_limit(b=b, T=T, delay=periods * T).K == pytest.approx(exact, rel=1e-12)
+    exact = hl.passivity_limit(hl.Device(b=b, T=T, delay=periods * T)).K
+    assert diolaiti_limit(hl.Device(b=b, T=T, delay=periods * T)).K == pytest.approx(exact, rel=1e-12)
 
 
 def test_diolaiti_is_up_to_eight_percent_too_high_between():
     """1 against (1 + sqrt(1 + f (1-f)/(1/2+f)^2))/2: moving faster before the force changes pays; most at a quarter."""
     delays = T * np.arange(0.05, 1, 0.05)
-    ratio = [diolaiti_limit(b=b, T=T, delay=late).K / hl.passivity_limit(b=b, T=T, delay=late).K for late in delays]
+    ratio = [
+        diolaiti_limit(hl.Device(b=b, T=T, delay=late)).K / hl.passivity_limit(hl.Device(b=b, T=T, delay=late)).K
+        for late in delays
+    ]
     assert min(ratio) > 1.005 and ratio[9] == pytest.approx((1 + 1.25**0.5) / 2, rel=1e-9)
     assert max(ratio) == ratio[4] == pytest.approx((1 + (4 / 3) ** 0.5) / 2, rel=1e-9)
 
@@ -88,7 +91,7 @@ def test_gil_refuses_where_it_would_promise_too_much():
 def test_a_law_that_is_none_of_theirs(law):
     words = "no position law" if law == "half_sample" else "looks ahead by its memory"
     for ask in (
-        lambda: abbott_okamura_limit(b=b, T=T, law=law), lambda: diolaiti_limit(b=b, T=T, law=law),
+        lambda: abbott_okamura_limit(hl.Device(b=b, T=T), law=law), lambda: diolaiti_limit(hl.Device(b=b, T=T), law=law),
         lambda: gil_limit(paddle(), law=law),
     ):  # fmt: skip
         with pytest.raises(AnalysisError, match=words):
@@ -97,13 +100,13 @@ def test_a_law_that_is_none_of_theirs(law):
 
 def test_assumptions_that_fail():
     with pytest.raises(AnalysisError, match="without B"):
-        abbott_okamura_limit(b=b, T=T, B=0.1)
+        abbott_okamura_limit(hl.Device(b=b, T=T), B=0.1)
     with pytest.raises(AnalysisError, match="without delay"):
-        abbott_okamura_limit(b=b, T=T, delay=1e-3)
+        abbott_okamura_limit(hl.Device(b=b, T=T, delay=1e-3))
     with pytest.raises(AnalysisError, match="without virtual damping"):
-        diolaiti_limit(b=b, T=T, B=-0.1)
-    with pytest.raises(AnalysisError, match="coulomb = -1"):
-        abbott_okamura_limit(b=b, T=T, coulomb=-1)
+        diolaiti_limit(hl.Device(b=b, T=T), B=-0.1)
+    with pytest.raises(PaddleError, match="coulomb = -1"):
+        abbott_okamura_limit(hl.Device(b=b, T=T, coulomb=-1))
     for ask in (bounds, gil_limit):
         with pytest.raises(AnalysisError, match="a str has no m; needs a paddle"):
             ask("paddle")
@@ -118,7 +121,7 @@ def test_all_of_them_on_one_paddle():
     assert kinds == ["passivity", "of", "stability", "exact"]  # Diolaiti: half a period late
     assert "does not apply: delay = 0.0005 s" in str(found)
     assert "no passivity" in found["Diolaiti"].kind and "8 %" in found["Diolaiti"].assumptions[-1]
-    assert diolaiti_limit(b=b, T=T, delay=T).kind.startswith("passivity")
+    assert diolaiti_limit(hl.Device(b=b, T=T, delay=T)).kind.startswith("passivity")
     half = bounds(paddle(), law="half_sample")
     assert half["Colgate, Schenkel"].K == 0 and half["exact stability"].K > 0
     axes = found.plot().axes[0]
@@ -154,7 +157,7 @@ def amplitudes(K, b, coulomb, start, counts=None, delay=0.0):
 @pytest.mark.parametrize(("K", "delay"), [(230.0, 0.0), (300.0, 0.0), (130.0, 0.5e-3)])
 def test_a_locally_stable_wall_grows_above_its_amplitude_alone(K, delay):
     """The describing function is exact for slow cycles: w T is below 0.08 here."""
-    point = diolaiti(K=K, b=0.1, T=T, coulomb=0.01, delay=delay, m=M)
+    point = diolaiti(hl.Device(m=M, b=0.1, T=T, delay=delay, coulomb=0.01), K=K)
     assert point.region.startswith("locally stable") and point.sigma == np.inf
     for factor, grows in ((0.9, False), (1.1, True)):
         first, last = amplitudes(K, 0.1, 0.01, factor * point.amplitude, delay=delay)
@@ -166,7 +169,7 @@ def test_diolaitis_regions_of_a_quantised_wall():
     resolution, start = 0.2e-3, 4e-3
     kinds = {}
     for K, coulomb in ((150, 0.02), (150, 0.002), (400, 0.002)):
-        point = diolaiti(K=K, b=0.1, T=T, coulomb=coulomb, resolution=resolution, m=M)
+        point = diolaiti(hl.Device(m=M, b=0.1, T=T, coulomb=coulomb, counts_per_metre=1 / resolution), K=K)
         kinds[point.region.split(":")[0]] = amplitudes(K, 0.1, coulomb, start, counts=1 / resolution)
     assert list(kinds) == ["passive", "limit cycles", "unstable"]
     assert kinds["passive"][1] < 1.1 * resolution + 0.02 / 150
@@ -175,24 +178,26 @@ def test_diolaitis_regions_of_a_quantised_wall():
 
 
 def test_diolaitis_plane_in_numbers_words_and_a_picture():
-    point = diolaiti(K=300, b=0.1, T=T, coulomb=0.05, resolution=0.2e-3, delay=T / 4, m=M)
+    point = diolaiti(hl.Device(m=M, b=0.1, T=T, delay=T / 4, coulomb=0.05, counts_per_metre=1 / 0.2e-3), K=300)
     assert (point.beta, point.sigma, point.tau) == pytest.approx((1 / 3, 5 / 6, 0.25))
     assert point.amplitude == pytest.approx(4 * 0.05 / (np.pi * (300 / M) ** 0.5 * (300 * 0.75e-3 - 0.1)), rel=1e-12)
     axes = point.plot().axes[0]
     assert {text.get_text() for text in axes.texts} == {"passive", "limit cycles", "locally stable", "unstable"}
-    assert np.isnan(diolaiti(K=300, b=0.1, T=T).amplitude) and diolaiti(K=100, b=0.1, T=T).amplitude == np.inf
+    assert (
+        np.isnan(diolaiti(hl.Device(b=0.1, T=T), K=300).amplitude) and diolaiti(hl.Device(b=0.1, T=T), K=100).amplitude == np.inf
+    )
     for mass in (-1, 0):
-        with pytest.raises(AnalysisError, match="m = .* needs? a mass m > 0|need a mass m > 0"):
-            diolaiti(K=300, b=0.1, T=T, m=mass)
+        with pytest.raises(PaddleError, match="m = .* a device needs m > 0"):
+            diolaiti(hl.Device(m=mass, b=0.1, T=T), K=300)
     with pytest.raises(AnalysisError, match="needs K > 0"):
-        diolaiti(K=0, b=0.1, T=T)
+        diolaiti(hl.Device(b=0.1, T=T), K=0)
 
 
 def test_diolaitis_region_is_called_passive_only_where_every_motion_is_paid_for():
     """Half a period late: passive to 94.43 N/m, slow sinusoids to 100 N/m; energy of an alternating cycle by hand."""
-    words = {K: diolaiti(K=K, b=0.1, T=T, delay=T / 2, m=M).region for K in (94, 98)}
+    words = {K: diolaiti(hl.Device(m=M, b=0.1, T=T, delay=T / 2), K=K).region for K in (94, 98)}
     assert words[94].startswith("passive") and "not passive" in words[98]
-    assert diolaiti(K=66, b=0.1, T=T, delay=T).region.startswith("passive")
+    assert diolaiti(hl.Device(b=0.1, T=T, delay=T), K=66).region.startswith("passive")
     # closed cycles of 150 samples, D1 before the force changes and D2 after, F the spring's: least work + b(D1^2 + D2^2)/(T/2)
     n = 150
     moved = np.kron(np.eye(n), [1.0, 1.0])  # displacement of each period
@@ -206,5 +211,5 @@ def test_diolaitis_region_is_called_passive_only_where_every_motion_is_paid_for(
 
 
 def test_where_small_motions_grow_no_amplitude_is_told():
-    point = diolaiti(K=300, b=0.1, T=T, coulomb=0.01, resolution=0.2e-3, m=M)
+    point = diolaiti(hl.Device(m=M, b=0.1, T=T, coulomb=0.01, counts_per_metre=1 / 0.2e-3), K=300)
     assert point.amplitude == 0 and str(point).endswith("small and large motions grow")

@@ -161,6 +161,6 @@ def test_a_compiled_scene_asks_for_a_little_more_as_explicit_steps_are_not_passi
     K, B, m = hl.parameters("K B m", units="N/m N*s/m kg", values=(design.k_c, design.b_c, mass))
     F = hl.laws.virtual_coupler(z, K=K, b=B)
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)])
-    held = hl.passivity.port(scene, paddle(), method="semi_implicit_euler", hold="zoh").b_req
+    held = hl.passivity.port(paddle(), scene, method="semi_implicit_euler", hold="zoh").b_req
     assert held == pytest.approx(b / (1 - b * T / 2 / mass), rel=1e-9)
-    assert b < hl.passivity.port(scene, paddle(), method="exact", hold="soh").b_req < b + 0.3 * (held - b)
+    assert b < hl.passivity.port(paddle(), scene, method="exact", hold="soh").b_req < b + 0.3 * (held - b)

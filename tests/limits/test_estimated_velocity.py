@@ -51,7 +51,7 @@ def test_a_filtered_damper_asks_for_less_only_where_it_is_positive(tau, B):
     """b > B/(1 + 2 tau/T) for B >= 0, b > |B| for B < 0: of the scene as it is compiled."""
     law = LinearLaw.of_scene(hl.laws.virtual_damper(velocity=hl.velocity.filtered(tau=tau))(B=B), T=T)
     expected = B / (1 + 2 * tau / T) if B > 0 else abs(B)
-    assert passivity_margin(law, b=1.0).required == pytest.approx(expected, rel=1e-6)
+    assert passivity_margin(hl.Device(b=1.0), law).required == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.parametrize("name", ESTIMATES)
@@ -77,4 +77,4 @@ def test_compensation_spends_what_a_wall_needs():
     for part, passive in ((0.999, True), (1.001, False)):
         wall = hl.wall(unilateral=None)(k=part * at_limit)
         scene = hl.laws.damping_compensation(wall, b=DAMPING)(viscous=viscous)
-        assert passivity_margin(LinearLaw.of_scene(scene, T=T), b=DAMPING).passive == passive
+        assert passivity_margin(hl.Device(b=DAMPING), LinearLaw.of_scene(scene, T=T)).passive == passive

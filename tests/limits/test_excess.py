@@ -13,8 +13,8 @@ GENERATOR = np.random.default_rng(5)
 @pytest.mark.parametrize("delay", [0.0, 1e-3, 3e-3, 2e-4, 5e-4, 1.7e-3, 2.95e-3])
 def test_a_linear_spring_is_exact(delay):
     """Colgate's condition in the frequency domain says the same, to rounding."""
-    ledger = hl.passivity.ledger(b=0, T=T, K=640, delay=delay)
-    b = hl.passivity.margin(hl.laws.LinearLaw.of(K=640, T=T), b=0, delay=delay).required
+    ledger = hl.passivity.ledger(hl.Device(b=0, T=T, delay=delay), K=640)
+    b = hl.passivity.margin(hl.Device(b=0, delay=delay), hl.laws.LinearLaw.of(K=640, T=T)).required
     assert -ledger.index == pytest.approx(b, rel=1e-9)
 
 
@@ -35,7 +35,7 @@ def least_damping(f, periods=120, K=1.0):
 @pytest.mark.parametrize("f", [0.25, 0.6])
 def test_a_fraction_of_delay_costs_more_than_half_plus_f(f):
     """(1/2 + f) K T is not enough between whole periods; motions of 120 periods come within 0.1 % of the ledger."""
-    found = -hl.passivity.ledger(b=0, T=1.0, K=1.0, delay=f).index
+    found = -hl.passivity.ledger(hl.Device(b=0, T=1.0, delay=f), K=1.0).index
     least = least_damping(f)
     assert 0.5 + f < least <= found
     assert least == pytest.approx(found, rel=1e-3)
@@ -59,7 +59,7 @@ def test_springs_that_bend_keep_the_inequality(late):
         slopes = GENERATOR.uniform(-300, 500, 9)
         force, energy = bending(np.linspace(-0.02, 0.02, 9), slopes)
         k_min, k_max = slopes.min(), slopes.max()
-        b = -hl.passivity.ledger(b=0, T=T, K=(k_min, k_max), delay=late * T).index
+        b = -hl.passivity.ledger(hl.Device(b=0, T=T, delay=late * T), K=(k_min, k_max)).index
         x = np.clip(np.cumsum(GENERATOR.choice([1e-4, 1e-3, 4e-3]) * GENERATOR.normal(size=300)), -0.0199, 0.0199)
         x[: late + 2] = 0
         D, held = np.diff(x), np.r_[np.zeros(late), force(x)][: len(x) - 1]
@@ -73,7 +73,7 @@ def test_springs_that_bend_keep_it_when_the_force_changes_inside_the_period(late
     for _ in range(4):
         slopes = GENERATOR.uniform(-300, 500, 9)
         force, energy = bending(np.linspace(-0.02, 0.02, 9), slopes)
-        b = -hl.passivity.ledger(b=0, T=T, K=(slopes.min(), slopes.max()), delay=(late + f) * T).index
+        b = -hl.passivity.ledger(hl.Device(b=0, T=T, delay=(late + f) * T), K=(slopes.min(), slopes.max())).index
         size = GENERATOR.choice([1e-4, 1e-3, 4e-3])
         x = np.clip(np.cumsum(size * GENERATOR.normal(size=300)), -0.0199, 0.0199)
         x[: late + 2] = 0
@@ -93,7 +93,7 @@ def test_negative_slopes_cost_the_hold_nothing_and_the_stiffest_place_decides():
     x = a * np.tile([1, -1], 50) / 2
     drawn = -(force(x[:-1]) * np.diff(x)).sum() / 99
     assert drawn == pytest.approx(400 * a**2 / 2, rel=1e-6)
-    ledger = hl.passivity.ledger(b=0.25, T=T, K=(-900, 400), bounded=True)
+    ledger = hl.passivity.ledger(hl.Device(b=0.25, T=T), K=(-900, 400), bounded=True)
     assert ledger.passive and ledger.index == pytest.approx(0.25 - 400 * T / 2)
     assert "bounded below" in str(ledger)
 
@@ -106,38 +106,40 @@ def test_a_spring_that_only_pushes_off_is_kept_by_no_damping(given):
     log = hl.SimulatedPaddle(m=0.05, b=5.0, T=T).run(falling, duration=0.5, x=1e-4, progress=False)
     assert log.x[-1] > 0.5 * 1e-4 * np.exp(0.49 * rate) > 0.1
     with pytest.raises(AnalysisError, match="no slope is positive"):
-        hl.passivity.ledger(b=5.0, T=T, K=given)
+        hl.passivity.ledger(hl.Device(b=5.0, T=T), K=given)
 
 
 def test_where_a_slope_is_negative_nothing_is_proved_unless_the_energy_is_bounded():
     """A slope of 400 N/m to one side and of -900 N/m to the other: within the range, and it falls off to that side."""
-    given = {"b": 0.25, "T": T, "K": (-900, 400)}
-    ledger = hl.passivity.ledger(**given)
+    paddle = hl.SimulatedPaddle(m=0.05, b=0.25, T=T)
+    ledger = hl.passivity.ledger(paddle, K=(-900, 400))
     assert ledger.index > 0 and not ledger.passive and ledger.gain == np.inf
     assert "say bounded=True" in str(ledger)
     k, c = hl.parameters("k c", units="N/m N/m", values=(400, 900))
     scene = hl.Scene(force=hl.when(hl.x(hl.n) > 0, k, -c) * hl.x(hl.n))
-    paddle = hl.SimulatedPaddle(m=0.05, b=0.25, T=T)
     assert hl.stability.local_stiffness(scene, -0.01, 0.01) == pytest.approx((-900, 400))
     assert paddle.run(scene, duration=0.2, x=-1e-4, progress=False).x[-1] < -1.0
-    assert hl.passivity.ledger(**given, bounded=True).passive
+    assert hl.passivity.ledger(paddle, K=(-900, 400), bounded=True).passive
 
 
 def test_a_range_of_dampers_counts_by_its_largest_magnitude():
-    assert hl.passivity.ledger(b=1, T=T, B=(-0.3, 0.2)).index == pytest.approx(0.7)
-    assert hl.passivity.ledger(b=1, T=T, B=-0.3, K=100, parts=[("brake", 0.5, "eddy currents")]).index == pytest.approx(1.15)
+    assert hl.passivity.ledger(hl.Device(b=1, T=T), B=(-0.3, 0.2)).index == pytest.approx(0.7)
+    assert hl.passivity.ledger(
+        hl.Device(b=1, T=T), B=-0.3, K=100, parts=[("brake", 0.5, "eddy currents")]
+    ).index == pytest.approx(1.15)
 
 
 def test_an_environment_that_answers_late_is_a_sample_of_delay():
-    late, delayed = (hl.passivity.ledger(b=1, T=T, K=100, **o) for o in ({"delayed": True}, {"delay": T}))
+    late = hl.passivity.ledger(hl.Device(b=1, T=T), K=100, delayed=True)
+    delayed = hl.passivity.ledger(hl.Device(b=1, T=T, delay=T), K=100)
     assert late.index == delayed.index == pytest.approx(1 - 1.5 * 0.1)
 
 
 def test_it_says_what_is_left_and_what_it_bounds():
-    ledger = hl.passivity.ledger(b=0.5, T=T, K=200, delay=5e-4, B=0.05)
+    ledger = hl.passivity.ledger(hl.Device(b=0.5, T=T, delay=5e-4), K=200, B=0.05)
     assert ledger.gain == pytest.approx(1 / ledger.index)
     assert "passive in every passive hand" in str(ledger)
-    short = hl.passivity.ledger(b=0.05, T=T, K=200)
+    short = hl.passivity.ledger(hl.Device(b=0.05, T=T), K=200)
     assert not short.passive and short.gain == np.inf and "nothing proved" in str(short)
     axes = ledger.plot().axes[0]
     assert [label.get_text() for label in axes.get_yticklabels()] == ["device", "hold", "delay", "damper", "left"]
@@ -147,7 +149,7 @@ def test_it_says_what_is_left_and_what_it_bounds():
 def test_the_gain_bounds_what_the_hand_gets():
     """Mean squares over a run: a noisy hand on a wall that always acts; the bound is not far off at low stiffness."""
     b, K = 0.4, 60.0
-    ledger = hl.passivity.ledger(b=b, T=T, K=K)
+    ledger = hl.passivity.ledger(hl.Device(b=b, T=T), K=K)
     paddle = hl.SimulatedPaddle(m=0.004, b=b, T=T, hand=hl.Hand(noise=1.0))
     log = paddle.run(hl.wall(unilateral=None)(k=K), duration=4.0, progress=False)
     force = paddle.inputs(len(log))[:, -1]
@@ -159,4 +161,4 @@ def test_the_gain_bounds_what_the_hand_gets():
 @pytest.mark.parametrize("given", [(1, 2, 3), (2.0, 1.0), float("nan"), "stiff"])
 def test_ranges_are_checked(given):
     with pytest.raises(AnalysisError, match="K = .*least"):
-        hl.passivity.ledger(b=1, T=T, K=given)
+        hl.passivity.ledger(hl.Device(b=1, T=T), K=given)

@@ -4,6 +4,7 @@ from typing import get_args
 
 import pytest
 
+import hapticlab as hl
 from hapticlab.errors import AnalysisError
 from hapticlab.limits.limit import MOST_PERIODS, Limit, whole_and_fraction
 from hapticlab.limits.passivity import passivity_limit
@@ -36,5 +37,5 @@ def test_delays_split_without_rounding_noise(T):
 
 
 def test_a_limit_knows_whether_it_holds_in_any_hand():
-    assert passivity_limit(b=0.1, T=1e-3).any_hand
+    assert passivity_limit(hl.Device(b=0.1, T=1e-3)).any_hand
     assert not Limit(K=200.0, frequency=None, kind="exact linear stability of this plant", reason="a pole").any_hand

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from hapticlab.errors import AnalysisError
+import hapticlab as hl
+from hapticlab.errors import AnalysisError, PaddleError
 from hapticlab.limits.passivity import passivity_limit, required_damping
 from hapticlab.scene.laws.taps import TAPS
 
@@ -22,28 +23,30 @@ REQUIRED = {
 @pytest.mark.parametrize("law", REQUIRED)
 @pytest.mark.parametrize("periods", range(4))
 def test_whole_delays_match_the_closed_forms(law, periods):
-    limit = passivity_limit(b=b, T=T, delay=periods * T, law=law)
+    limit = passivity_limit(hl.Device(b=b, T=T, delay=periods * T), law=law)
     tolerance = 1e-10 if (law, periods) == ("ellis", 1) else 1e-13  # that closed form is known to 11 digits
     assert limit.K * T / b == pytest.approx(1 / REQUIRED[law][periods], rel=tolerance)
     assert required_damping(K=limit.K, T=T, delay=periods * T, law=law) == pytest.approx(b, rel=1e-12)
 
 
 def test_worst_frequencies():
-    assert passivity_limit(b=b, T=T).frequency is None  # every frequency alike
+    assert passivity_limit(hl.Device(b=b, T=T)).frequency is None  # every frequency alike
     nyquist = 1 / (2 * T)
-    assert passivity_limit(b=b, T=T, law="ellis").frequency == pytest.approx(nyquist, rel=1e-7)
-    assert passivity_limit(b=b, T=T, law="backward_difference", delay=T).frequency == pytest.approx(nyquist / 3, rel=1e-6)
-    assert passivity_limit(b=b, T=T, law="ellis", delay=T).frequency == pytest.approx(0.53432 * nyquist, rel=1e-4)
+    assert passivity_limit(hl.Device(b=b, T=T), law="ellis").frequency == pytest.approx(nyquist, rel=1e-7)
+    assert passivity_limit(hl.Device(b=b, T=T, delay=T), law="backward_difference").frequency == pytest.approx(
+        nyquist / 3, rel=1e-6
+    )
+    assert passivity_limit(hl.Device(b=b, T=T, delay=T), law="ellis").frequency == pytest.approx(0.53432 * nyquist, rel=1e-4)
 
 
 @pytest.mark.parametrize("B", [0.3, -0.3, 0.06, -0.11, 0.129])
 def test_virtual_damper_of_either_sign(B):
     B = B if abs(B) < b else B * b
-    assert passivity_limit(b=b, T=T, B=B).K == pytest.approx(2 * (b - abs(B)) / T, rel=1e-12)  # Eq. (23.10)
+    assert passivity_limit(hl.Device(b=b, T=T), B=B).K == pytest.approx(2 * (b - abs(B)) / T, rel=1e-12)  # Eq. (23.10)
     # backward_difference is zoh with KT/2 more virtual damping: |B + KT/2| + KT/2 = b
-    assert passivity_limit(b=b, T=T, B=B, law="backward_difference").K == pytest.approx((b - B) / T, rel=1e-12)
+    assert passivity_limit(hl.Device(b=b, T=T), B=B, law="backward_difference").K == pytest.approx((b - B) / T, rel=1e-12)
     if B > 0:
-        assert passivity_limit(b=b, T=T, B=B, law="ellis").K == pytest.approx((b - B) / (2 * T), rel=1e-12)
+        assert passivity_limit(hl.Device(b=b, T=T), B=B, law="ellis").K == pytest.approx((b - B) / (2 * T), rel=1e-12)
 
 
 def energy_form(K, B, law, delay, periods):
@@ -68,7 +71,7 @@ def energy_form(K, B, law, delay, periods):
 @pytest.mark.parametrize("delay", [0.2, 0.5, 1.35])
 @pytest.mark.parametrize("B", [0.0, 0.4, -0.5])
 def test_fractional_delay_is_where_some_motion_first_yields_energy(law, delay, B):
-    K = passivity_limit(b=b, T=T, B=B * b, delay=delay * T, law=law).K
+    K = passivity_limit(hl.Device(b=b, T=T, delay=delay * T), B=B * b, law=law).K
     assert K > 0
     least = [np.linalg.eigvalsh(energy_form(K * s, B * b, law, delay * T, 120))[0] * T / b for s in (0.999, 1.02)]
     assert least[0] > -1e-11  # a rigid shift costs nothing, so the least eigenvalue of a passive wall is zero
@@ -77,16 +80,16 @@ def test_fractional_delay_is_where_some_motion_first_yields_energy(law, delay, B
 
 def test_fraction_joins_whole_delays_without_a_jump():
     for law in REQUIRED:
-        whole = passivity_limit(b=b, T=T, delay=T, law=law).K
+        whole = passivity_limit(hl.Device(b=b, T=T, delay=T), law=law).K
         for near in (1 - 1e-7, 1 + 1e-7):
-            assert passivity_limit(b=b, T=T, delay=near * T, law=law).K == pytest.approx(whole, rel=1e-5)
+            assert passivity_limit(hl.Device(b=b, T=T, delay=near * T), law=law).K == pytest.approx(whole, rel=1e-5)
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.3, 1.0, 2.6])
 @pytest.mark.parametrize("law", REQUIRED)
 def test_required_damping_is_the_inverse(law, delay):
     need = required_damping(K=410.0, T=T, B=0.02, delay=delay * T, law=law)
-    assert passivity_limit(b=need, T=T, B=0.02, delay=delay * T, law=law).K == pytest.approx(410.0, rel=1e-10)
+    assert passivity_limit(hl.Device(b=need, T=T, delay=delay * T), B=0.02, law=law).K == pytest.approx(410.0, rel=1e-10)
 
 
 def test_required_damping_at_the_edges():
@@ -96,19 +99,19 @@ def test_required_damping_at_the_edges():
 
 
 def test_zero_limits_say_why():
-    exact_velocity = passivity_limit(b=b, T=T, law="half_sample")
+    exact_velocity = passivity_limit(hl.Device(b=b, T=T), law="half_sample")
     assert exact_velocity.K == 0 and "velocity" in exact_velocity.reason
     for B in (0.2, -0.2):
-        damper = passivity_limit(b=b, T=T, B=B)
+        damper = passivity_limit(hl.Device(b=b, T=T), B=B)
         assert damper.K == 0 and "alone" in damper.reason and "0.13 N s/m" in damper.reason
     assert "passivity" in damper.kind
-    undamped = passivity_limit(b=0, T=T)
+    undamped = passivity_limit(hl.Device(b=0, T=T))
     assert undamped.K == 0 and "nothing pays for the hold" in undamped.reason
     assert not any("unilateral" in note for limit in (exact_velocity, undamped) for note in limit.assumptions)
 
 
 def test_a_limit_at_rest_is_said_in_words():
-    assert "worst for slow motion" in str(passivity_limit(b=b, T=T, delay=T / 2))
+    assert "worst for slow motion" in str(passivity_limit(hl.Device(b=b, T=T, delay=T / 2)))
 
 
 @pytest.mark.parametrize(
@@ -116,24 +119,25 @@ def test_a_limit_at_rest_is_said_in_words():
     [
         ({"b": -0.1}, "b = -0.1 N s/m"),
         ({"b": math.nan}, "b = nan N s/m"),
-        ({"T": 0}, "T = 0 s; a sampling period needs T > 0"),
+        ({"T": 0}, "T = 0 s; a device needs T > 0"),
         ({"T": math.inf}, "T = inf s"),
         ({"B": math.nan}, "B = nan N s/m"),
-        ({"delay": -1e-3}, "delay = -0.001 s; needs delay >= 0"),
+        ({"delay": -1e-3}, "delay = -0.001 s; a device needs delay >= 0: a force cannot come before its sample"),
         ({"delay": 1.0}, "at most 200 periods"),
         ({"law": "foh"}, f"law = 'foh'; needs one of {', '.join(TAPS)}"),
         ({"b": "thick"}, "b = 'thick'; a device needs b >= 0: its damping pays for the hold, as a number in N s/m"),
     ],
 )
 def test_bad_arguments_are_named_with_value_and_unit(change, words):
-    with pytest.raises(AnalysisError) as error:
-        passivity_limit(**{"b": b, "T": T, **change})
+    device, rest = {"b": b, "T": T, **change}, {name: change[name] for name in ("B", "law") if name in change}
+    with pytest.raises((AnalysisError, PaddleError)) as error:
+        passivity_limit(hl.Device(**{name: value for name, value in device.items() if name not in rest}), **rest)
     assert words in str(error.value)
 
 
 def test_a_misspelt_keyword_does_not_pass():
     with pytest.raises(TypeError, match="dellay"):
-        passivity_limit(b=b, T=T, dellay=1e-3)
+        passivity_limit(hl.Device(b=b, T=T), dellay=1e-3)
 
 
 def test_negative_stiffness_is_refused():

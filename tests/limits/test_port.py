@@ -21,7 +21,9 @@ def test_springs_with_a_memory(law, damper):
     """Eqs. (23.1), (23.5), (23.7) as springs that always act, against the closed form of their worst frequency."""
     taps = {"zoh": [1], "backward_difference": [1.5, -0.5], "ellis": [2, -1.5, 0.5]}[law]
     spring = hl.Scene(force=K * sum(a * x(n - k) for k, a in enumerate(taps)) + B * v(n))
-    assert port_damping(spring(K=300, B=damper)) == pytest.approx(required_damping(K=300, T=T, B=damper, law=law), rel=1e-9)
+    assert port_damping(hl.Device(T=1e-3), spring(K=300, B=damper)) == pytest.approx(
+        required_damping(K=300, T=T, B=damper, law=law), rel=1e-9
+    )
 
 
 def coupler(**values):
@@ -34,7 +36,7 @@ def test_a_mass_on_a_coupler(damper):
     """Semi-implicit Euler under a held sample has a closed form: b_0/(1 - m_0/m), b_0 = K T/2 + B, m_0 = b_0 T/2."""
     b_0 = 500 * T / 2 + damper
     m_0 = b_0 * T / 2
-    found = port_damping(coupler(B=damper), method="semi_implicit_euler", hold="zoh")
+    found = port_damping(hl.Device(T=1e-3), coupler(B=damper), method="semi_implicit_euler", hold="zoh")
     assert found == pytest.approx(b_0 / (1 - m_0 / 0.05), rel=1e-9)
 
 
@@ -50,8 +52,10 @@ def test_the_exact_map_is_its_own_closed_form():
 
 
 def test_without_damping_no_device_is_enough():
-    assert port_damping(coupler(B=0), method="exact") == np.inf
-    assert port_damping(coupler(B=0.05), method="exact", hold="zoh") == pytest.approx(1.0, abs=0.01)  # its resonance
+    assert port_damping(hl.Device(T=1e-3), coupler(B=0), method="exact") == np.inf
+    assert port_damping(hl.Device(T=1e-3), coupler(B=0.05), method="exact", hold="zoh") == pytest.approx(
+        1.0, abs=0.01
+    )  # its resonance
 
 
 def test_static_stiffness_is_that_of_springs_in_series():
@@ -64,18 +68,18 @@ def test_static_stiffness_is_that_of_springs_in_series():
         assert static_stiffness(*tick) == pytest.approx(500 * stiffness / (500 + stiffness), rel=1e-9)
     assert static_stiffness(*tick_map(hl.compile(coupler(), T=T, live=(), dtype="float64"))) == 0.0
     with pytest.raises(AnalysisError, match="negative stiffness, -125 N/m"):
-        port_damping(scene)
+        port_damping(hl.Device(T=1e-3), scene)
     with pytest.raises(AnalysisError, match="negative stiffness, -200 N/m: a free handle falls"):
-        port_damping(hl.Scene(force=k * x(n))(k=-200))
+        port_damping(hl.Device(T=1e-3), hl.Scene(force=k * x(n))(k=-200))
 
 
 def test_refusals():
     with pytest.raises(AnalysisError, match="not linear"):
-        port_damping(hl.wall()(k=100, x_o=0))
+        port_damping(hl.Device(T=1e-3), hl.wall()(k=100, x_o=0))
     with pytest.raises(AnalysisError, match="not linear"):
-        port_damping(hl.Scene(force=K * z, eom=[sp.Eq(m * z.diff(t, 2), K * (x(t) - sp.Abs(z)))]))
+        port_damping(hl.Device(T=1e-3), hl.Scene(force=K * z, eom=[sp.Eq(m * z.diff(t, 2), K * (x(t) - sp.Abs(z)))]))
     with pytest.raises(AnalysisError, match="unstable with the handle held"):
-        port_damping(coupler(K=5e5), method="semi_implicit_euler")
+        port_damping(hl.Device(T=1e-3), coupler(K=5e5), method="semi_implicit_euler")
     f = hl.parameters("f", units="Hz", values=3)
     with pytest.raises(AnalysisError, match="time does not drive"):
-        port_damping(hl.Scene(force=K * x(n) * sp.sin(2 * sp.pi * f * t)))
+        port_damping(hl.Device(T=1e-3), hl.Scene(force=K * x(n) * sp.sin(2 * sp.pi * f * t)))

@@ -9,14 +9,14 @@ import pytest
 
 import hapticlab as hl
 from hapticlab import n, parameters, x
-from hapticlab.errors import AnalysisError
+from hapticlab.errors import AnalysisError, PaddleError
 from hapticlab.limits.passivity import passivity_limit
 from hapticlab.limits.stability import closed_loop_matrix, closed_loop_poles, damper_limit, stability_limit
 from hapticlab.scene.laws.taps import LEAD, TAPS
 
 
 def paddle(m=0.045, b=0.12, T=0.8e-3, delay=0.0, hand=None):
-    return SimpleNamespace(m=m, b=b, T=T, delay=delay, hand=hand)
+    return hl.Device(m=m, b=b, T=T, delay=delay, hand=hand, velocity="measured")
 
 
 def hand(m=0.02, b=1.1, k=210.0):
@@ -201,7 +201,7 @@ def test_what_is_ignored_is_said():
     ],
 )
 def test_bad_plants_are_refused(change, words):
-    with pytest.raises(AnalysisError, match=words.replace(".", r"\.")):
+    with pytest.raises((AnalysisError, PaddleError), match=words.replace(".", r"\.")):
         stability_limit(paddle(**change))
 
 
@@ -224,7 +224,7 @@ def test_what_is_passive_is_stable():
         delay = rng.choice([0.0, T, rng.uniform(0, 3) * T, rng.integers(0, 30) * T])
         grip = rng.choice([None, hand(m=rng.uniform(0, 2) * m, b=rng.uniform(0, 3) * b, k=rng.uniform(0, 1) * m / T**2)])
         law, B = rng.choice(["zoh", "backward_difference", "ellis"]), rng.choice([0.0, rng.uniform(-0.9, 0.9) * b])
-        passive = passivity_limit(b=b, T=T, B=B, delay=delay, law=law).K
+        passive = passivity_limit(hl.Device(b=b, T=T, delay=delay), B=B, law=law).K
         stable = stability_limit(paddle(m=m, b=b, T=T, delay=delay, hand=grip), law=law, B=B).K
         assert 0 < passive <= stable * (1 + 1e-9)
 
@@ -233,10 +233,10 @@ def test_what_is_passive_is_stable():
 def test_half_sample_with_an_estimated_velocity_is_the_backward_difference(hand):
     """Eq. (23.3) with the estimate is Eq. (23.5); the exact velocity would promise 45 times more."""
     plant = {"m": 0.05, "b": 0.1, "T": 1e-3, "delay": 0.0, "hand": hand}
-    estimated = SimpleNamespace(**plant, velocity="backward_difference")
+    estimated, measured = (hl.Device(**plant, velocity=name) for name in ("backward_difference", "measured"))
     limit = stability_limit(estimated, law="half_sample")
-    assert limit.K == stability_limit(SimpleNamespace(**plant), law="backward_difference").K
-    assert limit.K < 0.5 * stability_limit(SimpleNamespace(**plant), law="half_sample").K
+    assert limit.K == stability_limit(measured, law="backward_difference").K
+    assert limit.K < 0.5 * stability_limit(measured, law="half_sample").K
     assert any("backward difference" in note for note in limit.assumptions)
 
 
@@ -249,17 +249,17 @@ def test_the_largest_damper_by_a_closed_form_without_delay(m, b, T):
     else:
         g0 = g1 = T**2 / (2 * m)
     edges = [T / g0] + ([T * (1 + a) / (g1 - g0)] if g1 > g0 else [])
-    assert damper_limit(m=m, b=b, T=T) == pytest.approx(min(edges), rel=1e-9 if b > 1e-3 else 1e-7)
+    assert damper_limit(hl.Device(m=m, b=b, T=T)) == pytest.approx(min(edges), rel=1e-9 if b > 1e-3 else 1e-7)
 
 
 def test_without_device_damping_the_largest_damper_is_two_masses_a_period():
-    assert damper_limit(m=0.03, b=0, T=2e-3) == pytest.approx(2 * 0.03 / 2e-3, rel=1e-12)
+    assert damper_limit(hl.Device(m=0.03, b=0, T=2e-3)) == pytest.approx(2 * 0.03 / 2e-3, rel=1e-12)
 
 
 def test_the_largest_damper_after_a_sample_of_delay_by_a_cubic():
     """b = 0: z^3 - z^2 + g z + g, g = B T/(2 m), has a pair on the unit circle where 1 - g^2 = |g + g| (Schur and Cohn)."""
     g = math.sqrt(2) - 1
-    assert damper_limit(m=0.05, b=0, T=1e-3, delay=1e-3) == pytest.approx(g * 2 * 0.05 / 1e-3, rel=1e-9)
+    assert damper_limit(hl.Device(m=0.05, b=0, T=1e-3, delay=1e-3)) == pytest.approx(g * 2 * 0.05 / 1e-3, rel=1e-9)
 
 
 @pytest.mark.parametrize("delay", [0.0, 3e-4, 1e-3, 2.6e-3])
@@ -267,7 +267,7 @@ def test_a_handle_rings_just_beyond_the_largest_damper_and_settles_just_below(de
     B = parameters("B", units="N*s/m")
     scene = hl.Scene(force=B * (x(n) - x(n - 1)) / hl.T)
     handle = hl.SimulatedPaddle(m=0.05, b=0.2, T=1e-3, delay=delay)
-    limit = damper_limit(m=0.05, b=0.2, T=1e-3, delay=delay)
+    limit = damper_limit(hl.Device(m=0.05, b=0.2, T=1e-3, delay=delay))
 
     def grown(B):
         log = handle.run(scene(B=B), duration=1.5, v=0.1, progress=False, dtype="float64")

@@ -208,7 +208,7 @@ def test_it_says_what_it_is():
 @pytest.mark.parametrize(
     ("call", "error", "words"),
     [
-        (lambda: compensation_limit("hapkit"), AnalysisError, "a str has no m; needs one whose constants are known"),
+        (lambda: compensation_limit("hapkit"), AnalysisError, "a str has no m; needs a paddle"),
         (
             lambda: over_compensation("hapkit", speed=0.01),
             AnalysisError,

@@ -28,5 +28,5 @@ def test_what_is_wrong_with_the_constants_is_said_once():
     for given, words in (({"K": -1}, "a wall needs K > 0"), ({"K": 500, "hand": "pinch"}, 'as hl.Hand\\("pinch"\\)')):
         with pytest.raises(AnalysisError, match=words):
             hl.laws.wall_for_board(paddle(1e-3), **given)
-    with pytest.raises(AnalysisError, match="^a Scene has no m; needs its constants, as hl.SimulatedPaddle has them$"):
+    with pytest.raises(AnalysisError, match="^a Scene has no m; needs a paddle, as hl.SimulatedPaddle"):
         hl.laws.wall_for_board(hl.wall(), K=500)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...base.arguments import number
 from ...compiler.tick.compile_scene import compile
+from ...device.device import Device, known
 from ...errors import AnalysisError
 from ...limits.port import port_damping
 from ...scene.scene import Scene
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...base.annotations import Array
-    from ...base.telemetry import PaddleProfile
-    from ...limits.limit import Device
+    from ...device.device import AnyDevice
 
 #: below what a hand tells from another force, 7 to 10 %
 TOLERANCE = 0.05
@@ -99,7 +99,7 @@ class Reduction:
 
         See :func:`~hapticlab.limits.port.port_damping`; ``inf`` without damping of the scene's own.
         """
-        full, reduced = (port_damping(scene, T=T, method="exact") for scene in (self.full, self.scene))
+        full, reduced = (port_damping(Device(T=T), scene, method="exact") for scene in (self.full, self.scene))
         return full, reduced
 
     def plot(self) -> Figure:
@@ -124,7 +124,7 @@ class Reduction:
 
 def reduction(
     scene: Scene,
-    paddle: Device | PaddleProfile,
+    paddle: AnyDevice,
     *,
     band: tuple[float, float] = (0.1, 20.0),
     masses: int | None = None,
@@ -140,8 +140,8 @@ def reduction(
     ----------
     scene : Scene
         Linear, passive, of masses, springs and dampers that the handle moves; every parameter bound.
-    paddle : SimulatedPaddle or any object with m [kg], b [N s/m] and hand
-        In parallel with the scene. Its mass and hand decide what part of the impedance is the scene's.
+    paddle : SimulatedPaddle or Device
+        Its m, b and hand are read. In parallel with the scene; what part of the impedance is the scene's they decide.
     band : (float, float)
         Lowest and highest frequency [Hz], 0 < low < high.
     masses : int, optional
@@ -162,21 +162,19 @@ def reduction(
 
     Examples
     --------
-    >>> from types import SimpleNamespace
     >>> import hapticlab as hl
     >>> import sympy as sp
     >>> y, z = hl.coordinate("y", unit="m"), hl.coordinate("z", unit="m")
     >>> k, m = hl.parameters("k m", units="N/m kg", values=(2000, 0.02))
     >>> F, between = k * (hl.x(hl.t) - y), k * (y - z)
     >>> eom = [sp.Eq(m * y.diff(hl.t, 2), F - between), sp.Eq(m * z.diff(hl.t, 2), between)]
-    >>> paddle = SimpleNamespace(m=0.05, b=0.1, hand=None)
+    >>> paddle = hl.Device(m=0.05, b=0.1)
     >>> offer = reduction(hl.Scene(force=F, eom=eom), paddle, band=(0.1, 10), tolerance=0.01)
     >>> offer.masses, {name: round(value, 6) for name, value in offer.scene.values.items()}
     (1, {'k_1': 1600.0, 'm_1': 0.04})
     """
-    if not (hasattr(paddle, "m") and hasattr(paddle, "b")):
-        cure = "needs one with m [kg] and b [N s/m], such as hl.SimulatedPaddle(m=0.05, b=0.1)"
-        raise AnalysisError(f"paddle = {paddle!r}; {cure}")
+    m, b, hand = known(paddle, "m", "b", "hand")
+    paddle = Device(m=m, b=b, hand=hand)
     low, high = _band(band)
     tolerance = number("tolerance", tolerance, above=0, what="a part", why="take 0.05")
     network = network_of(scene, port_of(scene, linear=True))

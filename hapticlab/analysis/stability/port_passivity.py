@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ...base.arguments import number
-from ...compiler.ir.options import period
+from ...device.device import known
 from ...errors import AnalysisError
 from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
@@ -25,8 +24,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ...base.telemetry import PaddleProfile
-    from ...limits.limit import Device
+    from ...device.device import AnyDevice
     from .port_limits import PortLimit
 
 
@@ -120,10 +118,9 @@ class PortPassivity:
 
 
 def port_passivity(
+    device: AnyDevice,
     scene: Scene,
-    paddle: Device | PaddleProfile | None = None,
     *,
-    T: float | None = None,
     at: Mapping[str, float] | Sequence[Mapping[str, float]] | None = None,
     **options: Any,
 ) -> PortPassivity:
@@ -134,12 +131,10 @@ def port_passivity(
 
     Parameters
     ----------
+    device : Device or paddle
+        Its T and delay are read; and b and m where they are known.
     scene : Scene
         Every parameter bound.
-    paddle : optional
-        With b [N s/m], m [kg], and delay [s] and T [s] where it has them.
-    T : float, optional
-        Sampling period [s], > 0; the paddle's unless given.
     at : dict name -> float, or sequence of them, optional
         Operating points, as in :func:`~hapticlab.analysis.stability.step_limit.step_limit`.
     **options
@@ -154,22 +149,17 @@ def port_passivity(
     >>> import hapticlab as hl
     >>> wall = hl.wall()(k=200, x_o="10 mm")
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.15, T=1e-3)
-    >>> port = hl.passivity.port(wall, paddle)
+    >>> port = hl.passivity.port(paddle, wall)
     >>> round(port.b_req, 9), port.worst.mode, port.passive
     (0.1, 'x(n) >= x_o', True)
     """
     if not isinstance(scene, Scene):
-        raise AnalysisError(no_scene(scene, "needs hl.passivity.port(hl.Scene(force=...), T=1e-3)"))
-    given = getattr(paddle, "T", None) if T is None else T
-    if given is None:
-        raise AnalysisError("T is missing; needs a sampling period, T=1e-3, or a paddle that has one")
-    T = period(given)
-    delay = number("delay", getattr(paddle, "delay", 0.0), "s", least=0)
-    known = switched(scene)
-    looked = Looked(known, at, T)
-    forces, ticks, handle = forces_and_ticks_at(known, looked.all, T, **options)
+        raise AnalysisError(no_scene(scene, "needs hl.passivity.port(paddle, hl.Scene(force=...))"))
+    T, delay, b, m = known(device, "T", "delay", or_none="b m")
+    modes_of = switched(scene)
+    looked = Looked(modes_of, at, T)
+    forces, ticks, handle = forces_and_ticks_at(modes_of, looked.all, T, **options)
     modes, kind = looked.limits(forces, ticks, handle, T, delay)
-    b, m = (None if paddle is None else float(getattr(paddle, name)) for name in ("b", "m"))
     return PortPassivity(scene.name, T, delay, modes, kind, b, m, looked.travel)
 
 

@@ -2,17 +2,18 @@
 
 from functools import lru_cache
 
+from ...device.device import Device
 from ...errors import AnalysisError
 from ...limits.affine_law import affine_law
 from ...limits.bounds import abbott_okamura_limit, diolaiti_limit, gil_limit
 from ...limits.passivity import passivity_limit
 from ...limits.stability import stability_limit
 
-#: of a paddle, a damper and a law: the limits by their authors' names
+#: of a paddle, with a damper B and a law: the limits by their authors' names
 BOUNDS = {
-    "abbott_okamura": lambda paddle, B, law: abbott_okamura_limit(B=B, law=law, delay=paddle.delay, **_device(paddle)),
-    "diolaiti": lambda paddle, B, law: diolaiti_limit(B=B, law=law, delay=paddle.delay, **_device(paddle)),
-    "gil": lambda paddle, B, law: gil_limit(paddle, B=B, law=law),
+    "abbott_okamura": abbott_okamura_limit,
+    "diolaiti": diolaiti_limit,
+    "gil": gil_limit,
 }
 
 
@@ -38,12 +39,12 @@ class ChapterLimits:
         if law == "half_sample" and paddle.velocity == "backward_difference":
             law = "backward_difference"  # Eq. (23.3) with the estimate is Eq. (23.5)
         found = {
-            "passivity": _passivity(paddle.b, paddle.T, B, paddle.delay, law),
+            "passivity": _passivity(Device(b=paddle.b, T=paddle.T, delay=paddle.delay), B, law),
             "stability": stability_limit(paddle, law=self.law, B=B),
         }
         for name in self.bounds:
             try:
-                found[name] = BOUNDS[name](paddle, B, self.law)
+                found[name] = BOUNDS[name](paddle, B=B, law=self.law)
             except AnalysisError:
                 found[name] = None
         return found
@@ -74,11 +75,6 @@ class SceneLimits:
         return {"stability": stability_limit(paddle, law=self._laws[key])}
 
 
-def _device(paddle):
-    resolution = 1 / paddle.counts_per_metre if paddle.counts_per_metre else 0.0
-    return {"b": paddle.b, "T": paddle.T, "coulomb": paddle.coulomb, "resolution": resolution}
-
-
 @lru_cache(maxsize=4096)
-def _passivity(b, T, B, delay, law):
-    return passivity_limit(b=b, T=T, B=B, delay=delay, law=law)
+def _passivity(device, B, law):
+    return passivity_limit(device, B=B, law=law)

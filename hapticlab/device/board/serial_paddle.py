@@ -13,6 +13,7 @@ from ...compiler.boards.cost import BOARDS, cost
 from ...compiler.engines.bytecode import encode
 from ...compiler.ir.program import Program
 from ...errors import HapticlabError, LinkError, PaddleError, PortError
+from ..device import Device
 from ..hand.hand import require
 from ..link.exchange import Exchange
 from ..link.messages import OPTIONS, SENSORS, STATES, TARGETS
@@ -116,6 +117,11 @@ class SerialPaddle(Paddle):
     @property
     def velocity(self) -> str:
         return "backward_difference"
+
+    @property
+    def device(self) -> Device:
+        """The numbers that the board keeps, as limits read them."""
+        return Device(T=self.T) if self.settings is None else self.settings.device(self.T)
 
     def accept(self, program: Program) -> Program:
         check_room(self.board, self.settings, program)

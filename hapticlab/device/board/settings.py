@@ -5,6 +5,7 @@ import zlib
 from dataclasses import dataclass, fields, replace
 
 from ...errors import PaddleError
+from ..device import Device
 from ..link.messages import (
     COUNTS_MAX,
     METRES_PER_COUNT_MIN,
@@ -97,6 +98,11 @@ class Settings:
     def is_nominal(self):
         """Whether nothing in it was measured on this very paddle."""
         return self.date == 0
+
+    def device(self, T):
+        """Return what limits read of a paddle that samples every T [s]; its mass and damping only once they were identified."""
+        counts = 1 / abs(self.metres_per_count)
+        return Device(m=self.m, b=self.b, T=T, coulomb=self.coulomb, counts_per_metre=counts) if self.m else Device(T=T)
 
     def force_of_duty(self, duty):
         """Return the force [N] at the handle of a duty in -1 ... 1, the motor's law undone."""

@@ -75,7 +75,7 @@ def tremor_filter(centre: Term = "10 Hz", bandwidth: Term = "6 Hz") -> Scene:
     --------
     >>> import hapticlab as hl
     >>> scene = hl.laws.tremor_filter()(B=20)
-    >>> round(hl.passivity.port_damping(scene, T=1e-3), 3)       # what it asks of the device, in N s/m
+    >>> round(hl.passivity.port_damping(hl.Device(T="1 ms"), scene), 3)       # what it asks of the device, in N s/m
     0.631
     """
     centre, bandwidth = (_frequency(name, given) for name, given in (("centre", centre), ("bandwidth", bandwidth)))

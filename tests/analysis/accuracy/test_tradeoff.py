@@ -51,9 +51,9 @@ def test_what_is_scaled_by_the_factor_that_is_named_is_passive():
     z, (K, b, m) = hl.coordinate("z", unit="m"), hl.parameters("K b m", units="N/m N*s/m kg")
     F = K * (hl.x(hl.t) - z) + b * (hl.v(hl.t) - z.diff(hl.t))
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)])
-    asked = hl.passivity.port_damping(scene(K=500, b=0.1, m=0.05), T=1e-3)
+    asked = hl.passivity.port_damping(hl.Device(T=1e-3), scene(K=500, b=0.1, m=0.05))
     s = 0.3 / asked
-    assert hl.passivity.port_damping(scene(K=500 * s, b=0.1 * s, m=0.05 * s), T=1e-3) == pytest.approx(0.3, rel=1e-6)
+    assert hl.passivity.port_damping(hl.Device(T=1e-3), scene(K=500 * s, b=0.1 * s, m=0.05 * s)) == pytest.approx(0.3, rel=1e-6)
 
 
 def test_no_sensor_is_worth_more_than_half_its_own_error():
@@ -164,7 +164,7 @@ def test_predicted_cycles_are_those_of_the_cost_model_and_load_is_their_share(fo
 def test_passivity_is_that_of_the_tick_map(found):
     for one in filter(lambda one: one.ran, found.table.where(target="uno", substeps=1, T=1e-3)):
         options = {name: getattr(one, name) for name in ("method", "hold")}
-        assert one.b_req == pytest.approx(hl.passivity.port_damping(found.bench.scene, T=1e-3, **options), rel=1e-6)
+        assert one.b_req == pytest.approx(hl.passivity.port_damping(hl.Device(T=1e-3), found.bench.scene, **options), rel=1e-6)
 
 
 def test_the_choice_compiles_and_holds(found):

@@ -33,7 +33,7 @@ def paddle(**given):
 @pytest.mark.parametrize("delay", [0.0, 0.4e-3, 1e-3, 2.7e-3])
 def test_a_wall_in_contact_with_delay(delay):
     """The general form of Eq. (23.10), from Dirichlet's kernel, whole and fractional delays alike."""
-    port = hl.passivity.port(hl.wall()(k=300, x_o=0.01, B=0.07), paddle(delay=delay))
+    port = hl.passivity.port(paddle(delay=delay), hl.wall()(k=300, x_o=0.01, B=0.07))
     apart, touching = port.modes
     assert apart.b_req == 0 and touching.mode == "x(n) >= x_o"
     assert touching.b_req == pytest.approx(required_damping(K=300, T=T, B=0.07, delay=delay), rel=1e-7)
@@ -50,7 +50,7 @@ def test_semi_implicit_euler_has_a_closed_form(damper):
     part = b_0 * T / 2 / 0.05
     for force_at, expected in (("before", b_0 / (1 - part)), ("after", b_0 * (1 - 2 * part) / (1 - part))):
         options = {"method": "semi_implicit_euler", "hold": "zoh", "force_at": force_at}
-        port = hl.passivity.port(coupler(B=damper), T=T, **options)
+        port = hl.passivity.port(hl.Device(T=T), coupler(B=damper), **options)
         assert port.b_req == pytest.approx(expected, rel=1e-6), force_at
         if force_at == "before":
             assert port.floor == pytest.approx(b_0, rel=1e-9)
@@ -68,10 +68,12 @@ def test_semi_implicit_euler_has_a_closed_form(damper):
 @pytest.mark.always("rk4-zoh-before-*", "semi_implicit_euler-zoh-after-*")
 def test_numbers_measured_on_prototypes(method, hold, force_at, expected):
     """A lightly damped coupler, B = 0.05 N s/m: hold and timing of the force change b_req more than the order does."""
-    port = hl.passivity.port(coupler(), T=T, method=method, hold=hold, force_at=force_at)
+    port = hl.passivity.port(hl.Device(T=T), coupler(), method=method, hold=hold, force_at=force_at)
     assert port.b_req == pytest.approx(expected, rel=0.04)
     # the same program measured from unit states, without a slope
-    assert port.b_req == pytest.approx(port_damping(coupler(), T=T, method=method, hold=hold, force_at=force_at), rel=1e-9)
+    assert port.b_req == pytest.approx(
+        port_damping(hl.Device(T=T), coupler(), method=method, hold=hold, force_at=force_at), rel=1e-9
+    )
 
 
 #: "euler" gains energy on the lightly damped coupler, and "nystrom4" knows no damper
@@ -105,7 +107,7 @@ LOTS = [21, pytest.param(126, marks=pytest.mark.slow)]
 def test_no_passive_hand_is_unstable_at_the_damping_asked_for(method, hold, each):
     """In a thousand random networks of masses, springs and dampers, by eigenvalues; six thousand where it may take longer."""
     for k, force_at in enumerate(("before", "after", "mean")):
-        port = hl.passivity.port(coupler(), T=T, method=method, hold=hold, force_at=force_at)
+        port = hl.passivity.port(hl.Device(T=T), coupler(), method=method, hold=hold, force_at=force_at)
         assert np.isfinite(port.b_req) and port.b_req > 0.1
         # rounding of a free network's double eigenvalue 1
         assert largest_radius(port, 3 * PAIRS.index((method, hold)) + k, each) < 1 + 1e-6, force_at
@@ -118,14 +120,14 @@ def test_no_passive_hand_is_unstable_at_the_damping_asked_for(method, hold, each
 def test_no_passive_hand_is_unstable_with_methods_for_a_damper_or_for_none(method, scene, hold, each):
     """Euler needs a damper of 1 N s/m to be stable; Nystrom's loses energy at w h = 0.5, which makes b_req finite."""
     for k, force_at in enumerate(("before", "after", "mean")):
-        port = hl.passivity.port(scene, T=T, method=method, hold=hold, force_at=force_at)
+        port = hl.passivity.port(hl.Device(T=T), scene, method=method, hold=hold, force_at=force_at)
         assert np.isfinite(port.b_req)
         assert largest_radius(port, k, each) < 1 + 1e-6, force_at
 
 
 def test_less_than_the_damping_asked_for_is_unstable_where_a_resonance_asks():
     """Tight: with a held sample the resonance of the coupler, at one frequency, is what a hand can drive."""
-    port = hl.passivity.port(coupler(), paddle(), method="rk4", hold="zoh")
+    port = hl.passivity.port(paddle(), coupler(), method="rk4", hold="zoh")
     assert 50 > port.frequency > 10
     assert 0.9 < port.b_stable / port.b_req <= 1.0
     hands = network(np.random.default_rng(5), 4000, 1, 0.05, T)
@@ -135,7 +137,7 @@ def test_less_than_the_damping_asked_for_is_unstable_where_a_resonance_asks():
 
 def test_delay_in_the_closed_loop():
     """A wall k held k periods late asks for k T (lag + 1/2), and there a hand without a mass of its own is at the limit."""
-    port = hl.passivity.port(hl.wall()(k=300, x_o=0.01), paddle(delay=2e-3))
+    port = hl.passivity.port(paddle(delay=2e-3), hl.wall()(k=300, x_o=0.01))
     assert port.b_req == pytest.approx(300 * T * 2.5, rel=1e-9)
     hands = network(np.random.default_rng(11), 500, 2, 0.01, T)
     assert radii(port.worst.tick, hands, port.b_req * (1 + 1e-9), T, delay=2e-3).max() < 1 + 1e-6
@@ -146,7 +148,7 @@ def test_a_scene_that_is_not_linear_is_looked_at_where_it_is_said():
     """Stiffness of a hardening spring k_1 x + k_3 x^3 is k_1 + 3 k_3 x^2: it asks for half of that times T."""
     k_1, k_3 = hl.parameters("k_1 k_3", units="N/m N/m^3", values=(100, 4e6))
     scene = hl.Scene(force=k_1 * x(n) + k_3 * x(n) ** 3)
-    port = hl.passivity.port(scene, T=T, at=[{"x": 0.0}, {"x": 5e-3}, {"x": 0.01}])
+    port = hl.passivity.port(hl.Device(T=T), scene, at=[{"x": 0.0}, {"x": 5e-3}, {"x": 0.01}])
     assert [mode.b_req for mode in port.modes] == pytest.approx([0.05, 0.2, 0.65], rel=1e-9)
     assert port.small_signal and "small motions" in str(port) and port.worst.point == "x = 0.01"
 
@@ -154,22 +156,22 @@ def test_a_scene_that_is_not_linear_is_looked_at_where_it_is_said():
 def test_the_handle_is_looked_at_over_its_travel():
     """3 k_3 x^2 T/2 at 50 mm; a beam beyond its load k (1 - P) + 3 k_3 x^2, from whose middle a handle moves on."""
     k_3 = hl.parameters("k_3", units="N/m^3", values=4e4)
-    port = hl.passivity.port(hl.Scene(force=k_3 * x(n) ** 3), paddle(b=0.14), T=T)
+    port = hl.passivity.port(paddle(b=0.14), hl.Scene(force=k_3 * x(n) ** 3))
     assert port.b_req == pytest.approx(3 * 4e4 * 0.05**2 * T / 2, rel=1e-9)
     assert port.passive is False and "handle within +-50 mm" in str(port) and len(port.modes) == 2
-    beam = hl.passivity.port(hl.library.buckling_beam(), paddle())
+    beam = hl.passivity.port(paddle(), hl.library.buckling_beam())
     assert beam.b_req == pytest.approx(330 * T / 2, rel=1e-9) and beam.passive
     middle = beam.modes[0]
     assert middle.stiffness == pytest.approx(-45, rel=1e-9) and "locally active, -45 N/m" in middle.reason
     # with the body carried along a linear scene stays one point
-    assert len(hl.passivity.port(hl.library.mass_spring_damper(), T=T).modes) == 1
+    assert len(hl.passivity.port(hl.Device(T=T), hl.library.mass_spring_damper()).modes) == 1
 
 
 def test_the_travel_counts_for_scenes_with_bodies_too():
     """A coupler that hardens, K (d + d^3/s^2) with d = x - z and z held: 1 + 3 (50 mm)^2/s^2 times as stiff at the end."""
     s, d = hl.parameters("s", units="m", values=0.1), x(t) - z
     F = K * (d + d**3 / s**2) + B * (v(t) - z.diff(t))
-    port = hl.passivity.port(hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)])(B=1.0), T=T)
+    port = hl.passivity.port(hl.Device(T=T), hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F)])(B=1.0))
     assert port.floor == pytest.approx(500 * (1 + 3 * 0.25) * T / 2 + 1.0, rel=1e-3) and port.small_signal
 
 
@@ -181,7 +183,7 @@ def test_negative_stiffness_is_never_passive(b):
     body = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F - k * z - B * z.diff(t))])(B=0.4)
     x_o = hl.parameters("x_o", units="m", values=0.01)
     for scene in (hl.Scene(force=k * x(n)), body, hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n) - x_o)))):
-        port = hl.passivity.port(scene, paddle(b=b))
+        port = hl.passivity.port(paddle(b=b), scene)
         assert np.isnan(port.b_req) and not port.passive and "a free handle falls" in str(port)
         assert port.b_stable == np.inf
         free = (np.full((1, 1, 1), 0.05), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)))
@@ -191,13 +193,13 @@ def test_negative_stiffness_is_never_passive(b):
 def test_a_force_that_jumps_is_never_passive():
     """A step of 2 N at 10 mm; none where both sides meet, or where what differs is not felt there."""
     f, x_o = hl.parameters("f x_o", units="N m", values=(2, 0.01))
-    port = hl.passivity.port(hl.Scene(force=hl.when(x(n) >= x_o, f)), paddle())
+    port = hl.passivity.port(paddle(), hl.Scene(force=hl.when(x(n) >= x_o, f)))
     assert port.b_req == np.inf and port.passive is False and "the force jumps by 2 N" in port.worst.reason
     assert port.worst.point == "x = 0.01" and port.b_stable == np.inf
-    assert hl.passivity.port(hl.wall()(k=300, x_o=0.01, B=0.07), paddle()).b_req < 1
-    assert hl.passivity.port(hl.library.virtual_fixture(), paddle(b=0.21)).passive
+    assert hl.passivity.port(paddle(), hl.wall()(k=300, x_o=0.01, B=0.07)).b_req < 1
+    assert hl.passivity.port(paddle(b=0.21), hl.library.virtual_fixture()).passive
     # out of a groove the force drops from k w to none, late, which takes energy out
-    groove = hl.passivity.port(hl.Scene(force=hl.when(sp.Abs(x(n)) <= x_o, K * x(n))), paddle(b=0.3))
+    groove = hl.passivity.port(paddle(b=0.3), hl.Scene(force=hl.when(sp.Abs(x(n)) <= x_o, K * x(n))))
     assert groove.b_req == pytest.approx(500 * T / 2, rel=1e-9) and groove.passive
 
 
@@ -207,7 +209,7 @@ def test_a_trade_off_asks_for_the_same():
     setting = SimpleNamespace(T=T, method="rk4", substeps=1, hold="soh", force_at="before")
     expected = (
         (hl.Scene(force=k * x(n)), np.inf), (hl.Scene(force=hl.when(x(n) >= x_o, f)), np.inf), (hl.library.cart_pole(), None),
-        (hl.library.buckling_beam(), 330 * T / 2), (coupler(), hl.passivity.port(coupler(), T=T).b_req),
+        (hl.library.buckling_beam(), 330 * T / 2), (coupler(), hl.passivity.port(hl.Device(T=T), coupler()).b_req),
     )  # fmt: skip
     for scene, b in expected:
         found, _ = Limits(scene).damping(setting, hl.compile(scene, T=T, live=(), dtype="float64"))
@@ -229,21 +231,21 @@ def test_stable_damping_is_inf_where_none_is_enough():
 def test_detents_are_not_taken_for_linear():
     """Eq. of a sine: A sin(2 pi x/p), stiffest where it passes zero, A 2 pi/p."""
     scene = hl.library.detents()
-    port = hl.passivity.port(scene, T=T)
+    port = hl.passivity.port(hl.Device(T=T), scene)
     A, p = scene.values["A"], scene.values["p"]
     assert port.b_req == pytest.approx(A * 2 * np.pi / p * T / 2, rel=1e-6) and port.small_signal
 
 
 def test_what_falls_by_itself_and_what_is_unstable():
     """A pole on a cart starts upright: no motion near it is passive, and nothing is said of the device."""
-    port = hl.passivity.port(hl.library.cart_pole(), paddle())
+    port = hl.passivity.port(paddle(), hl.library.cart_pole())
     assert np.isnan(port.b_req) and port.passive is None and "falls by itself" in str(port)
-    unstable = hl.passivity.port(coupler(K=5e5), T=T, method="semi_implicit_euler")
+    unstable = hl.passivity.port(hl.Device(T=T), coupler(K=5e5), method="semi_implicit_euler")
     assert unstable.b_req == np.inf and "unstable with the handle held" in unstable.worst.reason
 
 
 def test_the_picture_peaks_at_what_is_asked_for():
-    port = hl.passivity.port(coupler(), paddle(delay=0.3e-3), hold="zoh")
+    port = hl.passivity.port(paddle(delay=0.3e-3), coupler(), hold="zoh")
     line, device = port.plot().axes[0].lines
     frequency, b = line.get_data()
     assert b.max() == pytest.approx(port.b_req, rel=0.02) and device.get_ydata()[0] == 0.2
@@ -252,8 +254,8 @@ def test_the_picture_peaks_at_what_is_asked_for():
 
 def test_refusals():
     with pytest.raises(AnalysisError, match=r"hl\.passivity\.port"):
-        hl.passivity.port("scene", T=T)
-    with pytest.raises(AnalysisError, match="T is missing"):
-        hl.passivity.port(coupler())
+        hl.passivity.port(hl.Device(T=T), "scene")
+    with pytest.raises(AnalysisError, match=r"the device has no T; needs hl\.Device\(T=\.\.\., \.\.\.\)"):
+        hl.passivity.port(hl.Device(b=0.1), coupler())
     with pytest.raises(AnalysisError, match="no finite slope"):
-        hl.passivity.port(hl.Scene(force=K * sp.sqrt(x(n) * hl.parameters("a", units="m", values=1))), T=T)
+        hl.passivity.port(hl.Device(T=T), hl.Scene(force=K * sp.sqrt(x(n) * hl.parameters("a", units="m", values=1))))

@@ -51,7 +51,7 @@ def test_every_point_is_what_a_single_run_shows():
 def test_limits_at_every_row_are_those_of_the_bounds():
     found = wall_map(FULL, over=("K", "delay"), K=[100.0, 200.0], delay=[0.0, 0.7e-3, 2e-3], duration=0.1, bounds=("diolaiti",))
     for delay, passive, stable, by_name in zip(found.rows, *(found.limits[n] for n in found.limits), strict=True):
-        assert passive.K == hl.passivity_limit(b=0.1, T=1e-3, delay=delay).K
+        assert passive.K == hl.passivity_limit(hl.Device(b=0.1, T=1e-3, delay=delay)).K
         assert stable.K == hl.stability_limit(replace(FULL, delay=float(delay))).K
         assert by_name.K == pytest.approx(min(0.1 / (0.5e-3 + delay), 2 * 0.03 * 2e4), rel=1e-12)
     exact = [200.0, found.limits["passivity"][1].K, 0.1 / 2.5e-3]
@@ -110,7 +110,7 @@ def test_an_encoder_chatters_within_the_passivity_limit():
     paddle = hl.SimulatedPaddle(m=0.05, b=0.5, T=1e-3, counts_per_metre=500, hand=hl.Hand(push=1.0))
     found = wall_map(paddle, over=("K", "coulomb"), K=np.linspace(200, 980, 8), coulomb=[0.0, 0.5, 1.2])
     assert found.surprises[:, 0].sum() > 3 and not found.surprises[:, 1:].any()
-    assert hl.bounds.abbott_okamura(b=0.5, T=1e-3, coulomb=1.2, resolution=2e-3).K > 980
+    assert hl.bounds.abbott_okamura(hl.Device(b=0.5, T=1e-3, coulomb=1.2, counts_per_metre=1 / 2e-3)).K > 980
     assert "within the passivity limit chatter" in str(found)
 
 

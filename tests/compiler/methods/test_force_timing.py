@@ -112,7 +112,9 @@ def test_the_damping_a_device_needs_is_the_closed_form(damping):
     ratio = b_0 * T / 2 / M_
     closed = {"before": b_0 / (1 - ratio), "after": b_0 * (1 - 2 * ratio) / (1 - ratio), "mean": b_0 / (1 - ratio)}
     for force_at, needed in closed.items():
-        found = hl.passivity.port_damping(BODY(B=damping), T=T, method="semi_implicit_euler", hold="zoh", force_at=force_at)
+        found = hl.passivity.port_damping(
+            hl.Device(T=T), BODY(B=damping), method="semi_implicit_euler", hold="zoh", force_at=force_at
+        )
         assert found == pytest.approx(needed, rel=1e-12)
 
 
@@ -135,7 +137,7 @@ def test_what_goes_badly_together_is_said():
     """After with a hold that foresees asks for more of a lightly damped body; under zoh substeps leave the error as it is."""
     light = BODY(B=0.05)
     asked = {
-        (force_at, hold): hl.passivity.port_damping(light, T=T, force_at=force_at, hold=hold)
+        (force_at, hold): hl.passivity.port_damping(hl.Device(T=T), light, force_at=force_at, hold=hold)
         for force_at in ("before", "after") for hold in ("zoh", "foh", "soh")
     }  # fmt: skip
     for (force_at, hold), b in asked.items():

@@ -22,7 +22,7 @@ program = hl.compile(mass, method="rk4", T=1e-3)
 print(program, len(program), [channel.name for channel in program.outputs])
 
 grid = hl.sweep(wall(x_o=0), paddle, k=np.geomspace(20, 2000, 5), T=[5e-4, 1e-3], progress=False)
-print(hl.passivity_limit(b=0.1, T=1e-3))
+print(hl.passivity_limit(hl.Device(b=0.1, T=1e-3)))
 print(hl.stability_limit(paddle, law="zoh"))
 grid.plot()
 
@@ -59,10 +59,12 @@ for delay in (0.0, 0.5e-3):
 
 # lab 04: the laws of the chapter
 for law in ("zoh", "backward_difference", "ellis"):
-    print(f"{law:20} {hl.passivity_limit(b=0.1, T=1e-3, law=law).K:10.0f} N/m", hl.compile(hl.wall(law)(k=500), T=1e-3))
+    print(
+        f"{law:20} {hl.passivity_limit(hl.Device(b=0.1, T=1e-3), law=law).K:10.0f} N/m", hl.compile(hl.wall(law)(k=500), T=1e-3)
+    )
 print(hl.design.compare_laws(thrown, K=500, laws=["zoh", "ellis"], entries=2))
 theta = np.linspace(1e-3, np.pi, 9)
-print(hl.passivity.margin(hl.laws.LinearLaw.of("zoh", K=200, T=1e-3), b=0.1).asked(theta).mean())
+print(hl.passivity.margin(hl.Device(b=0.1), hl.laws.LinearLaw.of("zoh", K=200, T=1e-3)).asked(theta).mean())
 
 # labs 05 and 06: a passivity controller, a virtual coupler, the library
 kept = thrown.run(hl.laws.passivity_controller(hl.wall(), alpha_max=5.0)(k=500), duration=0.05, v=0.2)
@@ -70,7 +72,7 @@ print(hl.energy(kept))
 angle = hl.coordinate("angle", unit="rad", initial=0.3)
 M, l, g = hl.parameters("M l g", units="kg m m/s^2", values=(0.05, 0.15, 9.81))
 swing = hl.mechanics.lagrange(M * (z.diff(t) + l * angle.diff(t)) ** 2 / 2 + M * g * l * sp.cos(angle), forces={z: F_c})
-print(hl.design.coupler(paddle, b_c=0.02), hl.passivity.port(mass(m=0.05, b=0.5, K=300), paddle, T=1e-3))
+print(hl.design.coupler(paddle, b_c=0.02), hl.passivity.port(paddle, mass(m=0.05, b=0.5, K=300)))
 print(hl.library.cart_pole().values, hl.library.catalogue["detents"].title)
 
 # lab 07: steps
