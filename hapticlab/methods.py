@@ -1,4 +1,8 @@
-"""Integrators: their table and options, the order of their error, and the trade of speed for accuracy that a scene allows."""
+"""Integrators and holds: their records and table, the order of their error, and the trade of speed for accuracy of a scene.
+
+Printing a record says its order, cost, stable step, source and what it is confused with. ``method="rk4"`` is short for
+``method=hl.methods.RK4``, ``hold="soh"`` for ``hold=hl.methods.SecondOrderHold``.
+"""
 
 from .analysis.accuracy.handle_motions import HandleMotion, handle_motions
 from .analysis.accuracy.port_error import force_error, sensor_floor
@@ -7,11 +11,46 @@ from .analysis.accuracy.tradeoff import tradeoff
 from .analysis.programs.error_order import order_of
 from .analysis.programs.method_comparison import methods as table
 from .compiler.events.taylor_method import Taylor
+from .compiler.methods.chosen_method import Exact
+from .compiler.methods.method_table import METHODS, Method
+from .compiler.tick.handle_samples import HOLDS, Hold
 from .vocabulary import page
 
+Euler = METHODS["euler"]
+SemiImplicitEuler = METHODS["semi_implicit_euler"]
+SemiImplicitEulerDamped = METHODS["semi_implicit_euler_damped"]
+Verlet = METHODS["verlet"]
+Midpoint = METHODS["midpoint"]
+Heun = METHODS["heun"]
+SSPRK3 = METHODS["ssprk3"]
+Nystrom4 = METHODS["nystrom4"]
+AdamsBashforth2 = METHODS["adams_bashforth2"]
+AdamsBashforth3 = METHODS["adams_bashforth3"]
+RK4 = METHODS["rk4"]
+ZeroOrderHold = HOLDS["zoh"]
+FirstOrderHold = HOLDS["foh"]
+SecondOrderHold = HOLDS["soh"]
+
 __all__ = [
+    "RK4",
+    "SSPRK3",
+    "AdamsBashforth2",
+    "AdamsBashforth3",
+    "Euler",
+    "Exact",
+    "FirstOrderHold",
     "HandleMotion",
+    "Heun",
+    "Hold",
+    "Method",
+    "Midpoint",
+    "Nystrom4",
+    "SecondOrderHold",
+    "SemiImplicitEuler",
+    "SemiImplicitEulerDamped",
     "Taylor",
+    "Verlet",
+    "ZeroOrderHold",
     "force_error",
     "handle_motions",
     "order_of",

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from ...base.arguments import instance
 from ...compiler.boards.cost import BOARDS
+from ...compiler.events.taylor_method import Taylor
 from ...compiler.ir.options import choice, period, steps
 from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.methods.force_timing import FORCE_AT
 from ...compiler.methods.method_table import METHODS
-from ...compiler.tick.handle_samples import HOLDS
+from ...compiler.tick.handle_samples import HOLDS, hold_named
 from ...device.progress import progress_bar
 from ...errors import AnalysisError
 from ...scene.notation.written import no_scene
@@ -38,7 +39,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ...base.telemetry import PaddleProfile
-    from ...compiler.events.taylor_method import Taylor
+    from ...compiler.methods.chosen_method import AnyMethod
+    from ...compiler.tick.handle_samples import Hold
     from ...device.simulated.simulated_paddle import SimulatedPaddle
     from .tradeoff_choice import Configuration, NotFeasible
 
@@ -58,10 +60,10 @@ def tradeoff(
     scene: Scene,
     paddle: SimulatedPaddle | PaddleProfile,
     *,
-    methods: Literal["auto"] | Sequence[str | Taylor] = "auto",
+    methods: Literal["auto"] | Sequence[AnyMethod] = "auto",
     T: float | Iterable[float] = (2e-3, 1e-3, 5e-4),
     substeps: Sequence[int] = (1, 2, 4),
-    holds: Sequence[str] = HOLDS,
+    holds: Sequence[str | Hold] = tuple(HOLDS),
     force_at: Sequence[str] = ("before",),
     precision: Sequence[str] = PRECISIONS,
     targets: str | Iterable[str] = (PC, "uno", "cortex-m0+", "cortex-m4f"),
@@ -190,10 +192,10 @@ def _settings(scene, methods, T, substeps, holds, force_at, precision):
     for name, several in given.items():
         if isinstance(several, str) or not tuple(several):
             raise AnalysisError(f"{name} = {several!r}; needs a sequence of at least one, such as {name}=[{several!r}]")
-    for method in methods:
-        chosen_method(method)
-    for hold, when, real in itertools.product(holds, force_at, precision):
-        choice("hold", hold, HOLDS), choice("force_at", when, FORCE_AT), choice("precision", real, PRECISIONS)
+    methods = [m if isinstance(m, Taylor) else str(chosen_method(m)) for m in methods]
+    holds = [hold_named(hold) for hold in holds]
+    for when, real in itertools.product(force_at, precision):
+        choice("force_at", when, FORCE_AT), choice("precision", real, PRECISIONS)
     substeps = sorted(map(steps, substeps))
     if not scene.coordinates:  # a force of the samples alone: there is nothing to integrate or to hold
         methods, substeps, holds = ["rk4"], [1], ["soh"]

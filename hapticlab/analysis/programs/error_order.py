@@ -19,14 +19,13 @@ from ...compiler.methods.method_checks import KINKS
 from ...compiler.prune.dependence import Dependence, part_of
 from ...compiler.prune.excluded_modes import excluded
 from ...compiler.prune.mass_matrix import start_of
+from ...compiler.tick.handle_samples import HOLDS, hold_named
 from ...scene.notation.symbols import Parameter, acceleration, delay, n, t, v, x
 
 if TYPE_CHECKING:
-    from ...compiler.events.taylor_method import Taylor
+    from ...compiler.methods.chosen_method import AnyMethod
+    from ...compiler.tick.handle_samples import Hold
     from ...scene.scene import Scene
-
-#: error of x(t) and of v(t) within a period, as a power of T
-HOLD = {"zoh": (1, 1), "foh": (2, 1), "soh": (3, 2)}
 
 
 @dataclass(frozen=True)
@@ -61,9 +60,9 @@ class Order:
 
 def order_of(
     scene: Scene,
-    method: str | Taylor | None = None,
+    method: AnyMethod | None = None,
     *,
-    hold: Literal["zoh", "foh", "soh"] = "soh",
+    hold: str | Hold = "soh",
     velocity: Literal["backward_difference", "measured"] = "backward_difference",
     force_at: Literal["before", "after", "mean"] = "before",
     **options: Any,
@@ -101,7 +100,7 @@ def order_of(
     moving = graph.variables_of([*form.f, *sum(form.M, ()), *(g for model in form.models for g in model.constraints)])
     felt = graph.variables_of([form.force])
     chosen = chosen_method(method, form)
-    seen = _seen(hold, velocity, at_samples=_at_samples(chosen, options))
+    seen = _seen(hold_named(hold), velocity, at_samples=_at_samples(chosen, options))
     limits: dict[str, float] = {}
     if form.coordinates:
         limits |= _of_method(chosen)
@@ -128,7 +127,7 @@ def _at_samples(method, options):
 
 def _seen(hold, velocity, at_samples):
     """Text -> order: how x(t) and v(t) are seen over a period, and what is held from sample to sample."""
-    of_x, of_v = HOLD[hold]
+    of_x, of_v = HOLDS[hold].order_of_x, HOLDS[hold].order_of_v
     if not at_samples:
         return {f"x(t) of hold {hold}": of_x, f"v(t) of hold {hold}": of_v, "held over a period": 1}
     # at a sample x is exact, and v where it is measured; else it is the hold's slope there

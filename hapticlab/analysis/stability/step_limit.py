@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...base.annotations import Array
-    from ...compiler.events.taylor_method import Taylor
+    from ...compiler.methods.chosen_method import AnyMethod
+    from ...compiler.tick.handle_samples import Hold
 
 #: states past which eigenvalues take their time
 MANY = 12
@@ -166,11 +167,11 @@ class StepLimit:
 
 def step_limit(
     scene: Scene,
-    method: str | Taylor | None = None,
+    method: AnyMethod | None = None,
     *,
     T: float,
     substeps: int = 1,
-    hold: Literal["zoh", "foh", "soh"] = "soh",
+    hold: str | Hold = "soh",
     at: Mapping[str, float] | Sequence[Mapping[str, float]] | None = None,
     **options: Any,
 ) -> StepLimit:
@@ -184,7 +185,7 @@ def step_limit(
     ----------
     scene : Scene
         Every parameter bound.
-    method : str or Taylor, optional
+    method : str, Method, Taylor or Exact, optional
         By default the one that the scene needs, as of :func:`hapticlab.compile`.
     T : float
         Sampling period [s], > 0.

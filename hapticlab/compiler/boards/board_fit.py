@@ -11,6 +11,7 @@ from ...scene.scene import Scene
 from ..methods.chosen_method import chosen_method
 from ..methods.method_table import METHODS
 from ..tick.compile_scene import compile
+from ..tick.handle_samples import hold_named
 from .cost import board_named, cost
 
 #: periods that are offered [s]: rates of 2000, 1000, 800, 500, 400, 250, 200, 125 and 100 Hz
@@ -141,7 +142,7 @@ def _cheaper(scene, options):
     yield (), scene, options
     defaults = {n: p.default for n, p in inspect.signature(compile).parameters.items()}
     used = {**defaults, **options}
-    used["method"] = str(chosen_method(used["method"], scene.explicit()))
+    used |= {"method": str(chosen_method(used["method"], scene.explicit())), "hold": hold_named(used["hold"])}
     if used["substeps"] > 1:
         yield ("substeps=1",), scene, {**options, "substeps": 1}
     bound = set(scene.parameters) <= set(scene.values)

@@ -45,7 +45,10 @@ class Taylor:
     than 1e-8 of it (1e-5 in float32) is counted in the output ``unlocated``, if there is one; more than 1e-4 is a series
     that diverges, and makes the state nan: a fault, which more substeps mend.
 
-    Walls, contacts, friction and every other case of the state end the series at the instant where they change.
+    Walls, contacts, friction and every other case of the state end the series at the instant where they change. A step
+    needs to be a radian of the fastest part at most, and costs as many times one of RK4 as the series has terms. Not to be
+    confused with "exact", whose map is a constant; nor with a Taylor expansion at one place, for the series is made anew each
+    step. Source: Griewank and Walther, *Evaluating Derivatives*, ch. 13; Jorba and Zou, Experimental Mathematics 14 (2005).
 
     Parameters
     ----------

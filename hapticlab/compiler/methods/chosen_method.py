@@ -17,6 +17,30 @@ EXACT = "exact"
 
 
 @dataclass(frozen=True)
+class Exact:
+    """What is linear advanced by its matrix exponential; ``rest`` names the method of what is not.
+
+    Its error is rounding, at any stiffness, so that it has no order. A step costs a product with a constant matrix, and the
+    parameters in it become constants. Where motion is linear between switches it makes a map a mode and locates the switches.
+    Not to be confused with "taylor", which takes nonlinear motion too. Source: Van Loan, IEEE Trans. Automatic Control 23
+    (1978).
+
+    Parameters
+    ----------
+    rest : str or Method, optional
+        Such as "rk4"; without it, everything has to be linear.
+
+    Examples
+    --------
+    >>> import hapticlab as hl
+    >>> hl.methods.Exact(rest="rk4")
+    Exact(rest='rk4')
+    """
+
+    rest: str | Method | None = None
+
+
+@dataclass(frozen=True)
 class ChosenMethod:
     """A method as it was asked for. It prints as its text.
 
@@ -46,8 +70,12 @@ class ChosenMethod:
         return self.rest is None or isinstance(self.rest, Taylor)
 
 
-def chosen_method(given: str | Taylor | ChosenMethod | None, form: ExplicitForm | None = None) -> ChosenMethod:
-    """The method that a text or a :class:`Taylor` stands for; of None the one that the equations of motion need.
+#: what ``method=`` takes
+AnyMethod = str | Method | Taylor | Exact | type[Taylor] | type[Exact] | ChosenMethod
+
+
+def chosen_method(given: AnyMethod | None, form: ExplicitForm | None = None) -> ChosenMethod:
+    """The method that a text or a record stands for; of None the one that the equations of motion need.
 
     Raises
     ------
@@ -58,13 +86,18 @@ def chosen_method(given: str | Taylor | ChosenMethod | None, form: ExplicitForm 
         return given
     if given is None:
         return ChosenMethod(False, Taylor() if form is not None and to_locate(form) else METHODS["rk4"])
-    if isinstance(given, Taylor):
+    if given is Taylor or given is Exact:  # the class, as other methods are given
+        given = given()
+    if isinstance(given, (Method, Taylor)):
         return ChosenMethod(False, given)
+    if isinstance(given, Exact):
+        rest = getattr(given.rest, "name", given.rest)
+        given = EXACT if rest is None else f"{EXACT}+{rest}"
     first, plus, rest = given.partition("+") if isinstance(given, str) else (given, "", "")
     if first == EXACT:
         return ChosenMethod(True, METHODS[choice("method", rest, METHODS)] if plus else None)
     choice("method", given, (*METHODS, Taylor.name, EXACT, f"{EXACT}+rk4"))
-    return ChosenMethod(False, Taylor() if given == Taylor.name else METHODS[given])
+    return ChosenMethod(False, Taylor() if given == Taylor.name else METHODS[str(given)])
 
 
 def to_locate(form: ExplicitForm) -> list[str]:

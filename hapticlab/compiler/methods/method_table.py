@@ -5,17 +5,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
+from ...base.card import card
+from ..ir.trace import Builder
 from . import stability_region
 from .steps import RK4, adams_bashforth, nystrom, runge_kutta, semi_implicit_euler, verlet
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Method:
-    """A method and what it is known for.
+    """A method and what it is known for; printing it says so.
 
     Attributes
     ----------
     name : str
+        The text that stands for it, ``method="rk4"``.
     order : int
         Of the global error where the motion is smooth.
     evaluations : int
@@ -28,6 +31,12 @@ class Method:
         How many steps' rates it uses, the present one included; ``past`` are those of the others, newest first.
     implicit_damping : bool
         Its ``rhs`` solves (M - h D) a = f, D what damps of the slopes of f by the rates, instead of M a = f.
+    says : str
+        What it does, in one sentence.
+    source : str
+        Where it is from, or where a textbook has it.
+    confused_with : str
+        What it is taken for, and how that differs.
     """
 
     name: str
@@ -37,6 +46,47 @@ class Method:
     order_with_velocity: int | None = None
     steps: int = 1
     implicit_damping: bool = False
+    says: str = ""
+    source: str = ""
+    confused_with: str = ""
+
+    def __post_init__(self):
+        object.__setattr__(self, "__doc__", self.says)  # what help and hl.find read
+
+    def __reduce__(self):
+        return method_named, (self.name,)
+
+    def __repr__(self):
+        each = "evaluation" if self.evaluations == 1 else "evaluations"
+        first = f"; {self.order_with_velocity} where accelerations depend on velocities" if self.order_with_velocity else ""
+        step = (
+            f"{self.evaluations} {each} of the equations of motion a step, {self.instructions} instructions a coordinate beside"
+        )
+        facts = {"order": f"{self.order}{first}", "cost": step, "stable": self.stable, "source": self.source}
+        return card(f"{self.name}: {self.says}", {**facts, "not to be confused with": self.confused_with})
+
+    @property
+    def stable(self):
+        """Up to which step it is stable, in words; h is the step, omega the frequency of a spring without damping."""
+        spring = f"h omega <= {self.imaginary:.4g} of a spring" if self.imaginary else "no step of a spring without damping"
+        damper = "any step" if math.isinf(self.real) else f"h b/m <= {self.real:.4g}"
+        return spring if math.isnan(self.real) else f"{spring}; {damper} of a damper"
+
+    @cached_property
+    def instructions(self):
+        """How many instructions a step takes for one coordinate, the equations of motion not counted."""
+        builder, given = Builder("f32"), iter(range(100))
+
+        def leaf(*_):
+            return builder.leaf("input", next(given), "f32")
+
+        def rhs(_, q, v, s):  # one instruction each
+            return [q[0] + v[0]], []
+
+        past = ([[[leaf()], [leaf()], []] for _ in range(self.steps - 1)],) if self.steps > 1 else ()
+        state = self.step(rhs, 0.0, ([leaf()], [leaf()], []), 1e-3, *past)
+        (q,), (v,), _ = state[0] if past else state
+        return len(builder.block([q, v])) - self.evaluations
 
     @cached_property
     def real(self):
@@ -71,16 +121,76 @@ class Method:
 METHODS = {
     m.name: m
     for m in (
-        Method("euler", 1, 1, runge_kutta([()], [1])),
-        Method("semi_implicit_euler", 1, 1, semi_implicit_euler),
-        Method("semi_implicit_euler_damped", 1, 1, semi_implicit_euler, implicit_damping=True),
-        Method("verlet", 2, 2, verlet),
-        Method("midpoint", 2, 2, runge_kutta([(), (1 / 2,)], [0, 1])),
-        Method("heun", 2, 2, runge_kutta([(), (1,)], [1 / 2, 1 / 2])),
-        Method("ssprk3", 3, 3, runge_kutta([(), (1,), (1 / 4, 1 / 4)], [1 / 6, 1 / 6, 2 / 3])),
-        Method("nystrom4", 4, 3, nystrom, order_with_velocity=2),
-        Method("adams_bashforth2", 2, 1, adams_bashforth((3 / 2, -1 / 2)), steps=2),
-        Method("adams_bashforth3", 3, 1, adams_bashforth((23 / 12, -16 / 12, 5 / 12)), steps=3),
-        Method("rk4", 4, 4, RK4),
+        Method(
+            "euler", 1, 1, runge_kutta([()], [1]),
+            says="Forward Euler: position and velocity both follow the rates at the start of the step.",
+            source="Euler, Institutiones Calculi Integralis I (1768)",
+            confused_with="semi_implicit_euler, which moves the position by the new velocity and so keeps a spring from growing",
+        ),
+        Method(
+            "semi_implicit_euler", 1, 1, semi_implicit_euler,
+            says="Semi-implicit (symplectic) Euler: the velocity first, then the position by the new velocity.",
+            source="Hairer, Lubich and Wanner, Geometric Numerical Integration, ch. I",
+            confused_with="euler; implicit (backward) Euler, which solves equations in each step and damps",
+        ),
+        Method(
+            "semi_implicit_euler_damped", 1, 1, semi_implicit_euler, implicit_damping=True,
+            says="Semi-implicit Euler with the dampers' forces at the end of the step, so that stiff damping is stable.",
+            source="Hairer and Wanner, Solving Ordinary Differential Equations II, ch. IV.7: linearly implicit, in the damping",
+            confused_with="semi_implicit_euler, whose dampers are explicit; implicit Euler, which takes springs implicitly too",
+        ),
+        Method(
+            "verlet", 2, 2, verlet,
+            says="Velocity Verlet: the position by the present acceleration, the velocity by the mean of two.",
+            source="Hairer, Lubich and Wanner, Geometric Numerical Integration, ch. I; Verlet, Physical Review 159 (1967)",
+            confused_with="leapfrog, the same positions with velocities half a step beside them",
+        ),
+        Method(
+            "midpoint", 2, 2, runge_kutta([(), (1 / 2,)], [0, 1]),
+            says="Explicit midpoint: a whole step by the rates half a step on.",
+            source="Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, ch. II.1; Runge (1895)",
+            confused_with="the implicit midpoint rule, stable at every step; semi_implicit_euler, of less order and longer steps",
+        ),
+        Method(
+            "heun", 2, 2, runge_kutta([(), (1,)], [1 / 2, 1 / 2]),
+            says="Heun: the mean of the rates at both ends, the far end by Euler.",
+            source="Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, ch. II.1",
+            confused_with="the trapezoidal rule (Tustin), which is implicit; Heun's method of order 3",
+        ),
+        Method(
+            "ssprk3", 3, 3, runge_kutta([(), (1,), (1 / 4, 1 / 4)], [1 / 6, 1 / 6, 2 / 3]),
+            says="Runge-Kutta of order 3 that is a mean of Euler steps, so that what Euler keeps bounded stays bounded.",
+            source="Gottlieb, Shu and Tadmor, SIAM Review 43 (2001)",
+            confused_with="Kutta's method of order 3, of the same order and stable interval, not a mean of Euler steps",
+        ),
+        Method(
+            "nystrom4", 4, 3, nystrom, order_with_velocity=2,
+            says="Nystrom: order 4 from three evaluations, where accelerations are free of velocities.",
+            source="Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, ch. II.14",
+            confused_with="rk4, which takes dampers and first-order states too, for one evaluation more",
+        ),
+        Method(
+            "adams_bashforth2", 2, 1, adams_bashforth((3 / 2, -1 / 2)), steps=2,
+            says="Adams-Bashforth of two steps: a line through the rates of the last two samples.",
+            source="Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, ch. III.1",
+            confused_with="Adams-Moulton, which is implicit; midpoint, of the same order without memory",
+        ),
+        Method(
+            "adams_bashforth3", 3, 1, adams_bashforth((23 / 12, -16 / 12, 5 / 12)), steps=3,
+            says="Adams-Bashforth of three steps: a parabola through the rates of the last three samples.",
+            source="Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, ch. III.1",
+            confused_with="Adams-Moulton, which is implicit; ssprk3, of the same order without memory",
+        ),
+        Method(
+            "rk4", 4, 4, RK4,
+            says="The classical Runge-Kutta method: four evaluations, order 4.",
+            source="Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, ch. II.1; Kutta (1901)",
+            confused_with="RK45 of solve_ivp, which chooses its own step; the 3/8 rule, of the same order",
+        ),
     )
-}
+}  # fmt: skip
+
+
+def method_named(name):
+    """The method of the table that has this name."""
+    return METHODS[name]

@@ -16,7 +16,7 @@ from ..ir.program import Channel
 from ..methods.chosen_method import chosen_method, why_automatic
 from ..methods.force_timing import FORCE_AT, averaged
 from ..prune.excluded_modes import excluded, folded, rests_on
-from .handle_samples import HOLDS, VELOCITIES
+from .handle_samples import VELOCITIES, hold_named
 from .leaf_values import REAL_OF, at_sample, at_start, outputs_at_sample, real, tick_of, unknown_reaction
 from .motion_program import motion_program
 from .source import Options, Source
@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 
     from ...base.annotations import Number
     from ...scene.notation.parameters import Parameter
-    from ..events.taylor_method import Taylor
     from ..ir.program import Program
+    from ..methods.chosen_method import AnyMethod
+    from .handle_samples import Hold
 
 #: compiled scenes that are kept: instructions, of which each takes 0.4 kB, and as many again for what else a program has
 PROGRAMS = Shared(60_000, lambda program: 200 + program.size)
@@ -35,11 +36,11 @@ PROGRAMS = Shared(60_000, lambda program: 200 + program.size)
 
 def compile(
     scene: Scene,
-    method: str | Taylor | None = None,
+    method: AnyMethod | None = None,
     *,
     T: Number,
     substeps: int = 1,
-    hold: str = "soh",
+    hold: str | Hold = "soh",
     dtype: str = "float32",
     velocity: str = "backward_difference",
     live: str | Iterable[str | Parameter] | None = None,
@@ -70,7 +71,7 @@ def compile(
     substeps : int
         Steps per period, >= 1.
     hold : {"zoh", "foh", "soh"}
-        How an equation of motion sees x(t) and v(t) between samples (see
+        Or a record, as ``hl.methods.SecondOrderHold``. How an equation of motion sees x(t) and v(t) between samples (see
         :class:`~hapticlab.compiler.tick.handle_samples.Handle`). It sets the accuracy more than the method does: a held
         sample ("zoh") costs RK4 ten percent of the force.
     dtype : {"float32", "float64"}
@@ -107,6 +108,7 @@ def compile(
     """
     if not isinstance(scene, Scene):
         raise SceneError(no_scene(scene, "write hl.compile(hl.Scene(force=...), T=1e-3)"))
+    method, hold = _methods(method, hold)  # equal ones make one program
     options = method, T, substeps, hold, dtype, velocity, live, force_at
     return PROGRAMS.get(_key(scene, options), lambda: lowered(scene, *options))
 
@@ -116,10 +118,14 @@ def _key(scene, options):
     return content(type(scene), {**vars(scene), "_parameters": scene.parameters}, options)
 
 
+def _methods(method, hold):
+    """What ``method`` and ``hold`` stand for; the method may be None still."""
+    return None if method is None else chosen_method(method), hold_named(hold)
+
+
 def _checked(method, T, substeps, hold, dtype, velocity, live, force_at):
     """The :class:`Options` of what was asked for, or a refusal that names what is known; their method may be None still."""
-    method = None if method is None else chosen_method(method)
-    choice("hold", hold, HOLDS)
+    method, hold = _methods(method, hold)
     choice("dtype", dtype, REAL_OF)
     choice("velocity", velocity, VELOCITIES)
     choice("force_at", force_at, FORCE_AT)

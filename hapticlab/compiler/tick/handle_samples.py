@@ -1,10 +1,75 @@
 """How a program sees the handle: the samples it remembers, its velocity, and its motion between two samples."""
 
+from dataclasses import dataclass
+
+from ...base.card import card
 from ...scene.notation.symbols import t, v, x
+from ..ir.options import choice
 from ..ir.program import Channel
 
-HOLDS = ("zoh", "foh", "soh")
+
+@dataclass(frozen=True, repr=False)
+class Hold:
+    """How an equation of motion sees the handle between two samples; printing it says so.
+
+    Attributes
+    ----------
+    name : str
+        The text that stands for it, ``hold="soh"``.
+    says : str
+        What it does, in one sentence.
+    order_of_x, order_of_v : int
+        Of the error of x(t) and of v(t) within a period, in T.
+    cost : str
+    source : str
+    confused_with : str
+        What it is taken for, and how that differs.
+    """
+
+    name: str
+    says: str
+    order_of_x: int
+    order_of_v: int
+    cost: str
+    source: str
+    confused_with: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "__doc__", self.says)  # what help and hl.find read
+
+    def __repr__(self) -> str:
+        facts = {"order": f"{self.order_of_x} of x(t), {self.order_of_v} of v(t)", "cost": self.cost, "source": self.source}
+        return card(f"{self.name}: {self.says}", {**facts, "not to be confused with": self.confused_with})
+
+
+HOLDS = {
+    hold.name: hold
+    for hold in (
+        Hold(
+            "zoh", "Zero-order hold: x(n) and v(n) stay as they are until the next sample.", 1, 1,
+            "nothing", "Franklin, Powell and Workman, Digital Control of Dynamic Systems: hold equivalents",
+            "the wall law 'zoh', a spring on the sample; the motor's hold of the force, which is always of order zero",
+        ),
+        Hold(
+            "foh", "First-order hold: the line through the sample with the velocity v(n).", 2, 1,
+            "a product and a sum an evaluation",
+            "Franklin, Powell and Workman, Digital Control of Dynamic Systems: hold equivalents",
+            "the triangle hold, which needs the next sample, and which some programs call foh",
+        ),
+        Hold(
+            "soh", "Second-order hold: the parabola through three samples, or with two measured velocities.", 3, 2,
+            "one sample more to remember, two products and sums an evaluation",
+            "the same extrapolation, of one order more",
+            "a filter of the position: the parabola passes through the samples, and carries their counts on",
+        ),
+    )
+}  # fmt: skip
 VELOCITIES = ("backward_difference", "measured")
+
+
+def hold_named(given: str | Hold) -> str:
+    """The name of a hold, from a record or its name; refuse what is neither."""
+    return choice("hold", given.name if isinstance(given, Hold) else given, HOLDS)
 
 
 def is_past_sample(name):

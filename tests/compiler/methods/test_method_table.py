@@ -1,6 +1,8 @@
 """Orders of the methods, measured on programs, against closed forms and an independent integrator."""
 
+import inspect
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ import hapticlab as hl
 from hapticlab import n, t, v, x
 from hapticlab.compiler.engines.engine import load
 from hapticlab.compiler.methods.method_table import METHODS
+from hapticlab.errors import ProgramError
 
 m, c, K = hl.parameters("m c K", units="kg N*s/m N/m", values=(0.1, 0.3, 40.0))
 z = hl.coordinate("z", unit="m", initial=hl.parameters("z_0", units="m", values=0.02))
@@ -241,3 +244,46 @@ def test_the_engines_agree_to_the_bit(method):
     program = hl.compile(DRIVEN, method, T=1e-3, force_at="mean")
     one, *others = (load(program, engine).run(60, motion).outputs for engine in ("interpreter", "llvm", "vm"))
     assert np.ptp(one[:, 1]) > 0 and all((one == other).all() for other in others)
+
+
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+def test_a_method_says_what_it_is_and_travels_by_its_name(method):
+    text = str(method)
+    for fact in ("order", "cost", "stable", "source", "not to be confused with"):
+        assert f"\n  {fact} " in text, fact
+    assert inspect.getdoc(method) == method.says and pickle.loads(pickle.dumps(method)) is method
+
+
+def test_the_instructions_beside_the_evaluations_are_those_of_a_program():
+    """An evaluation is three instructions here; all else of a tick is the step's."""
+    scene = hl.Scene(force=0, eom=[sp.Eq(z.diff(t, 2), w * z + d * z.diff(t))], watch=[z])
+    for name, of_step in (("euler", 4), ("semi_implicit_euler", 4), ("verlet", 9), ("rk4", 24)):
+        method = METHODS[name]
+        assert method.instructions == of_step
+        assert len(hl.compile(scene, name, T=1e-3)) == of_step + 3 * method.evaluations
+
+
+def test_a_record_compiles_to_the_very_program_of_its_text():
+    scene = hl.library.mass_spring_damper()
+    for name in hl.methods.__all__:
+        record = getattr(hl.methods, name)
+        if isinstance(record, hl.methods.Method) and not record.order_with_velocity:
+            assert hl.compile(scene, record, T=1e-3) is hl.compile(scene, record.name, T=1e-3)
+        if isinstance(record, hl.methods.Hold):
+            assert hl.compile(scene, T=1e-3, hold=record) is hl.compile(scene, T=1e-3, hold=record.name)
+            assert "\n  order " in str(record) and "confused" in str(record) and "hold" in inspect.getdoc(record)
+    exact, taylor = hl.methods.Exact, hl.methods.Taylor
+    assert hl.compile(scene, exact, T=1e-3, live="") is hl.compile(scene, "exact", T=1e-3, live="")
+    assert hl.compile(scene, exact(rest=hl.methods.RK4), T=1e-3, live="") is hl.compile(scene, "exact+rk4", T=1e-3, live="")
+    assert hl.compile(scene, taylor, T=1e-3) is hl.compile(scene, taylor(), T=1e-3) is hl.compile(scene, "taylor", T=1e-3)
+    assert hl.methods.order_of(scene, hl.methods.Heun, hold=hl.methods.ZeroOrderHold).limits["method heun"] == 2
+    assert hl.stability.step_limit(scene, hl.methods.Verlet, T=1e-3).method == "verlet"
+
+
+def test_what_is_no_record_is_refused():
+    with pytest.raises(ProgramError, match=r"method = 4; needs one of euler"):
+        hl.compile(hl.wall(), 4, T=1e-3)
+    with pytest.raises(ProgramError, match="method = 'rk5'; needs one of euler"):
+        hl.compile(hl.wall(), hl.methods.Exact(rest="rk5"), T=1e-3)
+    with pytest.raises(ProgramError, match="hold = 'third'; needs one of zoh, foh, soh"):
+        hl.compile(hl.wall(), T=1e-3, hold="third")
