@@ -8,6 +8,7 @@ from .analysis.accuracy.handle_motions import HandleMotion, handle_motions
 from .analysis.accuracy.port_error import force_error, sensor_floor
 from .analysis.accuracy.reference import reference
 from .analysis.accuracy.tradeoff import tradeoff
+from .analysis.accuracy.tradeoff_asked import Conditions, Tried
 from .analysis.programs.error_order import order_of
 from .analysis.programs.method_comparison import methods as table
 from .compiler.events.taylor_method import Taylor
@@ -36,6 +37,7 @@ __all__ = [
     "SSPRK3",
     "AdamsBashforth2",
     "AdamsBashforth3",
+    "Conditions",
     "Euler",
     "Exact",
     "FirstOrderHold",
@@ -49,6 +51,7 @@ __all__ = [
     "SemiImplicitEuler",
     "SemiImplicitEulerDamped",
     "Taylor",
+    "Tried",
     "Verlet",
     "ZeroOrderHold",
     "force_error",

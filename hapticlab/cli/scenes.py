@@ -8,6 +8,7 @@ from pathlib import Path
 
 from .. import __version__
 from ..analysis.accuracy.tradeoff import tradeoff as measure_tradeoff
+from ..analysis.accuracy.tradeoff_asked import Conditions, Tried
 from ..analysis.records.plots import plot
 from ..compiler.events.taylor_method import Taylor
 from ..compiler.methods.chosen_method import EXACT
@@ -60,9 +61,12 @@ def tradeoff(parser, options):
     """Measure speed against accuracy of a scene file, for its own paddle and the targets asked for."""
     file, path = _opened(parser, options), Path(options.file)
     folder = _folder(options)
-    given = {"methods": options.methods, "T": options.periods, "targets": options.targets}
-    given = {name: several for name, several in given.items() if several} | {"live": options.live, "every": options.every}
-    found = measure_tradeoff(file.scene, file.paddle, tolerance=options.tolerance, **given)
+    given = {name: several for name, several in {"methods": options.methods, "T": options.periods}.items() if several}
+    targets = {"targets": options.targets} if options.targets else {}
+    conditions = Conditions(live=options.live, every=options.every)
+    found = measure_tradeoff(
+        file.scene, file.paddle, tried=Tried(**given), conditions=conditions, tolerance=options.tolerance, **targets
+    )
     asked = {"load": options.load, "passive": not options.any_hand}
     figure = folder / f"{path.stem}-tradeoff.png"
     found.plot(**asked).savefig(figure)

@@ -2,6 +2,7 @@
 
 import math
 
+import hapticlab as hl
 from hapticlab.analysis.accuracy.tradeoff_rows import Row
 
 
@@ -13,3 +14,12 @@ def one_row(**changes):
         "steps_per_contact": math.inf, "b_req": 0.2, "b_device": 0.3, "cycles": 4000, "seconds": 2.5e-4,
     }  # fmt: skip
     return Row(**given | changes)
+
+
+def asked(**given):
+    """The arguments of a trade-off, of those of its records too."""
+    tried, same = (
+        {name: given.pop(name) for name in record.__dataclass_fields__ if name in given}
+        for record in (hl.methods.Tried, hl.methods.Conditions)
+    )
+    return given | {"tried": hl.methods.Tried(**tried), "conditions": hl.methods.Conditions(**same)}

@@ -72,9 +72,14 @@ def test_the_chosen_configuration_has_the_error_and_the_load_that_it_promised():
     tolerance, scene = 1e-2, hl.library.mass_spring_damper()
     paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, counts_per_metre=1 / COUNT)
     found = hl.methods.tradeoff(
-        scene, paddle, methods=["semi_implicit_euler", "verlet", "exact"], T=[1.25e-3, 1e-3], targets=["uno"], motions=[MOTION],
-        precision=["float32"], every=EVERY, workers=1, progress=False,
-    )  # fmt: skip
+        scene,
+        paddle,
+        tried=hl.methods.Tried(methods=["semi_implicit_euler", "verlet", "exact"], T=[1.25e-3, 1e-3], precision=["float32"]),
+        targets=["uno"],
+        conditions=hl.methods.Conditions(motions=[MOTION], every=EVERY),
+        workers=1,
+        progress=False,
+    )
     chosen = found.choose(tolerance=tolerance, load=0.75)
     assert chosen, chosen
     program, truth = hl.compile(scene, **chosen.options), reference(scene, MOTION)

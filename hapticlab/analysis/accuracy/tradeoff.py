@@ -8,16 +8,12 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from ...base.arguments import instance
 from ...compiler.boards.cost import BOARDS
-from ...compiler.events.taylor_method import Taylor
-from ...compiler.ir.options import choice, period, steps
-from ...compiler.methods.chosen_method import chosen_method
-from ...compiler.methods.force_timing import FORCE_AT
+from ...compiler.ir.options import choice, steps
 from ...compiler.methods.method_table import METHODS
-from ...compiler.tick.handle_samples import HOLDS, hold_named
 from ...device.progress import progress_bar
 from ...errors import AnalysisError
 from ...scene.notation.written import no_scene
@@ -25,6 +21,7 @@ from ...scene.scene import Scene
 from ..sweeps.forked_workers import shared_out
 from .handle_motions import HandleMotion, handle_motions
 from .reference import references
+from .tradeoff_asked import CONDITIONS, TRIED, Conditions, Tried, several
 from .tradeoff_choice import MARGIN, Asked, chosen
 from .tradeoff_rows import LEGEND, OK, Row, Table, rows_of
 from .tradeoff_search import all_tried
@@ -34,20 +31,16 @@ from .tradeoff_trials import Setting, sensor_floor
 from .work_precision import front, plot_work_precision
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from matplotlib.figure import Figure
 
     from ...base.telemetry import PaddleProfile
-    from ...compiler.methods.chosen_method import AnyMethod
-    from ...compiler.tick.handle_samples import Hold
     from ...device.simulated.simulated_paddle import SimulatedPaddle
     from .tradeoff_choice import Configuration, NotFeasible
 
 #: the target that is no board: this computer
 PC = "pc"
-#: float64 is the pc's alone
-PRECISIONS = ("float32", "float64")
 #: methods that "auto" leaves out: one that fails, and one of the order and the cost of another
 LEFT_OUT = ("euler", "midpoint")
 #: the held force is compared at so many places of the shortest period, at least
@@ -60,18 +53,10 @@ def tradeoff(
     scene: Scene,
     paddle: SimulatedPaddle | PaddleProfile,
     *,
-    methods: Literal["auto"] | Sequence[AnyMethod] = "auto",
-    T: float | Iterable[float] = (2e-3, 1e-3, 5e-4),
-    substeps: Sequence[int] = (1, 2, 4),
-    holds: Sequence[str | Hold] = tuple(HOLDS),
-    force_at: Sequence[str] = ("before",),
-    precision: Sequence[str] = PRECISIONS,
+    tried: Tried = TRIED,
     targets: str | Iterable[str] = (PC, "uno", "cortex-m0+", "cortex-m4f"),
-    motions: HandleMotion | Iterable[HandleMotion] | None = None,
+    conditions: Conditions = CONDITIONS,
     tolerance: float = 1e-2,
-    velocity: Literal["backward_difference", "measured"] = "backward_difference",
-    every: int = 10,
-    live: str | Iterable[str] | None = (),
     workers: int | Callable[..., Iterable[Any]] | None = None,
     progress: bool = True,
 ) -> Tradeoff:
@@ -91,24 +76,13 @@ def tradeoff(
         Every parameter bound. It must have a meaning between the samples.
     paddle : SimulatedPaddle or PaddleProfile
         Its damping b [N s/m] and its encoder.
-    methods : "auto" or sequence of str
-        Of :func:`hapticlab.compile`; all but forward Euler, and midpoint beside Heun, unless given.
-    T : float or sequence of float
-        Sampling periods [s], whole numbers of 10 us or of a quarter of the shortest.
-    substeps, holds, force_at, precision : sequences
-        Of :func:`hapticlab.compile`; precision is its ``dtype``.
+    tried : Tried
+        The settings: ``hl.methods.Tried(methods=, T=, substeps=, holds=, force_at=, precision=)``.
     targets : one or a sequence of {"pc", "uno", "cortex-m0+", "cortex-m4f"}
-    motions : HandleMotion or sequence of them, optional
-        :func:`~hapticlab.analysis.accuracy.handle_motions.handle_motions` unless given.
+    conditions : Conditions
+        The same for every setting: ``hl.methods.Conditions(motions=, velocity=, live=, every=)``.
     tolerance : float
         Part of the greatest force, for the printed choice and the plot.
-    velocity : str
-        Of :func:`hapticlab.compile`.
-    live : str or sequence of names, or None for all
-        Parameters that stay settable while running, none unless given: constants make every method cheaper, and "exact"
-        possible.
-    every : int
-        Ticks per sample of telemetry, part of a board's load.
     workers : int or callable, optional
         Processes, 2 where they can be copied; or what maps, as ``map`` does.
     progress : bool
@@ -126,21 +100,21 @@ def tradeoff(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3)
-    >>> found = hl.methods.tradeoff(hl.library.detents(), paddle, T=[1e-3], targets=["uno"], workers=1)
+    >>> found = hl.methods.tradeoff(hl.library.detents(), paddle, tried=hl.methods.Tried(T=[1e-3]), targets=["uno"], workers=1)
     >>> print(found.table[0].status, found.choose().row.T)
     ok 0.001
     """
     _check(scene, paddle)
     Asked(tolerance, load=1.0, passive=True)  # refuses a tolerance that is none
-    T, here = tuple(period(one) for one in _several(T)), _several(targets)
+    T, here = several(tried.T), several(targets)
     for name in here:
         choice("target", name, (PC, *(board for board in BOARDS if BOARDS[board].hz)))
     boards = tuple(name for name in here if name != PC)
-    settings = _settings(scene, methods, T, substeps, holds, force_at, precision)
-    led = _motions(motions, scene, paddle, T)
+    settings = _settings(scene, tried)
+    led = _motions(conditions.motions, scene, paddle, T)
     with shared_out((scene, _step(T)), workers) as share:
         halves = list(share(_references, [led[::2], led[1::2]]))
-    bench = Bench(scene, paddle, tuple(itertools.chain(*halves)), boards, every, velocity, live)
+    bench = Bench(scene, paddle, tuple(itertools.chain(*halves)), boards, conditions.every, conditions.velocity, conditions.live)
     with progress_bar(len(settings), progress, "setting") as shown, shared_out(bench, workers) as share:
         trials = all_tried(settings, share, shown.update, paddle.b)
         keys = list(dict.fromkeys((s.T, s.hold) for s in settings))
@@ -162,14 +136,9 @@ def _check(scene, paddle):
         raise AnalysisError(f"paddle = {paddle!r}; needs a SimulatedPaddle or a PaddleProfile, such as hl.library.nominal")
 
 
-def _several(given):
-    """Return one thing, or a sequence of them, as a tuple."""
-    return (given,) if isinstance(given, (str, Real)) or not isinstance(given, Iterable) else tuple(given)
-
-
 def _motions(given, scene, paddle, T):
     """Return the motions, or refuse what are none, and those that end before the first period."""
-    motions = _several(handle_motions(scene, paddle) if given is None else given)
+    motions = several(handle_motions(scene, paddle) if given is None else given)
     wrong = [one for one in motions if not isinstance(one, HandleMotion)]
     if wrong or not motions:
         raise AnalysisError(f"motions = {given!r}; needs one HandleMotion(name, x, duration) or several")
@@ -184,22 +153,14 @@ def _references(common, motions):
     return references(scene, motions, step=step) if motions else []
 
 
-def _settings(scene, methods, T, substeps, holds, force_at, precision):
+def _settings(scene, tried):
     """Return every setting; of a scene without motion, one for each T."""
+    methods, holds, substeps = tried.methods, tried.holds, sorted(map(steps, tried.substeps))
     if methods == "auto":
         methods = (*(name for name in METHODS if name not in LEFT_OUT), "exact", "taylor")
-    given = {"methods": methods, "substeps": substeps, "holds": holds, "force_at": force_at, "precision": precision}
-    for name, several in given.items():
-        if isinstance(several, str) or not tuple(several):
-            raise AnalysisError(f"{name} = {several!r}; needs a sequence of at least one, such as {name}=[{several!r}]")
-    methods = [m if isinstance(m, Taylor) else str(chosen_method(m)) for m in methods]
-    holds = [hold_named(hold) for hold in holds]
-    for when, real in itertools.product(force_at, precision):
-        choice("force_at", when, FORCE_AT), choice("precision", real, PRECISIONS)
-    substeps = sorted(map(steps, substeps))
     if not scene.coordinates:  # a force of the samples alone: there is nothing to integrate or to hold
         methods, substeps, holds = ["rk4"], [1], ["soh"]
-    return [Setting(*one) for one in itertools.product(methods, T, substeps, holds, force_at, precision)]
+    return [Setting(*one) for one in itertools.product(methods, tried.T, substeps, holds, tried.force_at, tried.precision)]
 
 
 def _step(T):

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy as sp
+from trade_rows import asked
 from trade_rows import one_row as row
 
 import hapticlab as hl
@@ -87,9 +88,16 @@ def test_where_several_things_are_missed_the_nearest_names_all_of_them():
 def found():
     paddle = hl.SimulatedPaddle.from_profile(hl.library.nominal, counts_per_metre=1 / 12.8e-6)
     return tradeoff(
-        hl.library.mass_spring_damper(), paddle, methods=["semi_implicit_euler", "rk4", "exact"], T=[2e-3, 1e-3],
-        holds=["zoh", "soh"], substeps=[1, 2], targets=["pc", "uno"], motions=handle_motions()[1:3], workers=1, progress=False,
-    )  # fmt: skip
+        hl.library.mass_spring_damper(),
+        paddle,
+        tried=hl.methods.Tried(
+            methods=["semi_implicit_euler", "rk4", "exact"], T=[2e-3, 1e-3], holds=["zoh", "soh"], substeps=[1, 2]
+        ),
+        targets=["pc", "uno"],
+        conditions=hl.methods.Conditions(motions=handle_motions()[1:3]),
+        workers=1,
+        progress=False,
+    )
 
 
 def test_its_errors_are_those_of_an_independent_solver(found):
@@ -113,9 +121,14 @@ def test_its_errors_are_those_of_an_independent_solver(found):
     program = hl.compile(found.bench.scene, "rk4", T=2e-3, hold="zoh")
     F = hl.compiler.engines.engine.load(program, "interpreter").run(len(times), motion.at(times)[0][:, None]).outputs[:, 0, 0]
     alone = tradeoff(
-        found.bench.scene, hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3), methods=["rk4"], T=[2e-3], holds=["zoh"], substeps=[1],
-        precision=["float32"], targets=["pc"], motions=[motion], workers=1, progress=False,
-    )  # fmt: skip
+        found.bench.scene,
+        hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3),
+        tried=hl.methods.Tried(methods=["rk4"], T=[2e-3], holds=["zoh"], substeps=[1], precision=["float32"]),
+        targets=["pc"],
+        conditions=hl.methods.Conditions(motions=[motion]),
+        workers=1,
+        progress=False,
+    )
     assert alone.table[0].err_max == pytest.approx(np.abs(F - true).max() / alone.bench.peak, rel=1e-6)
 
 
@@ -127,9 +140,14 @@ def test_every_setting_is_a_row_and_those_that_did_not_run_say_why(found):
 def test_where_every_method_is_refused_the_reason_is_the_answer():
     paddle = hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3)
     none = tradeoff(
-        hl.library.stick_slip(), paddle, methods=["rk4", "heun"], T=[1e-3], targets=["uno"], workers=1, progress=False,
-        motions=[HandleMotion("slow", 0.001 * hl.t, 0.05)],
-    )  # fmt: skip
+        hl.library.stick_slip(),
+        paddle,
+        tried=hl.methods.Tried(methods=["rk4", "heun"], T=[1e-3]),
+        targets=["uno"],
+        workers=1,
+        progress=False,
+        conditions=hl.methods.Conditions(motions=[HandleMotion("slow", 0.001 * hl.t, 0.05)]),
+    )
     assert {r.status for r in none.table} == {"refused"}
     answer = none.choose()
     assert not answer and answer.nearest is None and "friction needs events located" in str(answer)
@@ -144,9 +162,15 @@ def test_more_substeps_are_left_out_where_the_hold_makes_the_error(found):
 def test_what_compiles_to_the_same_instructions_is_the_same_row():
     """Semi-implicit Euler looks at the handle at the start of a step alone, where zoh and foh are one."""
     both = tradeoff(
-        hl.library.mass_spring_damper(), hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3), methods=["semi_implicit_euler"], T=[1e-3],
-        substeps=[1], holds=["foh", "zoh"], precision=["float32"], motions=handle_motions()[1:2], workers=1, progress=False,
-    )  # fmt: skip
+        hl.library.mass_spring_damper(),
+        hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3),
+        tried=hl.methods.Tried(
+            methods=["semi_implicit_euler"], T=[1e-3], substeps=[1], holds=["foh", "zoh"], precision=["float32"]
+        ),
+        conditions=hl.methods.Conditions(motions=handle_motions()[1:2]),
+        workers=1,
+        progress=False,
+    )
     for target in both.targets:
         foh, zoh = both.table.where(target=target)
         given = {"hold": "zoh", "order_claimed": None, "sensor_floor": 0.0}  # nan without an encoder
@@ -215,9 +239,13 @@ def test_it_prints_draws_and_writes_its_table(found, tmp_path):
 
 def test_a_force_of_the_samples_alone_has_one_setting_a_period():
     wall = tradeoff(
-        SPRING, hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3), targets=["uno"], T=[1e-3, 5e-4], workers=1,
-        precision=["float32"], progress=False,
-    )  # fmt: skip
+        SPRING,
+        hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3),
+        targets=["uno"],
+        tried=hl.methods.Tried(T=[1e-3, 5e-4], precision=["float32"]),
+        workers=1,
+        progress=False,
+    )
     assert [one.T for one in wall.table] == [1e-3, 5e-4]
     assert all(one.err_max < 1e-6 for one in wall.table)  # rounding of float32
     assert wall.table[0].b_req == pytest.approx(150 * 1e-3 / 2, rel=1e-6)
@@ -241,7 +269,7 @@ def test_a_force_of_the_samples_alone_has_one_setting_a_period():
 )
 def test_what_cannot_be_asked_for_is_refused(given, word):
     with pytest.raises((AnalysisError, ProgramError), match=word):
-        tradeoff(SPRING, hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3), progress=False, **given)
+        tradeoff(SPRING, hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3), progress=False, **asked(**given))
 
 
 def test_a_paddle_and_every_value_are_needed():
@@ -256,8 +284,14 @@ def test_a_paddle_and_every_value_are_needed():
 def test_one_of_a_thing_is_enough_and_the_front_is_short():
     slow = HandleMotion("slow", 0.002 * hl.t, 0.1)
     wall = tradeoff(
-        SPRING, hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3), targets="uno", T=1e-3, motions=slow, workers=map, progress=False,
-    )  # fmt: skip
+        SPRING,
+        hl.SimulatedPaddle(m=0.05, b=0.3, T=1e-3),
+        targets="uno",
+        tried=hl.methods.Tried(T=1e-3),
+        conditions=hl.methods.Conditions(motions=slow),
+        workers=map,
+        progress=False,
+    )
     (one,) = wall.table
     lines = wall.front("uno").brief().splitlines()
     assert lines[1].startswith("none needed") and "rk4" not in lines[1] and one.name == "T = 1 ms, float32"

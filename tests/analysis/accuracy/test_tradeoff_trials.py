@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import sympy as sp
+from trade_rows import asked
 
 import hapticlab as hl
 from hapticlab import n, t, v, x
@@ -23,7 +24,7 @@ def paddle(**changes):
 
 def tradeoff(scene, device=None, **options):
     given = {"motions": [SWING], "targets": ["uno"], "T": [1e-3], "precision": ["float32"], "workers": 1, "progress": False}
-    return hl.methods.tradeoff(scene, device or paddle(), **given | options)
+    return hl.methods.tradeoff(scene, device or paddle(), **asked(**given | options))
 
 
 def test_a_delay_of_the_paddle_asks_for_damping_and_moves_the_held_force():
