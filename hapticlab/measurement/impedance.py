@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..analysis.impedance.impedance import impedance as impedance_of
+from ..base.arguments import number
 from ..compiler.tick.compile_scene import compile
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
-from .impedance_excitation import Excitation, How
+from .impedance_plan import AVERAGING, EXCITATION, SAFETY, Averaging, Excitation, Safety
+from .impedance_signal import Signal
 from .measured import MeasuredImpedance
 from .shaking import bearable, most_force, shake_board
 from .signals import lines_of
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 
     from ..device.board.serial_paddle import SerialPaddle
     from ..scene.scene import Scene
-    from .measured import Drive
 
 #: options of a run that are the compiler's
 COMPILED = ("method", "substeps", "hold", "force_at", "dtype")
@@ -44,20 +44,11 @@ def measured_impedance(
     paddle: SimulatedPaddle | SerialPaddle,
     scene: Scene,
     *,
-    how: How = "multisine",
-    drive: Drive | None = None,
-    frequency: ArrayLike | None = None,
-    amplitude: float | None = None,
+    excitation: Excitation = EXCITATION,
+    averaging: Averaging = AVERAGING,
+    safety: Safety = SAFETY,
     place: float | None = None,
-    period: float = 1.0,
-    blocks: int = 4,
-    realizations: int = 2,
-    settle: float = 2.0,
     ideal: Scene | Callable[[NDArray[np.complex128]], ArrayLike] | None = None,
-    seed: int = 0,
-    force_max: float | None = None,
-    reach: float = 0.02,
-    speed_max: float = 1.0,
     **options: Any,
 ) -> MeasuredImpedance:
     """Measure the impedance that a scene renders at the handle, by a periodic excitation in whole periods.
@@ -76,30 +67,18 @@ def measured_impedance(
     paddle : SimulatedPaddle or SerialPaddle
     scene : Scene
         Every parameter bound. Linear about the place, or nearly so.
-    how : {"multisine", "swept_sine"}
-        Odd lines at once with phases of low crest factor, anew in each realization; or a periodic chirp through the band.
-    drive : {"hand", "motor"}, optional
-        By default the hand where a simulated paddle has one with k or b, else the motor.
-    frequency : array, optional
-        [Hz]; the nearest odd lines are taken. By default 24 from 2 Hz to a fifth of the sampling rate.
-    amplitude : float, optional
-        Peak of the intent [m], 1 mm, or of the motor's force [N], 0.1 N.
+    excitation : Excitation
+        What shakes the handle: ``hl.measure.Excitation(how=, drive=, frequency=, amplitude=, seed=)``.
+    averaging : Averaging
+        How much is recorded: ``hl.measure.Averaging(period=, blocks=, realizations=, settle=)``.
+    safety : Safety
+        What the handle of a board may do: ``hl.measure.Safety(force_max=, reach=, speed_max=)``.
     place : float, optional
         Mean position of the handle [m] that a driving hand holds: inside a wall, deeper than it moves. By default where
         the scene's x_o is, and 5 mm beyond it, or less: half of what the motor stands for long holds it there.
-    period, settle : float
-        Of the excitation, and of what is waited for before the first block [s].
-    blocks, realizations : int
-        Periods that are kept of each realization, and how many of these there are.
     ideal : Scene or callable, optional
         Of what the scene stands for: Z(s), s = 2 pi j f. By default its own equations in continuous time, or k/s + B of
         a wall.
-    seed : int
-        Of the phases.
-    force_max : float, optional
-        The largest force of a board's motor [N]; by default what holds the place and twice the amplitude.
-    reach, speed_max : float
-        How far from where it began the handle of a board may go [m], and how fast [m/s].
     **options
         Of the paddle's run: dtype, method, and on a board every.
 
@@ -115,28 +94,26 @@ def measured_impedance(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand(m=0.02, b=1.0, k=200.0))
-    >>> found = measured_impedance(paddle, hl.wall()(k=150), frequency=[5, 50], dtype="float64")
+    >>> two = hl.measure.Excitation(frequency=[5, 50])
+    >>> found = hl.measure.impedance(paddle, hl.wall()(k=150), excitation=two, dtype="float64")
     >>> bool((abs(found.rendered / found.law - 1) < 1e-3).all()), round(float(found.damping[0]), 4)     # -K T/2
     (True, -0.075)
     """
-    if how not in get_args(How):
-        raise AnalysisError(f"how = {how!r}; needs one of {', '.join(get_args(How))}")
-    _check(period=period, blocks=blocks, realizations=realizations, amplitude=amplitude, settle=settle, place=place)
-    limits = {"force": force_max, "reach": reach, "speed_max": speed_max}
-    _check(**limits)
-    simulated = isinstance(paddle, SimulatedPaddle)
-    drive = _drive(paddle, drive, simulated)
-    amplitude = AMPLITUDE[drive] if amplitude is None else amplitude
+    place = None if place is None else number("place", place, "m", "measured_impedance")
+    simulated, how, frequency = isinstance(paddle, SimulatedPaddle), excitation.how, excitation.frequency
+    period, blocks, settle = averaging.period, averaging.blocks, averaging.settle
+    drive = _drive(paddle, excitation.drive, simulated)
+    amplitude = AMPLITUDE[drive] if excitation.amplitude is None else excitation.amplitude
     top = HIGHEST / paddle.T
     wanted = np.geomspace(max(LOWEST, 2 / period), top, FREQUENCIES) if frequency is None else frequency
     samples, lines = lines_of(wanted, paddle.T, period)
     lines = np.arange(lines.min(), lines.max() + 1) if how == "swept_sine" else lines
-    run, exact, place = _runs(paddle, scene, drive, place, settle, None if simulated else limits, options)
+    run, exact, place = _runs(paddle, scene, drive, place, settle, None if simulated else safety, options)
     skip, kept = round(settle / paddle.T), []
-    for k in range(realizations if how == "multisine" else 1):
-        excitation = Excitation(how, lines, samples, paddle.T, amplitude, seed + k)
-        log = run(excitation, (skip + blocks * samples) * paddle.T)
-        kept.append((_blocks(log, samples, blocks, skip), excitation, log.delay))
+    for k in range(averaging.realizations if how == "multisine" else 1):
+        signal = Signal(how, lines, samples, paddle.T, amplitude, excitation.seed + k)
+        log = run(signal, (skip + blocks * samples) * paddle.T)
+        kept.append((_blocks(log, samples, blocks, skip), signal, log.delay))
     if how == "swept_sine" and frequency is not None:
         lines = lines_of(frequency, paddle.T, period)[1]
     return _evaluated(kept, lines, drive, paddle, exact, place, scene, ideal, simulated)
@@ -146,31 +123,15 @@ def _drive(paddle, drive, simulated):
     hand = paddle.hand if simulated else None
     able = hand is not None and (hand.k > 0 or hand.b > 0)
     drive = ("hand" if able else "motor") if drive is None else drive
-    if drive not in AMPLITUDE:
-        raise AnalysisError(f"drive = {drive!r}; needs 'hand' or 'motor'")
     if drive == "hand" and not able:
         raise PaddleError("drive='hand' needs a simulated hand with k or b to act through, Hand(k=200, b=1); or drive='motor'")
     return drive
 
 
-def _check(**values):
-    """Refuse what no measurement can be made with."""
-    for name, value in values.items():
-        whole, above = name in ("blocks", "realizations"), name not in ("place", "settle")
-        number = None if isinstance(value, (str, bool)) else value
-        try:
-            good = value is None or (math.isfinite(number) and (not whole or number == int(number)))
-        except TypeError:
-            good = False
-        if not good or (value is not None and ((above and value <= 0) or (name == "settle" and value < 0))):
-            needs = ("a whole number > 0" if whole else "a number > 0") if above else "a finite number"
-            raise AnalysisError(f"measured_impedance: {name} = {value!r}; needs {needs if name != 'settle' else 'a number >= 0'}")
-
-
-def _runs(paddle, scene, drive, place, settle, limits, options):
+def _runs(paddle, scene, drive, place, settle, safety, options):
     """Return run(excitation, duration) -> Telemetry, the scene's own program in float64 for its law, and the place [m].
 
-    ``limits`` of a board's motor; None for a simulated paddle, whose handle nobody holds.
+    ``safety`` of a board's handle; None for a simulated paddle, whose handle nobody holds.
     """
     compiled = {name: a for name, a in options.items() if name in COMPILED}
     others = {name: a for name, a in options.items() if name not in COMPILED}
@@ -179,13 +140,13 @@ def _runs(paddle, scene, drive, place, settle, limits, options):
     if place is None:
         depth = DEPTH if "x_o" in scene.values else 0.0
         place = bearable(exact, paddle, origin, depth) if drive == "motor" else origin + depth
-    place, hand = float(place), None if limits else paddle.hand
+    place, hand = float(place), None if safety else paddle.hand
     pull = force_at_rest(exact, place) - (hand.push if hand else 0.0)  # what holds the handle at the place
-    if drive == "motor" and limits:
+    if drive == "motor" and safety:
 
         def run(excitation, duration):
             size = excitation.amplitude
-            most = {**limits, "force": most_force(paddle, pull, size, limits["force"])}
+            most = {**vars(safety), "force_max": most_force(paddle, pull, size, safety.force_max)}
             at = {"place": place, "origin": origin, "amplitude": size, "settle": settle}
             return shake_board(paddle, excitation.beside(scene, pull), duration, **at, **most, options=options)
 

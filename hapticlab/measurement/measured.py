@@ -143,7 +143,9 @@ class MeasuredImpedance:
         left, unsure = self.left_wall, np.nanmax(self.other.radius / abs(self.other.value), initial=0.0)
         lines = [f"the handle left the wall in {left} samples: press deeper or drive less"] if left else []
         if unsure > UNSURE:
-            lines.append(f"blocks differ, |Z {self.drive}| by up to {100 * unsure:.0f} %: noise, or not settled; settle=... [s]")
+            lines.append(
+                f"blocks differ, |Z {self.drive}| by up to {100 * unsure:.0f} %: noise, or not settled: Averaging(settle=...)"
+            )
         return lines
 
     def __repr__(self) -> str:

@@ -48,14 +48,14 @@ def most_force(paddle, pull, amplitude, force_max):
         raise PaddleError(
             f"measured_impedance: {abs(pull):.3g} N to hold the place and {amplitude:.3g} N to shake the handle are more "
             f"than the {stands:.3g} N that the motor stands for long; give a place= nearer to the boundary, or a smaller "
-            "amplitude="
+            "excitation=hl.measure.Excitation(amplitude=...)"
         )
     return min(stands, abs(pull) + ROOM * amplitude) if force_max is None else min(force_max, paddle.settings.force_max)
 
 
-def shake_board(paddle, shaken, duration, *, place, origin, amplitude, force, reach, speed_max, settle, options):
+def shake_board(paddle, shaken, duration, *, place, origin, amplitude, force_max, reach, speed_max, settle, options):
     """Lead the handle to a place [m], run a shaken scene there, and return the record; refuse one that was cut short."""
-    lead_back(paddle, place, force)
+    lead_back(paddle, place, force_max)
     depth, at = abs(place - origin), paddle.state()["x"]
     if abs(at - place) > (depth or reach):
         raise PaddleError(
@@ -66,17 +66,17 @@ def shake_board(paddle, shaken, duration, *, place, origin, amplitude, force, re
     softly = replace(shaken, force=when(n < rises, n / rises, 1) * shaken.force)
     fastest = speed_limit(paddle, speed_max)
     safe = held_back(softly, reach, speed_max=fastest, work=amplitude * fastest * duration)
-    log = paddle.run(safe, duration=duration, force_max=force, progress=False, **options)
+    log = paddle.run(safe, duration=duration, force_max=force_max, progress=False, **options)
     if log.cut.any():
         raise PaddleError(
             f"measured_impedance: the motor was switched off after {log.t[log.cut.argmax()]:.3g} s, the handle moved "
-            f"further than {1e3 * reach:.3g} mm (reach=) or faster than {fastest:.3g} m/s (speed_max=): drive less, "
-            "hold the handle, or take a softer wall"
+            f"further than {1e3 * reach:.3g} mm or faster than {fastest:.3g} m/s, as "
+            "safety=hl.measure.Safety(reach=, speed_max=) says: drive less, hold the handle, or take a softer wall"
         )
     if log.saturated is not None and log.saturated.any():
         raise PaddleError(
-            f"measured_impedance: the force came to its limit of {force:.3g} N in {int(log.saturated.sum())} samples, so "
+            f"measured_impedance: the force came to its limit of {force_max:.3g} N in {int(log.saturated.sum())} samples, so "
             "nothing in the record is linear. It does so where a wall chatters: hold the handle, or take a softer wall; else "
-            "drive less, or allow more: force_max="
+            "drive less, or allow more: safety=hl.measure.Safety(force_max=...)"
         )
     return log

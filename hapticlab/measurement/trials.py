@@ -91,7 +91,9 @@ def try_wall(paddle, scene, *, K, place, duration, longest, buzz_max=0.05, noise
     """
     needs = ENOUGH * period_on(paddle, K)
     if needs > longest * 1.001:
-        return Trial(K, None, f"not tried: three swings take {needs:.3g} s; needs longest={needs:.2g}", 0.0, None, 0.0, 0.0)
+        return Trial(
+            K, None, f"not tried: three swings take {needs:.3g} s; needs Judgement(longest={needs:.2g})", 0.0, None, 0.0, 0.0
+        )
     duration = max(duration, min(needs, longest))
     while True:
         log = run_from(paddle, scene, place, duration)

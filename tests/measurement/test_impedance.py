@@ -8,7 +8,7 @@ import hapticlab as hl
 from hapticlab.device.board.settings import changed, simulated
 from hapticlab.device.link.serial_ports import open_port
 from hapticlab.measurement.impedance import measured_impedance
-from hapticlab.measurement.impedance_excitation import Excitation
+from hapticlab.measurement.impedance_signal import Signal
 from hapticlab.measurement.signals import lines_of
 
 pytest.importorskip("llvmlite")  # some ten thousand ticks
@@ -28,7 +28,9 @@ def held(s, delay=DELAY):
 @pytest.mark.parametrize("how", ["multisine", "swept_sine"])
 def test_a_plain_wall_is_a_held_spring(how):
     """Z = K (1 - e^-sT)/(sT) e^-s d / s: at low frequencies a damper of -K (T/2 + d) beside the spring."""
-    found = measured_impedance(paddle(), hl.wall()(k=K), how=how, frequency=FREQUENCY, dtype="float64")
+    found = measured_impedance(
+        paddle(), hl.wall()(k=K), excitation=hl.measure.Excitation(how=how, frequency=FREQUENCY), dtype="float64"
+    )
     s = 2j * np.pi * found.frequency
     assert found.frequency == pytest.approx(FREQUENCY)
     assert found.rendered == pytest.approx(K / s * held(s), rel=1e-10)
@@ -43,7 +45,9 @@ def test_a_plain_wall_is_a_held_spring(how):
     ("law", "taps"), [("backward_difference", (1.5, -0.5)), ("ellis", (2.0, -1.5, 0.5)), ("half_sample", None)]
 )
 def test_every_law_is_rendered_as_its_own_response(law, taps):
-    found = measured_impedance(paddle(0.0), hl.wall(law)(k=K), frequency=FREQUENCY, dtype="float64")
+    found = measured_impedance(
+        paddle(0.0), hl.wall(law)(k=K), excitation=hl.measure.Excitation(frequency=FREQUENCY), dtype="float64"
+    )
     s = 2j * np.pi * found.frequency
     z = np.exp(-s * T)
     H = K * (1 + s * T / 2) if taps is None else K * sum(c * z**k for k, c in enumerate(taps))
@@ -61,10 +65,14 @@ def test_what_the_hand_feels_against_a_fine_integration():
 
     scene, fine, P, N = hl.wall()(k=K), 40, 6, 1000
     found = measured_impedance(
-        paddle(0.0), scene, frequency=FREQUENCY, dtype="float64", realizations=1, blocks=2, settle=4.0, seed=5
+        paddle(0.0),
+        scene,
+        excitation=hl.measure.Excitation(frequency=FREQUENCY, seed=5),
+        dtype="float64",
+        averaging=hl.measure.Averaging(realizations=1, blocks=2, settle=4.0),
     )
     samples, lines = lines_of(FREQUENCY, T, 1.0)
-    intent = Excitation("multisine", lines, samples, T, 1e-3, 5).period
+    intent = Signal("multisine", lines, samples, T, 1e-3, 5).period
     M, b, k = 0.07, 1.1, 200.0
     # y = [x, v, F, intent, rate of intent]: expm of the whole, at every fortieth of a period
     A = np.zeros((5, 5))
@@ -91,14 +99,18 @@ def test_what_the_hand_feels_against_a_fine_integration():
 
 def test_a_hand_without_a_spring_holds_the_place_by_a_push():
     damper = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hl.Hand(b=3.0))
-    found = measured_impedance(damper, hl.wall()(k=K), frequency=FREQUENCY, dtype="float64", amplitude=2e-4, place=0.02)
+    found = measured_impedance(
+        damper, hl.wall()(k=K), excitation=hl.measure.Excitation(frequency=FREQUENCY, amplitude=2e-4), dtype="float64", place=0.02
+    )
     s = 2j * np.pi * found.frequency
     assert found.left_wall == 0 and found.rendered == pytest.approx(K / s * held(s, 0.0), rel=1e-9)
 
 
 def test_the_device_is_in_the_way_at_the_handle():
     """m s + b beside k/s: 0.05 kg and 150 N/m cancel at 8.7 Hz, and the mass outweighs the wall above."""
-    found = measured_impedance(paddle(0.0), hl.wall()(k=K), frequency=[2.0, 9.0, 51.0], dtype="float64")
+    found = measured_impedance(
+        paddle(0.0), hl.wall()(k=K), excitation=hl.measure.Excitation(frequency=[2.0, 9.0, 51.0]), dtype="float64"
+    )
     s = 2j * np.pi * found.frequency
     assert found.transparency_at_handle == pytest.approx((0.05 * s + 0.1 + K / s * held(s, 0.0)) / (K / s), rel=1e-3)
     figure = found.plot()
@@ -107,7 +119,9 @@ def test_the_device_is_in_the_way_at_the_handle():
 
 
 def test_the_motor_drives_the_mechanics_and_the_scene_alike():
-    found = measured_impedance(paddle(), hl.wall()(k=K, x_o=0.002), drive="motor", frequency=FREQUENCY, dtype="float64")
+    found = measured_impedance(
+        paddle(), hl.wall()(k=K, x_o=0.002), excitation=hl.measure.Excitation(drive="motor", frequency=FREQUENCY), dtype="float64"
+    )
     s = 2j * np.pi * found.frequency
     assert found.rendered == pytest.approx(K / s * held(s), rel=1e-9)
     mechanics = 0.07 * s + 1.1 + 200 / s
@@ -119,9 +133,16 @@ def test_the_motor_drives_the_mechanics_and_the_scene_alike():
 
 
 def test_an_encoder_is_seen_as_distortion_and_noise_as_uncertainty():
-    plain = measured_impedance(paddle(0.0), hl.wall()(k=K), frequency=FREQUENCY)
-    coarse = measured_impedance(paddle(0.0, counts_per_metre=2e4), hl.wall()(k=K), frequency=FREQUENCY)
-    noisy = measured_impedance(paddle(0.0, noise=2e-5), hl.wall()(k=K), frequency=FREQUENCY, blocks=6)
+    plain = measured_impedance(paddle(0.0), hl.wall()(k=K), excitation=hl.measure.Excitation(frequency=FREQUENCY))
+    coarse = measured_impedance(
+        paddle(0.0, counts_per_metre=2e4), hl.wall()(k=K), excitation=hl.measure.Excitation(frequency=FREQUENCY)
+    )
+    noisy = measured_impedance(
+        paddle(0.0, noise=2e-5),
+        hl.wall()(k=K),
+        excitation=hl.measure.Excitation(frequency=FREQUENCY),
+        averaging=hl.measure.Averaging(blocks=6),
+    )
     assert plain.distortion < 1e-6 < 1e-3 < coarse.distortion
     assert noisy.radius[0] > 1e3 * plain.radius[0] and noisy.coherence[-1] < 0.9999
     assert (abs(noisy.rendered - noisy.law) < 2 * noisy.radius).all()
@@ -129,8 +150,8 @@ def test_an_encoder_is_seen_as_distortion_and_noise_as_uncertainty():
 
 def test_the_hand_feels_friction_that_the_motor_does_not_make():
     """A sinusoid feels Coulomb friction as a damper 4 f_c/(pi V), its describing function; the rendered force is as before."""
-    sticky, tone = paddle(0.0, coulomb=0.02), {"frequency": [5.0], "amplitude": 0.01, "place": 0.03}
-    found = measured_impedance(sticky, hl.wall()(k=K), dtype="float64", **tone)
+    sticky, tone = paddle(0.0, coulomb=0.02), hl.measure.Excitation(frequency=[5.0], amplitude=0.01)
+    found = measured_impedance(sticky, hl.wall()(k=K), dtype="float64", excitation=tone, place=0.03)
     s = 2j * np.pi * found.frequency[0]
     assert found.rendered[0] == pytest.approx(K / s * held(s, 0.0), rel=1e-6)
     # the intent's sinusoid through hand and loop, friction as that damper: a fixed point in the speed
@@ -145,15 +166,23 @@ def test_the_hand_feels_friction_that_the_motor_does_not_make():
 def test_a_motion_that_has_not_settled_is_told():
     """Without a hand b - K T/2 = 0.05 N s/m is left to 0.05 kg: after 2 s a seventh of the beginning is there still."""
     free = hl.SimulatedPaddle(m=0.05, b=0.1, T=T)
-    early, late = (measured_impedance(free, hl.wall()(k=100.0), frequency=[5.0, 51.0], settle=settle) for settle in (2.0, 20.0))
-    assert "not settled; settle=" in str(early) and "not settled" not in str(late)
+    early, late = (
+        measured_impedance(
+            free,
+            hl.wall()(k=100.0),
+            excitation=hl.measure.Excitation(frequency=[5.0, 51.0]),
+            averaging=hl.measure.Averaging(settle=settle),
+        )
+        for settle in (2.0, 20.0)
+    )
+    assert "not settled: Averaging(settle=" in str(early) and "not settled" not in str(late)
     assert late.mechanics[0] == pytest.approx((0.05 * 2j * np.pi * 5 + 0.1), rel=1e-2)
 
 
 def test_a_handle_that_leaves_the_wall_is_reported():
-    found = measured_impedance(paddle(), hl.wall()(k=K), place=0.0, frequency=FREQUENCY)
+    found = measured_impedance(paddle(), hl.wall()(k=K), place=0.0, excitation=hl.measure.Excitation(frequency=FREQUENCY))
     assert found.left_wall > 100 and "left the wall" in str(found)
-    assert measured_impedance(paddle(), hl.wall()(k=K), frequency=FREQUENCY).left_wall == 0
+    assert measured_impedance(paddle(), hl.wall()(k=K), excitation=hl.measure.Excitation(frequency=FREQUENCY)).left_wall == 0
 
 
 def test_scenes_with_motion_of_their_own_have_an_ideal_in_continuous_time():
@@ -161,7 +190,13 @@ def test_scenes_with_motion_of_their_own_have_an_ideal_in_continuous_time():
     m, k, c = hl.parameters("m k c", units="kg N/m N*s/m", values=(0.1, 300.0, 2.0))
     F = hl.laws.virtual_coupler(z, K=k, b=c)
     scene = hl.Scene(F, eom=[sp.Eq(m * z.diff(hl.t, 2), F)], name="mass")
-    found = measured_impedance(paddle(0.0), scene, frequency=[3.0, 11.0], dtype="float64", settle=4.0)
+    found = measured_impedance(
+        paddle(0.0),
+        scene,
+        excitation=hl.measure.Excitation(frequency=[3.0, 11.0]),
+        dtype="float64",
+        averaging=hl.measure.Averaging(settle=4.0),
+    )
     s = 2j * np.pi * found.frequency
     coupler = k.value / s + c.value
     assert found.ideal == pytest.approx(1 / (1 / coupler + 1 / (0.1 * s)), rel=1e-9)  # in series
@@ -171,7 +206,12 @@ def test_scenes_with_motion_of_their_own_have_an_ideal_in_continuous_time():
 
 def test_the_same_call_on_a_board():
     with hl.connect("sim://hapkit", paddle=paddle(0.0)) as board:
-        found = measured_impedance(board, hl.wall()(k=K), frequency=FREQUENCY, realizations=1)
+        found = measured_impedance(
+            board,
+            hl.wall()(k=K),
+            excitation=hl.measure.Excitation(frequency=FREQUENCY),
+            averaging=hl.measure.Averaging(realizations=1),
+        )
     s = 2j * np.pi * found.frequency
     assert found.rendered == pytest.approx(K / s * held(s, 0.0), rel=1e-3)  # float32 and a sensor of 0.1 um
     assert abs(found.mechanics / (0.07 * s + 1.1 + 200 / s) - 1)[:2].max() < 1e-2
@@ -188,13 +228,16 @@ def test_the_same_call_on_a_board():
 )
 def test_refusals(arguments, words):
     with pytest.raises(hl.errors.AnalysisError, match=words):
-        measured_impedance(paddle(), hl.wall()(k=K), **arguments)
+        measured_impedance(paddle(), hl.wall()(k=K), excitation=hl.measure.Excitation(**arguments))
     with pytest.raises(hl.errors.PaddleError, match="needs a simulated hand"):
-        measured_impedance(hl.SimulatedPaddle(m=0.05, b=0.1, T=T), hl.wall()(k=K), drive="hand")
+        measured_impedance(hl.SimulatedPaddle(m=0.05, b=0.1, T=T), hl.wall()(k=K), excitation=hl.measure.Excitation(drive="hand"))
 
 
 COUNTED = {"m": 0.03, "b": 0.6, "T": T, "counts_per_metre": 1 / 12.8e-6, "noise": 5e-6}
-SHORT = {"frequency": [5.0, 21.0], "period": 0.5, "settle": 0.2, "blocks": 2, "realizations": 1}
+SHORT = {
+    "excitation": hl.measure.Excitation(frequency=[5.0, 21.0]),
+    "averaging": hl.measure.Averaging(period=0.5, settle=0.2, blocks=2, realizations=1),
+}
 
 
 def with_motor(stands, **changes):
@@ -243,12 +286,12 @@ def test_a_wall_that_chatters_on_a_board_is_cut_and_told():
     with pulled, pytest.raises(hl.errors.PaddleError, match="measured_impedance: the handle was led to 2 mm and is at"):
         measured_impedance(pulled, hl.wall()(k=100), place=0.002, **SHORT)
     assert abs(logs[-1].F).max() == pytest.approx(0.2 + 2 * 0.1)
-    limits = {"place": 0.003, "speed_max": 0.06, "force_max": 5.0}
+    limits = hl.measure.Safety(speed_max=0.06, force_max=5.0)
     with (
         hl.connect("sim://hapkit", paddle=hl.SimulatedPaddle(**COUNTED | {"b": 0.1})) as slow,
         pytest.raises(hl.errors.PaddleError, match="measured_impedance: the motor was switched off after .*speed_max="),
     ):
-        measured_impedance(slow, hl.wall()(k=900), **limits, **SHORT)
+        measured_impedance(slow, hl.wall()(k=900), place=0.003, safety=limits, **SHORT)
 
 
 def test_a_board_refuses_more_than_its_motor_stands_and_an_interrupt_leaves_it_off(monkeypatch):
@@ -265,13 +308,21 @@ def test_a_board_refuses_more_than_its_motor_stands_and_an_interrupt_leaves_it_o
 
 
 @pytest.mark.parametrize(
-    "wrong",
+    ("record", "wrong"),
     [
-        {"realizations": 0}, {"blocks": 0}, {"blocks": 1.5}, {"amplitude": 0}, {"amplitude": -1.0}, {"settle": -1},
-        {"period": 0}, {"place": float("nan")}, {"reach": 0}, {"speed_max": "fast"}, {"frequency": []},
+        *((hl.measure.Averaging, {name: 0}) for name in ("realizations", "blocks", "period")),
+        *((hl.measure.Averaging, wrong) for wrong in ({"blocks": 1.5}, {"settle": -1})),
+        *((hl.measure.Excitation, wrong) for wrong in ({"amplitude": 0}, {"amplitude": -1.0})),
+        *((hl.measure.Safety, wrong) for wrong in ({"reach": 0}, {"speed_max": "fast"})),
     ],
 )  # fmt: skip
-def test_a_number_that_measures_nothing_is_named(wrong):
+def test_a_number_that_measures_nothing_is_named(record, wrong):
     (name,) = wrong
     with pytest.raises(hl.errors.AnalysisError, match=f"{name} = "):
+        record(**wrong)
+
+
+@pytest.mark.parametrize("wrong", [{"place": float("nan")}, {"excitation": hl.measure.Excitation(frequency=[])}])
+def test_a_place_and_frequencies_that_are_none_are_named(wrong):
+    with pytest.raises(hl.errors.AnalysisError, match="place = |frequency = "):
         measured_impedance(paddle(), hl.wall()(k=K), **wrong)

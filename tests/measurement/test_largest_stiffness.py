@@ -56,7 +56,7 @@ def test_without_damping_no_stiffness_stands():
     assert found.K == 0 and "no stiffness stood" in str(found)
     assert found.chatters_at == pytest.approx(0.2)
     short = largest_stiffness(paddle(b=0.0), judged=hl.measure.Judgement(longest=1.0))
-    assert math.isnan(short.K) and "undecided" in str(short) and "needs longest=3" in str(short)
+    assert math.isnan(short.K) and "undecided" in str(short) and "needs Judgement(longest=3" in str(short)
     assert "undecided" in short.plot().axes[0].get_legend_handles_labels()[1]
 
 

@@ -25,7 +25,7 @@ How = Literal["multisine", "swept_sine"]
 
 
 @dataclass(frozen=True, eq=False)
-class Excitation:
+class Signal:
     """One periodic signal of peak ``amplitude``.
 
     Attributes
