@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..base.annotations import Number
 
 
-def ball_on_the_paddle(law: Any = None) -> Scene:
+def ball_on_the_paddle(contact_law: Any = None) -> Scene:
     """Ball on a paddle, to juggle: it flies freely, y'' = -g, and rebounds from a plate z with restitution e.
 
     The handle moves up and down, x up; a virtual coupler ties the plate of mass M to it, and lets one feel an impulse
@@ -34,7 +34,7 @@ def ball_on_the_paddle(law: Any = None) -> Scene:
 
     Parameters
     ----------
-    law : contact law, optional
+    contact_law : contact law, optional
         ``impulse(e=e)`` unless given; ``hl.contact.penalty(k=k_b)``, with a parameter k_b, runs with any method.
 
     Returns
@@ -51,7 +51,7 @@ def ball_on_the_paddle(law: Any = None) -> Scene:
     m, M, g, h = parameters("m M g h", units="kg kg m/s^2 m", values=(0.03, 0.1, 9.81, 0.08))
     z, y = coordinate("z", unit="m", initial=x(n)), coordinate("y", unit="m", initial=x(n) + h)
     e, F_c = parameters("e", units="1", values=0.8, ranges=(0, 1)), coupler(z)
-    touch = Contact(y - z, law or impulse(e=e), name="touch")
+    touch = Contact(y - z, contact_law or impulse(e=e), name="touch")
     kinetic = m * y.diff(t) ** 2 / 2 + M * z.diff(t) ** 2 / 2
     motion = lagrange(kinetic - m * g * y, forces={z: F_c}, contacts=[touch])
     return Scene(force=F_c, eom=[motion], watch=[y, z], name="ball on the paddle")
@@ -109,10 +109,10 @@ def stick_slip(stick_speed: Number | None = None) -> Scene:
     m, F_s, F_c = parameters("m F_s F_c", units="kg N N", values=(0.1, 2.0, 1.0), ranges=[None, (0, 20), (0, 20)])
     F = coupler(z)
     if stick_speed is None:
-        rough = friction(slip=z.diff(t), F_c=F_c, F_s=F_s)
+        rough = friction(slip=z.diff(t), coulomb=F_c, breakaway=F_s)
     else:
         v_s = parameters("v_s", units="m/s", values=stick_speed, ranges=(1e-4, 1))
-        rough = friction(slip=z.diff(t), F_c=F_c, stick_speed=v_s)
+        rough = friction(slip=z.diff(t), coulomb=F_c, stick_speed=v_s)
     motion = lagrange(m * z.diff(t) ** 2 / 2, forces={z: F}, contacts=[rough])
     return Scene(force=F, eom=[motion], watch=[z], name="stick-slip")
 

@@ -193,7 +193,7 @@ def test_an_impact_oscillator_bounces_where_the_closed_form_does():
 def test_dry_friction_stops_a_spring_in_whole_half_swings(start, halves):
     """F_c = k * 0.1 m: every half swing ends 0.2 m nearer, and the first that ends within 0.1 m ends for ever."""
     X = hl.coordinate("X", unit="m", initial=f"{start} m")
-    rub = hl.contact.friction(slip=X.diff(t), F_c="0.1 N")
+    rub = hl.contact.friction(slip=X.diff(t), coulomb="0.1 N")
     body = hl.mechanics.lagrange(kg * X.diff(t) ** 2 / 2 - k * X**2 / 2, contacts=[rub])
     times, (found, speed) = run([body], [X, X.diff(t)], math.pi * (halves + 1), "taylor", 1e-2)
     half = np.floor(times / math.pi)

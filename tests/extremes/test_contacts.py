@@ -97,7 +97,7 @@ def test_contacts_at_the_same_instant_do_not_depend_on_their_order(law, many):
 def test_a_block_under_dry_friction_stops_and_stays():
     """Coulomb: from 1 m/s it stops after v/(mu g), and then the rate is 0 exactly, not a chatter about it."""
     X = hl.coordinate("X", unit="m", rate=1.0)
-    rub = hl.contact.friction(slip=X.diff(t), F_c="0.5 N")
+    rub = hl.contact.friction(slip=X.diff(t), coulomb="0.5 N")
     eom = hl.mechanics.lagrange(m * X.diff(t) ** 2 / 2, contacts=[rub])
     found = watched(hl.Scene(force=0 * K * X, eom=[eom], watch={"X": X, "speed": X.diff(t)}), ticks=300)
     times, stops = np.arange(300) * 1e-3, 1.0 * 0.05 / 0.5

@@ -79,7 +79,9 @@ def penalty():
 
 
 @pytest.mark.parametrize(
-    "scene", [hl.library.ball_on_the_paddle(law=penalty()), hl.library.stick_slip(stick_speed=0.005)], ids=["ball", "block"]
+    "scene",
+    [hl.library.ball_on_the_paddle(contact_law=penalty()), hl.library.stick_slip(stick_speed=0.005)],
+    ids=["ball", "block"],
 )
 def test_a_contact_of_force_alone_fits_an_uno(scene):
     taken = cost(hl.compile(scene, "semi_implicit_euler", T=2e-3))

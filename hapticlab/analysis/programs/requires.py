@@ -127,8 +127,8 @@ class _Report:
 
         for model in self.form.models:
             for c in model.contacts:
-                does = f"may close: {type(c.law).__name__}" if hasattr(c, "law") else "may stick: friction"
-                does = "may slip and creep: friction" if c.is_force and not hasattr(c, "law") else does
+                does = f"may close: {type(c.contact_law).__name__}" if hasattr(c, "contact_law") else "may stick: friction"
+                does = "may slip and creep: friction" if c.is_force and not hasattr(c, "contact_law") else does
                 yield Item("contact", c.name, does)
         for condition in open_conditions(self.form, self.graph.needed):
             yield Item("mode", short(condition, 40), "open over the declared ranges: both sides are computed")
@@ -169,7 +169,7 @@ class _Report:
     def _parameters_used(self):
         """The names in what the outputs can see, in the starts of it, and in the laws of contacts."""
         form, seen = self.form, [self.form.force, *self.form.watch.values()]
-        laws = [getattr(c, "law", c) for model in form.models for c in model.contacts]
+        laws = [getattr(c, "contact_law", c) for model in form.models for c in model.contacts]
         seen += [a for law in laws for a in vars(law).values() if isinstance(a, sp.Basic)]
         for k, q in enumerate(form.coordinates):
             if type(q).__name__ in self.paths:

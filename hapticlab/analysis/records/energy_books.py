@@ -121,7 +121,7 @@ class _Account:
         driven = Partial(element.gap, x(t)) * v(t) + Partial(element.gap, t)
         account = replace(self, supplied=self.supplied - element.force * driven)
         if element.is_force:
-            spring = element.law.stored(element.gap)
+            spring = element.contact_law.stored(element.gap)
             return replace(
                 account,
                 stored=account.stored + spring,

@@ -104,7 +104,7 @@ class Contacts(tuple):
 def contacts_between(
     bodies: Iterable[Any],
     *,
-    law: Any,
+    contact_law: Any,
     ignore: Iterable[Any] = (),
     handle: tuple[float, float] = (-math.inf, math.inf),
     corners: bool = False,
@@ -117,7 +117,7 @@ def contacts_between(
     ----------
     bodies : sequence of Placed
         Each with a name of its own.
-    law : contact law, or callable (first, second) -> contact law
+    contact_law : contact law, or callable (first, second) -> contact law
     ignore : sequence of names, or of pairs of names
         Bodies that nothing touches, and pairs that pass through each other.
     handle : (low, high) [m]
@@ -145,7 +145,7 @@ def contacts_between(
     >>> import hapticlab as hl
     >>> z = hl.coordinate("z", unit="m", initial=1)
     >>> balls = [hl.shapes.Circle(0.1).at(x=k, y=z, name=f"ball{k}") for k in range(2)]
-    >>> print(hl.contact.between([hl.shapes.ground(), *balls], law=hl.contact.rigid()))
+    >>> print(hl.contact.between([hl.shapes.ground(), *balls], contact_law=hl.contact.rigid()))
     2 contacts: ground_ball0, ground_ball1
     left out ball0 and ball1: ball0 stays within -0.1 <= x <= 0.1 m, ball1 within 0.9 <= x <= 1.1 m
     """
@@ -153,7 +153,7 @@ def contacts_between(
     pairs = possible_pairs(bodies, ignore=ignore, handle=handle)
     made, thickness, places = [], {}, {}
     for a, b in pairs.kept:
-        law_here = law(a, b) if callable(law) else law
+        law_here = contact_law(a, b) if callable(contact_law) else contact_law
         a, b = (b, a) if isinstance(b.shape, HalfPlane) else (a, b)
         each = corners and isinstance(a.shape, HalfPlane)
         found = corners_of(a, b) if each else (closest(a, b, method=method),)

@@ -44,7 +44,7 @@ def limits(form, values, folded, period):
     pushing = {c.force: Parameter(f"{c.name}.force", c.unit, 0.0, value=1.0) for c in elements if isinstance(c, Contact)}
     found = {}
     for element in elements:
-        law = getattr(element, "law", element)
+        law = getattr(element, "contact_law", element)
         for part, expr in vars(law).items():
             if part not in law.allowed or not isinstance(expr, sp.Expr):
                 continue

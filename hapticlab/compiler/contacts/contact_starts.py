@@ -68,15 +68,15 @@ def _is_carried(contact, form, values):
 
 def _check_friction(rub, values):
     leaves = {leaf: sp.S.One for c in rub.constants for leaf in c.atoms(sp.Function) if hasattr(type(leaf), "contact")}
-    found = numbers([part.xreplace(leaves) for part in (rub.F_c, rub.F_s)], values)
+    found = numbers([part.xreplace(leaves) for part in (rub.coulomb, rub.breakaway)], values)
     if found is None:
         return
     sliding, breaking = found
     if sliding < 0:
         start = f"{sliding:.4g} {rub.unit} at the start"
-        raise SceneError(f"{rub.name}: F_c = {rub.F_c} is {start}; friction opposes the slip: needs F_c >= 0")
+        raise SceneError(f"{rub.name}: coulomb = {rub.coulomb} is {start}; friction opposes the slip: needs coulomb >= 0")
     if breaking < sliding:
         raise SceneError(
-            f"{rub.name}: F_s = {rub.F_s} is below F_c = {rub.F_c} at the start, {breaking:.4g} < {sliding:.4g}; breaking away "
-            "takes at least the sliding force"
+            f"{rub.name}: breakaway = {rub.breakaway} is below coulomb = {rub.coulomb} at the start, {breaking:.4g} < "
+            f"{sliding:.4g}; breaking away takes at least the sliding force"
         )

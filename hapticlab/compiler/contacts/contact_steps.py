@@ -55,11 +55,11 @@ def check_contacts(form, values, h, T, method):
             continue
         column = np.linalg.solve(M, J)
         if c.is_force and not isinstance(method, Taylor):
-            k = numbers([c.law.k], values)
+            k = numbers([c.contact_law.k], values)
             if k is not None:
                 check_contact_steps(c, k[0], float(column @ J), h, T, method=method.name)
-                largest[c] = max(k[0], _largest(c.law, float(column @ J), h))
-        elif c.is_located and c.law.rest_speed not in (None, sp.oo):
+                largest[c] = max(k[0], _largest(c.contact_law, float(column @ J), h))
+        elif c.is_located and c.contact_law.rest_speed not in (None, sp.oo):
             _check_rest(c, form, column, values, T)
     return largest
 
@@ -80,19 +80,19 @@ def limited(program, largest):
     """
     live, notes = {c.name: c for c in program.parameters}, []
     for c, most in sorted(largest.items(), key=lambda item: item[1]):
-        names = sorted(p.name for p in c.law.k.atoms(Parameter) if p.name in live)
+        names = sorted(p.name for p in c.contact_law.k.atoms(Parameter) if p.name in live)
         lasts = f"for which {c.name} lasts {STEPS_PER_CONTACT} steps; substeps or method='taylor' allow more"
-        if names and isinstance(c.law.k, Parameter) and most < live[names[0]].high:
+        if names and isinstance(c.contact_law.k, Parameter) and most < live[names[0]].high:
             live[names[0]] = replace(live[names[0]], high=most)
             notes.append(ParameterNote(names[0], f"at most {most:.4g} {live[names[0]].unit}, {lasts}"))
-        elif names and not isinstance(c.law.k, Parameter):
-            notes.append(f"{', '.join(names)}: {c.law.k} at most {most:.4g}, {lasts}")
+        elif names and not isinstance(c.contact_law.k, Parameter):
+            notes.append(f"{', '.join(names)}: {c.contact_law.k} at most {most:.4g}, {lasts}")
     return replace(program, parameters=tuple(live.values()), notes=(*program.notes, *notes))
 
 
 def _check_rest(contact, form, column, values, T):
     free = {leaf: sp.S.Zero for f in form.f for leaf in f.atoms(sp.Function) if hasattr(type(leaf), "contact")}
-    found = numbers([contact.law.rest_speed, Rate(Rate(contact.gap)), *(f.xreplace(free) for f in form.f)], values)
+    found = numbers([contact.contact_law.rest_speed, Rate(Rate(contact.gap)), *(f.xreplace(free) for f in form.f)], values)
     if found is not None:
         speed, bias, *f = found
         check_rest_speed(speed, max(0.0, -(bias + float(np.dot(column, f)))), T, contact.name)
@@ -122,11 +122,11 @@ def check_contact_steps(contact, k, W, h, T, speed=1.0, method="rk4"):
     """
     if k <= 0 or W <= 0:
         return
-    lasts = contact.law.duration(k, 1 / W, speed)
+    lasts = contact.contact_law.duration(k, 1 / W, speed)
     if lasts >= STEPS_PER_CONTACT * h:
         return
     more = proposed(STEPS_PER_CONTACT * T / lasts, "a shorter T")
-    at = f" at {speed:g} m/s" if contact.law.speed_matters else ""
+    at = f" at {speed:g} m/s" if contact.contact_law.speed_matters else ""
     raise SceneError(
         f"{contact.name}: the contact{at} lasts {1e3 * lasts:.3g} ms (k = {k:g}, effective mass {1 / W:.3g}), which is "
         f"{lasts / h:.1f} steps of {1e3 * h:g} ms; {method} needs {STEPS_PER_CONTACT}. Take {more}, "

@@ -99,8 +99,8 @@ class InstantContacts:
         W, P = response(M, J, definite)
         u, gaps = ([translate(part) for part in parts] for parts in zip(*((Rate(c.gap), c.gap) for c in contacts), strict=True))
         b = [dot(f, column) + translate(Rate(Rate(c.gap))) for column, c in zip(P, contacts, strict=True)]
-        laws = [Law(c.name, constant(c.law.e)) for c in contacts]
-        envelopes = [constant(c.law.envelope) for c in contacts]
+        laws = [Law(c.name, constant(c.contact_law.e)) for c in contacts]
+        envelopes = [constant(c.contact_law.envelope) for c in contacts]
         p, after = micro_impulses(W, u, b, gaps, laws, envelopes, h)
         driven = [rate - dot(row, w) for rate, row in zip(u, J, strict=True)]
         work = [-(blow * rate) for blow, rate in zip(p, driven, strict=True)]
@@ -163,7 +163,7 @@ class Touching:
 
     def __init__(self, contacts, at, constant, period):
         self.of, self.at, self.constant, self.period = contacts, at, constant, period
-        self.rubbing = [c for c in contacts.contacts if c.law.mu != 0]
+        self.rubbing = [c for c in contacts.contacts if c.contact_law.mu != 0]
         self.unknowns, self.rubs, self.slips = {}, [], []
 
     def reactions(self, tau, q, w, s, new):
@@ -175,7 +175,7 @@ class Touching:
         self.slips += [translate(c.slip) for c in self.rubbing]
         made = [contact(translate(c.gap), self.unknowns[c.force]) for c in self.of.contacts]
         for f in self.of.frictions:
-            made.append(coulomb(new, translate(f.slip), translate(f.F_c), translate(f.F_s), self.unknowns[f.force]))
+            made.append(coulomb(new, translate(f.slip), translate(f.coulomb), translate(f.breakaway), self.unknowns[f.force]))
         return made
 
     def impact(self, motion):
@@ -185,9 +185,9 @@ class Touching:
         k, laws = len(self.of.contacts), []
         for c in self.of.contacts:
             slip = k + self.rubbing.index(c) if c in self.rubbing else None
-            speed = c.law.rest_speed
+            speed = c.contact_law.rest_speed
             speed = float("inf") if speed == sp.oo else None if speed is None else self.constant(speed)
-            laws.append(Law(c.name, self.constant(c.law.e), speed, slip, self.constant(c.law.mu)))
+            laws.append(Law(c.name, self.constant(c.contact_law.e), speed, slip, self.constant(c.contact_law.mu)))
         return impacts_of(motion, laws, list(range(k)), self.period, self.of.order, self.slips, self.rubs)
 
 
@@ -213,12 +213,12 @@ def _check_names(elements):
 
 
 def _order(contacts):
-    orders = {c.law.order for c in contacts if c.law.order} or {"simultaneous"}
+    orders = {c.contact_law.order for c in contacts if c.contact_law.order} or {"simultaneous"}
     if len(orders) > 1:
-        named = "; ".join(f"{c.name}: {c.law.order}" for c in contacts if c.law.order)
+        named = "; ".join(f"{c.name}: {c.contact_law.order}" for c in contacts if c.contact_law.order)
         raise SceneError(f"{named}: the impacts of a scene are all sequential, or all simultaneous; choose one order")
     (order,) = orders
-    rubbing = [c.name for c in contacts if c.law.mu != 0]
+    rubbing = [c.name for c in contacts if c.contact_law.mu != 0]
     if rubbing and order == "simultaneous" and len(contacts) > 1:
         raise SceneError(
             f"{rubbing[0]}: friction in impacts at several contacts at once has no unique outcome; take order='sequential', "

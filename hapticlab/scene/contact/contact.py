@@ -44,12 +44,12 @@ class Contact(_InASum):
     gap : expression [m], or [rad] for a joint that stops
         >= 0 apart, 0 in touch; of coordinates, parameters, t and the handle x(t). It starts so, the handle at 0; under
         a force law it may start pressed in by 1 mm, or with a force up to ten times what presses the bodies together.
-    law : penalty, hunt_crossley, impulse, micro_impulse or rigid
+    contact_law : penalty, hunt_crossley, impulse, micro_impulse or rigid
     name : str
         Names the contact in messages and records; two contacts of a scene need two names.
     slip : expression [m/s]
         Tangential velocity of the surfaces on each other, linear in rates; for a law with friction mu in its impacts. Friction
-        of a body that stays in touch is ``hl.contact.friction(slip=..., F_c=mu*contact.force)`` beside the contact.
+        of a body that stays in touch is ``hl.contact.friction(slip=..., coulomb=mu*contact.force)`` beside the contact.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Contact(_InASum):
     """
 
     gap: sp.Expr
-    law: Any
+    contact_law: Any
     name: str = "contact"
     slip: sp.Expr = sp.S.Zero
 
@@ -84,8 +84,8 @@ class Contact(_InASum):
         gap, slip = expression(self.gap, f"{self.name}: gap"), expression(self.slip, f"{self.name}: slip")
         object.__setattr__(self, "gap", gap)
         object.__setattr__(self, "slip", slip)
-        if not isinstance(self.law, ContactLaw):
-            raise SceneError(f"{self.name}: law = {self.law!r}; needs {law_names()}")
+        if not isinstance(self.contact_law, ContactLaw):
+            raise SceneError(f"{self.name}: contact_law = {self.contact_law!r}; needs {law_names()}")
         _check_gap(gap, self.name)
         gap_units(gap, f"{self.name}: gap")
         if not self.is_force and not applied([gap], "coordinate"):
@@ -93,30 +93,30 @@ class Contact(_InASum):
                 f"{self.name}: gap = {gap} holds the handle alone, which no impulse can turn round; put a body behind a "
                 "virtual coupler, or take a penalty, hunt_crossley, or hl.laws.proxy_wall"
             )
-        self.law.check(gap, self.name)
-        mu = getattr(self.law, "mu", sp.S.Zero)
+        self.contact_law.check(gap, self.name)
+        mu = getattr(self.contact_law, "mu", sp.S.Zero)
         if mu != 0 and slip == 0:
             raise SceneError(f"{self.name}: friction mu = {mu} needs a direction; give slip=, the tangential velocity [m/s]")
         if slip != 0:
             _check_slip(slip, self.name)
-            if not hasattr(self.law, "mu"):
-                cure = "add hl.contact.friction(slip=..., F_c=mu*contact.force) beside the contact"
-                raise SceneError(f"{self.name}: a {type(self.law).__name__} has no friction of its own; {cure}")
+            if not hasattr(self.contact_law, "mu"):
+                cure = "add hl.contact.friction(slip=..., coulomb=mu*contact.force) beside the contact"
+                raise SceneError(f"{self.name}: a {type(self.contact_law).__name__} has no friction of its own; {cure}")
 
     @property
     def is_force(self) -> bool:
         """True for a law that is an expression of the state; False for one of impulses and reactions."""
-        return self.law.is_force
+        return self.contact_law.is_force
 
     @property
     def is_located(self) -> bool:
         """True for a law whose events a method must locate inside its step."""
-        return self.law.is_located
+        return self.contact_law.is_located
 
     @property
     def constants(self) -> Any:
         """The expressions of the law, and the slip."""
-        return (self.slip, *(part for part in vars(self.law).values() if isinstance(part, sp.Expr)))
+        return (self.slip, *(part for part in vars(self.contact_law).values() if isinstance(part, sp.Expr)))
 
     @property
     def unit(self) -> str:
@@ -128,7 +128,7 @@ class Contact(_InASum):
         """The normal force [N], an expression."""
         if not self.is_force:
             return reaction(self.name, self.unit)
-        return when(self.gap <= 0, self.law.force(self.gap, Rate(self.gap)))
+        return when(self.gap <= 0, self.contact_law.force(self.gap, Rate(self.gap)))
 
     @property
     def impulse(self) -> sp.Expr:
@@ -177,20 +177,20 @@ class Contact(_InASum):
 class friction(_InASum):
     """Coulomb friction between two surfaces that slip on each other.
 
-    Sliding: F_c against the slip. Sticking: whatever keeps the slip at zero, up to F_s. Sticking is a mode with its own
-    reaction, entered where the slip crosses zero and left where the reaction passes F_s, so it holds still, which a
-    steep tanh cannot do.
+    Sliding: ``coulomb`` against the slip. Sticking: whatever keeps the slip at zero, up to ``breakaway``. Sticking is a
+    mode with its own reaction, entered where the slip crosses zero and left where the reaction passes ``breakaway``, so
+    it holds still, which a steep tanh cannot do.
 
     Parameters
     ----------
     slip : expression [m/s]
         Relative velocity, linear in rates; of coordinates' rates and the handle's v(t).
-    F_c : Parameter, expression or text with a unit [N], >= 0
+    coulomb : Parameter, expression or text with a unit [N], >= 0
         Sliding friction; ``mu * contact.force`` for dry friction at a contact.
-    F_s : Parameter, expression or text with a unit [N], optional
-        Breakaway force, >= F_c; F_c unless given.
+    breakaway : Parameter, expression or text with a unit [N], optional
+        Breakaway force, >= coulomb; as large unless given.
     stick_speed : Parameter, expression or text with a unit [m/s], optional
-        Replaces sticking by a steep line: the force is F_c slip/stick_speed up to that speed. An ordinary force, for
+        Replaces sticking by a steep line: the force is coulomb slip/stick_speed up to that speed. An ordinary force, for
         every method; it creeps where it should stick.
     name : str
 
@@ -198,45 +198,46 @@ class friction(_InASum):
     --------
     >>> import hapticlab as hl
     >>> q = hl.coordinate("q", unit="m"); F_c, v_s = hl.parameters("F_c v_s", units="N m/s")
-    >>> hl.contact.friction(slip=q.diff(hl.t), F_c=F_c, stick_speed=v_s).force
+    >>> hl.contact.friction(slip=q.diff(hl.t), coulomb=F_c, stick_speed=v_s).force
     F_c*Max(-1, Min(1, Derivative(q(t), t)/v_s))
     """
 
     slip: sp.Expr
-    F_c: sp.Expr
-    F_s: sp.Expr = None
+    coulomb: sp.Expr
+    breakaway: sp.Expr = None
     stick_speed: sp.Expr = None
     name: str = "friction"
 
     allowed: ClassVar = {
-        "F_c": OPPOSING,
-        "F_s": OPPOSING,
+        "coulomb": OPPOSING,
+        "breakaway": OPPOSING,
         "stick_speed": Allowed(0.0, math.inf, "the speed up to which the line goes is above 0", above=True),
     }
     __repr__ = written_out
 
     def __post_init__(self) -> None:
         check_name(self.name, "friction")
-        for part in ("slip", "F_c", "F_s", "stick_speed"):
+        for part in ("slip", "coulomb", "breakaway", "stick_speed"):
             given = getattr(self, part)
             if given is not None:
                 object.__setattr__(self, part, constant(given, f"{self.name}: {part}"))
-        if self.F_s is not None and self.stick_speed is not None:
-            raise SceneError(f"{self.name}: stick_speed replaces sticking, so there is no breakaway force F_s; leave one out")
-        if self.F_s is None:
-            object.__setattr__(self, "F_s", self.F_c)
+        if self.breakaway is not None and self.stick_speed is not None:
+            raise SceneError(f"{self.name}: stick_speed replaces sticking, so there is no breakaway force; leave one out")
+        if self.breakaway is None:
+            object.__setattr__(self, "breakaway", self.coulomb)
         if self.slip == 0:
             raise SceneError(f"{self.name}: slip = 0; needs the relative velocity of the surfaces, such as q.diff(t)")
         _check_slip(self.slip, self.name)
         unit = self.unit
-        for part in ("F_c", "F_s"):
+        for part in ("coulomb", "breakaway"):
             if not isinstance(getattr(self, part), sp.Expr):
                 raise SceneError(f"{self.name}: {part} = {getattr(self, part)!r}; needs a force such as '0.5 N'")
             if getattr(self, part).is_negative:
                 raise SceneError(f"{self.name}: {part} = {getattr(self, part)}; friction opposes the slip: needs {part} >= 0")
             check_constant(getattr(self, part), unit, f"{self.name}, {part}")
-        if (number_of(self.F_s) - number_of(self.F_c)).is_negative:
-            raise SceneError(f"{self.name}: F_s = {self.F_s} < F_c = {self.F_c}; breaking away takes at least the sliding force")
+        if (number_of(self.breakaway) - number_of(self.coulomb)).is_negative:
+            given = f"breakaway = {self.breakaway} < coulomb = {self.coulomb}"
+            raise SceneError(f"{self.name}: {given}; breaking away takes at least the sliding force")
         if self.stick_speed is not None:
             check_constant(self.stick_speed, si_name(dimension_of(self.slip, self.name)), f"{self.name}, stick_speed")
 
@@ -253,7 +254,7 @@ class friction(_InASum):
     @property
     def constants(self) -> Any:
         """The expressions of the law."""
-        return tuple(part for part in (self.F_c, self.F_s, self.stick_speed) if part is not None)
+        return tuple(part for part in (self.coulomb, self.breakaway, self.stick_speed) if part is not None)
 
     @property
     def unit(self) -> str:
@@ -265,7 +266,7 @@ class friction(_InASum):
         """The friction force [N] against the slip, an expression."""
         if not self.is_force:
             return reaction(self.name, self.unit, "F")
-        return self.F_c * sp.Max(-1, sp.Min(1, self.slip / self.stick_speed))
+        return self.coulomb * sp.Max(-1, sp.Min(1, self.slip / self.stick_speed))
 
     def generalized_force(self, q: sp.Expr) -> sp.Expr:
         """Generalized force of the friction along a coordinate q, or the handle x(t): -force times dslip/dq'."""

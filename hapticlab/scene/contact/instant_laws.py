@@ -146,7 +146,7 @@ class rigid(ContactLaw):
 
     >>> import hapticlab as hl
     >>> z = hl.coordinate("z", unit="m", initial=0.1)
-    >>> hl.contact.Contact(z, hl.contact.rigid(), name="floor").law
+    >>> hl.contact.Contact(z, hl.contact.rigid(), name="floor").contact_law
     rigid(mu=0)
     """
 

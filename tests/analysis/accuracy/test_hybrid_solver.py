@@ -75,7 +75,7 @@ def test_stick_and_slip_have_the_period_of_the_closed_form():
     p = hl.parameters("m K F_s F_c", units="kg N/m N N", values=(m, K, F_s, F_c))
     F = p[1] * (x(t) - z)
     drawn = hl.mechanics.lagrange(
-        p[0] * z.diff(t) ** 2 / 2, forces={z: F}, contacts=[hl.contact.friction(slip=z.diff(t), F_c=p[3], F_s=p[2])]
+        p[0] * z.diff(t) ** 2 / 2, forces={z: F}, contacts=[hl.contact.friction(slip=z.diff(t), coulomb=p[3], breakaway=p[2])]
     )
     scene, motion = hl.Scene(force=F, eom=[drawn]), HandleMotion("draw", sp.Float(u) * t, 3.0)
     times = np.linspace(0, 3.0, 30001)

@@ -115,7 +115,7 @@ def test_a_block_on_a_rough_floor_stops_where_coulomb_says():
     v_0, F_c = 0.4, 1.5
     z = hl.coordinate("z", unit="m", rate=v_0)
     m, F_f = hl.parameters("m F_f", units="kg N", values=(0.2, F_c))
-    slides = hl.mechanics.lagrange(m * z.diff(t) ** 2 / 2, contacts=[hl.contact.friction(slip=z.diff(t), F_c=F_f)])
+    slides = hl.mechanics.lagrange(m * z.diff(t) ** 2 / 2, contacts=[hl.contact.friction(slip=z.diff(t), coulomb=F_f)])
     found = reference(hl.Scene(force=seen(z), eom=[slides]), STILL)
     a = F_c / 0.2
     stop = np.minimum(found.t, v_0 / a)

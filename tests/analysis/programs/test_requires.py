@@ -294,7 +294,7 @@ def test_the_cause_is_an_inertia_that_changes():
 def test_friction_may_stick():
     F_c = hl.parameters("F_c", units="N", values=0.5)
     model = hl.mechanics.lagrange(
-        m * z.diff(t) ** 2 / 2 - k * (x(t) - z) ** 2 / 2, contacts=[hl.contact.friction(slip=z.diff(t), F_c=F_c)]
+        m * z.diff(t) ** 2 / 2 - k * (x(t) - z) ** 2 / 2, contacts=[hl.contact.friction(slip=z.diff(t), coulomb=F_c)]
     )
     report = requires(hl.Scene(force=k * (x(t) - z), eom=[model]), method="taylor")
     assert next(i.why for i in report.kept if i.kind == "contact") == "may stick: friction"
@@ -306,7 +306,7 @@ def test_pairs_that_cannot_meet():
 
     heights = [hl.coordinate(f"h{i}", unit="m", initial=0.03, range=(0.0, 0.1)) for i in range(3)]
     balls = [Circle(0.01).at(x=0.05 * i, y=h, name=f"ball{i}") for i, h in enumerate(heights)]
-    contacts = contacts_between([ground(), *balls], law=hl.contact.penalty(k=k))
+    contacts = contacts_between([ground(), *balls], contact_law=hl.contact.penalty(k=k))
     L = sum(m * h.diff(t) ** 2 / 2 - m * g * h for h in heights) - k * (x(t) - heights[1]) ** 2 / 2
     scene = hl.Scene(force=k * (x(t) - heights[1]), eom=[hl.mechanics.lagrange(L, contacts=contacts)])
     report = requires(scene)

@@ -89,7 +89,7 @@ def test_friction_turns_work_into_heat():
     V, K, F_s = hl.parameters("V K F_s", units="m/s N/m N", values=(0.05, 200, 2))
     F_d = hl.parameters("F_d", units="N", values=1)
     z = hl.coordinate("z", unit="m")
-    rub = hl.contact.friction(slip=z.diff(t), F_c=F_d, F_s=F_s)
+    rub = hl.contact.friction(slip=z.diff(t), coulomb=F_d, breakaway=F_s)
     motion = lagrange(m * z.diff(t) ** 2 / 2 - K * (V * t - z) ** 2 / 2, contacts=[rub])
     log = run(energy_books(hl.Scene(force=0, eom=[motion], watch={"z": z})), 900, method="taylor")
     assert np.abs(log["leak"]).max() < 1e-14
@@ -102,7 +102,7 @@ def test_a_belt_does_the_work_of_its_friction():
     """A block on a belt at V, held by a spring too stiff to ride along: F V t goes in, F (V t - z) is lost."""
     V, K = hl.parameters("V K", units="m/s N/m", values=(0.3, 50))
     z = hl.coordinate("z", unit="m")
-    rub = hl.contact.friction(slip=z.diff(t) - V, F_c=F_c)
+    rub = hl.contact.friction(slip=z.diff(t) - V, coulomb=F_c)
     motion = lagrange(m * z.diff(t) ** 2 / 2 - K * z**2 / 2, contacts=[rub])
     log = run(energy_books(hl.Scene(force=0, eom=[motion], watch={"z": z})), 1500, method="taylor")
     assert np.abs(log["leak"]).max() < 1e-13

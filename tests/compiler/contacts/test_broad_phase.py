@@ -117,7 +117,7 @@ def test_the_handle_has_a_range_too():
     known = possible_pairs(bodies, handle=(-0.1, 0.1))
     assert not known.kept and known.ranges == {q: (0.5, 1.0), hl.x(t): (-0.1, 0.1)}
     m, k = hl.parameters("m k", units="kg N/m", values=(0.1, 10))
-    contacts = contacts_between([*bodies, ground(-1)], law=rigid(), handle=(-0.1, 0.1), ignore=[("ball", "ground")])
+    contacts = contacts_between([*bodies, ground(-1)], contact_law=rigid(), handle=(-0.1, 0.1), ignore=[("ball", "ground")])
     scene = hl.Scene(force=k * hl.x(t), eom=[lagrange(m * q.diff(t) ** 2 / 2, contacts=contacts)], watch=["q"])
     program = hl.compile(scene, T=1e-3, dtype="float64", method="taylor")
     felt = engine.load(program).run(3, np.array([[0.05], [0.1], [0.11]]), np.array(program.values)[:, None]).outputs[:, 0, 0]
@@ -128,18 +128,18 @@ def test_contacts_carry_gap_slip_name_and_law():
     y, a = ranged("y", 0, 1), hl.coordinate("a", unit="rad")
     k = hl.parameters("k", units="N/m")
     box = Box(0.2, 0.1).at(x=0.3, y=y, angle=a, name="box")
-    (contact,) = contacts = contacts_between([box, ground()], law=penalty(k=k))
-    assert contact.name == "ground_box" and contact.law.k == k
+    (contact,) = contacts = contacts_between([box, ground()], contact_law=penalty(k=k))
+    assert contact.name == "ground_box" and contact.contact_law.k == k
     at = {y: 0.2, a: 0.3, y.diff(t): 0.5, a.diff(t): -1.1}
     low = 0.2 - 0.1 * math.sin(0.3) - 0.05 * math.cos(0.3)
     assert values([contact.gap], at)[0] == pytest.approx(low, rel=1e-14)
     corner = np.array([-0.1, -0.05]) @ np.array([[math.cos(0.3), math.sin(0.3)], [-math.sin(0.3), math.cos(0.3)]])
     assert values([contacts.places[contact.name].slip], at)[0] == pytest.approx(-1.1 * corner[1], rel=1e-13)
-    four = contacts_between([ground(), box], law=lambda one, other: rigid(), corners=True)
+    four = contacts_between([ground(), box], contact_law=lambda one, other: rigid(), corners=True)
     assert [c.name for c in four] == [f"ground_box_{k}" for k in (1, 2, 3, 4)]
     assert values([four[0].gap], at)[0] == pytest.approx(low, rel=1e-14)
     assert isinstance(four, Contacts) and isinstance(four + four, tuple)
-    (rough,) = contacts_between([ground(), box], law=impulse(e=0.5, mu=0.3))
+    (rough,) = contacts_between([ground(), box], contact_law=impulse(e=0.5, mu=0.3))
     assert rough.slip == contacts.places["ground_box"].slip and contact.slip == 0
 
 
@@ -147,25 +147,25 @@ def test_bodies_that_start_in_each_other():
     z = hl.coordinate("z", unit="m", initial=Amount(0.097, "m"))
     ball = Circle(0.1).at(y=z, name="ball")
     with pytest.raises(SceneError, match="ground_ball: the bodies start 0.003 m in each other"):
-        contacts_between([ground(), ball], law=rigid())
-    assert not contacts_between([ground(), ball], law=rigid(), ignore=[("ball", "ground")])
+        contacts_between([ground(), ball], contact_law=rigid())
+    assert not contacts_between([ground(), ball], contact_law=rigid(), ignore=[("ball", "ground")])
     r = hl.parameters("r", units="m", ranges=(0, 1))
     bodies = [ground(), Circle(r).at(y=z, name="ball")]
-    later = contacts_between(bodies, law=rigid())  # r has no value yet
+    later = contacts_between(bodies, contact_law=rigid())  # r has no value yet
     check_apart(later, {"r": 0.05})
     with pytest.raises(SceneError, match="ground_ball: the bodies start 0.903 m in each other"):
         check_apart(later, {"r": 1.0})
     with pytest.raises(SceneError, match="start 0.103 m in each other"):
-        contacts_between(bodies, law=rigid(), values={"r": 0.2})
+        contacts_between(bodies, contact_law=rigid(), values={"r": 0.2})
     # in touch is no overlap
-    assert contacts_between([ground(), Circle(0.097).at(y=z, name="ball")], law=rigid())
+    assert contacts_between([ground(), Circle(0.097).at(y=z, name="ball")], contact_law=rigid())
 
 
 def test_values_that_are_bound_later_are_looked_at_when_a_scene_is_compiled():
     r, m = hl.parameters("r m", units="m kg", ranges=((0, 1), None), values=(0.1, 0.2))
     z = hl.coordinate("z", unit="m", initial=Amount(0.3, "m"))
-    contacts = contacts_between([ground(), Circle(r).at(y=z, name="ball")], law=penalty(k=m * Amount(1e4, "1/s^2")))
-    rubbing = contacts + (hl.contact.friction(slip=z.diff(t), F_c=m * Amount(1.0, "m/s^2"), stick_speed=Amount(1.0, "m/s")),)
+    contacts = contacts_between([ground(), Circle(r).at(y=z, name="ball")], contact_law=penalty(k=m * Amount(1e4, "1/s^2")))
+    rubbing = contacts + (hl.contact.friction(slip=z.diff(t), coulomb=m * Amount(1.0, "m/s^2"), stick_speed=Amount(1.0, "m/s")),)
     assert isinstance(rubbing, Contacts) and rubbing.ranges == contacts.ranges
     scene = hl.Scene(force=0, eom=[lagrange(m * z.diff(t) ** 2 / 2, contacts=rubbing)], watch=["z"])
     assert len(hl.compile(scene(r=0.2), T=1e-3)) > 10
@@ -178,7 +178,7 @@ def test_polygons_that_rub():
     x, y, a = (ranged(name, -1, 1, unit) for name, unit in (("x1", "m"), ("y1", "m"), ("a1", "rad")))
     hook = Polygon([(-1, -1), (0.5, -1), (0.5, -0.8), (-0.8, -0.8), (-0.8, 0.5), (-1, 0.5)]).at(name="hook")
     bodies = [hook, Box(0.3, 0.2).at(x=x, y=y, angle=a, name="box")]
-    (contact,) = contacts_between(bodies, law=impulse(e=0.5, mu=0.3))
+    (contact,) = contacts_between(bodies, contact_law=impulse(e=0.5, mu=0.3))
     at = {x: 0.1, y: 0.2, a: 0.3, x.diff(t): 0.5, y.diff(t): -0.2, a.diff(t): 2.0}
     one, two = (values([contact.slip], at | {q.diff(t): s * at[q.diff(t)] for q in (x, y, a)})[0] for s in (1, 3))
     assert two == pytest.approx(3 * one, rel=1e-13) and abs(one) > 0.1
@@ -196,8 +196,8 @@ def test_thin_bodies_and_speeds():
     q = hl.coordinate("q", unit="m", initial=Amount(1, "m"))
     sheet, wire = Segment(1).at(angle=1.5, name="sheet"), Segment(0.1).at(x=q, name="wire")
     with pytest.warns(UserWarning, match="sheet and wire have no thickness"):
-        contacts_between([sheet, wire], law=rigid())
-    found = contacts_between([sheet, Circle("1 mm").at(x=q, name="bead")], law=rigid())
+        contacts_between([sheet, wire], contact_law=rigid())
+    found = contacts_between([sheet, Circle("1 mm").at(x=q, name="bead")], contact_law=rigid())
     assert found.speeds(1e-3) == {"sheet_bead": pytest.approx(2.0)}
     assert "1 contacts: sheet_bead" in str(found)
 
@@ -206,9 +206,9 @@ def test_thin_bodies_and_speeds():
     ("make", "word"),
     [
         (lambda a, b: possible_pairs([a, b], ignore=["c"]), "c: no such body"),
-        (lambda a, b: contacts_between([a, a], law=rigid()), "two bodies are called one"),
-        (lambda a, b: contacts_between([a, Circle(1)], law=rigid()), "no shape in its place"),
-        (lambda a, b: contacts_between([a, b], law=3), "law = 3"),
+        (lambda a, b: contacts_between([a, a], contact_law=rigid()), "two bodies are called one"),
+        (lambda a, b: contacts_between([a, Circle(1)], contact_law=rigid()), "no shape in its place"),
+        (lambda a, b: contacts_between([a, b], contact_law=3), "contact_law = 3"),
     ],
 )
 def test_refused(make, word):
@@ -223,7 +223,7 @@ def falling(shape, method, ticks):
     a = hl.coordinate("a1", unit="rad", initial=0.3, rate=Amount(2.0, "rad/s"))
     m, J, g, k = hl.parameters("m J g k", units="kg kg*m^2 m/s^2 N/m", values=(0.1, 2e-4, 9.81, 3000))
     tile = Polygon([(-0.2, 0), (0.2, 0), (0.15, 0.1), (-0.15, 0.1)]).at(y=0.2, name="tile")
-    (contact,) = contacts_between([tile, shape.at(x=x, y=y, angle=a, name="rod")], law=penalty(k=k), method=method)
+    (contact,) = contacts_between([tile, shape.at(x=x, y=y, angle=a, name="rod")], contact_law=penalty(k=k), method=method)
     L = m * (x.diff(t) ** 2 + y.diff(t) ** 2) / 2 + J * a.diff(t) ** 2 / 2 - m * g * y
     fall = lagrange(L, contacts=[contact])
     depth = sp.Max(-contact.gap, 0)
@@ -257,7 +257,7 @@ def test_a_box_lies_on_its_corners():
     a = hl.coordinate("a1", unit="rad", initial=0.002)
     m, J, g, k, b = hl.parameters("m J g k b", units="kg kg*m^2 m/s^2 N/m N*s/m", values=(0.2, 5e-4, 9.81, 2000, 20))
     box = Box(0.2, 0.1).at(y=y, angle=a, name="box")
-    contacts = contacts_between([ground(), box], law=penalty(k=k, b=b), corners=True)
+    contacts = contacts_between([ground(), box], contact_law=penalty(k=k, b=b), corners=True)
     L = m * y.diff(t) ** 2 / 2 + J * a.diff(t) ** 2 / 2 - m * g * y
     total = sp.Add(*(c.force for c in contacts))
     scene = hl.Scene(force=0, eom=[lagrange(L, contacts=contacts)], watch={"y1": y, "a1": a, "N": total})
@@ -273,7 +273,7 @@ def bouncing(shape, ticks):
     a = hl.coordinate("a1", unit="rad", initial=0.3, rate=Amount(2.0, "rad/s"))
     m, J, g = hl.parameters("m J g", units="kg kg*m^2 m/s^2", values=(0.1, 2e-4, 9.81))
     bodies = [Box(0.4, 0.1).at(y=0.2, angle=0.2, name="tile"), shape.at(x=x, y=y, angle=a, name="body")]
-    contacts = contacts_between(bodies, law=impulse(e=1))
+    contacts = contacts_between(bodies, contact_law=impulse(e=1))
     L = m * (x.diff(t) ** 2 + y.diff(t) ** 2) / 2 + J * a.diff(t) ** 2 / 2 - m * g * y
     fall = lagrange(L, contacts=contacts)
     scene = hl.Scene(force=0, eom=[fall], watch={"E": fall.energy, "d": contacts[0].gap})

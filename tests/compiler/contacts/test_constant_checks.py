@@ -34,27 +34,27 @@ def floor(law, **slip):
 F_c, mu, c = named("F_c", "N", 0.5), named("mu", "1", 0.3), named("c", "s/m", 0.3)
 k_h = named("k_h", "N/m^2", 1e5)
 e = named("e", "1", 0.4, (0, 1))
-RUB = hl.contact.friction(slip=X.diff(t), F_c=F_c, name="rub")
+RUB = hl.contact.friction(slip=X.diff(t), coulomb=F_c, name="rub")
 HUNT = hl.contact.hunt_crossley(k=k_h, c=c, exponent=2)
 TABLE = floor(hl.contact.impulse(e=0.5))
-PRESSED = hl.contact.friction(slip=X.diff(t), F_c=mu * TABLE.force, name="rub")
+PRESSED = hl.contact.friction(slip=X.diff(t), coulomb=mu * TABLE.force, name="rub")
 SOFT = floor(hl.contact.penalty(k=named("k", "N/m", 300)))
 
 
 @pytest.mark.parametrize(
     ("contacts", "bound", "told"),
     [
-        ([RUB], {"F_c": -0.5}, r"rub: F_c = F_c is -0\.5 N at the start; friction opposes the slip: needs F_c >= 0"),
+        ([RUB], {"F_c": -0.5}, r"rub: coulomb = F_c is -0\.5 N at the start; friction opposes the slip: needs coulomb >= 0"),
         ([floor(HUNT)], {"c": -0.3}, r"floor: c = c is -0\.3 s/m at the start; a negative one feeds energy .* needs c >= 0"),
         ([floor(HUNT)], {"k_h": -10.0}, r"floor: k = k_h is -10 N/m\^2 at the start; .* needs k >= 0"),
         ([floor(hl.contact.impulse(e=0.5, mu=mu), slip=X.diff(t))], {"mu": -0.3}, r"floor: mu = mu is -0\.3 at the start; fric"),
         ([floor(hl.contact.rigid(mu=mu), slip=X.diff(t))], {"mu": -0.3}, r"floor: mu = mu is -0\.3 at the start"),
         ([floor(hl.contact.impulse(e=2 * e))], {"e": 1}, r"floor: e = 2\*e is 2 at the start; above 1 every bounce .* needs 0"),
-        ([TABLE, PRESSED], {"mu": -0.3}, r"rub: F_c = .*mu.* is -0\.3 N at the start; friction opposes the slip"),
-        ([SOFT, hl.contact.friction(slip=X.diff(t), F_c=mu * SOFT.force, name="rub")], {"mu": -0.3}, r"rub: F_c = .* is -0\.3 N"),
-        ([hl.contact.friction(slip=X.diff(t), F_c=F_c * (1 - hl.x(t) / named("r", "m", 0.1)), name="rub")], {"F_c": -1},
-         r"rub: F_c = .* is -1 N at the start; friction opposes"),
-        ([hl.contact.friction(slip=X.diff(t), F_c="1 N", stick_speed=named("v_s", "m/s", 0.0), name="rub")], {},
+        ([TABLE, PRESSED], {"mu": -0.3}, r"rub: coulomb = .*mu.* is -0\.3 N at the start; friction opposes the slip"),
+        ([SOFT, hl.contact.friction(slip=X.diff(t), coulomb=mu * SOFT.force, name="rub")], {"mu": -0.3}, r"rub: .* is -0\.3 N"),
+        ([hl.contact.friction(slip=X.diff(t), coulomb=F_c * (1 - hl.x(t) / named("r", "m", 0.1)), name="rub")], {"F_c": -1},
+         r"rub: coulomb = .* is -1 N at the start; friction opposes"),
+        ([hl.contact.friction(slip=X.diff(t), coulomb="1 N", stick_speed=named("v_s", "m/s", 0.0), name="rub")], {},
          r"rub: stick_speed = v_s is 0 m/s at the start; the speed up to which the line goes is above 0: needs stick_speed > 0"),
     ],
 )  # fmt: skip
@@ -71,9 +71,9 @@ def test_a_value_that_feeds_energy_is_refused_whether_it_is_live_or_not(contacts
         ([floor(HUNT)], "c", 0.0, math.inf),
         ([floor(HUNT)], "k_h", 0.0, math.inf),
         ([TABLE, PRESSED], "mu", 0.0, math.inf),
-        ([SOFT, hl.contact.friction(slip=X.diff(t), F_c=mu * SOFT.force, name="rub")], "mu", 0.0, math.inf),
+        ([SOFT, hl.contact.friction(slip=X.diff(t), coulomb=mu * SOFT.force, name="rub")], "mu", 0.0, math.inf),
         (
-            [hl.contact.friction(slip=X.diff(t), F_c=F_c * (1 + X**2 / named("r", "m", 0.1) ** 2), name="rub")],
+            [hl.contact.friction(slip=X.diff(t), coulomb=F_c * (1 + X**2 / named("r", "m", 0.1) ** 2), name="rub")],
             "F_c",
             0.0,
             math.inf,
@@ -99,7 +99,7 @@ def test_the_refusal_of_set_says_what_is_needed():
 
 def test_a_sweep_is_refused_what_set_is():
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
-    creeping = hl.contact.friction(slip=X.diff(t) - hl.v(t), F_c=F_c, stick_speed="1 cm/s", name="rub")
+    creeping = hl.contact.friction(slip=X.diff(t) - hl.v(t), coulomb=F_c, stick_speed="1 cm/s", name="rub")
     swept = hl.Scene(force=creeping.force, eom=scene(creeping).eom)
     with pytest.raises(ParameterError, match=r"F_c = -0\.5 N; needs F_c >= 0"):
         hl.sweep(swept, paddle, duration=0.05, metric="peak_force", progress=False, F_c=[-0.5, 0.5])
@@ -107,19 +107,19 @@ def test_a_sweep_is_refused_what_set_is():
 
 def test_one_that_is_no_factor_stays_free():
     offset = named("offset", "N", 0.1)
-    far = hl.contact.friction(slip=X.diff(t), F_c=F_c + sp.sqrt(offset**2), name="rub")
+    far = hl.contact.friction(slip=X.diff(t), coulomb=F_c + sp.sqrt(offset**2), name="rub")
     assert {p.name: p.low for p in compiled(far).parameters}["offset"] == -math.inf
 
 
 @pytest.mark.parametrize(
     ("contact", "told"),
     [
-        (hl.contact.friction(slip=X.diff(t), F_c=named("F_c", "N", 0.5, (-5, 5)), name="rub"),
-         r"rub: F_c lies anywhere in -5\.\.5 while F_c may be set, .*hl\.parameters\('F_c', units='N', ranges=\(0, 5\)\), or "
+        (hl.contact.friction(slip=X.diff(t), coulomb=named("F_c", "N", 0.5, (-5, 5)), name="rub"),
+         r"rub: coulomb lies anywhere in -5\.\.5 while F_c may be set, .*hl\.parameters\('F_c', units='N', ranges=\(0, 5\)\), or "
          "leave F_c out of live="),
         (floor(hl.contact.impulse(e=2 * e)), r"floor: e = 2\*e lies anywhere in 0\.\.2 while e may be set, .* needs 0"),
-        (hl.contact.friction(slip=X.diff(t), F_c=named("a", "N", 1) - named("F_c", "N", 0.5), name="rub"),
-         r"F_c = .* lies anywhere in -inf\.\.inf while \w+, \w+ may be set"),
+        (hl.contact.friction(slip=X.diff(t), coulomb=named("a", "N", 1) - named("F_c", "N", 0.5), name="rub"),
+         r"coulomb = .* lies anywhere in -inf\.\.inf while \w+, \w+ may be set"),
     ],
 )  # fmt: skip
 def test_a_range_that_reaches_what_feeds_energy_is_refused_while_it_is_live(contact, told):

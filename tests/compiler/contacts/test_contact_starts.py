@@ -77,26 +77,29 @@ def test_a_wall_for_the_handle_alone_may_start_anywhere():
 @pytest.mark.parametrize(
     ("law", "words"),
     [
-        ({"F_c": F_c, "F_s": F_s}, r"rub: F_s = F_s is below F_c = F_c at the start, 0.2 < 0.4; breaking away takes"),
-        ({"F_c": -F_c}, r"rub: F_c = -F_c is -0.4 N at the start; friction opposes the slip"),
+        (
+            {"coulomb": F_c, "breakaway": F_s},
+            r"rub: breakaway = F_s is below coulomb = F_c at the start, 0.2 < 0.4; breaking away takes",
+        ),
+        ({"coulomb": -F_c}, r"rub: coulomb = -F_c is -0.4 N at the start; friction opposes the slip"),
     ],
 )
 def test_friction_that_breaks_away_below_its_sliding_force_is_refused(law, words):
     rub = hl.contact.friction(slip=s.diff(t), name="rub", **law)
     sliding = hl.Scene(force=0, eom=[hl.mechanics.lagrange(m * s.diff(t) ** 2 / 2, contacts=[rub])], watch=[s])
     with pytest.raises(SceneError, match=words):
-        compiled(sliding(F_s=0.2) if "F_s" in law else sliding, hl.contact.rigid())
-    if "F_s" in law:
+        compiled(sliding(F_s=0.2) if "breakaway" in law else sliding, hl.contact.rigid())
+    if "breakaway" in law:
         compiled(sliding, hl.contact.rigid())
 
 
 def test_friction_of_a_contact_is_compared_as_if_it_pressed():
     table = hl.contact.Contact(h, hl.contact.rigid(), name="table")
-    rub = hl.contact.friction(slip=s.diff(t), F_c=mu * table.force, F_s=mu_s * table.force, name="rub")
+    rub = hl.contact.friction(slip=s.diff(t), coulomb=mu * table.force, breakaway=mu_s * table.force, name="rub")
     L = m * (h.diff(t) ** 2 + s.diff(t) ** 2) / 2 - m * g * h
     block = hl.Scene(force=0, eom=[hl.mechanics.lagrange(L, contacts=[table, rub])], watch=[s])
     compiled(block, hl.contact.rigid())
-    with pytest.raises(SceneError, match=r"rub: F_s = mu_s\*.* is below F_c = mu\*.* at the start, 0.2 < 0.3"):
+    with pytest.raises(SceneError, match=r"rub: breakaway = mu_s\*.* is below coulomb = mu\*.* at the start, 0.2 < 0.3"):
         compiled(block(mu_s=0.2), hl.contact.rigid())
 
 

@@ -115,7 +115,7 @@ def test_newtons_cradle_of_three_swings_without_loss():
 def test_a_block_slides_to_a_stop_and_stays():
     F_c, w0 = hl.parameters("F_c w0", units="N m/s", values=(1.2, 0.8))
     z = hl.coordinate("z", unit="m", rate=w0)
-    rub = hl.contact.friction(slip=z.diff(t), F_c=F_c)
+    rub = hl.contact.friction(slip=z.diff(t), coulomb=F_c)
     scene = hl.Scene(
         force=0, eom=[lagrange(m * z.diff(t) ** 2 / 2, contacts=[rub])], watch={"z": z, "w": z.diff(t), "F_f": rub.force}
     )
@@ -132,7 +132,7 @@ def test_dry_friction_carries_its_share_of_a_reaction():
     mu, w0 = hl.parameters("mu w0", units="1 m/s", values=(0.3, 0.8))
     y, s = hl.coordinate("y", unit="m"), hl.coordinate("s", unit="m", rate=w0)
     floor = hl.contact.Contact(y, hl.contact.impulse(e=0.5), name="floor")
-    rub = hl.contact.friction(slip=s.diff(t), F_c=mu * floor.force, name="rub")
+    rub = hl.contact.friction(slip=s.diff(t), coulomb=mu * floor.force, name="rub")
     L = m * (y.diff(t) ** 2 + s.diff(t) ** 2) / 2 - m * g * y
     scene = hl.Scene(force=0, eom=[lagrange(L, contacts=[floor, rub])], watch={"s": s, "N": floor.force, "F_f": rub.force})
     log = run(scene, 500)
@@ -169,7 +169,7 @@ def test_stick_slip_breaks_away_slides_and_sticks_as_in_closed_form():
     names = hl.parameters("m_b K F_s F_c V", units="kg N/m N N m/s", values=(mass, K, F_s, F_c, V))
     z = hl.coordinate("z", unit="m")
     pull = names[1] * (names[4] * t - z)
-    rub = hl.contact.friction(slip=z.diff(t), F_c=names[3], F_s=names[2])
+    rub = hl.contact.friction(slip=z.diff(t), coulomb=names[3], breakaway=names[2])
     motion = lagrange(names[0] * z.diff(t) ** 2 / 2, forces={z: pull}, contacts=[rub])
     log = run(hl.Scene(force=0, eom=[motion], watch={"z": z, "w": z.diff(t), "F_f": rub.force}), 500)
     away, omega = F_s / (K * V), np.sqrt(K / mass)
@@ -247,7 +247,7 @@ def test_what_cannot_run_is_refused():
     with pytest.raises(ProgramError, match=r"floor needs events located .* is method='taylor'; .* impact is late .*penalty"):
         run(dropped(hl.contact.impulse(e=0.8)), 1, method="rk4")
     pull = hl.parameters("F_c", units="N", values=1)
-    brake = hl.contact.friction(slip=q.diff(t), F_c=pull, name="brake")
+    brake = hl.contact.friction(slip=q.diff(t), coulomb=pull, name="brake")
     rubbed = hl.Scene(force=0, eom=[lagrange(FALL, contacts=[brake])], watch=[q])
     with pytest.raises(ProgramError, match=r"brake needs events .*a friction never comes to rest. Other methods take a friction"):
         run(rubbed, 1, method="rk4")
@@ -281,7 +281,7 @@ def test_a_contact_that_no_model_has_is_refused():
     top = hl.contact.Contact(ball - x(t), hl.contact.impulse(e=0.5), name="top")
     felt = hl.contact.felt_impulse(top, tau="20 ms")
     motion = lagrange(m * ball.diff(t) ** 2 / 2 - m * g * ball)
-    rub = hl.contact.friction(slip=ball.diff(t), F_c=0.1 * top.force, name="rub")
+    rub = hl.contact.friction(slip=ball.diff(t), coulomb=0.1 * top.force, name="rub")
     for scene in (
         hl.Scene(force=-top.force, eom=[motion], watch=[ball]),
         hl.Scene(force=-top.force),

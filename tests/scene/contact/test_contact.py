@@ -41,14 +41,14 @@ FLOOR = Contact(Q, impulse(e=0.5), name="floor")
     (lambda: Contact(Q >= 0, rigid()), r"gap = q\(t\) >= 0 is a condition; a contact takes the distance itself, .*apart: q\(t\)"),
     (lambda: Contact(Q <= 0, rigid()), r"a contact takes the distance itself, .*apart: -q\(t\)"),
     (lambda: penalty(k="-50 N/m"), r"k = -50; a contact needs a stiffness k >= 0"),
-    (lambda: friction(slip=v(t), F_c="2 N", F_s="1 N"), r"F_s = \(1 N\) < F_c = \(2 N\); breaking away takes at least"),
+    (lambda: friction(slip=v(t), coulomb="2 N", breakaway="1 N"), r"breakaway = \(1 N\) < coulomb = \(2 N\); breaking away"),
     (lambda: hl.Scene(FLOOR), r"force is the contact or friction floor itself; its force is floor.force"),
     (lambda: K * Q + FLOOR, r"floor is a Contact, not a force; its force is an expression, floor.force"),
-    (lambda: friction(slip=v(t), F_c=F_C) - K * Q, r"friction is a friction, not a force; .*friction.force"),
+    (lambda: friction(slip=v(t), coulomb=F_C) - K * Q, r"friction is a friction, not a force; .*friction.force"),
     (lambda: hl.Scene(0, [FLOOR]), r"eom holds floor, which is no equation; .*hl.mechanics.lagrange\(L, contacts=\[...\]\)"),
-    (lambda: friction(slip=Q.diff(t) ** 2, F_c=F_C), r"slip = .* is not linear in the velocities"),
-    (lambda: friction(slip=Q, F_c=F_C), r"slip = q\(t\) holds no velocity; needs a relative velocity"),
-    (lambda: friction(slip=v(t), F_c=F_C, F_s=F_C, stick_speed=1), r"stick_speed replaces sticking.*leave one out"),
+    (lambda: friction(slip=Q.diff(t) ** 2, coulomb=F_C), r"slip = .* is not linear in the velocities"),
+    (lambda: friction(slip=Q, coulomb=F_C), r"slip = q\(t\) holds no velocity; needs a relative velocity"),
+    (lambda: friction(slip=v(t), coulomb=F_C, breakaway=F_C, stick_speed=1), r"stick_speed replaces sticking.*leave one out"),
 ])  # fmt: skip
 def test_what_cannot_be_a_contact_is_refused_in_words(made, message):
     with pytest.raises(SceneError, match=message):
@@ -61,12 +61,12 @@ def test_what_cannot_be_a_contact_is_refused_in_words(made, message):
     (lambda: Contact(Q, penalty(k="50 N")), r"contact, k: \(50 N\) is in N but"),
     (lambda: Contact(Q, penalty(k="hard")), r"k = 'hard'; needs a number and its unit"),
     (lambda: Contact(Q, hunt_crossley(k=1e5, c=0)), r"needs N/m\^1.5: '100000 N/m\^1.5'"),
-    (lambda: friction(slip=Q.diff(hl.t), F_c=1), r"F_c = 1 has no unit; needs N: '1 N'"),
+    (lambda: friction(slip=Q.diff(hl.t), coulomb=1), r"coulomb = 1 has no unit; needs N: '1 N'"),
     (lambda: Contact(ANGLE, penalty(k=K)), r"k: k is in N/m but .* in N\*m/rad"),
     (lambda: Contact(Q, hunt_crossley(k=KH, c=C, exponent=2)), r"k gap\^2"),
     (lambda: Contact(Q, hunt_crossley(k=KH, c=B)), r"1/c"),
     (lambda: Contact(Q, impulse(e=E, rest_speed=K)), r"rest_speed"),
-    (lambda: friction(slip=v(t), F_c=K), r"friction, F_c: k is in N/m"),
+    (lambda: friction(slip=v(t), coulomb=K), r"friction, coulomb: k is in N/m"),
 ])  # fmt: skip
 def test_units_are_checked_against_the_gap(made, message):
     with pytest.raises(UnitsError, match=message):
@@ -80,10 +80,10 @@ def test_a_sample_is_no_gap():
 
 def test_what_fits_is_taken():
     assert Contact(ANGLE - sp.pi / 3, penalty(k=KR)).unit == "N*m"
-    assert Contact(Q - x(t), impulse(e=E, rest_speed="5 mm/s")).law.rest_speed.value == 0.005
+    assert Contact(Q - x(t), impulse(e=E, rest_speed="5 mm/s")).contact_law.rest_speed.value == 0.005
     stop = Contact(Q, impulse(e=0.5), name="stop")
     assert not stop.is_force and type(stop.force).role == "reaction" and type(stop.impulse).unit == "N*s"
-    assert friction(slip=ANGLE.diff(t), F_c=KR).unit == "N*m"
+    assert friction(slip=ANGLE.diff(t), coulomb=KR).unit == "N*m"
     assert hash(stop) == hash(Contact(Q, impulse(e=0.5), name="stop"))
 
 
@@ -99,14 +99,14 @@ def test_texts_with_units_are_taken_as_the_other_laws_take_them():
     assert penalty(k="5 N*m/rad").k.unit == "N*m/rad" and penalty(k="0 N/m").k == 0
     stiff = hunt_crossley(k="100 N/mm^1.5", c="0.2 s/m").k
     assert float(stiff.value) == pytest.approx(100 * 1e3**1.5, rel=1e-12)
-    assert Contact(Q, hunt_crossley(k=stiff, c="0.2 s/m")).law.k == stiff
-    assert friction(slip=v(t), F_c="1 N", stick_speed="5 mm/s").stick_speed.value == 0.005
+    assert Contact(Q, hunt_crossley(k=stiff, c="0.2 s/m")).contact_law.k == stiff
+    assert friction(slip=v(t), coulomb="1 N", stick_speed="5 mm/s").stick_speed.value == 0.005
 
 
 def test_a_contact_called_floor_does_not_print_as_the_function():
     assert str(2 * FLOOR.force) == "2*N_floor(t)" and sp.latex(FLOOR.force) == r"N_{\mathrm{floor}}"
     assert sp.latex(FLOOR.force**2) == r"N_{\mathrm{floor}}^{2}"
-    assert str(friction(slip=v(t), F_c=F_C, name="brake").force) == "F_brake(t)"
+    assert str(friction(slip=v(t), coulomb=F_C, name="brake").force) == "F_brake(t)"
     model = hl.mechanics.lagrange(hl.parameters("m", units="kg") * Q.diff(t) ** 2, contacts=[FLOOR])
     assert list(hl.Scene(0, [model], watch=[FLOOR.force]).watch) == ["floor"]
     assert "e=0.5," in repr(FLOOR) and repr(penalty(k="2.5 N/m", b=B)) == "penalty(k=(2.5 N/m), b=b)"
