@@ -1,7 +1,8 @@
 """Force laws: walls, dampers and couplers as scenes, what filters and guards them, and walls designed on a model of the paddle.
 
 Each returns a Scene with parameters to bind: ``hl.laws.virtual_coupler(z, K="300 N/m", b="0.5 N*s/m")``. ``hl.wall`` is the
-chapter's wall, which stands in ``hl`` itself as well.
+chapter's wall, which stands in ``hl`` itself as well. The chapter's springs are records: ``law="ellis"`` is short for
+``law=hl.laws.EllisSpring``, which prints its equation, its cost and what it is confused with.
 """
 
 from .limits.linear_law import LinearLaw
@@ -17,14 +18,25 @@ from .scene.laws.entry_pulse import Entry, braking_pulse, friction_pulse
 from .scene.laws.fixtures import guidance, tremor_filter
 from .scene.laws.passivity_control import Credit, passivity_controller, passivity_observer, wall_energy
 from .scene.laws.proxy import proxy_curve, proxy_wall
+from .scene.laws.taps import SPRING_LAWS, SpringLaw
 from .scene.notation.symbols import delay
 from .vocabulary import page
 
+SampledSpring = SPRING_LAWS["zoh"]
+HalfSampleSpring = SPRING_LAWS["half_sample"]
+BackwardDifferenceSpring = SPRING_LAWS["backward_difference"]
+EllisSpring = SPRING_LAWS["ellis"]
+
 __all__ = [
+    "BackwardDifferenceSpring",
     "Credit",
+    "EllisSpring",
     "Entry",
+    "HalfSampleSpring",
     "LinearLaw",
     "Pairs",
+    "SampledSpring",
+    "SpringLaw",
     "braking_pulse",
     "damping_compensation",
     "deadbeat_wall",

@@ -159,7 +159,7 @@ def wall_law(
     """
     choice("law", name, LAWS)
     if name in SPRING_LAWS:
-        return WallLaw(name, wall(name, unilateral, clamp)(k=K), paddle)
+        return WallLaw(name, wall(SPRING_LAWS[name], unilateral, clamp)(k=K), paddle)
     if name == "damped":
         added = K * paddle.T / 2
         plain = wall("zoh", unilateral, clamp)

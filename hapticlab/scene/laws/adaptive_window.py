@@ -63,7 +63,11 @@ def window_velocity(*, band: Term, most: int = 8, fit: str = "end", name: str = 
         cheaper = (window_velocity(band=band, most=most, name=name), *cheaper)
     slope, eom = (_end_fit if fit == "end" else _best_fit)(band, most, name)
     v = signal(name, unit="m/s", instead=cheaper)(n)
-    return VelocityEstimate(v, (*eom, sp.Eq(v, slope / T)), f"adaptive window of {most}, {fit} fit", cheaper)
+    return VelocityEstimate(
+        v, (*eom, sp.Eq(v, slope / T)), f"adaptive window of {most}, {fit} fit", cheaper,
+        source="Janabi-Sharifi, Hayward and Chen, IEEE Trans. Control Systems Technology 8 (2000) 1003-1009",
+        confused_with="a moving average, whose window is as long at rest as in a turn; its lag is half its window, T/2 at least",
+    )  # fmt: skip
 
 
 def _end_fit(band, most, name):

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from ...base.card import card
 from ...errors import SceneError
 from ..notation.amount import amount, number_of
 from ..notation.parameters import T
@@ -46,6 +47,12 @@ class VelocityEstimate:
     name : str
     cheaper : tuple of VelocityEstimate
         Estimates of less work, dearest first, for a board that has no time for this one.
+    lag : sympy expression [s], optional
+        How late it is in slow motion; None where that changes.
+    source : str
+        Where it is from.
+    confused_with : str
+        What it is taken for, and how that differs.
 
     Examples
     --------
@@ -60,6 +67,9 @@ class VelocityEstimate:
     name: str = "velocity"
     cheaper: tuple[VelocityEstimate, ...] = ()
     _transfer: tuple[Any, ...] = field(default=(), repr=False)
+    lag: sp.Expr | None = None
+    source: str = ""
+    confused_with: str = ""
 
     @property
     def is_linear(self) -> bool:
@@ -92,8 +102,9 @@ class VelocityEstimate:
         return [float(c) for c in over], [float(c) for c in under]
 
     def __str__(self) -> str:
-        lines = [f"{self.name}: v = {self.velocity}"]
-        return "\n".join([*lines, *(f"  {e.lhs} = {e.rhs}" for e in self.eom)])
+        lines = [f"{self.name}: v = {self.velocity}", *(f"  {e.lhs} = {e.rhs}" for e in self.eom)]
+        lag = "" if self.lag is None else f"{self.lag}"
+        return card("\n".join(lines), {"lag": lag, "source": self.source, "not to be confused with": self.confused_with})
 
 
 def backward_velocity() -> VelocityEstimate:
@@ -104,8 +115,14 @@ def backward_velocity() -> VelocityEstimate:
     >>> import hapticlab as hl
     >>> print(hl.velocity.backward())
     backward difference: v = (x(n) - x(n - 1))/T
+      lag                      T/2
+      source                   chapter 23, Eq. (23.4)
+      not to be confused with  the wall law 'backward_difference', a spring that uses this velocity
     """
-    return VelocityEstimate(_difference(), (), "backward difference", (), ((1 / T, -1 / T), (1,)))
+    return VelocityEstimate(
+        _difference(), (), "backward difference", (), ((1 / T, -1 / T), (1,)), T / 2, "chapter 23, Eq. (23.4)",
+        "the wall law 'backward_difference', a spring that uses this velocity",
+    )  # fmt: skip
 
 
 def _difference():
@@ -135,10 +152,16 @@ def filtered_velocity(*, tau: Term, name: str = "v_filtered") -> VelocityEstimat
     >>> print(hl.velocity.filtered(tau="4 ms"))
     filtered difference: v = v_filtered(n)
       v_filtered(n) = (v_filtered(n - 1)*(0.004 s) + x(n) - x(n - 1))/(T + (0.004 s))
+      lag                      T/2 + (0.004 s)
+      source                   Brown (1995)
+      not to be confused with  hl.laws.force_filter, which filters the force of the spring as well
     """
     tau = amount(tau, "s", "tau", "a filter", least=0)
     cheaper = (backward_velocity(),)
     v = signal(name, unit="m/s", instead=cheaper)
     step = sp.Eq(v(n), (tau * v(n - 1) + x(n) - x(n - 1)) / (tau + T))
     transfer = (1 / (tau + T), -1 / (tau + T)), (1, -tau / (tau + T))
-    return VelocityEstimate(v(n), (step,), "filtered difference", cheaper, transfer)
+    return VelocityEstimate(
+        v(n), (step,), "filtered difference", cheaper, transfer, T / 2 + tau, "Brown (1995)",
+        "hl.laws.force_filter, which filters the force of the spring as well",
+    )  # fmt: skip

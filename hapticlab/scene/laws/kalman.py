@@ -67,7 +67,11 @@ def kalman_velocity(
     a, b = _steady_gains(_lead(index))
     transfer = ((b / T, -b / T), (1, a + b - 2, 1 - a)) if steady else ()
     title = "Kalman filter" + ("" if steady else " from the start")
-    return VelocityEstimate(rate(n), eom, title, cheaper, transfer)
+    return VelocityEstimate(
+        rate(n), eom, title, cheaper, transfer, T * (a / b - sp.Rational(1, 2)) if steady else None,
+        "Kalata, IEEE Trans. Aerospace and Electronic Systems 20 (1984) 174-182",
+        "an observer with a model of the paddle, as in hl.laws.predictive_wall: this one knows no mass and no force",
+    )  # fmt: skip
 
 
 def _lead(index):
