@@ -8,11 +8,12 @@ import hapticlab as hl
 from hapticlab.errors import AnalysisError
 from hapticlab.limits.limit import MOST_PERIODS, Limit, whole_and_fraction
 from hapticlab.limits.passivity import passivity_limit
-from hapticlab.scene.laws.taps import TAPS, LawName
+from hapticlab.scene.laws.taps import TAPS, LawName, SpringLaw
 
 
 def test_the_type_of_a_law_has_the_names_of_the_laws():
-    assert set(get_args(LawName)) == set(TAPS)
+    names, record = get_args(LawName)
+    assert set(get_args(names)) == set(TAPS) and record is SpringLaw
 
 
 def test_number_words_and_units():
