@@ -3,6 +3,7 @@
 from .device.hand.hand_presets import hand_presets
 from .device.hand.intents import MinimumJerk, Tremor
 from .device.hand.reacting_hand import Reacting
+from .device.hand.rehearsal import Rehearsal
 from .experiments.displays import compare_displays
 from .experiments.fitts import fitts
 from .experiments.forced_choice import forced_choice
@@ -30,6 +31,7 @@ __all__ = [
     "Psi",
     "Psychometric",
     "Reacting",
+    "Rehearsal",
     "SimulatedObserver",
     "Task",
     "Tremor",

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.arguments import instance
 from ..base.telemetry import Telemetry
 from ..compiler.tick.compile_scene import compile
 from ..device.board.serial_paddle import SerialPaddle
-from ..device.hand.intents import MinimumJerk
+from ..device.hand.rehearsal import REHEARSAL, Rehearsal
 from ..device.simulated.stepping import with_grip
 from ..errors import EngineMissingError, PaddleError
 from ..scene.scene import check_scene
@@ -22,17 +23,13 @@ from .plain_view import front as plain
 from .session import Session
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from ..device.paddle import Paddle
     from ..scene.scene import Scene
 
 #: scene time over the clock's time
 SPEEDS = (1e-3, 10.0)
-#: how far the rehearsal goes to either side [m]
-REACH = 0.015
-#: of a rehearsal [s]
-DURATIONS = (0.01, 600.0)
 RECORDED, REHEARSED = "recorded in the view", "rehearsal: nobody recorded here"
 
 
@@ -44,8 +41,7 @@ def live(
     speed: float = 1.0,
     picture: Any = None,
     show_force: bool = True,
-    rehearsal: Callable[..., Any] | None = None,
-    duration: float = 4.0,
+    rehearsal: Rehearsal = REHEARSAL,
     **compile_options: Any,
 ) -> LiveView:
     """Show a paddle and a scene in a notebook: it moves, can be pushed, and every parameter has a slider.
@@ -70,11 +66,8 @@ def live(
         Instead of the scene's own picture: see :func:`~hapticlab.widgets.picture.moving_picture`.
     show_force : bool
         False shows neither force nor energy: for experiments whose answer they would tell.
-    rehearsal : callable, optional
-        An intent of an array of times [s], in metres, for ``view.log`` where nobody recorded: by default a push from -15 mm
-        to 15 mm and back.
-    duration : float
-        Of the rehearsal [s].
+    rehearsal : Rehearsal
+        What the hand does for ``view.log`` where nobody recorded: ``hl.people.Rehearsal(intent=, duration=)``.
     **compile_options
         Of hapticlab.compile: method, substeps, hold, dtype, live.
 
@@ -91,7 +84,7 @@ def live(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("pinch"))
-    >>> view = hl.live(paddle, hl.wall()(k=300, x_o=0.01), duration=1.0)
+    >>> view = hl.live(paddle, hl.wall()(k=300, x_o=0.01), rehearsal=hl.people.Rehearsal(duration=1.0))
     >>> view.set(k=600)
     >>> print(view)
     live view of zoh wall: not on view; B = 0 N*s/m, k = 600 N/m, x_o = 0.01 m
@@ -104,20 +97,19 @@ def live(
     speed = _between("speed", speed, low, high, "", "1 is real time, 0.1 slow motion.")
     if speed != 1 and isinstance(paddle, SerialPaddle):
         raise PaddleError(f"speed = {speed:g}; a board runs in real time: leave speed out, or take a SimulatedPaddle.")
-    duration = _between("duration", duration, *DURATIONS, " s", "It is that of the rehearsal.")
-    _check_rehearsal(rehearsal)
+    instance("rehearsal", rehearsal, Rehearsal, "hl.people.Rehearsal(intent=..., duration=...)", error=PaddleError)
     _check_options(compile_options)
     looks = {"sliders": sliders, "speed": speed, "picture": picture, "show_force": show_force}
     session = Session(paddle, scene, **looks, **compile_options)
-    return LiveView(session, rehearsal, duration, compile_options)
+    return LiveView(session, rehearsal, compile_options)
 
 
 class LiveView:
     """A paddle and a scene on view; made by :func:`live`."""
 
-    def __init__(self, session, rehearsal, duration, options):
+    def __init__(self, session, rehearsal, options):
         self._session, self._options = session, options
-        self._rehearsal, self._duration = rehearsal or _push(duration), duration
+        self._rehearsal, self._duration = rehearsal.path(), rehearsal.duration
         self._front, self._rehearsed = None, (None, None)
         # whoever else keeps the session, its thread or a widget, it ends with this view
         weakref.finalize(self, session.close)
@@ -233,33 +225,11 @@ def _between(name, value, low, high, unit, why):
     return number
 
 
-def _check_rehearsal(rehearsal):
-    if rehearsal is None:
-        return
-    try:
-        at_zero = np.asarray(rehearsal(np.zeros(1)), float)
-    except Exception as problem:
-        raise PaddleError(
-            f"rehearsal = {rehearsal!r}; needs an intent: a function of an array of times [s] that returns places [m], as "
-            f"hl.people.MinimumJerk(end=0.02, duration=1.0) is. At 0 s: {type(problem).__name__}: {problem}"
-        ) from problem
-    if at_zero.size != 1 or not np.isfinite(at_zero).all():
-        raise PaddleError(f"rehearsal at 0 s is {at_zero}; needs one finite place [m] for each time")
-
-
 def _check_options(options):
     allowed = [name for name in inspect.signature(compile).parameters if name not in ("scene", "T", "velocity")]
     for name in options.keys() - {"engine"}:
         if name not in allowed:
             raise PaddleError(f"{name} is no option of a live view, and none of hapticlab.compile: {', '.join(allowed)}")
-
-
-def _push(duration):
-    """Return the usual rehearsal: from 0 to -15 mm, to 15 mm, a rest, and back."""
-    out, to, back = 0.15 * duration, 0.35 * duration, 0.35 * duration
-    begin = MinimumJerk(end=-REACH, duration=out)
-    push = MinimumJerk(end=2 * REACH, duration=to, begin=out)
-    return begin + push + MinimumJerk(end=-2 * REACH, duration=back, begin=duration - back)
 
 
 def _front(session):

@@ -536,7 +536,7 @@ def test_many_threads_may_say_what_they_like():
 
 
 def test_what_nobody_recorded_is_rehearsed_at_the_sliders_values():
-    view = hl.live(PADDLE, WALL, duration=1.0)
+    view = hl.live(PADDLE, WALL, rehearsal=hl.people.Rehearsal(duration=1.0))
     view.set(k=450)
     log = view.log
     assert view.log_from == "rehearsal: nobody recorded here"
@@ -552,12 +552,12 @@ def test_what_nobody_recorded_is_rehearsed_at_the_sliders_values():
 
 
 def test_a_rehearsal_of_ones_own_begins_where_it_begins():
-    view = hl.live(PADDLE, WALL, rehearsal=lambda t: 0.012 + 0 * t, duration=0.1)
+    view = hl.live(PADDLE, WALL, rehearsal=hl.people.Rehearsal(intent=lambda t: 0.012 + 0 * t, duration=0.1))
     assert view.log.x[0] == np.float32(0.012)
 
 
 def test_a_record_comes_before_a_rehearsal():
-    view = hl.live(PADDLE, WALL, duration=0.1)
+    view = hl.live(PADDLE, WALL, rehearsal=hl.people.Rehearsal(duration=0.1))
     view.record()
     wait_for_frames(view._session, 4)
     view.close()
@@ -579,10 +579,7 @@ def test_without_llvmlite_it_runs_too(monkeypatch):
     [
         ({"speed": 0}, "0.1 slow motion"),
         ({"speed": "a"}, "speed = 'a'; a live view needs a number"),
-        ({"rehearsal": 5}, "needs an intent"),
-        ({"rehearsal": lambda t: "a"}, "needs an intent"),
-        ({"rehearsal": lambda t: np.nan * t}, "one finite place"),
-        ({"duration": 1e9}, "0.01 to 600 s"),
+        ({"rehearsal": lambda t: 0 * t}, "needs hl.people.Rehearsal"),
         ({"foo": 1}, "foo is no option of a live view, and none of hapticlab.compile: method, "),
         ({"speed": 100}, "0.001 to 10"),
         ({"sliders": {"q": (0, 1)}}, "q is no live parameter"),
@@ -590,12 +587,26 @@ def test_without_llvmlite_it_runs_too(monkeypatch):
         ({"sliders": {"k": (-5, 1)}}, "not in its range"),
         ({"sliders": ["k"]}, "needs a dict"),
         ({"sliders": {"k": 3}}, "two numbers"),
-        ({"duration": 0}, "duration = 0"),
     ],
 )
 def test_what_makes_no_sense_is_refused_at_once(given, word):
     with pytest.raises(hl.HapticlabError, match=word):
         hl.live(PADDLE, WALL, **given)
+
+
+@pytest.mark.parametrize(
+    ("given", "word"),
+    [
+        ({"intent": 5}, "needs an intent"),
+        ({"intent": lambda t: "a"}, "needs an intent"),
+        ({"intent": lambda t: np.nan * t}, "one finite place"),
+        ({"duration": 1e9}, "duration >= 0.01 and <= 600"),
+        ({"duration": 0}, "duration = 0"),
+    ],
+)
+def test_what_nobody_can_rehearse_is_refused(given, word):
+    with pytest.raises(hl.errors.PaddleError, match=word):
+        hl.people.Rehearsal(**given)
 
 
 def test_a_scene_without_values_and_a_stranger_are_refused():
