@@ -7,6 +7,8 @@
 200.0
 """
 
+import builtins
+
 import lazy_loader
 
 # Each public name is loaded on first use, as Scientific Python's SPEC 1 describes: a command line or a notebook server
@@ -28,3 +30,8 @@ def __getattr__(name):
 
 
 __version__ = "0.2.0"
+
+if hasattr(builtins, "get_ipython"):  # hl.<tab> in a notebook
+    from .base.completion import complete_in
+
+    complete_in(builtins.get_ipython())

@@ -1,4 +1,14 @@
-"""Design for one paddle: couplers, admittance control, damping compensation, dead-beat and digital gains, and laws compared."""
+"""Design for one paddle: couplers, admittance control, damping compensation, gains, and laws compared.
+
+The stiffest virtual coupler that stays stable with every passive hand and environment:
+
+>>> import hapticlab as hl
+>>> paddle = hl.SimulatedPaddle(m=0.05, b=0.2, T=1e-3)
+>>> round(hl.design.coupler(paddle, b_c=0.05).k_c)      # 2 (b - b_c)/T
+300
+
+Next: ``hl.design.compare_laws`` runs several laws on the same entries, ``hl.design.law_limits`` finds the limit of each.
+"""
 
 from .analysis.walls.compare_laws import compare_laws
 from .analysis.walls.law_limits import law_limits

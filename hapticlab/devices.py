@@ -1,4 +1,14 @@
-"""Paddles: simulated, on a board, and the profiles that hold their constants."""
+"""Paddles: simulated, on a board, and the profiles that hold their constants.
+
+A profile is a set of published or measured constants, and says which:
+
+>>> import hapticlab as hl
+>>> paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
+>>> paddle.m, hl.devices.profile("hapkit").nominal
+(0.03, True)
+
+Next: ``hl.connect()`` opens a board, ``hl.doctor()`` checks it, ``hl.identify.paddle`` measures its constants.
+"""
 
 from .base.telemetry import PaddleProfile
 from .device.board.serial_paddle import SerialPaddle

@@ -1,4 +1,11 @@
-"""The exception tree. Every message says what was given, what is needed, and what to do.
+"""The exceptions of hapticlab. Every message says what was given, what is needed, and what to do.
+
+>>> import hapticlab as hl
+>>> try:
+...     hl.wall()(k="300 kg")
+... except hl.HapticlabError as error:
+...     print(type(error).__name__)
+UnitsError
 
 ::
 

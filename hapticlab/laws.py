@@ -1,8 +1,15 @@
-"""Force laws: walls, dampers and couplers as scenes, what filters and guards them, and walls designed on a model of the paddle.
+"""Force laws: walls, dampers and couplers, and laws that filter, guard or predict them.
 
-Each returns a Scene with parameters to bind: ``hl.laws.virtual_coupler(z, K="300 N/m", b="0.5 N*s/m")``. ``hl.wall`` is the
-chapter's wall, which stands in ``hl`` itself as well. The chapter's springs are records: ``law="ellis"`` is short for
-``law=hl.laws.EllisSpring``, which prints its equation, its cost and what it is confused with.
+Most return a Scene with parameters to bind, which runs on every paddle. Here 2 N push against 2.5 N s/m:
+
+>>> import hapticlab as hl
+>>> paddle = hl.SimulatedPaddle(m=0.05, b=0.5, T=1e-3, hand=hl.Hand(push=2.0))
+>>> log = paddle.run(hl.laws.virtual_damper()(B=2.0), duration=1)
+>>> round(float(log.v[-1]), 3)
+0.8
+
+``hl.wall`` is the wall of the chapter. Its springs are records: ``law="ellis"`` is short for ``law=hl.laws.EllisSpring``, which
+prints its equation, its cost and what it is confused with. Next: ``hl.velocity``, ``hl.design.compare_laws``.
 """
 
 from .limits.linear_law import LinearLaw

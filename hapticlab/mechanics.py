@@ -1,4 +1,14 @@
-"""Mechanics: equations of motion from energies, what a scene requires, its picture, and a smaller model that feels the same."""
+"""Mechanics: equations of motion from energies, what a scene requires, its picture, and smaller models.
+
+Give the kinetic energy minus the potential energy; Lagrange's equations follow:
+
+>>> import hapticlab as hl
+>>> z, (m, k) = hl.coordinate("z", unit="m"), hl.parameters("m k", units="kg N/m")
+>>> print(hl.mechanics.lagrange(m * z.diff(hl.t) ** 2 / 2 - k * z**2 / 2).equations[0])
+Eq(m*Derivative(z(t), (t, 2)), -k*z(t))
+
+Next: ``hl.library`` for ready scenes, ``hl.contact`` for bodies that touch, ``hl.methods`` for the integrators.
+"""
 
 from .analysis.impedance.reduction import reduction
 from .analysis.pictures.pictures import picture

@@ -1,4 +1,15 @@
-"""Passivity of a law on a sampled paddle: margins, indices, ledgers, Nyquist's plot, and ports with bodies behind them."""
+"""Passivity of a law on a sampled paddle: margins, indices, ledgers, Nyquist's plot, and ports of whole scenes.
+
+A passive paddle chatters in no passive hand. ``port`` asks how much damping a compiled scene needs from the device:
+
+>>> import hapticlab as hl
+>>> paddle = hl.SimulatedPaddle(m=0.05, b=0.15, T=1e-3)
+>>> port = hl.passivity.port(paddle, hl.wall()(k=200, x_o="10 mm"))
+>>> round(port.b_req, 3), port.passive          # k T/2, Eq. (23.10)
+(0.1, True)
+
+Next: ``hl.passivity_limit`` for the stiffest passive wall, ``hl.bounds.table`` for all bounds, ``hl.stability``.
+"""
 
 from .analysis.impedance.impedance import impedance
 from .analysis.records.passivity_trace import passivity_trace as trace

@@ -1,4 +1,16 @@
-"""People: how a hand intends and reacts, and experiments on what it feels, reaches and follows."""
+"""People: how a hand moves and reacts, and experiments on what it feels, reaches and follows.
+
+A hand takes a movement as its ``intent``. Here it reaches 20 mm in the way that people do:
+
+>>> import hapticlab as hl
+>>> reach = hl.people.MinimumJerk(end=0.02, duration=0.4)
+>>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("grip", intent=reach))
+>>> log = paddle.run(hl.wall()(k=0), duration=1)
+>>> round(1000 * float(log.x[-1]))
+20
+
+``print(hl.people.hand_presets())`` lists the nominal hands. Next: ``hl.people.forced_choice`` asks what a person feels.
+"""
 
 from .device.hand.hand_presets import hand_presets
 from .device.hand.intents import MinimumJerk, Tremor

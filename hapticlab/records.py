@@ -1,4 +1,17 @@
-"""Records of a run: telemetry, its energy and passivity, and what else it would have shown."""
+"""Records of a run: telemetry, its energy and passivity, and what else it would have shown.
+
+``paddle.run`` returns a Telemetry, whose columns are arrays in SI units:
+
+>>> import hapticlab as hl
+>>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
+>>> log = paddle.run(hl.wall()(k=500), duration=0.2, v=0.2)
+>>> log.columns, len(log)
+(('t', 'x', 'v', 'F'), 200)
+>>> print(hl.records.staircase(log))
+1: 2.05 mm deep: generated 0.1672 mJ, rebound 1.048 of the entry speed
+
+Next: ``hl.plot(log)``, ``hl.energy(log)``, ``hl.chatter(log)``; ``log.save`` and ``Telemetry.load`` keep a record.
+"""
 
 from .analysis.programs.replay import replay
 from .analysis.records.energy_books import balance, energy_books

@@ -1,4 +1,14 @@
-"""Stability of a wall, a damper or an integrator on a sampled paddle: poles, root loci, maps and longest steps."""
+"""Stability of a wall, a damper or an integrator on one paddle: poles, root loci, maps and longest steps.
+
+Stability is stated for this handle, this hand and this delay; passivity holds for every passive hand.
+
+>>> import hapticlab as hl
+>>> locus = hl.stability.root_locus(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3))
+>>> round(locus.limit.K, 2), round(locus.limit.frequency, 2)        # N/m, and the Hz at which it oscillates there
+(200.07, 10.06)
+
+Next: ``hl.stability.wall_map`` simulates what a map of stiffness and damping does, ``hl.measure.largest_stiffness``.
+"""
 
 from .analysis.stability.step_limit import step_limit
 from .analysis.walls.wall_map import wall_map

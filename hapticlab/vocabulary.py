@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import importlib
 import inspect
 import sys
@@ -31,9 +32,14 @@ class Page(ModuleType):
         raise AttributeError(f"{title} has no {name}; {_cure(name)}")
 
     def __repr__(self) -> str:
+        return "\n".join([str(self.__doc__).strip(), "", *_columns(self._rows())])
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(str(self.__doc__).strip())}</pre>{_table(self._rows())}"
+
+    def _rows(self) -> dict[str, str]:
         title = self.__name__.replace("hapticlab", "hl", 1)
-        rows = {f"{title}.{name}": _first_line(getattr(self, name)) for name in self.__all__}
-        return "\n".join([str(self.__doc__).strip(), "", *_columns(rows)])
+        return {f"{title}.{name}": _first_line(getattr(self, name)) for name in self.__all__}
 
 
 def page(name: str) -> None:
@@ -46,6 +52,9 @@ class Found(dict[str, str]):
 
     def __repr__(self) -> str:
         return "\n".join(_columns(self)) or "nothing found; print(hl.laws) and the other pages list what there is"
+
+    def _repr_html_(self) -> str:
+        return _table(self) if self else f"<pre>{self!r}</pre>"
 
 
 def find(words: str = "") -> Found:
@@ -91,10 +100,21 @@ def _columns(rows):
     return [f"{name:<{width}}  {line}" for name, line in rows.items()]
 
 
+def _table(rows):
+    cells = ((html.escape(name), html.escape(line)) for name, line in rows.items())
+    left = 'style="text-align: left"'
+    lines = (f"<tr><td {left}><code>{name}</code></td><td {left}>{line}</td></tr>" for name, line in cells)
+    return f"<table>{''.join(lines)}</table>"
+
+
 def _cure(wrong):
     """The public names that a wrong one may mean, in words."""
+    known = public()
+    words = {path: (path.rpartition(".")[2].lower(), getattr(value, "__name__", "")) for path, value in known.items()}
+    if exact := [path for path, names in words.items() if wrong.lower() in names]:
+        return f"did you mean {' or '.join(exact)}?"
     asked = set(wrong.lower().split("_"))
-    paths = list(public())
+    paths = list(known)
     holding = [path for path in paths if asked <= set(path.lower().replace(".", "_").split("_")[1:])]
     ends = {path.rpartition(".")[2].lower(): path for path in paths}
     near = [ends[end] for end in get_close_matches(wrong.lower(), ends, 2, 0.75)]
