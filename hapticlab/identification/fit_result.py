@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.drawing import COLD, FRAME, STYLES, house_style, new_figure
 from ..errors import AnalysisError
-from .sensor import DITHERED
+from .sensor import DITHERED, explains, neighbours
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 
 #: share of the largest from which on a constant is part of what a record leaves open
 PART = 0.05
-#: correlation of neighbouring residuals, in its standard errors, from which something is left unexplained; and residuals
-#: over a count without dither, whose neighbours correlate by their rounding: that alone leaves 0.29, with noise 0.35
-UNEXPLAINED, ROUNDED = 5.0, 0.45
+#: standard errors beyond a bound from which the motion is another than the model's; any, where it is not explained
+BEYOND = 4.0
 
 
 @dataclass(frozen=True)
@@ -61,13 +60,15 @@ class Found:
 
     An identification has a class of its own below this one: ``about``, ``lacking`` and ``constants`` are what it adds.
 
-    The intervals cover as often as they say, and are as narrow as any can be, where the fit converged, the model explains
-    the record, and noise dithers the counts (0.4 count of it and more was tried). The text says so where that is not so.
+    The intervals cover as often as they say where the fit converged and the model explains the record, and are as narrow as
+    any can be where noise dithers the counts (0.3 count of it and more was tried). The text says so where that is not so.
 
     Attributes
     ----------
     about, lacking : str
         Whose constants they are, and what the model leaves out.
+    above, bounded : tuple of str
+        The constants that have to be found above zero, and those whose interval ends there at least.
     constants : dict of str to (str, str)
         Constant -> what it is called, and its unit.
     estimates : dict of str to Estimate
@@ -88,6 +89,8 @@ class Found:
 
     about: ClassVar[str]
     lacking: ClassVar[str]
+    above: ClassVar[tuple[str, ...]]
+    bounded: ClassVar[tuple[str, ...]]
     constants: ClassVar[dict[str, tuple[str, str]]]
     estimates: dict[str, Estimate]
     confidence: float
@@ -113,9 +116,8 @@ class Found:
     @property
     def explained(self) -> bool:
         """Whether what is left looks like noise; without dither, like counting: less than a count does not show."""
-        if not self.dithered:
-            return bool(np.sqrt(np.mean((self.measured - self.fitted) ** 2)) < ROUNDED * self.quantum)
-        return bool(abs(self.correlation) * np.sqrt(len(self.measured)) < UNEXPLAINED)
+        counting = 0.0 if self.dithered else self.quantum
+        return bool(explains((self.measured - self.fitted)[:, None], self.measured[:, None], counting)[0])
 
     def __str__(self) -> str:
         lines = [f"{self.about} identified from {len(self.measured)} samples, {self.confidence:.0%} confidence:"]
@@ -136,8 +138,8 @@ class Found:
             )
         if not self.dithered:
             lines.append(
-                f"  NOT DITHERED: noise is below {DITHERED:g} count, so samples share their rounding; the intervals are rough, "
-                "most of them too wide (up to 2.5 times what is possible). Move the handle over more counts"
+                f"  NOT DITHERED: noise is below {DITHERED:g} count, so samples share their rounding; the intervals come of "
+                "counting the fitted motion anew. Moved over more counts, the handle tells more"
             )
         return "\n".join(lines)
 
@@ -164,22 +166,36 @@ def told(made, y, fitted, names, *, quantum, T, confidence, beside=""):
     Raises
     ------
     AnalysisError
-        If the records leave a combination of the constants open.
+        If the records leave a combination of the constants open, or ask for a constant below its bound.
     """
     left = np.abs(fitted.blind[0][: len(names)])
     if left.any():
-        open_ = ", ".join(name for name, part in zip(names, left, strict=True) if part > PART * left.max())
+        _open([name for name, part in zip(names, left, strict=True) if part > PART * left.max()], beside)
+    half, values = fitted.half_width(confidence)[:, 0], fitted.values[: len(names), 0]
+    if vague := [name for name, value, width in zip(names, values, half, strict=False) if name in made.above and width >= value]:
+        _open(vague, beside)
+    limit = BEYOND if explains(fitted.residuals, y[:, None], quantum)[0] else 0.0
+    if past := [name for name, by in zip(names, fitted.beyond[:, 0], strict=False) if by > limit]:
         raise AnalysisError(
-            f"identify: these records do not tell {open_} from each other, or at all. Seek less (known={{...}}), or move the "
-            f"handle otherwise: both ways, faster and slower, with a force that changes{beside}"
+            f"identify: the motion asks for a negative {' and '.join(past)}, so the model lacks something ({made.lacking}), "
+            "or a force has the wrong sign. Look at the record, and record a kick, steps and a chirp with a free handle"
         )
-    half = fitted.half_width(confidence)[:, 0]
+    lows = [0.0 if name in made.bounded else -np.inf for name in names]
     estimates = {
-        name: Estimate(name, float(value), float(value - width), float(value + width), made.constants[name][1])
-        for name, value, width in zip(names, fitted.values[: len(names), 0], half, strict=False)
+        name: Estimate(name, float(value), float(max(value - width, low)), float(value + width), made.constants[name][1])
+        for name, value, width, low in zip(names, values, half, lows, strict=False)
     }
-    rest, counted = fitted.residuals[:, 0], bool(fitted.counted[0])
-    # neighbours that share a count without dither share its rounding: they say nothing about the model
-    pairs = np.diff(y) != 0 if quantum and not counted else np.ones(len(y) - 1, bool)
-    lag = float(np.sum((rest[1:] * rest[:-1])[pairs]) / max(np.sum(rest[1:][pairs] ** 2), 1e-300))
-    return made(estimates, confidence, float(fitted.sigma[0]), counted, quantum, bool(fitted.converged[0]), lag, y, y - rest, T)
+    rest, counted = fitted.residuals, bool(fitted.counted[0])
+    lag = float(neighbours(rest, y[:, None], 0.0 if counted else quantum)[0])
+    return made(
+        estimates, confidence, float(fitted.sigma[0]), counted, quantum, bool(fitted.converged[0]), lag, y, y - rest[:, 0], T
+    )  # fmt: skip
+
+
+def _open(names, beside):
+    """Refuse constants that the records leave open."""
+    raise AnalysisError(
+        f"identify: these records do not tell {', '.join(names)} from each other, or at all. Record a kick, steps and a chirp, "
+        "with forces of several sizes (identify_paddle does); or move the handle otherwise: both ways, faster and slower; or "
+        f"seek less (known={{...}}){beside}"
+    )

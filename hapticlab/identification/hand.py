@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 WINDOW = 0.06
 #: s of rest before a push that a window takes in
 BEFORE = 0.02
+#: what is sought, and parts of its first values that a fit may begin with
+SOUGHT = ("m", "b", "k")
+PARTS = ((1.0, 1.0, 1.0), (0.3, 1.0, 1.0), (3.0, 0.3, 3.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,8 @@ class HandFit(Found):
 
     about = "hand"
     lacking = "a reflex within the window, tremor, a grip that changes or does not follow"
+    above = ()
+    bounded = ("m", "b", "k")
     constants: ClassVar = {"m": ("mass", "kg"), "b": ("viscous damping", "N s/m"), "k": ("stiffness", "N/m")}
 
     def hand(self, **changes: Any) -> Hand:
@@ -109,8 +114,15 @@ def identify_hand(
     quantum = 0.0 if counts_per_metre is None else 1 / abs(counts_per_metre)
     y = np.concatenate([source.x[a:b] for a, b in windows])
     start, scales = _start(source, windows, own)
-    fitted = fit(_motion(source, windows, own), y[:, None], start[:, None, None], scales[:, None], quantum=quantum)
-    return told(HandFit, y, fitted, ("m", "b", "k"), quantum=quantum, T=source.T, confidence=confidence)
+    low = np.where(np.arange(len(start)) < len(SOUGHT), 0.0, -np.inf)
+    starts = (_scaled(start, parts) for parts in PARTS)
+    fitted = fit(_motion(source, windows, own), y[:, None], starts, lambda p: scales[:, None], quantum=quantum, low=low)
+    return told(HandFit, y, fitted, SOUGHT, quantum=quantum, T=source.T, confidence=confidence)
+
+
+def _scaled(start, parts):
+    """A start with parts of its m, b and k, shape (P, 1, 1)."""
+    return (start * np.resize([*parts, *np.ones(len(start))], len(start)))[:, None, None]
 
 
 def _windows(log, window):

@@ -176,6 +176,7 @@ def identify(
     counts_per_metre: float | None = None,
     known: Mapping[str, float] | None = None,
     confidence: float = 0.95,
+    near: PaddleFit | None = None,
 ) -> PaddleFit:
     """A paddle's constants from records of its free handle, all of them together, by maximum likelihood.
 
@@ -194,6 +195,8 @@ def identify(
     known : dict of str to float, optional
         Constants that are not sought.
     confidence : float
+    near : PaddleFit, optional
+        An earlier fit of the same paddle: the search begins there, and ends there if that explains the records.
 
     Returns
     -------
@@ -214,7 +217,7 @@ def identify(
         raise AnalysisError(FORCE_CONSTANT)
     sought = tuple(name for name in CONSTANTS if name not in known and (force_constant or name != "scale"))
     problem = Problem(tuple(one.trace() for one in given), sought, known, _quantum(counts_per_metre))
-    return _found(problem, sought, confidence)
+    return _found(problem, sought, confidence, near and {name: found.value for name, found in near.estimates.items()})
 
 
 def _quantum(counts_per_metre):
@@ -225,7 +228,7 @@ def _quantum(counts_per_metre):
     return 1 / abs(counts_per_metre)
 
 
-def _found(problem, names, confidence):
+def _found(problem, names, confidence, near=None):
     """Solve a problem of one lane and name what was found."""
     measured = np.concatenate([trace.y[:, 0] for trace in problem.traces])
     if np.ptp(measured) <= MOVED * problem.quantum:
@@ -235,6 +238,6 @@ def _found(problem, names, confidence):
         )
     beside = f". Also, {FORCE_CONSTANT}" if "scale" in names else ""
     return told(
-        PaddleFit, measured, problem.solve(), names,
+        PaddleFit, measured, problem.solve(near), names,
         quantum=problem.quantum, T=problem.traces[0].T, confidence=confidence, beside=beside,
     )  # fmt: skip

@@ -5,8 +5,12 @@ m x'' = push - scale F - b x' - coulomb sign(x'), stuck at rest while |push - sc
 zero is a logarithm, and nothing is approximated.
 """
 
+import math
+
 import numpy as np
 
+#: motions, at most, that are run one by one: a step of arrays takes as long as so many of numbers
+FEW = 30
 #: b h/m below which its functions are series; the first term left out is below 1e-15
 SERIES = 2e-3
 
@@ -31,6 +35,9 @@ def positions(F, T, *, m, b, coulomb, delay, scale, push, x0, v0):
     [0.0, 0.04, 0.06, 0.0625]
     """
     F = np.asarray(F, float)
+    given = np.broadcast_arrays(*(np.asarray(a, float) for a in (m, b, coulomb, delay, scale, push, v0, x0)))
+    if F.ndim == 1 and given[0].size <= FEW:
+        return _one_by_one(F, T, given)
     shape = np.broadcast_shapes(*map(np.shape, (m, b, coulomb, delay, scale, push, x0, v0)), F.shape[1:])
     x, v, late = (np.broadcast_to(np.asarray(a, float), shape) for a in (x0, v0, delay))
     whole = np.floor(late / T).astype(int)
@@ -47,6 +54,66 @@ def positions(F, T, *, m, b, coulomb, delay, scale, push, x0, v0):
             x, v = _glide(x, v, (push - scale * felt) / m, beta, grip, duration, phi)
         found[n + 1] = x
     return found
+
+
+def _one_by_one(F, T, given):
+    """:func:`positions` of few parameter sets; those that differ in where they begin move alike."""
+    runs, found = {}, np.empty((len(F), given[0].size))
+    for k, (*constants, x0) in enumerate(zip(*(a.ravel().tolist() for a in given), strict=True)):
+        one = tuple(constants)
+        if one not in runs:
+            runs[one] = _moved(F, T, *one) if all(map(math.isfinite, one)) else np.nan
+        found[:, k] = x0 + runs[one]
+    return found.reshape(len(F), *given[0].shape)
+
+
+def _moved(F, T, m, b, coulomb, delay, scale, push, v):
+    """How far one handle has moved at the samples [m]."""
+    whole = math.floor(delay / T)
+    beta, grip, first = b / m, coulomb / m, delay - whole * T
+    pulls, parts = [], []
+    for h, lag in ((first, whole + 1), (T - first, whole)):
+        at = np.arange(len(F) - 1) - lag
+        pulls.append(((push - scale * F[np.clip(at, 0, len(F) - 1)] * (at >= 0)) / m).tolist())
+        parts.append((h, *_phi_of(beta, h)))
+    x, found = 0.0, [0.0]
+    for pair in zip(*pulls, strict=True):
+        for pull, (h, phi1, phi2) in zip(pair, parts, strict=True):
+            heading = v or (pull if abs(pull) > grip else 0.0)
+            if heading:
+                net = pull - math.copysign(grip, heading)
+                end = v + (net - beta * v) * phi1
+                if end * v > 0 or v * net >= 0:
+                    x, v = x + v * phi1 + net * phi2, end
+                else:
+                    way, v = _turned(v, net, pull, beta, grip, h)
+                    x += way
+        found.append(x)
+    return np.array(found)
+
+
+def _turned(v, net, pull, beta, grip, h):
+    """The way gone in a time h in which the handle stops, and its speed then: none, or the way of the pull."""
+    z = -beta * v / net
+    lasts = -v / net * (math.log1p(z) / z if abs(z) > 1e-300 else 1.0)
+    phi1, phi2 = _phi_of(beta, lasts)
+    way = v * phi1 + net * phi2
+    if abs(pull) <= grip:
+        return way, 0.0
+    net = pull - math.copysign(grip, pull)
+    phi1, phi2 = _phi_of(beta, h - lasts)
+    return way + net * phi2, net * phi1
+
+
+def _phi_of(beta, t):
+    """:func:`_phi` of numbers."""
+    z = beta * t
+    if abs(z) < SERIES:
+        one, two = 1 - z / 2 * (1 - z / 3 * (1 - z / 4 * (1 - z / 5))), 0.5 - z / 6 * (1 - z / 4 * (1 - z / 5 * (1 - z / 6)))
+    else:
+        one = -math.expm1(-z) / z
+        two = (1 - one) / z
+    return t * one, t * t * two
 
 
 def _glide(x, v, pull, beta, grip, duration, phi):

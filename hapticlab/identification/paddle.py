@@ -107,11 +107,11 @@ def identify_paddle(
     # friction holds a handle that was led back; without it, it may still drift
     rests = _rests(paddle) or rough["coulomb"].low > 0
     records = []
-    for kind in kinds:
+    for number, kind in enumerate(kinds, 1):
         excited = designed(kind, size, paddle.T, travel, constants)
-        records.append(HandleRecord(_run(paddle, excited, force, travel), added=added, at_rest=rests))
+        records.append(HandleRecord(_run(paddle, excited, force, travel, number), added=added, at_rest=rests))
     together = (*records, *beside)
-    found = identify(*together, counts_per_metre=per_metre, force_constant=bool(beside), confidence=confidence)
+    found = identify(*together, counts_per_metre=per_metre, force_constant=bool(beside), confidence=confidence, near=rough)
     return Identified(**vars(found), records=tuple(records))
 
 
@@ -155,11 +155,11 @@ def _pilot(paddle, force, travel):
         size = min(size * GROWS, force)
 
 
-def _run(paddle, excited, force, travel):
-    """Run an excitation and return its record, with the forces that the motor gave."""
+def _run(paddle, excited, force, travel, number=0):
+    """Run an excitation and return its record, with the forces that the motor gave; ``number`` draws noise of its own."""
     scene, duration = excited.scene(travel), excited.samples * paddle.T
     if not isinstance(paddle, SerialPaddle):
-        return paddle.run(scene, duration=duration, progress=False)
+        return replace(paddle, seed=paddle.seed + number).run(scene, duration=duration, progress=False)
     back = centring(force / travel, BACK_DAMPING * force / travel)
     after(paddle.run(back, duration=BACK_TIME, force_max=force, progress=False), "identify_paddle")
     log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False), "identify_paddle")

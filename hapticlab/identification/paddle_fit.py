@@ -17,6 +17,8 @@ class PaddleFit(Found):
 
     about = "paddle"
     lacking = "a stop, a hand, backlash, friction that is not constant"
+    above = ("m", "scale")
+    bounded = ("m", "b", "coulomb", "scale", "b/m", "coulomb/m")
     constants: ClassVar = {
         "m": ("mass", "kg"), "b": ("viscous damping", "N s/m"), "coulomb": ("Coulomb friction", "N"), "delay": ("delay", "s"),
         "scale": ("force constant", "1"), "b/m": ("damping over mass", "1/s"), "coulomb/m": ("friction over mass", "m/s^2"),

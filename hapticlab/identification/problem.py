@@ -25,6 +25,9 @@ USUAL = {"delay": 0.0, "scale": 1.0}
 #: parts of the first m, b and coulomb that a fit may begin with, and delays in samples beside the one found
 PARTS = tuple((m, b, c) for m in (1.0, 0.8) for b in (1.0, 0.1) for c in (1.0, 0.3, 0.1))
 LATE = (0.0, 1.0, 2.0)
+NEAR = tuple((m, b, c) for m in (1.0, 0.9, 1.1) for b in (1.0, 0.3) for c in (1.0, 0.9))
+#: what a constant is at least: nothing has less mass, feeds energy or pushes by friction
+LEAST = {"m": 1e-6, "b": 0.0, "coulomb": 0.0}
 #: samples of delay at most
 LATEST = 20
 #: what first values are found without
@@ -102,16 +105,30 @@ class Problem:
             for trace in self.traces
         ])  # fmt: skip
 
-    def solve(self) -> Fitted:
-        """The Fitted of all lanes."""
-        ways = [{"noise": noise, "without": without} for noise in sorted({0.0, self.quantum}) for without in WITHOUT]
+    def solve(self, begun: Mapping[str, float] | None = None) -> Fitted:
+        """The Fitted of all lanes; ``begun`` are constants that may be near."""
+        low = np.full(len(self.free) + sum(2 - trace.rests for trace in self.traces), -np.inf)
+        low[: len(self.free)] = [LEAST.get(name, -np.inf) for name in self.free]
         y = np.concatenate([trace.y for trace in self.traces])
-        groups = [self._side(ways, PARTS)]
+        return fit(self.motion, y, self._starts(y, begun), self._scales, quantum=self.quantum, low=low)
+
+    def _starts(self, y, begun):
+        """Yield guesses, shape (P, C, L): near what has begun, of all first values, and of friction taken for known."""
+        if begun:
+            yield np.stack(list(self._guesses(self._near(begun), NEAR)), axis=1)
+        ways = [{"noise": noise, "without": without} for noise in sorted({0.0, self.quantum}) for without in WITHOUT]
+        yield self._side(ways, PARTS)
         force = max(float(np.abs(trace.push - trace.F).max()) for trace in self.traces)
         if "coulomb" in self.free and force:
             noise = max(self.quantum, float(np.median(noise_of(y))))
-            groups += [self._side([{"noise": noise, "coulomb": part * force}], LIGHTER) for part in RUNGS]
-        return fit(self.motion, y, groups, self._scales, quantum=self.quantum)
+            for part in RUNGS:
+                yield self._side([{"noise": noise, "coulomb": part * force}], LIGHTER)
+
+    def _near(self, begun):
+        """A start with these constants, each record where it was first seen and at rest."""
+        ends = [a for trace in self.traces for a in (trace.y[0], np.zeros(self.lanes))[: 2 - trace.rests]]
+        values = USUAL | dict(begun)
+        return np.array([*(np.full(self.lanes, values[name]) for name in self.free), *ends])
 
     def _side(self, ways, parts):
         """The guesses, shape (P, C, L), that come of first values found in these ways."""

@@ -12,15 +12,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.statistics import student
-from .sensor import DITHERED, information, log_likelihood, run_weights, spread
+from .rounding import rounding_covariance
+from .sensor import DITHERED, explains, information, log_likelihood, run_weights, spread
 
 if TYPE_CHECKING:
     from ..base.annotations import Array, Flags
 
 #: of a parameter's scale: the step of central differences
 STEP = 1e-5
-#: scoring steps, and those of a race between beginnings; and the part of a standard error that is no step any more
-STEPS, RACE, ENOUGH = 30, 12, 1e-2
+#: scoring steps, and the part of a standard error that is no step any more
+STEPS, ENOUGH = 30, 1e-2
 #: of a fit that is said to have converged: what another step would gain, in squared standard errors
 SETTLED = 0.02
 #: smallest eigenvalue of the information, its diagonal scaled to one, of a direction that the record tells nothing about
@@ -60,6 +61,8 @@ class Fitted:
     converged : array of bool, shape (L,)
     blind : array, shape (L, P)
         The direction, over the parameters' scales, in which nothing changes; zeros where there is none.
+    beyond : array, shape (P, L)
+        Standard errors by which a parameter that a bound holds would pass it; zeros for the others.
     """
 
     values: Array
@@ -70,6 +73,7 @@ class Fitted:
     counted: Flags
     converged: Flags
     blind: Array
+    beyond: Array
 
     @property
     def error(self) -> Array:
@@ -81,7 +85,7 @@ class Fitted:
         return self.error * student(confidence, self.freedom)
 
 
-def fit(motion, y, start, scales, *, quantum=0.0):
+def fit(motion, y, starts, scales, *, quantum=0.0, low=None):
     """The most likely parameters of y = motion(parameters) + noise, with their covariance.
 
     Parameters
@@ -90,13 +94,15 @@ def fit(motion, y, start, scales, *, quantum=0.0):
         Takes parameters of shape (P, K, L), returns positions of shape (N, K, L).
     y : array, shape (N, L)
         Of a counted position, the middles of the counts.
-    start : array, shape (P, C, L), or sequence of these
-        Where to begin: of C guesses for each record the one is taken whose motion is nearest. Of several sequences each
-        one's nearest climbs RACE steps, and the one with the least residuals is followed: a likelihood has more than one top.
-    scales : array, shape (P, L), or callable
-        How much is a considerable change, or what returns it for a start of that shape; differences take STEP of it.
+    starts : iterable of arrays, shape (P, C, L)
+        Where to begin: of C guesses for each record the one is taken whose motion is nearest. A likelihood has more than
+        one top, so the next array is tried until what is left of every record looks like its sensor's noise.
+    scales : callable
+        Returns, for parameters of shape (P, L), how much is a considerable change; differences take STEP of it.
     quantum : float
         What one count is; 0 where the sensor does not count.
+    low : array, shape (P,), optional
+        The least that each parameter may be.
 
     Returns
     -------
@@ -106,28 +112,36 @@ def fit(motion, y, start, scales, *, quantum=0.0):
     --------
     >>> times = np.arange(50.0)[:, None, None]
     >>> y = 1 + 0.5 * times[:, 0] + np.random.default_rng(1).standard_normal((50, 1))
-    >>> line = fit(lambda p: p[0] + p[1] * times, y, np.zeros((2, 1, 1)), np.ones((2, 1)))
+    >>> line = fit(lambda p: p[0] + p[1] * times, y, [np.zeros((2, 1, 1))], np.ones_like)
     >>> bool(abs(line.values[1, 0] - 0.5) < line.half_width()[1, 0])
     True
     """
-    starts = start if isinstance(start, (list, tuple)) else [start]
-    weights = run_weights(y, quantum)
-    freedom = np.sum(weights, axis=0) - len(starts[0])
-    even, no = np.ones_like(y), np.zeros(y.shape[1], bool)
-    begun = [_nearest(motion, y, start) for start in starts]
-    found, rest = _first(motion, y, [found for found, _ in begun], scales) if len(begun) > 1 else begun[0]
-    scales = scales(found) if callable(scales) else scales
-    sigma, before = _rms(rest), np.inf
+    weights, found, rest = run_weights(y, quantum), None, None
+    for start in starts:
+        low = np.full(len(start), -np.inf) if low is None else low
+        at, left = _climbed(motion, y, _nearest(motion, y, start), scales, low)
+        better = True if found is None else np.sum(left**2, axis=0) < np.sum(rest**2, axis=0)
+        found, rest = (at, left) if found is None else (np.where(better, at, found), np.where(better, left, rest))
+        if np.all(explains(rest, y, quantum)):
+            break
+    scales, freedom = scales(found), np.sum(weights, axis=0) - len(found)
+    if quantum:
+        return _counted(motion, y, found, rest, scales, quantum, weights, freedom, low)
+    sigma, even, no = np.sqrt(np.sum(rest**2, axis=0) / freedom) + LEAST, np.ones_like(y), np.zeros(y.shape[1], bool)
+    return _finished(motion, y, found, scales, sigma, 0.0, even, freedom, no, low)
+
+
+def _climbed(motion, y, start, scales, low):
+    """The top above a start, with positions as numbers, and the residuals there."""
+    found, even, no = start, np.ones_like(y), np.zeros(y.shape[1], bool)
+    scales, sigma = scales(start), _rms(y - motion(start[:, None])[:, 0])
     # what is a small step is said by sigma, and sigma by what is left after the steps
     for _ in range(ROUNDS[0]):
-        found, rest = _scored(motion, y, found, scales, sigma, 0.0, even, no)
+        found, rest = _scored(motion, y, found, scales, sigma, 0.0, even, no, low)
         sigma, before = _rms(rest), sigma
         if np.all(sigma > AGREES * before):
             break
-    if quantum:
-        return _counted(motion, y, found, rest, scales, quantum, weights, freedom)
-    sigma = np.sqrt(np.sum(rest**2, axis=0) / freedom) + LEAST
-    return _finished(motion, y, found, scales, sigma, 0.0, even, freedom, no)
+    return found, rest
 
 
 def _rms(rest):
@@ -135,41 +149,21 @@ def _rms(rest):
 
 
 def _nearest(motion, y, start):
-    """The guess with the least residuals, for each record, and these residuals."""
+    """The guess with the least residuals, for each record."""
     lane, some = np.arange(y.shape[1]), max(1, LANES // y.shape[1])
-    best, least, rest = start[:, 0], np.inf, y
+    best, least = start[:, 0], np.inf
     for first in range(0, start.shape[1], some):
         guesses = start[:, first : first + some]
         with np.errstate(all="ignore"):
             moved = motion(guesses)
-            off = y[:, None] - moved
-            size = np.sum(off**2, axis=0)
+            size = np.sum((y[:, None] - moved) ** 2, axis=0)
             # one that hardly moves is not far from anything, and tells no way to go
             size = size * np.where(np.ptp(moved, axis=0) < MOVES * np.ptp(y, axis=0), STILL, 1.0)
         size = np.where(np.isfinite(size), size, np.inf)
         chosen = np.argmin(size, axis=0)
-        nearer = size[chosen, lane] < least
-        best, rest = np.where(nearer, guesses[:, chosen, lane], best), np.where(nearer, off[:, chosen, lane], rest)
+        best = np.where(size[chosen, lane] < least, guesses[:, chosen, lane], best)
         least = np.minimum(least, size[chosen, lane])
-    return best, rest
-
-
-def _first(motion, y, begun, scales):
-    """Let each beginning climb RACE steps; return of each record the one that leaves the least residuals, and these."""
-    lanes, ended = y.shape[1], []
-    some = max(1, LANES // lanes)
-    for first in range(0, len(begun), some):
-        side = begun[first : first + some]
-        at, ys = np.concatenate(side, axis=1), np.tile(y, len(side))
-        even, no = np.ones_like(ys), np.zeros(ys.shape[1], bool)
-        of = scales(at) if callable(scales) else np.tile(scales, len(side))
-        # sigma only says when to stop: here with the noise of neighbours, which motion hardly adds to
-        at, rest = _scored(motion, ys, at, of, np.tile(noise_of(y), len(side)), 0.0, even, no, steps=RACE)
-        ended += [(at[:, k : k + lanes], rest[:, k : k + lanes]) for k in range(0, len(side) * lanes, lanes)]
-    left = np.array([np.sum(rest**2, axis=0) for _, rest in ended])
-    won = np.nanargmin(np.where(np.isfinite(left), left, np.finfo(float).max), axis=0)
-    lane = np.arange(lanes)
-    return tuple(np.moveaxis(np.array(part)[won, :, lane], 0, -1) for part in zip(*ended, strict=True))
+    return best
 
 
 def noise_of(y):
@@ -184,7 +178,7 @@ def noise_of(y):
     return np.sqrt(np.median(np.diff(y, 2, axis=0) ** 2, axis=0) / (6 * 0.4549)) + LEAST
 
 
-def _counted(motion, y, found, rest, scales, quantum, weights, freedom):
+def _counted(motion, y, found, rest, scales, quantum, weights, freedom, low):
     """The fit of counts: by their own likelihood in dither, else as numbers, a run of one count being one."""
     dithered = spread(rest, quantum) >= DITHERED * quantum
     weights, sigma = np.where(dithered, 1.0, weights), np.inf
@@ -194,25 +188,28 @@ def _counted(motion, y, found, rest, scales, quantum, weights, freedom):
         sigma = np.where(dithered, spread(rest, quantum), np.maximum(plain, quantum / 12**0.5))
         if np.all(np.abs(sigma - before) < SAME * sigma):
             break
-        found, rest = _scored(motion, y, found, scales, sigma, quantum, weights, dithered)
+        found, rest = _scored(motion, y, found, scales, sigma, quantum, weights, dithered, low)
     whole = np.where(dithered, len(y) - len(found), freedom)
     sigma = np.where(dithered, sigma * np.sqrt(len(y) / np.maximum(whole, 1)), sigma)
-    return _finished(motion, y, found, scales, sigma, quantum, weights, whole, dithered)
+    return _finished(motion, y, found, scales, sigma, quantum, weights, whole, dithered, low)
 
 
-def _scored(motion, y, start, scales, sigma, quantum, weights, counted, steps=STEPS):
+def _scored(motion, y, start, scales, sigma, quantum, weights, counted, low):
     """Climb to the likelihood's top with sigma given; return parameters and residuals."""
-    at, damping = start.copy(), np.full(y.shape[1], DAMPING)
+    near = low[:, None] + STEP * scales  # at its bound: differences reach beyond it
+    at, damping = np.maximum(start, low[:, None]), np.full(y.shape[1], DAMPING)
     rest, slopes = _linearised(motion, y, at, scales)
     best = _likelihood(rest, sigma, quantum, weights, counted)
-    for _ in range(steps):
+    for _ in range(STEPS):
         score, info = information(rest, sigma, quantum, counted)
         gradient = np.einsum("npl,nl->lp", slopes, weights * score)
-        fisher = np.einsum("npl,nl,nql->lpq", slopes, weights * info, slopes)
+        free = ((at > near) | (gradient.T > 0)).T  # a bound holds what would pass it
+        gradient = gradient * free
+        fisher = np.einsum("npl,nl,nql->lpq", slopes, weights * info, slopes) * free[:, None] * free[:, :, None]
         diagonal = np.einsum("lpp->lp", fisher)
         braced = fisher + damping[:, None, None] * np.eye(len(at)) * diagonal[:, None]
         step = _solved(braced, gradient[..., None])[..., 0]
-        nxt = at + (step * scales.T).T
+        nxt = np.maximum(at + (step * scales.T).T, low[:, None])
         rest_next, slopes_next = _linearised(motion, y, nxt, scales)
         now = _likelihood(rest_next, sigma, quantum, weights, counted)
         better = (now >= best) & np.all(np.isfinite(slopes_next), axis=(0, 1))
@@ -247,15 +244,24 @@ def _solved(matrix, right):
     return np.linalg.pinv(even, rcond=1e-15, hermitian=True) @ (right / scale[..., None]) / scale[..., None]
 
 
-def _finished(motion, y, found, scales, sigma, quantum, weights, freedom, counted):
+def _finished(motion, y, found, scales, sigma, quantum, weights, freedom, counted, low):
     rest, slopes = _linearised(motion, y, found, scales)
     score, info = information(rest, sigma, quantum, counted)
     fisher = np.einsum("npl,nl,nql->lpq", slopes, weights * info, slopes)
     covariance = _solved(fisher, np.broadcast_to(np.eye(len(found)), fisher.shape))
     gradient = np.einsum("npl,nl->lp", slopes, weights * score)
-    left = np.einsum("lp,lpq,lq->l", gradient, covariance, gradient)
+    held = ((found <= low[:, None] + STEP * scales) & (gradient.T < 0)).T
+    free = np.where(held, 0.0, gradient)
+    left = np.einsum("lp,lpq,lq->l", free, covariance, free)
+    step = np.einsum("lpq,lq->lp", covariance, gradient)
+    if quantum and not np.all(counted):
+        covariance = np.where(
+            counted[:, None, None], covariance, rounding_covariance(y, rest, slopes, covariance, quantum, spread(rest, quantum))
+        )
+    error = np.sqrt(np.maximum(np.einsum("lpp->lp", covariance), 1e-300))
+    beyond = np.where(held, -step / error, 0.0).T
     stretched = covariance * scales.T[:, :, None] * scales.T[:, None, :]
-    return Fitted(found, stretched, sigma, rest, freedom, counted, left < SETTLED, _blind(fisher))
+    return Fitted(found, stretched, sigma, rest, freedom, counted, left < SETTLED, _blind(fisher), beyond)
 
 
 def _blind(fisher):

@@ -9,6 +9,9 @@ from ..base.statistics import normal
 
 #: of a count: noise from which on counts are dithered, each telling something of its own
 DITHERED = 0.2
+#: correlation of neighbouring residuals, in its standard errors, from which something is left unexplained; and residuals
+#: over a count without dither, whose neighbours correlate by their rounding: that alone leaves 0.29, with noise 0.35
+UNEXPLAINED, ROUNDED = 5.0, 0.45
 #: probability of a count, at least, for its logarithm
 LEAST = 1e-290
 #: noises tried, over the count: from a tenth of what is dither to many counts
@@ -74,3 +77,16 @@ def run_weights(y, quantum):
     for lane in range(y.shape[1]):
         weights[:, lane] = 1 / np.bincount(run[:, lane])[run[:, lane]]
     return weights
+
+
+def neighbours(rest, y, quantum):
+    """The correlation of neighbouring residuals, shape (L,)."""
+    # neighbours that share a count without dither share its rounding: they say nothing about the model
+    pairs = np.diff(y, axis=0) != 0 if quantum else np.ones_like(y[1:], bool)
+    return np.sum(rest[1:] * rest[:-1] * pairs, axis=0) / np.maximum(np.sum(rest[1:] ** 2 * pairs, axis=0), 1e-300)
+
+
+def explains(rest, y, quantum):
+    """Whether residuals look like noise, or, without dither, like counting: less than a count does not show; shape (L,)."""
+    counting = np.sqrt(np.mean(rest**2, axis=0)) < ROUNDED * quantum
+    return counting | (np.abs(neighbours(rest, y, 0.0)) * np.sqrt(len(y)) < UNEXPLAINED)

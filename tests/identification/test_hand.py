@@ -49,7 +49,7 @@ def test_intervals_cover_the_hand():
     clean = np.concatenate([log.x[a:z] for a, z in windows])[:, None]
     y = clean + 5e-6 * np.random.default_rng(0).standard_normal((len(clean), 120))
     start, scales = (np.repeat(a[:, None], 120, axis=1) for a in _start(log, windows, own))
-    found = fit(_motion(log, windows, own), y, start[:, None], scales)
+    found = fit(_motion(log, windows, own), y, [start[:, None]], lambda _: scales)
     true = np.array(list(TRUE.values()))[:, None]
     covered = (np.abs(found.values[:3] - true) < found.half_width()[:3]).mean(axis=1)
     # four standard errors of 120 draws with 95 %

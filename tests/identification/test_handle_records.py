@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import hapticlab as hl
+from hapticlab.base.telemetry import Telemetry
 from hapticlab.errors import AnalysisError
+from hapticlab.identification.held_force_motion import positions
 from hapticlab.identification.identifying_forces import Excitation
 
 COUNTS = 1 / 12.8e-6
@@ -110,7 +112,7 @@ def test_a_sensor_without_dither_is_told_and_its_rounding_is_no_misfit():
     for seed in range(2):
         found = hl.identify.step_response(run(STEPS, replace(PADDLE, noise=5e-7, seed=seed)), counts_per_metre=COUNTS)
         assert found.explained and not found.dithered
-        assert "NOT DITHERED" in str(found) and "too wide" in str(found)
+        assert "NOT DITHERED" in str(found) and "counting the fitted motion anew" in str(found)
 
 
 def test_refusals_say_what_to_do(steps):
@@ -129,6 +131,20 @@ def test_refusals_say_what_to_do(steps):
     for words, call in cases.items():
         with pytest.raises(AnalysisError, match=words):
             call()
+
+
+def test_a_handle_that_a_negative_damper_drives_is_refused(steps):
+    x = positions(steps.F, 1e-3, m=0.03, b=-0.1, coulomb=0.0, delay=0.0, scale=1.0, push=0.0, x0=0.0, v0=0.0)
+    noise = 6e-6 * np.random.default_rng(0).standard_normal(len(x))
+    with pytest.raises(AnalysisError, match="the motion asks for a negative .*the model lacks something"):
+        hl.identify.step_response(replace(steps, x=x + noise))
+
+
+def test_a_record_that_leaves_constants_open_is_refused(steps):
+    """Three milliseconds of one push: any friction will do, with a smaller mass."""
+    early = Telemetry(T=1e-3, **{name: getattr(steps, name)[:26] for name in ("t", "x", "v", "F")})
+    with pytest.raises(AnalysisError, match="do not tell .* from each other, or at all. Record a kick, steps and a chirp"):
+        hl.identify.handle(early)
 
 
 def test_a_profile_is_marked_as_measured_and_makes_a_paddle(found):

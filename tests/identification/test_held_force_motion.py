@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from hapticlab.device.hand.hand import Hand
 from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.identification.hand_motion import hand_positions
-from hapticlab.identification.held_force_motion import positions
+from hapticlab.identification.held_force_motion import FEW, positions
 from hapticlab.identification.identifying_forces import Excitation, designed
 
 T = 1e-3
@@ -76,6 +76,15 @@ def test_the_simulated_paddle_moves_alike():
     np.testing.assert_allclose(log.F, chirp.forces(T), rtol=0, atol=1e-13)  # its cosine is another one
     found = positions(log.F, T, delay=1.3e-3, scale=1.0, push=0.0, x0=0.0, v0=0.0, **BODY)
     np.testing.assert_allclose(found, log.x, rtol=0, atol=1e-15)
+
+
+def test_many_motions_side_by_side_are_each_one_alone():
+    F, draws = Excitation("chirp", 0.3, 40, 200).forces(T), np.random.default_rng(0)
+    body = {"m": 0.03, "b": 0.1, "coulomb": 0.1, "delay": 1e-3, "scale": 1.0, "push": 0.02, "x0": 0.01, "v0": 0.1}
+    many = {name: value * draws.uniform(0, 2, (FEW, 2)) for name, value in body.items()}
+    alone = [positions(F, T, **{name: a[k, 1] for name, a in many.items()}) for k in range(FEW)]
+    # the order of sums
+    np.testing.assert_allclose(positions(F, T, **many)[:, :, 1], np.transpose(alone), rtol=0, atol=1e-14)
 
 
 def test_a_force_felt_before_its_time_is_the_next_one_late():

@@ -28,6 +28,21 @@ def test_a_simulated_paddle_tells_its_constants_within_its_travel():
     assert [record.added for record in found.loaded(0.02)] == [0.02, 0.02]
 
 
+@pytest.mark.parametrize("seed", [20, 21, 22])
+def test_steps_of_one_size_do_not_lead_to_a_heavier_handle_that_friction_drives(seed):
+    """Twice m and b with a friction of -0.265 N, the steps' size, moved alike where friction below zero was allowed."""
+    paddle = hl.SimulatedPaddle(m=0.0906286, b=0.34069, T=1e-3, delay=1e-3, noise=5e-6, force_max=3.0, seed=seed)
+    found = hl.identify.paddle(paddle, kinds=("steps",))
+    check(found, m=0.0906286, b=0.34069, coulomb=0.0, delay=1e-3)
+    assert found.converged and found["coulomb"].low >= 0
+
+
+def test_records_of_a_simulated_paddle_have_noise_of_their_own():
+    paddle = hl.SimulatedPaddle(**BODY, force_max=1.0)
+    kick, steps = (record.log.x[:20] for record in hl.identify.paddle(paddle, kinds=("kick", "steps")).records)
+    assert abs(np.corrcoef(kick, steps)[0, 1]) < 0.9  # both rest for as long
+
+
 def test_a_paddle_that_does_not_move_is_told():
     paddle = hl.SimulatedPaddle(**BODY | {"coulomb": 2.0}, force_max=1.0)
     with pytest.raises(AnalysisError, match="1 N moves the handle by .* mm only; needs 1 mm.*nobody holds"):
