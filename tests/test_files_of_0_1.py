@@ -1,6 +1,8 @@
 """What version 0.1 wrote is read, or refused in words; its code made the files, see files_of_0_1/make.py."""
 
 import json
+import re
+from operator import attrgetter
 from pathlib import Path
 from shutil import copy
 
@@ -16,6 +18,7 @@ from hapticlab.device.link.serial_ports import open_port
 from hapticlab.errors import AnalysisError
 from hapticlab.experiments.forced_choice import ForcedChoice
 from hapticlab.grading.journal import Journal
+from hapticlab.vocabulary import PAGES
 
 FILES = Path(__file__).parent / "files_of_0_1"
 T = 1e-3
@@ -87,3 +90,20 @@ def test_a_scene_file_is_refused_with_the_new_name(capsys, tmp_path):
     error = capsys.readouterr().err
     assert "scene.py failed" in error and "line 7" in error
     assert "hapticlab has no lagrange; did you mean hl.mechanics.lagrange?" in error
+
+
+def test_the_changelog_says_where_each_name_is():
+    changelog = (FILES.parents[1] / "CHANGELOG.md").read_text("utf-8")
+    moved = dict(re.findall(r"^\| `hl\.(\w+)` \| `hl\.([\w.]+)` \|$", changelog, re.M))
+    old = (FILES / "names.txt").read_text("utf-8").split()
+    assert [name for name in old if name not in moved and (name not in hl.__all__ or name in PAGES)] == ["library"]
+    assert sorted(moved.keys() - old) == []
+    assert [attrgetter(path)(hl) for path in moved.values()]  # each is there
+
+
+def test_a_name_of_0_1_is_answered_with_where_it_is():
+    changelog = (FILES.parents[1] / "CHANGELOG.md").read_text("utf-8")
+    for old, new in re.findall(r"^\| `hl\.(\w+)` \| `hl\.([\w.]+)` \|$", changelog, re.M):
+        if old not in PAGES:
+            with pytest.raises(AttributeError, match=rf"did you mean .*\bhl\.{new}\b"):
+                getattr(hl, old)
