@@ -258,7 +258,7 @@ def follow(
         moved = float(ahead(t) - ahead(t - every)) if how == "both" else 0.0
         return intent + moved + gain * every * error
 
-    intent = ahead if how == "anticipatory" else Reacting(plan=plan, reaction=reaction, every=every)
+    intent = ahead if how == "anticipatory" else Reacting(plan=plan, reaction=reaction, interval=every)
     intent = intent if tremor is None else intent + tremor
     log = replace(paddle, hand=replace(hand, intent=intent)).run(scene, duration=record, progress=False, **options)
     return log, path.at(log.t)[0]

@@ -38,7 +38,7 @@ def live(
     scene: Scene,
     *,
     sliders: Mapping[str, tuple[float, float]] | None = None,
-    speed: float = 1.0,
+    time_scale: float = 1.0,
     picture: Any = None,
     show_force: bool = True,
     rehearsal: Rehearsal = REHEARSAL,
@@ -60,7 +60,7 @@ def live(
         With values for all its parameters.
     sliders : dict of str to (low, high), optional
         In SI; by default of every live parameter.
-    speed : float
+    time_scale : float
         Scene time over the clock's: 0.1 is slow motion. A board's is 1.
     picture : str, shapes or callable, optional
         Instead of the scene's own picture: see :func:`~hapticlab.widgets.picture.moving_picture`.
@@ -94,12 +94,14 @@ def live(
     """
     check_scene(scene)
     low, high = SPEEDS
-    speed = _between("speed", speed, low, high, "", "1 is real time, 0.1 slow motion.")
-    if speed != 1 and isinstance(paddle, SerialPaddle):
-        raise PaddleError(f"speed = {speed:g}; a board runs in real time: leave speed out, or take a SimulatedPaddle.")
+    time_scale = _between("time_scale", time_scale, low, high, "", "1 is real time, 0.1 slow motion.")
+    if time_scale != 1 and isinstance(paddle, SerialPaddle):
+        raise PaddleError(
+            f"time_scale = {time_scale:g}; a board runs in real time: leave time_scale out, or take a SimulatedPaddle."
+        )
     instance("rehearsal", rehearsal, Rehearsal, "hl.people.Rehearsal(intent=..., duration=...)", error=PaddleError)
     _check_options(compile_options)
-    looks = {"sliders": sliders, "speed": speed, "picture": picture, "show_force": show_force}
+    looks = {"sliders": sliders, "speed": time_scale, "picture": picture, "show_force": show_force}
     session = Session(paddle, scene, **looks, **compile_options)
     return LiveView(session, rehearsal, compile_options)
 

@@ -68,7 +68,7 @@ def late_words(behind):
     if behind < LATE:
         return ""
     said = f"The computer fell behind by {round(1e3 * behind, -1):.0f} ms in the last second"
-    return said if behind < MUCH else f"{said}: too slow for this scene; give speed=0.1 or a cheaper method"
+    return said if behind < MUCH else f"{said}: too slow for this scene; give time_scale=0.1 or a cheaper method"
 
 
 #: flags of a Telemetry, in words

@@ -28,10 +28,10 @@ def estimates():
         "backward difference": hl.velocity.backward(),
         "filtered, tau = 1 ms": hl.velocity.filtered(tau=1e-3),
         "filtered, tau = 4 ms": hl.velocity.filtered(tau=4e-3),
-        "window of 2": hl.velocity.window(band=COUNT, most=2),
-        "window of 4": hl.velocity.window(band=COUNT, most=4),
-        "window of 8": hl.velocity.window(band=COUNT, most=8),
-        "window of 4, best fit": hl.velocity.window(band=COUNT, most=4, fit="best"),
+        "window of 2": hl.velocity.window(deviation=COUNT, longest=2),
+        "window of 4": hl.velocity.window(deviation=COUNT, longest=4),
+        "window of 8": hl.velocity.window(deviation=COUNT, longest=8),
+        "window of 4, best fit": hl.velocity.window(deviation=COUNT, longest=4, fit="best"),
         "Kalman, 50 m/s^2": hl.velocity.kalman(acceleration=50, noise=SPREAD),
         "Kalman, 5 m/s^2": hl.velocity.kalman(acceleration=5, noise=SPREAD),
         "Kalman from the start, 5 m/s^2": hl.velocity.kalman(acceleration=5, noise=SPREAD, steady=False),
@@ -79,7 +79,7 @@ def pulses():
         "braking pulse, 0.9 of the momentum in 1 period": hl.laws.braking_pulse(wall, part=0.9, mass=m),
         "the same in 3 periods": hl.laws.braking_pulse(wall, part=0.9, mass=m, periods=3),
         "the same, speed from 20 um counts, window of 3": hl.laws.braking_pulse(
-            wall, part=0.9, mass=m, periods=3, entry=hl.laws.Entry(velocity=hl.velocity.window(band=COUNT, most=3))
+            wall, part=0.9, mass=m, periods=3, entry=hl.laws.Entry(velocity=hl.velocity.window(deviation=COUNT, longest=3))
         ),
         "friction pulse, 2 N for 20 periods": hl.laws.friction_pulse(wall, friction=2.0, mass=m, periods=20),
     }

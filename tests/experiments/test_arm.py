@@ -40,7 +40,7 @@ def test_the_intent_moves_the_handle_along_the_path(b_hand):
         before, after = (arm.force(*along(path, min(at, 0.4))) for at in (t - every, t))
         return arm.intent(intent, before, after, every)
 
-    held = replace(paddle, hand=replace(paddle.hand, intent=Reacting(plan=plan, every=1e-3)))
+    held = replace(paddle, hand=replace(paddle.hand, intent=Reacting(plan=plan, interval=1e-3)))
     log = held.run(wall()(k=1, x_o=1), duration=0.4, engine="interpreter", progress=False)
     meant = np.array([along(path, t)[0] for t in log.t])
     assert np.abs(log.x - meant).max() < 1e-6  # the intent is linear within a millisecond

@@ -20,7 +20,7 @@ def scenes():
     fast, mass = hl.velocity.filtered(tau="2 ms"), 0.05
     return {
         "filter": hl.wall("half_sample", velocity=fast)(**WALL, B=0.3),
-        "window": hl.laws.virtual_damper(velocity=hl.velocity.window(band=COUNT, most=4))(B=0.4),
+        "window": hl.laws.virtual_damper(velocity=hl.velocity.window(deviation=COUNT, longest=4))(B=0.4),
         "kalman": hl.wall("half_sample", velocity=hl.velocity.kalman(acceleration=20, noise=COUNT / 3))(**WALL),
         "from_start": hl.laws.virtual_damper(velocity=hl.velocity.kalman(acceleration=20, noise=COUNT / 3, steady=False))(B=0.4),
         "brake": hl.laws.braking_pulse(hl.wall()(**WALL), part=0.5, mass=mass, periods=3, entry=hl.laws.Entry(velocity=fast)),
@@ -63,7 +63,7 @@ def test_it_runs_with_the_bits_of_the_core_and_the_load_that_was_said(name):
 
 @pytest.mark.slow
 def test_a_dearer_estimate_is_refused_with_the_cheaper_one():
-    scene = hl.wall("half_sample", velocity=hl.velocity.window(band=COUNT, most=5, fit="best"))(**WALL)
+    scene = hl.wall("half_sample", velocity=hl.velocity.window(deviation=COUNT, longest=5, fit="best"))(**WALL)
     words = r"of a 1 ms period on uno .*fits with velocity='adaptive window of \d, end fit'"
     with emulated_uno() as paddle, pytest.raises(ProgramLimitError, match=words):
         paddle.run(scene, duration=0.1)

@@ -65,7 +65,7 @@ def test_the_compiled_estimate_has_its_own_transfer_function(name):
 
 
 def test_a_window_has_no_linear_limit():
-    scene = hl.wall("half_sample", None, velocity=hl.velocity.window(band=1e-5, most=4))
+    scene = hl.wall("half_sample", None, velocity=hl.velocity.window(deviation=1e-5, longest=4))
     with pytest.raises(AnalysisError, match="not linear"):
         stability_limit(hl.SimulatedPaddle(m=M, b=DAMPING, T=T), law=scene)
 

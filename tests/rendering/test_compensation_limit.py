@@ -218,7 +218,7 @@ def test_it_says_what_it_is():
         (lambda: compensation_limit(paddle(), b_least=-1e-3), AnalysisError, "b_least = -0.001.*identify it better"),
         (lambda: compensation_limit(paddle(), coulomb_least=1), AnalysisError, "coulomb_least <= 0.02"),
         (
-            lambda: compensation_limit(paddle(), velocity=hl.velocity.window(band=1e-5)),
+            lambda: compensation_limit(paddle(), velocity=hl.velocity.window(deviation=1e-5)),
             SceneError,
             "no transfer function",
         ),

@@ -50,7 +50,7 @@ def test_a_resting_hand_elsewhere_is_the_same():
 def test_a_velocity_that_lags_needs_more():
     """A window has no closed form of its own, and an encoder none at all: simulated all the same."""
     rough = paddle(counts_per_metre=5e4, hand=hl.Hand(k=20))
-    found = over_compensation(rough, speed="10 mm/s", velocity=hl.velocity.window(band="20 um", most=8), up_to=2.5)
+    found = over_compensation(rough, speed="10 mm/s", velocity=hl.velocity.window(deviation="20 um", longest=8), up_to=2.5)
     assert found.limit > 1.02 * found.ideal.hunts_from(0.0)
     assert "hunts about the hand's spring from dry = " in str(found)
 

@@ -316,7 +316,7 @@ def test_without_a_record_a_board_has_no_log(board):
 
 def test_a_board_has_no_slow_motion(board):
     with pytest.raises(hl.errors.PaddleError, match="real time"):
-        hl.live(board, WALL, speed=0.1)
+        hl.live(board, WALL, time_scale=0.1)
 
 
 def test_a_scene_that_does_not_fit_is_refused_before_it_is_shown(board, monkeypatch):

@@ -59,7 +59,7 @@ class Reacting(Intent):
         to be now [m]: a plan that adds to it needs no memory of its own.
     reaction : float
         [s], >= 0; 180 ms in the chapter.
-    every : float
+    interval : float
         [s] between two decisions, > 0; whole samples are used.
     start : float
         The intent at t = 0 [m].
@@ -80,7 +80,7 @@ class Reacting(Intent):
 
     plan: Callable[..., float]
     reaction: float = REACTION
-    every: float = 0.01
+    interval: float = 0.01
     start: float = 0.0
     beside: Callable[..., Any] | None = None
 
@@ -88,7 +88,7 @@ class Reacting(Intent):
         if not callable(self.plan):
             raise PaddleError(f"plan = {self.plan!r}; needs a function plan(t, seen, intent) that returns an intent [m].")
         object.__setattr__(self, "reaction", require("reaction", self.reaction, "s", "a person", low=0))
-        object.__setattr__(self, "every", require("every", self.every, "s", "a person", above=0))
+        object.__setattr__(self, "interval", require("interval", self.interval, "s", "a person", above=0))
         object.__setattr__(self, "start", require("start", self.start, "m", "a hand"))
 
     def __call__(self, t: Any) -> NoReturn:
@@ -126,7 +126,7 @@ def run_reacting(loaded, paddle, parameters, ticks, outputs):
         Names of the linked program's outputs.
     """
     mind, T = paddle.hand.intent, paddle.T
-    chunk = max(1, round(mind.every / T))
+    chunk = max(1, round(mind.interval / T))
     # a hand that does not react: its noises are those of any hand, its path is what stands beside the plan
     still = replace(paddle.hand, intent=mind.beside or (lambda t: 0.0 * t))
     rows = replace(paddle, hand=still).inputs(ticks)

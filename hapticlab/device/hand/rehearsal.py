@@ -25,7 +25,7 @@ class Rehearsal:
     Parameters
     ----------
     intent : callable, optional
-        Of an array of times [s], in metres: by default a push from -15 mm to 15 mm and back.
+        Where the hand means to be [m], of an array of times [s]: by default a push from -15 mm to 15 mm and back.
     duration : float or text
         [s], 0.01 to 600.
 

@@ -13,13 +13,13 @@ FREE = hl.wall()(k=100, x_o=1.0)
 
 
 def paddle(plan, m=0.05, b=2.0, k=300.0, b_hand=4.0, **given):
-    mind = {name: given.pop(name) for name in ("reaction", "every", "start") if name in given}
+    mind = {name: given.pop(name) for name in ("reaction", "interval", "start") if name in given}
     return hl.SimulatedPaddle(m=m, b=b, T=T, hand=hl.Hand(b=b_hand, k=k, intent=hl.people.Reacting(plan=plan, **mind)), **given)
 
 
 def test_a_plan_of_time_alone_is_the_same_as_a_path():
     path = hl.people.MinimumJerk(end=0.02, duration=0.3, begin=0.05)
-    log = paddle(lambda t, seen, intent: float(path(t)), every=0.001).run(FREE, duration=0.5)
+    log = paddle(lambda t, seen, intent: float(path(t)), interval=0.001).run(FREE, duration=0.5)
     known = hl.SimulatedPaddle(m=0.05, b=2.0, T=T, hand=hl.Hand(b=4.0, k=300.0, intent=path)).run(FREE, duration=0.5)
     assert np.allclose(log.x, known.x, atol=1e-15, rtol=0)
     assert log.x.max() > 0.019
@@ -32,7 +32,7 @@ def test_what_is_seen_ends_a_reaction_time_ago():
         asked.append((t, len(seen), seen.t[-1] if len(seen) else None))
         return 0.001
 
-    log = paddle(plan, reaction=0.18, every=0.02, counts_per_metre=1e4).run(FREE, duration=0.3)
+    log = paddle(plan, reaction=0.18, interval=0.02, counts_per_metre=1e4).run(FREE, duration=0.3)
     # asked at 0, 20, ... ms for 20 ms later; the sample of 0 ms is known at 180 ms
     assert [n for _, n, _ in asked] == [0] * 9 + [1, 21, 41, 61, 81, 101]
     assert asked[-1][0] == pytest.approx(0.3) and asked[-1][2] == pytest.approx(0.1)
@@ -61,7 +61,7 @@ def test_feedback_through_a_reaction_time_is_stable_up_to_the_limit_of_a_delayed
     a = part * 2 * math.sin(math.pi / (2 * (2 * d + 1)))
     reach = paddle(
         lambda t, seen, intent: intent + a * (0.01 - (seen.x[-1] if len(seen) else 0.0)),
-        m=1e-4, b=0.0, k=1e5, b_hand=6.0, reaction=reaction, every=every,
+        m=1e-4, b=0.0, k=1e5, b_hand=6.0, reaction=reaction, interval=every,
     )  # fmt: skip
     log = reach.run(FREE, duration=30.0)
     error = abs(log.x - 0.01)

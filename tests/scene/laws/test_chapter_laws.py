@@ -109,7 +109,7 @@ def scenes_to_filter():
         "hardening": hl.Scene(hardening, name="hardening spring"),
         "with a memory": hl.Scene(y(n), [sp.Eq(y(n), sp.Rational(4, 5) * y(n - 1) + hl.wall().force)])(k=K, x_o=BOUNDARY),
         "braked": hl.laws.braking_pulse(hl.wall()(k=K, x_o=BOUNDARY), impulse=1e-3, periods=3),
-        "estimated": hl.wall("half_sample", velocity=hl.velocity.window(band=1e-4, most=3))(k=K, B=B, x_o=BOUNDARY),
+        "estimated": hl.wall("half_sample", velocity=hl.velocity.window(deviation=1e-4, longest=3))(k=K, B=B, x_o=BOUNDARY),
     }
 
 

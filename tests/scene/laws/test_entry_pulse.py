@@ -137,7 +137,7 @@ def test_a_pulse_makes_the_same_spring_harder():
 def test_a_speed_that_is_estimated_is_used():
     """With a window of 3 on an encoder of 20 um the speed is known to a count in 3 periods, 7 mm/s."""
     paddle = hl.SimulatedPaddle(m=M, b=0.0, T=T, counts_per_metre=5e4)
-    estimate = hl.velocity.window(band="20 um", most=3)
+    estimate = hl.velocity.window(deviation="20 um", longest=3)
     log = run(hl.laws.braking_pulse(OPEN, part=1, mass=M, entry=hl.laws.Entry(velocity=estimate)), paddle)
     assert abs(log.v_true[-1]) < 20e-6 / (3 * T) + 1e-9
 

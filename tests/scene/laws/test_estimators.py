@@ -94,14 +94,14 @@ def test_the_filter_is_the_backward_mapping_of_its_differential_equation(tau):
 def test_a_window_by_end_fit_is_the_published_loop(most):
     """The cones that narrow sample by sample choose the windows that the loop over all pairs chooses."""
     expected = windows_one_after_the_other(PATH, BAND, most, end_line)
-    np.testing.assert_allclose(estimated(window_velocity(band=BAND, most=most)), expected, rtol=1e-8, atol=1e-10)
+    np.testing.assert_allclose(estimated(window_velocity(deviation=BAND, longest=most)), expected, rtol=1e-8, atol=1e-10)
 
 
 def test_a_window_by_best_fit_is_the_line_of_least_squares():
     path = PATH[180:330]
     expected = windows_one_after_the_other(path, BAND, 5, best_line)
     # polyfit solves by a factorization: 1e-12 of a displacement of 1e-4 m per period
-    found = estimated(window_velocity(band=BAND, most=5, fit="best"), path)
+    found = estimated(window_velocity(deviation=BAND, longest=5, fit="best"), path)
     np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-9)
 
 
@@ -155,7 +155,7 @@ def test_the_transfer_function_is_the_response(estimate):
     [
         (backward_velocity(), 0.5),
         (filtered_velocity(tau=2e-3), 2.5),
-        (window_velocity(band=1.0, most=6), 3.0),
+        (window_velocity(deviation=1.0, longest=6), 3.0),
     ],
 )
 def test_the_lag_under_constant_acceleration(estimate, lag):
@@ -177,7 +177,8 @@ def test_the_lag_of_the_steady_filter():
 def test_every_estimator_runs_in_the_firmware_core():
     """In float32 the rounding of a position of 12 mm, 1e-9 m, is 1e-6 m/s of a difference: alike to a few of these."""
     for estimate in (
-        filtered_velocity(tau=4e-3), window_velocity(band=BAND, most=6), window_velocity(band=BAND, most=4, fit="best"),
+        filtered_velocity(tau=4e-3), window_velocity(deviation=BAND, longest=6),
+        window_velocity(deviation=BAND, longest=4, fit="best"),
         kalman_velocity(acceleration=30, noise=NOISE), kalman_velocity(acceleration=30, noise=NOISE, steady=False),
     ):  # fmt: skip
         path = PATH[200:320].astype(np.float32).astype(float)
@@ -195,7 +196,7 @@ def test_an_estimate_is_better_than_a_difference_on_an_encoder():
     wrong = {
         estimate.name: np.sqrt(np.mean((estimated(estimate, counts) - true)[50:] ** 2))
         for estimate in (
-            backward_velocity(), filtered_velocity(tau=8e-3), window_velocity(band=BAND, most=8),
+            backward_velocity(), filtered_velocity(tau=8e-3), window_velocity(deviation=BAND, longest=8),
             kalman_velocity(acceleration=0.3, noise=BAND / np.sqrt(12)),
         )
     }  # fmt: skip
@@ -271,12 +272,12 @@ def test_two_estimates_of_one_name_are_refused():
     [
         (lambda: filtered_velocity(tau=-1e-3), SceneError, r"tau = -0.001 s; a filter needs tau >= 0"),
         (lambda: filtered_velocity(tau="4 mm"), UnitsError, "tau = '4 mm'"),
-        (lambda: window_velocity(band=1e-5, most=0), SceneError, "whole number of periods, 1 to 32"),
-        (lambda: window_velocity(band=1e-5, most=2.0), SceneError, "whole number"),
-        (lambda: window_velocity(band=1e-5, fit="least"), SceneError, "'end' .* or 'best'"),
+        (lambda: window_velocity(deviation=1e-5, longest=0), SceneError, "whole number of periods, 1 to 32"),
+        (lambda: window_velocity(deviation=1e-5, longest=2.0), SceneError, "whole number"),
+        (lambda: window_velocity(deviation=1e-5, fit="least"), SceneError, "'end' .* or 'best'"),
         (lambda: kalman_velocity(acceleration=0, noise=1e-5), SceneError, r"acceleration = 0 m/s\^2; .* > 0"),
         (lambda: kalman_velocity(acceleration=1, noise=-1e-5), SceneError, "a sensor needs noise > 0"),
-        (lambda: window_velocity(band=1e-5).transfer(T), SceneError, "no transfer function"),
+        (lambda: window_velocity(deviation=1e-5).transfer(T), SceneError, "no transfer function"),
         (lambda: filtered_velocity(tau=hl.parameters("tau", units="s")).transfer(T), SceneError, "tau has no number"),
         (lambda: wall(velocity="filtered"), SceneError, "velocity = 'filtered'; needs an estimate"),
     ],
@@ -290,8 +291,10 @@ OWN = hl.parameters("k B", units="N/m N*s/m", values=(300, 0.2))
 #: estimate, period, and what a refusal names first; shorter windows for the longest
 DEAR = [
     pytest.param(kalman_velocity(acceleration=30, noise=NOISE, steady=False), 0.8e-3, "Kalman filter"),
-    pytest.param(window_velocity(band=BAND, most=12), 1e-3, "adaptive window of 3, end fit", marks=pytest.mark.slow),
-    pytest.param(window_velocity(band=BAND, most=4, fit="best"), 1e-3, "adaptive window of 2, end fit", marks=pytest.mark.slow),
+    pytest.param(window_velocity(deviation=BAND, longest=12), 1e-3, "adaptive window of 3, end fit", marks=pytest.mark.slow),
+    pytest.param(
+        window_velocity(deviation=BAND, longest=4, fit="best"), 1e-3, "adaptive window of 2, end fit", marks=pytest.mark.slow
+    ),
 ]
 
 
@@ -311,7 +314,7 @@ def test_a_scene_that_does_not_fit_the_uno_names_the_cheaper_estimate(estimate, 
     "estimate",
     [
         filtered_velocity(tau=4e-3),
-        window_velocity(band=BAND, most=4),
+        window_velocity(deviation=BAND, longest=4),
         kalman_velocity(acceleration=30, noise=NOISE),
         kalman_velocity(acceleration=30, noise=NOISE, steady=False),
     ],
