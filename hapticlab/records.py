@@ -1,4 +1,4 @@
-"""Records of a run: telemetry, its energy and passivity, and what else it would have shown.
+"""Records of a run: telemetry, its energy and passivity, what else it would have shown, and programs over a given motion.
 
 ``paddle.run`` returns a Telemetry, whose columns are arrays in SI units:
 
@@ -18,12 +18,14 @@ from .analysis.records.energy_books import balance, energy_books
 from .analysis.records.staircase import staircase
 from .analysis.records.storage import storage
 from .base.telemetry import Telemetry
+from .compiler.engines.evaluate import evaluate
 from .vocabulary import page
 
 __all__ = [
     "Telemetry",
     "balance",
     "energy_books",
+    "evaluate",
     "replay",
     "staircase",
     "storage",

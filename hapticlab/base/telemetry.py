@@ -18,6 +18,12 @@ if TYPE_CHECKING:
 
 UNITS = {"t": "s", "x": "m", "v": "m/s", "F": "N", "x_true": "m", "v_true": "m/s", "F_applied": "N", "x_switch": "m"}
 FLAGS = ("saturated", "gap", "overrun")
+#: what people try -> what a record has
+MEANT = {
+    "time": "t", "times": "t", "position": "x", "pos": "x", "velocity": "v", "vel": "v", "speed": "v", "force": "F", "f": "F",
+    "period": "T", "dt": "T", "names": "columns", "params": "parameters", "csv": "to_csv",
+}  # fmt: skip
+TO_PANDAS = ("to_pandas", "to_dataframe", "to_frame", "df", "dataframe")
 
 
 @dataclass(frozen=True)
@@ -160,6 +166,11 @@ class Telemetry:
         if name == "plot":
             raise AttributeError("a record has no .plot(); draw it: hl.plot(log), or what you name, hl.plot(log, 'x', 'v')")
         recorded = ", ".join(("t", "x", "v", "F", *channels))
+        if name in TO_PANDAS:
+            table = "pandas.DataFrame({name: getattr(log, name) for name in log.columns})"
+            raise AttributeError(f"a record has no {name}; {table} makes a table of it")
+        if name in MEANT:
+            raise AttributeError(f"a record has {MEANT[name]}, not {name}: log.{MEANT[name]}; it holds {recorded}")
         raise AttributeError(f"{name!r} was not recorded; this log has {recorded}. Watch it: hl.Scene(..., watch=[{name}])")
 
     def __dir__(self) -> list[str]:

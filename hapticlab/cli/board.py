@@ -59,8 +59,15 @@ def calibrate(parser, options):
     person = Person()
     _agree(options, person, "The motor will pull the handle by 0.5 N at first, by up to 2 N after its sign is checked.")
     with connect(options.port) as paddle:
+        _tell_notices(paddle)
         kept = calibrate_paddle(paddle, person, date=int(date.today().strftime("%Y%m%d")), only=options.only)
     return 0 if kept is not None else 1
+
+
+def _tell_notices(paddle):
+    """Print what the board went through before, if anything, where it hides no JSON."""
+    for sentence in paddle.notices:
+        print(sentence, file=sys.stderr)
 
 
 def run_on_board(file, options, **compiling):
@@ -73,6 +80,7 @@ def run_on_board(file, options, **compiling):
         _agree(options, Person(), moves)
         mechanics = file.paddle if _is_simulated(options.port) and isinstance(file.paddle, SimulatedPaddle) else None
         with connect(options.port, T=file.paddle.T, paddle=mechanics) as paddle:
+            _tell_notices(paddle)
             if mechanics is None:
                 print(f"The scene file's paddle is not used, but for its T = {paddle.T:g} s: {options.port} has its own.")
             log = paddle.run(file.scene, duration=file.duration, every=options.every, **compiling)

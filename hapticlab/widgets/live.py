@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 #: scene time over the clock's time
 SPEEDS = (1e-3, 10.0)
-RECORDED, REHEARSED = "recorded in the view", "rehearsal: nobody recorded here"
+RECORD = "press Start and then Record in the view, push, and press Stop recording"
 
 
 def live(
@@ -67,14 +67,14 @@ def live(
     show_force : bool
         False shows neither force nor energy: for experiments whose answer they would tell.
     rehearsal : Rehearsal
-        What the hand does for ``view.log`` where nobody recorded: ``hl.people.Rehearsal(intent=, duration=)``.
+        What the hand does for ``view.rehearsal``: ``hl.people.Rehearsal(intent=, duration=)``.
     **compile_options
         Of hapticlab.compile: method, substeps, hold, dtype, live.
 
     Returns
     -------
     LiveView
-        A notebook shows it where it is the last line of a cell; ``view.log`` is what was recorded.
+        A notebook shows it where it is the last line of a cell; ``view.log`` is what was recorded, None before.
 
     Raises
     ------
@@ -88,9 +88,9 @@ def live(
     >>> view.set(k=600)
     >>> print(view)
     live view of zoh wall: not on view; B = 0 N*s/m, k = 600 N/m, x_o = 0.01 m
-    >>> log = view.log
-    >>> print(view.log_from, len(log), round(float(log.F.max()), 1))
-    rehearsal: nobody recorded here 1000 1.1
+    >>> log = view.log or view.rehearsal
+    >>> print(view.log, len(log), round(float(log.F.max()), 1))
+    None 1000 1.1
     """
     check_scene(scene)
     low, high = SPEEDS
@@ -128,20 +128,17 @@ class LiveView:
 
     @property
     def log(self):
-        """What was recorded last; on a simulated paddle where nobody recorded, what a hand without a view does."""
-        recorded = self._session.recorded()
-        if recorded is not None:
-            return recorded
+        """The last recording; None where nobody has recorded yet. ``view.log or view.rehearsal`` needs nobody."""
+        return self._session.recorded()
+
+    @property
+    def rehearsal(self):
+        """What a simulated hand that nobody leads does with these parameters: the same record every time."""
         if self._session.source.kind == "board":
-            raise PaddleError("nothing was recorded: press Start and then Record in the view, push, and press Stop recording")
+            raise PaddleError(f"nothing was recorded, and a board has no rehearsal: {RECORD}")
         if self._rehearsed[0] != self.values:
             self._rehearsed = dict(self.values), self._rehearse()
         return self._rehearsed[1]
-
-    @property
-    def log_from(self):
-        """Where :attr:`log` comes from, in words."""
-        return REHEARSED if self._session.recorded() is None else RECORDED
 
     def set(self, **values):
         """Set parameters from the next tick on, as sliders do; what is out of range is refused."""
@@ -173,13 +170,13 @@ class LiveView:
 
     def save(self, path):
         """Write :attr:`log` to a file and return its path; ``hl.records.Telemetry.load`` reads it."""
-        return self.log.save(path)
+        return self._recorded().save(path)
 
     def replay(self, log=None):
         """Play a log in the view, the last one recorded by default; a board's motor is off meanwhile."""
         if log is not None and not isinstance(log, Telemetry):
             raise PaddleError(f"replay of a {type(log).__name__}; needs a record: view.log, or hl.records.Telemetry.load(path)")
-        log = self.log if log is None else log
+        log = self._recorded() if log is None else log
         if not len(log):
             raise PaddleError("replay of a record without samples; record a while first, or give another one")
         self._session.pressed("replay", log)
@@ -187,6 +184,11 @@ class LiveView:
     def close(self):
         """End the view; a board's motor goes off."""
         self._session.end()
+
+    def _recorded(self):
+        if self.log is None:
+            raise PaddleError(f"nothing was recorded: {RECORD}; view.rehearsal is a record of a simulated hand")
+        return self.log
 
     def _by_hand(self, button):
         if self._session.source.kind == "board":

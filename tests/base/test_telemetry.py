@@ -79,6 +79,20 @@ def test_missing_channel_says_what_was_recorded():
     assert "z" in dir(make_log()) and not hasattr(make_log(), "w")
 
 
+@pytest.mark.parametrize(
+    "tried, meant", [("force", "F"), ("position", "x"), ("velocity", "v"), ("time", "t"), ("period", "T"), ("csv", "to_csv")]
+)
+def test_a_wrong_guess_names_the_right_one(tried, meant):
+    with pytest.raises(AttributeError, match=rf"a record has {meant}, not {tried}: log\.{meant}; it holds t, x, v, F, z, x_true"):
+        getattr(make_log(), tried)
+    assert hasattr(make_log(), meant)
+
+
+def test_a_table_of_pandas_is_a_line_away():
+    with pytest.raises(AttributeError, match=r"pandas\.DataFrame\(\{name: getattr\(log, name\) for name in log\.columns\}\)"):
+        make_log().to_pandas()
+
+
 def test_copies_and_pickles():
     for twin in (copy.deepcopy(make_log()), pickle.loads(pickle.dumps(make_log()))):
         assert np.array_equal(twin.z, make_log().z)

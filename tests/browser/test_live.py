@@ -153,7 +153,7 @@ def test_pause_record_replay_and_save_by_keyboard(page):
     picture(page, "live-2-recording")
     page.keyboard.press("r")
     until(page, ".hl-record", "● Record")
-    assert ask(page, "print(view.log_from)") == "recorded in the view"
+    assert ask(page, "print(view.log is not None)") == "True"
     page.keyboard.press("y")
     until(page, ".hl-replay", "Stop replay")
     until(page, ".hl-replay", "Replay")

@@ -538,9 +538,11 @@ def test_many_threads_may_say_what_they_like():
 def test_what_nobody_recorded_is_rehearsed_at_the_sliders_values():
     view = hl.live(PADDLE, WALL, rehearsal=hl.people.Rehearsal(duration=1.0))
     view.set(k=450)
-    log = view.log
-    assert view.log_from == "rehearsal: nobody recorded here"
-    assert log is view.log
+    log = view.rehearsal
+    assert view.log is None and log is view.rehearsal
+    for needs_a_record in (view.replay, lambda: view.save("view.npz")):
+        with pytest.raises(hl.errors.PaddleError, match="nothing was recorded: press Start .*; view.rehearsal is"):
+            needs_a_record()
     assert log.parameters["k"] == 450
     hand = hl.Hand("pinch", intent=view._rehearsal)
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=T, hand=hand)
@@ -548,12 +550,12 @@ def test_what_nobody_recorded_is_rehearsed_at_the_sliders_values():
     assert np.array_equal(log.F, again.F)
     assert log.intent.min() == pytest.approx(-0.015, abs=1e-4)
     view.set(k=100)
-    assert view.log.F.max() < log.F.max()
+    assert view.rehearsal.F.max() < log.F.max()
 
 
 def test_a_rehearsal_of_ones_own_begins_where_it_begins():
     view = hl.live(PADDLE, WALL, rehearsal=hl.people.Rehearsal(intent=lambda t: 0.012 + 0 * t, duration=0.1))
-    assert view.log.x[0] == np.float32(0.012)
+    assert view.rehearsal.x[0] == np.float32(0.012)
 
 
 def test_a_record_comes_before_a_rehearsal():
@@ -562,8 +564,7 @@ def test_a_record_comes_before_a_rehearsal():
     wait_for_frames(view._session, 4)
     view.close()
     view.stop_recording()
-    assert view.log_from == "recorded in the view"
-    assert "intent" in view.log.columns
+    assert "intent" in view.log.columns and view.log is not view.rehearsal
 
 
 def test_without_llvmlite_it_runs_too(monkeypatch):

@@ -310,8 +310,9 @@ def test_a_record_is_played_with_the_motor_off(board):
 
 def test_without_a_record_a_board_has_no_log(board):
     view = hl.live(board, WALL)
+    assert view.log is None
     with pytest.raises(hl.errors.PaddleError, match="press Start and then Record"):
-        view.log  # noqa: B018
+        view.rehearsal  # noqa: B018
 
 
 def test_a_board_has_no_slow_motion(board):

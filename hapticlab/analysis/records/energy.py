@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from ...base.guesses import Guessed
 from ...base.telemetry import check_record
 from ...errors import AnalysisError
 from ...limits.limit import whole_and_fraction
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Energy:
+class Energy(Guessed):
     """The work exchanged between the handle and the rendered environment.
 
     Attributes
@@ -32,6 +33,8 @@ class Energy:
     generated : float
         -W at the last sample without force after a contact [J]: what the completed penetrations generated. nan where the
         handle has not left the wall again.
+    absorbed : float
+        What they kept, -generated [J].
     extracted : float
         The most that was ever drawn, max(0, -min W) [J]; for a spring that started loaded this includes its load.
     contacts : int
@@ -40,12 +43,22 @@ class Energy:
         False where the force changed inside the periods and the position there was not recorded.
     """
 
+    MEANT: ClassVar[dict[str, str]] = {
+        "dissipated": "absorbed", "lost": "absorbed", "stored": "W", "work": "W", "energy": "W", "time": "t",
+        "drawn": "extracted", "peak": "extracted", "penetrations": "contacts", "total": "W",
+    }  # fmt: skip
+
     t: Array
     W: Array
     generated: float
     extracted: float
     contacts: int
     exact: bool
+
+    @property
+    def absorbed(self) -> float:
+        """What the completed penetrations kept of the handle's work [J]; negative where they generated energy."""
+        return -self.generated
 
     def plot(self) -> Figure:
         """Return a figure: the energy that the environment holds over time, and where it gave more than it took."""

@@ -84,6 +84,8 @@ class SerialPaddle(Paddle):
         What the board keeps; None where it was never calibrated.
     board : dict
         What the board said of itself: name, ident, sizes, clock, period range.
+    notices : tuple of str
+        What the board went through before: a reset, a fault that stood and was cleared. ``repr`` of a paddle has them.
 
     Examples
     --------
@@ -106,8 +108,7 @@ class SerialPaddle(Paddle):
             self.board = say_hello(self.exchange, url, hello)
             check_period(self.board, T)
             self.settings = read_settings(self.exchange)
-            for sentence in what_happened(self.exchange, url, self.board["reset_cause"]):
-                print(sentence)
+            self.notices = tuple(what_happened(self.exchange, url, self.board["reset_cause"]))
         except BaseException:
             self.exchange.close()
             raise
@@ -356,7 +357,7 @@ class SerialPaddle(Paddle):
         self.close()
 
     def __repr__(self) -> str:
-        return f"<SerialPaddle {self.url}: {self}>"
+        return "\n".join([f"<SerialPaddle {self.url}: {self}>", *self.notices])
 
     def __str__(self) -> str:
         return introduction(self.board, self.settings, self.T)

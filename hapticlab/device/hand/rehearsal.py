@@ -20,7 +20,7 @@ DURATIONS = (0.01, 600.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Rehearsal:
-    """What the hand does for ``view.log`` where nobody recorded.
+    """What the hand does for ``view.rehearsal``, where nobody recorded.
 
     Parameters
     ----------

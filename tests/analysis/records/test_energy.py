@@ -28,7 +28,7 @@ def test_a_uniform_push_leaks_the_area_between_the_staircases(inside, offset):
     x = in_and_out(inside, offset)
     found = energy(record(x, np.maximum(K * x, 0)))
     assert found.generated == pytest.approx(K * v * T * x.max(), abs=1e-12)
-    assert found.contacts == 1 and found.exact
+    assert found.contacts == 1 and found.exact and found.absorbed == -found.generated
     assert found.extracted >= found.generated - 1e-15
 
 
@@ -108,3 +108,11 @@ def test_words():
     assert str(energy(record(x, np.maximum(K * x, 0)))).startswith("1 penetration generated 0.3")
     with pytest.raises(AnalysisError, match="energy needs at least 2"):
         energy(record(np.zeros(1), np.zeros(1)))
+
+
+def test_a_wrong_guess_names_the_right_one():
+    x = in_and_out(7, 0.35)
+    found = energy(record(x, np.maximum(K * x, 0)))
+    for tried, meant in (("dissipated", "absorbed"), ("work", "W"), ("peak", "extracted"), ("absorb", "absorbed")):
+        with pytest.raises(AttributeError, match=f"Energy has no {tried}; take .{meant}; it has W, absorbed, contacts"):
+            getattr(found, tried)

@@ -219,6 +219,15 @@ def test_a_fault_that_nobody_cleared_is_told_and_no_obstacle_to_a_start(board, c
     assert "a fault stood: tick 0: MEMORY" in capsys.readouterr().out
 
 
+def test_a_connection_prints_nothing_and_says_what_the_board_went_through(monkeypatch, capsys):
+    happened = ["the board was reset by its watchdog", "a fault stood: MEMORY"]
+    monkeypatch.setattr("hapticlab.device.board.serial_paddle.what_happened", lambda *_: happened)
+    with hl.connect("sim://hapkit") as board:
+        assert capsys.readouterr().out == ""
+        assert board.notices == tuple(happened) and repr(board).splitlines()[1:] == happened
+        assert "MEMORY" not in str(board)
+
+
 def test_another_program_that_took_the_board_is_named(board):
     board.start(LEAN(k=10, push=0.1))
     board.wait(0.05)
