@@ -62,8 +62,9 @@ def number(
         reason = f": {why}" if why and not why.endswith(".") else ""
         form = f"a number in {unit}, or a text with its unit, as '2 {unit}'" if has_unit else "a number"
         raise error(f"{name} = {given!r}; {need}{reason}, as {form}")
+    why = why if finite else ""
     reason = why and (f". {why}" if why[0].isupper() else f": {why}")
-    raise error(f"{name} = {given}{f' {unit}' if has_unit else ''}; {need}{reason}")
+    raise error(f"{name} = {value:.12g}{f' {unit}' if has_unit else ''}; {need}{reason}")
 
 
 def numbers(record: Any, owner: str, *, error: type[HapticlabError] = AnalysisError, **rules: Any) -> None:

@@ -6,8 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from ..base.arguments import number
 from ..compiler.ir.program import Program
 from ..compiler.tick.compile_scene import compile
 from ..errors import PaddleError, ParameterError
@@ -16,6 +15,7 @@ from ..scene.scene import Scene
 from .port_mass_check import check_port_mass
 
 if TYPE_CHECKING:
+    from ..base.annotations import Number
     from ..base.telemetry import Telemetry
 
 
@@ -41,17 +41,18 @@ class Paddle(ABC):
         """Say where v(n) comes from."""
 
     @abstractmethod
-    def run(self, scene: Scene | Program, *, duration: float, **options: Any) -> Telemetry:
+    def run(self, scene: Scene | Program, duration: Number, **options: Any) -> Telemetry:
         """Run a scene or a program for a duration [s] and return its Telemetry."""
 
     @abstractmethod
     def __str__(self) -> str:
         """Say what the paddle is and where its constants come from."""
 
-    def ticks(self, duration: float) -> int:
+    def ticks(self, duration: Number | None) -> int:
         """Return the number of samples in a duration [s]."""
-        if not (isinstance(duration, (int, float, np.number)) and math.isfinite(duration / self.T) and duration > 0):
-            raise PaddleError(f"duration = {duration!r} s; needs a finite duration > 0 s.")
+        duration = number("duration", duration, "s", "a run", above=0, error=PaddleError)
+        if not math.isfinite(duration / self.T):
+            raise PaddleError(f"duration = {duration:g} s is more samples than numbers count; run less.")
         ticks = math.floor(duration / self.T + 0.5)
         if ticks < 1:
             raise PaddleError(f"duration = {duration:g} s; needs at least one period T = {self.T:g} s.")

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ..base.arguments import number
 from ..base.drawing import house_style, new_figure, scale_axis, style_of
-from ..device.hand.hand import Hand, require
+from ..device.hand.hand import Hand
 from ..errors import AnalysisError
 from .display_laws import Admittance, Impedance, display_motion, largest_stiffness
 from .paddle_needs import check_simulated
@@ -201,7 +202,7 @@ def compare_displays(
     [('impedance', 300, 0.05), ('admittance', 300, 0.2)]
     """
     check_simulated(paddle, "compare_displays")
-    m_v = require("m_v", m_v, "kg", "an admittance display", "It divides the force.", above=0)
+    m_v = number("m_v", m_v, "kg", "an admittance display", why="It divides the force.", above=0)
     stiffnesses = [float(k) for k in stiffnesses]
     if not stiffnesses or not all(0 < k < math.inf for k in stiffnesses):
         raise AnalysisError(f"stiffnesses = {stiffnesses}; needs some k > 0 N/m, each a finite number")

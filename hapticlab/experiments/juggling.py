@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.arguments import choice, numbers
+from ..base.arguments import choice, number, numbers
 from ..base.drawing import house_style, new_figure, style_of
 from ..base.telemetry import Telemetry
-from ..device.hand.hand import require
 from ..device.hand.reacting_hand import REACTION, Reacting
 from ..library.contacts import ball_on_the_paddle
 from .arm import Arm
@@ -189,7 +188,7 @@ def juggle(
     """
     hand = check_held(paddle, "juggle")
     choice("senses", senses, SENSES)
-    height = require("height", height, "m", "a juggler", above=0)
+    height = number("height", height, "m", "a juggler", above=0)
     scene = ball_on_the_paddle()(**{"m": 0.005, "M": 0.1, "K": 1000.0, "b_c": 10.0, "h": height, **values})
     if senses == "vision":
         scene = replace(scene, force=0 * scene.force, values=scene.values, name="ball that is not felt")

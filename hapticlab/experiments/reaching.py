@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 import numpy as np
 
-from ..base.arguments import choice, instance, numbers
+from ..base.arguments import choice, instance, number, numbers
 from ..base.drawing import house_style, new_figure, style_of
 from ..base.telemetry import Telemetry
-from ..device.hand.hand import UNITS, require
+from ..device.hand.hand import UNITS
 from ..device.hand.intents import Intent, MinimumJerk
 from ..device.hand.reacting_hand import REACTION, Reacting
 from ..errors import PaddleError
@@ -70,7 +70,7 @@ class Load:
 
     def __post_init__(self) -> None:
         for name in ("m", "b", "k"):
-            object.__setattr__(self, name, require(name, getattr(self, name), UNITS[name], "a load", low=0))
+            object.__setattr__(self, name, number(name, getattr(self, name), UNITS[name], "a load", least=0, error=PaddleError))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..analysis.records.energy import energy
+from ..base.arguments import number
 from ..base.drawing import house_style, new_figure, style_of
 from ..base.telemetry import Telemetry
-from ..device.hand.hand import require
 from ..device.hand.intents import Tremor
 from ..errors import PaddleError
 from ..scene.notation.symbols import n, parameters, x
@@ -137,7 +137,7 @@ def assistance(
     scenes = (scenes,) if isinstance(scenes, Scene) else scenes
     if not (tremor is None or callable(tremor)):
         raise PaddleError(f"tremor = {tremor!r}; needs a path of times in metres, as hl.people.Tremor(rms=3e-4).")
-    low, high = (require("band", edge, "Hz", "a tremor", above=0) for edge in band)
+    low, high = (number("band", edge, "Hz", "a tremor", above=0, error=PaddleError) for edge in band)
     tremor = Tremor(rms=3e-4) if tremor is None else tremor
     times = np.arange(paddle.ticks(record) + 1) * paddle.T
     intent = Anticipated(times, inverse_dynamics(hand, Load(m=paddle.m, b=paddle.b), path, times)) + tremor

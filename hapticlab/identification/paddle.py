@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ..base.arguments import number
 from ..device.board.serial_paddle import SerialPaddle
-from ..device.hand.hand import require
 from ..device.link.messages import MOTOR_LAWS
 from ..device.setup.force_fit import duty_of
 from ..errors import AnalysisError, PaddleError
@@ -98,7 +98,7 @@ def identify_paddle(
     if beside and not added:
         raise AnalysisError("beside= without added=: records with and without a known mass tell the force constant; give added=")
     force, travel = _limits(paddle, force, travel)
-    added = require("added", added, "kg", "an identification", low=0)
+    added = number("added", added, "kg", "an identification", least=0, error=PaddleError)
     pilot, size = _pilot(paddle, force, travel)
     per_metre = counts_per_metre_of(paddle)
     rough = identify(pilot, counts_per_metre=per_metre)
@@ -107,9 +107,9 @@ def identify_paddle(
     # friction holds a handle that was led back; without it, it may still drift
     rests = _rests(paddle) or rough["coulomb"].low > 0
     records = []
-    for number, kind in enumerate(kinds, 1):
+    for nth, kind in enumerate(kinds, 1):
         excited = designed(kind, size, paddle.T, travel, constants)
-        records.append(HandleRecord(_run(paddle, excited, force, travel, number), added=added, at_rest=rests))
+        records.append(HandleRecord(_run(paddle, excited, force, travel, nth), added=added, at_rest=rests))
     together = (*records, *beside)
     found = identify(*together, counts_per_metre=per_metre, force_constant=bool(beside), confidence=confidence, near=rough)
     return Identified(**vars(found), records=tuple(records))
@@ -124,8 +124,8 @@ def _limits(paddle, force, travel):
         usual = min(settings.force_continuous, settings.force_max), 0.8 * min(-settings.travel_min, settings.travel_max)
     else:
         usual = paddle.force_max or FORCE, TRAVEL
-    force = require("force", usual[0] if force is None else force, "N", "an identification", above=0)
-    return force, require("travel", usual[1] if travel is None else travel, "m", "an identification", above=0)
+    force = number("force", usual[0] if force is None else force, "N", "an identification", above=0, error=PaddleError)
+    return force, number("travel", usual[1] if travel is None else travel, "m", "an identification", above=0, error=PaddleError)
 
 
 def counts_per_metre_of(paddle):

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
+from ..base.arguments import number
 from ..device.board.serial_paddle import SerialPaddle
-from ..device.hand.hand import require
 from ..errors import PaddleError
 from ..measurement.leash import leashed
 from ..measurement.trials import speed_limit
@@ -45,7 +45,7 @@ def push_hand(paddle: SimulatedPaddle | SerialPaddle, *, force: float = FORCE, p
     PaddleError
         Where nothing brings the handle back, and where it went too far or too fast.
     """
-    force, T = require("force", force, "N", "a push", above=0), paddle.T
+    force, T = number("force", force, "N", "a push", above=0, error=PaddleError), paddle.T
     if not isinstance(pushes, (int, np.integer)) or isinstance(pushes, bool) or pushes < 1:
         raise PaddleError(f"pushes = {pushes!r}; identify_hand needs a whole number >= 1.")
     if isinstance(paddle, SerialPaddle):

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import inspect
-import math
 import weakref
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.arguments import instance
+from ..base.arguments import instance, number
 from ..base.telemetry import Telemetry
 from ..compiler.tick.compile_scene import compile
 from ..device.board.serial_paddle import SerialPaddle
@@ -93,12 +92,11 @@ def live(
     None 1000 1.1
     """
     check_scene(scene)
-    low, high = SPEEDS
-    time_scale = _between("time_scale", time_scale, low, high, "", "1 is real time, 0.1 slow motion.")
+    slowest, fastest = SPEEDS
+    why = "1 is real time, 0.1 slow motion"
+    time_scale = number("time_scale", time_scale, "", "a live view", least=slowest, most=fastest, why=why, error=PaddleError)
     if time_scale != 1 and isinstance(paddle, SerialPaddle):
-        raise PaddleError(
-            f"time_scale = {time_scale:g}; a board runs in real time: leave time_scale out, or take a SimulatedPaddle."
-        )
+        raise PaddleError(f"time_scale = {time_scale:g}; a board runs in real time: leave it out, or take a SimulatedPaddle.")
     instance("rehearsal", rehearsal, Rehearsal, "hl.people.Rehearsal(intent=..., duration=...)", error=PaddleError)
     _check_options(compile_options)
     looks = {"sliders": sliders, "speed": time_scale, "picture": picture, "show_force": show_force}
@@ -216,17 +214,6 @@ class LiveView:
         if isinstance(bundle, tuple):
             return {**bundle[0], "text/plain": text}, bundle[1]
         return {**(bundle or {}), "text/plain": text}
-
-
-def _between(name, value, low, high, unit, why):
-    """Return value as a float, or raise PaddleError, in words, unless it is a number between low and high."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        number = math.nan
-    if not low <= number <= high:
-        raise PaddleError(f"{name} = {value!r}; a live view needs a number, {low:g} to {high:g}{unit}. {why}")
-    return number
 
 
 def _check_options(options):

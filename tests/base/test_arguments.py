@@ -21,7 +21,7 @@ def test_numbers_of_any_library_pass_as_floats(given):
     ("given", "limits", "sentence"),
     [
         (-1, {"least": 0}, "b = -1 N s/m; a device needs b >= 0"),
-        (0.0, {"above": 0}, "b = 0.0 N s/m; a device needs b > 0"),
+        (0.0, {"above": 0}, "b = 0 N s/m; a device needs b > 0"),
         (math.nan, {}, "b = nan N s/m; a device needs a finite b"),
         (math.inf, {"least": 0}, "b = inf N s/m; a device needs b >= 0 and finite"),
         ("soft", {"least": 0}, "b = 'soft'; a device needs b >= 0, as a number in N s/m, or a text with its unit, as '2 N s/m'"),

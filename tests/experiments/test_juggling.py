@@ -165,5 +165,5 @@ def test_who_cannot_juggle_is_told():
         juggle(replace(PADDLE, hand=None))
     with pytest.raises(AnalysisError, match="vision, touch, both, none"):
         juggle(PADDLE, senses="smell")
-    with pytest.raises(PaddleError, match="height"):
+    with pytest.raises(AnalysisError, match="height"):
         juggle(PADDLE, height=-0.1)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ...base.arguments import choice
+from ...base.arguments import choice, number
 from ...base.units import in_si
 from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.prune.constraint_lengths import held
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ...base.annotations import Array, File
+    from ...base.annotations import Array, File, Number
     from ...device.simulated.simulated_paddle import SimulatedPaddle
     from ...limits.limit import Limit
 
@@ -75,8 +75,8 @@ class Sweep:
 def sweep(
     scene: Scene,
     paddle: SimulatedPaddle,
+    duration: Number = 1.0,
     *,
-    duration: float = 1.0,
     metric: Literal["chatter", "growth", "contacts", "energy", "peak_force"] = "chatter",
     engine: Literal["auto", "llvm", "interpreter"] = "auto",
     progress: bool = True,
@@ -93,7 +93,7 @@ def sweep(
     ----------
     scene : Scene
     paddle : SimulatedPaddle
-    duration : float
+    duration : float or text
         [s]
     metric : {"chatter", "growth", "contacts", "energy", "peak_force"}
         ``chatter`` sustained or growing amplitude [m]: half the largest swing, from turning point to turning point, of the
@@ -148,6 +148,7 @@ def sweep(
     Sweep(energy [J] over k (50) x b (40), 0.1 s each)
     """
     choice("metric", metric, METRICS)
+    duration = number("duration", duration, "s", "a sweep", above=0)
     workers = number_of(workers)
     own = scene.parameters if isinstance(scene, Scene) else ()
     options = {name: values.pop(name) for name in OPTIONS if name in values and name not in own}

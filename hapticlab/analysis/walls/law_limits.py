@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ...base.arguments import number
 from ...base.drawing import COLD, house_style, new_figure, scale_axis
-from ...device.hand.hand import Hand, require
+from ...device.hand.hand import Hand
 from ...errors import AnalysisError, HapticlabError
 from ...rendering.wall_laws import LAWS, RENDERING, Rendering, wall_law
 from ..records.chatter import SHORTEST, chatter
@@ -145,6 +146,9 @@ def law_limits(
     True
     """
     laws = (laws,) if isinstance(laws, str) else tuple(laws)
+    push = number("push", push, "N", "law_limits", above=0)
+    duration = number("duration", duration, "s", "law_limits", above=0)
+    first, most = number("first", first, "N/m"), number("most", most, "N/m")
     _check(paddle, laws, push, first, most, duration)
     hand = paddle.hand or Hand()
     pushed = replace(paddle, hand=replace(hand, push=hand.push + push))
@@ -157,8 +161,6 @@ def _check(paddle, laws, push, first, most, duration):
     unknown = [law for law in laws if law not in LAWS]
     if unknown or not laws:
         raise AnalysisError(f"law_limits: laws = {unknown or laws}; needs one or more of {', '.join(LAWS)}")
-    push, duration = (require(name, value, unit, "law_limits", above=0) for name, value, unit in (
-        ("push", push, "N"), ("duration", duration, "s")))  # fmt: skip
     if paddle.force_max is not None and push >= paddle.force_max:
         raise AnalysisError(
             f"law_limits: push = {push:g} N, and the motor gives no more than force_max = {paddle.force_max:g} N: no wall "

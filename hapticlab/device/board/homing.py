@@ -1,7 +1,7 @@
 """Where the handle is: a board forgets with every reset, and gives no force until it knows."""
 
+from ...base.arguments import number
 from ...errors import PaddleError
-from ..hand.hand import require
 from ..link.messages import FLAGS
 
 LOOK_AGAIN = 0.05  # [s]
@@ -22,7 +22,7 @@ def home(exchange, settings, at=None, timeout=60.0):
     if settings is None:
         raise PaddleError("the board has no calibration, so its stops tell nothing: run `hapticlab calibrate` first.")
     if at is not None:
-        at = require("at", at, "m", "a position")
+        at = number("at", at, "m", "a position", error=PaddleError)
         if not settings.travel_min <= at <= settings.travel_max:
             raise PaddleError(
                 f"at = {at:g} m; the handle's travel is {settings.travel_min:g} to {settings.travel_max:g} m. "
@@ -35,6 +35,7 @@ def home(exchange, settings, at=None, timeout=60.0):
         exchange.command("HOME", 0.0)
         return
     print("Lead the handle slowly to one stop, then to the other, and back: the board finds its position.")
+    timeout = number("timeout", timeout, "s", least=0, error=PaddleError)
     deadline = exchange.now() + timeout
     while exchange.now() < deadline:
         if state_flag(exchange, "HOMED"):

@@ -8,13 +8,13 @@ import weakref
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
+from ...base.arguments import number
 from ...compiler.boards.board_fit import fit
 from ...compiler.boards.cost import BOARDS, cost
 from ...compiler.engines.bytecode import encode
 from ...compiler.ir.program import Program
 from ...errors import HapticlabError, LinkError, PaddleError, PortError
 from ..device import Device
-from ..hand.hand import require
 from ..link.exchange import Exchange
 from ..link.messages import OPTIONS, SENSORS, STATES, TARGETS
 from ..link.serial_ports import open_port
@@ -29,6 +29,7 @@ from .upload import STORE_PATIENCE, check_period, check_room, read_settings, upl
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from ...base.annotations import Number
     from ...base.telemetry import Telemetry
     from ...compiler.boards.cost import Cost
     from ...scene.scene import Scene
@@ -93,20 +94,20 @@ class SerialPaddle(Paddle):
     >>> x_o, k = hl.parameters("x_o k", units="m N/m")
     >>> wall = hl.Scene(force=hl.when(hl.x(hl.n) >= x_o, k * (hl.x(hl.n) - x_o)), name="wall")
     >>> with hl.connect("sim://hapkit") as paddle:
-    ...     log = paddle.run(wall(k=150, x_o=0.01), duration=0.1)
+    ...     log = paddle.run(wall(k=150, x_o=0.01), 0.1)
     >>> len(log), log.fault
     (100, None)
     """
 
-    def __init__(self, url: str, *, T: float = 1e-3, port: Any = None, hello: float = 3.0) -> None:
-        self.url, self.T = url, require("T", T, "s", "a paddle", above=0)
+    def __init__(self, url: str, *, T: Number = 1e-3, port: Any = None, hello: Number = 3.0) -> None:
+        self.url, self.T = url, number("T", T, "s", "a paddle", above=0, error=PaddleError)
         self.exchange = Exchange(open_port(url) if port is None else port)
         self._loaded: Loaded | None = None  # what is on the board
         self._run: Run | None = None  # what runs, or waits to be told
         self._lock = threading.RLock()  # two threads: what the board has last is what is known here
         try:
-            self.board = say_hello(self.exchange, url, hello)
-            check_period(self.board, T)
+            self.board = say_hello(self.exchange, url, number("hello", hello, "s", least=0, error=PaddleError))
+            check_period(self.board, self.T)
             self.settings = read_settings(self.exchange)
             self.notices = tuple(what_happened(self.exchange, url, self.board["reset_cause"]))
         except BaseException:
@@ -131,8 +132,8 @@ class SerialPaddle(Paddle):
     def run(
         self,
         scene: Scene | Program | None = None,
+        duration: Number | None = None,
         *,
-        duration: float,
         x: None = None,
         v: None = None,
         progress: bool = True,
@@ -144,8 +145,8 @@ class SerialPaddle(Paddle):
         ----------
         scene : Scene, Program or None
             None runs what is on the board again, with the parameters it has.
-        duration : float
-            [s]; rounded to whole samples.
+        duration : float or text
+            [s], as 2.0 or "2 s"; rounded to whole samples.
         x, v : None
             A real handle is where it is; a start can be given to a simulated paddle alone.
         progress : bool
@@ -175,7 +176,7 @@ class SerialPaddle(Paddle):
         scene: Scene | Program | None = None,
         *,
         every: int | None = None,
-        force_max: float = math.inf,
+        force_max: Number = math.inf,
         passive: bool = False,
         check_fit: bool = True,
         **options: Any,
@@ -200,7 +201,8 @@ class SerialPaddle(Paddle):
             With the share of the period it would take, and the rate, method or law that would fit.
         """
         if force_max != math.inf:
-            force_max = require("force_max", force_max, "N", "a run", "passive=True runs with the motor off.", low=0)
+            why = "passive=True runs with the motor off."
+            force_max = number("force_max", force_max, "N", "a run", why=why, least=0, error=PaddleError)
         with guarded(self.abandon):
             program = self.fitted(scene, every, check_fit, options)
             if not passive:
@@ -228,7 +230,7 @@ class SerialPaddle(Paddle):
             if self._run is not None:
                 self._run.changes.append(((tick + 1) * self.T, numbers))
 
-    def wait(self, seconds: float) -> None:
+    def wait(self, seconds: Number) -> None:
         """Let the scene run for so many seconds of the board's time, or until a fault, which is told.
 
         Interrupted, it switches the motor off; :meth:`stop` returns what was recorded until then.
@@ -259,7 +261,7 @@ class SerialPaddle(Paddle):
             self.exchange.beating = False  # what ran had ended
             print(sentence)
 
-    def home(self, at: float | None = None, *, timeout: float = 60.0) -> None:
+    def home(self, at: Number | None = None, *, timeout: Number = 60.0) -> None:
         """Tell the board where the handle is; it forgets with every reset, and gives no force until it knows.
 
         Parameters

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.arguments import number
 from ...errors import PaddleError
 from .hand_presets import PRESETS, HandPreset
 
 if TYPE_CHECKING:
-    from ...base.annotations import Array
+    from ...base.annotations import Array, Number
 
 _NOTHING = HandPreset(0.0, 0.0, 0.0, "", "")
 UNITS = {"m": "kg", "b": "N s/m", "k": "N/m", "push": "N", "noise": "N"}
@@ -40,18 +40,18 @@ class Hand:
         Times as firm as the preset, > 0. A firmer grip stiffens and damps and leaves the mass as it is (found for a pinched
         knob by Hasser and Cutkosky, 2002). Here stiffness and damping both grow in proportion to ``grip``: the simplest law
         of that kind, fitted to nobody. Identify your own hand where it matters.
-    m : float
+    m : float or text
         Mass [kg], m >= 0.
-    b : float
+    b : float or text
         Damping [N s/m], b >= 0.
-    k : float
+    k : float or text
         Stiffness [N/m], k >= 0.
-    push : float
+    push : float or text
         Constant force on the handle [N], positive into the wall.
-    intent : None, float or callable, optional
+    intent : None, float, text or callable, optional
         Where the hand means to be [m]: a place, or a function of an array of times [s] that returns as many positions
         [m]. It is sampled at the ticks and linear in between. It acts through k or b.
-    noise : float
+    noise : float or text
         Standard deviation of a white Gaussian force beside the push [N], held over each sample; the paddle's seed draws it.
 
     Raises
@@ -81,16 +81,17 @@ class Hand:
         preset: str | None = None,
         *,
         grip: float = 1.0,
-        m: float | None = None,
-        b: float | None = None,
-        k: float | None = None,
-        push: float = 0.0,
-        intent: float | Callable[..., Any] | None = None,
-        noise: float = 0.0,
+        m: Number | None = None,
+        b: Number | None = None,
+        k: Number | None = None,
+        push: Number = 0.0,
+        intent: Number | Callable[..., Any] | None = None,
+        noise: Number = 0.0,
     ) -> None:
         if preset is not None and preset not in PRESETS:
             raise PaddleError(f"no hand {preset!r}; there are {', '.join(PRESETS)}. Others: hl.Hand(m=..., b=..., k=...)")
-        grip = require("grip", grip, "times the preset's", "a hand", "It is the firmness beside the preset's.", above=0)
+        why = "It is the firmness beside the preset's."
+        grip = number("grip", grip, "", "a hand", above=0, why=why, error=PaddleError)
         if preset is None and grip != 1:
             raise PaddleError(f"grip = {grip:g}: it makes a preset firmer, as in hl.Hand('pinch', grip=2); give b and k instead")
         known = PRESETS[preset] if preset is not None else _NOTHING
@@ -102,13 +103,13 @@ class Hand:
 
     def _check(self) -> None:
         for name, reason in _REASONS.items():
-            number = require(name, getattr(self, name), UNITS[name], "a hand", reason, low=0)
-            object.__setattr__(self, name, number)
-        object.__setattr__(self, "push", require("push", self.push, "N", "a hand"))
+            value = number(name, getattr(self, name), UNITS[name], "a hand", least=0, why=reason, error=PaddleError)
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "push", number("push", self.push, "N", "a hand", error=PaddleError))
         if self.intent is None:
             return
         if not self.moves:
-            object.__setattr__(self, "intent", require("intent", self.intent, "m", "a hand"))
+            object.__setattr__(self, "intent", number("intent", self.intent, "m", "a hand", error=PaddleError))
         if self.k == 0 and self.b == 0:
             raise PaddleError(
                 "intent without k or b: an intended place acts through the hand's spring or damper. "
@@ -143,18 +144,3 @@ class Hand:
         elif self.intent is not None:
             parts.append(f"intent = {self.intent:g} m")
         return ", ".join(parts) or "nothing"
-
-
-def require(name, value, unit, owner, reason="", low=-math.inf, above=None):
-    """Return value as a float, or raise PaddleError, in words, unless it is finite and >= low (and > above)."""
-    unit = f" {unit}"
-    bound = f"{name} >= {low:g}" if low > -math.inf else f"a finite {name}"
-    bound = bound if above is None else f"{name} > {above:g}"
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise PaddleError(f"{name} = {value!r}; {owner} needs {bound}, a number in{unit}.") from None
-    if not math.isfinite(number) or number < low or (above is not None and number <= above):
-        reason = reason if math.isfinite(number) else "It must be finite."
-        raise PaddleError(f"{name} = {number:g}{unit}; {owner} needs {bound}. {reason}".rstrip())
-    return number

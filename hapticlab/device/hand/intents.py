@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.arguments import number
 from ...errors import PaddleError
-from .hand import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike
 
-    from ...base.annotations import Array
+    from ...base.annotations import Array, Number
 
 
 class Intent:
@@ -73,9 +73,13 @@ class MinimumJerk(Intent):
     duration: float
     begin: float = 0.0
 
+    if TYPE_CHECKING:  # it takes texts and keeps floats
+
+        def __init__(self, *, start: Number = 0.0, end: Number, duration: Number, begin: Number = 0.0) -> None: ...
+
     def __post_init__(self) -> None:
         for name, unit, low in (("start", "m", None), ("end", "m", None), ("begin", "s", None), ("duration", "s", 0)):
-            object.__setattr__(self, name, require(name, getattr(self, name), unit, "a reach", above=low))
+            object.__setattr__(self, name, number(name, getattr(self, name), unit, "a reach", above=low, error=PaddleError))
 
     def _phase(self, t):
         return np.clip((np.asarray(t, float) - self.begin) / self.duration, 0.0, 1.0)
@@ -125,10 +129,15 @@ class Tremor(Intent):
     frequencies: np.ndarray = field(init=False, repr=False, compare=False)
     phases: np.ndarray = field(init=False, repr=False, compare=False)
 
+    if TYPE_CHECKING:  # it takes texts and keeps floats
+
+        def __init__(self, *, rms: Number, low: Number = 8.0, high: Number = 12.0, lines: int = 40, seed: int = 0) -> None: ...
+
     def __post_init__(self) -> None:
         for name, unit, low in (("rms", "m", 0), ("low", "Hz", 0), ("high", "Hz", 0)):
-            object.__setattr__(self, name, require(name, getattr(self, name), unit, "a tremor", low=low))
-        require("high", self.high, "Hz", "a band of tremor", "It is the upper edge.", above=max(self.low, 0.0))
+            object.__setattr__(self, name, number(name, getattr(self, name), unit, "a tremor", least=low, error=PaddleError))
+        why = "It is the upper edge."
+        number("high", self.high, "Hz", "a band of tremor", above=self.low, why=why, error=PaddleError)
         if not isinstance(self.lines, int) or self.lines < 1:
             raise PaddleError(f"lines = {self.lines!r}; a tremor needs a whole number of sinusoids >= 1.")
         draw = np.random.default_rng([self.seed, 0x7E])

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.arguments import number
 from ...errors import PaddleError
-from .hand import require
 from .intents import Intent, Together
 
 if TYPE_CHECKING:
     from typing import NoReturn
 
-    from ...base.annotations import Array
+    from ...base.annotations import Array, Number
 
 #: between a signal and the press of a button it tells of, Section 23.3.3 [s]
 REACTION = 0.18
@@ -84,12 +84,24 @@ class Reacting(Intent):
     start: float = 0.0
     beside: Callable[..., Any] | None = None
 
+    if TYPE_CHECKING:  # it takes texts and keeps floats
+
+        def __init__(
+            self,
+            *,
+            plan: Callable[..., float],
+            reaction: Number = REACTION,
+            interval: Number = 0.01,
+            start: Number = 0.0,
+            beside: Callable[..., Any] | None = None,
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         if not callable(self.plan):
             raise PaddleError(f"plan = {self.plan!r}; needs a function plan(t, seen, intent) that returns an intent [m].")
-        object.__setattr__(self, "reaction", require("reaction", self.reaction, "s", "a person", low=0))
-        object.__setattr__(self, "interval", require("interval", self.interval, "s", "a person", above=0))
-        object.__setattr__(self, "start", require("start", self.start, "m", "a hand"))
+        object.__setattr__(self, "reaction", number("reaction", self.reaction, "s", "a person", least=0, error=PaddleError))
+        object.__setattr__(self, "interval", number("interval", self.interval, "s", "a person", above=0, error=PaddleError))
+        object.__setattr__(self, "start", number("start", self.start, "m", "a hand", error=PaddleError))
 
     def __call__(self, t: Any) -> NoReturn:
         raise PaddleError(

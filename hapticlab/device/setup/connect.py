@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from typing import TYPE_CHECKING
 
+from ...base.arguments import number
 from ...errors import LinkError, PaddleError, PortError
 from ..board.serial_paddle import SerialPaddle
 from ..link.serial_ports import available_ports, open_port
 from ..simulated.simulated_paddle import SimulatedPaddle
 
+if TYPE_CHECKING:
+    from ...base.annotations import Number
+
 
 def connect(
-    port: str | None = None, *, T: float | None = None, paddle: SimulatedPaddle | None = None, hello: float = 3.0
+    port: str | None = None, *, T: Number | None = None, paddle: SimulatedPaddle | None = None, hello: Number = 3.0
 ) -> SerialPaddle:
     """Connect to a paddle and return it; use it in a ``with``, which leaves the motor off whatever happens.
 
@@ -20,11 +25,11 @@ def connect(
     port : str, optional
         ``COM3``, ``/dev/ttyACM0``, ``sim://hapkit``, ``socket://host:port``, any URL of pyserial. Without it the ports
         whose USB numbers are of a known kind of board are asked, and only one that answers as a paddle is taken.
-    T : float, optional
+    T : float or text, optional
         Sampling period [s], whole microseconds within the board's range; 1 ms, or that of ``paddle``.
     paddle : SimulatedPaddle, optional
         The mechanics behind a ``sim://`` port.
-    hello : float
+    hello : float or text
         How long a board may take to answer, from reset [s].
 
     Returns
@@ -45,6 +50,7 @@ def connect(
     """
     if paddle is not None and not isinstance(paddle, SimulatedPaddle):
         raise PaddleError(f"paddle = {paddle!r}; needs a SimulatedPaddle, the mechanics of a simulated board.")
+    T = T if T is None else number("T", T, "s", "a paddle", above=0, error=PaddleError)
     if paddle is not None and T not in (None, paddle.T):
         raise PaddleError(f"T = {T} s, and the paddle has T = {paddle.T:g} s; give one of them.")
     T = T if T is not None else paddle.T if paddle is not None else 1e-3

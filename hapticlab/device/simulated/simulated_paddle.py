@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.arguments import number
 from ...base.telemetry import PaddleProfile, Telemetry
 from ...errors import PaddleError
-from ..hand.hand import Hand, require
+from ..hand.hand import Hand
 from ..hand.reacting_hand import Reacting, run_reacting
 from ..paddle import Paddle
 from ..profiles import profile as named_profile
@@ -22,7 +23,7 @@ from .plant import delay_parts, dynamics, plant_of
 from .transition import smallest_mass
 
 if TYPE_CHECKING:
-    from ...base.annotations import Array
+    from ...base.annotations import Array, Number
     from ...compiler.ir.program import Program
     from ...scene.scene import Scene
 
@@ -55,27 +56,27 @@ class SimulatedPaddle(Paddle):
 
     Parameters
     ----------
-    m : float
+    m : float or text
         Mass at the handle [kg], m > 0.
-    b : float
+    b : float or text
         Viscous damping at the handle [N s/m], b >= 0.
-    T : float
+    T : float or text
         Sampling period [s], T > 0.
-    delay : float
+    delay : float or text
         Computational delay [s], delay >= 0, whole or not: the force computed from sample n is felt from n T + delay on.
-    counts_per_metre : float, optional
+    counts_per_metre : float or text, optional
         Encoder counts per metre [1/m]. The scene then sees counts/counts_per_metre, in its own precision, and v by
         backward difference. Without encoder and noise it sees x, and v exactly.
     rounding : {"floor", "nearest"}
         How a position becomes a count: floor(x c), or floor(x c + 1/2).
-    coulomb : float
+    coulomb : float or text
         Coulomb friction, static and kinetic alike [N], coulomb >= 0.
-    force_max : float, optional
+    force_max : float or text, optional
         The motor saturates at this magnitude [N].
     hand : Hand, optional
     seed : int
         Of the sensor's and the hand's noise; the same seed gives the same run.
-    noise : float
+    noise : float or text
         Standard deviation of white Gaussian noise on the sensed position [m], added before the encoder.
     profile : PaddleProfile, optional
         Where the constants come from; see :meth:`from_profile`.
@@ -110,11 +111,30 @@ class SimulatedPaddle(Paddle):
     noise: float = 0.0
     profile: PaddleProfile | None = None
 
+    if TYPE_CHECKING:  # it takes texts and keeps floats
+
+        def __init__(
+            self,
+            *,
+            m: Number,
+            b: Number,
+            T: Number,
+            delay: Number = 0.0,
+            counts_per_metre: Number | None = None,
+            rounding: str = "floor",
+            coulomb: Number = 0.0,
+            force_max: Number | None = None,
+            hand: Hand | None = None,
+            seed: int = 0,
+            noise: Number = 0.0,
+            profile: PaddleProfile | None = None,
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         for name, unit in _POSITIVE.items():
             self._take(name, unit, above=0)
         for name, (unit, reason) in _NOT_NEGATIVE.items():
-            self._take(name, unit, reason, low=0)
+            self._take(name, unit, reason, least=0)
         for name, unit in (("counts_per_metre", "1/m"), ("force_max", "N")):
             if getattr(self, name) is not None:
                 self._take(name, unit, "None leaves it out.", above=0)
@@ -137,7 +157,8 @@ class SimulatedPaddle(Paddle):
             raise PaddleError(f"seed = {self.seed!r}; needs a whole number >= 0.")
 
     def _take(self, name, unit, reason="", **bounds):
-        object.__setattr__(self, name, require(name, getattr(self, name), unit, "a paddle", reason, **bounds))
+        value = number(name, getattr(self, name), unit, "a paddle", why=reason, error=PaddleError, **bounds)
+        object.__setattr__(self, name, value)
 
     def _check_mass(self):
         M, b, k = dynamics(self)
@@ -175,9 +196,9 @@ class SimulatedPaddle(Paddle):
         encoder = self.rounding if self.counts_per_metre is not None else None
         return self.plant, encoder, self.noise > 0, self.force_max is not None
 
-    def plant_values(self, x: float = 0.0, v: float = 0.0) -> tuple[float, ...]:
+    def plant_values(self, x: Number = 0.0, v: Number = 0.0) -> tuple[float, ...]:
         """Return the values of the linked program's parameters after the scene's, for a start at x [m] with v [m/s]."""
-        start = require("x", x, "m", "a start"), require("v", v, "m/s", "a start")
+        start = number("x", x, "m", "a start", error=PaddleError), number("v", v, "m/s", "a start", error=PaddleError)
         return tuple(float(a) for a in (*device_values(self), *start))
 
     def inputs(self, ticks: int) -> Array:
@@ -199,10 +220,10 @@ class SimulatedPaddle(Paddle):
     def run(
         self,
         scene: Scene | Program,
+        duration: Number,
         *,
-        duration: float,
-        x: float = 0.0,
-        v: float = 0.0,
+        x: Number = 0.0,
+        v: Number = 0.0,
         engine: str = "auto",
         progress: bool = True,
         **options: Any,
@@ -212,9 +233,9 @@ class SimulatedPaddle(Paddle):
         Parameters
         ----------
         scene : Scene or Program
-        duration : float
-            [s]; rounded to whole samples.
-        x, v : float
+        duration : float or text
+            [s], as 2.0 or "2 s"; rounded to whole samples.
+        x, v : float or text
             Position [m] and velocity [m/s] at the first sample.
         engine : {"auto", "llvm", "interpreter"}
         progress : bool
@@ -233,7 +254,7 @@ class SimulatedPaddle(Paddle):
         ticks = self.ticks(duration)
         if ticks > LONGEST_RUN:
             raise PaddleError(
-                f"duration = {duration:g} s is {ticks:.3g} samples; a run keeps at most {LONGEST_RUN} "
+                f"duration = {ticks * self.T:g} s is {ticks:.3g} samples; a run keeps at most {LONGEST_RUN} "
                 f"({LONGEST_RUN * self.T:g} s here). Run less, or measure with hl.sweep, which keeps none."
             )
         program = self.program(scene, **options)

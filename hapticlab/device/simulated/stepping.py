@@ -64,7 +64,7 @@ class Stepping:
 
     def __init__(self, paddle, scene, *, x=0.0, v=0.0, engine="auto", **options):
         self.program = paddle.program(scene, **options)
-        self.paddle, self._engine, self._begin = with_grip(paddle), engine, (float(x), float(v))
+        self.paddle, self._engine, self._begin = with_grip(paddle), engine, paddle.plant_values(x, v)[-2:]
         self.held, self._loops, self.period = True, {}, self.paddle.T
         self.start()
 

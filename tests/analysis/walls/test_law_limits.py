@@ -45,7 +45,7 @@ def test_it_prints_and_draws(found):
         ({"push": -1.0}, "law_limits needs push > 0"),
         ({"laws": ["zohh"]}, r"laws = \['zohh'\]; needs one or more of zoh"),
         ({"laws": []}, "needs one or more of zoh"),
-        ({"first": 0}, "first = 0 N/m.*needs 0 < first <= most"),
+        ({"first": 0}, "first = 0.0 N/m.*needs 0 < first <= most"),
         ({"first": 10.0, "most": 5.0}, "needs 0 < first <= most"),
         ({"duration": 0.01}, "duration = 0.01 s is 10 samples; needs 32"),
         ({"push": 0.2, "force_max": 0.1}, "no wall holds it. Push less"),

@@ -107,7 +107,7 @@ def test_a_simulated_handle_that_starts_elsewhere_is_where_it_is():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: hl.connect("sim://hapkit", T="a"), "T = 'a'; a paddle needs T > 0, a number in s"),
+        (lambda: hl.connect("sim://hapkit", T="a"), "T = 'a'; a paddle needs T > 0, as a number in s"),
         (lambda: hl.connect("sim://hapkit", T=0), "T = 0 s; a paddle needs T > 0"),
         (lambda: hl.connect("sim://hapkit", T=1), "T = 1 s; this board does 5e-05 to 0.03 s: take T=0.03"),
         (lambda: hl.connect("sim://hapkit", paddle=5), "paddle = 5; needs a SimulatedPaddle"),
@@ -129,6 +129,9 @@ def test_a_paddle_brings_its_period_and_wrong_values_name_the_range():
         assert paddle.T == 2e-3 and repr(paddle).startswith("<SerialPaddle sim://hapkit: host 0000, firmware 1.0, T = 2 ms")
         with pytest.raises(PaddleError, match=r"at = 10 m; the handle's travel is -0.5 to 0.5 m"):
             paddle.home(at=10)
-        for wrong, words in ((-1, "force_max = -1 N; a run needs force_max >= 0"), ("2 N", "force_max = '2 N'; a run needs")):
+        for wrong, words in (
+            (-1, "force_max = -1 N; a run needs force_max >= 0"),
+            ("2 kN/m", "force_max = '2 kN/m'; needs a quantity in N"),
+        ):
             with pytest.raises(PaddleError, match=words):
                 paddle.start(hl.wall()(k=1, x_o=0), force_max=wrong)

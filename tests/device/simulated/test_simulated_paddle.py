@@ -22,7 +22,7 @@ NAN = float("nan")
     [
         ({"m": 0}, r"m = 0 kg; a paddle needs m > 0"),
         ({"m": -1}, r"m = -1 kg"),
-        ({"m": NAN}, r"m = nan kg; a paddle needs m > 0\. It must be finite"),
+        ({"m": NAN}, r"m = nan kg; a paddle needs m > 0 and finite"),
         ({"b": -0.1}, r"b = -0.1 N s/m; a paddle needs b >= 0\. A negative damper feeds energy"),
         ({"T": 0}, r"T = 0 s; a paddle needs T > 0"),
         ({"T": -1e-3}, r"T = -0.001 s"),
@@ -223,7 +223,7 @@ def test_what_belongs_to_the_paddle_or_to_no_run_is_refused(spring):
         paddle.run(spring(1.0), duration=1, engine="vm")
     with pytest.raises(PaddleError, match=r"is 1e\+303 samples; a run"):
         paddle.run(spring(1.0), duration=1e300)
-    with pytest.raises(PaddleError, match=r"duration = 1e\+308 s; needs a finite"):
+    with pytest.raises(PaddleError, match=r"duration = 1e\+308 s is more samples than"):
         paddle.run(spring(1.0), duration=1e308)
 
 
