@@ -71,7 +71,7 @@ def test_refusals():
 @pytest.mark.parametrize(
     ("taps", "T", "words"),
     [
-        ([100.0], 0, "T = 0.0 s"),
+        ([100.0], 0, "T = 0 s"),
         ([100.0], -1e-3, "T = -0.001 s"),
         ([np.nan, 1], T, "taps = .*finite numbers, 2 of them"),
         ([1.0, np.inf], T, "taps = .*finite numbers"),

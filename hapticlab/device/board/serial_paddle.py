@@ -185,7 +185,6 @@ class SerialPaddle(Paddle):
 
         Parameters
         ----------
-        scene : Scene, Program or None
         every : int, optional
             One sample in so many ticks is sent; by default as many as the link carries.
         force_max : float
