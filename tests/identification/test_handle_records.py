@@ -140,11 +140,25 @@ def test_a_handle_that_a_negative_damper_drives_is_refused(steps):
         hl.identify.step_response(replace(steps, x=x + noise))
 
 
-def test_a_record_that_leaves_constants_open_is_refused(steps):
-    """Three milliseconds of one push: any friction will do, with a smaller mass."""
-    early = Telemetry(T=1e-3, **{name: getattr(steps, name)[:26] for name in ("t", "x", "v", "F")})
-    with pytest.raises(AnalysisError, match="do not tell .* from each other, or at all. Record a kick, steps and a chirp"):
-        hl.identify.handle(early)
+@pytest.mark.parametrize("quantum", [0.0, 1 / COUNTS])
+def test_one_step_does_not_tell_mass_damping_and_friction_apart_and_a_second_size_does(quantum):
+    """(k m, k b, F + k (coulomb - F)) moves alike for every k while the force has one size and drives the handle."""
+    draws, counts = np.random.default_rng(0), 1 / quantum if quantum else None
+
+    def identified(F):
+        x = positions(F, 1e-3, m=0.03, b=0.3, coulomb=0.05, delay=0.7e-3, scale=1.0, push=0.0, x0=0.0, v0=0.0)
+        x = x + 6e-6 * draws.standard_normal(len(F))
+        x = np.floor(x / quantum) * quantum if quantum else x
+        log = Telemetry(t=np.arange(len(F)) * 1e-3, x=x, v=np.gradient(x, 1e-3), F=F, T=1e-3)
+        return hl.identify.step_response(log, counts_per_metre=counts)
+
+    samples = np.arange(150)
+    one = -0.3 * (samples >= 20)
+    with pytest.raises(
+        AnalysisError, match="do not tell m, b, coulomb from each other, or at all. Record a kick, steps and a chirp"
+    ):
+        identified(one)
+    check(identified(one - 0.2 * (samples >= 85)), part=0.1, m=0.03, b=0.3, coulomb=0.05)
 
 
 def test_a_profile_is_marked_as_measured_and_makes_a_paddle(found):
