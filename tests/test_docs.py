@@ -44,7 +44,7 @@ def run_page(path):
 def test_readme_python_runs(capsys):
     names = run_page("README.md")
     printed = capsys.readouterr().out
-    assert printed.startswith("growing") and "9.333 contacts/s" in printed
+    assert printed.startswith("growing") and "9.479 contacts/s" in printed
     assert "\n200 N/m" in printed  # 2 b/T of this paddle, Eq. (23.10)
     assert "\n200.067 N/m" in printed  # its eigenvalues: 2 b/T (1 + b T/(6 m)), within 1e-6
     (example,) = blocks("python", "README.md")

@@ -130,7 +130,7 @@ def _judged(paddle, log, place, buzz_max, last, noise):
     # what bounces or is clipped may decay onto a small chatter; what stays inside is nearly linear: it dies out
     clipped = log.saturated is not None and bool(np.any(log.saturated[half:]))
     nonlinear = clipped or found.levels_off or bool((x[half:] < place).any())
-    decays = found.state == "decaying" or (last and found.growth < -SURE * found.growth_error)
+    decays = found.state == "decaying" or (found.state != "chatter" and last and found.growth < -SURE * found.growth_error)
     if decays and not nonlinear:
         return True, "it dies out", *swing
     if found.state == "growing" or (last and found.state == "runaway"):
@@ -138,7 +138,7 @@ def _judged(paddle, log, place, buzz_max, last, noise):
     if not last:
         return None
     seconds = f"{log.t[-1]:.3g} s"
-    if found.locked:
+    if found.state == "chatter":
         return False, "it lasts", *swing
     ends = f"it decays, onto a cycle perhaps; still moving after {seconds}" if decays else f"no rest and no cycle in {seconds}"
     return None, ends, *swing

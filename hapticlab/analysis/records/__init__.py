@@ -2,5 +2,5 @@
 
 In: ``Telemetry``. Out: findings that print as sentences, arrays, figures.
 Read ``energy``, ``energy_books``, ``storage``, ``staircase`` and ``passivity_trace``; ``chatter`` with
-``chatter_signs`` and ``chatter_findings``; ``driven_motion``; ``plots`` and ``finding_plots``.
+``chatter_signs``, ``chatter_end`` and ``chatter_findings``; ``driven_motion``; ``plots`` and ``finding_plots``.
 """

@@ -10,8 +10,9 @@ import numpy as np
 
 from ...base.telemetry import check_record
 from ...errors import AnalysisError
+from .chatter_end import SWINGS, linear_trend, swings_of, verdict
 from .chatter_findings import Chatter
-from .chatter_signs import leaves_its_drive, levels_off, runs_away, scatter, upward_crossings
+from .chatter_signs import contact_rate, leaves_its_drive, levels_off, runs_away, scatter, upward_crossings
 from .driven_motion import drive_of, following
 
 if TYPE_CHECKING:
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
 
 #: amplitudes of the last two quarters within this ratio count as one sustained oscillation
 LOCK = 0.01
+#: swings of fewer samples than this are known too badly to be fitted
+COARSE = 3
+#: a trend of a linear motion is told from none where it exceeds its error by this
+SURE = 5.0
 #: fewer cycles in a quarter of the record than this do not tell a sustained oscillation from a growing one
 CYCLES = 3
 #: swings that differ by less are the same, turning points being located between samples
@@ -96,7 +101,7 @@ def _found(log, driven):
     if not (np.isfinite(x).all() and np.isfinite(F).all()):
         raise AnalysisError(f"the record holds values that are not finite; fault: {log.fault or 'none recorded'}")
     half, quarter = len(t) // 2, len(t) // 4
-    contacts = float(np.count_nonzero((F[-half:][1:] != 0) & (F[-half:][:-1] == 0)) / (half * log.T))
+    contacts = contact_rate(F[-half:], log.T)
     rest, travel = float(x[-quarter:].mean()), float(np.ptp(x[-quarter:]))
     least = max(1e-9, 1e-6 * np.ptp(x), 4 * np.finfo(np.float32).eps * abs(x).max())
     size, quarter_before = 0.0, slice(-2 * quarter, -quarter)
@@ -123,19 +128,48 @@ def _found(log, driven):
         return still("none", noise)
     crossings = upward_crossings(y) * log.T
     frequency = float((len(crossings) - 1) / (crossings[-1] - crossings[0])) if len(crossings) > 1 else None
+    clipped = bool(log.saturated is not None and np.any(log.saturated[-half:]))
+    uneven, ends = math.nan, None
     if len(crossings) > 2 * CYCLES:
         ratio = math.log(_strength(x[-quarter:]) / max(_strength(x[quarter_before]), least * 1e-3))
         uneven = _irregularity(y)
-        locked = abs(ratio) < LOCK or (abs(ratio) < 2 * uneven and not _sinks_to_counts(y, log.x[-half:]))
+        locked = abs(ratio) < LOCK or abs(ratio) < 2 * uneven
         state = "chatter" if locked else "growing" if ratio > 0 else "decaying"
+        if _sinks_to_counts(y, log.x[-half:]):
+            state, locked = ("chatter", True) if abs(ratio) < LOCK else ("growing" if ratio > 0 else "decaying", False)
     else:
-        (state, ratio), locked, uneven = _compare_swings(x, quarter), False, math.nan
+        (state, ratio), locked = _compare_swings(x, quarter), False
+    if driven is None:
+        state, locked, ends = _of_the_wall(state, locked, x[-half:], F[-half:], log, clipped)
     dither, amplitude = len(np.unique(log.x[-half:])) == 2, float(np.ptp(y) / 2)
     period = cycle_length(x[-half:], amplitude) if locked else None
     growth, error = ratio / (quarter * log.T), uneven / (quarter * log.T)
-    clipped = log.saturated is not None and np.any(log.saturated[-half:])
-    slower = state == "decaying" and bool(clipped or levels_off(_amplitudes(x[-half:], y, len(crossings))))
-    return Chatter(state, amplitude, frequency, contacts, growth, locked, dither, rest, travel, period, size, error, 0.0, slower)
+    slower = state == "decaying" and (clipped or levels_off(_amplitudes(x[-half:], y, len(crossings)))) and ends is None
+    longer = 2 * len(t) * log.T if state == "undecided" else None
+    found = (period, size, error, 0.0, slower, ends, longer)
+    return Chatter(state, amplitude, frequency, contacts, growth, locked, dither, rest, travel, *found)
+
+
+def _of_the_wall(state, locked, x, F, log, clipped):
+    """The state, whether it has settled, and the amplitudes between which it ends, by what the force does to the swing.
+
+    Where the handle leaves the wall, or the motor is at its limit, the swings are fitted. Where the force is linear there
+    is no cycle, and what does not grow dies out, however slowly.
+    """
+    outside = np.flatnonzero(F == 0)
+    bounces = len(outside) > 0 and np.any(F) and outside[-1] >= len(F) // 2
+    if _sinks_to_counts(_around_trend(x)[0], log.x[-len(x) :]) or not (bounces or clipped):
+        inside = slice(outside[-1] + 1 if len(outside) else 0, None)
+        if locked and abs(trend := linear_trend(x[inside], F[inside])) > SURE:
+            state, locked = ("growing" if trend > 0 else "decaying"), False
+        return state, locked, None
+    at, swings = swings_of(x)
+    if state == "growing" or len(x) < COARSE * len(swings):
+        return state, locked, None
+    if len(swings) < SWINGS:
+        return "undecided", False, None
+    state, (low, high) = verdict(at * log.T, swings, x, F, clipped)
+    return state, locked and state == "chatter", (low / 2, high / 2)
 
 
 def _amplitudes(x, y, cycles):
@@ -143,7 +177,7 @@ def _amplitudes(x, y, cycles):
     size = len(y) // 4
     if cycles > 4 * CYCLES:
         return [_strength(y[i * size : (i + 1) * size]) for i in range(4)]
-    return _swings(x)[1]
+    return swings_of(x)[1]
 
 
 def _sinks_to_counts(y, sensed):
@@ -180,7 +214,7 @@ def decaying(largest, least_before, largest_before):
 
 def _compare_swings(x, quarter):
     """The state that a few swings show, and the logarithm of the ratio of the largest of the last two quarters."""
-    ends, swings = _swings(x)
+    ends, swings = swings_of(x)
     last = swings[ends >= len(x) - quarter]
     before = swings[(ends < len(x) - quarter) & (ends >= len(x) - 2 * quarter)]
     if not (len(last) and len(before)):
@@ -189,17 +223,6 @@ def _compare_swings(x, quarter):
     if decaying(last.max(), before.min(), before.max()):
         return "decaying", ratio
     return ("growing" if last.min() > (1 + SAME) * before.max() else "undecided"), ratio
-
-
-def _swings(x):
-    """Return where swings end, in samples, and how far each goes: from turning point to turning point."""
-    d = np.diff(x)
-    moving = np.flatnonzero(d)
-    turns = np.flatnonzero(d[moving[:-1]] * d[moving[1:]] < 0)
-    a, b = moving[turns], moving[turns + 1]
-    # the parabola through a turning point's three samples; a handle that stops for a while turns where it stands
-    peak = x[b] + np.where(b == a + 1, (d[b] + d[a]) ** 2 / (8 * (d[a] - d[b])), 0.0)
-    return b[1:], abs(np.diff(peak))
 
 
 def _reversals(x):

@@ -20,10 +20,10 @@ class Chatter:
     Attributes
     ----------
     state : {"none", "chatter", "growing", "decaying", "undecided", "driven", "runaway"}
-        "chatter" is a sustained limit cycle: the last two quarters agree within 1 %, or differ by less than its own
-        irregularity explains. Just inside a stability limit a decay can take 1e5 samples, so look at ``growth`` too.
-        "undecided": it oscillates, but with fewer than three cycles a quarter that neither all grow nor all decay; or it
-        turned round once in the last half and still moves, half a swing that may be a slow oscillation or none.
+        "chatter" is a sustained limit cycle: it has settled (``locked``), or it shrinks towards a cycle and not to rest.
+        "growing" ends in a cycle too, or in none; "decaying" dies out. "undecided": it oscillates, and the record does not
+        tell whether it lasts, as ``longer`` may; or it turned round once in the last half and still moves, half a swing
+        that may be a slow oscillation or none.
         "driven": it oscillates because, and as, what drives it does. "runaway": it does not turn round and becomes faster.
     amplitude : float
         Half the peak-to-peak of the handle's oscillation over the last half [m]; 0 where there is none. Without the part
@@ -35,7 +35,8 @@ class Chatter:
     growth : float
         Logarithm of the amplitude's ratio between the last two quarters, per second [1/s]; nan where one has no swing.
     locked : bool
-        True for a sustained oscillation alone.
+        True for a sustained oscillation that has settled: its last quarters agree within 1 %, or differ by less than its
+        own irregularity explains.
     dither : bool
         The sensed position takes two neighbouring values and no other: one encoder count.
     rest : float
@@ -53,6 +54,11 @@ class Chatter:
         Half the peak-to-peak of the part that follows the drive [m]; 0 where none was given.
     growth_error : float
         Standard error of ``growth`` [1/s], by what four windows differ from an exponential; nan with too few cycles.
+    ends_at : (float, float) or None
+        Lowest and highest amplitude at which the oscillation ends [m], by a constant plus an exponential through its
+        swings; None where it was not looked for: the handle leaves no wall and no motor is at its limit.
+    longer : float or None
+        Where it is undecided, the length of a record that may decide [s]: twice this one.
     record : Telemetry
         Where it was found.
     """
@@ -71,6 +77,8 @@ class Chatter:
     growth_error: float = math.nan
     scatter: float = 0.0
     levels_off: bool = False
+    ends_at: tuple[float, float] | None = None
+    longer: float | None = None
     record: Telemetry | None = field(default=None, repr=False, compare=False)
 
     def plot(self) -> Figure:
@@ -97,7 +105,12 @@ class Chatter:
         if self.locked:
             cycle = f", repeats itself every {self.period} samples" if self.period else ""
             return f"chatter: {place}; sustained (growth {self.growth:+.2g} 1/s){cycle}"
+        if self.state == "chatter" and self.ends_at:
+            low, high = (1e3 * a for a in self.ends_at)
+            return f"chatter: {place}; it shrinks towards a cycle of {low:.3g} to {high:.3g} mm (growth {self.growth:+.3g} 1/s)"
         cure = "it dies out" if self.state == "decaying" else "run longer for its final amplitude"
         cure = "it may end in a cycle and not at rest: run longer" if self.levels_off else cure
+        if self.state == "undecided":
+            cure = "it may die out or last: run longer" + (f", {self.longer:.3g} s for example" if self.longer else "")
         growth = "growth unknown" if math.isnan(self.growth) else f"growth {self.growth:+.3g} 1/s"
         return f"{self.state}: {place}; not locked ({growth}): {cure}"

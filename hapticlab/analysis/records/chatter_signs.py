@@ -58,3 +58,16 @@ def upward_crossings(y):
     turns = np.flatnonzero((y[swing[:-1]] < 0) & (y[swing[1:]] > 0))
     before, after = swing[turns], swing[turns + 1]
     return before + (after - before) * y[before] / (y[before] - y[after])
+
+
+def contact_rate(F, T):
+    """Return how often a second the force begins to act [1/s], from the first beginning to the last: whole cycles.
+
+    Where it has ceased to begin, for longer than twice between two beginnings, the whole record counts.
+    """
+    begins = np.flatnonzero((F[1:] != 0) & (F[:-1] == 0))
+    if len(begins) > 2:
+        between = (begins[-1] - begins[0]) / (len(begins) - 1)
+        if max(begins[0], len(F) - begins[-1]) < 2 * between:
+            return float(1 / (between * T))
+    return float(len(begins) / (len(F) * T))

@@ -30,7 +30,7 @@ def test_a_sustained_sinusoid(f):
     assert found.frequency == pytest.approx(f, rel=T / 2.0)  # the error stated: one period T in half the record
     # between samples the peak is missed by at most 1 - cos(pi f T), when one cycle has few samples
     assert 0.8e-3 * math.cos(math.pi * f * T) <= found.amplitude <= 0.8e-3 * 1.001
-    assert found.contacts_per_second == pytest.approx(f, abs=0.51)  # a whole number of contacts in two seconds
+    assert found.contacts_per_second == pytest.approx(f, rel=1e-3)  # of whole cycles
     assert abs(found.growth) < 1e-2
 
 
@@ -106,13 +106,13 @@ def test_a_decay_onto_a_cycle_of_a_few_counts_is_not_sustained():
     assert (early.state, early.locked, early.levels_off) == ("decaying", False, True)
     assert "it may end in a cycle" in str(early)
     assert found(8e-6).state == "chatter"
-    assert found(100 * falls).state == "chatter"  # of many counts an uneven swing is judged as ever
+    assert found(100 * falls).state in ("chatter", "undecided")  # of many counts, no exponential: it may fall again
 
 
 def test_contacts_are_counted_from_the_force():
     x = oscillation(f=10.0)
     F = np.where(np.arange(len(x)) % 50 < 20, 1.0, 0.0)
-    assert chatter(record(x, F=F)).contacts_per_second == pytest.approx(20.0, abs=0.51)
+    assert chatter(record(x, F=F)).contacts_per_second == pytest.approx(20.0, rel=1e-12)
     assert chatter(record(x, F=np.ones(len(x)))).contacts_per_second == 0
 
 
@@ -146,7 +146,9 @@ def test_less_than_three_cycles_a_quarter_are_judged_by_their_swings(growth, sta
         found = chatter(record(oscillation(f=3.3, seconds=1.0, amplitude=0.04, growth=growth, phase=phase)))
         assert found.state in (state, "undecided")
         assert not found.locked
-    assert chatter(record(oscillation(f=6.1, seconds=1.0, amplitude=0.04, growth=growth))).state == state
+    x = oscillation(f=6.1, seconds=1.0, amplitude=0.04, growth=growth)
+    assert chatter(record(x, F=150 * x + 10)).state == state  # never off the wall, where no cycle is
+    assert chatter(record(x)).state == ("undecided" if growth <= 0 else state)
 
 
 def test_growth_comes_with_its_error():
@@ -200,9 +202,10 @@ def test_half_a_slow_swing_is_undecided(phase):
 
 
 @pytest.mark.parametrize("f", [2.3, 37.3])
-def test_a_decay_that_levels_off_is_told(f):
+def test_a_decay_onto_a_cycle_is_told_from_one_to_rest(f):
     t = np.arange(4000) * T
     plain, onto = 1e-3 * np.exp(-1.5 * t), 1e-3 * (0.5 + np.exp(-1.5 * t))
     dies, ends = (chatter(record(size * np.sin(2 * np.pi * f * t))) for size in (plain, onto))
-    assert dies.state == ends.state == "decaying" and not dies.levels_off
-    assert ends.levels_off and "it may end in a cycle" in str(ends)
+    assert dies.state == "decaying" and not dies.levels_off and "it dies out" in str(dies)
+    assert ends.state == "chatter" and "it shrinks towards a cycle of" in str(ends)
+    assert ends.ends_at == pytest.approx((0.5e-3, 0.5e-3), rel=0.02)
