@@ -53,7 +53,9 @@ def chatter(log: Telemetry, driven: Hand | Callable[[Array], ArrayLike] | str | 
 
     Looks at the last half of a record, at the handle itself where an encoder or noise hid it (``x_true``). An
     oscillation turns round at least twice there and is larger than a nanometre, a millionth of the travel, and single
-    precision; to call it sustained takes three cycles in a quarter of the record. Motion that is driven, by a hand's
+    precision; to call it sustained takes three cycles in a quarter of the record. Where the handle leaves the wall, or the
+    motor is at its limit, a constant plus an exponential through the swings says whether they end in a cycle or at rest; a
+    record that leaves both open is "undecided". Motion that is driven, by a hand's
     noise or moving intent or by a scene's own vibration, looks like chatter, unless ``driven`` says what drives: the
     part that follows it is then taken off (:func:`~hapticlab.analysis.records.driven_motion.following`). A chatter that
     has locked onto its drive's own frequency, or onto a harmonic of it up to the eighth, cannot be told from it and

@@ -71,7 +71,7 @@ class Chatter(Swing):
 
     nan where the run cannot tell: nothing ever moved, or a handle that turned has no swing in one of the quarters.
     Two quarters do not tell a decay to rest from one onto a limit cycle (a force at its limit, an encoder): run so long that
-    it has ended, or look at one run with :func:`hapticlab.chatter`, whose ``levels_off`` says so.
+    it has ended, or look at one run with :func:`hapticlab.chatter`, which tells the two or says that it cannot.
     """
 
     unit = "m"
