@@ -13,7 +13,7 @@ import numpy as np
 
 from ..base.statistics import student
 from .rounding import rounding_covariance
-from .sensor import DITHERED, explains, information, log_likelihood, run_weights, spread
+from .sensor import DITHERED, information, log_likelihood, noise_alone, run_weights, spread
 
 if TYPE_CHECKING:
     from ..base.annotations import Array, Flags
@@ -122,7 +122,7 @@ def fit(motion, y, starts, scales, *, quantum=0.0, low=None):
         at, left = _climbed(motion, y, _nearest(motion, y, start), scales, low)
         better = True if found is None else np.sum(left**2, axis=0) < np.sum(rest**2, axis=0)
         found, rest = (at, left) if found is None else (np.where(better, at, found), np.where(better, left, rest))
-        if np.all(explains(rest, y, quantum)):
+        if np.all(noise_alone(rest, quantum)):
             break
     scales, freedom = scales(found), np.sum(weights, axis=0) - len(found)
     if quantum:

@@ -12,6 +12,9 @@ DITHERED = 0.2
 #: correlation of neighbouring residuals, in its standard errors, from which something is left unexplained; and residuals
 #: over a count without dither, whose neighbours correlate by their rounding: that alone leaves 0.29, with noise 0.35
 UNEXPLAINED, ROUNDED = 5.0, 0.45
+#: of neighbours this far apart, a sum of correlations, in its standard errors, up to which nothing but noise is left for sure;
+#: and residuals over a count: rounding alone leaves 0.29
+LAGS, SURE, ROUNDING = 8, 3.0, 0.32
 #: probability of a count, at least, for its logarithm
 LEAST = 1e-290
 #: noises tried, over the count: from a tenth of what is dither to many counts
@@ -90,3 +93,10 @@ def explains(rest, y, quantum):
     """Whether residuals look like noise, or, without dither, like counting: less than a count does not show; shape (L,)."""
     counting = np.sqrt(np.mean(rest**2, axis=0)) < ROUNDED * quantum
     return counting | (np.abs(neighbours(rest, y, 0.0)) * np.sqrt(len(y)) < UNEXPLAINED)
+
+
+def noise_alone(rest, quantum):
+    """Whether nothing but noise, or rounding, is left for sure: a start elsewhere finds nothing better; shape (L,)."""
+    power = np.maximum(np.sum(rest**2, axis=0), 1e-300)
+    alike = sum(np.sum(rest[lag:] * rest[:-lag], axis=0) for lag in range(1, LAGS + 1)) / power
+    return (np.sqrt(power / len(rest)) < ROUNDING * quantum) | (np.abs(alike) * np.sqrt(len(rest) / LAGS) < SURE)
