@@ -50,11 +50,16 @@ __all__ = [
     "SceneError",
     "SignalError",
     "UnitsError",
+    "UnusualValueWarning",
 ]
 
 
 class HapticlabError(Exception):
     """Base of everything hapticlab raises on purpose."""
+
+
+class UnusualValueWarning(UserWarning):
+    """A value is far from what any paddle has: is its unit the one that was meant?"""
 
 
 class SceneError(HapticlabError, ValueError):

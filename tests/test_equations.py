@@ -83,7 +83,9 @@ def test_23_8_the_filter_around_a_wall_and_around_a_body():
     past = [plain[np.maximum(np.arange(len(plain)) - lag, 0)] for lag in range(3)]
     np.testing.assert_allclose(filtered, 2 * past[0] - 1.5 * past[1] + 0.5 * past[2], rtol=1e-12, atol=1e-13)
     always = hl.laws.force_filter(hl.wall(unilateral=None))
-    np.testing.assert_allclose(forces(always(x_o=BOUNDARY)), forces(hl.wall("ellis", None)(x_o=BOUNDARY)), rtol=1e-11, atol=1e-13)
+    np.testing.assert_allclose(
+        forces(always(x_o=BOUNDARY)), forces(hl.wall("ellis", unilateral=None)(x_o=BOUNDARY)), rtol=1e-11, atol=1e-13
+    )
     z = hl.coordinate("z", unit="m")
     m, b = hl.parameters("m b", units="kg N*s/m", values=(0.05, 1.0))
     F = hl.laws.virtual_coupler(z, K=k, b=b)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..base.arguments import having, number
+from ..base.unusual import DEVICE, warn_of_unusual
 from ..errors import AnalysisError, PaddleError
 
 if TYPE_CHECKING:
@@ -76,7 +77,9 @@ class Device:
         for name in _UNITS:
             given = getattr(self, name)
             if given is not None or name in _NEVER_UNKNOWN:
-                object.__setattr__(self, name, _checked(name, given, PaddleError))
+                value = _checked(name, given, PaddleError)
+                object.__setattr__(self, name, value)
+                warn_of_unusual(name, value, _UNITS[name], DEVICE.get(name))
         if self.velocity not in ("backward_difference", "measured"):
             raise PaddleError(f"velocity = {self.velocity!r}; needs 'backward_difference' or 'measured'")
 

@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
 from ..base.arguments import number
+from ..base.unusual import DEVICE, warn_of_unusual
 from ..compiler.ir.program import Program
 from ..compiler.tick.compile_scene import compile
 from ..errors import PaddleError, ParameterError
@@ -51,6 +52,7 @@ class Paddle(ABC):
     def ticks(self, duration: Number | None) -> int:
         """Return the number of samples in a duration [s]."""
         duration = number("duration", duration, "s", "a run", above=0, error=PaddleError)
+        warn_of_unusual("duration", duration, "s", DEVICE["duration"])
         if not math.isfinite(duration / self.T):
             raise PaddleError(f"duration = {duration:g} s is more samples than numbers count; run less.")
         ticks = math.floor(duration / self.T + 0.5)
@@ -74,10 +76,9 @@ class Paddle(ABC):
                 raise PaddleError(f"{given}: a program is compiled already; give compile options with a scene.")
             program = scene
         else:
-            own = sorted({"T", "velocity"} & set(options))
-            if own:
-                raise PaddleError(f"{own[0]} is the paddle's own, {getattr(self, own[0])}; make a paddle with another one.")
-            program = compile(scene, T=self.T, velocity=self.velocity, **options)
+            if "T" in options:
+                raise PaddleError(f"T is the paddle's own, {self.T:g} s; make a paddle with another one.")
+            program = compile(scene, **{"T": self.T, "velocity": self.velocity, **options})
         missing = [c for c, value in zip(program.parameters, program.values, strict=True) if math.isnan(value)]
         if missing:
             wanted = ", ".join(f"{c.name} [{c.unit}]" for c in missing)

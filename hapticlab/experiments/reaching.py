@@ -213,6 +213,7 @@ def reach(
     >>> print(reach(paddle, free, end=0.02, control=hl.people.Control(how="feedback")))
     feedback: there after 1.26 s, overshoot 0 %, rms error 8.03 mm
     """
+    end = number("end", end, "m", "a reach", error=PaddleError)
     if end == 0:
         raise PaddleError("end = 0 m; a reach goes from x = 0 to another place")
     path = MinimumJerk(end=end, duration=duration, begin=begin)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.arguments import number
 from ..device.hand.hand import Hand
 from ..device.hand.reacting_hand import Reacting
 from ..device.simulated.closed_loop import link, load_linked
@@ -106,7 +107,7 @@ def stiffness_task(*, standard: float = 200.0, press: float = 0.015) -> Task:
     hand = _explores(lambda t: press * (1 - np.cos(2 * math.pi * 2 * t)) / 2)
     return Task(
         name="stiffness", question="Which wall was stiffer?", scene=wall(), parameter="k", unit="N/m",
-        standard=_positive("standard", standard), felt=felt_stiffness, hand=hand, duration=1.0, weber=0.23,
+        standard=_positive("standard", standard, "N/m"), felt=felt_stiffness, hand=hand, duration=1.0, weber=0.23,
         source="L. A. Jones and I. W. Hunter, Exp. Brain Res. 79 (1990) 150",
     )  # fmt: skip
 
@@ -124,7 +125,7 @@ def damping_task(*, standard: float = 5.0, stroke: float = 0.02) -> Task:
     hand = _explores(lambda t: stroke * np.sin(2 * math.pi * 2 * t))
     return Task(
         name="damping", question="Which one was thicker?", scene=virtual_damper(), parameter="B", unit="N s/m",
-        standard=_positive("standard", standard), felt=felt_damping, hand=hand, duration=1.0, weber=0.25,
+        standard=_positive("standard", standard, "N s/m"), felt=felt_damping, hand=hand, duration=1.0, weber=0.25,
         source="L. Jones, I. Hunter and S. Lafontaine, Perception 26 (1997) 1571: 19 % at 71 % right, 25 % at d' = 1",
     )  # fmt: skip
 
@@ -144,7 +145,7 @@ def texture_task(*, standard: float = 0.15, pitch: float = 0.003, stroke: float 
     hand = _explores(lambda t: stroke * (1 - np.cos(2 * math.pi * t)))
     return Task(
         name="texture", question="Which one was rougher?", scene=texture()(p_1=pitch, p_2=pitch), parameter="A", unit="N",
-        standard=_positive("standard", standard), felt=felt_roughness, hand=hand, duration=1.0, weber=0.16,
+        standard=_positive("standard", standard, "N"), felt=felt_roughness, hand=hand, duration=1.0, weber=0.16,
         source="illustrative",
     )  # fmt: skip
 
@@ -209,7 +210,6 @@ def _slope(x, y, otherwise):
     return float(x @ (y - y.mean()) / (x @ x))
 
 
-def _positive(name, value):
-    if not (math.isfinite(value) and value > 0):
-        raise AnalysisError(f"{name} = {value!r}; a standard needs {name} > 0, so that a difference can be a part of it")
-    return float(value)
+def _positive(name, value, unit):
+    why = f"so that a difference in {name} can be a part of it"
+    return number(name, value, unit, "a task", above=0, why=why)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.arguments import number
 from ..base.telemetry import Telemetry, check_record
 from ..errors import AnalysisError
 from .fit_result import told
@@ -110,6 +111,7 @@ def spin_down(
             f"spin_down: the last {max(len(log) - first, 0)} of {len(log)} samples are without force; needs {FEWEST}: "
             "a kick, then F = 0 until the handle rests"
         )
+    m = None if m is None else number("m", m, "kg", "a handle", above=0)
     known = {"m": 1.0 if m is None else m}
     names = ("b", "coulomb") if m is not None else ("b/m", "coulomb/m")
     trace = HandleRecord(log, at_rest=False).trace(first)

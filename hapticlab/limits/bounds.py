@@ -210,6 +210,7 @@ def gil_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -> Lim
     300.0
     """
     m, own, T, delay, hand = known(device, "m", "b", "T", "delay", "hand")
+    B = number("B", B, "N s/m")
     _plain(law, "Gil")
     tau = T / 2 + delay
     b = own + (hand.b if hand else 0.0)
@@ -279,6 +280,7 @@ def bounds(device: AnyDevice, *, law: LawName = "zoh", B: float = 0.0) -> Bounds
     """
     choice("law", law, TAPS)
     *_, velocity = known(device, "m", "b", "T", "velocity")
+    B = number("B", B, "N s/m")
     if LEAD[law] and velocity == "backward_difference":
         law = "backward_difference"  # Eq. (23.3) with the estimate is Eq. (23.5)
     asked: dict[str, Callable[..., Limit]] = {

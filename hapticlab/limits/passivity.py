@@ -93,6 +93,7 @@ def passivity_limit(
     >>> passivity_limit(device, law="half_sample").K
     0.0
     """
+    B = number("B", B, "N s/m")
     b, T, delay = known(device, "b", "T", "delay")
     tau = number("velocity_filter", velocity_filter, "s", least=0, what="a time constant")
     notes = ("device damping b alone: no encoder, no Coulomb friction",)

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from ..base.arguments import number
 from ..device.live_parameters import named_values
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
@@ -155,6 +156,7 @@ def largest_stiffness(
     >>> abs(float(found) / hl.stability_limit(paddle).K - 1) < 0.03
     True
     """
+    B, push = number("B", B, "N s/m"), None if push is None else number("push", push, "N")
     scene = wall_of(law, parameter)
     name = law if isinstance(law, str) else scene.name
     durations = durations_of(paddle, judged.duration, judged.longest)

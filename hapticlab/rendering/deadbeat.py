@@ -76,7 +76,7 @@ def deadbeat_wall(
     K: float,
     B: float = 0.0,
     hand: Hand | None = None,
-    velocity: Literal["handle", "model"] | VelocityEstimate = "handle",
+    velocity: Literal["model"] | VelocityEstimate | None = None,
     force_max: float | None = None,
     pairs: Pairs = PAIRS,
 ) -> Scene:

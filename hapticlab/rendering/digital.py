@@ -90,7 +90,7 @@ def digital_wall(
     K: float,
     B: float = 0.0,
     hand: Hand | None = None,
-    velocity: Literal["handle", "model"] | VelocityEstimate = "handle",
+    velocity: Literal["model"] | VelocityEstimate | None = None,
     clamp: bool = False,
     force_max: float | None = None,
 ) -> Scene:
@@ -107,7 +107,7 @@ def digital_wall(
     ----------
     paddle, K, B, hand
         As in :func:`digital_gains`.
-    velocity : {"handle", "model"} or VelocityEstimate
+    velocity : "model" or VelocityEstimate, optional
         v(n) of the paddle; or what two positions and the forces between them say by the model, exact where the model is;
         or :func:`~hapticlab.scene.laws.estimators.filtered_velocity` and its like.
     clamp : bool

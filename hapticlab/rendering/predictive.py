@@ -22,7 +22,7 @@ def predictive_wall(
     K: float,
     B: float = 0.0,
     hand: Hand | None = None,
-    velocity: Literal["handle", "model"] | VelocityEstimate = "handle",
+    velocity: Literal["model"] | VelocityEstimate | None = None,
     clamp: bool = False,
     force_max: float | None = None,
 ) -> Scene:

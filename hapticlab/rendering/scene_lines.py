@@ -15,9 +15,6 @@ from ..scene.notation.amount import Amount
 from ..scene.notation.symbols import T, n, parameters, signal, v, when, x
 from ..scene.scene import Scene
 
-#: where v(n) comes from
-VELOCITY = ("handle", "model")
-
 
 class Lines:
     """The lines of a law, in the order they are computed; each is a signal that later lines name."""
@@ -54,7 +51,7 @@ class Lines:
             for i in (0, 1)
         )  # fmt: skip
 
-    def at_switch(self, velocity="handle"):
+    def at_switch(self, velocity=None):
         """Name and return p and w = T v where the force of this sample begins to act."""
         p = self.let("p", x(n) - self.x_o)
         w = self.let("w", T * self._velocity(velocity))
@@ -70,12 +67,12 @@ class Lines:
         if isinstance(given, VelocityEstimate):
             self.eom += given.eom
             return given.velocity
-        if given not in VELOCITY:
+        if given not in (None, "model"):
             raise SceneError(
-                f"velocity = {given!r}; needs 'handle' (v(n) of the paddle), 'model' (from two positions and the forces "
+                f"velocity = {given!r}; needs None (v(n) of the paddle), 'model' (from two positions and the forces "
                 "between them) or an estimate, as in velocity=hl.velocity.filtered(tau='4 ms')"
             )
-        return v(n) if given == "handle" else self._from_positions()
+        return self._from_positions() if given else v(n)
 
     def _from_positions(self):
         """Return the velocity from x(n), x(n-1) and the forces that acted between: exact where the model is."""

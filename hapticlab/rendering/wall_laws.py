@@ -55,7 +55,7 @@ class Rendering:
         Of the chapter's laws; the others act where the handle is, or is predicted, inside.
     clamp : bool
         Never pull; a dead-beat pair is not clamped.
-    velocity : {"handle", "model"}
+    velocity : "model", optional
         Of the model-based laws.
 
     Examples
@@ -68,7 +68,7 @@ class Rendering:
     model: SimulatedPaddle | None = None
     unilateral: Literal["gate", "clip"] = "gate"
     clamp: bool = False
-    velocity: Literal["handle", "model"] = "handle"
+    velocity: Literal["model"] | None = None
 
     def options(self) -> dict[str, Any]:
         """What :func:`wall_law` takes."""
@@ -127,7 +127,7 @@ def wall_law(
     model: SimulatedPaddle | None = None,
     unilateral: Literal["gate", "clip"] = "gate",
     clamp: bool = False,
-    velocity: Literal["handle", "model"] = "handle",
+    velocity: Literal["model"] | None = None,
 ) -> WallLaw:
     """Return a wall of stiffness K as one of :data:`LAWS` renders it.
 
@@ -143,7 +143,7 @@ def wall_law(
         Of the chapter's laws; the others act where the handle is, or is predicted, inside.
     clamp : bool
         Never pull; a dead-beat pair is not clamped.
-    velocity : {"handle", "model"}
+    velocity : "model", optional
         Of the model-based laws.
 
     Returns
@@ -159,10 +159,10 @@ def wall_law(
     """
     choice("law", name, LAWS)
     if name in SPRING_LAWS:
-        return WallLaw(name, wall(SPRING_LAWS[name], unilateral, clamp)(k=K), paddle)
+        return WallLaw(name, wall(SPRING_LAWS[name], unilateral=unilateral, clamp=clamp)(k=K), paddle)
     if name == "damped":
         added = K * paddle.T / 2
-        plain = wall("zoh", unilateral, clamp)
+        plain = wall("zoh", unilateral=unilateral, clamp=clamp)
         scene = Scene(plain.force.xreplace({plain.parameters["B"]: sp.S.Zero}) + _damper(), name="damped wall")
         return WallLaw(name, scene(k=K, B=-added), replace(paddle, b=paddle.b + added))
     made = MODEL_LAWS[name][1]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from ..base.unusual import SCENE, warn_of_unusual
 from ..errors import ParameterError, SceneError
 from .explicit import explicit_form
 from .frozen import Frozen
@@ -181,7 +182,9 @@ def _bound(known, name, value):
     if name not in known:
         listed = ", ".join(f"{p.name} [{p.unit}]" for p in known.values()) or "none"
         raise ParameterError(f"{name} = {value!r}: the scene has no parameter {name}; it has {listed}")
-    return known[name].check(value)
+    number, unit = known[name].check(value), known[name].unit
+    warn_of_unusual(name, number, unit, SCENE.get(unit.replace(" ", "*")))
+    return number
 
 
 def check_scene(scene, cure="needs a Scene, such as hl.wall()"):

@@ -81,7 +81,7 @@ def test_a_predictive_law_behind_a_switch_chatters_earlier(law, m, b, delay, sha
     K = share * hl.stability_limit(paddle, law=law).K
 
     def swing(unilateral):
-        wall = hl.wall(law, unilateral)
+        wall = hl.wall(law, unilateral=unilateral)
         # the heavy paddle settles on its cycle from above, for longer than 12 s
         return hl.sweep(wall, paddle, duration=40.0, progress=False, k=[K], x=-0.02).values[0]
 

@@ -107,7 +107,7 @@ def test_a_speed_limit_leaves_room_for_three_counts():
 
 def test_a_law_is_a_name_or_a_scene():
     assert wall_of("ellis").name == "ellis wall"
-    own = hl.wall("zoh", "clip")
+    own = hl.wall("zoh", unilateral="clip")
     assert wall_of(own) is own
     with pytest.raises(hl.errors.PaddleError, match="no parameter c"):
         wall_of(own, "c")

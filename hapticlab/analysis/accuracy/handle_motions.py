@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
+from ...base.arguments import number
 from ...base.drawing import STYLES, house_style, new_figure
 from ...compiler.algebra.graph import Graph, driven
 from ...errors import AnalysisError
@@ -133,8 +134,7 @@ def handle_motions(
     low, high = band
     if not 0 < low < high < math.inf:
         raise AnalysisError(f"band = {band}; needs 0 < low < high in Hz, such as (0.7, 7)")
-    if not 0 < travel < math.inf:
-        raise AnalysisError(f"travel = {travel}; needs a travel > 0 m, such as 0.05")
+    travel = number("travel", travel, "m", "a motion", above=0)
     reach, knots = 0.43 * travel, (0.25, 0.5, 0.75)
     rise = 2 * reach * minimum_jerk(t / knots[0])
     back = rise.subs(t, t - knots[1])

@@ -170,10 +170,11 @@ def _cheaper_laws(scene):
     for law, taps in TAPS.items():
         if scene.name != f"{law} wall":
             continue
-        for kind in itertools.product(UNILATERAL, (False, True)):
-            if scene.force == wall(law, *kind).force:
+        for unilateral, clamp in itertools.product(UNILATERAL, (False, True)):
+            kind = {"unilateral": unilateral, "clamp": clamp}
+            if scene.force == wall(law, **kind).force:
                 cheaper = sorted((o for o in TAPS if len(TAPS[o]) < len(taps)), key=lambda o: -len(TAPS[o]))
-                yield from ((o, wall(o, *kind)) for o in cheaper)
+                yield from ((o, wall(o, **kind)) for o in cheaper)
 
 
 def _cheaper_velocities(scene):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arguments import number
+from ...base.unusual import HAND, warn_of_unusual
 from ...errors import PaddleError
 from .hand_presets import PRESETS, HandPreset
 
@@ -105,6 +106,7 @@ class Hand:
         for name, reason in _REASONS.items():
             value = number(name, getattr(self, name), UNITS[name], "a hand", least=0, why=reason, error=PaddleError)
             object.__setattr__(self, name, value)
+            warn_of_unusual(name, value, UNITS[name], HAND.get(name))
         object.__setattr__(self, "push", number("push", self.push, "N", "a hand", error=PaddleError))
         if self.intent is None:
             return

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...base.arguments import number
 from ...base.telemetry import PaddleProfile, Telemetry
+from ...base.unusual import DEVICE, warn_of_unusual
 from ...errors import PaddleError
 from ..hand.hand import Hand
 from ..hand.reacting_hand import Reacting, run_reacting
@@ -159,6 +160,7 @@ class SimulatedPaddle(Paddle):
     def _take(self, name, unit, reason="", **bounds):
         value = number(name, getattr(self, name), unit, "a paddle", why=reason, error=PaddleError, **bounds)
         object.__setattr__(self, name, value)
+        warn_of_unusual(name, value, unit, DEVICE.get(name))
 
     def _check_mass(self):
         M, b, k = dynamics(self)

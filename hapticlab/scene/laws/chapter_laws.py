@@ -17,13 +17,22 @@ from .taps import LEAD, TAPS, LawName
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...base.annotations import Term
+    from ...base.annotations import Number, Term
 
 
 UNILATERAL = ("gate", "clip", None)
 
 
-def wall(law: LawName = "zoh", unilateral: str = "gate", clamp: bool = False, velocity: VelocityEstimate | None = None) -> Scene:
+def wall(
+    law: LawName = "zoh",
+    *,
+    k: Number | None = None,
+    B: Number | None = None,
+    x_o: Number | None = None,
+    unilateral: str | None = "gate",
+    clamp: bool = False,
+    velocity: VelocityEstimate | None = None,
+) -> Scene:
     """Virtual wall: a spring K that pushes back beyond x_o, and a virtual damper B beside it.
 
     ======================  =======  ====================================================
@@ -45,6 +54,8 @@ def wall(law: LawName = "zoh", unilateral: str = "gate", clamp: bool = False, ve
     Parameters
     ----------
     law : {"zoh", "half_sample", "backward_difference", "ellis"}
+    k, B, x_o : float or text, optional
+        Stiffness [N/m] >= 0, damping [N s/m] of either sign, and where the wall begins [m], if they are to be bound at once.
     unilateral : {"gate", "clip", None}
         ``"gate"``: spring and damper act on the raw past and are zero where x(n) < x_o, as Eq. (23.1) reads.
         ``"clip"``: they act on max(p, 0), now and in the past, and so may act for two samples after leaving; a
@@ -64,33 +75,34 @@ def wall(law: LawName = "zoh", unilateral: str = "gate", clamp: bool = False, ve
     Examples
     --------
     >>> import hapticlab as hl
-    >>> hl.wall("ellis")(k=150, x_o="10 mm").values
+    >>> hl.wall("ellis", k=150, x_o="10 mm").values
     {'B': 0.0, 'x_o': 0.01, 'k': 150.0}
     >>> hl.wall("half_sample", velocity=hl.velocity.filtered(tau="4 ms")).name
     'half_sample wall, filtered difference'
     """
     choice("law", law, TAPS, error=SceneError)
     choice("unilateral", unilateral, UNILATERAL, need="'gate', 'clip' or None (the spring always acts)", error=SceneError)
-    k, x_o = parameters("k x_o", units="N/m m", values=(None, 0))
-    B = parameters("B", units="N*s/m", values=0, ranges=(-math.inf, math.inf))
+    stiffness, boundary = parameters("k x_o", units="N/m m", values=(None, 0))
+    damping = parameters("B", units="N*s/m", values=0, ranges=(-math.inf, math.inf))
 
     def p(lag):
-        depth = x(n - lag) - x_o
+        depth = x(n - lag) - boundary
         return sp.Max(depth, 0) if unilateral == "clip" else depth
 
     def inside(rate):
-        return when(x(n) >= x_o, rate) if unilateral == "clip" else rate
+        return when(x(n) >= boundary, rate) if unilateral == "clip" else rate
 
     estimate = _checked(velocity)
-    spring = k * sp.Add(*(sp.Rational(c) * p(lag) for lag, c in enumerate(TAPS[law])))
+    spring = stiffness * sp.Add(*(sp.Rational(c) * p(lag) for lag, c in enumerate(TAPS[law])))
     if LEAD[law]:
-        spring = k * (p(0) + sp.Rational(LEAD[law]) * T * inside(estimate.velocity if estimate else v(n)))
-    force = spring + B * (inside(estimate.velocity) if estimate else (p(0) - p(1)) / T)
+        spring = stiffness * (p(0) + sp.Rational(LEAD[law]) * T * inside(estimate.velocity if estimate else v(n)))
+    force = spring + damping * (inside(estimate.velocity) if estimate else (p(0) - p(1)) / T)
     if unilateral == "gate":
-        force = when(x(n) >= x_o, force)
+        force = when(x(n) >= boundary, force)
     if clamp:
         force = sp.Max(force, 0)
-    return _scene(force, f"{law} wall", estimate)
+    given = {name: value for name, value in (("k", k), ("B", B), ("x_o", x_o)) if value is not None}
+    return _scene(force, f"{law} wall", estimate)(**given)
 
 
 def _checked(velocity):

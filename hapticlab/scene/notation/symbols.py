@@ -67,6 +67,8 @@ def coordinate(
         "initial": _start(initial, unit, f"initial of {name}"),
         "rate": _start(rate, "1/s" if unit == "1" else f"{unit}/s", f"rate of {name}"),
     }
+    if isinstance(range, tuple | list):
+        range = tuple(in_si(end, unit, name) if isinstance(end, str) else end for end in range)
     if not _is_range(range):
         raise SceneError(f"{name}: range = {range!r}; needs (low, high) in {unit} with low < high, such as (-0.05, 0.05)")
     start |= {"low": float(range[0]), "high": float(range[1])}

@@ -44,7 +44,7 @@ def forces(scene, **options):
 @pytest.mark.parametrize("unilateral", UNILATERAL)
 @pytest.mark.parametrize("law", TAPS)
 def test_a_wall_is_its_formula(law, unilateral, clamp):
-    scene = hl.wall(law, unilateral, clamp)(k=K, B=B, x_o=BOUNDARY)
+    scene = hl.wall(law, unilateral=unilateral, clamp=clamp)(k=K, B=B, x_o=BOUNDARY)
     expected = by_formula(law, unilateral, clamp)
     assert expected.max() > 0
     assert (expected.min() >= 0) == clamp  # every unclamped variant pulls somewhere here
@@ -105,7 +105,7 @@ def scenes_to_filter():
     hardening = hl.when(x(n) >= boundary, k3 * (x(n) - boundary) ** 3)
     return {
         "gated": hl.wall("half_sample")(k=K, B=B, x_o=BOUNDARY),
-        "clipped": hl.wall("ellis", "clip", clamp=True)(k=K, x_o=BOUNDARY),
+        "clipped": hl.wall("ellis", unilateral="clip", clamp=True)(k=K, x_o=BOUNDARY),
         "hardening": hl.Scene(hardening, name="hardening spring"),
         "with a memory": hl.Scene(y(n), [sp.Eq(y(n), sp.Rational(4, 5) * y(n - 1) + hl.wall().force)])(k=K, x_o=BOUNDARY),
         "braked": hl.laws.braking_pulse(hl.wall()(k=K, x_o=BOUNDARY), impulse=1e-3, periods=3),
@@ -155,9 +155,10 @@ def test_a_filtered_scene_runs_in_the_firmware_core(name):
 @pytest.mark.parametrize("kind", [("clip", False), ("gate", True), (None, False)])
 def test_a_refused_wall_is_offered_one_of_its_own_kind(kind):
     """Its own unilateral variant, and clamped where it was, with fewer samples."""
-    found = dict(_cheaper_laws(hl.wall("ellis", *kind)))
+    kind = dict(zip(("unilateral", "clamp"), kind, strict=True))
+    found = dict(_cheaper_laws(hl.wall("ellis", **kind)))
     assert list(found) == ["backward_difference", "zoh", "half_sample"]
-    assert all(scene.force == hl.wall(law, *kind).force for law, scene in found.items())
+    assert all(scene.force == hl.wall(law, **kind).force for law, scene in found.items())
 
 
 @pytest.mark.parametrize(("arguments", "words"), [(("foh",), "needs one of zoh"), (("zoh", "gated"), "'clip' or None")])
