@@ -66,7 +66,7 @@ def walls():
         law = "half_sample" if estimate else "zoh"
         exact = "no fixed poles"
         if not estimate or estimate.is_linear:
-            exact = f"{hl.stability_limit(SMOOTH, law=hl.wall(law, None, velocity=estimate)).K:.0f}"
+            exact = f"{hl.stability_limit(SMOOTH, law=hl.wall(law, unilateral=None, velocity=estimate)).K:.0f}"
         rows.append([name, exact, f"{largest_quiet(hl.wall(law, velocity=estimate)):.2g}"])
     return table(["velocity in (23.3)", "linear limit K [N/m]", "quiet up to K [N/m], simulated"], rows)
 

@@ -39,7 +39,7 @@ def test_the_half_sample_wall_is_lost_where_its_characteristic_polynomial_says(n
         return abs(np.roots(loop)).max()
 
     paddle = hl.SimulatedPaddle(m=M, b=DAMPING, T=T)
-    found = stability_limit(paddle, law=hl.wall("half_sample", None, velocity=ESTIMATES[name]))
+    found = stability_limit(paddle, law=hl.wall("half_sample", unilateral=None, velocity=ESTIMATES[name]))
     assert radius(0.99 * found.K) < 1 < radius(1.01 * found.K)
     # poles of a quadratic pair are known to 1e-13, and the radius grows as K: 1e-9 of K and better
     assert found.K == pytest.approx(brentq(lambda K: radius(K) - 1, 0.9 * found.K, 1.1 * found.K, rtol=1e-14), rel=1e-8)
@@ -65,7 +65,7 @@ def test_the_compiled_estimate_has_its_own_transfer_function(name):
 
 
 def test_a_window_has_no_linear_limit():
-    scene = hl.wall("half_sample", None, velocity=hl.velocity.window(deviation=1e-5, longest=4))
+    scene = hl.wall("half_sample", unilateral=None, velocity=hl.velocity.window(deviation=1e-5, longest=4))
     with pytest.raises(AnalysisError, match="not linear"):
         stability_limit(hl.SimulatedPaddle(m=M, b=DAMPING, T=T), law=scene)
 

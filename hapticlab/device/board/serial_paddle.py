@@ -91,10 +91,8 @@ class SerialPaddle(Paddle):
     Examples
     --------
     >>> import hapticlab as hl
-    >>> x_o, k = hl.parameters("x_o k", units="m N/m")
-    >>> wall = hl.Scene(force=hl.when(hl.x(hl.n) >= x_o, k * (hl.x(hl.n) - x_o)), name="wall")
     >>> with hl.connect("sim://hapkit") as paddle:
-    ...     log = paddle.run(wall(k=150, x_o=0.01), 0.1)
+    ...     log = paddle.run(hl.wall(k=150, x_o="10 mm"), 0.1)
     >>> len(log), log.fault
     (100, None)
     """

@@ -161,7 +161,9 @@ def test_a_refused_wall_is_offered_one_of_its_own_kind(kind):
     assert all(scene.force == hl.wall(law, **kind).force for law, scene in found.items())
 
 
-@pytest.mark.parametrize(("arguments", "words"), [(("foh",), "needs one of zoh"), (("zoh", "gated"), "'clip' or None")])
+@pytest.mark.parametrize(
+    ("arguments", "words"), [({"law": "foh"}, "needs one of zoh"), ({"unilateral": "gated"}, "'clip' or None")]
+)
 def test_a_law_that_is_none_is_refused(arguments, words):
     with pytest.raises(SceneError, match=words):
-        hl.wall(*arguments)
+        hl.wall(**arguments)

@@ -212,7 +212,7 @@ def test_an_estimate_is_better_than_a_difference_on_an_encoder():
 def test_a_wall_takes_the_estimate_for_its_velocity(unilateral):
     """Eq. (23.3) and the damper, with the velocity that was chosen and no other."""
     stiffness, damping, boundary = 300.0, 0.4, 0.004
-    scene = wall("half_sample", unilateral, velocity=filtered_velocity(tau=2e-3))(k=stiffness, B=damping, x_o=boundary)
+    scene = wall("half_sample", unilateral=unilateral, velocity=filtered_velocity(tau=2e-3))(k=stiffness, B=damping, x_o=boundary)
     program = hl.compile(scene, T=T, dtype="float64", velocity="measured")
     assert [c.name for c in program.inputs] == ["x"]  # a measured velocity is not asked for
     found = load(program).run(len(PATH), PATH[:, None]).outputs[:, 0, 0]
@@ -230,7 +230,7 @@ def test_eq_23_2_with_an_estimate_is_eq_23_3():
     k = hl.parameters("k", units="N/m")
     ahead = x(n) + hl.T * estimate.velocity
     mean = hl.Scene(k / 2 * (x(n) + ahead), eom=estimate.eom)(k=300)
-    lead = wall("half_sample", None, velocity=estimate)(k=300)
+    lead = wall("half_sample", unilateral=None, velocity=estimate)(k=300)
     forces = [load(hl.compile(s, T=T, dtype="float64")).run(400, PATH[:, None]).outputs for s in (mean, lead)]
     np.testing.assert_allclose(*forces, rtol=1e-12, atol=1e-12)
 
