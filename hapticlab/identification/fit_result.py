@@ -58,15 +58,15 @@ class Estimate:
 class Found:
     """Constants found from records; ``found["m"]`` is an :class:`Estimate`. Print it, or plot what it left.
 
-    An identification has a class of its own below this one: ``about``, ``lacking`` and ``constants`` are what it adds.
+    An identification has a class of its own below this one: ``about``, ``constants`` and what stands between add to it.
 
     The intervals cover as often as they say where the fit converged and the model explains the record, and are as narrow as
     any can be where noise dithers the counts (0.3 count of it and more was tried). The text says so where that is not so.
 
     Attributes
     ----------
-    about, lacking : str
-        Whose constants they are, and what the model leaves out.
+    about, lacking, advice : str
+        Whose constants they are, what the model leaves out, and what to record where a record does not tell them.
     above, bounded : tuple of str
         The constants that have to be found above zero, and those whose interval ends there at least.
     constants : dict of str to (str, str)
@@ -89,6 +89,7 @@ class Found:
 
     about: ClassVar[str]
     lacking: ClassVar[str]
+    advice: ClassVar[str]
     above: ClassVar[tuple[str, ...]]
     bounded: ClassVar[tuple[str, ...]]
     constants: ClassVar[dict[str, tuple[str, str]]]
@@ -170,15 +171,15 @@ def told(made, y, fitted, names, *, quantum, T, confidence, beside=""):
     """
     left = np.abs(fitted.blind[0][: len(names)])
     if left.any():
-        _open([name for name, part in zip(names, left, strict=True) if part > PART * left.max()], beside)
+        _open([name for name, part in zip(names, left, strict=True) if part > PART * left.max()], made.advice, beside)
     half, values = fitted.half_width(confidence)[:, 0], fitted.values[: len(names), 0]
     if vague := [name for name, value, width in zip(names, values, half, strict=False) if name in made.above and width >= value]:
-        _open(vague, beside)
+        _open(vague, made.advice, beside)
     limit = BEYOND if explains(fitted.residuals, y[:, None], quantum)[0] else 0.0
     if past := [name for name, by in zip(names, fitted.beyond[:, 0], strict=False) if by > limit]:
         raise AnalysisError(
             f"identify: the motion asks for a negative {' and '.join(past)}, so the model lacks something ({made.lacking}), "
-            "or a force has the wrong sign. Look at the record, and record a kick, steps and a chirp with a free handle"
+            f"or a force has the wrong sign. Plot the record, and record {made.advice}"
         )
     lows = [0.0 if name in made.bounded else -np.inf for name in names]
     estimates = {
@@ -192,10 +193,9 @@ def told(made, y, fitted, names, *, quantum, T, confidence, beside=""):
     )  # fmt: skip
 
 
-def _open(names, beside):
+def _open(names, advice, beside):
     """Refuse constants that the records leave open."""
     raise AnalysisError(
-        f"identify: these records do not tell {', '.join(names)} from each other, or at all. Record a kick, steps and a chirp, "
-        "with forces of several sizes (identify_paddle does); or move the handle otherwise: both ways, faster and slower; or "
-        f"seek less (known={{...}}){beside}"
+        f"identify: these records do not tell {', '.join(names)} from each other, or at all. Record {advice}; or seek less "
+        f"(known={{...}}){beside}"
     )

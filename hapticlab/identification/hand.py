@@ -17,6 +17,7 @@ from .hand_motion import hand_positions
 from .paddle import counts_per_metre_of
 from .pushes import FORCE, push_hand
 from .scoring import fit
+from .start import heading
 
 if TYPE_CHECKING:
     from ..base.telemetry import PaddleProfile
@@ -25,9 +26,10 @@ if TYPE_CHECKING:
 WINDOW = 0.06
 #: s of rest before a push that a window takes in
 BEFORE = 0.02
-#: what is sought, and parts of its first values that a fit may begin with
+#: what is sought, and parts of its first values that a fit may begin with; stiffnesses [N/m] where friction hides it
 SOUGHT = ("m", "b", "k")
-PARTS = ((1.0, 1.0, 1.0), (0.3, 1.0, 1.0), (3.0, 0.3, 3.0))
+PARTS = tuple((m, b) for m in (1.0, 0.7, 1.3) for b in (1.0, 0.7, 0.4))
+STIFF = (60.0, 120.0, 240.0, 480.0, 960.0, 1920.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +38,7 @@ class HandFit(Found):
 
     about = "hand"
     lacking = "a reflex within the window, tremor, a grip that changes or does not follow"
+    advice = "harder pushes, both ways, of a hand that holds still (push_hand does)"
     above = ()
     bounded = ("m", "b", "k")
     constants: ClassVar = {"m": ("mass", "kg"), "b": ("viscous damping", "N s/m"), "k": ("stiffness", "N/m")}
@@ -115,14 +118,21 @@ def identify_hand(
     y = np.concatenate([source.x[a:b] for a, b in windows])
     start, scales = _start(source, windows, own)
     low = np.where(np.arange(len(start)) < len(SOUGHT), 0.0, -np.inf)
-    starts = (_scaled(start, parts) for parts in PARTS)
+    starts = [np.stack([start, *_guesses(start, source.x, windows, own)], axis=1)[:, :, None], start[:, None, None]]
     fitted = fit(_motion(source, windows, own), y[:, None], starts, lambda p: scales[:, None], quantum=quantum, low=low)
     return told(HandFit, y, fitted, SOUGHT, quantum=quantum, T=source.T, confidence=confidence)
 
 
-def _scaled(start, parts):
-    """A start with parts of its m, b and k, shape (P, 1, 1)."""
-    return (start * np.resize([*parts, *np.ones(len(start))], len(start)))[:, None, None]
+def _guesses(start, x, windows, own):
+    """Yield starts with parts of its m and b, other k, and the hand at rest where the handle was pushed, or about the middle."""
+    each = (len(start) - len(SOUGHT)) // len(windows)
+    for middle in (None, np.median(x)):
+        guess = start.copy()
+        guess[len(SOUGHT) :: each] = [x[a] if middle is None else middle for a, _ in windows]
+        for k in (start[2], *STIFF):
+            for m, b in PARTS:
+                guess[: len(SOUGHT)] = start[0] * m, start[1] * b, k
+                yield guess.copy()
 
 
 def _windows(log, window):
@@ -169,7 +179,7 @@ def _start(log, windows, own):
     lag = round(own["delay"] / T)
     for a, z in windows:
         y, t = log.x[a:z] - log.x[a], np.arange(z - a) * T
-        felt = np.concatenate([np.zeros(lag), log.F[a : z - lag]])
+        felt = np.concatenate([np.zeros(lag), log.F[a : z - lag]]) + own["coulomb"] * heading(y, 0.0)
         once = [np.cumsum(values) * T for values in (y, felt)]
         columns = [np.ones_like(t), t, t**2, -once[0], -np.cumsum(once[0]) * T, -np.cumsum(once[1]) * T]
         A = np.column_stack(columns)

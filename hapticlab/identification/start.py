@@ -41,7 +41,7 @@ def begin(y, F, T, *, push=0.0, m=None, noise=0.0, delays=DELAYS, without=(), co
 def _with_delay(y, F, T, push, m, noise, whole, without, coulomb):
     samples = np.arange(len(y))
     felt = np.interp(samples - whole, samples, F, left=0.0)
-    sign = _heading(y, noise)
+    sign = heading(y, noise)
     rubbed = 0.0 if coulomb is None else coulomb * sign
     driven = _sum(_sum((push - felt) * (sign != 0) - rubbed, T), T)
     columns = [np.ones(len(y)), samples * T, -_sum(y - y[0], T), -_sum(_sum(sign, T), T)]
@@ -68,7 +68,7 @@ def _sum(values, T):
     return np.concatenate([[0.0], np.cumsum((values[1:] + values[:-1]) / 2)]) * T
 
 
-def _heading(y, noise):
+def heading(y, noise):
     """The sign of the velocity over a window, 0 where the handle seems to rest."""
     moved = np.pad(y, (0, WINDOW), "edge")[WINDOW:] - np.pad(y, (WINDOW, 0), "edge")[:-WINDOW]
     return np.where(np.abs(moved) > MOVED * noise, np.sign(moved), 0.0)
