@@ -8,7 +8,7 @@ import inspect
 import sys
 from difflib import get_close_matches
 from types import ModuleType
-from typing import Any
+from typing import Any, NoReturn
 
 #: every namespace of ``hl``, in the order in which a course meets them
 PAGES = (
@@ -30,6 +30,11 @@ class Page(ModuleType):
         if name.startswith("_"):
             raise AttributeError(f"{title} has no {name}")
         raise AttributeError(f"{title} has no {name}; {_cure(name)}")
+
+    def __call__(self, *_: Any, **__: Any) -> NoReturn:
+        title = self.__name__.replace("hapticlab", "hl", 1)
+        some = ", ".join(f"{title}.{name}" for name in self.__all__ if name.islower())
+        raise TypeError(f"{title} is a page of names, no function; it holds {some}")
 
     def __repr__(self) -> str:
         return "\n".join([str(self.__doc__).strip(), "", *_columns(self._rows())])

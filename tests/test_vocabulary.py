@@ -58,3 +58,8 @@ def test_what_was_found_is_a_table():
 def test_a_name_that_moved_is_answered_with_where_it_is(old, new):
     with pytest.raises(AttributeError, match=rf"did you mean .*hl\.{new}\b"):
         getattr(hl, old)
+
+
+def test_a_page_that_is_called_says_what_it_holds():
+    with pytest.raises(TypeError, match=r"hl.bounds is a page of names, no function; it holds .*hl.bounds.table"):
+        hl.bounds(hl.Device(b=0.1, T=1e-3))

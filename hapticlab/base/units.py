@@ -14,6 +14,8 @@ _PASSIVE = {"N/m": "stiffness", "N*s/m": "damping", "s": "time", "N*m/rad": "sti
 _INERTIA = {"kg": "mass", "kg*m^2": "moment of inertia"}
 #: a number, then its unit; pint alone would read '10 N/m; 5' as 50 N/m and 'N/m' as 1 N/m
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)")
+#: units of an angle, which has no dimension
+_ANGLES = ("deg", "degree", "degrees", "°")
 _UNIT = re.compile(r"[\w\s*/^().+°·%-]*")
 
 
@@ -54,7 +56,7 @@ def _dimension(unit):
     except ValueError as problem:
         raise UnitsError(f"unit {unit!r} is not known ({problem}); write it like N*s/m, m/s^2, kg or 1") from None
     if size != 1.0:
-        si = si_name(exponents)
+        si = "rad" if unit in _ANGLES else si_name(exponents)
         raise UnitsError(f"unit {unit!r} is not SI; declare {si} and bind a value with its unit, as in '10 {unit}'")
     return exponents
 

@@ -7,13 +7,15 @@ from sympy.core.cache import cacheit
 from sympy.core.function import AppliedUndef
 
 from ...base.units import dimension
-from ...errors import ParameterError, SceneError, SignalError
+from ...errors import ParameterError, SceneError, SignalError, UnitsError
 from .symbols import Parameter, T, delay, lag_of, n, t, v, x
 from .units import agree
 from .written import CONDITIONS, RESERVED, check_name, expression
 
 #: of a scene's expressions, a part that stands in several places counted once: each is an instruction or more of a tick
 MOST_PARTS = 100_000
+#: names that a scene takes from hapticlab, and that a student may have given another value
+CLOCK_AND_HANDLE = ("n", "t", "T", "x", "v")
 _NOT_REAL = (sp.I, sp.zoo, sp.nan, sp.oo, -sp.oo)
 
 
@@ -120,6 +122,8 @@ def check_symbols(expressions):
     _check_arguments(expressions)
     for expr in expressions:
         for f in expr.atoms(AppliedUndef):
+            if type(f).__name__ in CLOCK_AND_HANDLE:
+                raise SceneError(f"{f} is another function of that name; from hapticlab import {type(f).__name__}")
             if not hasattr(type(f), "role"):
                 raise SceneError(
                     f"unknown function {f}; declare a coordinate, {type(f).__name__} = "
@@ -156,7 +160,7 @@ def _without_rate(d):
 
 
 def _undeclared(symbol):
-    if symbol.name in ("n", "t", "T"):
+    if symbol.name in CLOCK_AND_HANDLE:
         return f"{symbol} is another symbol of that name; from hapticlab import {symbol}"
     return (
         f"{symbol} is a plain SymPy symbol: it has no unit and no range; declare it, "
@@ -198,7 +202,13 @@ def _declared(kind):
 
 def check_units(force, eom, watch, moving):
     """Refuse a force that is none, equations whose sides differ, and starts in another unit than their coordinate."""
-    agree_with(force, "N", "force")
+    try:
+        agree_with(force, "N", "force")
+    except UnitsError as refusal:
+        if applied([force], "handle", "signal", "coordinate"):
+            raise
+        cure = "Neither x(n) nor v(n) is in it: was x or v given another value? from hapticlab import x, v"
+        raise UnitsError(f"{refusal} {cure}") from None
     for number, equation in enumerate(eom, 1):
         agree(equation.args, f"equation of motion {number}")
     for name, expr in watch.items():

@@ -191,6 +191,9 @@ class _HandleSignal(_Sampled, sp.Function, metaclass=_Unapplied):
     @classmethod
     def eval(cls, argument: sp.Expr) -> None:
         # SymPy tries other arguments while it substitutes and compares; in a scene they are refused later
+        if not isinstance(argument, sp.Expr):
+            what = f"{cls.__name__} was given an array or another object that is no expression"
+            raise SignalError(f"{what}: was n or t given another value? from hapticlab import n, t, and write {cls.__name__}(n)")
         if any((argument - clock).is_number for clock in (n, t)):
             lag_of(sp.Basic.__new__(cls, argument))
 
