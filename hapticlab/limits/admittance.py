@@ -110,7 +110,7 @@ def admittance_design(device: AnyDevice, *, servo: float, servo_stiffness: float
     Examples
     --------
     >>> import hapticlab as hl
-    >>> design = admittance_design(hl.SimulatedPaddle(m=0.05, b=5.0, T=1e-3), servo=2.0)
+    >>> design = hl.design.admittance(hl.SimulatedPaddle(m=0.05, b=5.0, T=1e-3), servo=2.0)
     >>> design.two_port.absolutely_stable
     True
     """

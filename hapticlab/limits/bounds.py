@@ -66,7 +66,7 @@ def abbott_okamura_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "z
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(abbott_okamura_limit(hl.Device(b=0.1, T="1 ms", coulomb=0.02, counts_per_metre=4000)).K)
+    >>> print(hl.bounds.abbott_okamura(hl.Device(b=0.1, T="1 ms", coulomb=0.02, counts_per_metre=4000)).K)
     160.0
     """
     b, T, delay, coulomb, counts = known(device, *TWO_MODES)
@@ -94,7 +94,7 @@ def diolaiti_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(diolaiti_limit(hl.Device(b=0.1, T="1 ms", delay="0.5 ms")).K)
+    >>> print(hl.bounds.diolaiti(hl.Device(b=0.1, T="1 ms", delay="0.5 ms")).K)
     100.0
     """
     b, T, delay, coulomb, counts = known(device, *TWO_MODES)
@@ -206,7 +206,7 @@ def gil_limit(device: AnyDevice, *, B: float = 0.0, law: LawName = "zoh") -> Lim
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(round(gil_limit(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), B=0.05).K, 6))
+    >>> print(round(hl.bounds.gil(hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), B=0.05).K, 6))
     300.0
     """
     m, own, T, delay, hand = known(device, "m", "b", "T", "delay", "hand")

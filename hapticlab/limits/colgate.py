@@ -131,7 +131,7 @@ def passivity_margin(device: AnyDevice, law: LinearLaw) -> PassivityMargin:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> margin = passivity_margin(hl.Device(b=0.15), LinearLaw.of("backward_difference", K=100.0, T=1e-3))
+    >>> margin = hl.passivity.margin(hl.Device(b=0.15), LinearLaw.of("backward_difference", K=100.0, T=1e-3))
     >>> round(margin.required, 9), round(margin.frequency, 3), round(margin.margin, 9)
     (0.1, 500.0, 0.05)
     """

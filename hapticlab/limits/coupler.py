@@ -111,7 +111,7 @@ def coupler_design(device: AnyDevice, *, b_c: float | None = None) -> CouplerDes
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.2, T=1e-3)
-    >>> design = coupler_design(paddle, b_c=0.05)
+    >>> design = hl.design.coupler(paddle, b_c=0.05)
     >>> round(design.k_c, 6)  # 2 (b - b_c)/T
     300.0
     """

@@ -154,7 +154,7 @@ def passivity_ledger(
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(passivity_ledger(hl.Device(b=0.2, T="1 ms"), K=200, B=0.05))
+    >>> print(hl.passivity.ledger(hl.Device(b=0.2, T="1 ms"), K=200, B=0.05))
     device              +0.2 N s/m   output-strictly passive by its own damping b
     hold                -0.1 N s/m   local stiffness at most 200 N/m, held: k T/2
     damper             -0.05 N s/m   local damping at most 0.05 N s/m in magnitude, held: |B|

@@ -96,7 +96,7 @@ def passivity_indices(law: LinearLaw) -> PassivityIndices:
     Examples
     --------
     >>> import hapticlab as hl
-    >>> print(passivity_indices(hl.laws.LinearLaw.of("backward_difference", K=200.0, T=1e-3)))
+    >>> print(hl.passivity.indices(hl.laws.LinearLaw.of("backward_difference", K=200.0, T=1e-3)))
     backward_difference, K = 200 N/m
       input-strict   nu = -0.2 N s/m, at 500 Hz: short, a damper of 0.2 N s/m beside it pays
       output-strict eps = -5 m/(N s), at 500 Hz: short, a dashpot in line that yields 5 m/s a newton pays

@@ -102,7 +102,7 @@ def stability_limit(device: AnyDevice, *, law: StiffnessLaw = "zoh", B: float = 
     K, theta = edges[first - 1] if first else (0.0, None)
     if first and abs(abs(1 + loop.poles(K)).max() - 1) > ON_CIRCLE:
         raise AnalysisError(
-            f"{loop.law.name}: {len(loop.law.A)} states, whose polynomial loses its digits; read closed_loop_poles(K=...), K by K"
+            f"{loop.law.name}: {len(loop.law.A)} states, whose polynomial loses digits; read hl.stability.poles(K=...), K by K"
         )
     reason = "a pole leaves the unit circle" if first else _why_none(device, law, B, any(stable))
     again = next((i for i in range(first, len(stable)) if stable[i]), None)
@@ -168,7 +168,7 @@ def closed_loop_matrix(
     --------
     >>> import hapticlab as hl
     >>> device = hl.Device(m=1, b=0, T=0.1)
-    >>> closed_loop_matrix(device, K=100.0).round(9).tolist()
+    >>> hl.stability.matrix(device, K=100.0).round(9).tolist()
     [[0.5, 0.1], [-10.0, 1.0]]
     """
     loop, K = _loop_at(device, K, law, B, parameter)
@@ -189,7 +189,7 @@ def _loop_at(device, K, law, B, parameter):
     if K is None and isinstance(law, (LinearLaw, Scene)):
         return Loop.of(device, law, B, None), 0.0  # what holds its own is the same at every K
     if K is None:
-        raise AnalysisError("K = None, and the law holds no stiffness; needs one in N/m: closed_loop_poles(..., K=100)")
+        raise AnalysisError("K = None, and the law holds no stiffness; needs one in N/m: hl.stability.poles(..., K=100)")
     K = number("K", K, "N/m", what="stiffness")
     if isinstance(law, LinearLaw):
         raise AnalysisError(f"K = {K:g} N/m beside {law.name}, which holds its own stiffness; leave K out")

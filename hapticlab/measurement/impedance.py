@@ -99,7 +99,7 @@ def measured_impedance(
     >>> bool((abs(found.rendered / found.law - 1) < 1e-3).all()), round(float(found.damping[0]), 4)     # -K T/2
     (True, -0.075)
     """
-    place = None if place is None else number("place", place, "m", "measured_impedance")
+    place = None if place is None else number("place", place, "m", "hl.measure.impedance")
     simulated, how, frequency = isinstance(paddle, SimulatedPaddle), excitation.how, excitation.frequency
     period, blocks, settle = averaging.period, averaging.blocks, averaging.settle
     drive = _drive(paddle, excitation.drive, simulated)
@@ -170,12 +170,12 @@ def _blocks(log, samples, blocks, skip):
     """x, F and the scene's own part of F as blocks of one period, shape (B, N)."""
     if log.fault or log.gap.any() or log.every > 1 or len(log) < skip + blocks * samples:
         raise PaddleError(
-            f"measured_impedance: the record is not whole: {log.fault or 'samples were lost or left out'}. Drive less, "
+            f"hl.measure.impedance: the record is not whole: {log.fault or 'samples were lost or left out'}. Drive less, "
             "hold the handle, or measure with a longer T"
         )
     if "own" in log.channels and log.saturated is not None and log.saturated.any():
         raise PaddleError(
-            "measured_impedance: the motor came to its limit, so nothing in the record is linear: drive less, or give a "
+            "hl.measure.impedance: the motor came to its limit, so nothing in the record is linear: drive less, or give a "
             "place= nearer to the boundary"
         )
     columns = [log.channels.get("x_true", log.x), log.F, log.channels.get("own", log.F)]

@@ -107,7 +107,7 @@ class MeasuredImpedance:
 
     def _meant(self):
         if self.ideal is None:
-            raise AnalysisError("the ideal impedance is not known; give it: measured_impedance(..., ideal=lambda s: k/s + b)")
+            raise AnalysisError("the ideal impedance is not known; give it: hl.measure.impedance(..., ideal=lambda s: k/s + b)")
         return self.ideal
 
     @property

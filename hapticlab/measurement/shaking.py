@@ -41,12 +41,12 @@ def most_force(paddle, pull, amplitude, force_max):
     stands = motor_stands(paddle)
     if stands is None:
         raise PaddleError(
-            "measured_impedance: the board has no calibration, so what its motor stands is not known: run `hapticlab "
+            "hl.measure.impedance: the board has no calibration, so what its motor stands is not known: run `hapticlab "
             "calibrate` first."
         )
     if abs(pull) + amplitude > stands:
         raise PaddleError(
-            f"measured_impedance: {abs(pull):.3g} N to hold the place and {amplitude:.3g} N to shake the handle are more "
+            f"hl.measure.impedance: {abs(pull):.3g} N to hold the place and {amplitude:.3g} N to shake the handle are more "
             f"than the {stands:.3g} N that the motor stands for long; give a place= nearer to the boundary, or a smaller "
             "excitation=hl.measure.Excitation(amplitude=...)"
         )
@@ -59,7 +59,7 @@ def shake_board(paddle, shaken, duration, *, place, origin, amplitude, force_max
     depth, at = abs(place - origin), paddle.state()["x"]
     if abs(at - place) > (depth or reach):
         raise PaddleError(
-            f"measured_impedance: the handle was led to {1e3 * place:.3g} mm and is at {1e3 * at:.3g} mm: hold it there "
+            f"hl.measure.impedance: the handle was led to {1e3 * place:.3g} mm and is at {1e3 * at:.3g} mm: hold it there "
             "lightly, or let go of it"
         )
     rises = max(1, round(min(RISES, settle) / paddle.T))
@@ -69,13 +69,13 @@ def shake_board(paddle, shaken, duration, *, place, origin, amplitude, force_max
     log = paddle.run(safe, duration=duration, force_max=force_max, progress=False, **options)
     if log.cut.any():
         raise PaddleError(
-            f"measured_impedance: the motor was switched off after {log.t[log.cut.argmax()]:.3g} s, the handle moved "
+            f"hl.measure.impedance: the motor was switched off after {log.t[log.cut.argmax()]:.3g} s, the handle moved "
             f"further than {1e3 * reach:.3g} mm or faster than {fastest:.3g} m/s, as "
             "safety=hl.measure.Safety(reach=, speed_max=) says: drive less, hold the handle, or take a softer wall"
         )
     if log.saturated is not None and log.saturated.any():
         raise PaddleError(
-            f"measured_impedance: the force came to its limit of {force_max:.3g} N in {int(log.saturated.sum())} samples, so "
+            f"hl.measure.impedance: the force came to its limit of {force_max:.3g} N in {int(log.saturated.sum())} samples, so "
             "nothing in the record is linear. It does so where a wall chatters: hold the handle, or take a softer wall; else "
             "drive less, or allow more: safety=hl.measure.Safety(force_max=...)"
         )

@@ -294,7 +294,7 @@ def test_a_delay_in_the_law_is_a_delay_of_the_paddle(late, m):
 
 def test_a_law_of_too_many_samples_is_refused_not_guessed():
     weights = np.random.default_rng(0).uniform(size=80)
-    with pytest.raises(AnalysisError, match="79 states, whose polynomial loses its digits"):
+    with pytest.raises(AnalysisError, match="79 states, whose polynomial loses digits"):
         stability_limit(paddle(), law=lambda K: LinearLaw.of_taps(K * weights / weights.sum(), T=T))
 
 

@@ -278,18 +278,18 @@ def test_a_wall_that_chatters_on_a_board_is_cut_and_told():
     """Unstable above 2 b/T = 200 N/m: force below its hold and twice the amplitude, and the call is named."""
     board, logs = with_motor(2.0, b=0.1)
     with board:
-        with pytest.raises(hl.errors.PaddleError, match="measured_impedance: the .*softer wall"):
+        with pytest.raises(hl.errors.PaddleError, match="hl.measure.impedance: the .*softer wall"):
             measured_impedance(board, hl.wall()(k=900), **SHORT)
         assert board.state()["state"] == 0 and board.state()["force"] == 0
     assert max(abs(log.F).max() for log in logs) <= 1.2 + 1e-6
     pulled, logs = with_motor(2.0, hand=hl.Hand(push=0.9))  # 45 mm of the 20 N/m that lead it
-    with pulled, pytest.raises(hl.errors.PaddleError, match="measured_impedance: the handle was led to 2 mm and is at"):
+    with pulled, pytest.raises(hl.errors.PaddleError, match="hl.measure.impedance: the handle was led to 2 mm and is at"):
         measured_impedance(pulled, hl.wall()(k=100), place=0.002, **SHORT)
     assert abs(logs[-1].F).max() == pytest.approx(0.2 + 2 * 0.1)
     limits = hl.measure.Safety(speed_max=0.06, force_max=5.0)
     with (
         hl.connect("sim://hapkit", paddle=hl.SimulatedPaddle(**COUNTED | {"b": 0.1})) as slow,
-        pytest.raises(hl.errors.PaddleError, match="measured_impedance: the motor was switched off after .*speed_max="),
+        pytest.raises(hl.errors.PaddleError, match="hl.measure.impedance: the motor was switched off after .*speed_max="),
     ):
         measured_impedance(slow, hl.wall()(k=900), place=0.003, safety=limits, **SHORT)
 

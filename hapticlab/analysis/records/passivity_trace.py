@@ -106,12 +106,12 @@ def passivity_trace(log: Telemetry) -> PassivityTrace:
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3)
     >>> log = paddle.run(hl.laws.passivity_observer(hl.wall()(k=500)), duration=0.05, x=-0.002, v=0.2, progress=False)
-    >>> print(passivity_trace(log))
+    >>> print(hl.passivity.trace(log))
     W >= 0 broken by 0.1595 mJ at t = 0.042 s; -0.1595 mJ taken in the end
     at most 1.089 mJ drained, from t = 0.026 s to 0.042 s
     the observer was wrong by ... mJ at most
     """
-    check_record(log, "passivity_trace")
+    check_record(log, "hl.passivity.trace")
     W = energy(log).W
     moved = np.r_[0.0, np.diff(np.asarray(log.channels.get("x_true", log.x), float))]
     observed = log.channels.get("W", log.channels.get("credit"))
@@ -119,7 +119,7 @@ def passivity_trace(log: Telemetry) -> PassivityTrace:
     dissipated = None
     if "alpha" in log.channels:
         if log.delay:
-            raise AnalysisError("passivity_trace: a controller's damper acts late by the delay; needs a record without delay")
+            raise AnalysisError("hl.passivity.trace: a controller's damper acts late by the delay; needs a record without delay")
         damper = log.alpha * np.r_[0.0, np.diff(log.x)] / log.T
         dissipated = np.r_[0.0, np.cumsum(damper[:-1] * moved[1:])]
     peaks = np.maximum.accumulate(W)

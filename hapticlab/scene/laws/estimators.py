@@ -92,8 +92,8 @@ class VelocityEstimate:
         """
         if not self._transfer:
             raise SceneError(
-                f"{self.name} has no transfer function: it is not linear, or its gains change; use backward_velocity, "
-                "filtered_velocity or kalman_velocity(steady=True), or simulate it"
+                f"{self.name} has no transfer function: it is not linear, or its gains change; use hl.velocity.backward, "
+                "hl.velocity.filtered or hl.velocity.kalman(steady=True), or simulate it"
             )
         over, under = ([number_of(sp.sympify(c)).subs(T, period) for c in part] for part in self._transfer)
         free = sorted({str(s) for c in (*over, *under) for s in c.free_symbols})
