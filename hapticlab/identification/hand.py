@@ -38,7 +38,7 @@ class HandFit(Found):
 
     about = "hand"
     lacking = "a reflex within the window, tremor, a grip that changes or does not follow"
-    advice = "harder pushes, both ways, of a hand that holds still (push_hand does)"
+    advice = "harder pushes, both ways, of a hand that holds still (hl.identify.pushes does)"
     above = ()
     bounded = ("m", "b", "k")
     constants: ClassVar = {"m": ("mass", "kg"), "b": ("viscous damping", "N s/m"), "k": ("stiffness", "N/m")}
@@ -97,7 +97,7 @@ def identify_hand(
     --------
     >>> import hapticlab as hl
     >>> pinch = hl.Hand(m=0.02, b=1, k=200)
-    >>> found = identify_hand(hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, noise=2e-6, hand=pinch), pushes=2)
+    >>> found = hl.identify.hand(hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, noise=2e-6, hand=pinch), pushes=2)
     >>> 0.02 in found["m"], 1.0 in found["b"], 200.0 in found["k"]
     (True, True, True)
     """
@@ -105,11 +105,11 @@ def identify_hand(
         device = source if device is None else device
         counts_per_metre = counts_per_metre_of(source) if counts_per_metre is None else counts_per_metre
         source = push_hand(source, force=force, pushes=pushes, seed=seed)
-    check_record(source, "identify_hand")
+    check_record(source, "hl.identify.hand")
     device = getattr(device, "settings", device)
     if device is None or isinstance(device, Telemetry):
         raise AnalysisError(
-            "identify_hand: whose handle is it? Give device=, a PaddleProfile or found.profile() of identify_paddle"
+            "hl.identify.hand: whose handle is it? Give device=, a PaddleProfile or found.profile() of hl.identify.paddle"
         )
     own = {name: float(getattr(device, name, 0.0)) for name in ("m", "b", "coulomb")}
     own["delay"] = float(getattr(device, "delay", source.delay))
@@ -146,8 +146,8 @@ def _windows(log, window):
             free = at + long
     if not found:
         raise AnalysisError(
-            f"identify_hand: no push in {len(log)} samples with {BEFORE:g} s of F = 0 before it and {window:g} s from its "
-            "begin on; run push_hand(paddle), or a scene that is quiet but for short pushes"
+            f"hl.identify.hand: no push in {len(log)} samples with {BEFORE:g} s of F = 0 before it and {window:g} s from its "
+            "begin on; run hl.identify.pushes(paddle), or a scene that is quiet but for short pushes"
         )
     return found
 

@@ -184,7 +184,7 @@ def identify(
 
     (m + added) x'' = push - scale F - b x' - coulomb sign(x'), F[n] held over [n T + delay, (n+1) T + delay).
     Of 395 random paddles (5 g to 0.5 kg, 0.01 to 2 N s/m, 0 to 0.3 N, 0 to 3 T; noise, counts in dither and without) that
-    identify_paddle moved none was refused, and the 95 % intervals held 94.9 % of the masses, 96.5 % of the dampings, 95.2 %
+    hl.identify.paddle moved none was refused, and the 95 % intervals held 94.9 % of the masses, 96.5 % of the dampings, 95.2 %
     of the frictions and delays. They hold less often where a chirp spends half of its force on friction or more.
 
     Parameters

@@ -91,7 +91,7 @@ def identify_paddle(
     --------
     >>> import hapticlab as hl
     >>> paddle = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3, coulomb=0.05, noise=5e-6, force_max=2.0)
-    >>> found = identify_paddle(paddle, kinds=("steps",))
+    >>> found = hl.identify.paddle(paddle, kinds=("steps",))
     >>> 0.03 in found["m"], 0.1 in found["b"], 0.05 in found["coulomb"], 0.0 in found["delay"]
     (True, True, True, True)
     """
@@ -148,7 +148,7 @@ def _pilot(paddle, force, travel):
             return HandleRecord(log, at_rest=_rests(paddle)), size
         if size >= force:
             raise AnalysisError(
-                f"identify_paddle: {force:.3g} N moves the handle by {1e3 * np.ptp(log.x):.2g} mm only; needs "
+                f"hl.identify.paddle: {force:.3g} N moves the handle by {1e3 * np.ptp(log.x):.2g} mm only; needs "
                 f"{1e3 * FOUND * travel:.2g} mm. Check the motor's supply and that nobody holds the handle, or allow "
                 "a larger force="
             )
@@ -161,8 +161,8 @@ def _run(paddle, excited, force, travel, number=0):
     if not isinstance(paddle, SerialPaddle):
         return replace(paddle, seed=paddle.seed + number).run(scene, duration=duration, progress=False)
     back = centring(force / travel, BACK_DAMPING * force / travel)
-    after(paddle.run(back, duration=BACK_TIME, force_max=force, progress=False), "identify_paddle")
-    log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False), "identify_paddle")
+    after(paddle.run(back, duration=BACK_TIME, force_max=force, progress=False), "hl.identify.paddle")
+    log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False), "hl.identify.paddle")
     return replace(log, F=given(paddle, log.F))
 
 

@@ -17,7 +17,7 @@ class PaddleFit(Found):
 
     about = "paddle"
     lacking = "a stop, a hand, backlash, friction that is not constant"
-    advice = "a kick, steps and a chirp (identify_paddle does), with forces of several sizes, both ways"
+    advice = "a kick, steps and a chirp (hl.identify.paddle does), with forces of several sizes, both ways"
     above = ("m", "scale")
     bounded = ("m", "b", "coulomb", "scale", "b/m", "coulomb/m")
     constants: ClassVar = {

@@ -47,13 +47,13 @@ def push_hand(paddle: SimulatedPaddle | SerialPaddle, *, force: float = FORCE, p
     """
     force, T = number("force", force, "N", "a push", above=0, error=PaddleError), paddle.T
     if not isinstance(pushes, (int, np.integer)) or isinstance(pushes, bool) or pushes < 1:
-        raise PaddleError(f"pushes = {pushes!r}; identify_hand needs a whole number >= 1.")
+        raise PaddleError(f"pushes = {pushes!r}; hl.identify.hand needs a whole number >= 1.")
     if isinstance(paddle, SerialPaddle):
         if paddle.settings is None:
-            raise PaddleError("identify_hand: the board has no calibration: run `hapticlab calibrate` first.")
+            raise PaddleError("hl.identify.hand: the board has no calibration: run `hapticlab calibrate` first.")
         most = min(paddle.settings.force_continuous, paddle.settings.force_max)
         if force > most:
-            raise PaddleError(f"identify_hand: force = {force:g} N; the motor stands for {most:.3g} N: give less.")
+            raise PaddleError(f"hl.identify.hand: force = {force:g} N; the motor stands for {most:.3g} N: give less.")
         _look(paddle, force)
     draws = np.random.default_rng(seed)
     starts = np.cumsum(draws.uniform(*APART, pushes)) / T
@@ -70,14 +70,14 @@ def _pushed(paddle, force, starts, signs, duration):
     scene = leashed(Scene(when(there, A, when(back, -A, 0)), name="pushes"), TRAVEL, fastest)
     scene = replace(scene, watch={})  # x and v tell the cut as well; the slowest board has no time for one channel more
     if isinstance(paddle, SerialPaddle):
-        log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False), "identify_hand")
+        log = after(paddle.run(scene, duration=duration, every=1, force_max=force, progress=False), "hl.identify.hand")
         log = replace(log, F=given(paddle, log.F))
     else:
         log = paddle.run(scene, duration=duration, progress=False)
     cut = (abs(log.x - log.x[0]) > TRAVEL) | (abs(log.v) > fastest)
     if cut.any():
         raise PaddleError(
-            f"identify_hand: the motor was switched off after {log.t[cut.argmax()]:.3g} s, a push of {force:.3g} N moved "
+            f"hl.identify.hand: the motor was switched off after {log.t[cut.argmax()]:.3g} s, a push of {force:.3g} N moved "
             f"the handle further than {1e3 * TRAVEL:.3g} mm from where it began, or faster than {fastest:.3g} m/s: hold it, "
             "or give a smaller force="
         )
@@ -98,6 +98,6 @@ def _look(paddle, force):
             return
     if way > STILL * count:
         raise PaddleError(
-            f"identify_hand: pushed by {pushed:.3g} N for {1e3 * LASTS:g} ms the handle went {1e3 * way:.2g} mm and did "
+            f"hl.identify.hand: pushed by {pushed:.3g} N for {1e3 * LASTS:g} ms the handle went {1e3 * way:.2g} mm and did "
             "not come back: somebody has to hold it, where they want to keep it; a hand without stiffness is not pushed"
         )

@@ -109,7 +109,7 @@ def z_width(
     --------
     >>> import hapticlab as hl
     >>> paddle, coarse = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3), hl.measure.Search(tolerance=0.1)
-    >>> found = hl.measure.z_width(paddle, B=[0.0, 1.0], search=coarse, judged=hl.measure.Judgement(longest=1))
+    >>> found = hl.measure.z_width(paddle, B=[0.0, 1.0], search=coarse, judged=hl.measure.Judgement(longest=2))
     >>> bool(found.K[1] > 5 * found.K[0]), found.passivity.tolist()
     (True, [200.0, 0.0])
     """

@@ -73,9 +73,9 @@ def test_a_hand_on_a_board_is_identified_by_the_same_call():
 
 def test_refusals_say_what_to_do():
     log = PADDLE.run(hl.laws.virtual_damper()(B=0), duration=0.2)
-    with pytest.raises(AnalysisError, match="no push in 200 samples.*push_hand"):
+    with pytest.raises(AnalysisError, match="no push in 200 samples.*hl.identify.pushes"):
         hl.identify.hand(log, PADDLE)
-    with pytest.raises(AnalysisError, match="whose handle.*identify_paddle"):
+    with pytest.raises(AnalysisError, match="whose handle.*hl.identify.paddle"):
         hl.identify.hand(log)
 
 
@@ -99,7 +99,7 @@ def test_a_handle_that_nobody_holds_is_not_pushed_with_all_force(coulomb):
     board, logs = board_of(free)
     with (
         board,
-        pytest.raises(hl.errors.PaddleError, match="identify_hand: pushed by .* did not come back: somebody has to hold"),
+        pytest.raises(hl.errors.PaddleError, match="hl.identify.hand: pushed by .* did not come back: somebody has to hold"),
     ):
         hl.identify.hand(board)
     assert max(abs(log.F).max() for log in logs) <= 0.5
@@ -109,7 +109,7 @@ def test_a_handle_that_nobody_holds_is_not_pushed_with_all_force(coulomb):
 def test_a_push_counts_from_where_the_handle_is_and_ends_for_good():
     """30 mm from 15 mm on, where the board's zero would have left 15: the free handle goes 1 N 15 ms / 0.1 N s/m = 0.15 m."""
     free = hl.SimulatedPaddle(m=0.03, b=0.1, T=1e-3)
-    with pytest.raises(hl.errors.PaddleError, match="identify_hand: the motor was switched off .* further than 30 mm"):
+    with pytest.raises(hl.errors.PaddleError, match="hl.identify.hand: the motor was switched off .* further than 30 mm"):
         hl.identify.pushes(free, pushes=2)
     scene = Excitation("kick", 0.5, 40, 400).scene(0.01)
     log = free.run(scene, duration=0.4, x=0.015)
@@ -120,7 +120,7 @@ def test_a_push_counts_from_where_the_handle_is_and_ends_for_good():
 def test_a_fault_names_the_call_and_an_interrupt_leaves_the_motor_off(monkeypatch):
     board, _ = board_of(replace(PADDLE, counts_per_metre=1 / 12.8e-6))
     with board:
-        with pytest.raises(hl.errors.PaddleError, match="identify_hand: force = 99 N; the motor stands for"):
+        with pytest.raises(hl.errors.PaddleError, match="hl.identify.hand: force = 99 N; the motor stands for"):
             hl.identify.hand(board, force=99.0)
         patch = "hapticlab.device.board.serial_paddle.SerialPaddle._collect"
         monkeypatch.setattr(patch, lambda *given: (_ for _ in ()).throw(KeyboardInterrupt))
@@ -128,7 +128,7 @@ def test_a_fault_names_the_call_and_an_interrupt_leaves_the_motor_off(monkeypatc
             hl.identify.hand(board)
         assert board.state()["state"] == 0 and board.state()["force"] == 0
     log = PADDLE.run(hl.laws.virtual_damper()(B=0), duration=0.2)
-    with pytest.raises(hl.errors.PaddleError, match="identify_hand stopped: tick 3"):
+    with pytest.raises(hl.errors.PaddleError, match="hl.identify.hand stopped: tick 3"):
         after(replace(log, fault="tick 3"), "identify_hand")
 
 
