@@ -129,7 +129,7 @@ def test_a_fault_names_the_call_and_an_interrupt_leaves_the_motor_off(monkeypatc
         assert board.state()["state"] == 0 and board.state()["force"] == 0
     log = PADDLE.run(hl.laws.virtual_damper()(B=0), duration=0.2)
     with pytest.raises(hl.errors.PaddleError, match="hl.identify.hand stopped: tick 3"):
-        after(replace(log, fault="tick 3"), "identify_hand")
+        after(replace(log, fault="tick 3"), "hl.identify.hand")
 
 
 def test_all_pushes_on_their_leash_fit_the_slowest_board(monkeypatch):
