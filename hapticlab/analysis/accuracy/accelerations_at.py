@@ -125,15 +125,15 @@ def instant(scene, *, T):
 def _check(contacts):
     for c in contacts.hovering:
         raise ProgramError(f"{c.name}: micro-impulses act at the end of steps, not in time")
-    rubbing = [c.name for c in contacts.contacts if c.law.mu != 0]
+    rubbing = [c.name for c in contacts.contacts if c.contact_law.mu != 0]
     if rubbing:
         raise ProgramError(f"{rubbing[0]}: friction in an impact has one solver here, not two")
 
 
 def _bounce(contact, constant):
-    speed = contact.law.rest_speed
+    speed = contact.contact_law.rest_speed
     least = 0.0 if speed is None else np.inf if speed == sp.oo else constant(speed).constant
-    return Bounce(constant(contact.law.e).constant, least)
+    return Bounce(constant(contact.contact_law.e).constant, least)
 
 
 def _derivatives(motion):

@@ -81,7 +81,7 @@ def test_a_motion_scales():
         (lambda: HandleMotion("one", sp.Symbol("a") * t, 1.0), "an expression of hl.t and numbers"),
         (lambda: HandleMotion("one", t, 0.0), "duration > 0 s"),
         (lambda: handle_motions(band=(2, 1)), "0 < low < high"),
-        (lambda: handle_motions(travel=0), "travel > 0 m"),
+        (lambda: handle_motions(travel=0), "needs travel > 0"),
     ],
 )
 def test_what_is_no_motion_is_refused(made, said):
