@@ -63,7 +63,7 @@ class Found(dict[str, str]):
 
 
 def find(words: str = "") -> Found:
-    """Public names whose own or whose description holds every one of the words.
+    """Public names whose own or whose first line holds every one of the words; where none does, whose description does.
 
     Parameters
     ----------
@@ -82,8 +82,15 @@ def find(words: str = "") -> Found:
     hl.velocity.kalman  Kalman filter of position and velocity under white acceleration, held over each period.
     """
     asked = words.lower().split()
-    lines = {name: _first_line(value) for name, value in public().items()}
-    return Found((name, line) for name, line in lines.items() if all(word in f"{name} {line}".lower() for word in asked))
+    values = public()
+    lines = {name: _first_line(value) for name, value in values.items()}
+    at_once = {name: line for name, line in lines.items() if all(word in f"{name} {line}".lower() for word in asked)}
+    return Found(at_once or {name: line for name, line in lines.items() if _speaks_of(values[name], asked)})
+
+
+def _speaks_of(value, asked):
+    described = (inspect.getdoc(value) or "").lower()
+    return all(word in described for word in asked)
 
 
 def public() -> dict[str, Any]:

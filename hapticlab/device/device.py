@@ -10,6 +10,7 @@ from ..base.unusual import DEVICE, warn_of_unusual
 from ..errors import AnalysisError, PaddleError
 
 if TYPE_CHECKING:
+    from ..base.annotations import Number
     from ..base.telemetry import PaddleProfile
     from .hand.hand import Hand
     from .paddle import Paddle
@@ -72,6 +73,21 @@ class Device:
     counts_per_metre: float | None = None
     velocity: str = "backward_difference"
     hand: Hand | None = None
+
+    if TYPE_CHECKING:  # it takes texts and keeps floats
+
+        def __init__(
+            self,
+            *,
+            m: Number | None = None,
+            b: Number | None = None,
+            T: Number | None = None,
+            delay: Number = 0.0,
+            coulomb: Number = 0.0,
+            counts_per_metre: Number | None = None,
+            velocity: str = "backward_difference",
+            hand: Hand | None = None,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         for name in _UNITS:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
+from ..base.guesses import Guessed
 from ..errors import AnalysisError
 from .plots import plot_limit
 
@@ -21,7 +22,7 @@ class AnyHand(str):
 
 
 @dataclass(frozen=True)
-class Limit:
+class Limit(Guessed):
     """The largest stiffness, and what it promises.
 
     Attributes
@@ -42,6 +43,8 @@ class Limit:
     >>> print(Limit(K=200.0, frequency=None, kind="passivity", reason="every frequency alike"))
     200 N/m: passivity; every frequency alike
     """
+
+    MEANT: ClassVar[dict[str, str]] = {"k": "K", "value": "K", "stiffness": "K", "f": "frequency", "why": "reason"}
 
     K: float
     frequency: float | None

@@ -79,7 +79,7 @@ class Scene:
         def __init__(
             self,
             force: sp.Expr | float,
-            eom: Sequence[sp.Eq | Mechanics] | sp.Eq | Mechanics = (),
+            eom: Sequence[Any] | sp.Basic | bool | Mechanics = (),
             watch: Sequence[sp.Expr | str] | Mapping[str, sp.Expr] = (),
             values: Mapping[str, Number] = {},
             name: str = "scene",

@@ -57,8 +57,11 @@ class Energy(Guessed):
 
     @property
     def absorbed(self) -> float:
-        """What the completed penetrations kept of the handle's work [J]; negative where they generated energy."""
-        return -self.generated
+        """What the completed penetrations kept of the handle's work [J], or all of it where none was completed.
+
+        Negative where they generated energy.
+        """
+        return float(self.W[-1]) if np.isnan(self.generated) else -self.generated
 
     def plot(self) -> Figure:
         """Return a figure: the energy that the environment holds over time, and where it gave more than it took."""
@@ -66,7 +69,8 @@ class Energy(Guessed):
 
     def __str__(self) -> str:
         if np.isnan(self.generated):
-            return f"no completed penetration; {1e3 * self.extracted:.4g} mJ was drawn from the environment at most"
+            drawn = f"{1e3 * self.extracted:.4g} mJ was drawn from the environment at most"
+            return f"no completed penetration; the handle's work on the environment is {1e3 * self.W[-1]:.4g} mJ, and {drawn}"
         about = "" if self.exact else ", the position at the force's changes interpolated"
         verb = "generated" if self.generated >= 0 else "dissipated"
         penetrations = f"{self.contacts} penetration{'s' * (self.contacts != 1)}"

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
 from ...base.arguments import choice, number
+from ...base.guesses import Guessed
 from ...base.units import in_si
 from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.prune.constraint_lengths import held
@@ -37,7 +38,7 @@ OPTIONS = ("method", "substeps", "hold", "force_at")
 
 
 @dataclass(frozen=True, eq=False)
-class Sweep:
+class Sweep(Guessed):
     """A metric over a grid.
 
     Attributes
@@ -54,6 +55,8 @@ class Sweep:
     about : str
         The scene, the paddle and the values that were the same everywhere, in lines.
     """
+
+    MEANT: ClassVar[dict[str, str]] = {"results": "values", "chatter": "values", "data": "values", "grid": "axes", "x": "axes"}
 
     axes: dict[str, Array]
     values: Array
@@ -152,7 +155,7 @@ def sweep(
     workers = number_of(workers)
     own = scene.parameters if isinstance(scene, Scene) else ()
     options = {name: values.pop(name) for name in OPTIONS if name in values and name not in own}
-    axes, fixed, units = _names(scene, values)
+    axes, fixed, units = _names(scene, paddle, values)
     scene = scene(**{name: a for name, a in fixed.items() if name in scene.parameters})
     for end in (np.min, np.max):  # the scene itself refuses what lies outside a parameter's range
         bound = scene(**{name: float(end(a)) for name, a in axes.items() if name in own})
@@ -193,11 +196,12 @@ def _filled(plan, what, workers, resume, progress):
     return result
 
 
-def _names(scene, values):
+def _names(scene, paddle, values):
     """Return the axes, the single values and the units of the axes; refuse names that mean nothing or two things."""
     if not isinstance(scene, Scene):
         what = getattr(scene, "name", repr(scene))
-        raise AnalysisError(f"{what} is no scene; a sweep compiles one for every T and needs a Scene")
+        swapped = "; the scene comes first: hl.sweep(scene, paddle, ...)" if isinstance(paddle, Scene) else ""
+        raise AnalysisError(f"{what} is no scene; a sweep compiles one for every T and needs a Scene{swapped}")
     own = {name: str(p.unit) for name, p in scene.parameters.items()}
     known = {**START_AXES, **PADDLE_AXES, **own}
     axes, fixed = {}, {}

@@ -74,7 +74,7 @@ class Contact(_InASum):
     gap: sp.Expr
     contact_law: Any
     name: str = "contact"
-    slip: sp.Expr = sp.S.Zero
+    slip: Any = sp.S.Zero
 
     __repr__ = written_out
 
@@ -202,10 +202,10 @@ class friction(_InASum):
     F_c*Max(-1, Min(1, Derivative(q(t), t)/v_s))
     """
 
-    slip: sp.Expr
-    coulomb: sp.Expr
-    breakaway: sp.Expr = None
-    stick_speed: sp.Expr = None
+    slip: Any
+    coulomb: Any
+    breakaway: Any = None
+    stick_speed: Any = None
     name: str = "friction"
 
     allowed: ClassVar = {

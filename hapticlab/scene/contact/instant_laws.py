@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import sympy as sp
 
@@ -54,10 +54,10 @@ class impulse(ContactLaw):
     hapticlab.errors.SceneError: e = 1.3; restitution lies in 0..1: above 1 every bounce would feed energy to the user
     """
 
-    e: sp.Expr
-    rest_speed: sp.Expr = None
+    e: Any
+    rest_speed: Any = None
     order: str = "sequential"
-    mu: sp.Expr = 0
+    mu: Any = 0
 
     is_located = True
     allowed: ClassVar = {
@@ -107,8 +107,8 @@ class micro_impulse(ContactLaw):
     e
     """
 
-    e: sp.Expr
-    envelope: sp.Expr = "0.1 mm"
+    e: Any
+    envelope: Any = "0.1 mm"
 
     allowed: ClassVar = {
         "e": RESTITUTION,
@@ -150,7 +150,7 @@ class rigid(ContactLaw):
     rigid(mu=0)
     """
 
-    mu: sp.Expr = 0
+    mu: Any = 0
 
     is_located = True
     allowed: ClassVar = {"mu": OPPOSING}

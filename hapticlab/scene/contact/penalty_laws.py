@@ -39,8 +39,8 @@ class penalty(ContactLaw):
     penalty(k=k, b=0)
     """
 
-    k: sp.Expr
-    b: sp.Expr = 0
+    k: Any
+    b: Any = 0
 
     is_force = True
     allowed: ClassVar = {"k": PASSIVE, "b": PASSIVE}
@@ -97,8 +97,8 @@ class hunt_crossley(ContactLaw):
     hunt_crossley(k=k, c=c, exponent=3/2)
     """
 
-    k: sp.Expr
-    c: sp.Expr
+    k: Any
+    c: Any
     exponent: sp.Rational = HERTZ
 
     is_force = speed_matters = True

@@ -86,11 +86,12 @@ def parameters(names: str, *, units: str, values: Any = None, ranges: Any = None
     >>> k.unit, g.value
     ('N/m', 9.81)
     """
-    names, units = _words("names", names), _words("units", units)
+    names = _words("names", names)
+    units = _words("units", units, whole=len(names) == 1)
     if len(names) != len(units) or not names:
         raise ParameterError(
             f"{len(names)} names ({' '.join(names)}) but {len(units)} units ({' '.join(units)}); "
-            "give one unit a name, separated by spaces, such as units='N/m m'"
+            "give one unit a name, separated by spaces, and a product with *, such as units='N/m N*s/m'"
         )
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice:
@@ -105,11 +106,11 @@ def parameters(names: str, *, units: str, values: Any = None, ranges: Any = None
     return made if len(made) > 1 else made[0]
 
 
-def _words(what, given):
+def _words(what, given, whole=False):
     if not isinstance(given, str):
         example = "hl.parameters('k m', units='N/m kg')"
         raise ParameterError(f"{what} = {given!r}; needs one text with spaces between, as in {example}")
-    return given.replace(",", " ").split()
+    return [given.strip()] if whole and given.strip() else given.replace(",", " ").split()
 
 
 def _entry(what, given, names, k):

@@ -188,6 +188,10 @@ class _HandleSignal(_Sampled, sp.Function, metaclass=_Unapplied):
     is_number = False
     role = "handle"
 
+    if TYPE_CHECKING:  # SymPy's stubs say that an applied function is a class
+
+        def __new__(cls, argument: sp.Expr) -> sp.Expr: ...
+
     @classmethod
     def eval(cls, argument: sp.Expr) -> None:
         # SymPy tries other arguments while it substitutes and compares; in a scene they are refused later
