@@ -11,7 +11,6 @@ UNIT = re.compile(r"(?<!=)\[([^\[\]\d,'\"]{1,8}(?:\^[\dn])?)\]")
 EXCEPTIONS = {
     "k": "a spring's stiffness; of Hunt and Crossley's contact in N/m^n, for a gap to the power n",
     "standard": "the stimulus that is compared with: each task has its own quantity",
-    "noise": "the standard deviation of what it is added to: a hand's force, a sensor's position",
 }
 
 

@@ -87,7 +87,7 @@ def display_motion(paddle, display, *, duration, sensor_delay=0):
         Samples by which the force sensor is late.
     """
     hand, T, ticks = paddle.hand, paddle.T, paddle.ticks(duration)
-    if hand is None or not hand.moves or hand.noise:
+    if hand is None or not hand.moves or hand.push_noise:
         raise PaddleError("the hand of this comparison moves by an intent and has no noise; give hl.Hand(k=..., intent=...)")
     handle, memory = Handle(paddle), display.begin()
     intent = np.asarray(hand.samples(ticks, T))
@@ -138,7 +138,7 @@ def _resting(paddle):
     """A handle without friction and noise, its hand at rest at x = 0, and that hand."""
     if paddle.hand is None:
         raise PaddleError("a display is felt by a hand; give hl.SimulatedPaddle(..., hand=hl.Hand('grip'))")
-    hand = replace(paddle.hand, intent=None, push=0.0, noise=0.0)
+    hand = replace(paddle.hand, intent=None, push=0.0, push_noise=0.0)
     return Handle(replace(paddle, hand=hand, coulomb=0.0, noise=0.0, counts_per_metre=None, delay=0.0)), hand
 
 

@@ -88,7 +88,7 @@ def render(paddle, display, *, sensor_delay=0):
     -------
     Rendered
     """
-    hand = replace(paddle.hand, intent=_task, noise=0.0, push=0.0)
+    hand = replace(paddle.hand, intent=_task, push_noise=0.0, push=0.0)
     held = replace(paddle, hand=hand)
     t, x, v, f_h = display_motion(held, display, duration=HELD, sensor_delay=sensor_delay)
     whole = len(t) == held.ticks(HELD)

@@ -186,7 +186,7 @@ def forced_choice(
     observer = PersonObserver(observer) if isinstance(observer, Person) else observer
     if not hasattr(observer, "compare"):
         raise AnalysisError(f"observer = {observer!r}; needs hl.people.SimulatedObserver(weber=...) or a Person")
-    procedure = procedure or UpDown(start=math.log(2))
+    procedure = procedure or UpDown(first=math.log(2))
     if procedure.done:
         raise AnalysisError("the procedure has had all its answers already; make a fresh one")
     paddle, rng, trials, stopped = task.on(paddle), np.random.default_rng(seed), list[Trial](), None

@@ -67,7 +67,7 @@ class Psi:
     guess : float
         >= 0.
     shape : {"d_prime", "weibull"}
-    trials : int
+    most_trials : int
         After which it ends.
 
     Attributes
@@ -79,7 +79,7 @@ class Psi:
 
     Examples
     --------
-    >>> psi = Psi(low=0.02, high=1.0, trials=3)
+    >>> psi = Psi(low=0.02, high=1.0, most_trials=3)
     >>> for right in (True, True, False):
     ...     psi.answer(right)
     >>> psi.done, 0.02 < psi.estimate() < 1
@@ -95,16 +95,18 @@ class Psi:
         lapse: float = 0.02,
         guess: float = 0.5,
         shape: Literal["d_prime", "weibull"] = "d_prime",
-        trials: int = 60,
+        most_trials: int = 60,
     ) -> None:
-        if not (0 < low < high and trials >= 1):
-            raise AnalysisError(f"low = {low:g}, high = {high:g}, trials = {trials}; psi needs 0 < low < high and a trial")
+        if not (0 < low < high and most_trials >= 1):
+            raise AnalysisError(
+                f"low = {low:g}, high = {high:g}, most_trials = {most_trials}; psi needs 0 < low < high and a trial"
+            )
         if shape not in ("d_prime", "weibull"):
             raise AnalysisError(f"shape = {shape!r}; psi needs 'd_prime' or 'weibull', whose levels are positive")
         if not (0 <= guess and 0 <= lapse and guess + lapse < 1):
             raise AnalysisError(f"guess = {guess!r}, lapse = {lapse!r}; psi needs both >= 0 and guess + lapse < 1")
         self.levels, self.thresholds = (np.geomspace(low, high, many) for many in (grid.levels, grid.thresholds))
-        self.slopes, self.trials, self.told = np.array(grid.slopes, float), int(trials), 0
+        self.slopes, self.most_trials, self.told = np.array(grid.slopes, float), int(most_trials), 0
         place, log_slope = np.log(self.thresholds)[:, None, None], np.log(self.slopes)[None, :, None]
         right = guess + (1 - guess - lapse) * rise(shape, self.levels, place, log_slope)[0]
         self._right = np.clip(right, CERTAIN, 1 - CERTAIN)  # no answer is impossible, or one could rule out everything
@@ -112,7 +114,7 @@ class Psi:
 
     @property
     def done(self) -> bool:
-        return self.told >= self.trials
+        return self.told >= self.most_trials
 
     @property
     def level(self) -> float:
@@ -145,7 +147,7 @@ class Psi:
         return float(np.exp(low)), float(np.exp(high))
 
     def __str__(self) -> str:
-        return f"psi, {self.trials} trials at levels from {self.levels[0]:.3g} to {self.levels[-1]:.3g}"
+        return f"psi, {self.most_trials} trials at levels from {self.levels[0]:.3g} to {self.levels[-1]:.3g}"
 
 
 class ConstantLevels:

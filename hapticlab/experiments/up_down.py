@@ -56,7 +56,7 @@ class UpDown:
 
     Parameters
     ----------
-    start : float
+    first : float
         First level, > 0.
     factor : float
         A step down divides the level by this, > 1.
@@ -68,7 +68,7 @@ class UpDown:
         Turning points after which it ends.
     skip : int
         First turning points that the estimate leaves out; until then steps are twice as long.
-    most : int
+    most_trials : int
         Trials after which it ends at the latest.
     levels : Levels
         What may be asked, ``hl.people.Levels(low=, high=)``. It ends after 20 answers in a row that are all right at the lowest
@@ -84,42 +84,42 @@ class UpDown:
 
     Examples
     --------
-    >>> stairs = UpDown(start=0.4, factor=2, skip=0)
+    >>> stairs = UpDown(first=0.4, factor=2, skip=0)
     >>> for right in (True, True, True, True, False):
     ...     stairs.answer(right)
     >>> stairs.level, stairs.turned
     (0.2, [0.1])
-    >>> round(UpDown(start=0.4).target, 4)
+    >>> round(UpDown(first=0.4).target, 4)
     0.7071
     """
 
     def __init__(
         self,
         *,
-        start: float,
+        first: float,
         factor: float = 1.25,
         down: int = 2,
         weight: float = 1.0,
         reversals: int = 12,
         skip: int = 4,
-        most: int = 300,
+        most_trials: int = 300,
         levels: Levels = LEVELS,
     ) -> None:
         low, high = levels.low, levels.high
-        if not (1 < factor < math.inf and 0 < weight < math.inf and low <= start <= high):
+        if not (1 < factor < math.inf and 0 < weight < math.inf and low <= first <= high):
             raise AnalysisError(
-                f"start = {start:g}, factor = {factor:g}, weight = {weight:g}, low = {low:g}, high = {high:g}; a staircase "
-                "needs low <= start <= high, factor > 1 and weight > 0, both finite"
+                f"first = {first:g}, factor = {factor:g}, weight = {weight:g}, low = {low:g}, high = {high:g}; a staircase "
+                "needs low <= first <= high, factor > 1 and weight > 0, both finite"
             )
-        if not (int(down) == down and down >= 1 and 0 <= skip < reversals and most >= 1):
+        if not (int(down) == down and down >= 1 and 0 <= skip < reversals and most_trials >= 1):
             raise AnalysisError(
-                f"down = {down}, reversals = {reversals}, skip = {skip}, most = {most}; needs down = 1, 2, ..., "
-                "0 <= skip < reversals and most >= 1"
+                f"down = {down}, reversals = {reversals}, skip = {skip}, most_trials = {most_trials}; needs down = 1, 2, ..., "
+                "0 <= skip < reversals and most_trials >= 1"
             )
-        self.start, self.factor, self.down, self.weight = float(start), float(factor), int(down), float(weight)
+        self.first, self.factor, self.down, self.weight = float(first), float(factor), int(down), float(weight)
         self.reversals, self.skip, self.low, self.high = int(reversals), int(skip), low, high
-        self.level, self._row, self._heading = float(start), 0, 0
-        self.most, self.told, self._at_end = int(most), 0, 0
+        self.level, self._row, self._heading = float(first), 0, 0
+        self.most_trials, self.told, self._at_end = int(most_trials), 0, 0
         self.turned: list[float] = []
         self.gave_up: str | None = None
 
@@ -140,8 +140,10 @@ class UpDown:
         if self._at_end >= ENOUGH:
             end = f"right {ENOUGH} times in a row at the lowest" if right else f"wrong {ENOUGH} times in a row at the highest"
             self.gave_up = f"{end} level, {self.level:.4g}: the threshold lies beyond it"
-        elif self.told >= self.most and len(self.turned) < self.reversals:
-            self.gave_up = f"{self.told} trials brought {len(self.turned)} of {self.reversals} turning points; most = {self.most}"
+        elif self.told >= self.most_trials and len(self.turned) < self.reversals:
+            self.gave_up = (
+                f"{self.told} trials brought {len(self.turned)} of {self.reversals} turning points, of {self.most_trials} allowed"
+            )
 
     def _step(self, right):
         self._row = self._row + 1 if right else 0
@@ -157,7 +159,7 @@ class UpDown:
     def estimate(self) -> float:
         """The geometric mean of the levels at the turning points, an even number of them, after the first ones."""
         if self.gave_up:
-            raise AnalysisError(f"no estimate: {self.gave_up}; ask again with other low, high or most")
+            raise AnalysisError(f"no estimate: {self.gave_up}; ask again with other low, high or most_trials")
         used = self.turned[self.skip :]
         used = used[len(used) % 2 :]
         if not used:
@@ -182,14 +184,14 @@ class UpDown:
         if abs(up - round(up)) > 1e-9:
             raise AnalysisError(f"weight = {self.weight:g} is no multiple of 1/{per_step}; give per_step")
         grid = math.log(self.factor) / per_step
-        below = min(int(math.log(self.start / self.low) / grid), most // 2)
-        above = min(int(math.log(self.high / self.start) / grid), most // 2)
-        levels = self.start * np.exp(grid * np.arange(-below, above + 1))
+        below = min(int(math.log(self.first / self.low) / grid), most // 2)
+        above = min(int(math.log(self.high / self.first) / grid), most // 2)
+        levels = self.first * np.exp(grid * np.arange(-below, above + 1))
         return _turning_mean(levels, curve(levels), self.down, per_step, round(up))
 
     def __str__(self) -> str:
         return (
-            f"{self.down} down, 1 up from {self.start:g}: steps of {self.factor:g} down and {self.factor**self.weight:.4g} up, "
+            f"{self.down} down, 1 up from {self.first:g}: steps of {self.factor:g} down and {self.factor**self.weight:.4g} up, "
             f"{self.reversals} turning points, towards {100 * self.target:.1f} % right"
         )
 

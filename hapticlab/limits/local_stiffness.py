@@ -12,6 +12,7 @@ from ..errors import AnalysisError
 from ..scene.notation.symbols import n, x
 
 if TYPE_CHECKING:
+    from ..base.annotations import Number
     from ..scene.scene import Scene
 
 #: places looked at; secants between them are the slopes to some 1e-8 of their curvature
@@ -22,14 +23,14 @@ HALVINGS = 20
 UNSETTLED = 4.0
 
 
-def local_stiffness(scene: Scene, low: float, high: float) -> tuple[float, float]:
+def local_stiffness(scene: Scene, x_low: Number, x_high: Number) -> tuple[float, float]:
     """Return the least and the largest local stiffness dF/dx [N/m] of a force law F(x(n)) between two positions.
 
     Parameters
     ----------
     scene : Scene
         Bound; its force must be a function of x(n) alone, as of :func:`hapticlab.wall` without damper or memory.
-    low, high : float
+    x_low, x_high : float or text
         Positions [m].
 
     Returns
@@ -49,9 +50,9 @@ def local_stiffness(scene: Scene, low: float, high: float) -> tuple[float, float
     >>> round(k_min, 6), round(k_max, 6)
     (0.0, 300.0)
     """
-    low, high = (number(name, a, "m", what="low < high") for name, a in (("low", low), ("high", high)))
+    low, high = (number(name, a, "m", what="x_low < x_high") for name, a in (("x_low", x_low), ("x_high", x_high)))
     if not low < high:
-        raise AnalysisError(f"low = {low}, high = {high} m; needs low < high")
+        raise AnalysisError(f"x_low = {low}, x_high = {high} m; needs x_low < x_high")
     F = scene.force.xreplace({p: sp.Float(scene.values[name]) for name, p in scene.parameters.items() if name in scene.values})
     unbound = [name for name in scene.parameters if name not in scene.values]
     if unbound:

@@ -68,7 +68,7 @@ class Signal:
             return place + held_by + period[np.round(np.asarray(times) / self.T).astype(int) % self.samples]
 
         push = hand.push if hand.k else hand.push + pull
-        return Hand(m=hand.m, b=hand.b, k=hand.k, push=push, noise=hand.noise, intent=intent)
+        return Hand(m=hand.m, b=hand.b, k=hand.k, push=push, push_noise=hand.push_noise, intent=intent)
 
     def beside(self, scene: Scene, pull: float = 0.0) -> Scene:
         """The scene with the signal as a second force of the motor; its own force is watched as ``own`` [N].

@@ -38,9 +38,9 @@ def pushes_of(paddle, push, place, seconds):
     hand, most = getattr(paddle, "hand", None), _force_max(paddle)
     leaning = 0.0
     if hand is not None:
-        if hand.noise:
+        if hand.push_noise:
             raise AnalysisError(
-                f"the hand's force is noise of {hand.noise:g} N, which never lets a handle rest; search with Hand(noise=0)"
+                f"the hand's force is noise of {hand.push_noise:g} N, which never lets a handle rest; search with Hand(noise=0)"
             )
         ticks = max(1, round(seconds / paddle.T))
         at = float(np.mean(hand.samples(ticks, paddle.T))) if hand.moves else hand.intent or 0.0

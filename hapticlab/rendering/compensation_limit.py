@@ -82,7 +82,7 @@ class CompensationLimit:
         """Return the steady speed [m/s] of a free handle that is over-compensated: (dry coulomb - coulomb_least)/(damping left).
 
         0 where it comes to rest, infinite where nothing holds it. Exact for the sampled loop and any estimate of v,
-        with ``shape="dead_zone"``; for ``"smooth"`` where it is far beyond ``speed``.
+        with ``sign="dead_zone"``; for ``"smooth"`` where it is far beyond ``speed``.
         """
         self._free("a steady speed")
         if viscous >= self.viscous:

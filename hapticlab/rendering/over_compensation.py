@@ -93,7 +93,7 @@ def over_compensation(
     *,
     speed: float | str,
     viscous: float = 0.0,
-    shape: Literal["smooth", "dead_zone"] = "dead_zone",
+    sign: Literal["smooth", "dead_zone"] = "dead_zone",
     velocity: VelocityEstimate | None = None,
     up_to: float | None = None,
     duration: float | None = None,
@@ -109,7 +109,7 @@ def over_compensation(
     ----------
     paddle : SimulatedPaddle
         With coulomb > 0 and a hand that rests.
-    speed, shape, velocity
+    speed, sign, velocity
         Of :func:`~hapticlab.scene.laws.compensation.damping_compensation`.
     viscous : float
         Part of the viscous damping that is compensated; below its own limit.
@@ -144,7 +144,7 @@ def over_compensation(
     if not 0 <= viscous < ideal.viscous:
         raise AnalysisError(f"viscous = {viscous:g} runs away by itself; needs 0 <= viscous < {ideal.viscous:.4g}")
     width = in_si(speed, "m/s", "speed")
-    scene = damping_compensation(b=paddle.b, coulomb=paddle.coulomb, speed=width, shape=shape, velocity=velocity)
+    scene = damping_compensation(b=paddle.b, coulomb=paddle.coulomb, speed=width, sign=sign, velocity=velocity)
     first = ideal.hunts_from(viscous)
     settling = (2 if ideal.k else 1) * ideal.m / ideal.left(viscous)
     duration = duration or min(max(SETTLED * settling, SHORTEST), LONGEST)

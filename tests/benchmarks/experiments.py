@@ -22,12 +22,12 @@ TRUE = math.log1p(WEBER)
 PADDLE = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hl.Hand("grip"))
 #: name -> a fresh procedure of about 60 trials, and the part of right answers that its own estimate stands for
 PROCEDURES = {
-    "2 down, 1 up (Levitt)": lambda seed: hl.people.UpDown(start=0.5, factor=1.25, reversals=18),
-    "1 down, weight 3 (Kaernbach)": lambda seed: hl.people.UpDown(start=0.5, factor=1.15, down=1, weight=3, reversals=26),
+    "2 down, 1 up (Levitt)": lambda seed: hl.people.UpDown(first=0.5, factor=1.25, reversals=18),
+    "1 down, weight 3 (Kaernbach)": lambda seed: hl.people.UpDown(first=0.5, factor=1.15, down=1, weight=3, reversals=26),
     "psi, slope known": lambda seed: hl.people.Psi(
         low=0.02, high=1.5, grid=hl.people.Grid(slopes=(1.0,)), lapse=0.01, trials=TRIALS
     ),
-    "psi, slope looked for": lambda seed: hl.people.Psi(low=0.02, high=1.5, lapse=0.01, trials=TRIALS),
+    "psi, slope looked for": lambda seed: hl.people.Psi(low=0.02, high=1.5, lapse=0.01, most_trials=TRIALS),
     "constant stimuli": lambda seed: hl.people.ConstantLevels(np.geomspace(0.05, 0.7, 6), repeats=TRIALS // 6, seed=seed),
 }
 
@@ -73,7 +73,7 @@ def print_thresholds(observers):
 def print_juggling():
     print("\njuggling 10 s: rms error of the height [%], two seeds; a hand with 0.5 N of noise; above 50 % the ball is lost")
     print(f"{'stroke at impact':<18}{'height':>8}{'neither':>12}{'touch':>14}{'sight':>14}{'both':>14}")
-    shaky = replace(PADDLE, force_max=20.0, hand=hl.Hand("grip", noise=0.5))
+    shaky = replace(PADDLE, force_max=20.0, hand=hl.Hand("grip", push_noise=0.5))
     for acceleration in (-5.0, -1.0, 2.0, 5.0):
         for height in (0.2, 0.35):
             row = []

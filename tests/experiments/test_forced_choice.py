@@ -51,7 +51,7 @@ def test_the_recorded_force_decides():
                          ids=lambda task: task.name)  # fmt: skip
 def test_the_observers_weber_fraction_comes_back(task):
     observer = SimulatedObserver(weber=0.2, seed=2)
-    found = forced_choice(PADDLE, task, observer, Psi(low=0.03, high=1.0, grid=Grid(slopes=(1.0,)), trials=25))
+    found = forced_choice(PADDLE, task, observer, Psi(low=0.03, high=1.0, grid=Grid(slopes=(1.0,)), most_trials=25))
     assert math.log(found.estimate / math.log(1.2)) == pytest.approx(0.0, abs=0.9)  # 25 trials: deviation 0.32
     value, low, high = found.weber(slope=1.0, lapse=0.0, intervals=Intervals(bootstrap=100))
     assert low < 0.2 < high and low < value < high
@@ -66,7 +66,7 @@ def test_a_long_experiment_measures_the_weber_fraction():
 
 
 def test_a_staircase_ends_by_itself():
-    found = forced_choice(PADDLE, QUICK, procedure=UpDown(start=0.6, reversals=4, skip=0, factor=2))
+    found = forced_choice(PADDLE, QUICK, procedure=UpDown(first=0.6, reversals=4, skip=0, factor=2))
     assert 5 < len(found.trials) < 40 and found.stopped is None
     assert "2 down, 1 up" in str(found) and "difference threshold" in str(found)
     assert [a.get_ylabel() for a in found.plot().axes] == ["difference in stiffness [%]"]
@@ -115,7 +115,7 @@ def test_no_answers_are_not_plotted():
 
 
 def test_who_is_always_right_comes_to_an_end():
-    found = forced_choice(PADDLE, QUICK, SimulatedObserver(weber=1e-9), UpDown(start=0.5, factor=2, levels=Levels(low=0.4)))
+    found = forced_choice(PADDLE, QUICK, SimulatedObserver(weber=1e-9), UpDown(first=0.5, factor=2, levels=Levels(low=0.4)))
     assert len(found.trials) == 22 and found.estimate is None and "lowest level" in found.stopped
 
 

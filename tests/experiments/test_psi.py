@@ -11,7 +11,7 @@ from hapticlab.experiments.response_curves import Psychometric
 
 
 def small():
-    return Psi(low=0.05, high=0.8, grid=Grid(levels=5, thresholds=4, slopes=(0.7, 1.4)), lapse=0.03, trials=9)
+    return Psi(low=0.05, high=0.8, grid=Grid(levels=5, thresholds=4, slopes=(0.7, 1.4)), lapse=0.03, most_trials=9)
 
 
 def test_belief_and_next_level_by_brute_force():
@@ -45,7 +45,7 @@ def test_thresholds_are_found_about_as_well_as_answers_allow():
     """Errors of the logarithm over 40 observers, against Fisher's information at the best level, 60 trials each."""
     truth, errors = Psychometric(0.2, 1.0, 0.5, 0.02), []
     for seed in range(40):
-        psi, rng = Psi(low=0.02, high=1.5, grid=Grid(slopes=(1.0,)), trials=60), np.random.default_rng(seed)
+        psi, rng = Psi(low=0.02, high=1.5, grid=Grid(slopes=(1.0,)), most_trials=60), np.random.default_rng(seed)
         while not psi.done:
             psi.answer(bool(rng.random() < float(truth(psi.level))))
         errors.append(math.log(psi.estimate() / 0.2))
@@ -68,7 +68,7 @@ def test_the_interval_holds_the_estimate():
 
 def test_answers_that_contradict_each_other_leave_a_belief():
     """No lapse, no guess, a slope of 20: after a right answer a wrong one is all but impossible, and not more."""
-    psi = Psi(low=0.02, high=1.0, guess=0.0, lapse=0.0, grid=Grid(slopes=(20.0,)), trials=5)
+    psi = Psi(low=0.02, high=1.0, guess=0.0, lapse=0.0, grid=Grid(slopes=(20.0,)), most_trials=5)
     for right in (True, False, True, False, True):
         psi.answer(right)
     assert psi.belief.sum() == pytest.approx(1.0) and 0.02 < psi.estimate() < 1.0

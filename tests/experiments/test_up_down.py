@@ -19,22 +19,22 @@ def walk(stairs, curve, seed, trials):
 
 @pytest.mark.parametrize(("down", "part"), [(1, 0.5), (2, 0.707), (3, 0.794), (4, 0.841)])
 def test_levitts_targets(down, part):
-    assert UpDown(start=0.5, down=down).target == pytest.approx(part, abs=6e-4)
+    assert UpDown(first=0.5, down=down).target == pytest.approx(part, abs=6e-4)
 
 
 @pytest.mark.parametrize(("down", "ratio", "part"),
                          [(1, 0.2845, 0.7785), (2, 0.5488, 0.8035), (3, 0.7393, 0.8315), (4, 0.8415, 0.8584)])  # fmt: skip
 def test_targets_of_unequal_steps(down, ratio, part):
     """Garcia-Perez (1998), abstract: steps down over steps up, and where they converge."""
-    assert UpDown(start=0.5, down=down, weight=1 / ratio).target == pytest.approx(part, abs=6e-5)
+    assert UpDown(first=0.5, down=down, weight=1 / ratio).target == pytest.approx(part, abs=6e-5)
 
 
 def test_kaernbachs_weights():
-    assert UpDown(start=0.5, down=1, weight=3).target == pytest.approx(0.75)
+    assert UpDown(first=0.5, down=1, weight=3).target == pytest.approx(0.75)
 
 
 def test_steps_by_hand():
-    stairs = UpDown(start=0.8, factor=2, down=2, weight=2, skip=1, reversals=3)
+    stairs = UpDown(first=0.8, factor=2, down=2, weight=2, skip=1, reversals=3)
     told = []
     for right in (1, 1, 1, 0, 1, 1, 0):  # twice as long until the first turning point
         stairs.answer(bool(right))
@@ -48,7 +48,7 @@ def test_steps_by_hand():
 def test_where_it_settles_is_where_a_long_run_turns(down, factor, weight):
     curve = Psychometric(0.2, 1.0, lapse=0.01)
     stairs = UpDown(
-        start=0.2, factor=factor, down=down, weight=weight, skip=0, reversals=10**6, levels=Levels(low=0.03, high=1.0)
+        first=0.2, factor=factor, down=down, weight=weight, skip=0, reversals=10**6, levels=Levels(low=0.03, high=1.0)
     )
     settled = stairs.settles(curve)
     turned = np.log(walk(stairs, curve, 5, 16_000).turned[50:])
@@ -60,14 +60,14 @@ def test_where_it_settles_is_where_a_long_run_turns(down, factor, weight):
 def test_small_steps_settle_at_the_target_and_large_ones_below():
     curve = Psychometric(0.2, 1.0)
     parts = [
-        float(curve(UpDown(start=0.2, factor=f, levels=Levels(low=0.02, high=1.0)).settles(curve))) for f in (1.05, 1.3, 2.0)
+        float(curve(UpDown(first=0.2, factor=f, levels=Levels(low=0.02, high=1.0)).settles(curve))) for f in (1.05, 1.3, 2.0)
     ]
     assert parts[0] == pytest.approx(math.sqrt(0.5), abs=0.006)
     assert parts[0] > parts[1] > parts[2]
 
 
 def test_levels_stay_within_their_range():
-    stairs = UpDown(start=0.5, factor=2, levels=Levels(high=0.9, low=0.3))
+    stairs = UpDown(first=0.5, factor=2, levels=Levels(high=0.9, low=0.3))
     stairs.answer(False)
     assert stairs.level == 0.9
     for _ in range(10):
@@ -77,7 +77,7 @@ def test_levels_stay_within_their_range():
 
 @pytest.mark.parametrize(("right", "words"), [(True, "right 20 times in a row at the lowest"), (False, "wrong 20 times")])
 def test_who_is_always_right_or_wrong_is_let_go(right, words):
-    stairs, asked = UpDown(start=0.4, factor=2, levels=Levels(low=0.1, high=0.8)), 0
+    stairs, asked = UpDown(first=0.4, factor=2, levels=Levels(low=0.1, high=0.8)), 0
     while not stairs.done:
         stairs.answer(right)
         asked += 1
@@ -88,7 +88,7 @@ def test_who_is_always_right_or_wrong_is_let_go(right, words):
 
 
 def test_no_more_trials_than_said():
-    stairs = UpDown(start=0.4, most=9)
+    stairs = UpDown(first=0.4, most_trials=9)
     for _ in range(9):
         assert not stairs.done
         stairs.answer(False)
@@ -98,15 +98,15 @@ def test_no_more_trials_than_said():
 def test_what_is_no_staircase_is_refused():
     for wrong in ({"factor": math.inf}, {"weight": math.inf}, {"weight": math.nan}):
         with pytest.raises(AnalysisError, match="both finite"):
-            UpDown(start=0.5, **wrong)
-    with pytest.raises(AnalysisError, match="low <= start <= high"):
-        UpDown(start=3.0)
+            UpDown(first=0.5, **wrong)
+    with pytest.raises(AnalysisError, match="low <= first <= high"):
+        UpDown(first=3.0)
     for wrong in ({"high": math.inf}, {"low": 0.0}, {"low": 3.0}):
         with pytest.raises(AnalysisError, match="a staircase needs"):
             Levels(**wrong)
     with pytest.raises(AnalysisError, match="0 <= skip < reversals"):
-        UpDown(start=0.5, reversals=4)
+        UpDown(first=0.5, reversals=4)
     with pytest.raises(AnalysisError, match="ask on"):
-        UpDown(start=0.5).estimate()
+        UpDown(first=0.5).estimate()
     with pytest.raises(AnalysisError, match="give per_step"):
-        UpDown(start=0.5, weight=1.5).settles(Psychometric(0.2, 1.0))
+        UpDown(first=0.5, weight=1.5).settles(Psychometric(0.2, 1.0))

@@ -57,7 +57,7 @@ def test_intervals_cover_the_hand():
 
 
 def test_a_hand_that_does_not_hold_still_is_told():
-    trembling = replace(PADDLE, hand=replace(GRIP, noise=0.3))
+    trembling = replace(PADDLE, hand=replace(GRIP, push_noise=0.3))
     found = hl.identify.hand(hl.identify.pushes(trembling, pushes=4), PADDLE)
     assert not found.explained
     assert "NOT EXPLAINED" in str(found) and "tremor" in str(found)

@@ -150,7 +150,7 @@ def test_the_gain_bounds_what_the_hand_gets():
     """Mean squares over a run: a noisy hand on a wall that always acts; the bound is not far off at low stiffness."""
     b, K = 0.4, 60.0
     ledger = hl.passivity.ledger(hl.Device(b=b, T=T), K=K)
-    paddle = hl.SimulatedPaddle(m=0.004, b=b, T=T, hand=hl.Hand(noise=1.0))
+    paddle = hl.SimulatedPaddle(m=0.004, b=b, T=T, hand=hl.Hand(push_noise=1.0))
     log = paddle.run(hl.wall(unilateral=None)(k=K), duration=4.0, progress=False)
     force = paddle.inputs(len(log))[:, -1]
     mean_v = np.sqrt(np.mean((np.diff(log.x) / T) ** 2))

@@ -74,5 +74,5 @@ def test_a_force_without_a_value_is_named():
 def test_it_says_what_it_needs(scene, words):
     with pytest.raises(AnalysisError, match=words):
         hl.stability.local_stiffness(scene, -0.01, 0.01)
-    with pytest.raises(AnalysisError, match="low < high"):
+    with pytest.raises(AnalysisError, match="x_low < x_high"):
         hl.stability.local_stiffness(scene, 0.01, math.nan)

@@ -90,7 +90,7 @@ def test_a_tremor_is_no_chatter():
     assert found.K < hl.stability_limit(held).K < found.chatters_at <= 1.2 * found.K
     assert "pressed with 5 N" in found.about  # 500 N/m times 10 mm, and none of the motor
     with pytest.raises(hl.errors.AnalysisError, match="noise of 0.1 N"):
-        largest_stiffness(paddle(hand=hl.Hand(push=1.0, noise=0.1)))
+        largest_stiffness(paddle(hand=hl.Hand(push=1.0, push_noise=0.1)))
 
 
 def test_noise_of_the_sensor_gives_the_same_answer_on_a_board():

@@ -87,7 +87,7 @@ def test_a_light_handle_under_a_slow_filter_turns_before_it_drifts():
 def test_over_compensated_a_free_handle_settles_at_the_speed_said(delay):
     """(dry - 1) coulomb/(damping left), whatever the delay: from below and from above."""
     here = paddle(delay=delay)
-    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=0.01, shape="dead_zone")(viscous=0.6, dry=1.5)
+    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=0.01, sign="dead_zone")(viscous=0.6, dry=1.5)
     expected = compensation_limit(here).speed(viscous=0.6, dry=1.5)
     assert expected == pytest.approx(0.5 * COULOMB / (0.4 * DAMPING), rel=1e-14)
     for start in (0.05, 0.6):
@@ -100,7 +100,7 @@ def test_it_runs_away_beyond_the_kick_said():
     limit = compensation_limit(paddle())
     kick = limit.kick(viscous=1.5, dry=0.5)
     assert kick == pytest.approx(0.2, rel=1e-14)
-    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=0.01, shape="dead_zone")(viscous=1.5, dry=0.5)
+    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=0.01, sign="dead_zone")(viscous=1.5, dry=0.5)
     for start, away in ((0.99 * kick, False), (1.01 * kick, True)):
         log = paddle().run(scene, duration=8.0, v=start)
         assert (log.v[-1] > 2 * kick) == away
@@ -129,7 +129,7 @@ def test_about_a_spring_it_hunts_with_the_amplitude_said(viscous, dry):
     assert limit.hunts_from(viscous) < dry
     expected = limit.hunting(viscous, dry)
     assert expected == pytest.approx(hunting_by_pieces(viscous, dry, k, M), rel=1e-12)
-    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=2e-4, shape="dead_zone")(viscous=viscous, dry=dry)
+    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=2e-4, sign="dead_zone")(viscous=viscous, dry=dry)
     log = here.run(scene, duration=6.0, x=0.95 * expected, dtype="float64", progress=False)
     last = log.x[log.t > 5]
     # the period, 0.1 ms of a swing of 0.3 s, and the width of the dead zone each take a part in a thousand
@@ -143,7 +143,7 @@ def test_it_hunts_from_the_part_said(part, hunts):
     limit = compensation_limit(here)
     dry = part * limit.dry
     assert limit.dry > 1.2
-    scene = hl.laws.damping_compensation(b=0.4, coulomb=COULOMB, speed=2e-4, shape="dead_zone")(viscous=0, dry=dry)
+    scene = hl.laws.damping_compensation(b=0.4, coulomb=COULOMB, speed=2e-4, sign="dead_zone")(viscous=0, dry=dry)
     log = here.run(scene, duration=4.0, x=0.004, dtype="float64", progress=False)
     assert (np.ptp(log.x[log.t > 3.5]) > 0) == hunts
     assert (limit.hunting(0.0, dry) > 0) == hunts
@@ -169,7 +169,7 @@ def test_the_whole_of_a_friction_believed_too_high_runs_away():
     believed, true = paddle(b=1.05 * DAMPING, coulomb=1.1 * COULOMB), paddle()
     limit = compensation_limit(believed, b_least=DAMPING, coulomb_least=COULOMB)
     assert limit.dry == pytest.approx(1 / 1.1, rel=1e-15)
-    scene = hl.laws.damping_compensation(b=believed.b, coulomb=believed.coulomb, speed=0.01, shape="dead_zone")
+    scene = hl.laws.damping_compensation(b=believed.b, coulomb=believed.coulomb, speed=0.01, sign="dead_zone")
     expected = limit.speed(viscous=0.5, dry=1.0)
     assert expected == pytest.approx(0.1 * COULOMB / (DAMPING - 0.5 * believed.b), rel=1e-12)
     assert true.run(scene(viscous=0.5, dry=1.0), duration=25.0, v=0.1).v[-1] == pytest.approx(expected, rel=1e-4)
@@ -190,7 +190,7 @@ def test_friction_identified_then_cancelled_comes_to_rest_up_to_the_limit_of_its
     safe = compensation_limit(like, b_least=found["b"].low, coulomb_least=found["coulomb"].low)
     assert safe.viscous == pytest.approx(found["b"].low / found["b"].value, rel=1e-12) and 0.9 < safe.viscous < 1
     assert safe.dry == pytest.approx(found["coulomb"].low / found["coulomb"].value, rel=1e-12) and safe.dry < 1
-    scene = hl.laws.damping_compensation(b=like.b, coulomb=like.coulomb, speed=0.01, shape="dead_zone")
+    scene = hl.laws.damping_compensation(b=like.b, coulomb=like.coulomb, speed=0.01, sign="dead_zone")
     exact = hl.SimulatedPaddle(m=M, b=0.4, T=T, coulomb=0.05)
     for part, rests in ((0.99, True), (1.02 / safe.viscous, False)):
         log = exact.run(scene(viscous=part * safe.viscous, dry=part * safe.dry), duration=15.0, v=0.05)

@@ -160,7 +160,7 @@ class Swings:
 
 
 def _has_inputs(paddle):
-    return paddle.noise > 0 or (paddle.hand is not None and (paddle.hand.moves or paddle.hand.noise > 0))
+    return paddle.noise > 0 or (paddle.hand is not None and (paddle.hand.moves or paddle.hand.push_noise > 0))
 
 
 def _in_one_period(paddle, columns):

@@ -213,9 +213,9 @@ def _check_names(elements):
 
 
 def _order(contacts):
-    orders = {c.contact_law.order for c in contacts if c.contact_law.order} or {"simultaneous"}
+    orders = {c.contact_law.impacts for c in contacts if c.contact_law.impacts} or {"simultaneous"}
     if len(orders) > 1:
-        named = "; ".join(f"{c.name}: {c.contact_law.order}" for c in contacts if c.contact_law.order)
+        named = "; ".join(f"{c.name}: {c.contact_law.impacts}" for c in contacts if c.contact_law.impacts)
         raise SceneError(f"{named}: the impacts of a scene are all sequential, or all simultaneous; choose one order")
     (order,) = orders
     rubbing = [c.name for c in contacts if c.contact_law.mu != 0]

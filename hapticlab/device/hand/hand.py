@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from ...base.annotations import Array, Number
 
 _NOTHING = HandPreset(0.0, 0.0, 0.0, "", "")
-UNITS = {"m": "kg", "b": "N s/m", "k": "N/m", "push": "N", "noise": "N"}
+UNITS = {"m": "kg", "b": "N s/m", "k": "N/m", "push": "N", "push_noise": "N"}
 _REASONS = {
     "m": "A negative mass is no mass.",
     "b": "A negative damper feeds energy to the handle.",
     "k": "A negative spring feeds energy to the handle.",
-    "noise": "It is a standard deviation.",
+    "push_noise": "It is a standard deviation.",
 }
 
 
@@ -52,7 +52,7 @@ class Hand:
     intent : None, float, text or callable, optional
         Where the hand means to be [m]: a place, or a function of an array of times [s] that returns as many positions
         [m]. It is sampled at the ticks and linear in between. It acts through k or b.
-    noise : float or text
+    push_noise : float or text
         Standard deviation of a white Gaussian force beside the push [N], held over each sample; the paddle's seed draws it.
 
     Raises
@@ -75,7 +75,7 @@ class Hand:
     k: float = 0.0
     push: float = 0.0
     intent: float | Callable[..., Any] | None = None
-    noise: float = 0.0
+    push_noise: float = 0.0
 
     def __init__(
         self,
@@ -87,7 +87,7 @@ class Hand:
         k: Number | None = None,
         push: Number = 0.0,
         intent: Number | Callable[..., Any] | None = None,
-        noise: Number = 0.0,
+        push_noise: Number = 0.0,
     ) -> None:
         if preset is not None and preset not in PRESETS:
             raise PaddleError(f"no hand {preset!r}; there are {', '.join(PRESETS)}. Others: hl.Hand(m=..., b=..., k=...)")
@@ -98,7 +98,7 @@ class Hand:
         known = PRESETS[preset] if preset is not None else _NOTHING
         numbers = {"m": known.m, "b": grip * known.b, "k": grip * known.k}
         given = {name: value for name, value in (("m", m), ("b", b), ("k", k)) if value is not None}
-        for name, value in {**numbers, **given, "push": push, "intent": intent, "noise": noise}.items():
+        for name, value in {**numbers, **given, "push": push, "intent": intent, "push_noise": push_noise}.items():
             object.__setattr__(self, name, value)
         self._check()
 

@@ -111,7 +111,7 @@ class _Loop:
         self.encoder = paddle.counts_per_metre is not None
         self.noisy = paddle.noise > 0
         ramp = (("intent", "m"),) * self.plant.spring + (("intent.rate", "m/s"),) if self.plant.ramp else ()
-        names = ramp + (("noise", "m"),) * self.noisy + (("hand.noise", "N"),) * self.plant.shake
+        names = ramp + (("noise", "m"),) * self.noisy + (("hand.push_noise", "N"),) * self.plant.shake
         self.inputs = tuple(Channel(name, unit, "f64") for name, unit in names)
         self.parameters = (*program.parameters, *self.plant.channels(), *self._device_parameters())
         self.states = {c.name: c for c in self._states()}
@@ -198,7 +198,7 @@ class _Loop:
         past = [old[f"plant.F_{k + 1}"] for k in range(self.plant.whole + self.plant.split)]
         forces = [select(equal(fault, 0.0), force, 0.0) for force in (F, *past)]
         applied, before = forces[self.plant.whole], past[-1] if self.plant.split else None
-        hand = [inputs.get(name, 0.0) for name in ("intent", "intent.rate", "hand.noise")]
+        hand = [inputs.get(name, 0.0) for name in ("intent", "intent.rate", "hand.push_noise")]
         x_switch, x, v = self.plant.step(p, old["plant.x"], old["plant.v"], before, applied, *hand)
         new = {f"scene.{c.name}": s for c, s in zip(self.program.states, scene, strict=True)}
         new.update({f"plant.F_{k + 1}": forces[k] for k in range(len(past))})

@@ -95,7 +95,7 @@ class Handle:
         if self._plant.ramp:
             intent = hand.samples(BLOCK, paddle.T, first=self.steps)
             columns[0], columns[1] = intent[:-1], np.diff(intent) / paddle.T
-        for row, stream, deviation in ((2, 0, paddle.noise), (3, 1, hand.noise if hand else 0.0)):
+        for row, stream, deviation in ((2, 0, paddle.noise), (3, 1, hand.push_noise if hand else 0.0)):
             if deviation:
                 columns[row] = deviation * self._streams[stream].standard_normal(BLOCK)
         return columns.T.tolist()

@@ -132,7 +132,7 @@ def plant_of(paddle):
         whole=whole,
         split=split,
         push=hand is not None and (hand.push != 0 or leaning),
-        shake=hand is not None and hand.noise > 0,
+        shake=hand is not None and hand.push_noise > 0,
         spring=hand is not None and hand.k > 0,
         drag=hand is not None and hand.moves and hand.b > 0,
         ramp=hand is not None and hand.moves,

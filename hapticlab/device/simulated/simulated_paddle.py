@@ -214,7 +214,7 @@ class SimulatedPaddle(Paddle):
             columns += [intent[:-1]] if self.plant.spring else []
             columns.append(np.diff(intent) / self.T)
         # a stream each, so that one noise is the same with and without the other
-        for stream, deviation in enumerate((self.noise, self.hand.noise if self.hand else 0.0)):
+        for stream, deviation in enumerate((self.noise, self.hand.push_noise if self.hand else 0.0)):
             if deviation:
                 columns.append(deviation * np.random.default_rng([self.seed, stream]).standard_normal(ticks))
         return np.column_stack(columns) if columns else np.zeros((ticks, 0))

@@ -74,7 +74,7 @@ class Stepping:
         hand = self.paddle.hand
         self._noise = [
             (deviation, np.random.default_rng([self.paddle.seed, stream]))
-            for stream, deviation in enumerate((self.paddle.noise, hand.noise))
+            for stream, deviation in enumerate((self.paddle.noise, hand.push_noise))
         ]
 
     def advance(self, intent):

@@ -42,7 +42,7 @@ class impulse(ContactLaw):
         A rebound slower than this does not fly: the contact rests, held by its reaction, until that would have to pull.
         It bounds the events of a period, which without it have no end (Zeno): it must be at least a T/2, a the
         acceleration that closes the gap. None: exactly the rebounds that would be back within a period rest.
-    order : {"sequential", "simultaneous"}
+    impacts : {"sequential", "simultaneous"}
     mu : number, Parameter or expression, >= 0
         Friction: the tangential impulse opposes the slip, at most mu times the normal one. Needs the contact's ``slip``.
 
@@ -56,7 +56,7 @@ class impulse(ContactLaw):
 
     e: Any
     rest_speed: Any = None
-    order: str = "sequential"
+    impacts: str = "sequential"
     mu: Any = 0
 
     is_located = True
@@ -71,7 +71,11 @@ class impulse(ContactLaw):
         _take_restitution(self)
         take(self, mu="friction coefficient")
         choice(
-            "order", self.order, ORDERS, need="'sequential' (one after the other) or 'simultaneous' (at once)", error=SceneError
+            "impacts",
+            self.impacts,
+            ORDERS,
+            need="'sequential' (one after the other) or 'simultaneous' (at once)",
+            error=SceneError,
         )
         if self.rest_speed is not None:
             speed = _positive(self.rest_speed, "rest_speed", "m/s", "the speed below which a contact rests")
@@ -158,7 +162,7 @@ class rigid(ContactLaw):
     e = sp.S.Zero
     rest_speed = sp.oo
     #: it leaves the order to the other contacts of the scene
-    order = None
+    impacts = None
 
     def __post_init__(self) -> None:
         take(self, mu="friction coefficient")

@@ -28,7 +28,7 @@ def damping_compensation(
     b: Term,
     coulomb: Term = 0,
     speed: Term | None = None,
-    shape: str = "smooth",
+    sign: str = "smooth",
     velocity: VelocityEstimate | None = None,
 ) -> Scene:
     """Cancel a part of a device's friction: F = -viscous b v(n) - dry coulomb s(v(n)), negative virtual damping.
@@ -50,7 +50,7 @@ def damping_compensation(
     speed : float, text or Parameter
         Width of s about v = 0 [m/s], > 0, needed with ``coulomb``: several times the noise of the velocity, and one
         encoder count per period at least, lest it buzzes at rest.
-    shape : {"smooth", "dead_zone"}
+    sign : {"smooth", "dead_zone"}
         s(v) = v/sqrt(v^2 + speed^2), or sign(v) beyond ``speed`` and nothing within: it leaves a handle at rest alone.
     velocity : VelocityEstimate, optional
         Instead of the paddle's v(n).
@@ -68,7 +68,7 @@ def damping_compensation(
     ['dry', 'viscous']
     >>> wall = hl.laws.damping_compensation(hl.wall(), b=0.1)(k=20, viscous=0.9)
     """
-    choice("shape", shape, SHAPES, error=SceneError)
+    choice("sign", sign, SHAPES, error=SceneError)
     instance("velocity", velocity, VelocityEstimate | None, AN_ESTIMATE, error=SceneError)
     moving = v(n) if velocity is None else velocity.velocity
     viscous, dry = parameters("viscous dry", units="1 1", ranges=((0, math.inf), (0, math.inf)))
@@ -77,7 +77,7 @@ def damping_compensation(
     if friction != 0:
         if speed is None:
             raise SceneError("coulomb without speed: the sign of a measured velocity needs a width, such as speed='5 mm/s'")
-        force -= dry * friction * _sign(moving, amount(speed, "m/s", "speed", "friction", above=0), shape)
+        force -= dry * friction * _sign(moving, amount(speed, "m/s", "speed", "friction", above=0), sign)
     eom = () if velocity is None else velocity.eom
     if scene is None:
         return Scene(force, eom, name="damping compensation")
@@ -86,7 +86,7 @@ def damping_compensation(
     return Scene(scene.force + force, (*scene.eom, *fresh), scene.watch, scene.values, name)
 
 
-def _sign(moving, speed, shape):
-    if shape == "smooth":
+def _sign(moving, speed, sign):
+    if sign == "smooth":
         return moving / sp.sqrt(moving**2 + speed**2)
     return when(moving > speed, 1, when(moving < -speed, -1, 0))

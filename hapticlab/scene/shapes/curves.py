@@ -44,8 +44,8 @@ class Curve(Shape):
     ----------
     points : callable u -> (x, y)
         Expressions [m] of a pure number u, twice differentiable, of one period.
-    period : number
-        u and u + period are the same point.
+    closes_after : number
+        u and u + closes_after are the same point.
 
     Examples
     --------
@@ -59,7 +59,7 @@ class Curve(Shape):
 
     tracked = True
 
-    def __init__(self, points: Callable[..., Any], period: Any = 2 * sp.pi) -> None:
+    def __init__(self, points: Callable[..., Any], closes_after: Any = 2 * sp.pi) -> None:
         self.u = Parameter("(u)", "1")
         try:
             self.x, self.y = (expression(p, "a point of the curve") for p in points(self.u))
@@ -67,7 +67,7 @@ class Curve(Shape):
             raise SceneError(f"points: {problem}; needs a function of u that gives (x, y) in m") from None
         for p in (self.x, self.y):
             agree_with(p, "m", "a point of the curve")
-        self.period = float(period)
+        self.period = float(closes_after)
 
     def __repr__(self) -> str:
         return f"Curve({self.x}, {self.y})"
@@ -122,8 +122,8 @@ def track(
     b: Placed,
     *,
     names: Sequence[str] = ("u", "w"),
-    rate: Any = None,
-    start: Any = None,
+    correction: Any = None,
+    near: Any = None,
     values: Mapping[str, float] | None = None,
 ) -> Any:
     """Track where two curves are closest, or a curve and a point.
@@ -136,9 +136,9 @@ def track(
         A Curve, or a :class:`~hapticlab.scene.shapes.shapes.Circle`, in its place.
     names : tuple of str
         What the coordinates of the closest points are called.
-    rate : Parameter or expression [1/s], optional
+    correction : Parameter or expression [1/s], optional
         How fast an error of the closest points dies out; 1/(4 T) unless given.
-    start : number or tuple of them, optional
+    near : number or tuple of them, optional
         Where to look for the closest points at the first sample; found by looking along the whole curves unless given.
     values : dict name -> number, optional
         Parameters, for the first sample; their declared values unless given. The handle is taken to start at 0.
@@ -163,11 +163,11 @@ def track(
     ((u(t),), 1.5707963267948966)
     """
     bodies = _checked(a, b)
-    rate = 1 / (4 * T) if rate is None else expression(rate, "rate of tracking")
-    agree_with(rate, "1/s", "rate of tracking")
+    rate = 1 / (4 * T) if correction is None else expression(correction, "correction of tracking")
+    agree_with(rate, "1/s", "correction of tracking")
     dummies = tuple(sp.Dummy(name, real=True) for name in names[: len(bodies)])
     F, J, _ = _stationary(a, b, dummies)
-    found = _start(a, b, dummies, F, J, start, values or {})
+    found = _start(a, b, dummies, F, J, near, values or {})
     made = tuple(coordinate(name, unit="1", initial=value) for name, value in zip(names, found, strict=False))
     F, J, moving = _stationary(a, b, made)
     eom = tuple(
@@ -241,7 +241,7 @@ def _start(a, b, at, F, J, start, values):
     else:
         place = np.array(start, float).reshape(-1)
         if place.shape != (len(at),):
-            raise SceneError(f"start = {start!r}; needs {len(at)} numbers, one for each curve")
+            raise SceneError(f"near = {start!r}; needs {len(at)} numbers, one for each curve")
     return _minimum(a, b, of, place, start is not None)
 
 
@@ -266,7 +266,7 @@ def _minimum(a, b, of, place, given):
     if slope.max() > ON_MINIMUM * max(size, 1e-3):
         raise SceneError(
             f"{a.name} and {b.name}: {where} is not where they are closest (the distance still changes by "
-            f"{slope.max():.4g} m); leave start= out, and it is looked for"
+            f"{slope.max():.4g} m); leave near= out, and it is looked for"
         )
     if gap < 0 or size <= ON_MINIMUM * np.sqrt(np.diag(J).max()):
         raise SceneError(

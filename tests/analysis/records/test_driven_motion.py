@@ -56,7 +56,7 @@ def test_chatter_beside_a_tremor_is_found_at_its_own_frequency():
 @pytest.mark.always("2000")
 def test_noise_of_the_hand_rings_a_lightly_damped_handle(k):
     """At 2000 N/m the resonance remembers for longer than any finite memory of the fit: a linear loop explains it."""
-    paddle, log = run(k, intent=0.02, noise=0.5)
+    paddle, log = run(k, intent=0.02, push_noise=0.5)
     shakes = paddle.inputs(len(log))[:, -1]
     assert hl.chatter(log).state in ("chatter", "growing")
     assert hl.chatter(log, driven=shakes).state == "driven"

@@ -22,7 +22,7 @@ LAWS = {
     "penalty": hl.contact.penalty(k=k, b=b),
     "hunt_crossley": hl.contact.hunt_crossley(k=k_h, c=c, exponent=2),
     "impulse": hl.contact.impulse(e=e),
-    "simultaneous": hl.contact.impulse(e=e, order="simultaneous"),
+    "simultaneous": hl.contact.impulse(e=e, impacts="simultaneous"),
     "rigid": hl.contact.rigid(),
     "micro_impulse": hl.contact.micro_impulse(e=e),
 }

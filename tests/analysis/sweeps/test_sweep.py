@@ -237,9 +237,10 @@ def bouncing():
 def test_impacts_are_swept_by_a_method_that_knows_them():
     scene, axes = bouncing(), {"e": [0.2, 0.9], "k": [100.0, 400.0]}
     with pytest.raises(ProgramError, match="taylor"):
-        sweep(scene, PUSHED, progress=False, **axes)
+        sweep(scene, PUSHED, progress=False, method="rk4", **axes)
     options = {"duration": 0.2, "progress": False}
     grid = sweep(scene, PUSHED, metric="peak_force", method="taylor", **options, **axes)
+    np.testing.assert_array_equal(sweep(scene, PUSHED, metric="peak_force", **options, **axes).values, grid.values)
     alone = [[abs(PUSHED.run(scene(e=e, k=k), method="taylor", **options).F).max() for k in axes["k"]] for e in axes["e"]]
     np.testing.assert_array_equal(grid.values, alone)
     assert len(np.unique(grid.values)) == 4

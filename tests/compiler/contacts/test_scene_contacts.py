@@ -265,10 +265,13 @@ def test_what_cannot_run_is_refused():
     def scene(*contacts):
         return hl.Scene(force=0, eom=[lagrange(L, contacts=contacts)])
 
-    pair = [hl.contact.Contact(q, e, name="a"), hl.contact.Contact(z, hl.contact.impulse(e=0.5, order="simultaneous"), name="b")]
+    pair = [
+        hl.contact.Contact(q, e, name="a"),
+        hl.contact.Contact(z, hl.contact.impulse(e=0.5, impacts="simultaneous"), name="b"),
+    ]
     with pytest.raises(SceneError, match=r"a: sequential; b: simultaneous: the impacts of a scene are all sequential, or all"):
         run(scene(*pair), 1)
-    rough = hl.contact.impulse(e=0.5, order="simultaneous", mu=0.1)
+    rough = hl.contact.impulse(e=0.5, impacts="simultaneous", mu=0.1)
     pair = [hl.contact.Contact(q, rough, name="a", slip=z.diff(t)), hl.contact.Contact(z, hl.contact.rigid(), name="b")]
     with pytest.raises(SceneError, match=r"a: friction in impacts at several contacts at once has no unique outcome"):
         run(scene(*pair), 1)

@@ -353,7 +353,7 @@ def squeezed(law, path, gravity=9.81, hold="soh", real="float64", ticks=450):
     return load(program).run(ticks, rows).outputs[:, 1, 0], x, program
 
 
-LAWS = [hl.contact.rigid(), hl.contact.impulse(e=0.5), hl.contact.impulse(e=0.5, order="simultaneous")]
+LAWS = [hl.contact.rigid(), hl.contact.impulse(e=0.5), hl.contact.impulse(e=0.5, impacts="simultaneous")]
 
 
 @pytest.mark.parametrize("law, gravity", [*((law, 9.81) for law in LAWS), (LAWS[0], 0.001)], ids=str)

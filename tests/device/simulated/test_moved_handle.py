@@ -18,7 +18,7 @@ PADDLES = {
     "friction": dict(coulomb=0.05, hand=SWAY),
     "friction and late": dict(coulomb=0.05, delay=1.3e-3, hand=Hand(push=0.3, k=50.0, b=0.5)),
     "moving": dict(hand=SWAY),
-    "noisy": dict(noise=1e-5, hand=Hand(k=100.0, b=1.0, intent=0.002, noise=0.05), seed=4),
+    "noisy": dict(noise=1e-5, hand=Hand(k=100.0, b=1.0, intent=0.002, push_noise=0.05), seed=4),
     "encoder": dict(counts_per_metre=2e4, rounding="nearest", hand=SWAY, noise=2e-5, seed=7),
     "limited": dict(force_max=0.3, hand=SWAY, counts_per_metre=5e4),
 }

@@ -94,7 +94,7 @@ def test_noise_is_seeded(spring):
 
 def test_the_hands_noise_is_a_seeded_force_held_over_each_sample(spring):
     def run(seed, **noise):
-        paddle = SimulatedPaddle(m=0.05, b=0.0, T=1e-3, seed=seed, hand=Hand(m=0.03, noise=0.2), **noise)
+        paddle = SimulatedPaddle(m=0.05, b=0.0, T=1e-3, seed=seed, hand=Hand(m=0.03, push_noise=0.2), **noise)
         return paddle.run(spring(0.0, velocity=paddle.velocity), duration=4)
 
     log = run(7)

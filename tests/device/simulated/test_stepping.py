@@ -31,7 +31,7 @@ def in_pieces(stepping, ticks, pieces, path=push):
     ids=["plain", "encoder", "delay", "friction and noise", "limit"],
 )
 def test_pieces_are_bit_for_bit_one_run(more):
-    hand = hl.Hand(m=0.02, b=1.0, k=200.0, noise=0.01, intent=push)
+    hand = hl.Hand(m=0.02, b=1.0, k=200.0, push_noise=0.01, intent=push)
     paddle = hl.SimulatedPaddle(m=0.05, b=0.1, T=1e-3, hand=hand, seed=3, **more)
     run = paddle.run(SCENE, duration=0.4)
     pieces = in_pieces(Stepping(paddle, SCENE), 400, (17, 1, 33))

@@ -25,7 +25,7 @@ FLOOR = Contact(Q, impulse(e=0.5), name="floor")
     (lambda: impulse(e=1.3), r"e = 1.3; restitution lies in 0..1: above 1 every bounce would feed energy to the user"),
     (lambda: impulse(e=-0.1), r"e = -0.1; restitution lies in 0..1: below 0 the bodies would pass"),
     (lambda: impulse(e=MU), r"e = mu, declared within -inf..inf.*hl.parameters\('mu', units='1', ranges=\(0, 1\)\)"),
-    (lambda: impulse(e=E, order="both"), r"order = 'both'; needs 'sequential' .* or 'simultaneous'"),
+    (lambda: impulse(e=E, impacts="both"), r"impacts = 'both'; needs 'sequential' .* or 'simultaneous'"),
     (lambda: impulse(e=E, rest_speed=0), r"rest_speed = 0; needs the speed below which a contact rests, > 0 m/s"),
     (lambda: impulse(e=E, mu=-0.2), r"mu = -0.2; a contact needs a friction coefficient mu >= 0: friction opposes the slip"),
     (lambda: penalty(k=-50), r"k = -50; a contact needs a stiffness k >= 0: a negative one feeds energy to the user"),

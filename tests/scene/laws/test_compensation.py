@@ -12,13 +12,13 @@ T, M, DAMPING, COULOMB, WIDTH = 1e-3, 0.05, 0.1, 0.05, 0.004
 SPEEDS = np.concatenate([np.linspace(-0.02, 0.02, 41), [0.004, -0.004, 0.5]])
 
 
-@pytest.mark.parametrize("shape", ["smooth", "dead_zone"])
-def test_the_force_is_its_formula(shape):
-    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=WIDTH, shape=shape)(viscous=0.9, dry=0.7)
+@pytest.mark.parametrize("sign", ["smooth", "dead_zone"])
+def test_the_force_is_its_formula(sign):
+    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=WIDTH, sign=sign)(viscous=0.9, dry=0.7)
     program = hl.compile(scene, T=T, dtype="float64", velocity="measured")
     assert [c.name for c in program.inputs] == ["x", "v"]
     found = load(program).run(len(SPEEDS), np.column_stack([0 * SPEEDS, SPEEDS])).outputs[:, 0, 0]
-    sign = SPEEDS / np.hypot(SPEEDS, WIDTH) if shape == "smooth" else np.sign(SPEEDS) * (abs(SPEEDS) > WIDTH)
+    sign = SPEEDS / np.hypot(SPEEDS, WIDTH) if sign == "smooth" else np.sign(SPEEDS) * (abs(SPEEDS) > WIDTH)
     np.testing.assert_allclose(found, -0.9 * DAMPING * SPEEDS - 0.7 * COULOMB * sign, rtol=1e-12, atol=1e-16)
 
 
@@ -35,7 +35,7 @@ def test_a_handle_coasts_as_if_its_damper_were_smaller(part):
 def test_dry_friction_that_is_compensated_lets_the_handle_coast_on():
     """With viscous = 1 the handle slows by (1 - dry) coulomb (1 - a)/b a period alone, a = exp(-bT/m)."""
     paddle = hl.SimulatedPaddle(m=M, b=DAMPING, T=T, coulomb=COULOMB)
-    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=WIDTH, shape="dead_zone")(viscous=1, dry=0.8)
+    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=WIDTH, sign="dead_zone")(viscous=1, dry=0.8)
     log = paddle.run(scene, duration=0.2, v=0.1, dtype="float64")
     np.testing.assert_allclose(log.v, 0.1 - 0.2 * COULOMB / DAMPING * -np.expm1(-DAMPING * T / M) * np.arange(200), rtol=1e-11)
 
@@ -43,7 +43,7 @@ def test_dry_friction_that_is_compensated_lets_the_handle_coast_on():
 def test_a_resting_handle_is_left_at_rest():
     """The dead zone is wider than a count per period: an encoder at rest, or one that flickers, is no motion."""
     paddle = hl.SimulatedPaddle(m=M, b=DAMPING, T=T, coulomb=COULOMB, counts_per_metre=1e6, noise=5e-7)
-    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=WIDTH, shape="dead_zone")(viscous=0, dry=0.9)
+    scene = hl.laws.damping_compensation(b=DAMPING, coulomb=COULOMB, speed=WIDTH, sign="dead_zone")(viscous=0, dry=0.9)
     assert not paddle.run(scene, duration=0.3).F.any()
 
 
@@ -63,11 +63,11 @@ def test_it_takes_a_chosen_velocity_once():
     assert hl.laws.damping_compensation(wall, b=DAMPING, velocity=estimate).eom == wall.eom
 
 
-@pytest.mark.parametrize(("shape", "fits_at"), [("smooth", 1.25e-3), ("dead_zone", 1e-3)])
-def test_it_runs_in_the_firmware_core_and_fits_the_uno(shape, fits_at):
+@pytest.mark.parametrize(("sign", "fits_at"), [("smooth", 1.25e-3), ("dead_zone", 1e-3)])
+def test_it_runs_in_the_firmware_core_and_fits_the_uno(sign, fits_at):
     """The smooth sign is a square root and a division dearer, which here beside a wall and a filter is too much for 1 kHz."""
     scene = hl.laws.damping_compensation(
-        hl.wall("backward_difference"), b=DAMPING, coulomb=COULOMB, speed=WIDTH, shape=shape,
+        hl.wall("backward_difference"), b=DAMPING, coulomb=COULOMB, speed=WIDTH, sign=sign,
         velocity=hl.velocity.filtered(tau="2 ms"),
     )(viscous=0.9, dry=0.8, k=100, x_o=0.01)  # fmt: skip
     program = hl.compile(scene, T=T)
@@ -88,7 +88,7 @@ def test_it_runs_in_the_firmware_core_and_fits_the_uno(shape, fits_at):
             SceneError,
             "speed = 0 m/s; friction needs speed > 0",
         ),
-        (lambda: hl.laws.damping_compensation(b=1, shape="sign"), SceneError, "needs one of smooth, dead_zone"),
+        (lambda: hl.laws.damping_compensation(b=1, sign="odd"), SceneError, "needs one of smooth, dead_zone"),
         (lambda: hl.laws.damping_compensation(b=1, velocity=3), SceneError, "needs an estimate"),
         (lambda: hl.laws.damping_compensation(b=1)(viscous=-0.5), ParameterError, "viscous = -0.5"),
     ],

@@ -93,7 +93,7 @@ def test_rate_is_that_of_the_gap(two_ellipses):
 def test_a_start_beside_the_minimum_is_pulled_to_it():
     """With initial values moved by hand the residual decays at the rate asked for."""
     z = hl.coordinate("z", unit="m", initial=Amount(0.2, "m"))
-    tracked = track(CAM.at(), Circle(0).at(x=0.05, y=z), rate=Amount(5, "1/s"))
+    tracked = track(CAM.at(), Circle(0).at(x=0.05, y=z), correction=Amount(5, "1/s"))
     (u,) = tracked.coordinates
     moved = hl.coordinate("u", unit="1", initial=type(u).initial + 0.01)
     swap = {u: moved, u.diff(t): moved.diff(t)}
@@ -170,9 +170,9 @@ def test_a_cam_and_an_egg_collide_and_keep_their_energy():
 @pytest.mark.parametrize(
     ("make", "word"),
     [
-        (lambda: track(CAM.at(name="cam"), EGG.at(x=q, name="egg"), start=(0.1, 3.0)), "not where they are closest"),
-        (lambda: track(CAM.at(name="cam"), Circle(0).at(x=q), start=math.pi), "is no minimum"),
-        (lambda: track(CAM.at(name="cam"), Circle(0.01).at(y=q / 10), start=(0.0, 1.0)), "needs 1 numbers"),
+        (lambda: track(CAM.at(name="cam"), EGG.at(x=q, name="egg"), near=(0.1, 3.0)), "not where they are closest"),
+        (lambda: track(CAM.at(name="cam"), Circle(0).at(x=q), near=math.pi), "is no minimum"),
+        (lambda: track(CAM.at(name="cam"), Circle(0.01).at(y=q / 10), near=(0.0, 1.0)), "needs 1 numbers"),
         (lambda: track(CAM.at(name="cam"), Circle(0.3).at(x=q)), "start in each other"),
         (lambda: track(CAM.at(), Circle(0.001).at(x=q / 100, y=0.001)), "start in each other|no minimum"),
         (lambda: track(Curve(lambda u: (a * sp.cos(u), -b * sp.sin(u))).at(), Circle(0.01).at(x=q)), "clockwise"),
@@ -184,7 +184,7 @@ def test_a_cam_and_an_egg_collide_and_keep_their_energy():
         (lambda: track(CAM.at(), Circle(hl.parameters("r", units="m", ranges=(0, 1))).at(x=q)), "without a value"),
         (lambda: Curve(lambda u: a * u), "gives \\(x, y\\)"),
         (lambda: Curve(lambda u: (sp.cos(u), sp.sin(u))), "point of the curve"),
-        (lambda: track(CAM.at(), Circle(0).at(x=q), rate=a), "rate of tracking"),
+        (lambda: track(CAM.at(), Circle(0).at(x=q), correction=a), "correction of tracking"),
     ],
 )
 def test_refused(make, word):
