@@ -168,6 +168,7 @@ def test_public_names_are_documented_and_exist():
     assert not [name for name, value in public().items() if callable(value) and not value.__doc__]
     for text in (README, (ROOT / "docs/systems.md").read_text("utf-8")):
         assert f"Version {'.'.join(hl.__version__.split('.')[:2])}, emulated only" in text
+    assert f'version: "{hl.__version__}"' in (ROOT / "CITATION.cff").read_text("utf-8")
 
 
 def test_files_named_in_the_documents_exist():

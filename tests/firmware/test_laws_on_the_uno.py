@@ -26,7 +26,7 @@ def scenes():
         "brake": hl.laws.braking_pulse(hl.wall()(**WALL), part=0.5, mass=mass, periods=3, entry=hl.laws.Entry(velocity=fast)),
         "friction": hl.laws.friction_pulse(hl.wall()(**WALL), friction=0.5, mass=mass, periods=15),
         "compensation": hl.laws.damping_compensation(
-            hl.wall()(**WALL), b=0.1, coulomb=0.02, speed="20 mm/s", shape="dead_zone", velocity=fast
+            hl.wall()(**WALL), b=0.1, coulomb=0.02, speed="20 mm/s", sign="dead_zone", velocity=fast
         )(viscous=0.5, dry=0.5),
         "force filter": hl.laws.force_filter(hl.wall()(**WALL)),
     }

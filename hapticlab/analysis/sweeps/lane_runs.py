@@ -203,7 +203,7 @@ def _together(paddle, columns, plant=None):
     own = {name: a for name, a in columns.items() if name in COLUMNS and "." not in name}
     hand = {name.removeprefix("hand."): a for name, a in columns.items() if name.startswith("hand.")}
     if hand:
-        every = ("m", "b", "k", "push", "intent", "noise", "moves")
+        every = ("m", "b", "k", "push", "intent", "push_noise", "moves")
         own["hand"] = SimpleNamespace(**{name: getattr(paddle.hand, name) for name in every} | hand)
     return together(paddle, own, plant)
 
