@@ -42,6 +42,7 @@ __all__ = [
     "LiveConstantError",
     "LongStepError",
     "MassError",
+    "MissedEventWarning",
     "PaddleError",
     "ParameterError",
     "PortError",
@@ -60,6 +61,10 @@ class HapticlabError(Exception):
 
 class UnusualValueWarning(UserWarning):
     """A value is far from what any paddle has: is its unit the one that was meant?"""
+
+
+class MissedEventWarning(UserWarning):
+    """A run left events unlocated, or bodies inside each other: its motion may be wrong from then on."""
 
 
 class SceneError(HapticlabError, ValueError):

@@ -12,6 +12,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from ..errors import AnalysisError
+from .missed_events import depth_words, ends_inside
 
 if TYPE_CHECKING:
     from .annotations import File
@@ -93,7 +94,8 @@ class Telemetry:
         Sampling period and computational delay [s].
     channels : dict of str to array
         Watched states and, where they differ from what was sensed or commanded, ``x_true``, ``v_true``, ``F_applied``
-        and ``x_switch``. Each is also an attribute: ``log.z``.
+        and ``x_switch``. Each is also an attribute: ``log.z``. Where events are located inside the period that begins with
+        a sample: ``unlocated``, steps that left one out, and ``overlap``, how deep bodies are inside each other at its end.
     units : dict of str to str
     paddle, scene : str
     parameters : dict of str to float
@@ -179,8 +181,9 @@ class Telemetry:
     def __repr__(self) -> str:
         stopped = f"; fault: {self.fault}" if self.fault else ""
         seconds = f"{len(self) * self.T:g} s at T = {self.T:g} s"
-        missed = np.count_nonzero(self.channels.get("unlocated", 0))
+        missed = np.count_nonzero(self.channels.get("unlocated", np.zeros(1)) > 0)
         left_out = f"; an event was not located in {missed} of them, see unlocated" if missed else ""
+        left_out += f"; bodies end {depth_words(self, self.overlap[-1])} inside each other" if ends_inside(self) else ""
         return f"Telemetry({len(self)} samples, {seconds}: {', '.join(self.columns)}{left_out}{stopped})"
 
     def save(self, path: File) -> Path:

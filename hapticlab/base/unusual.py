@@ -46,11 +46,11 @@ def warn_of_unusual(name: str, value: float, unit: str, usual: tuple[float, str,
         return
     _, why, meant = usual
     cure = "" if meant in (unit, unit.replace("*", " ")) else f" If you mean {value:g} {meant}, write {name}='{value:g} {meant}'."
-    warnings.warn(f"{name} = {value:g} {unit}: {why}.{cure}", UnusualValueWarning, stacklevel=_outside())
+    warnings.warn(f"{name} = {value:g} {unit}: {why}.{cure}", UnusualValueWarning, stacklevel=outside())
 
 
-def _outside():
-    """The stack level of the nearest caller that is not hapticlab's own."""
+def outside() -> int:
+    """The stack level, for a warning of the function that asks, of the nearest caller that is not hapticlab's own."""
     level, frame = 2, sys._getframe(2)
     while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("hapticlab."):
         level, frame = level + 1, frame.f_back

@@ -70,7 +70,7 @@ and ``live_limits`` how far each may go. The result is a ``program``:
 
 >>> program = hl.compile(scene, "taylor", T=1e-3)
 >>> [c.name for c in program.outputs]
-['F', 'z', 'y', 'unlocated']
+['F', 'z', 'y', 'unlocated', 'overlap']
 >>> [note for note in program.notes if "closed form" in note]
 ['z in closed form, driven by y: no drift']
 

@@ -33,12 +33,14 @@ class Motion:
     held : bool
     log : Telemetry or None
         What was recorded last.
+    missed : bool
+        Since the start, an event was left unlocated.
     """
 
     def __init__(self, source, speed, clock):
         self.source, self.speed, self.clock = source, speed, clock
         self.pace = Pace(source.paddle.T, speed)
-        self.running, self.held, self.log = False, True, None
+        self.running, self.held, self.log, self.missed = False, True, None, False
         self._recorder = self._replay = self._live = None
         self._at = 0.0
         self._last, self._noticed = {"x": 0.0, "F": 0.0}, {}
@@ -73,7 +75,7 @@ class Motion:
         waits = self._recorder is not None and not self._recorder.samples
         self.stop_recording()
         self.source.stop()
-        self.traces, self._at, self._noticed = Traces(self.source.period), 0.0, {}
+        self.traces, self._at, self._noticed, self.missed = Traces(self.source.period), 0.0, {}, False
         self.source.start()
         self.running = True
         if waits:
@@ -174,6 +176,7 @@ class Motion:
         if limit is not None:
             F = samples["F"]
             raised["saturated"] = F.max() >= limit or F.min() <= -limit
+        self.missed = self.missed or bool(np.any(np.greater(samples.get("unlocated", 0.0), 0.0)))
         self._noticed |= {name: self.clock() for name, there in raised.items() if there}
 
     def _lead(self, ticks, wanted):

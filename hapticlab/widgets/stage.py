@@ -13,7 +13,7 @@ from .motion import Motion
 from .picture import moving_picture
 from .sources import help_words, source_of
 from .spans import spans
-from .status_words import NOTICED, chatter_words, contact_words, late_words
+from .status_words import MISSED, NOTICED, chatter_words, contact_words, late_words
 
 #: pictures a second of a scene that rests
 RESTING = 4.0
@@ -238,6 +238,7 @@ class Stage:
         else:
             said = ["Motor off: press Start, and hold the handle" if board else "Paused"]
             said += [f"Stopped: {source.fault}" if source.fault else "", self._lost]
+        said += [MISSED if motion.missed else ""]
         records = "Recording" if motion.running and not (motion.replaying or source.waits) else "Recording waits"
         said += [records if motion.recording else "", self.note]
         return " ".join(f"{sentence.rstrip('.')}." for sentence in said if sentence)

@@ -77,6 +77,9 @@ NOTICED = {
     "overrun": "A step took longer than its period on the board",
 }  # fmt: skip
 
+#: from the first event on that was left unlocated
+MISSED = "An event was left unlocated: bodies may be inside each other, and a shorter T helps"
+
 
 def contact_words(F):
     """Say whether the environment pushes, from recent forces [N]."""

@@ -672,3 +672,17 @@ def test_a_view_for_an_experiment_tells_no_force():
         assert stage.rows[-1, 2] > 0.5  # N: the wall pushes
         assert [trace["name"] for trace in stage.session.description()["traces"]] == names
         assert ("motor" in str(stage.frames[-1].picture)) is show
+
+
+def test_a_view_tells_from_the_first_event_on_that_was_left_out():
+    h = hl.coordinate("h", unit="m", initial="2 mm", rate=20.0)
+    m, room, K = hl.parameters("m room K", units="kg m N/m", values=(0.05, 0.01, 0.0))
+    walls = [hl.contact.Contact(gap, hl.contact.impulse(e=1), name=name) for gap, name in ((h, "floor"), (room - h, "roof"))]
+    scene = hl.Scene(force=K * h, eom=[hl.mechanics.lagrange(m * h.diff(hl.t) ** 2 / 2, contacts=walls)], watch=[h])
+    for events, told in ((1, True), (4, False)):
+        stage = Stage(scene=scene, method=hl.methods.Taylor(events=events)).open()
+        stage.go(0.4)
+        assert ("left unlocated: bodies may be inside each other" in stage.session.status) == told
+        stage.session.pressed("pause")
+        stage.go(0.4)
+        assert stage.session.status.startswith("Paused.") and ("unlocated" in stage.session.status) == told

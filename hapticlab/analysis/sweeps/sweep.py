@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -11,10 +12,11 @@ import numpy as np
 from ...base.arguments import choice, number
 from ...base.guesses import Guessed
 from ...base.units import in_si
+from ...base.unusual import outside
 from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.prune.constraint_lengths import held
 from ...device.progress import progress_bar
-from ...errors import AnalysisError
+from ...errors import AnalysisError, MissedEventWarning
 from ...scene.scene import Scene
 from ..records.plots import plot_sweep
 from .sweep_chunks import measured
@@ -131,6 +133,11 @@ def sweep(
     -------
     Sweep
 
+    Warns
+    -----
+    MissedEventWarning
+        Runs left events unlocated; of those that came from a file to resume from, nothing is known.
+
     Raises
     ------
     AnalysisError
@@ -191,6 +198,13 @@ def _filled(plan, what, workers, resume, progress):
             if resume is not None and (done > before or isinstance(stop, KeyboardInterrupt)):
                 stop.add_note(f"{done} of {points} points are in {str(resume)!r}; the same call goes on from there")
             raise
+    if plan.missed:
+        warnings.warn(
+            f"{plan.missed} of {points} points left an event unlocated, so their metric may be wrong. Locate more events per "
+            "step, method=hl.methods.Taylor(events=8), or take a shorter T",
+            MissedEventWarning,
+            stacklevel=outside(),
+        )
     if done != points:
         raise AnalysisError(f"workers gave back {done} of {points} points; needs a map that returns every result once")
     return result

@@ -9,7 +9,7 @@ import numpy as np
 from ...compiler.ir.cache import Shared
 from ...device.simulated.closed_loop import link, load_linked
 from .sweep_grid import Points
-from .sweep_measures import METRICS, WithFault
+from .sweep_measures import METRICS, WithFault, WithUnlocated
 
 #: lanes and ticks of one call of an engine
 LANES, TICKS = 2048, 2000
@@ -55,7 +55,7 @@ class Chunk:
 
 
 def measured(chunk):
-    """Run a chunk; return its group, its first point in it, and the metric at its points."""
+    """Run a chunk; return its group, its first point in it, the metric at its points, and how many left an event unlocated."""
     program, loaded, inputs = _ready(chunk)
     points, ticks, stop = chunk.points, chunk.ticks, chunk.start + chunk.count
     parameters, last = points.parameters(program, chunk.starts, chunk.start, stop), []
@@ -65,15 +65,20 @@ def measured(chunk):
             rows = inputs[tick : tick + TICKS]
             outputs, states = loaded.run(len(rows), rows, lanes, states, every=len(rows))
         last.append(outputs[-1])
-    *numbers, fault = np.concatenate(last, axis=1)
+    numbers, missed = [*np.concatenate(last, axis=1)], 0
+    if program.outputs[-1].name == "unlocated":
+        missed = np.count_nonzero(numbers.pop())
+    fault = numbers.pop()
     count, T = points.count(chunk.start, stop), program.T
     found = METRICS[chunk.metric](ticks, T).value(numbers, count=count, quarter=ticks // 4 * T)
-    return chunk.group, chunk.first, np.where(fault > 0, np.nan, found)
+    return chunk.group, chunk.first, np.where(fault > 0, np.nan, found), missed
 
 
 def linked(program, paddle, ticks, metric):
     """Return a scene's program on a paddle with a metric in it, its bytes, and a digest of it with its inputs and values."""
-    made = link(program, paddle, WithFault(METRICS[metric](ticks, paddle.T)))
+    measure = WithFault(METRICS[metric](ticks, paddle.T))
+    locates = any(c.name == "unlocated" for c in program.outputs)
+    made = link(program, paddle, WithUnlocated(measure) if locates else measure)
     what = (made.parameters, made.inputs, made.states, made.outputs, made.init, made.tick, made.values, made.T, ticks)
     digest = hashlib.sha256(repr(what).encode() + paddle.inputs(ticks).tobytes()).digest()[:16]
     return made, pickle.dumps(made), digest

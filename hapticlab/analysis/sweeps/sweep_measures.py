@@ -182,4 +182,21 @@ class WithFault:
         return [*outputs, select(sample["fault"], one, 0.0)], following
 
 
+class WithUnlocated:
+    """A :class:`WithFault`, and last whether an event was left unlocated so far."""
+
+    def __init__(self, measure):
+        missed = f64(("unlocated", "1"))
+        self.measure, self.states, self.outputs = measure, (*measure.states, *missed), (*measure.outputs, *missed)
+
+    def init(self, sample):
+        return [*self.measure.init(sample), sample["x_true"].builder.const(0.0, "f64")]
+
+    def update(self, sample, states):
+        *own, missed = states
+        outputs, following = self.measure.update(sample, own)
+        missed = select(0.0 < sample["unlocated"], 1.0, missed)
+        return [*outputs, missed], [*following, missed]
+
+
 METRICS: dict[str, Any] = {"chatter": Chatter, "growth": Growth, "contacts": Contacts, "energy": Energy, "peak_force": PeakForce}

@@ -28,12 +28,14 @@ class Plan:
         Group -> digest of its program and inputs, of those met by now.
     sent : dict of (int, int) to int
         Group and first point of the chunks that are under way -> number of points.
+    missed : int
+        Points whose run left an event unlocated, of those taken by now.
     """
 
     def __init__(self, scene, grid, starts, options, duration, metric, engine):
         self.scene, self.grid, self.starts, self.options = scene, grid, starts, options
         self.duration, self.metric, self.engine = duration, metric, engine
-        self.groups, self.digests, self.sent = grid.groups(), {}, {}
+        self.groups, self.digests, self.sent, self.missed = grid.groups(), {}, {}, 0
         for points in self.groups:
             ticks, T = points.paddle.ticks(duration), points.paddle.T
             if ticks > MOST_TICKS:
@@ -69,8 +71,8 @@ class Plan:
     def taken(self, given):
         """Return the Record of what a worker gave back for a chunk; refuse anything else, and a chunk's second result."""
         try:
-            group, first, values = given
-            count, values = self.sent.get((group, first)), np.asarray(values, float)
+            group, first, values, missed = given
+            count, values, missed = self.sent.get((group, first)), np.asarray(values, float), int(missed)
         except (TypeError, ValueError):
             raise AnalysisError(f"workers gave back {_shown(given)}; needs a map that returns what the function does") from None
         if count is None:
@@ -81,6 +83,7 @@ class Plan:
                 "what the function does"
             )
         del self.sent[group, first]
+        self.missed += missed
         return Record(group, first, self.digests[group], values)
 
     def put(self, result, record, known):

@@ -13,6 +13,7 @@ from ..events.taylor_method import Taylor
 from ..ir.notes import UndefinedForceNote
 from ..ir.program import Channel
 from ..ir.structural_zeros import dot
+from ..ir.trace import maximum
 from .impacts import impacts_of
 from .impulses import dissipated
 from .touch import Law, micro_impulses
@@ -65,6 +66,17 @@ class InstantContacts:
                 f"method='taylor'; at the end of a step instead, {' and '.join(at_the_end)}. Other methods take "
                 f"{', and '.join(others)}"
             )
+
+    def overlap(self, gaps):
+        """The output that says how deep bodies are inside each other, (Channel, Value), from the gaps of ``contacts``.
+
+        Of lengths [m]; of angles [rad] where every located contact is a joint that stops.
+        """
+        lengths = [gap for c, gap in zip(self.contacts, gaps, strict=True) if c.unit == "N"]
+        depth = 0.0
+        for gap in lengths or gaps:
+            depth = maximum(-gap, depth)
+        return Channel("overlap", "m" if lengths else "rad", depth.type), depth
 
     @property
     def faults(self):

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.missed_events import warn_of_missed
 from ...base.telemetry import Telemetry
 from ...errors import ParameterError, ProgramError
 from ...scene.notation.parameters import Parameter
@@ -70,11 +71,12 @@ def evaluate(
     numbers = _values(program, values)
     outputs = load(program, engine).run(len(position), rows, [*numbers.values()]).outputs[:, :, 0]
     found = dict(zip((c.name for c in program.outputs), outputs.T, strict=True))
-    return Telemetry(
+    log = Telemetry(
         t=T * np.arange(len(position)), x=position, v=given.get("v", np.diff(position, prepend=position[:1]) / T),
         F=found.pop("F"), T=T, channels=found, units={c.name: c.unit for c in program.outputs if c.name in found},
         paddle="a handle that moves as it is told", scene=program.name, parameters=numbers,
     )  # fmt: skip
+    return warn_of_missed(log)
 
 
 def _column(name, given):

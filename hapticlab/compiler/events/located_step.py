@@ -109,10 +109,11 @@ class Stepper:
             missed = one_of(more, missed, rough)
         return state, held, missed
 
-    def reactions(self, tau, state, held):
-        """The reactions at a state, with those held that are."""
+    def end(self, tau, state, held):
+        """(reactions of contacts and frictions, gaps of the contacts) at a state, with those held that are."""
         flow, _ = self._flow(self._start(tau, state, list(held)))
-        return [flow.at(r.leaf) for r in self.motion.reactions]
+        given = self.motion.reactions[: self.motion.given]
+        return [flow.at(r.leaf) for r in given], [flow.at(r.measure) for r in given if r.level == 2]
 
     def _start(self, tau, state, held):
         motion = self.motion

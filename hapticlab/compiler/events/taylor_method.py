@@ -56,7 +56,8 @@ class Taylor:
         Of the series. Chosen from the fastest part of the motion and the real type, unless given.
     events : int, 1..8, optional
         Most events located in a step; a step of one more is finished without locating, and counted in the output
-        ``unlocated``. 2 for one or two surfaces, 3 for more, unless given.
+        ``unlocated``. 2 for one or two surfaces, 3 for more, unless given. Where bodies bounce or rest, the output ``overlap``
+        says how deep they are inside each other at the end of a period. A run that left events out warns.
 
     Examples
     --------
@@ -103,8 +104,8 @@ class Advanced:
         Order, events, omega, and the part of a state past which the last term of its series makes it nan, for the listing.
     unlocated : Value or None
         Steps of this period that left an event out, or whose series had not converged; None where there is no event.
-    reactions : list of Value
-        Of the contacts and frictions, at its end.
+    reactions, gaps : list of Value
+        Of the contacts and frictions, and of the contacts alone, at its end.
     sums : dict (role, number of the contact) -> Value
         What impacts added up to.
     """
@@ -113,6 +114,7 @@ class Advanced:
     facts: dict
     unlocated: Value | None
     reactions: list
+    gaps: list
     sums: dict
 
 
@@ -180,14 +182,14 @@ def advance(
         missed = count if missed is None else missed + count
     for k, value in enumerate(now):
         tracing.set_next(("held", k), value)
-    reactions = stepper.reactions(builder.const(substeps * h), groups, now)[: motion.given]
+    reactions, gaps = stepper.end(builder.const(substeps * h), groups, now)
     facts = (
         {"order": order}
         | ({} if motion.smooth else {"events": events})
         | ({"remainder": remainder[1]} if remainder else {})
         | ({"omega": float(f"{omega:.4g}")} if omega > 0 else {})
     )
-    return Advanced(groups, facts, None if motion.smooth else missed, reactions, impact.sums if impact else {})
+    return Advanced(groups, facts, None if motion.smooth else missed, reactions, gaps, impact.sums if impact else {})
 
 
 def held_state(tracing, k):
@@ -214,10 +216,10 @@ def switched(method, tracing, motion, groups, h, name, impact, number):
     check_size(motion, tracing.tick, name, method.name)
     for k, value in enumerate(held):
         tracing.set_next(("held", k), value)
-    reactions = stepper.reactions(tracing.tick.const(h), groups, held)[: motion.given]
+    reactions, gaps = stepper.end(tracing.tick.const(h), groups, held)
     facts = {"maps": len(maps.modes), "order": stepper.order, "events": events, "pieces": stepper.pieces}
     facts |= {"omega": float(f"{maps.omega:.4g}")} if turns else {}
-    return Advanced(groups, facts, missed, reactions, impact.sums if impact else {})
+    return Advanced(groups, facts, missed, reactions, gaps, impact.sums if impact else {})
 
 
 def _pieces(surfaces, turns, real):

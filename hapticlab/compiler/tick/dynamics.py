@@ -293,6 +293,8 @@ class Period:
     notes : tuple of str
     unlocated : Value or None
         Steps that left an event out.
+    overlap : (Channel, Value) or None
+        How deep bodies with located contacts are inside each other at its end.
     """
 
     start: tuple = ()
@@ -301,6 +303,7 @@ class Period:
     facts: dict = field(default_factory=dict)
     notes: tuple = ()
     unlocated: Value | None = None
+    overlap: tuple | None = None
 
 
 def one_period(dynamics, method, substeps, start, name, at_start):
@@ -337,7 +340,7 @@ def one_period(dynamics, method, substeps, start, name, at_start):
             sums[key] = sums[key] + amount if key in sums else amount
         return state
 
-    state, facts, notes, unlocated, reactions = start, {}, (), None, ()
+    state, facts, notes, unlocated, reactions, overlap = start, {}, (), None, (), None
     if isinstance(method, Taylor):
         done = advance(
             method, tracing, rates, start, h, substeps, dynamics.tick.values, name, touching,
@@ -349,6 +352,7 @@ def one_period(dynamics, method, substeps, start, name, at_start):
         notes += dynamics.contacts.faults if dynamics.contacts else ()
         if touching:
             dynamics = replace(dynamics, unknowns=dynamics.unknowns | touching.unknowns)
+            overlap = dynamics.contacts.overlap(done.gaps) if done.gaps else None
         state = hovered(dynamics, tracing.T, done.groups)
         sums |= {(dynamics.contacts.contacts[i], role): amount for (role, i), amount in done.sums.items()}
     elif method.steps > 1:
@@ -358,4 +362,4 @@ def one_period(dynamics, method, substeps, start, name, at_start):
             state = hovered(dynamics, (step + 1) * h, method.step(rates, step * h, state, h))
     if dynamics.contacts:
         dynamics.contacts.finish(tracing, reactions, sums)
-    return Period(start, dynamics.settled(tracing.T, state), first[0] if first else None, facts, notes, unlocated)
+    return Period(start, dynamics.settled(tracing.T, state), first[0] if first else None, facts, notes, unlocated, overlap)

@@ -180,6 +180,8 @@ def _traced(moving, scene, force_at, substeps, ranges):
     outputs = [(Channel("F", "N", tracing.real), within(force, ranges, moving.sample)), *watched]
     if period.unlocated is not None:
         outputs.append((Channel("unlocated", "1", tracing.real), period.unlocated))
+    if period.overlap is not None:
+        outputs.append(period.overlap)
     tracing.complete()
     return outputs, period
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...base.missed_events import warn_of_missed
 from ...base.telemetry import Telemetry
 from ...compiler.engines.bytecode import encode
 from ...compiler.ir.program import Program
@@ -89,7 +90,8 @@ class Run:
         """Return the Telemetry of the first so many ticks; None takes them all."""
         rows = self._table(self._rows)
         rows = rows if ticks is None else rows[rows["tick"] < ticks]
-        return self.as_telemetry(self._columns(rows, self._taken), delay=delay, paddle=paddle, changes=self.changes)
+        columns = self._columns(rows, self._taken)
+        return warn_of_missed(self.as_telemetry(columns, delay=delay, paddle=paddle, changes=self.changes))
 
     def as_telemetry(self, columns, *, delay, paddle, changes=(), values=None):
         """Return columns of :meth:`take`, put together, as Telemetry; values are the parameters', the program's if None."""

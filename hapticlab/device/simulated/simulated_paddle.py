@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arguments import number
+from ...base.missed_events import warn_of_missed
 from ...base.telemetry import PaddleProfile, Telemetry
 from ...base.unusual import DEVICE, warn_of_unusual
 from ...errors import PaddleError
@@ -267,7 +268,7 @@ class SimulatedPaddle(Paddle):
             outputs = run_reacting(loaded, self, parameters, ticks, [c.name for c in linked.outputs])
         else:
             outputs = _run_in_chunks(loaded, self.inputs(ticks), parameters, CHUNK[loaded.name], progress)
-        return self._telemetry(program, linked, outputs)
+        return warn_of_missed(self._telemetry(program, linked, outputs))
 
     def _telemetry(self, program, linked, outputs):
         columns = {c.name: outputs[:, j] for j, c in enumerate(linked.outputs)}

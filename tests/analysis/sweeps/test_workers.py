@@ -83,9 +83,9 @@ def first_again(function, pieces):
 def shortened(function, pieces):
     """As many points as there are, if they are only counted: a result without its last one, and that of another chunk."""
     for piece in pieces:
-        group, first, values = function(piece)
-        yield group, first, values[:-1]
-        yield group, first, values[:1]
+        group, first, values, missed = function(piece)
+        yield group, first, values[:-1], missed
+        yield group, first, values[:1], missed
 
 
 def one_more(function, pieces):
@@ -93,7 +93,7 @@ def one_more(function, pieces):
 
 
 def of_another(function, pieces):
-    return [(group, first + 1, values) for group, first, values in map(function, pieces)]
+    return [(group, first + 1, *rest) for group, first, *rest in map(function, pieces)]
 
 
 @pytest.mark.parametrize(
@@ -106,8 +106,8 @@ def of_another(function, pieces):
         (lambda function, pieces: None, "None; needs a map that gives back all results"),
         (lambda function, pieces: [None for _ in pieces], "None; needs a map that returns what the function does"),
         (lambda function, pieces: [ValueError("no " * 90)], r"ValueError\('no.* \.\.\.; needs"),
-        (lambda function, pieces: [(0, 0, "none")], r"\(0, 0, 'none'\); needs"),
-        (lambda function, pieces: [([], 0, 1.0)], r"\(\[\], 0, 1.0\); needs"),
+        (lambda function, pieces: [(0, 0, "none", 0)], r"\(0, 0, 'none', 0\); needs"),
+        (lambda function, pieces: [([], 0, 1.0, 0)], r"\(\[\], 0, 1.0, 0\); needs"),
     ],
 )
 def test_only_what_was_measured_is_taken(wrong, words, tmp_path, monkeypatch):
