@@ -30,6 +30,9 @@ NEGATIVE_HELPS = "B < 0 was counted as if it helped: it takes away from what b g
 NO_B = "Eq. (23.10) asks for K T/2 + |B|: the virtual damper has its share."
 HALF = "K T/2 is to be paid: K = 2 (...)/T."
 NEGATIVE = "Below zero there is no stiffness at all: return 0."
+INSIDE_TOO = "B acts inside the wall as well. It is the whole point that it acts only where x(n) < x_o."
+NOT_OUTSIDE = "Nothing acts outside: hl.when(condition, inside, outside) takes the virtual damper as its third argument."
+TURNED_DAMPER = "The damper's sign is wrong: a damper's force on the environment is B v, and here B itself is negative."
 ACCELERATION = "The sign is turned: F is on the environment, the handle feels -F."
 SWAPPED = "These are the right two forces in the wrong order."
 EULER = (
@@ -86,7 +89,7 @@ LAB = Lab(
         Exercise(
             "ellis_wall",
             kind="scene",
-            points=2,
+            points=1,
             asks="a Scene with k [N/m] and x_o [m]: Eq. (23.6), both predictions inserted, where x(n) >= x_o, else 0",
             cases=(
                 Case(
@@ -155,6 +158,53 @@ LAB = Lab(
             hint="In Eq. (23.10) b is all the real damping there is. Is there a stiffness left?",
         ),
         Exercise(
+            "prediction_free_air",
+            kind="prediction",
+            asks="the stiffness up to which the wall chatters in no light hand, B in free air only [N/m]",
+        ),
+        Exercise(
+            "free_air_wall",
+            kind="scene",
+            points=1,
+            asks="a Scene with k [N/m], x_o [m], B [N s/m]: Eq. (23.1) where x(n) >= x_o, else B times the velocity",
+            cases=(
+                Case(
+                    {
+                        "x": [-1e-3, -4e-4, 0.0, 1e-3, 6e-4, -2e-4, -5e-4],
+                        "T": 1e-3,
+                        "values": {"k": 500.0, "x_o": 0.0, "B": -0.25},
+                    },
+                    [0.0, -0.15, 0.0, 0.5, 0.3, 0.2, 0.075],
+                    unit="N",
+                    slips=(
+                        ((0.0, -0.15, -0.1, 0.25, 0.4, 0.2, 0.075), INSIDE_TOO),
+                        ((0.0, 0.0, 0.0, 0.5, 0.3, 0.0, 0.0), NOT_OUTSIDE),
+                        ((0.0, 0.15, 0.0, 0.5, 0.3, -0.2, -0.075), TURNED_DAMPER),
+                    ),
+                ),
+                Case(
+                    {
+                        "x": [0.0, 8e-4, 1e-3, 1.6e-3, 9e-4, 5e-4],
+                        "T": 5e-4,
+                        "values": {"k": 600.0, "x_o": 1e-3, "B": -0.1},
+                    },
+                    [0.0, -0.16, 0.0, 0.36, 0.14, 0.08],
+                    unit="N",
+                    slips=(
+                        ((0.0, -0.16, 0.6, 0.96, 0.14, 0.08), "The spring is pressed by x - x_o, not by x."),
+                        ((0.0, -0.16, -0.04, 0.36, 0.14, 0.08), STRICT),
+                        ((0.0, -0.16, -0.04, 0.24, 0.14, 0.08), INSIDE_TOO),
+                        ((0.0, 0.0, 0.0, 0.36, 0.0, 0.0), NOT_OUTSIDE),
+                        (
+                            (0.0, -0.08, 0.0, 0.36, 0.07, 0.04),
+                            "The period is not always 1 ms: divide by hl.T, which is the period that the scene runs at.",
+                        ),
+                    ),
+                ),
+            ),
+            hint="Which law acts where x(n) < x_o, and what is the velocity there, from the last two positions?",
+        ),
+        Exercise(
             "deadbeat_forces",
             points=2,
             asks="the forces [F_0, F_1] [N] that take (x, v) to (x_goal, v_goal) in two periods T [s]; m in kg",
@@ -185,14 +235,20 @@ LAB = Lab(
             kind="choice",
             points=1,
             asks="the law for an encoder, a period of delay and thirty different hands",
-            options={"a": "model-based half sample", "b": "Ellis", "c": "damper and compensation", "d": "dead-beat"},
+            options={
+                "a": "model-based half sample",
+                "b": "Ellis",
+                "c": "damper and compensation, inside and outside",
+                "d": "dead-beat",
+            },
             cases=(
                 Case(
                     {},
                     "a",
                     slips={
-                        "b": "Ellis pays for the hold, and nobody pays for the period of delay: the second table of section 5.",
-                        "c": "With the plain law the two dampers cancel in slow motion: section 7, "
+                        "b": "Ellis pays for the hold, and nobody pays for the period of delay: the second table of section 5. "
+                        "And each count of the encoder is felt up to four times: section 6.",
+                        "c": "Inside a plain wall the two dampers cancel in slow motion: section 7, "
                         "and the row `damped` of section 5.",
                         "d": "Its forces follow the position with m/T^2, so each count of the "
                         "encoder is a kick, and its model is of "
@@ -206,7 +262,7 @@ LAB = Lab(
             "discussion",
             kind="text",
             least_words=60,
-            asks="where the directive holds and why, and where a predictor errs",
+            asks="for which law, and where, the directive holds and why, and where a predictor errs",
         ),
     ),
 )

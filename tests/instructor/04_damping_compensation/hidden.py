@@ -18,6 +18,14 @@ def cases(random):
             {"b": draw(0.05, 0.3), "b_added": draw(0.2, 1), "B": sign * draw(0, 0.24), "T": draw(2e-4, 2e-3)} for sign in (1, -1)
         ]
         + [{"b": 0.1, "b_added": 0.1, "B": -draw(0.3, 0.5), "T": 1e-3}],
+        "free_air_wall": lambda: [
+            {
+                "x": list(random.uniform(-3e-3, 6e-3, 10)),
+                "T": draw(2e-4, 2e-3),
+                "values": {"k": draw(100, 2000), "x_o": draw(0, 2e-3), "B": draw(-0.5, 0.5)},
+            }
+            for _ in range(2)
+        ],
         "deadbeat_forces": lambda: [
             {
                 "m": draw(0.02, 0.4), "T": draw(5e-4, 1e-2), "x": draw(-1e-3, 1e-3), "v": draw(-0.3, 0.3),

@@ -23,6 +23,12 @@ def stiffest_passive(b, b_added, B, T):
     return max(0.0, 2 * (b + b_added - abs(B)) / T)
 
 
+prediction_free_air = 700.0
+
+B = hl.parameters("B", units="N*s/m", ranges=(-1, 1))
+free_air_wall = hl.Scene(force=hl.when(x(n) >= x_o, k * (x(n) - x_o), B * (x(n) - x(n - 1)) / hl.T))
+
+
 def deadbeat_forces(m, T, x, v, x_goal, v_goal):
     """The two held forces [N]: F0 + F1 from the velocity, 3 F0 + F1 from the position."""
     both = m * (v - v_goal) / T
@@ -32,8 +38,10 @@ def deadbeat_forces(m, T, x, v, x_goal, v_goal):
 
 which_law = "a"
 discussion = """
-For the plain wall it is not true: the hold leaks at every frequency alike, and in slow motion the virtual damper
-takes away what the real one gives, so the limit is that of the damping that is felt. For the laws that look ahead
+For the plain wall with the virtual damper inside it is not true: the hold leaks at every frequency alike, and in slow
+motion the virtual damper takes away what the real one gives, so the limit is that of the damping that is felt. With the
+virtual damper in free air only it is nearly true: the two are needed at different places, and meet at the crossing
+alone; but inside the wall the real damper is felt. For the laws that look ahead
 it is true: they pay for slow motion themselves and ask for the damper only in fast motion, where the virtual damper
 does not undo it. A straight line is furthest from the path where the force jumps or bends it, at the boundary and
 at the deepest point: in the period of the crossing every predictor errs.
