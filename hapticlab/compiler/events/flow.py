@@ -9,7 +9,7 @@ from ...errors import ProgramError
 from ..algebra.complementarity import impossible, reactions
 from ..ir.structural_zeros import dot, minus, plus, times
 from ..ir.trace import Value, maximum, reachable, select
-from .guards import Leaves, Reaction, freeze
+from .guards import Leaves, Reaction, freeze, hidden
 from .taylor_series import Series
 
 
@@ -95,6 +95,7 @@ def motion_of(builder, rates, second, first=0, events=None):
             "coordinates with masses, the handle and time: give that coordinate a mass, or use a penalty law"
         )
     given = [Reaction(r.leaf, next(parts), r.level, next(parts), next(parts), r.lean, r.side) for r in given]
+    guards = hidden(guards, found, values)
     return Motion(
         builder, q, w, s, tau, values[: len(a)], values[len(a) : len(a) + len(ds)], guards, [*given, *found], len(given)
     )

@@ -118,17 +118,21 @@ def freeze(builder, targets, moving, rates, new, where=None):
     for p in frozen.order:
         frozen.rewritten(p, frozenset())
     done = [frozen.rewritten(target.id, frozenset()) for target in targets]
-    return done, [replace(g, idle=_idle(g, frozen, done)) for g in frozen.guards], frozen.reactions
+    return done, frozen.guards, frozen.reactions
 
 
-def _idle(guard, frozen, targets):
-    """The (leaf, value) of other guards that hide this one: a wall that only pushes, while it is not touched."""
-    others = [g for g in frozen.guards if g is not guard]
-    parts = [part for g in others for part in (g.first, g.second)]
-    parts += [part for r in frozen.reactions for part in (r.measure, r.free, r.inside)]
-    seen = [v.id for v in (*targets, *parts)]
-    cases = ((g.leaf, value) for g in others if g.kind == "side" for value in (False, True))
-    return tuple(case for case in cases if guard.leaf.id not in _reached_in(frozen.instructions, seen, *case))
+def hidden(guards, reactions, targets):
+    """The guards, each with the (leaf, value) of others that hide it: a wall that only pushes, while it is not touched."""
+    parts = [part for g in guards for part in (g.first, g.second)]
+    parts += [part for r in reactions for part in (r.measure, r.free, r.inside)]
+    idle = {g: [] for g in guards}
+    for g in guards:
+        for value in (False, True) if g.kind == "side" else ():
+            reached = _reached_in(g.leaf.builder.instructions, [v.id for v in (*targets, *parts)], g.leaf, value)
+            for other in guards:  # none is among the parts of its own surface
+                if other is not g and other.leaf.id not in reached:
+                    idle[other].append((g.leaf, value))
+    return [replace(g, idle=tuple(cases)) for g, cases in idle.items()]
 
 
 def _reached_in(instructions, positions, leaf, value):

@@ -2,16 +2,16 @@
 
 import itertools
 import math
+from collections import defaultdict
 
 import numpy as np
 
 from ...errors import LongStepError, ProgramError, ProgramLimitError
+from ..algebra.tangents import tangents
 from ..ir.operations import OPERATIONS
 from ..ir.options import MOST_SUBSTEPS, proposed
 from ..ir.program import LEAVES
-from ..ir.structural_zeros import ZERO
 from ..ir.trace import reachable
-from .taylor_series import Series
 
 #: orders of the series: for linear motions what the truncation asks for, else what also serves products and functions
 ORDERS = {"f64": (6, 16), "f32": (4, 9)}
@@ -44,37 +44,53 @@ def _value(i, known, given):
     return OPERATIONS[i.op].compute(*(known[a] for a in i.args))
 
 
-def _varied(motion, modes, at, number):
-    """The series of values and their gradients by (q, w, s), as coefficients 0 and 1."""
-    leaves, values = [*motion.q, *motion.w, *motion.s], [*at[0], *at[1], *at[2]]
-    rows = {leaf.id: [np.float64(value), unit] for leaf, value, unit in zip(leaves, values, np.eye(len(leaves)), strict=True)}
-    # float zeros of numpy: what divides by them is inf, as on every engine
-    rows[motion.tau.id] = [ZERO, ZERO]
-    rows |= {leaf.id: [value, ZERO] for leaf, value in modes.items()}
-    return Series(motion.builder.instructions, rows, number)
+def leaf_of(value):
+    """What a leaf is: (op, index)."""
+    i = value.builder.instructions[value.id]
+    return i.op, i.index
 
 
-def jacobian(motion, modes, at, number):
-    """The matrix of the motion's rates at a state (q, w, s), shape (2 n + m, 2 n + m), in given modes."""
-    series, n = _varied(motion, modes, at, number), len(motion.q)
-    J = np.zeros((2 * n + len(motion.s),) * 2)
-    J[:n, n : 2 * n] = np.eye(n)
-    with np.errstate(all="ignore"):
-        for row, rate in zip(range(n, len(J)), [*motion.a, *motion.ds], strict=True):
-            J[row] = series.of(rate, 1)[1]
+def cases_of(motion, modes, states, given):
+    """Leaf -> number or array, at each of some points: what the leaves of a motion are in its modes at its states.
+
+    Parameters
+    ----------
+    motion : Motion
+    modes : sequence of dict leaf -> value, one a point
+    states : sequence of (q, w, s), one a point
+    given : dict (op, index) -> number
+        What parameters, inputs and states are; nan those that are not given.
+    """
+    leaves = [leaf_of(v) for v in (*motion.q, *motion.w, *motion.s)]
+    columns = zip(*([*q, *w, *s] for q, w, s in states), strict=True)
+    found = (
+        defaultdict(lambda: math.nan, given) | {leaf_of(motion.tau): 0.0} | dict(zip(leaves, map(np.array, columns), strict=True))
+    )
+    return found | {leaf_of(leaf): np.array([mode[leaf] for mode in modes]) for leaf in (modes[0] if modes else ())}
+
+
+def jacobian(motion, cases, points):
+    """The matrix of the motion's rates at each of some points, shape (points, 2 n + m, 2 n + m)."""
+    leaves, n = [leaf_of(v) for v in (*motion.q, *motion.w, *motion.s)], len(motion.q)
+    rates = [rate.id for rate in (*motion.a, *motion.ds)]
+    J = np.zeros((points, len(leaves), len(leaves)))
+    J[:, :n, n : 2 * n] = np.eye(n)
+    J[:, n:] = np.moveaxis(tangents(motion.builder.instructions, rates, cases, leaves, points)[1], 2, 0)
     return J
 
 
-def onto_surfaces(motion, modes, at, number):
-    """A state like the one given that can be in these modes: on the surfaces it would have to lie beyond."""
-    q, w, s = np.array(at[0], float), at[1], at[2]
+def onto_surfaces(motion, cases, points):
+    """The cases, those that cannot be in their modes moved onto the surfaces that they would have to lie beyond."""
+    places = [leaf_of(v) for v in motion.q]
     for g in motion.guards:
-        if g.kind == "side":
-            value, gradient = _varied(motion, modes, (q, w, s), number).of(g.measure, 1)
-            along = np.broadcast_to(gradient, (2 * len(q) + len(s),))[: len(q)]
-            if (value < 0) != modes[g.leaf] and along.any() and np.isfinite(along).all():
-                q = q - value * along / (along @ along)
-    return list(q), w, s
+        if g.kind == "side" and places:
+            values, slopes = tangents(motion.builder.instructions, [g.measure.id], cases, places, points)
+            value, along = values[0], slopes[0]
+            with np.errstate(all="ignore"):  # at the tip of a root there is no slope to follow
+                step = value * along / (along * along).sum(axis=0)
+            beyond = ((value < 0) != cases[leaf_of(g.leaf)]) & along.any(axis=0) & np.isfinite(along).all(axis=0)
+            cases = cases | {q: np.where(beyond, cases[q] - moved, cases[q]) for q, moved in zip(places, step, strict=True)}
+    return cases
 
 
 def modes_of(motion):
@@ -99,23 +115,20 @@ def _free(motion, modes):
     return modes
 
 
-def frequency(motion, states, number, linear=True):
+def frequency(motion, states, given, linear=True):
     """The largest |eigenvalue| [rad/s] of the motion over its modes and some states; nan where it is not known.
 
     Where it is not linear, a mode that a state cannot be in is looked at where it begins; of the states after the first,
-    those where it has no finite rates do not count.
+    those where it has no finite rates do not count. ``given`` as :func:`cases_of` takes it.
     """
-    largest = 0.0
+    modes, largest = list(modes_of(motion)), 0.0
     for place, at in enumerate(states):
-        for modes in modes_of(motion):
-            with np.errstate(all="ignore"):
-                state = at if linear else onto_surfaces(motion, modes, at, number)
-            J = jacobian(motion, modes, state, number)
-            if not np.isfinite(J).all():
-                if place:
-                    continue
-                return math.nan
-            largest = max(largest, max(abs(np.linalg.eigvals(J)), default=0.0))
+        cases = cases_of(motion, modes, [at] * len(modes), given)
+        J = jacobian(motion, cases if linear else onto_surfaces(motion, cases, len(modes)), len(modes))
+        known = np.isfinite(J).all(axis=(1, 2))
+        if not (place or known.all()):
+            return math.nan
+        largest = max(largest, np.abs(np.linalg.eigvals(J[known])).max(initial=0.0))
     return float(largest)
 
 

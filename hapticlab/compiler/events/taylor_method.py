@@ -158,10 +158,11 @@ def advance(
     linear = is_linear(motion)
 
     def fastest(values):
-        number = numbers(builder.instructions, tracing.at_start(values))
+        given = tracing.at_start(values)
+        number = numbers(builder.instructions, given)
         start = tuple([number(v.id) for v in part] for part in groups)
         others = () if linear else (*around(start, ranges, bound), *within(ranges, start))
-        return frequency(motion, [start, *others], number, linear)
+        return frequency(motion, [start, *others], given, linear)
 
     omega = fastest(values)
     check_step(omega, h * substeps, substeps, name)

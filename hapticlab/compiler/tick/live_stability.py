@@ -14,7 +14,7 @@ import numpy as np
 from ..algebra.tangents import tangents
 from ..events.flow import Motion
 from ..events.guards import Leaves, freeze
-from ..events.series_checks import around, is_linear, live_in, modes_of, numbers, onto_surfaces, within
+from ..events.series_checks import around, cases_of, is_linear, leaf_of, live_in, modes_of, numbers, onto_surfaces, within
 from ..events.taylor_method import Taylor
 from ..ir.trace import Value, reachable
 from ..methods.method_table import Method
@@ -99,14 +99,15 @@ class StableValues:
         self.step, self.motion = _in_modes(stepped, self.damped)
         self.number = {p.name: k for k, p in enumerate(self.tracing.parameters)}
         self.live = [p.name for p in live_in(self.motion, self.tracing.parameters)]
-        self.moving = [_leaf(v) for v in (*self.motion.q, *self.motion.w, *self.motion.s)]
+        self.moving = [leaf_of(v) for v in (*self.motion.q, *self.motion.w, *self.motion.s)]
         self.wanted = [rate.id for rate in (*self.motion.a, *self.motion.ds)]
         self.start = [[value.id for value in group] for group in stepped.start]
         self.linear = is_linear(self.motion)
         self.ranges, self.bound = [(type(q).low, type(q).high) for q in stepped.positions], stepped.bound
         # contacts of an instant are apart, and friction slips
-        leaves = {_leaf(self.tracing.tick.result(p)): self.instructions[p].type for p in reachable(self.instructions, self.wanted)
-                  if self.instructions[p].op == "input" and self.instructions[p].index > 1}  # fmt: skip
+        others = [p for p in reachable(self.instructions, self.wanted)
+                  if self.instructions[p].op == "input" and self.instructions[p].index > 1]  # fmt: skip
+        leaves = {leaf_of(self.tracing.tick.result(p)): self.instructions[p].type for p in others}
         self.still = {leaf: np.bool_(True) if type == "bool" else 0.0 for leaf, type in leaves.items()}
         self.known = None
 
@@ -123,16 +124,10 @@ class StableValues:
         states = [start]
         if not self.linear:
             states += [*around(start, self.ranges, self.bound), *(within(self.ranges, start) if self.taylor else ())]
-        found = []
-        for modes in itertools.islice(modes_of(motion), MOST_MODES):
-            for at in states:
-                with np.errstate(all="ignore"):  # at the tip of a root there is no slope to follow
-                    at = at if self.linear else onto_surfaces(motion, modes, at, number)
-                leaves = dict(zip(self.moving, [*at[0], *at[1], *at[2]], strict=True))
-                found.append(leaves | {_leaf(leaf): value for leaf, value in modes.items()})
-        count = len(found)
-        given = self.still | {leaf: np.full(count, value) for leaf, value in given.items()}
-        return given | {leaf: np.array([case[leaf] for case in found]) for leaf in found[0]}, count
+        pairs = list(itertools.product(itertools.islice(modes_of(motion), MOST_MODES), states))
+        found = cases_of(motion, *zip(*pairs, strict=True), given)
+        found = found if self.linear else onto_surfaces(motion, found, len(pairs))
+        return self.still | {leaf: np.broadcast_to(value, len(pairs)) for leaf, value in found.items()}, len(pairs)
 
     def jacobians(self, cases, lanes=1, h=0.0, **values):
         """J of every case, shape (cases, lanes, S, S), with parameters of shape (lanes,); of a damped step h."""
@@ -240,9 +235,4 @@ def _in_modes(stepped, damped):
         rates = [v if isinstance(v, Value) else builder.const(v) for v in (*a, *ds)]
     # the comparisons of implicit damping are those of the place
     found, guards, slides = freeze(builder, [*rates, *true], moving, [*w, *s], new, true)
-    return _leaf(step), Motion(builder, q, w, s, new(), found[:n], found[n : len(rates)], guards, slides)
-
-
-def _leaf(value):
-    i = value.builder.instructions[value.id]
-    return i.op, i.index
+    return leaf_of(step), Motion(builder, q, w, s, new(), found[:n], found[n : len(rates)], guards, slides)
