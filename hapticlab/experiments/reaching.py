@@ -277,9 +277,20 @@ class Anticipated(Intent):
 
 
 def check_path(path: object) -> None:
-    """Refuse what is no path."""
-    if not hasattr(path, "at"):
+    """Refuse what is no path, or whose ``at`` does not return positions, velocities and accelerations."""
+    if isinstance(path, type) or not hasattr(path, "at"):
         raise PaddleError(f"path = {path!r}; needs a path of time, as hl.people.MinimumJerk(end=0.02, duration=0.4).")
+    times, cause = np.array([0.0, 1e-3]), None
+    try:
+        found = [np.asarray(part, float) for part in path.at(times)]
+        gave = f"{len(found)} parts of shapes {', '.join(str(part.shape) for part in found)}"
+    except (TypeError, ValueError) as problem:
+        found, cause, gave = [], problem, f"{type(problem).__name__}: {problem}"
+    if len(found) != 3 or any(part.shape != times.shape for part in found):
+        raise PaddleError(
+            f"path = {path!r}: path.at(times) at two times gave {gave}. It needs three arrays with one value for each time: "
+            "position [m], velocity [m/s] and acceleration [m/s^2]. hl.people.MinimumJerk(end=0.02, duration=0.4) is such a path."
+        ) from cause
 
 
 def inverse_dynamics(hand, load, path, times):

@@ -11,6 +11,8 @@ import sympy as sp
 from ..errors import MassError, SceneError
 from .aliases import definitions, substituted
 from .mechanics.lagrange import Mechanics
+from .notation.checks import applied
+from .notation.derivative import Rate
 from .notation.symbols import t
 
 
@@ -88,6 +90,7 @@ def explicit_form(scene):
         raise MassError(f"{len(equations)} equations of motion for {len(own)} coordinates ({named}); give one for each")
     orders = {q: _order(q, equations) for q in own}
     orders |= {q: order for model in models for q, order in zip(model.coordinates, model.orders, strict=True)}
+    _check_gaps([c for model in models for c in model.contacts], orders)
     coordinates = tuple(q for q in scene.coordinates if q in orders)
     M, f = _rows(equations, own, coordinates, orders)
     for model in models:
@@ -120,6 +123,19 @@ def _check_models(modelled):
     if twice is not None:
         name = type(twice).__name__
         raise SceneError(f"two Lagrangians move {name}; add the energies and give one hl.mechanics.lagrange(L_1 + L_2)")
+
+
+def _check_gaps(contacts, orders):
+    """Refuse a law that asks for the rate or the acceleration of a gap where no state has them."""
+    for c in contacts:
+        first = [type(q).__name__ for q in applied([getattr(c, "gap", sp.S.Zero)], "coordinate") if orders.get(q) == 1]
+        if first and (not c.is_force or c.force.has(Rate)):
+            asks = "damps by the rate" if c.is_force else "needs the acceleration"
+            raise SceneError(
+                f"{c.name}: its gap holds {first[0]}, which has an equation of first order, and its law {asks} of the gap. Take "
+                "a penalty law without damping, hl.contact.penalty(k=...). With found = hl.shapes.track(...), a damped law works "
+                "as forces={q: found.generalized_force(law, q)} in place of the contact"
+            )
 
 
 def _check_unmodelled(equations, modelled):

@@ -97,3 +97,27 @@ def test_boards_and_wrong_things_are_refused_in_words():
         reach(PADDLE, FREE, end=0.02, control=hl.people.Control(expects=0.1))
     with pytest.raises(PaddleError, match="path = 3; needs a path of time"):
         follow(PADDLE, FREE, 3)
+
+
+@pytest.mark.parametrize(
+    ("at", "words"),
+    [
+        (lambda t: 0.01 * t, r"gave 2 parts of shapes \(\), \(\)\. It needs three arrays"),
+        (lambda t: (0.01, 0.0, 0.0), r"gave 3 parts of shapes \(\), \(\), \(\)"),
+        (lambda t: None, "gave TypeError: .*not iterable"),
+        (lambda: (0.0, 0.0, 0.0), "gave TypeError: .*takes 0 positional arguments"),
+        (0.01, "gave TypeError: 'float' object is not callable"),
+        (lambda t: ("a", "b", "c"), "gave ValueError: could not convert string"),
+    ],
+)
+def test_a_path_of_another_form_is_refused_with_the_form_it_needs(at, words):
+    class Path:
+        pass
+
+    path = Path()
+    path.at = at
+    for call in (lambda: follow(PADDLE, FREE, path), lambda: hl.people.assistance(PADDLE, [], path)):
+        with pytest.raises(PaddleError, match=f"path.at.times. at two times {words}"):
+            call()
+    with pytest.raises(PaddleError, match="MinimumJerk'>; needs a path of time"):
+        follow(PADDLE, FREE, hl.people.MinimumJerk)

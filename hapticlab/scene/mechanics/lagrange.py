@@ -184,8 +184,8 @@ def lagrange(
         if not isinstance(c, (Contact, friction)):
             raise SceneError(f"contacts holds {c!r}; needs hl.contact.Contact(gap, law) or hl.contact.friction(slip=...)")
     forces = {q: expression(Q, f"force on {q}") for q, Q in _forces(forces).items()}
-    moved = [L, R, *zeros, *forces, *(part for c in contacts for part in _parts(c)[:1])]
-    coordinates = tuple(applied(moved, "coordinate"))
+    # a coordinate that gaps alone hold, such as the closest point of hl.shapes.track, moves by an equation of its own
+    coordinates = tuple(applied([L, R, *zeros, *forces], "coordinate"))
     _check(L, R, forces, coordinates)
     _check_units(L, R, forces)
     return of_energies(L, R, forces, coordinates, zeros, contacts, enforce=enforce, alpha=alpha)

@@ -167,6 +167,38 @@ def test_a_cam_and_an_egg_collide_and_keep_their_energy():
     assert np.ptp(log["E"]) < 2e-4 * log["E"][0]
 
 
+def landing(law, by):
+    """A ball that lands on a cam, by the force of the tracked curves or by a contact with their gap."""
+    m, g = hl.parameters("m g", units="kg m/s^2", values=(0.05, 9.81))
+    z = hl.coordinate("z", unit="m", initial=Amount(0.08, "m"))
+    found = track(CAM.at(name="cam"), Circle(0.01).at(x=0.02, y=z))
+    L = m * z.diff(t) ** 2 / 2 - m * g * z
+    if by == "force":
+        motion = hl.mechanics.lagrange(L, forces={z: found.generalized_force(law, z)})
+    else:
+        motion = hl.mechanics.lagrange(L, contacts=[hl.contact.Contact(found.gap, law, name="lands")])
+    return hl.Scene(force=0, eom=[motion, *found.eom], watch={"z": z, "d": found.gap})
+
+
+def test_the_gap_of_tracked_curves_makes_a_contact():
+    own, contact = (run(landing(hl.contact.penalty(k="2000 N/m"), by), 400, method="rk4") for by in ("force", "contact"))
+    assert own["d"].min() < -1e-3 and own["d"].max() > 0.01  # it lands, and is thrown up again
+    np.testing.assert_allclose(contact["z"], own["z"], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("law", "word"),
+    [
+        (hl.contact.penalty(k="2000 N/m", b="0.5 N s/m"), "damps by the rate of the gap.* forces={q: found.generalized_force"),
+        (hl.contact.impulse(e=0.5), "needs the acceleration of the gap. Take a penalty law"),
+        (hl.contact.micro_impulse(e=0.5), "needs the acceleration of the gap. Take a penalty law"),
+    ],
+)
+def test_a_tracked_gap_under_a_law_that_cannot_know_its_rate_is_refused(law, word):
+    with pytest.raises(SceneError, match=f"lands: its gap holds u, which has an equation of first order, .*{word}"):
+        hl.compile(landing(law, "contact"), T=1e-3)
+
+
 @pytest.mark.parametrize(
     ("make", "word"),
     [
