@@ -252,5 +252,6 @@ _FUNCTIONS = {
     sp.log: trace.log, sp.atan: trace.atan, sp.tanh: trace.tanh, sp.sinh: _sinh, sp.cosh: _cosh,
     sp.asin: _asin, sp.acos: _acos, sp.atan2: _atan2,
     sp.Abs: Value.__abs__, sp.sign: _sign, sp.Heaviside: _heaviside, sp.floor: trace.floor,
-    sp.ceiling: lambda a: -trace.floor(-a), sp.Min: _fold(minimum), sp.Max: _fold(maximum),
+    sp.ceiling: lambda a: -trace.floor(-a), sp.Mod: lambda a, b: a - b * trace.floor(a / b),
+    sp.Min: _fold(minimum), sp.Max: _fold(maximum),
 }  # fmt: skip

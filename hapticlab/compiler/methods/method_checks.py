@@ -9,7 +9,7 @@ from ..ir.channels import short
 from .force_timing import IMPULSE
 
 #: what may have a kink or a jump
-KINKS = (sp.Piecewise, sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside, sp.floor, sp.ceiling)
+KINKS = (sp.Piecewise, sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside, sp.floor, sp.ceiling, sp.Mod)
 
 
 def check_suited(method, form, graph, exact=False):

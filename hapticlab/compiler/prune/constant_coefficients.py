@@ -14,7 +14,7 @@ from .linear_parts import Linear, states_of
 #: the handle as an equation of motion sees it
 HANDLE = (x(t), v(t))
 #: what jumps: its slope is zero on both sides
-JUMPS = (sp.sign, sp.floor, sp.ceiling, sp.Heaviside, sp.core.relational.Relational)
+JUMPS = (sp.sign, sp.floor, sp.ceiling, sp.Mod, sp.Heaviside, sp.core.relational.Relational)
 
 
 class Coefficients:

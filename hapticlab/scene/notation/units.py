@@ -152,6 +152,6 @@ _RULES = (
     ((sp.Pow, sp.exp), _of_power),
     (sp.Piecewise, _of_pieces),
     ((sp.core.relational.Relational, sp.atan2), _compared),
-    ((sp.Abs, sp.Min, sp.Max), _same),
+    ((sp.Abs, sp.Min, sp.Max, sp.Mod), _same),
     ((sp.sign, sp.Heaviside), lambda expr, where: (agree(expr.args[:1], where), ())[1]),
 )

@@ -22,6 +22,7 @@ FUNCTIONS = [
     1 / (3 + u) ** 3, sp.Piecewise((1, u > sp.Rational(1, 2)), (2, u > 0), (3, True)), sp.pi * u - sp.E,
     sp.Piecewise((u, (u < 0) | (u > sp.Rational(1, 2))), (7, ~(u < sp.Rational(1, 4))), (-u, True)),
     sp.Piecewise((1, sp.Ne(u, 0)), (2, True)), (u + 2) / (u - 2) / (u + 3), sp.sqrt(u**2 + 1) - 1,
+    u % sp.Rational(1, 5), sp.Mod(x(n), -L / 3) / L,
 ]  # fmt: skip
 
 
