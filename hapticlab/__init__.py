@@ -8,6 +8,7 @@
 """
 
 import builtins
+import sys
 
 import lazy_loader
 
@@ -31,7 +32,18 @@ def __getattr__(name):
 
 __version__ = "0.2.0"
 
-if hasattr(builtins, "get_ipython"):  # hl.<tab> in a notebook
+if hasattr(builtins, "get_ipython"):  # hl.<tab> in a notebook, and errors of one breath
     from .base.completion import complete_in
+    from .slips.shown import show_in
 
     complete_in(builtins.get_ipython())
+    show_in(builtins.get_ipython())
+
+
+def _show_in_script(kind, problem, trace, before=sys.excepthook):
+    from .slips.shown import show_in_script  # opened by an error alone
+
+    show_in_script(problem, lambda: before(kind, problem, trace))
+
+
+sys.excepthook = _show_in_script

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import MissedEventWarning
-from .unusual import outside
+from .unusual import warn_at_own_line
 
 if TYPE_CHECKING:
     from .telemetry import Telemetry
@@ -20,7 +19,7 @@ DEPTH = 1e-5
 def warn_of_missed(log: Telemetry) -> Telemetry:
     """Return the record of a run; warn, at the user's own line, where it left events out."""
     if words := missed_words(log):
-        warnings.warn(words, MissedEventWarning, stacklevel=outside())
+        warn_at_own_line(words, MissedEventWarning)
     return log
 
 

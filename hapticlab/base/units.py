@@ -8,7 +8,7 @@ from ..errors import ParameterError, UnitsError
 from .metric import metric
 
 #: names for dimensions that have one, so that an error reads N and not kg*m/s^2
-_NAMES = ("1", "m", "s", "kg", "N", "N/m", "N*s/m", "m/s", "m/s^2", "N*m", "N*s", "1/s", "kg*m^2", "W", "A", "V", "1/m")
+_NAMES = ("1", "m", "s", "kg", "N", "N/m", "N*s/m", "m/s", "m/s^2", "N*m", "N*s", "N/s", "1/s", "kg*m^2", "W", "A", "V", "1/m")
 #: passive elements: a negative one feeds energy to the user, so it must be asked for by a declared range
 _PASSIVE = {"N/m": "stiffness", "N*s/m": "damping", "s": "time", "N*m/rad": "stiffness", "N*m*s/rad": "damping"}
 _INERTIA = {"kg": "mass", "kg*m^2": "moment of inertia"}
@@ -54,11 +54,19 @@ def _dimension(unit):
     try:
         size, exponents = _read(unit)
     except ValueError as problem:
-        raise UnitsError(f"unit {unit!r} is not known ({problem}); write it like N*s/m, m/s^2, kg or 1") from None
+        why = "" if "TypeError" in str(problem) else f" ({problem})"  # which is about pint's own insides
+        raise UnitsError(f"unit {unit!r} is not known{why}; {_spelling(unit)}") from None
     if size != 1.0:
         si = "rad" if unit in _ANGLES else si_name(exponents)
         raise UnitsError(f"unit {unit!r} is not SI; declare {si} and bind a value with its unit, as in '10 {unit}'")
     return exponents
+
+
+def _spelling(unit):
+    """How a unit is to be written: one of negative powers, such as Nm-1, as a quotient."""
+    powers = re.fullmatch(r"([A-Za-z*]*?)\*?(m|s|kg|N|rad)\^?-([12])", unit)
+    below = powers and powers[2] + ("" if powers[3] == "1" else f"^{powers[3]}")
+    return f"write it {powers[1] or '1'}/{below}" if powers else "write it like N*s/m, m/s^2, kg or 1"
 
 
 def _read(unit):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 import warnings
+from pathlib import Path
 
 from ..errors import UnusualValueWarning
+from ..slips.own_line import of_call
 
 #: of a scene's parameters: SI unit -> (largest usual size, what is said of more, the unit that was likely meant)
 SCENE = {
@@ -14,6 +15,7 @@ SCENE = {
     "s": (100.0, "a paddle is sampled every 0.001 s", "ms"),
     "N/m": (1e7, "the stiffest virtual walls have some 10000 N/m", "N/m"),
     "N*s/m": (1e5, "a paddle's own damping is some 0.1 N s/m", "N s/m"),
+    "rad": (7.0, "a full turn has 6.28 rad", "deg"),
 }
 #: of a device, by the name of the number: the same three
 DEVICE = {
@@ -46,12 +48,15 @@ def warn_of_unusual(name: str, value: float, unit: str, usual: tuple[float, str,
         return
     _, why, meant = usual
     cure = "" if meant in (unit, unit.replace("*", " ")) else f" If you mean {value:g} {meant}, write {name}='{value:g} {meant}'."
-    warnings.warn(f"{name} = {value:g} {unit}: {why}.{cure}", UnusualValueWarning, stacklevel=outside())
+    warn_at_own_line(f"{name} = {value:g} {unit}: {why}.{cure}")
 
 
-def outside() -> int:
-    """The stack level, for a warning of the function that asks, of the nearest caller that is not hapticlab's own."""
-    level, frame = 2, sys._getframe(2)
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("hapticlab."):
-        level, frame = level + 1, frame.f_back
-    return level
+def warn_at_own_line(words: str, category: type[Warning] = UnusualValueWarning) -> None:
+    """Warn with the place in the user's own code, which a notebook names by its cell."""
+    own = of_call()
+    if own is None:
+        warnings.warn(words, category, stacklevel=2)
+    else:
+        heard = own.frame.f_globals.setdefault("__warningregistry__", {})
+        file = own.place if own.place != Path(own.file).name else own.file
+        warnings.warn_explicit(words, category, file, own.line, registry=heard)

@@ -14,6 +14,7 @@ from ..compiler.events.taylor_method import Taylor
 from ..compiler.methods.chosen_method import EXACT
 from ..compiler.methods.method_table import METHODS
 from ..errors import HapticlabError, SceneError
+from ..slips.shown import one_breath, whole
 from . import board
 from . import demo as demonstration
 from .exits import INTERRUPTED, complain
@@ -121,11 +122,13 @@ def _changed(file, options):
 
 
 def _in_their_words(problem, path):
-    """Return an error of a scene file: ours in one line, any other with the frames of that file and those beside it."""
+    """Return an error of a scene file: in one breath, or with the frames of that file and those beside it."""
+    if said := one_breath(problem, whole(problem)):
+        return said
     told = traceback.TracebackException.from_exception(problem)
     folder = path.resolve().parent
     frames = [frame for frame in told.stack if folder == Path(frame.filename).resolve().parent and frame.filename[0] != "<"]
     if isinstance(problem, HapticlabError):
-        return f"{frames[-1].filename}, line {frames[-1].lineno}: {problem}" if frames else problem
+        return problem
     where = "".join(traceback.StackSummary.from_list(frames).format())
     return f"{path} failed\n{where}{''.join(told.format_exception_only())}".rstrip()

@@ -18,6 +18,8 @@ import numpy as np
 
 from ..errors import HapticlabError
 from ..scene.scene import Scene
+from ..slips.foreign import in_our_words
+from ..slips.own_line import of_error
 from .expression import unit_remark, values
 from .felt import felt
 from .outcome import Outcome
@@ -162,7 +164,16 @@ def _raised(problem):
             lines.append(trace.tb_lineno)
         trace = trace.tb_next
     where = f" in line {lines[-1]} of its cell" if lines else ""
-    return f"it raises {type(problem).__name__}{where}: {_bounded(problem)}"
+    return f"it raises {type(problem).__name__}{where}: {_in_our_words(problem) or _bounded(problem)}"
+
+
+def _in_our_words(problem):
+    """Return the sentence about another library's error, or an empty text."""
+    try:
+        own = of_error(problem.__traceback__)
+        return in_our_words(problem, own) if own else ""
+    except Exception:  # their own __str__ may raise anything
+        return ""
 
 
 def _bounded(problem):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -16,7 +17,9 @@ from .frozen import Frozen
 from .mechanics.lagrange import Mechanics
 from .notation.checks import (
     applied,
+    check_angles,
     check_size,
+    check_swallowed,
     check_symbols,
     check_units,
     equations,
@@ -105,6 +108,9 @@ class Scene:
         plain = [e for e in self.eom if not is_model(e)]
         used = self._expressions()
         check_units(self.force, plain, self.watch, applied(used, "coordinate", "signal"))
+        sides = {f"a side of equation {number}": side for number, e in enumerate(plain, 1) for side in e.args}
+        check_swallowed({"force": self.force, **{f"watch {name}": expr for name, expr in self.watch.items()}, **sides})
+        check_angles(used)
         _set(self, "_coordinates", tuple(applied(used, "coordinate")))
         if not isinstance(self.values, Mapping):
             raise ParameterError(f"values = {self.values!r}; needs a dict, such as values={{'k': 150}}")
@@ -181,7 +187,9 @@ def _set(scene, name, value):
 def _bound(known, name, value):
     if name not in known:
         listed = ", ".join(f"{p.name} [{p.unit}]" for p in known.values()) or "none"
-        raise ParameterError(f"{name} = {value!r}: the scene has no parameter {name}; it has {listed}")
+        near = [one for one in known if one.lower() == name.lower()] or get_close_matches(name, known, 1)
+        meant = f". Did you mean {near[0]}?" if near else ""
+        raise ParameterError(f"{name} = {value!r}: the scene has no parameter {name}; it has {listed}{meant}")
     number, unit = known[name].check(value), known[name].unit
     warn_of_unusual(name, number, unit, SCENE.get(unit.replace(" ", "*")))
     return number

@@ -5,9 +5,13 @@ from collections.abc import Mapping
 import sympy as sp
 from sympy.core.cache import cacheit
 from sympy.core.function import AppliedUndef
+from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
 from ...base.units import dimension
+from ...base.unusual import warn_at_own_line
 from ...errors import ParameterError, SceneError, SignalError, UnitsError
+from ...slips.own_line import of_call
+from ...slips.swallowed import swallowed
 from .symbols import Parameter, T, delay, lag_of, n, t, v, x
 from .units import agree
 from .written import CONDITIONS, RESERVED, check_name, expression
@@ -226,3 +230,23 @@ def agree_with(expr, unit, where):
     """Check that an expression has a unit; any mismatch is raised as a disagreement with a quantity in that unit."""
     agree([expr, Parameter(f"({where}, in {unit})", unit)], where)
     return dimension(unit)
+
+
+def check_angles(expressions):
+    """Warn of a sine of 30, or of an angle in degrees: sines take radians."""
+    for f in {f for e in expressions for f in _functions(e) if isinstance(f, TrigonometricFunction)}:
+        angle = f.args[0]
+        factor, rest = angle.as_independent(*angle.free_symbols, *angle.atoms(AppliedUndef, x, v), as_Add=False)
+        if angle.is_number and not angle.has(sp.pi) and abs(angle) > 2 * sp.pi:
+            cure = f"If you mean {angle} degrees, write sp.{type(f).__name__}(sp.pi*{angle}/180)."
+            warn_at_own_line(f"{f}: sines take radians, and a full turn has 6.28. {cure}")
+        elif factor.is_number and abs(factor * sp.pi / 180 - 1) < 1e-6:
+            warn_at_own_line(f"{f}: sines take radians, and 180/pi makes degrees of them. Write {type(f).__name__}({rest}).")
+
+
+def check_swallowed(named):
+    """Refuse what is zero because Python has rounded a fraction such as 1//2 down, in the lines that wrote it."""
+    zero = next((name for name, expr in named.items() if expr == 0), None)
+    own = of_call() if zero else None
+    if own and (lost := swallowed(own, "")):
+        raise SceneError(f"{zero} is 0 for every motion. {lost}")

@@ -98,11 +98,22 @@ def agree(terms, where):
             cure = (
                 f" {number} is a bare number: give it a unit with hl.parameters('name', units=..., values={number})."
                 if number
-                else " Correct one of them, or the declared unit of a parameter in it."
+                else _of_a_factor(first, known[0][1], d)
+                or _of_a_factor(term, d, known[0][1])
+                or " Correct one of them, or the declared unit of a parameter in it."
             )
             one, other = (f"{float(e):g}" if e.is_number else e for e in (first, term))
             raise UnitsError(f"{where}: {one} is in {si_name(known[0][1])} but {other} is in {si_name(d)}.{cure}")
     return known[0][1] if known else None
+
+
+def _of_a_factor(term, has, wanted):
+    """The cure where a number such as the 300 of 300*x(n) would need a unit; empty for a term without one."""
+    factor = abs(term.as_coeff_Mul()[0])
+    if factor in (1, 2) or not (factor.is_Float or factor.is_Integer):
+        return ""
+    unit = si_name(_times(wanted, _power(has, Fraction(-1))))
+    return f" If {float(factor):g} is in {unit}, declare it: hl.parameters('name', units='{unit}', values={float(factor):g})."
 
 
 def _of_product(expr, where):

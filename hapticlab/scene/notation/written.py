@@ -70,6 +70,8 @@ def no_scene(given, cure):
     if isfunction(given) and given.__name__.isidentifier():
         place = "hl.library." if given.__module__.startswith("hapticlab.library.") else ""
         return f"{given.__name__} is a function, not a scene; call it: {place}{given.__name__}()"
+    if hasattr(given, "lagrangian"):
+        return "these are equations of motion, without a force; put them in a scene: hl.Scene(force=..., eom=[model])"
     text = repr(given)
     return f"{text if len(text) <= 80 else type(given).__name__} is not a scene; {cure}"
 
@@ -77,6 +79,7 @@ def no_scene(given, cure):
 def condition(given):
     """A condition; refuse one that Python has decided already, and everything else."""
     if not isinstance(given, CONDITIONS):
-        cure = "== compares expressions; write sp.Eq(a, b)" if isinstance(given, bool) else "write one, such as x(n) >= x_o"
+        compared = "== and != compare at once; write sp.Eq(a, b) or sp.Ne(a, b)"
+        cure = compared if isinstance(given, bool) else "write one, such as x(n) >= x_o"
         raise SceneError(f"{given!r} is not a condition; {cure}")
     return given

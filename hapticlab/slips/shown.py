@@ -1,0 +1,95 @@
+"""An error of one breath: the student's own line and the sentence; the whole traceback is one call away."""
+
+from __future__ import annotations
+
+import sys
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+from traceback import walk_tb
+from typing import Any
+
+from ..errors import HapticlabError
+from .foreign import in_our_words
+from .own_line import PACKAGE, of_error
+from .swallowed import swallowed
+
+
+def one_breath(problem: BaseException, more: str = "") -> str:
+    """The own line and the sentence; empty for an error that is neither hapticlab's nor about what it made.
+
+    Parameters
+    ----------
+    problem : exception
+        With its traceback.
+    more : str
+        How to see the rest, as a last line.
+    """
+    sentence, own = _sentence(problem), of_error(problem.__traceback__)
+    if not sentence or own is None:
+        return ""
+    line = f"{textwrap.indent(own.text, '    ')}\n\n" if own.text else ""
+    return f"{type(problem).__name__} in {own.where}\n{line}{sentence}" + (f"\n\n{more}" if more else "")
+
+
+def _sentence(problem):
+    own = of_error(problem.__traceback__)
+    if own is None:
+        return ""
+    if not (isinstance(problem, HapticlabError) or _said_by_us(problem)):
+        return in_our_words(problem, own) if own.involves_us() else ""
+    said = str(problem)
+    lost = swallowed(own, said)
+    return f"{said.rstrip('.')}. {lost}" if lost and lost not in said else said
+
+
+def _said_by_us(problem):
+    """Whether an error of Python's own kind was raised in words, by what hapticlab answers to a name that it does not have."""
+    if not isinstance(problem, AttributeError):
+        return False
+    *_, (frame, _) = walk_tb(problem.__traceback__)
+    return frame.f_code.co_name == "__getattr__" and Path(frame.f_code.co_filename).is_relative_to(PACKAGE)
+
+
+def show_in(shell: Any) -> None:
+    """Let a shell of IPython show errors in one breath, and the whole at ``%tb``.
+
+    It sees every error that a cell raises, and hands on what is none of hapticlab's, to the handler that was there before.
+    """
+    if not hasattr(shell, "set_custom_exc"):
+        return
+    others, handled = shell.custom_exceptions, shell.CustomTB if shell.custom_exceptions else None
+
+    def handler(shell, kind, problem, trace, tb_offset=None):
+        if handled and isinstance(problem, others):
+            return handled(kind, problem, trace, tb_offset)
+        if text := one_breath(problem, "%tb shows the whole traceback."):
+            once = iter([[text]])
+
+            def render():  # by IPython: first for the cell, then whenever somebody asks for more
+                return next(once, None) or shell.InteractiveTB.structured_traceback(kind, problem, trace, tb_offset=tb_offset)
+
+            problem._render_traceback_ = render
+        return shell.showtraceback((kind, problem, trace), tb_offset=tb_offset)
+
+    shell.set_custom_exc((Exception,), handler)
+
+
+def show_in_script(problem: BaseException, before: Callable[[], None]) -> None:
+    """Show an error that ends a script; ``before`` shows it as Python does.
+
+    Another library's error keeps its traceback, with the sentence as a note below; so does every one under ``python -X dev``.
+    """
+    text = "" if sys.flags.dev_mode else one_breath(problem, whole(problem))
+    if text and isinstance(problem, HapticlabError):
+        print(text, file=sys.stderr)
+        return
+    if sentence := not isinstance(problem, HapticlabError) and _sentence(problem):
+        problem.add_note(sentence)
+    before()
+
+
+def whole(problem: BaseException) -> str:
+    """How to see the whole traceback of a script."""
+    own = of_error(problem.__traceback__)
+    return f"python -X dev {Path(own.file).name} shows the whole traceback." if own else ""

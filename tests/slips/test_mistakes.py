@@ -1,0 +1,104 @@
+"""Each mistake of the table, in a shell of IPython: the message names it and its cure, and shows the student's own line alone."""
+
+import re
+import sys
+import warnings
+
+import pytest
+from IPython.core.interactiveshell import InteractiveShell
+from mistakes import BEFORE, CELLS
+from traitlets.config import Config
+
+from hapticlab.slips.shown import show_in
+
+ANSI = re.compile(r"\x1b\[[0-9;]*m")
+
+
+@pytest.fixture(scope="module")
+def shell():
+    main = sys.modules["__main__"]
+    shell = InteractiveShell(config=Config(HistoryManager={"enabled": False}))
+    show_in(shell)
+    shell.run_cell(BEFORE).raise_error()
+    yield shell
+    sys.modules["__main__"] = main
+
+
+def said(shell, capsys, cell):
+    """What a cell prints: its place, the own line indented, the sentence, and how to see more."""
+    capsys.readouterr()
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        shell.run_cell(cell, store_history=True)
+    out, err = capsys.readouterr()
+    warned = (warnings.formatwarning(one.message, one.category, one.filename, one.lineno) for one in heard)
+    return ANSI.sub("", "".join((*warned, err, out)))
+
+
+@pytest.mark.parametrize("name", CELLS)
+def test_a_mistake_is_named_with_its_cure(shell, capsys, name):
+    cell, mistake, cure = CELLS[name]
+    text = said(shell, capsys, cell)
+    sentence = re.sub(r"(?m)^    .*\n|^Out\[.*", "", text)
+    assert re.search(mistake, sentence), text
+    assert re.search(cure, sentence), text
+    assert "site-packages" not in text and "hapticlab/" not in text, text
+
+
+def test_the_table_is_as_long_as_promised():
+    assert len(CELLS) > 80
+
+
+def test_an_error_is_the_own_line_and_the_sentence_and_the_rest_one_call_away(shell, capsys):
+    text = said(shell, capsys, "a = 1\nhl.Scene(\n    force=k*x(n) + x(n))  # a sum")
+    where, first, second, _, sentence, _, more = text.rstrip().splitlines()
+    assert re.fullmatch(r"UnitsError in Cell In\[\d+\], line 2", where)
+    assert (first, second) == ("    hl.Scene(", "        force=k*x(n) + x(n))  # a sum")
+    assert sentence.startswith("force: k*x(n) is in N but x(n) is in m.")
+    assert more == "%tb shows the whole traceback."
+    for _ in range(2):  # the whole, as often as it is asked for
+        whole = said(shell, capsys, "%tb")
+        assert "Traceback (most recent call last)" in whole
+        assert "hapticlab/scene/notation/units.py" in whole.replace("\\", "/")
+
+
+@pytest.mark.parametrize("xmode", ["Plain", "Context"])
+@pytest.mark.parametrize(
+    "cell",
+    [
+        "a = sp.Symbol('a')\nif a > 1:\n    pass",
+        "np.sin(np.array([sp.Symbol('a')]))",
+        "max(np.ones(3), 0)",
+        "math.sin(sp.Symbol('a'))",
+        "{}['a']",
+        "int('a')",
+        "[1][hl.Device]",
+        "def f():\n    return 1 ^ 'a'\n\nf()",
+        "raise ExceptionGroup('several', [ValueError('1')])",
+        "x(n",
+    ],
+)
+def test_what_is_none_of_hapticlab_is_shown_as_ever(shell, capsys, cell, xmode):
+    """Word for word what a shell shows that has never heard of hapticlab."""
+    said(shell, capsys, f"%xmode {xmode}")
+    ours = said(shell, capsys, cell)
+    before, shell.custom_exceptions = shell.custom_exceptions, ()
+    try:
+        theirs = said(shell, capsys, cell)
+    finally:
+        shell.custom_exceptions = before
+        said(shell, capsys, "%xmode Context")
+    number = re.compile(r"(In|input-?)\s?\W\d+\S*")
+    assert number.sub("", ours) == number.sub("", theirs) != ""
+
+
+def test_a_handler_that_was_there_before_keeps_its_errors(capsys):
+    main = sys.modules["__main__"]
+    shell = InteractiveShell(config=Config(HistoryManager={"enabled": False}))
+    shell.set_custom_exc((KeyError,), lambda *_, **__: print("their own") or [])
+    show_in(shell)
+    try:
+        assert said(shell, capsys, "{}['a']").strip() == "their own"
+        assert "UnitsError in" in said(shell, capsys, f"{BEFORE}\nhl.Scene(force=x(n))")
+    finally:
+        sys.modules["__main__"] = main
