@@ -4,6 +4,7 @@ import re
 import sys
 import warnings
 
+import matplotlib.pyplot as plt
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from mistakes import BEFORE, CELLS
@@ -21,6 +22,7 @@ def shell():
     show_in(shell)
     shell.run_cell(BEFORE).raise_error()
     yield shell
+    plt.close("all")
     sys.modules["__main__"] = main
 
 
