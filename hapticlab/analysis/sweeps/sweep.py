@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -12,7 +11,7 @@ import numpy as np
 from ...base.arguments import choice, number
 from ...base.guesses import Guessed
 from ...base.units import in_si
-from ...base.unusual import outside
+from ...base.unusual import warn_at_own_line
 from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.prune.constraint_lengths import held
 from ...device.progress import progress_bar
@@ -199,11 +198,10 @@ def _filled(plan, what, workers, resume, progress):
                 stop.add_note(f"{done} of {points} points are in {str(resume)!r}; the same call goes on from there")
             raise
     if plan.missed:
-        warnings.warn(
+        warn_at_own_line(
             f"{plan.missed} of {points} points left an event unlocated, so their metric may be wrong. Locate more events per "
             "step, method=hl.methods.Taylor(events=8), or take a shorter T",
             MissedEventWarning,
-            stacklevel=outside(),
         )
     if done != points:
         raise AnalysisError(f"workers gave back {done} of {points} points; needs a map that returns every result once")
