@@ -8,12 +8,15 @@ A passive paddle chatters in no passive hand. ``port`` asks how much damping a c
 >>> round(port.b_req, 3), port.passive          # k T/2, Eq. (23.10)
 (0.1, True)
 
+Of a scene that switches, that is said of each mode; ``worst_motion`` searches what a motion between modes can draw.
+
 Next: ``hl.passivity_limit`` for the stiffest passive wall, ``hl.bounds.table`` for all bounds, ``hl.stability``.
 """
 
 from .analysis.impedance.impedance import impedance
 from .analysis.records.passivity_trace import passivity_trace as trace
 from .analysis.stability.port_passivity import port_passivity as port
+from .analysis.stability.worst_motion import worst_motion
 from .limits.colgate import equivalent_damper, wall_damping
 from .limits.colgate import passivity_margin as margin
 from .limits.excess import passivity_ledger as ledger
@@ -35,6 +38,7 @@ __all__ = [
     "port_damping",
     "trace",
     "wall_damping",
+    "worst_motion",
 ]
 
 page(__name__)

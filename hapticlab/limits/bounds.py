@@ -36,6 +36,9 @@ REGIONS = {
     (False, True): "locally stable: comes to rest from small motions, large ones grow",
     (False, False): "unstable: small and large motions grow",
 }
+#: where friction is too weak for one count of the encoder, and an amplitude of so many counts tells small from large motions
+FEW_COUNTS = 4
+BUZZES = "unstable for large motions: they grow, and smaller ones die away to rest or to a buzz of about a count"
 #: beta is large enough for slow sinusoids, and a delay of a fraction of a period lets a hand draw energy all the same
 NOT_PASSIVE = "slow motions come to rest, not passive: a hand that moves faster before the force changes draws energy"
 
@@ -117,6 +120,11 @@ class DiolaitiPoint:
     die away if beta >= 1/2 + delay/T, and small motions if sigma >= 1/2. The four combinations are the regions.
     They are regions of slow sinusoids: with a delay of a fraction of a period a wall with both may still not be passive.
 
+    With neither, the encoder's errors along a motion of many counts average out, and friction decides: a motion below
+    ``amplitude`` dies away, to rest or to a buzz of about a count, and a larger one grows. This holds if the amplitude is at
+    least 4 counts. In simulations of 114 such walls in contact, with w T from 0.02 to 0.25 and delays of up to one period, all
+    motions of 0.8 of the amplitude died away, and all but one of 1.25 of it grew.
+
     Attributes
     ----------
     beta, sigma : float
@@ -126,8 +134,7 @@ class DiolaitiPoint:
     region : str
     amplitude : float
         Of a sinusoid at the natural frequency [m], in contact, above which the motion grows: ``4 f_c/(pi w (K (T/2 + delay) -
-        b))``, by its describing function. inf where beta is large enough, 0 where small motions grow too or without friction;
-        nan without a mass.
+        b))``, by its describing function. inf where beta is large enough, 0 without friction; nan without a mass.
     """
 
     beta: float
@@ -179,7 +186,8 @@ motions above 16.44 mm grow
     if not calm:
         pull = K * T * (0.5 + tau) - b  # the negative damper of hold and delay that is left over [N s/m]
         amplitude = 4 * coulomb / (math.pi * math.sqrt(K / M) * pull) if M else math.nan
-        amplitude = amplitude if settled else 0.0
+        if not settled and coulomb and not amplitude * counts < FEW_COUNTS:
+            region = BUZZES
     return DiolaitiPoint(beta, sigma, tau, region, amplitude)
 
 

@@ -210,6 +210,29 @@ def test_diolaitis_region_is_called_passive_only_where_every_motion_is_paid_for(
         assert np.linalg.eigvalsh(form)[0] * sign > -1e-9
 
 
-def test_where_small_motions_grow_no_amplitude_is_told():
-    point = diolaiti(hl.Device(m=M, b=0.1, T=T, coulomb=0.01, counts_per_metre=1 / 0.2e-3), K=300)
-    assert point.amplitude == 0 and str(point).endswith("small and large motions grow")
+@pytest.mark.parametrize(("K", "coulomb", "delay"), [(333.0, 0.02, 0.0), (300.0, 0.01, 0.0), (130.0, 0.005, 0.5e-3)])
+def test_friction_that_is_too_weak_for_a_count_still_stops_motions_of_many(K, coulomb, delay):
+    """The describing function again, over 4 counts at least. In two seconds a smaller swing has lost a quarter or more."""
+    count = coulomb / (0.3 * K)
+    point = diolaiti(hl.Device(m=M, b=0.1, T=T, delay=delay, coulomb=coulomb, counts_per_metre=1 / count), K=K)
+    assert point.sigma == pytest.approx(0.3) and point.amplitude > 4 * count
+    assert "die away to rest or to a buzz" in str(point) and f"above {1e3 * point.amplitude:.4g} mm grow" in str(point)
+    for factor, grows in ((0.7, False), (1.25, True)):
+        start = factor * point.amplitude
+        _, last = amplitudes(K, 0.1, coulomb, start, counts=1 / count, delay=delay)
+        assert last > 1.1 * start if grows else last < 0.75 * start
+
+
+def test_a_swing_of_3_mm_dies_to_less_than_a_count_where_both_conditions_fail():
+    """beta = sigma = 0.3: 4.69 mm is the threshold, a count 0.2 mm."""
+    paddle = hl.SimulatedPaddle(m=M, b=0.1, T=T, coulomb=0.02, counts_per_metre=5000)
+    assert 4.6e-3 < diolaiti(paddle, K=333).amplitude < 4.8e-3
+    log = paddle.run(SPRING(k=333, x_o=0), duration=3.0, x=3e-3, progress=False)
+    assert np.abs(log.x_true[-300:]).max() < 0.2e-3
+
+
+def test_where_an_amplitude_is_less_than_a_few_counts_all_motions_grow():
+    point = diolaiti(hl.Device(m=M, b=0.1, T=T, coulomb=0.001, counts_per_metre=1 / 0.2e-3), K=300)
+    assert point.amplitude < 4 * 0.2e-3 and point.region == "unstable: small and large motions grow"
+    assert diolaiti(hl.Device(m=M, b=0.1, T=T, counts_per_metre=1e4), K=300).amplitude == 0
+    assert diolaiti(hl.Device(b=0.1, T=T, coulomb=0.01, counts_per_metre=1e4), K=300).region.startswith("unstable for large")

@@ -67,3 +67,34 @@ def plot_port(port):
         axes.set_title(f"{port.scene}, T = {1e3 * port.T:g} ms", fontsize="small")
         axes.legend(fontsize="small")
     return figure
+
+
+def plot_worst_motion(motion):
+    """Draw a closed motion, and the energy that it draws beside what the device dissipates, over two cycles.
+
+    Parameters
+    ----------
+    motion : WorstMotion
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    t = np.r_[0.0, np.cumsum(np.tile(motion.durations, 2))]
+    x = np.r_[np.tile(motion.positions, 2), motion.positions[0]]
+    steps = np.diff(x)
+    drawn = np.cumsum(np.r_[0.0, -np.tile(motion.held, 2) * steps])
+    with house_style():
+        figure = new_figure(height=5.0)
+        above, below = figure.subplots(2, 1, sharex=True)
+        above.plot(1e3 * t, 1e3 * x, marker=".", **STYLES[0])
+        above.set(ylabel="handle position x [mm]")
+        above.set_title(str(motion).splitlines()[0], fontsize="small", wrap=True)
+        below.plot(1e3 * t, 1e6 * drawn, label="drawn from the scene", **STYLES[1])
+        if motion.b_device is not None:
+            rate = motion.friction / max(np.abs(steps[: len(motion.held)]).sum(), 1e-300)
+            lost = motion.b_device * steps**2 / np.tile(motion.durations, 2) + rate * np.abs(steps)
+            below.plot(1e3 * t, 1e6 * np.cumsum(np.r_[0.0, lost]), label="dissipated by the device", **STYLES[2])
+        below.set(xlabel=f"time t [ms]\nsearched: {motion.searched}", ylabel="energy [uJ]")
+        below.legend(fontsize="small")
+    return figure

@@ -27,6 +27,14 @@ if TYPE_CHECKING:
     from ...device.device import AnyDevice
     from .port_limits import PortLimit
 
+#: what enough damping guarantees of a scene of each kind
+PASSIVE = {"linear": "passive", "piecewise linear": "passive in each mode", "small-signal": "passive in small motions"}
+#: and what may draw energy all the same
+BEYOND = {
+    "piecewise linear": "motions from one mode to another",
+    "small-signal": "large motions and motions from one mode to another",
+}
+
 
 @dataclass(frozen=True, eq=False)
 class PortPassivity:
@@ -77,7 +85,11 @@ class PortPassivity:
 
     @property
     def passive(self) -> bool | None:
-        """Whether the paddle's own damping is enough; None without a paddle, and where the scene falls by itself."""
+        """Whether the paddle's own damping is enough in each mode; None without a paddle, and where the scene falls by itself.
+
+        Of a scene that switches this is no proof: a motion from mode to mode may draw energy that no mode alone gives
+        (:func:`~hapticlab.analysis.stability.worst_motion.worst_motion`).
+        """
         return None if self.b_device is None or np.isnan(self.b_req) else bool(self.b_device >= self.b_req)
 
     @property
@@ -100,7 +112,8 @@ class PortPassivity:
         return float(self.b_req)
 
     def __str__(self) -> str:
-        enough = {True: "passive", False: "not passive", None: "no damping makes it passive"}[self.passive]
+        passive = PASSIVE[self.kind]
+        enough = {True: passive, False: "not passive", None: "no damping makes it passive"}[self.passive]
         has = "" if self.b_device is None else f"; the device has {self.b_device:.4g}: {enough}"
         head = f"{self.scene}, T = {1e3 * self.T:g} ms: needs b = {self.b_req:.4g} N s/m{has} ({WORTH[self.kind]}"
         head += ")" if self.travel is None else f"; handle within +-{1e3 * self.travel:g} mm)"
@@ -108,6 +121,8 @@ class PortPassivity:
         for m in self.modes:
             reason = "" if m.reason == WORST else f" ({m.reason})"
             lines.append(f"  {m.b_req:10.4g} {m.floor:8.4g} {m.frequency:8.4g}  {m.mode}; {m.point}{reason}")
+        if self.passive and self.kind != "linear":
+            lines.append(f"  not covered: {BEYOND[self.kind]}. hl.passivity.worst_motion(paddle, scene) searches them.")
         return "\n".join(lines)
 
     __repr__ = __str__
