@@ -86,10 +86,10 @@ Fig. 23.7 of the chapter has three processes, each with its model. Here they are
 - Forward dynamics solver, on the dynamic model with its constraints (``scene.mechanics.lagrange``). ``dynamics`` with
   ``enforcement`` and ``linear_solve``, stepped by ``method_table``, ``exact_linear`` or ``located_step``.
 
-**Program -> numbers.** ``engine`` chooses one of three that give the same bits: ``interpreter`` (the reference),
-``llvm`` (``llvm_emit``, ``side_by_side``; ``llvm_branches`` around what ``skipped_arms`` finds that only one case
-needs), and the board's own code on this computer, ``vm`` and ``firmware_library`` (``toolchain``). The functions that
-all share are in ``elementary``. A scene that was compiled is not compiled again, nor is a program: ``cache`` keeps
-both. For a board ``bytecode`` writes the program, ``c_headers`` its tables; ``cost`` (``large_angles``,
-``link_traffic``) says what it takes there, ``board_fit`` what would.
+**Program -> numbers.** ``engine`` chooses one of three, which give the same bits in float32 as long as all numbers
+are finite: ``interpreter`` (the reference), ``llvm`` (``llvm_emit``, ``side_by_side``; ``llvm_branches`` around what
+``skipped_arms`` finds that only one case needs), and the board's own code on this computer, ``vm`` and
+``firmware_library`` (``toolchain``). The functions that all share are in ``elementary``. A scene that was compiled is
+not compiled again, nor is a program: ``cache`` keeps both. For a board ``bytecode`` writes the program, ``c_headers``
+its tables; ``cost`` (``large_angles``, ``link_traffic``) says what it takes there, ``board_fit`` what would.
 """

@@ -1,6 +1,7 @@
 """Long runs, wrapping counters, large angles and delays."""
 
 import math
+from pathlib import Path
 
 import mpmath as mp
 import numpy as np
@@ -11,6 +12,7 @@ from motions import at_tick
 import hapticlab as hl
 from hapticlab import n, t, x
 from hapticlab.compiler.engines.engine import load
+from hapticlab.compiler.ir.elementary import TABLES
 from hapticlab.errors import HapticlabError, ProgramLimitError, SceneError
 
 F0, w = hl.parameters("F0 w", units="N rad", values=(1.0, 0.0))
@@ -79,6 +81,24 @@ def test_a_wheel_that_turns_for_ever_stops_with_its_angle_named():
     wheel = hl.Scene(force=F0 * sp.sin(turn), eom=[sp.Eq(J * turn.diff(t, 2), 0)])
     log = hl.SimulatedPaddle(m=0.05, b=0.5, T=1e-3).run(wheel, duration=0.1)
     assert int(log.fault.split()[1]) == math.ceil(8192 / 1e5 / 1e-3) and "angle beyond 8192 rad" in log.fault
+
+
+@pytest.mark.parametrize("dtype, step", [("float32", 8192 / 400), ("float64", None)])
+def test_what_turns_like_a_motor_meets_the_limit_when_the_page_says(dtype, step):
+    turn = hl.coordinate("turn", unit="rad", rate=400.0)
+    J = hl.parameters("J", units="kg*m^2", values=1.0)
+    wheel = hl.Scene(force=F0 * sp.sin(turn), eom=[sp.Eq(J * turn.diff(t, 2), 0)])
+    log = hl.SimulatedPaddle(m=0.05, b=0.5, T=1e-3).run(wheel, duration=25.0, dtype=dtype)
+    if step is None:
+        assert log.fault is None
+    else:  # float32 adds up 0.4 rad with a rounding each tick
+        assert abs(float(log.fault.split("t = ")[1].split(" s")[0]) - step) < 0.01 and "take dtype='float64'" in log.fault
+    page = (Path(__file__).parents[2] / "docs" / "engines.md").read_text("utf-8")
+    largest = TABLES[{"float32": "f32", "float64": "f64"}[dtype]].angle_limit
+    apart, seconds = np.spacing(np.nextafter(np.dtype(dtype).type(largest), 0)), largest / 400
+    when = f"{seconds:.0f} s" if seconds < 60 else f"{seconds / 3600:.0f} h"
+    row = f"| `{dtype}` | {largest:g} rad | {apart:.2g} rad | {when} |"
+    assert row.replace("e+0", "e").replace("e-0", "e-") in page
 
 
 # delays

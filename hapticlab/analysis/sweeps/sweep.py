@@ -91,7 +91,8 @@ def sweep(
     """Simulate every combination of the named values and measure each, without storing a trace.
 
     Points that differ in values only are lanes of one program; every T, and every paddle of another structure, is a run
-    of its own. A point's result is the same as when it runs alone, bit for bit, for any number of workers.
+    of its own. A point's result is the same as when it runs alone, bit for bit, for any number of workers on processors of
+    one kind.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What executes a program: three engines that give the same bits.
+"""What executes a program: three engines that give the same bits in float32, as long as all numbers are finite.
 
 In: a ``Program`` and arrays of inputs. Out: arrays of outputs and states.
 Read ``engine`` (the contract, and which is chosen) and ``interpreter`` (the reference); ``llvm``, ``llvm_emit`` and

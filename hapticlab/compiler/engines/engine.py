@@ -1,4 +1,4 @@
-"""Choose an engine for a program. All three keep one contract and give the same bits."""
+"""Choose an engine for a program. All three keep one contract; in float32 they give the same bits while numbers are finite."""
 
 import operator
 

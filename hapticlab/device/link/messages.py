@@ -121,7 +121,11 @@ RESULTS = {
 #: number -> what it is, cause, cure; every one of them leaves the motor off
 FAULTS = {
     "HOST_SILENT": (1, "no valid frame came from the computer for 100 ms", "check the cable; keep the notebook running"),
-    "NOT_FINITE": (2, "the scene computed nan or infinity", "look for a division by zero or an unstable scene"),
+    "NOT_FINITE": (
+        2,
+        "the scene computed nan or infinity",
+        "look for a division by zero, an unstable scene or a sine of more than 8192 rad",
+    ),
     "OVER_SPEED": (3, "the handle moved faster than the limit", "hold the handle; lower the stiffness or add damping"),
     "OVER_TRAVEL": (4, "the handle left its calibrated travel", "home again; if it repeats, run `hapticlab calibrate`"),
     "OVER_HEAT": (5, "the motor gave much force for long and is hot", "let it cool for some minutes; use less force"),

@@ -33,4 +33,8 @@ def _likely_cause(program):
         return likely
     real = program.outputs[0].type
     dtype = "float32" if real == "f32" else "float64"
-    return f"{likely}. Look for an angle beyond {TABLES[real].angle_limit:g} rad: it has no meaning in {dtype}, and no sine"
+    longer = f"take dtype='float64' (sines up to {TABLES['f64'].angle_limit:g} rad), or " if real == "f32" else ""
+    return (
+        f"{likely}. Look for an angle beyond {TABLES[real].angle_limit:g} rad, which has no sine in {dtype}: {longer}keep the "
+        "angle within a turn by a signal, sp.Eq(turn(n), (turn(n-1) + w*T) % (2*sp.pi))"
+    )
