@@ -9,7 +9,7 @@ from .metric import metric
 
 #: names for dimensions that have one, so that an error reads N and not kg*m/s^2
 _NAMES = ("1", "m", "s", "kg", "N", "N/m", "N*s/m", "m/s", "m/s^2", "N*m", "N*s", "N/s", "1/s", "kg*m^2", "W", "A", "V", "1/m")
-#: passive elements: a negative one feeds energy to the user, so it must be asked for by a declared range
+#: passive elements: a negative one is not passive, so it must be asked for by a declared range
 _PASSIVE = {"N/m": "stiffness", "N*s/m": "damping", "s": "time", "N*m/rad": "stiffness", "N*m*s/rad": "damping"}
 _INERTIA = {"kg": "mass", "kg*m^2": "moment of inertia"}
 #: a number, then its unit; pint alone would read '10 N/m; 5' as 50 N/m and 'N/m' as 1 N/m

@@ -7,7 +7,7 @@ v(n-1))/T the only acceleration there is. On a handle of mass m, with the force 
 - v by backward difference: the second difference d = x(n) - 2x(n-1) + x(n-2) = T^2 a(n) obeys
   d(n+1) = -(r/2) (d(n) + d(n-1)), so z^2 + (r/2) z + r/2 = 0: stable for r < 2;
 - k whole samples of delay: measured, z^(k+1) = -r, still r < 1; backward difference, z^(k+2) + (r/2)(z + 1) = 0, which
-  leaves the unit circle at z = exp(i pi/(k + 3/2)): r < 1/cos(pi/(2k + 3)), 2 without delay, 1.236 for one sample, then to 1.
+  crosses the unit circle at z = exp(i pi/(k + 3/2)): r < 1/cos(pi/(2k + 3)), 2 without delay, 1.236 for one sample, then to 1.
 
 Damping of the handle or of the hand, and the hand's mass, only help: m alone is the worst case.
 """

@@ -199,7 +199,7 @@ def wall_damping(device: AnyDevice, *, K: float, B: float = 0.0, velocity_filter
     0.15
     """
     T, delay = known(device, "T", "delay")
-    K = number("K", K, "N/m", "a wall", least=0, why="A negative spring feeds energy to the user.")
+    K = number("K", K, "N/m", "a wall", least=0, why="A negative spring pushes the handle away and is not passive.")
     tau = number("velocity_filter", velocity_filter, "s", least=0, what="a time constant")
     B = number("B", B, "N s/m", "a virtual damper")
     if delay:

@@ -144,7 +144,7 @@ def required_damping(*, K: float, T: float, B: float = 0.0, delay: float = 0.0, 
     >>> round(required_damping(K=200, T=1e-3, B=0.05), 12)
     0.15
     """
-    K = number("K", K, "N/m", "a wall", least=0, why="A negative spring feeds energy to the user.")
+    K = number("K", K, "N/m", "a wall", least=0, why="A negative spring pushes the handle away and is not passive.")
     whole, fraction = _checked(T, B, delay, law)
     if LEAD[law] and K:
         return math.inf

@@ -1,7 +1,7 @@
 """Linear stability of a handle, a hand and a law that always acts: exact poles, exact limit.
 
 Between changes of the force the plant moves by its matrix exponential. The characteristic equation is affine in the
-stiffness, p0(z) + K p1(z) = 0, so a pole can leave the unit circle only at an angle where p0/p1 is real. These angles are
+stiffness, p0(z) + K p1(z) = 0, so a pole can cross the unit circle only at an angle where p0/p1 is real. These angles are
 the roots of a polynomial in cos(theta), and of slow ones, which rounding hides there, where the imaginary part changes its
 sign along a logarithmic scale; each gives one K, and the poles between two of them say which one counts.
 """
@@ -104,7 +104,7 @@ def stability_limit(device: AnyDevice, *, law: StiffnessLaw = "zoh", B: float = 
         raise AnalysisError(
             f"{loop.law.name}: {len(loop.law.A)} states, whose polynomial loses digits; read hl.stability.poles(K=...), K by K"
         )
-    reason = "a pole leaves the unit circle" if first else _why_none(device, law, B, any(stable))
+    reason = "a pole crosses the unit circle" if first else _why_none(device, law, B, any(stable))
     again = next((i for i in range(first, len(stable)) if stable[i]), None)
     if again is not None:  # such a wall has to be made stiff before it is touched
         top = f" to {edges[again][0]:.6g}" if again < len(edges) else " on"

@@ -154,7 +154,7 @@ class CompensationLimit:
             axes = figure.subplots()
             axes.fill_between([0, wide], self.viscous, tall, color="0.7", linewidth=0)
             axes.fill_betweenx(parts, dry, wide, color="0.88", linewidth=0)
-            axes.axhline(self.viscous, color="black", label="a pole leaves the unit circle")
+            axes.axhline(self.viscous, color="black", label="a pole crosses the unit circle")
             axes.plot(dry, parts, color="black", linestyle="--", label="the force that is left over keeps it going")
             for place, words in (
                 ((0.5 * wide, 1.125 * self.viscous), "runs away"),
@@ -175,7 +175,7 @@ class CompensationLimit:
             figure = new_figure(height=1.9)
             axes = figure.subplots()
             axes.axvspan(self.viscous, end, color="0.7", linewidth=0)
-            axes.axvline(self.viscous, color="black", label=f"a pole leaves the unit circle: {self.viscous:.4g}")
+            axes.axvline(self.viscous, color="black", label=f"a pole crosses the unit circle: {self.viscous:.4g}")
             axes.text(self.viscous / 2, 0.5, "comes to rest", ha="center", va="center")
             axes.text((self.viscous + end) / 2, 0.5, "runs away", ha="center", va="center")
             axes.set(xlim=(0, end), ylim=(0, 1), yticks=[])

@@ -38,13 +38,20 @@ def test_a_limit_is_what_the_page_says():
     assert found == pytest.approx(0.1 / 1e-3, rel=0.04)  # b/T: at low frequency a period of delay leaves K T/2 of -damping
 
 
+def test_the_swing_of_the_force_is_what_the_page_says():
+    found = predictors.swings(laws=["ellis"], stiffnesses=(4000, 16000))["ellis"]
+    said = cells("swings")["ellis"]
+    assert [float(said["4000 N/m"]), float(said["16000 N/m"])] == pytest.approx(found, rel=0.01)
+    assert found[0] == 0 and found[1] <= 4 * 16000 * 1e-5 * 1.01  # K count times 2 + 1.5 + 0.5; the soft wall is held by friction
+
+
 @pytest.mark.slow
 def test_the_costs_are_what_the_page_says():
     assert predictors.costs() in PAGE
 
 
 def test_every_law_is_in_every_table():
-    for name in ("plain", "bed", "conditions", "worst", "limits", "costs"):
+    for name in ("plain", "bed", "conditions", "worst", "limits", "swings", "costs"):
         assert list(cells(name))[: len(LAWS)] == list(LAWS)
     assert list(cells("conditions")["zoh"]) == list(predictors.CONDITIONS)
     assert (ROOT / "docs" / "predictors.png").exists() and "predictors.png" in PAGE

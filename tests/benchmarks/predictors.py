@@ -50,6 +50,9 @@ LIMITS = {
     "grip, unknown": (replace(BASE, hand=GRIP), {"rendering": hl.design.Rendering(model=BASE)}),
 }
 
+#: stiffnesses [N/m] at which the force that should rest is looked at
+SWUNG = (1000, 4000, 10000, 16000, 50000)
+
 
 def bounce(name, laws=tuple(LAWS), entries=16):
     """Return the comparison of one condition."""
@@ -61,6 +64,25 @@ def limit(name, laws=tuple(LAWS)):
     """Return the limits of one condition."""
     paddle, options = LIMITS[name]
     return hl.design.law_limits(paddle, laws=laws, **options)
+
+
+def swings(laws=tuple(LAWS), stiffnesses=SWUNG, pushes=9):
+    """Return law -> how far the force swings [N] on each wall, of a handle that is pressed and should rest; median of pushes."""
+    paddle, found = LIMITS["10 um, 20 mN, 10 N"][0], {}
+    for law in laws:
+        found[law] = []
+        for K in stiffnesses:
+            made, last = wall_law(law, paddle, K=K), []
+            for push in np.linspace(0.8, 1.2, pushes):
+                log = replace(made.paddle, hand=hl.Hand(push=float(push))).run(made.scene, duration=4.0)
+                last.append(np.ptp(log.F[log.t > 3.5]))
+            found[law].append(float(np.median(last)))
+    return found
+
+
+def swing_table(found, stiffnesses=SWUNG):
+    rows = [[law, *(f"{swing:.3g}" for swing in row)] for law, row in found.items()]
+    return table(["swing of the force [N]", *(f"{K} N/m" for K in stiffnesses)], rows)
 
 
 def table(head, rows):
@@ -154,7 +176,8 @@ def tables():
     found = {name: limit(name) for name in LIMITS}
     bed = hl.design.compare_laws(BED, K=5000.0, speed=0.5)
     made = {"plain": details(results["plain"]), "bed": details(bed), "conditions": bounces(results)}
-    return made | {"worst": scatter(results), "limits": limits(found), "costs": costs()}, figure(results)
+    made |= {"worst": scatter(results), "limits": limits(found), "swings": swing_table(swings()), "costs": costs()}
+    return made, figure(results)
 
 
 def replaced(page, made):

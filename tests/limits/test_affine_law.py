@@ -41,7 +41,7 @@ def added(one, other):
 
 
 def edge(law, m=0.045, b=0.12, start=1.0):
-    """Bisect the stiffness at which a root of the free handle's loop leaves the unit circle; law(K) -> (numerator, own)."""
+    """Bisect the stiffness at which a root of the free handle's loop crosses the unit circle; law(K) -> (numerator, own)."""
     with mp.workdps(25):
         h, tau = mp.mpf(T), mp.mpf(m) / mp.mpf(b)
         a = mp.e ** (-h / tau)

@@ -141,5 +141,7 @@ def test_a_misspelt_keyword_does_not_pass():
 
 
 def test_negative_stiffness_is_refused():
-    with pytest.raises(AnalysisError, match="K = -50 N/m; a wall needs K >= 0. A negative spring feeds energy"):
+    with pytest.raises(
+        AnalysisError, match="K = -50 N/m; a wall needs K >= 0. A negative spring pushes the handle away and is not passive"
+    ):
         required_damping(K=-50, T=T)

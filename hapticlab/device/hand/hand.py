@@ -21,7 +21,7 @@ UNITS = {"m": "kg", "b": "N s/m", "k": "N/m", "push": "N", "push_noise": "N"}
 _REASONS = {
     "m": "A negative mass is no mass.",
     "b": "A negative damper feeds energy to the handle.",
-    "k": "A negative spring feeds energy to the handle.",
+    "k": "A negative spring pushes the handle away and is not passive.",
     "push_noise": "It is a standard deviation.",
 }
 

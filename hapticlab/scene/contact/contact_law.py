@@ -36,7 +36,7 @@ class Allowed:
 
 
 #: of stiffness and damping, of friction, of restitution
-PASSIVE = Allowed(0.0, math.inf, "a negative one feeds energy to the user")
+PASSIVE = Allowed(0.0, math.inf, "a negative one is not passive")
 OPPOSING = Allowed(0.0, math.inf, "friction opposes the slip")
 RESTITUTION = Allowed(
     0.0, 1.0, "above 1 every bounce would feed energy to the user, below 0 bodies would pass through each other"
@@ -91,7 +91,7 @@ def take(law, **words):
     for name, word in words.items():
         expr = constant(getattr(law, name), name)
         if expr.is_negative:
-            fed = "friction opposes the slip" if name == "mu" else "a negative one feeds energy to the user"
+            fed = "friction opposes the slip" if name == "mu" else "a negative one is not passive"
             raise SceneError(f"{name} = {shown(expr)}; a contact needs a {word} {name} >= 0: {fed}")
         object.__setattr__(law, name, expr)
 

@@ -46,7 +46,7 @@ class Parameter(sp.Symbol):
             if not word:
                 return f"needs {self.name} >= 0"
             return (
-                f"a {word} needs {self.name} >= 0. A negative one feeds energy to the user; if that is meant, "
+                f"a {word} needs {self.name} >= 0. A negative one is not passive; if that is meant, "
                 f"declare it: hl.parameters('{self.name}', units='{self.unit}', ranges=(-limit, limit))"
             )
         return f"it was declared to lie within {self.low:g} and {self.high:g}"

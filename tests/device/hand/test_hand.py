@@ -12,7 +12,7 @@ NAN = float("nan")
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"k": -50}, r"k = -50 N/m; a hand needs k >= 0\. A negative spring feeds energy"),
+        ({"k": -50}, r"k = -50 N/m; a hand needs k >= 0\. A negative spring pushes the handle away"),
         ({"b": -1}, r"b = -1 N s/m; a hand needs b >= 0\. A negative damper feeds energy"),
         ({"m": -0.1}, r"m = -0.1 kg; a hand needs m >= 0"),
         ({"m": NAN}, r"m = nan kg; a hand needs m >= 0 and finite"),

@@ -28,7 +28,7 @@ FLOOR = Contact(Q, impulse(e=0.5), name="floor")
     (lambda: impulse(e=E, impacts="both"), r"impacts = 'both'; needs 'sequential' .* or 'simultaneous'"),
     (lambda: impulse(e=E, rest_speed=0), r"rest_speed = 0; needs the speed below which a contact rests, > 0 m/s"),
     (lambda: impulse(e=E, mu=-0.2), r"mu = -0.2; a contact needs a friction coefficient mu >= 0: friction opposes the slip"),
-    (lambda: penalty(k=-50), r"k = -50; a contact needs a stiffness k >= 0: a negative one feeds energy to the user"),
+    (lambda: penalty(k=-50), r"k = -50; a contact needs a stiffness k >= 0: a negative one is not passive"),
     (lambda: hunt_crossley(k=KH, c=C, exponent=0.5), r"exponent = 0.5; needs a fraction n >= 1, such as 3/2"),
     (lambda: micro_impulse(e=E, envelope="0 mm"), r"envelope = 0; needs the distance at which bodies count as in contact"),
     (lambda: Contact(K * Q, rigid()), r"contact: gap: a gap is a distance in m, or an angle in rad; k\*q\(t\) is neither"),
