@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import CourseError
+from ..slips.own_line import of_call
+from ..slips.swallowed import swallowed
 from .evaluate import evaluate
 from .judge import verdict
 from .labs import find_lab
@@ -81,6 +83,9 @@ def check(name: str, answer: object) -> CheckResult:
         result = _failed(name, problem)
     except Exception as problem:  # a mistake of a lab's author stops no student
         result = _failed(name, f"the check itself failed, which is no fault of yours: {type(problem).__name__}: {problem}")
+    own = of_call()
+    if own and result.answered and not result.passed and (lost := swallowed(own, "")):
+        result = replace(result, text=f"{result.text}\n  {lost}")
     print(result.text)
     return result
 
@@ -107,11 +112,20 @@ def checked(name: str, exercise: Exercise, answer: object) -> CheckResult:
         return CheckResult(name, False, False, (), _unanswered(name, exercise))
     verdicts = tuple(verdict(exercise, case, outcome) for case, outcome in zip(exercise.cases, outcomes, strict=True))
     passed = all(v.right for v in verdicts)
+    verdicts = _of_the_lab(exercise, verdicts)
     lines = [f"{name}: {'right' if passed else 'not right yet'} ({points_words(exercise.points)})"]
     lines += _printed(outcomes)
     lines += [_line(exercise, case, v) for case, v in zip(exercise.cases, verdicts, strict=True)]
     lines += [f"  hint: {exercise.hint}"] if exercise.hint and not passed else []
     return CheckResult(name, passed, True, verdicts, "\n".join(lines))
+
+
+def _of_the_lab(exercise, verdicts):
+    """Return verdicts without guesses that fit any exercise, where the lab's own sentences know one of them."""
+    own = {sentence for case in exercise.cases for _, sentence in case.slips}
+    if not any(v.slip in own for v in verdicts):
+        return verdicts
+    return tuple(v if v.slip in own else replace(v, words=v.words.removesuffix(v.slip).rstrip(), slip="") for v in verdicts)
 
 
 def points_words(points: float) -> str:

@@ -20,11 +20,11 @@ FACTORS = (
     (math.pi / 180, "It is too small by pi/180: an angle in radians was taken for degrees."),
     (2 * math.pi, "It is 2 pi times too large: Hz and rad/s are mixed."),
     (1 / (2 * math.pi), "It is 2 pi times too small: Hz and rad/s are mixed."),
-    (2.0, "It is twice what is expected."),
-    (0.5, "It is half of what is expected."),
+    (2.0, "It is twice what is expected: is a half missing, or a factor 2 there that does not belong?"),
+    (0.5, "It is half of what is expected: is a factor 2 missing, or a half there that does not belong?"),
 )
-#: how near a wrong number must come to such a factor, or to a slip of the case
-NEAR = 1e-3
+#: how near a wrong number must come to such a factor, or to a slip of the case; of several slips the exact one speaks
+EXACT, NEAR = 1e-6, 1e-3
 PULLS = "The sign is turned: your force pulls. F_e is the force ON the environment, positive into it, Eq. (23.1)."
 
 
@@ -47,9 +47,8 @@ def slip(exercise, case, wanted, got):
     """
     if not np.isfinite(got).all():
         return "NaN (no number) or infinity comes of 0/0, of the root of a negative number, or of too large a number."
-    for wrong, sentence in case.slips:
-        wrong = np.array(wrong, float)
-        if wrong.shape == got.shape and _close(wrong, got, max(NEAR, exercise.rtol)):
+    for near in (EXACT, NEAR):
+        if sentence := known(exercise, case, got, near):
             return sentence
     if np.abs(wanted).max(initial=0) <= exercise.atol:
         return ""
@@ -61,7 +60,17 @@ def slip(exercise, case, wanted, got):
             return sentence + _given_by_chance(case.given, factor)
     if exercise.kind == "expression":
         return over_points(case.given["at"], wanted, got)
-    return _in_time(wanted, got) or _nearly(wanted, got)
+    one_side = _one_side(wanted, got) if got.size > 3 and case.unit == "N" else ""
+    return _in_time(wanted, got) or one_side or _nearly(wanted, got, case.given)
+
+
+def known(exercise, case, got, near):
+    """Return the sentence of the case's own slip that a wrong answer comes as near to, or an empty text."""
+    for wrong, sentence in case.slips:
+        wrong = np.array(wrong, float)
+        if got is not None and wrong.shape == got.shape and _close(wrong, got, max(near, exercise.rtol)):
+            return sentence
+    return ""
 
 
 def _in_time(wanted, got):
@@ -73,10 +82,12 @@ def _in_time(wanted, got):
     return ""
 
 
-def _nearly(wanted, got):
-    if _close(wanted, got, 1e-2):
-        return "It is within one percent: is a number rounded, or a constant another, such as 9.8 for 9.81 m/s^2?"
-    return ""
+def _nearly(wanted, got, given):
+    if not _close(wanted, got, 1e-2):
+        return ""
+    has_g = any("g" in names for names in (given, *given.values()) if isinstance(names, dict))
+    other = "is g another, such as 9.8 for 9.81 m/s^2" if has_g else "is a small term missing"
+    return f"It is within one percent: is a number rounded, or {other}?"
 
 
 def _close(wrong, got, near=NEAR, least=1e-12):
@@ -115,7 +126,7 @@ def over_points(at, wanted, got):
     at = {name: np.array(column, float) for name, column in at.items()}
     if not got.any():
         return "It is zero at every point."
-    return _one_side(wanted, got) or _dependence(at, wanted, got) or _nearly(wanted, got) or _factor(at, wanted, got)
+    return _one_side(wanted, got) or _dependence(at, wanted, got) or _nearly(wanted, got, {"at": at}) or _factor(at, wanted, got)
 
 
 def _dependence(at, wanted, got):
@@ -181,9 +192,11 @@ def _one_side(wanted, got):
         return ""
     right = np.isclose(got, wanted, rtol=NEAR, atol=1e-9 * np.abs(wanted).max())
     if right[~outside].all() and not right[outside].all():
-        return "It is right where something acts, and not zero where nothing does: is a condition missing or too wide?"
+        missing = "is a condition missing or too wide? A scene writes it hl.when(condition, force, 0)."
+        return f"It is right where something acts, and not zero where nothing does: {missing}"
     if not got[~outside].any():
-        return "It acts where nothing should, and is zero where something should: its condition is turned round."
+        turned = "its condition is turned round, such as <= for >=."
+        return f"It acts where nothing should, and is zero where something should: {turned}"
     if right[outside].all() and not got[~outside].all():
         return "It is zero at points where something acts: is its condition too narrow?"
     return ""

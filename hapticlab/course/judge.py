@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .diagnose import slip
+from .diagnose import EXACT, NEAR, known, slip
 from .match import plot_fault
 
 if TYPE_CHECKING:
@@ -121,18 +121,26 @@ def _word(value):
 
 
 def _judge_parts(exercise, case, value):
-    """Judge a dict part by part; its first wrong one speaks, a slip is a dict of what it is about."""
+    """Judge a dict part by part; of its wrong ones that speaks which is best known; a slip is a dict of what it is about."""
     if not isinstance(value, dict):
         return Verdict(False, f"{_kind(value)}, needs a dict with {', '.join(case.expected)}")
     missing = [name for name in case.expected if name not in value]
     if missing:
         return Verdict(False, f"a dict with {', '.join(map(str, value))[:60] or 'nothing'}; {missing[0]} is missing")
+    wrong = []
     for name, expected in case.expected.items():
         slips = tuple((wrong[name], s) for wrong, s in case.slips if isinstance(wrong, dict) and name in wrong)
-        part = judge(exercise, replace(case, expected=expected, slips=slips), value[name])
+        about = replace(case, expected=expected, slips=slips)
+        part = judge(exercise, about, value[name])
         if not part.right:
-            return Verdict(False, f"{name}: {part.words}", part.slip)
-    return Verdict(True, ", ".join(case.expected))
+            wrong.append((_strangeness(exercise, about, value[name]), Verdict(False, f"{name}: {part.words}", part.slip)))
+    return min(wrong, key=lambda one: one[0])[1] if wrong else Verdict(True, ", ".join(case.expected))
+
+
+def _strangeness(exercise, case, value):
+    """Return how far a wrong answer is from a slip of the case: 0 on it, 1 near it, 2 far from each."""
+    matches = [known(exercise, case, _numbers(value), near) for near in (EXACT, NEAR)]
+    return next((rank for rank, sentence in enumerate(matches) if sentence), len(matches))
 
 
 def _judge_plot(exercise, case, value):

@@ -29,7 +29,7 @@ SWAPPED = "k and m are swapped in w = sqrt(k/m): a stiffer spring throws the han
 PERCENT = "That is in percent. Asked for is the share itself: half of it would be 0.5."
 GATES = (
     "Both conditions are the wrong way round: each wall pulls while the handle is outside it, and exerts no force on a "
-    "handle inside it."
+    "handle inside it. Write >= where you wrote <=, and <= where you wrote >=."
 )
 
 LAB = Lab(

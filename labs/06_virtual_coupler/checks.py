@@ -3,6 +3,9 @@
 from hapticlab.course.exercise import Case, Exercise, Lab
 
 OLD = "Semi-implicit: the position takes the step with the NEW velocity. With the old one, it is explicit Euler, and grows."
+SMALL_ANGLES = "That holds for small angles only; keep sine and cosine, the solver does not mind them."
+PRODUCT = "That is the product of both, in (N/m)^2, which is no stiffness. What has it to be divided by?"
+SOFTER = "The softer one bounds what is felt, but both springs give way, and their deflections add."
 LED = {
     "x": [0, 0.004, 0.01, 0.014, 0.015, 0.015, 0.015, 0.015, 0.01, 0.004, 0, 0],
     "T": 0.02,
@@ -208,7 +211,35 @@ LAB = Lab(
                             -0.107128482,
                             -0.117386441,
                             0.383497976,
-                        ): "That holds for small angles only; keep sine and cosine, the solver does not mind them.",
+                        ): SMALL_ANGLES,
+                        (
+                            0.0,
+                            0.403363366,
+                            0.595221845,
+                            -0.034372184,
+                            -0.976588785,
+                            -1.195078641,
+                            -0.508217605,
+                            0.432990085,
+                            0.34723273,
+                            -0.058971958,
+                            -0.071081422,
+                            0.389153226,
+                        ): SMALL_ANGLES,
+                        (
+                            0.0,
+                            0.401328501,
+                            0.590790569,
+                            -0.039190905,
+                            -0.97760978,
+                            -1.189458909,
+                            -0.498342695,
+                            0.441493229,
+                            0.349592336,
+                            -0.062462648,
+                            -0.075683647,
+                            0.388133605,
+                        ): SMALL_ANGLES,
                         (
                             0.0,
                             0.402288121,
@@ -291,12 +322,14 @@ LAB = Lab(
                     121.212121212,
                     unit="N/m",
                     slips={
+                        80000.0: PRODUCT,
+                        160.0: SOFTER,
                         660.0: "Stiffnesses add side by side. These are one behind the other: their deflections add.",
                         0.00825: "That is the compliance, in m/N; its inverse is the stiffness.",
                         500.0: "The coupler lies between handle and wall, and gives way, too.",
                     },
                 ),
-                Case({"K": 300.0, "k": 100.0}, 75.0, unit="N/m"),
+                Case({"K": 300.0, "k": 100.0}, 75.0, unit="N/m", slips={30000.0: PRODUCT, 100.0: SOFTER}),
             ),
             hint="What do coupler and wall have in common, the force or the deflection? And what adds up?",
         ),
@@ -335,7 +368,8 @@ LAB = Lab(
                         1.287090266: "That is sqrt(g/l): the pendulum on a carriage that cannot move. The coupler gives way.",
                         8.813829239: "That is the faster mode, the carriage on the coupler; the swing is the slower one.",
                         7.998434654: "That is in rad/s; a hertz is 2 pi of them.",
-                        63.974956916: "That is omega squared.",
+                        63.974956916: "That is omega squared; its root is omega.",
+                        10.181930627: "That is omega squared over 2 pi; take its root first.",
                         8.087026647: "That is sqrt(g/l) in rad/s; in hertz, and on a coupler that gives way, it is slower.",
                     },
                 ),

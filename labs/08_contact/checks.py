@@ -12,6 +12,8 @@ BALL_ALONE = "That is for a plate that is held. A free one gives way: take the e
 TOGETHER = "The two swing against each other, not as one lump: the effective mass is m M/(m + M), not m + M."
 FULL_SWING = "A contact lasts half a period of the swing, pi sqrt(mu/k), not a whole one."
 TEN_OUTSIDE = "The time goes with 1/sqrt(k), so that the ten is squared with the step."
+NO_SQUARE = "The square is missing: a time goes with 1/sqrt(k), so that k goes with (pi/(10 h))^2."
+ONLY_EQUAL = "That makes the velocities equal, as if nothing sprang back: the impulse is 1 + e times that."
 HELD = "That is the rebound from a plate that does not move away; here it takes up momentum."
 PLASTIC = "The impulse is 1 + e times the one that makes the velocities equal: that first, then the rebound."
 HEAVY = "That is the impulse on a plate that is held, (1 + e) m (w - v); a free one gives way: take m M/(m + M)."
@@ -25,7 +27,10 @@ WEIGHT = "That is the weight alone; a plate that accelerates upwards by a has to
 DOWN = "a counts upwards: a plate that moves off downwards, a < 0, makes the ball lighter."
 PULLED = "A reaction never pulls: where m (g + a) is negative the contact is open, and N = 0."
 CLOSED = "While the plate pushes the gap stays closed: its acceleration is 0, not negative."
+NO_WEIGHT = "The weight is missing: even on a plate at rest, a = 0, the ball presses with m g. N is m (g + a), where that pushes."
+FALLS = "Gravity is missing: the free ball falls with g, the plate moves with a, and the gap opens with -g - a."
 OTHER_SIGN = "The free ball falls with g and the plate falls faster: the gap opens with -g - a > 0."
+SUM = "That is the trace, the sum of both eigenvalues; the larger one decides (numpy.linalg.eigvals)."
 PRODUCT = "That is the determinant, the product of both eigenvalues; the larger one decides."
 SMALL = "That is the smaller one; the larger decides what remains."
 REAL_PART = "Take the magnitude of each eigenvalue (numpy.abs), of complex and negative ones too, and then the largest."
@@ -83,6 +88,7 @@ LAB = Lab(
                         11843.525281307231: TOGETHER,
                         6579.736267392906: FULL_SWING,
                         16449.340668482262: TEN_OUTSIDE,
+                        5.235987755982989: NO_SQUARE,
                     },
                 ),
                 Case(
@@ -129,6 +135,7 @@ LAB = Lab(
                     slips=(
                         ({"v": 0.6136}, HELD),
                         ({"v": -0.2556666666666667}, PLASTIC),
+                        ({"v": -0.12783333333333333}, ONLY_EQUAL),
                         ({"w": 0.2301}, PLATE_SIGN),
                         ({"p": 0.027612}, HEAVY),
                         ({"p": -0.02301}, IMPULSE_SIGN),
@@ -139,6 +146,7 @@ LAB = Lab(
                     {"v": 0.2, "w": -0.4, "p": 0.06},
                     slips=(
                         ({"v": 0.4}, RELATIVE),
+                        ({"v": -0.1}, ONLY_EQUAL),
                         ({"v": 0.8}, HELD),
                         ({"p": 0.12}, HEAVY),
                         ({"p": 0.04}, "The plate moves as well: the impulse goes with the relative velocity w - v."),
@@ -180,7 +188,12 @@ LAB = Lab(
                 Case(
                     {"a": 2.0, "m": 0.02, "g": 9.81},
                     {"N": 0.2362, "gap_acceleration": 0.0},
-                    slips=(({"N": 0.1962}, WEIGHT), ({"N": 0.1562}, DOWN), ({"gap_acceleration": -11.81}, CLOSED)),
+                    slips=(
+                        ({"N": 0.1962}, WEIGHT),
+                        ({"N": 0.1562}, DOWN),
+                        ({"N": 0.04}, NO_WEIGHT),
+                        ({"gap_acceleration": -11.81}, CLOSED),
+                    ),
                 ),
                 Case(
                     {"a": -15.0, "m": 0.02, "g": 9.81},
@@ -190,6 +203,7 @@ LAB = Lab(
                         ({"N": 0.1962}, WEIGHT),
                         ({"N": 0.4962}, DOWN),
                         ({"gap_acceleration": -5.19}, OTHER_SIGN),
+                        ({"gap_acceleration": 15.0}, FALLS),
                     ),
                 ),
                 Case({"a": -9.81, "m": 0.05, "g": 9.81}, {"N": 0.0, "gap_acceleration": 0.0}),
@@ -201,16 +215,20 @@ LAB = Lab(
             points=1,
             asks="the largest magnitude of the eigenvalues of the map from one impact to the next",
             cases=(
-                Case({"a": -5.0, "e": 0.8, "g": 9.81}, 0.8, slips={0.64: PRODUCT, -0.005688073394495528: REAL_PART}),
+                Case(
+                    {"a": -5.0, "e": 0.8, "g": 9.81},
+                    0.8,
+                    slips={0.64: PRODUCT, -0.011376146788991055: SUM, -0.005688073394495528: REAL_PART},
+                ),
                 Case(
                     {"a": 2.0, "e": 0.8, "g": 9.81},
                     1.9767938941646706,
-                    slips={0.64: PRODUCT, 0.32375656455092583: SMALL},
+                    slips={0.64: PRODUCT, 2.3005504587155965: SUM, 0.32375656455092583: SMALL},
                 ),
                 Case(
                     {"a": -12.0, "e": 0.8, "g": 9.81},
                     2.0039303796270667,
-                    slips={0.64: PRODUCT, 0.319372372666511: SMALL, -0.319372372666511: REAL_PART},
+                    slips={0.64: PRODUCT, -2.323302752293578: SUM, 0.319372372666511: SMALL, -0.319372372666511: REAL_PART},
                 ),
             ),
             hint="which eigenvalue decides in the long run? They may be complex or negative (numpy.linalg.eigvals).",

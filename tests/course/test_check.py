@@ -405,3 +405,13 @@ def test_checks_beside_count_by_the_number_in_them_whatever_the_folder_is_called
     assert "lab 02 has no exercise mine" in hl.check("02.mine", 1).text
     (tmp_path / "checks.py").write_text("LAB = exit(3)")
     assert "checks.py failed: SystemExit: 3" in hl.check("02.mine", 1).text
+
+
+def test_a_guess_that_fits_any_exercise_is_silent_where_the_lab_knows_the_slip():
+    twice = Case({"x": 0.02}, 4.0, slips={8.0: "Both walls act at once."})
+    exercise = Exercise("walls", points=1, cases=[Case({"x": 0.01}, 2.0), twice])
+    text = checked("98.walls", exercise, lambda x: 400 * x).text
+    assert "Both walls act at once." in text and "It is twice" not in text
+    assert (
+        "It is twice" in checked("98.walls", Exercise("walls", points=1, cases=[Case({"x": 0.01}, 2.0)]), lambda x: 400 * x).text
+    )

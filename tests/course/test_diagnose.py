@@ -5,6 +5,7 @@ import pytest
 
 from hapticlab.course.diagnose import FACTORS, slip
 from hapticlab.course.exercise import Case, Exercise
+from hapticlab.course.judge import judge
 
 
 def said(wanted, got, **given):
@@ -51,3 +52,27 @@ def test_a_number_that_was_given_may_explain_the_factor_as_well(given, factor, w
 def test_other_numbers_that_were_given_are_not_blamed(given):
     assert "In this case" not in said(0.25, 250.0, **given)
     assert said(0.25, -0.25, **given) == "The sign is turned."
+
+
+@pytest.mark.parametrize(
+    "given, words", [({"g": 9.81}, ""), ({"values": {"g": 9.81}}, "9.8 for 9.81"), ({"K": 100.0}, "a small term")]
+)
+def test_g_is_blamed_only_where_an_exercise_has_it(given, words):
+    assert (words or "9.8 for 9.81") in said(9.0, 9.02, **given)
+
+
+def test_a_condition_left_out_or_turned_is_told_of_a_force_alone():
+    wanted, ungated, turned = np.array([0, 0, 0, 2.0, 1.0]), np.array([-3, -1, -0.5, 2, 1]), np.array([-3, -1, -0.5, 0, 0])
+    for got, words in ((ungated, "hl.when(condition, force, 0)"), (turned, "turned round, such as <= for >=")):
+        assert words in slip(Exercise("f", "scene"), Case({}, wanted, unit="N"), wanted, got)
+        assert slip(Exercise("f"), Case({}, wanted, unit="J"), wanted, got) == ""
+
+
+def test_of_two_slips_near_each_other_the_exact_one_speaks_and_of_several_parts_the_known_one():
+    case = Case(
+        {}, {"z": 1.0, "w": 2.0}, slips=(({"z": 1.5}, "old velocity"), ({"w": 2.7}, "mass missing"), ({"w": 2.7001}, "other"))
+    )
+    exercise = Exercise("step", cases=[case])
+    assert judge(exercise, case, {"z": 1.5, "w": 2.7001}).slip == "old velocity"
+    assert judge(exercise, case, {"z": 1.5001, "w": 2.7}).slip == "mass missing"
+    assert judge(exercise, case, {"z": 1.3, "w": 2.7001}).slip == "other"

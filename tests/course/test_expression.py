@@ -68,7 +68,7 @@ def test_another_way_to_write_the_same_is_right(same):
         (hl.when(x(n) <= x_o, k * (x(n) - x_o)), "its condition is turned round"),
         (hl.when(x(n) >= 2 * x_o, k * (x(n) - x_o)), "is its condition too narrow?"),
         (RIGHT * 1000, "1000 times too large"),
-        (RIGHT / 2, "It is half of what is expected."),
+        (RIGHT / 2, "It is half of what is expected: is a factor 2 missing"),
         (RIGHT * 2 * sp.pi, "Hz and rad/s are mixed"),
         (RIGHT * 180 / sp.pi, "in degrees"),
         (0.7 * RIGHT, "It is 0.7 times what is expected, at every point."),
@@ -93,7 +93,7 @@ def test_another_way_to_write_the_same_is_right(same):
         (True, "it is a bool, needs an expression"),
         (0.0, "It is zero at every point."),
         (k * x(n), "It does not change with x_o: did you forget x_o?"),
-        (0.999 * RIGHT, "is a number rounded, or a constant another, such as 9.8 for 9.81 m/s^2?"),
+        (0.999 * RIGHT, "is a number rounded, or is a small term missing?"),
     ],
 )
 def test_what_is_wrong_is_named_from_the_values(answer, words):

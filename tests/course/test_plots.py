@@ -76,7 +76,7 @@ def test_lines_to_guide_the_eye_and_other_panels_do_no_harm():
         (swing(y=1e3 * Y), "Along y: It is 1000 times too large"),
         (swing(y=1e3 * Y), "Is the unit in its label that of its numbers?"),
         (swing(y=-Y), "Along y: The sign is turned."),
-        (swing(y=2 * Y), "Along y: It is twice what is expected."),
+        (swing(y=2 * Y), "Along y: It is twice what is expected: is a half missing"),
         (swing(xlabel="time"), "The x axis has no unit: end its label with one, such as [s]."),
         (swing(ylabel=""), "The y axis has no unit: end its label with one, such as [m]."),
         (swing(ylabel="force F [N]"), "The y axis is in N; it should be a quantity in m"),

@@ -123,3 +123,226 @@ CELLS = {
     "and of arrays": ("(log.x > 0) and (log.F > 0)", "`and`", "&"),
     "chain of arrays": ("log.F[0 < log.x < 0.01]", "chain", r"\(0 < log\.x\) & \(log\.x < 0\.01\)"),
 }  # fmt: skip
+
+#: of lab 06, with everything right but what a cell changes
+PENDULUM = """
+M, l, g, c = hl.parameters("M l g c", units="kg m m/s^2 N*m*s/rad", values=(0.05, 0.15, 9.81, 1e-4))
+K, b_c = hl.parameters("K b_c", units="N/m N*s/m", values=(100, 0.3))
+q = hl.coordinate("theta", unit="rad", initial=0.3)
+F_c = hl.laws.virtual_coupler(z, K=K, b=b_c)
+
+def stepped(rate, old=False, made=lambda z, w: {"z": z, "w": w}):
+    def euler_step(z, w, x, v, m, K, b_c, T):
+        after = w + T*rate(K*(x - z), b_c, v, w, m)
+        return made(z + T*(w if old else after), after)
+
+    return hl.check("06.euler_step", euler_step)
+
+def hit(p, gives_way=True):
+    def impact(v, w, m, M, e):
+        each = p(m*M/(m + M), e)*(w - v)
+        return {"v": v + each/m, "w": w - each/M if gives_way or M < 1 else w, "p": each}
+
+    return hl.check("08.impact", impact)
+
+def pendulum(sine=sp.sin(q), cosine=sp.cos(q), potential=1, loss=0.5, sign=1, watch=(z, q), moved=l*sp.sin(q), high=-l*sp.cos(q)):
+    speed = (z + moved).diff(t)**2 + high.diff(t)**2
+    L = M*z.diff(t)**2/2 + m*speed/2 - potential*m*g*high
+    model = hl.mechanics.lagrange(L, dissipation=loss*c*q.diff(t)**2, forces={z: sign*F_c})
+    return hl.Scene(force=F_c, eom=[model], watch=list(watch))
+"""
+
+#: answers to exercises: what hl.check says of them
+CHECKS = {
+    "force pulls": (
+        "hl.check('01.spring_damper', hl.Scene(force=-hl.parameters('k', units='N/m')*x(n) - b*v(n)))",
+        "sign",
+        r"ON the environment",
+    ),
+    "sign of v": ("hl.check('01.spring_damper_force', lambda x, v, k, b: k*x - b*v)", "feeds|sign", "positive|points along v"),
+    "mm in a function": ("hl.check('01.spring_damper_force', lambda x, v, k, b: 1000*k*x + b*v)", "1000 times", "metres"),
+    "ms in a function": (
+        "hl.check('03.stability_estimate', lambda b, T, delay: b/(1000*(T/2 + delay)))",
+        "1000 times",
+        "millisec.*SI",
+    ),
+    "rad/s for Hz": (
+        "hl.check('01.resonance', lambda m, K, b_c: {'f': np.sqrt(K/m), 'zeta': b_c/(2*np.sqrt(K*m))})",
+        "rad/s",
+        "2 pi",
+    ),
+    "returns None": ("def force(x, v, k, b):\n    k*x + b*v\nhl.check('01.spring_damper_force', force)", "None", "return"),
+    "no watch": (
+        "K, b_c = hl.parameters('K b_c', units='N/m N*s/m')\nF = K*(x(n) - z) + b_c*(v(n) - z.diff(t))\n"
+        "hl.check('01.mass_on_coupler', hl.Scene(force=F, eom=[sp.Eq(m*z.diff(t, 2), F.subs({x(n): x(t), v(n): v(t)}))]))",
+        "does not watch z",
+        "watch=",
+    ),
+    "one wall of two pulls": (
+        "hl.check('02.two_walls', hl.Scene(force=hl.when(x(n) >= x_o, k*(x(n) - x_o)) - hl.when(x(n) <= -x_o, k*(x(n) + x_o))))",
+        "pulls",
+        "F_e < 0",
+    ),
+    "x_o forgotten": (
+        "hl.check('02.two_walls', hl.Scene(force=hl.when(x(n) >= x_o, k*x(n)) + hl.when(x(n) <= -x_o, k*x(n))))",
+        "x_o",
+        "x_o",
+    ),
+    "no gate": ("hl.check('03.late_wall', hl.Scene(force=k*(x(n-1) - x_o)))", "condition missing", r"hl\.when"),
+    "no gate, lab 04": (
+        "hl.check('04.half_sample_wall', hl.Scene(force=k*(1.5*x(n) - 0.5*x(n-1) - x_o)))",
+        "acts outside",
+        r"zero where x\(n\) < x_o",
+    ),
+    "wrong inequality": (
+        "hl.check('03.late_wall', hl.Scene(force=hl.when(x(n-1) <= x_o, k*(x(n-1) - x_o))))",
+        "turned|wrong way",
+        ">=",
+    ),
+    "wrong inequality, lab 04": (
+        "hl.check('04.half_sample_wall', hl.Scene(force=hl.when(x(n) < x_o, k*(1.5*x(n) - 0.5*x(n-1) - x_o))))",
+        "turned|wrong way",
+        ">=",
+    ),
+    "wrong inequality, both walls": (
+        "hl.check('02.two_walls', hl.Scene(force=hl.when(x(n) <= x_o, k*(x(n) - x_o)) + hl.when(x(n) >= -x_o, k*(x(n) + x_o))))",
+        "turned|wrong way",
+        ">=",
+    ),
+    "`if` in an answer": (
+        "def f(gap, rate, k, b):\n    if gap < 0:\n        return -k*gap\n    return 0*gap\nhl.check('08.penalty_force', f)",
+        "`if`",
+        r"np\.where\(gap < 0, a, b\)",
+    ),
+    "max in an answer": (
+        "hl.check('08.penalty_force', lambda gap, rate, k, b: max(0, -k*gap - b*rate))",
+        "`max`",
+        r"np\.maximum\(0, ",
+    ),
+    "math.sqrt of an array": (
+        "hl.check('00.sign_evidence', lambda asked, moved, on: np.sum(asked*moved)/math.sqrt(asked))",
+        r"math\.sqrt",
+        r"np\.sqrt",
+    ),
+    "1//2 in a function": (
+        "def period_leak(k, D):\n    return 1//2*k*D**2\nhl.check('02.period_leak', period_leak)",
+        "1//2",
+        "1/2",
+    ),
+    # lab 06
+    "order of the step": (
+        "stepped(lambda spring, b_c, v, w, m: (spring + b_c*(v - w))/m, old=True)",
+        "old",
+        "NEW",
+    ),
+    "no /m": (
+        "stepped(lambda spring, b_c, v, w, m: spring + b_c*(v - w))",
+        "acceleration",
+        "over m",
+    ),
+    "no v": (
+        "stepped(lambda spring, b_c, v, w, m: (spring - b_c*w)/m)",
+        "not w alone",
+        "v - w",
+    ),
+    "sign of F_c": (
+        "stepped(lambda spring, b_c, v, w, m: -(spring + b_c*(v - w))/m)",
+        "pushed away",
+        r"pulls it there",
+    ),
+    "a tuple": (
+        "stepped(lambda spring, b_c, v, w, m: (spring + b_c*(v - w))/m, made=lambda z, w: (z, w))",
+        "a list|a tuple",
+        "dict with z, w",
+    ),
+    "b_c unpaid": ("hl.check('06.coupler_stiffness', lambda b, T, b_c: 2*b/T)", "own damper", "b_c"),
+    "K T for K T/2": ("hl.check('06.coupler_stiffness', lambda b, T, b_c: (b - b_c)/T)", "not K T", "K T/2"),
+    "twice what is expected": (
+        "hl.check('06.coupler_stiffness', lambda b, T, b_c: 4*(b - b_c)/T)",
+        "twice what is expected",
+        "is a half missing",
+    ),
+    "ms, lab 06": ("hl.check('06.coupler_stiffness', lambda b, T, b_c: 2*(b - b_c)/(1000*T))", "1000 times", "SI"),
+    "parallel for series": ("hl.check('06.felt_wall', lambda K, k: K + k)", "add", "one behind the other"),
+    "K*k": ("hl.check('06.felt_wall', lambda K, k: K*k)", "unit|N.2/m.2|product", "divi"),
+    "min of the springs": ("hl.check('06.felt_wall', lambda K, k: min(K, k))", "softer|gives? way", "both|deflections"),
+    "rad/s, lab 06": (
+        "hl.check('06.swing_frequency', lambda l, g, M, m, K: 7.998434654 if l == 0.15 else 4.88329)",
+        "rad/s",
+        "2 pi",
+    ),
+    "faster mode": (
+        "hl.check('06.swing_frequency', lambda l, g, M, m, K: 8.813829239 if l == 0.15 else 2.635701216)",
+        "faster",
+        "slower",
+    ),
+    "no square root": (
+        "hl.check('06.swing_frequency', lambda l, g, M, m, K: 63.974956916/(2*np.pi) if l == 0.15 else 3.7953)",
+        "squared",
+        "root",
+    ),
+    "no watch, lab 06": ("hl.check('06.pendulum', pendulum(watch=()))", "does not watch", "watch="),
+    "Rayleigh halved": ("hl.check('06.pendulum', pendulum(loss=1))", "half", "c theta'.2/2"),
+    "T + V": ("hl.check('06.pendulum', pendulum(potential=-1))", r"pushes the bob up|potential", r"kinetic - potential"),
+    "sign of the coupler": ("hl.check('06.pendulum', pendulum(sign=-1))", "runs away", r"\+F_c"),
+    "Mechanics for Scene, lab 06": ("hl.check('06.pendulum', pendulum().models[0])", "without a force", r"hl\.Scene"),
+    "small angles": ("hl.check('06.pendulum', pendulum(moved=l*q, high=-l*(1 - q**2/2)))", "small angles", "sine and cosine"),
+    "small angles, flat path": (
+        "pull = F_c.subs({x(n): x(t), v(n): v(t)})\n"
+        "carriage = sp.Eq((M + m)*z.diff(t, 2) + m*l*q.diff(t, 2), pull)\n"
+        "bob = sp.Eq(m*l**2*q.diff(t, 2) + m*l*z.diff(t, 2) + m*g*l*q + c*q.diff(t), 0)\n"
+        "hl.check('06.pendulum', hl.Scene(force=F_c, watch=[z, q], eom=[carriage, bob]))",
+        "small angles",
+        "sine and cosine",
+    ),
+    "np.cos": ("pendulum(cosine=np.cos(q))", r"np\.cos", r"sp\.cos\(q\)"),
+    # lab 08
+    "no gate, lab 08": ("hl.check('08.penalty_force', lambda gap, rate, k, b: np.maximum(0, -k*gap - b*rate))", "open", "closed"),
+    "a pull": (
+        "hl.check('08.penalty_force', lambda gap, rate, k, b: np.where(gap < 0, -k*gap - b*rate, 0.0))",
+        "pull",
+        "never below 0",
+    ),
+    "the ball's mass alone": (
+        "hl.check('08.stiffest_penalty', lambda m, M, h: m*(np.pi/(10*h))**2)",
+        "plate that is held",
+        "effective mass",
+    ),
+    "a whole period": (
+        "hl.check('08.stiffest_penalty', lambda m, M, h: m*M/(m + M)*(2*np.pi/(10*h))**2)",
+        "half a period",
+        "not a whole",
+    ),
+    "no square": ("hl.check('08.stiffest_penalty', lambda m, M, h: m*M/(m + M)*np.pi/(10*h))", "square", "pi/"),
+    "relative velocity": (
+        "hl.check('08.impact', lambda v, w, m, M, e: {'v': -e*v, 'w': w + (1 + e)*m*v/M, 'p': -(1 + e)*m*v})",
+        "held|relative",
+        "momentum|relative",
+    ),
+    "e forgotten": (
+        "hit(lambda mass, e: mass)",
+        "equal",
+        r"1 \+ e",
+    ),
+    "a held plate": (
+        "hit(lambda mass, e: (1 + e)*mass, gives_way=False)",
+        "one percent|plate",
+        "small term|momentum",
+    ),
+    "Euler's e": ("hl.check('08.pulse_time', lambda p, F_max: p/F_max)", "p/.e tau", "Euler"),
+    "sign of a": (
+        "hl.check('08.reaction', lambda a, m, g: {'N': max(0, m*(g - a)), 'gap_acceleration': max(0, a - g)})",
+        "upwards",
+        "lighter|a < 0",
+    ),
+    "no g": (
+        "hl.check('08.reaction', lambda a, m, g: {'N': max(0, m*a), 'gap_acceleration': max(0, -a)})",
+        r"weight|\bg\b",
+        r"m \(g \+ a\)",
+    ),
+    "determinant": ("hl.check('08.largest_multiplier', lambda a, e, g: e**2)", "determinant", "larger"),
+    "trace": ("hl.check('08.largest_multiplier', lambda a, e, g: 1 + (1 + e)**2*a/g + e**2)", "trace|sum", "larger|eigvals"),
+}
+
+#: whose sentence names the mistake, and of the cure only where to look
+WEAKER = ("twice what is expected", "K*k", "a held plate")

@@ -7,7 +7,7 @@ import warnings
 import matplotlib.pyplot as plt
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
-from mistakes import BEFORE, CELLS
+from mistakes import BEFORE, CELLS, CHECKS, PENDULUM, WEAKER
 from traitlets.config import Config
 
 from hapticlab.slips.shown import show_in
@@ -47,8 +47,24 @@ def test_a_mistake_is_named_with_its_cure(shell, capsys, name):
     assert "site-packages" not in text and "hapticlab/" not in text, text
 
 
+@pytest.fixture(scope="module")
+def lab_06(shell):
+    shell.run_cell(PENDULUM).raise_error()
+
+
+@pytest.mark.usefixtures("lab_06")
+@pytest.mark.parametrize("name", CHECKS)
+def test_a_wrong_answer_is_named_with_its_cure(shell, capsys, name):
+    cell, mistake, cure = CHECKS[name]
+    text = said(shell, capsys, cell)
+    sentence = re.sub(r"(?m)^  hint: .*\n|^    .*\n|^Out\[.*", "", text)
+    assert re.search(mistake, sentence), text
+    assert re.search(cure, sentence), text
+
+
 def test_the_table_is_as_long_as_promised():
-    assert len(CELLS) > 80
+    assert len(CELLS) > 85 and len(CHECKS) > 50
+    assert set(WEAKER) <= {*CELLS, *CHECKS} and len(WEAKER) <= 5
 
 
 def test_an_error_is_the_own_line_and_the_sentence_and_the_rest_one_call_away(shell, capsys):
