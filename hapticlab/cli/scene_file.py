@@ -3,6 +3,7 @@
 import math
 import runpy
 import sys
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,12 +12,13 @@ import numpy as np
 
 from ..analysis.records.chatter import chatter
 from ..analysis.records.energy import energy
+from ..base.missed_events import missed_words
 from ..base.telemetry import Telemetry
 from ..compiler.ir.program import Program
 from ..device.hand.hand import Hand
 from ..device.paddle import Paddle
 from ..device.simulated.simulated_paddle import SimulatedPaddle
-from ..errors import AnalysisError, PaddleError, SceneError
+from ..errors import AnalysisError, MissedEventWarning, PaddleError, SceneError
 from ..scene.scene import Scene
 
 
@@ -86,7 +88,9 @@ def _run_as_script(path):
 def run_scene(file, *, progress=True, **options):
     """Run a scene file's scene on its paddle; return the program and the Telemetry."""
     program = file.paddle.program(file.scene, **options)
-    return program, file.paddle.run(program, duration=file.duration, progress=progress)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MissedEventWarning)  # the report says it
+        return program, file.paddle.run(program, duration=file.duration, progress=progress)
 
 
 def report_of(program: Program, log: Telemetry) -> dict[str, Any]:
@@ -126,6 +130,7 @@ def report_of(program: Program, log: Telemetry) -> dict[str, Any]:
         },
         "left_open": {name: why for name, why in (("chatter", no_chatter), ("energy", no_energy)) if why},
         "fault": log.fault,
+        "missed": missed_words(log) or None,
     }  # fmt: skip
 
 
@@ -154,6 +159,7 @@ def describe(report):
     ]
     if report["fault"]:
         return "\n".join([*lines, f"fault    {report['fault']}"])
+    lines += [f"missed   {report['missed']}"] if report["missed"] else []
     words = {name: report[name]["words"] if report[name] else report["left_open"][name] for name in ("chatter", "energy")}
     return "\n".join([
         *lines,

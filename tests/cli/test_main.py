@@ -271,6 +271,19 @@ def test_a_fault_fails_the_run(tmp_path):
     assert "not finite" in json.loads(done.stdout)["fault"]
 
 
+def test_a_run_that_left_events_out_says_so_in_its_report(tmp_path):
+    file = tmp_path / "thrown.py"
+    file.write_text(
+        "import hapticlab as hl\nh = hl.coordinate('h', unit='m', initial='2 mm', rate=20)\n"
+        "m, W, K = hl.parameters('m W K', units='kg m N/m', values=(0.05, 0.004, 0))\n"
+        "walls = [hl.contact.Contact(gap, hl.contact.impulse(e=1), name=name) for gap, name in ((h, 'floor'), (W - h, 'roof'))]\n"
+        "motion = hl.mechanics.lagrange(m * h.diff(hl.t) ** 2 / 2, contacts=walls)\nscene = hl.Scene(force=K * h, eom=[motion])\n"
+    )
+    done = command("run", file, "--duration", "0.1", folder=tmp_path)
+    assert done.returncode == 0 and "Warning" not in done.stderr
+    assert "missed   100 of 100 samples left an event unlocated" in done.stdout
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
