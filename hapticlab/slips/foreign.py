@@ -152,6 +152,10 @@ def _attribute(own, match):
     if node is None:
         return ""
     of = ast.unparse(node.value)
+    if match[1] == "Scene":
+        has = name in own.value(node.value).parameters if own.value(node.value) else False
+        cure = f"The value of a parameter is {of}.values['{name}']" if has else f"A paddle runs a scene: paddle.run({of}, 2.0)"
+        return f"{of}.{name}: a scene has no {name} of its own. {cure}."
     if name in ("n", "t"):
         return _rounded(f"{of}.{name}", of, name)
     if IN_SYMPY.get(name, name) in PLAIN:
@@ -174,6 +178,8 @@ def _call(own, match):
 
 
 def _record(own, match):
+    if "'Telemetry'" in match[0]:
+        return "A record holds several columns of numbers. Take one of them, such as log.x or log.F."
     what = {"len()": "`len` counts items", "iterable": "A loop takes one item after the other"}
     word = next(words for key, words in what.items() if key in match[0])
     return f"{word}, but this is one expression, not a list of numbers. {RECORD}"
@@ -189,6 +195,10 @@ def _uncalled(own, match):
 def _keyword(own, match):
     """A wrong or a missing argument of a public call, with what it takes."""
     call = first(own, ast.Call)
+    if isinstance(call, ast.Call) and match[1] == "Scene.__call__":
+        return (
+            f"A scene takes values by the names of its parameters. Write {ast.unparse(call.func)}(k={ast.unparse(call.args[0])})."
+        )
     function = own.value(call.func) if isinstance(call, ast.Call) else None
     if not ours(function):
         return ""
@@ -223,7 +233,7 @@ TABLE: tuple[tuple[str, Rule], ...] = (
     (r"'(\w+)'(?: object)? is not subscriptable", _subscript),
     (r"'(\w+)'(?: object)? has no attribute '(\w+)'", _attribute),
     (r"'\w+' object is not callable", _call),
-    (r"has no len\(\)|object is not iterable", _record),
+    (r"'\w+'(?: object is not iterable| has no len\(\))", _record),
     (r"not supported between instances of .*_Unapplied", _uncalled),
     (r"([\w.]+)\(\) got an unexpected keyword argument '(\w+)'", _keyword),
     (r"([\w.]+)\(\) missing \d+ required (?:positional|keyword-only) arguments?: (.*)", _keyword),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import textwrap
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from traceback import walk_tb
 from typing import Any
@@ -54,24 +55,26 @@ def _said_by_us(problem):
 def show_in(shell: Any) -> None:
     """Let a shell of IPython show errors in one breath, and the whole at ``%tb``.
 
-    It sees every error that a cell raises, and hands on what is none of hapticlab's, to the handler that was there before.
+    IPython asks an error how it is shown. Of hapticlab's own every one can tell; other libraries' are told it on their way
+    out of a cell, where they are about what hapticlab made. A handler of errors that was there before keeps its own.
     """
     if not hasattr(shell, "set_custom_exc"):
         return
     others, handled = shell.custom_exceptions, shell.CustomTB if shell.custom_exceptions else None
 
+    def render(problem):
+        asked_before, problem._shown = getattr(problem, "_shown", False), True  # %tb asks once more: it wants the whole
+        short = "" if asked_before else one_breath(problem, "%tb shows the whole traceback.")
+        return [short] if short else shell.InteractiveTB.structured_traceback(type(problem), problem, problem.__traceback__)
+
     def handler(shell, kind, problem, trace, tb_offset=None):
         if handled and isinstance(problem, others):
             return handled(kind, problem, trace, tb_offset)
-        if text := one_breath(problem, "%tb shows the whole traceback."):
-            once = iter([[text]])
-
-            def render():  # by IPython: first for the cell, then whenever somebody asks for more
-                return next(once, None) or shell.InteractiveTB.structured_traceback(kind, problem, trace, tb_offset=tb_offset)
-
-            problem._render_traceback_ = render
+        if not isinstance(problem, HapticlabError) and one_breath(problem):
+            problem._render_traceback_ = partial(render, problem)
         return shell.showtraceback((kind, problem, trace), tb_offset=tb_offset)
 
+    HapticlabError._render_traceback_ = render  # type: ignore[attr-defined]
     shell.set_custom_exc((Exception,), handler)
 
 

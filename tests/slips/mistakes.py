@@ -87,6 +87,10 @@ CELLS = {
     "len": ("len(x(n))", "len", r"log"),
     "an array of samples": ("np.array([1.0, 2.0]) > x(n)", "array", r"one|number"),
     "loop over x": ("for one in x(n):\n    pass", "loop|iterat|for", r"log\.x"),
+    "sum of a record": ("sum(log)", "several columns", r"log\.x"),
+    "wall.k": ("wall.k", "a scene has no k", r"wall\.values\['k'\]"),
+    "wall.run()": ("wall.run(2.0)", "a scene has no run", r"paddle\.run\(wall, 2\.0\)"),
+    "wall(300)": ("wall(300)", "names", r"wall\(k=300\)"),
     "plot of a symbol": ("import matplotlib.pyplot as plt\nplt.plot(x(n))", "number", r"log\.x"),
     "x(n+1)": ("hl.Scene(force=k*x(n+1))", "future", r"Predict"),
     # units and values

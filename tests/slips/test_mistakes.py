@@ -110,6 +110,12 @@ def test_what_is_none_of_hapticlab_is_shown_as_ever(shell, capsys, cell, xmode):
     assert number.sub("", ours) == number.sub("", theirs) != ""
 
 
+def test_a_file_that_a_notebook_runs_shows_its_own_line(shell, capsys, tmp_path):
+    (tmp_path / "wall.py").write_text("from hapticlab import Scene, n, x\n\nScene(force=x(n))\n")
+    text = said(shell, capsys, f"%run {(tmp_path / 'wall.py').as_posix()}")
+    assert text.startswith("UnitsError in wall.py, line 3\n    Scene(force=x(n))\n\nforce: x(n) is in m but"), text
+
+
 def test_a_handler_that_was_there_before_keeps_its_errors(capsys):
     main = sys.modules["__main__"]
     shell = InteractiveShell(config=Config(HistoryManager={"enabled": False}))
