@@ -1,5 +1,8 @@
 """The exceptions of hapticlab. Every message says what was given, what is needed, and what to do.
 
+A notebook shows your own line and the message; ``%tb`` in the next cell shows the whole traceback. A script does so too, and
+``python -X dev FILE`` shows the whole.
+
 >>> import hapticlab as hl
 >>> try:
 ...     hl.wall()(k="300 kg")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 
-from .own_line import OwnLine
+from .own_line import OwnLine, code_of
 
 WHEN, WHERE = "hl.when", "np.where"
 WHY_ARRAY = "whether a condition holds, but for an array it holds for some numbers and not for others"
@@ -32,7 +32,7 @@ def _tested(node):
 
 def _asked(node, choice, of_samples):
     """Return who asks for a truth, and what to write in its place; None of a node that asks for none."""
-    text = ast.unparse
+    text = code_of
     match node:
         case ast.If(test=test):
             return "`if`", f"{choice}({text(test)}, a, b): a where it holds, b elsewhere"

@@ -13,7 +13,7 @@ from difflib import get_close_matches
 from inspect import signature
 
 from .decided import decided
-from .own_line import OwnLine, ours
+from .own_line import OwnLine, code_of, ours
 
 Rule = Callable[[OwnLine, re.Match[str]], str]
 
@@ -46,14 +46,14 @@ def _number_wanted(own, match):
         return _format(own, match)
     if not isinstance(call, ast.Call):
         return ""
-    function, given = ast.unparse(call.func), ", ".join(map(ast.unparse, call.args))
+    function, given = code_of(call.func), ", ".join(map(code_of, call.args))
     name = function.rpartition(".")[2]
     if name == "float":
         return f"`float` needs a number, but {given} has none before a scene gives it one. Take the scene's: scene.values['k']."
     if name == "range":
         return f"`range` needs a whole number, but {given} changes from sample to sample. Give a plain number, such as range(10)."
     if name == "heaviside":
-        return f"`{function}` takes numbers. A step is a condition: write hl.when({ast.unparse(call.args[0])} >= 0, 1, 0)."
+        return f"`{function}` takes numbers. A step is a condition: write hl.when({code_of(call.args[0])} >= 0, 1, 0)."
     name = IN_SYMPY.get(name, name)
     cure = f"Write sp.{name}({given})" if name in PLAIN else "Of a run take the numbers of its record, such as log.x"
     return f"`{function}` takes numbers, but {given} is an expression, whose value changes from sample to sample. {cure}."
@@ -65,16 +65,16 @@ def _format(own, match):
 
 def _array_in_math(own, match):
     call = first(own, ast.Call)
-    function = ast.unparse(call.func) if isinstance(call, ast.Call) else ""
+    function = code_of(call.func) if isinstance(call, ast.Call) else ""
     name = function.rpartition(".")[2]
     if not function or name in ("float", "int"):
         return ""
-    return f"`{function}` takes one number, but was given an array. Write np.{name}({', '.join(map(ast.unparse, call.args))})."
+    return f"`{function}` takes one number, but was given an array. Write np.{name}({', '.join(map(code_of, call.args))})."
 
 
 def _power(own, match):
     power = first(own, ast.BinOp)
-    cure = next((f"{ast.unparse(p.left)}**{ast.unparse(p.right)}" for p in own.walk() if _is(p, ast.BitXor)), "a**b")
+    cure = next((f"{code_of(p.left)}**{code_of(p.right)}" for p in own.walk() if _is(p, ast.BitXor)), "a**b")
     return f"`^` is not a power in Python. Write {cure}." if power else ""
 
 
@@ -84,7 +84,7 @@ def _is(node, *operators):
 
 def _condition_as_number(own, match):
     found = first(own, ast.Compare)
-    condition = ast.unparse(found) if found else "condition"
+    condition = code_of(found) if found else "condition"
     return f"A condition such as {condition} is not a number. Write hl.when({condition}, 1, 0) for one that is 1 or 0."
 
 
@@ -94,14 +94,14 @@ def _parentheses(own, match):
     joined = next((one for one in getattr(found, "comparators", []) if _is(one, ast.BitAnd, ast.BitOr)), None)
     cure = f"(a) {sign} (b)"
     if joined is not None and len(found.ops) == 2:
-        left = ast.unparse(ast.Compare(found.left, found.ops[:1], [joined.left]))
-        cure = f"({left}) {sign} ({ast.unparse(ast.Compare(joined.right, found.ops[1:], found.comparators[1:]))})"
+        left = code_of(ast.Compare(found.left, found.ops[:1], [joined.left]))
+        cure = f"({left}) {sign} ({code_of(ast.Compare(joined.right, found.ops[1:], found.comparators[1:]))})"
     return f"`{sign}` joins before the comparisons are made. Put each condition in parentheses: {cure}."
 
 
 def _with_text(own, match):
     text = next((one for one in own.walk() if isinstance(one, ast.Constant) and isinstance(one.value, str)), None)
-    shown = ast.unparse(text) if text else "what stands in quotes"
+    shown = code_of(text) if text else "what stands in quotes"
     return (
         f"{shown} is a text, not a quantity. Declare a parameter, length = hl.parameters('length', units='m'), "
         f"and give the scene its value: scene(length={shown})."
@@ -119,7 +119,7 @@ def _with_none(own, match):
 def _with_function(own, match):
     sample = next((one for one in own.walk() if isinstance(one, ast.Attribute) and one.attr in ("n", "t")), None)
     if sample:
-        return _rounded(ast.unparse(sample), ast.unparse(sample.value), sample.attr)
+        return _rounded(code_of(sample), code_of(sample.value), sample.attr)
     return "One side is a function, not its value. Call it, with round brackets: f(...)."
 
 
@@ -131,7 +131,7 @@ def _subscript(own, match):
     node = first(own, ast.Subscript)
     if not isinstance(node, ast.Subscript):
         return ""
-    written, of, which = ast.unparse(node), ast.unparse(node.value), ast.unparse(node.slice)
+    written, of, which = code_of(node), code_of(node.value), code_of(node.slice)
     if match[1] == "Telemetry":
         which = which.strip("'\"")
         return f"{written}: write the name of a column after a dot, such as {of}.x, {of}.v, {of}.F or one that the scene watches."
@@ -151,7 +151,7 @@ def _attribute(own, match):
     node = next((a for a in own.nodes() + own.walk() if isinstance(a, ast.Attribute) and a.attr == name), None)
     if node is None:
         return ""
-    of = ast.unparse(node.value)
+    of = code_of(node.value)
     if match[1] == "Scene":
         has = name in own.value(node.value).parameters if own.value(node.value) else False
         cure = f"The value of a parameter is {of}.values['{name}']" if has else f"A paddle runs a scene: paddle.run({of}, 2.0)"
@@ -171,7 +171,7 @@ def _call(own, match):
     call = first(own, ast.Call)
     if not isinstance(call, ast.Call):
         return ""
-    of, given = ast.unparse(call.func), ", ".join(map(ast.unparse, call.args))
+    of, given = code_of(call.func), ", ".join(map(code_of, call.args))
     if getattr(type(own.value(call.func)), "role", "") == "coordinate":
         return f"{of}({given}): a coordinate is a function of time already, so it is not called. Write {of} alone."
     return f"{of}({given}) calls {of} as if it were a function. Python needs the sign of a multiplication: write {of}*({given})."
@@ -188,7 +188,7 @@ def _record(own, match):
 def _uncalled(own, match):
     found = first(own, ast.Compare)
     sides = [found.left, *found.comparators] if isinstance(found, ast.Compare) else []
-    name = next((ast.unparse(one) for one in sides if isinstance(own.value(one), type)), "x")
+    name = next((code_of(one) for one in sides if isinstance(own.value(one), type)), "x")
     return f"{name} is a function of time, and has no value by itself. Write {name}(n) for its sample."
 
 
@@ -196,20 +196,18 @@ def _keyword(own, match):
     """A wrong or a missing argument of a public call, with what it takes."""
     call = first(own, ast.Call)
     if isinstance(call, ast.Call) and match[1] == "Scene.__call__":
-        return (
-            f"A scene takes values by the names of its parameters. Write {ast.unparse(call.func)}(k={ast.unparse(call.args[0])})."
-        )
+        return f"A scene takes values by the names of its parameters. Write {code_of(call.func)}(k={code_of(call.args[0])})."
     function = own.value(call.func) if isinstance(call, ast.Call) else None
     if not ours(function):
         return ""
-    shown, taken = ast.unparse(call.func), [name for name in signature(function).parameters if name not in ("self", "values")]
+    shown, taken = code_of(call.func), [name for name in signature(function).parameters if name not in ("self", "values")]
     takes = f"It takes {', '.join(taken)}."
     if "unexpected" in match[0]:
         near = [one for one in taken if one.lower() == match[2].lower()] or get_close_matches(match[2], taken, 1, 0.5)
         near = near or [one for one in taken if one.lower().startswith(match[2].lower())][:1]
         return f"{shown} has no argument {match[2]}. {f'Did you mean {near[0]}? ' if near else ''}{takes}"
     if "missing" in match[0]:
-        given = " and ".join(f"{name} = {ast.unparse(one)}" for name, one in zip(taken, call.args, strict=False))
+        given = " and ".join(f"{name} = {code_of(one)}" for name, one in zip(taken, call.args, strict=False))
         lacking = match[2].replace("'", "")
         return f"{shown} was given {given or 'nothing'}, and lacks {lacking}. {takes} Write {shown}({taken[0]}, {lacking}=...)."
     return f"{shown} was given too many values without a name. {takes} Write the name before each: name=value."

@@ -6,6 +6,7 @@ import ast
 import builtins
 import linecache
 import os
+import re
 import sys
 import textwrap
 from dataclasses import dataclass
@@ -152,6 +153,11 @@ def ours(value: Any, deep: int = 3) -> bool:
     elif type(value).__name__ == "ndarray" and value.dtype == object:
         parts = list(value.flat)
     return deep > 0 and any(ours(part, deep - 1) for part in parts[:20])
+
+
+def code_of(node: ast.AST) -> str:
+    """A part as a student writes it, k*(x(n) - x_o)."""
+    return re.sub(r" (\*|//?|\*\*) ", r"\1", ast.unparse(node))
 
 
 @lru_cache(maxsize=64)

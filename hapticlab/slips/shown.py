@@ -26,17 +26,22 @@ def one_breath(problem: BaseException, more: str = "") -> str:
     more : str
         How to see the rest, as a last line.
     """
-    sentence, own = _sentence(problem), of_error(problem.__traceback__)
-    if not sentence or own is None:
-        return ""
-    line = f"{textwrap.indent(own.text, '    ')}\n\n" if own.text else ""
-    return f"{type(problem).__name__} in {own.where}\n{line}{sentence}" + (f"\n\n{more}" if more else "")
+    place, sentence = _told(problem)
+    return f"{place}{sentence}" + (f"\n\n{more}" if more else "") if sentence else ""
 
 
-def _sentence(problem):
-    own = of_error(problem.__traceback__)
-    if own is None:
-        return ""
+def _told(problem):
+    """Return the own line under its place, and the sentence; two empty texts where there is none."""
+    try:
+        own = of_error(problem.__traceback__)
+        sentence = _sentence(problem, own) if own else ""
+    except Exception:  # a student's own classes may raise anything, wherever they are looked at
+        return "", ""
+    line = f"{textwrap.indent(own.text, '    ')}\n\n" if sentence and own.text else ""
+    return (f"{type(problem).__name__} in {own.where}\n{line}", sentence) if sentence else ("", "")
+
+
+def _sentence(problem, own):
     if not (isinstance(problem, HapticlabError) or _said_by_us(problem)):
         return in_our_words(problem, own) if own.involves_us() else ""
     said = str(problem)
@@ -81,13 +86,13 @@ def show_in(shell: Any) -> None:
 def show_in_script(problem: BaseException, before: Callable[[], None]) -> None:
     """Show an error that ends a script; ``before`` shows it as Python does.
 
-    Another library's error keeps its traceback, with the sentence as a note below; so does every one under ``python -X dev``.
+    Another library's error keeps its traceback, with the sentence as a note below; so does every error under ``python -X dev``.
     """
-    text = "" if sys.flags.dev_mode else one_breath(problem, whole(problem))
-    if text and isinstance(problem, HapticlabError):
-        print(text, file=sys.stderr)
+    _, sentence = _told(problem)
+    if sentence and isinstance(problem, HapticlabError) and not sys.flags.dev_mode:
+        print(one_breath(problem, whole(problem)), file=sys.stderr)
         return
-    if sentence := not isinstance(problem, HapticlabError) and _sentence(problem):
+    if sentence not in ("", str(problem)):
         problem.add_note(sentence)
     before()
 

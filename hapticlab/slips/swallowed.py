@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from .own_line import OwnLine, parsed
+from .own_line import OwnLine, code_of, parsed
 
 
 def swallowed(own: OwnLine, said: str) -> str:
@@ -22,13 +22,13 @@ def swallowed(own: OwnLine, said: str) -> str:
             case ast.BinOp(left=ast.Constant(int(a)), op=ast.FloorDiv(), right=ast.Constant(int(b))) if b and a % b:
                 return f"Your code has {a}//{b}, which rounds down to {a // b}. Write {a}/{b}."
             case ast.BinOp(left=a, op=ast.FloorDiv(), right=b) if "floor" in said:
-                return f"`//` rounds down to a whole number. Write {ast.unparse(a)}/{ast.unparse(b)}."
+                return f"`//` rounds down to a whole number. Write {code_of(a)}/{code_of(b)}."
             case ast.BinOp(left=a, op=ast.BitXor(), right=b) if "condition is not a number" in said:
-                return f"`^` is not a power in Python. Write {ast.unparse(a)}**{ast.unparse(b)}."
+                return f"`^` is not a power in Python. Write {code_of(a)}**{code_of(b)}."
             case ast.Compare(left=a, ops=[ast.Eq() | ast.NotEq() as op], comparators=[b]) if "True" in said or "False" in said:
                 sign, cure = ("==", "sp.Eq") if isinstance(op, ast.Eq) else ("!=", "sp.Ne")
-                text = f"{ast.unparse(a)} {sign} {ast.unparse(b)}"
-                return f"Your code has {text}, which Python decides at once. Write {cure}({ast.unparse(a)}, {ast.unparse(b)})."
+                text = f"{code_of(a)} {sign} {code_of(b)}"
+                return f"Your code has {text}, which Python decides at once. Write {cure}({code_of(a)}, {code_of(b)})."
     return ""
 
 

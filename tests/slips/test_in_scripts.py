@@ -11,6 +11,7 @@ BEGIN = "import hapticlab as hl\nfrom hapticlab import n, x\n\nk, x_o = hl.param
 OURS = f"{BEGIN}hl.Scene(force=x(n))\n"
 FOREIGN = f"{BEGIN}if x(n) > x_o:\n    pass\n"
 OTHERS = f"{BEGIN}import sympy as sp\nif sp.Symbol('a') > 0:\n    pass\n"
+MISSPELT = f"{BEGIN}hl.Sceen(force=0)\n"  # which says the cure itself
 
 
 def raised(source, file):
@@ -33,7 +34,7 @@ def test_an_error_of_hapticlab_is_shown_in_one_breath(tmp_path, capsys):
     assert more == "python -X dev wall.py shows the whole traceback."
 
 
-@pytest.mark.parametrize(("source", "notes"), [(FOREIGN, 1), (OTHERS, 0), ("1/0", 0)])
+@pytest.mark.parametrize(("source", "notes"), [(FOREIGN, 1), (OTHERS, 0), ("1/0", 0), (MISSPELT, 0)])
 def test_another_librarys_error_is_shown_by_python_with_a_note_where_it_is_ours(tmp_path, capsys, source, notes):
     problem, asked = raised(source, tmp_path / "wall.py"), []
     show_in_script(problem, lambda: asked.append(True))
