@@ -182,9 +182,9 @@ A hand of 20 g, without damping or stiffness, leans with 1 N for 4 s; the amplit
 {leaning}
 
 The series forms end the chatter of all of these walls. Behind an encoder half a count lasts at most; what else is left after
-4 s, where x is exact and at 300 N/m, dies out with the device's own damping. The parallel form makes it worse:
-it gives back no more than it took, so it ends no oscillation, and under a steady push the wall sinks by what it generates, which is the push's work and
-feeds the oscillation. It is for impacts, and for environments that are not leant on.
+4 s, where x is exact and at 300 N/m, dies out with the device's own damping. The parallel form makes it worse: it gives
+back no more than it took, so it ends no oscillation, and under a steady push the wall sinks by what it generates, which is
+the push's work and feeds the oscillation. It is for impacts, and for environments that are not leant on.
 
 ## The stiffest wall
 
