@@ -146,8 +146,8 @@ needs a speed at one instant: from counts a difference over one period could be 
 ## Compensated friction
 
 50 g, 0.4 N s/m and 20 mN, `hl.design.compensation`, and `hl.design.over_compensation` at a `speed` of 2 mm/s. A free handle
-drifts off where all its damping is compensated, whatever the delay. About a spring the delay turns the negative damper, so that more
-of it can be fed back before the oscillation grows. Dry friction may be compensated beyond its whole there, for at each turn
+drifts off where all its damping is compensated, whatever the delay. About a spring the delay turns the negative damper, so that
+more of it can be fed back before the oscillation grows. Dry friction may be compensated beyond its whole there, for at each turn
 the handle has to break away; the width of the sign's dead zone and a delay ask for more still.
 
 {compensated}
