@@ -3,9 +3,9 @@
     python tests/benchmarks/papers.py [NAME ...]            run pages, and say which differ from what they show
     python tests/benchmarks/papers.py --write [NAME ...]    and put outputs and figures in the pages
 
-A page holds blocks of Python that run one after the other. A ``text`` block after one of them shows what it prints. The last
-block makes ``figure``. A line such as ``cases = 20  # .ci/full: 2000`` gives a number of cases for a quick run and one for a
-long run, and both must print the same.
+A page holds blocks of Python that run one after the other. A ``text`` block after one of them shows what it prints. One block
+makes ``figure``; it runs only where the figure is drawn. A line such as ``cases = 20  # .ci/full: 2000`` gives a number of cases
+for a quick run and one for a long run, and both must print the same.
 """
 
 import argparse
