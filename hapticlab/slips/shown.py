@@ -14,6 +14,7 @@ from ..errors import HapticlabError
 from .foreign import in_our_words
 from .own_line import PACKAGE, of_error
 from .swallowed import swallowed
+from .syntax import unreadable
 
 
 def one_breath(problem: BaseException, more: str = "") -> str:
@@ -79,6 +80,12 @@ def show_in(shell: Any) -> None:
             problem._render_traceback_ = partial(render, problem)
         return shell.showtraceback((kind, problem, trace), tb_offset=tb_offset)
 
+    def read(result):  # after a cell: what Python could not even read is told below its own words
+        problem = result.error_before_exec
+        if isinstance(problem, SyntaxError) and (cure := unreadable(problem, result.info.raw_cell, shell.user_ns)):
+            print(cure, file=sys.stderr)
+
+    shell.events.register("post_run_cell", read)
     HapticlabError._render_traceback_ = render  # type: ignore[attr-defined]
     shell.set_custom_exc((Exception,), handler)
 

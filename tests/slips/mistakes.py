@@ -93,6 +93,13 @@ CELLS = {
     "wall(300)": ("wall(300)", "names", r"wall\(k=300\)"),
     "plot of a symbol": ("import matplotlib.pyplot as plt\nplt.plot(x(n))", "number", r"log\.x"),
     "x(n+1)": ("hl.Scene(force=k*x(n+1))", "future", r"Predict"),
+    # what Python cannot read
+    "= in eom": ("hl.Scene(force=k*(x(n) - z), eom=[m*z.diff(t, 2) = k*(x(n) - z)])", "names a value", r"sp\.Eq"),
+    "2k": ("hl.Scene(force=2k*x(n))", "multiplication", r"2\*k"),
+    "k x(n)": ("hl.Scene(force=k x(n))", "multiplication", r"k\*x\(n\)"),
+    "10 mm": ("hl.wall(k=300, x_o=10 mm)", "text", "'10 mm'"),
+    "≥": ("hl.when(x(n) ≥ x_o, k, 0)", "sign ≥", ">="),
+    "²": ("k*x(n)²", "sign ²", r"\*\*2"),
     # units and values
     "unlike terms": ("hl.Scene(force=k*x(n) + x(n))", r"in N but x\(n\) is in m", "Correct"),
     "damper on a position": ("hl.Scene(force=k*v(n) + b*x(n))", r"k\*v\(n\) is in", "Correct"),
