@@ -13,7 +13,7 @@ Next: ``hl.stability_limit`` for the theory, ``hl.stability.wall_map`` for a map
 from .measurement.impedance import measured_impedance as impedance
 from .measurement.impedance_plan import Averaging, Excitation, Safety
 from .measurement.largest_stiffness import largest_stiffness
-from .measurement.search import Judgement, Search
+from .measurement.search import Judgement, Search, Starts
 from .measurement.signals import multisine
 from .measurement.z_width import z_width
 from .vocabulary import page
@@ -24,6 +24,7 @@ __all__ = [
     "Judgement",
     "Safety",
     "Search",
+    "Starts",
     "impedance",
     "largest_stiffness",
     "multisine",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,19 +13,16 @@ from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import PaddleError
 from ..scene.laws.chapter_laws import wall
 from ..scene.scene import Scene
+from .buzz import ripple
 from .guard import guarded
 
 if TYPE_CHECKING:
     from ..scene.laws.taps import LawName
 
-    pass
-
 #: a spring and damper that lead a handle back, soft enough for any paddle [N/m], and how long they take [s]
 LEADS_BACK, TAKES = 20.0, 0.5
 #: of the natural frequency's critical damping
 WELL_DAMPED = 0.7
-#: standard errors by which a slow decay has to differ from none
-SURE = 5.0
 #: seconds of a trial, in periods of handle and hand on the wall's spring: what it begins with, and what it takes at least
 PERIODS, ENOUGH = 10.0, 3.0
 #: mass of a handle that does not say its own [kg]
@@ -36,116 +33,152 @@ MOVED = 1e-7
 RESTS = 0.01
 #: standard deviations of the sensor's noise that a resting handle may swing by
 SCATTER = 6.0
+#: a swing over so many encoder counts is the encoder's: it is no instability, and may be a buzz
+COUNTS = 4
 #: encoder counts in a period that a speed limit must leave room for
-COUNTS = 3
+JUMP = 3
 
 
 @dataclass(frozen=True)
 class Trial:
-    """Outcome of one stiffness.
+    """Outcome of one stiffness from one start.
 
     Attributes
     ----------
     K : float
         [N/m]
-    stands : bool or None
-        Whether the oscillation of the entry died out; None where the trial could not tell.
+    rests : bool or None
+        Whether the swing of the entry died out, down to the encoder's counts; None where the trial could not tell.
+    quiet : bool or None
+        Whether the hand feels no buzz then: false too where the swing did not die out.
     verdict : str
         Why, in words.
+    buzz : float
+        Amplitude of the force's ripple without the swing [N]; nan where it could not be told.
     amplitude : float
         Of what oscillated at the end [m].
     frequency : float or None
         [Hz]
     drawn : float
-        The most energy the wall had given at any time, more than it took [J].
+        The most energy the wall had given at any time, more than it took and than the guard forgot [J].
     duration : float
         Of the trial [s].
     scatter : float
-        Standard deviation of the sensor's noise [m], where a handle at rest shows nothing else; else 0.
+        What a board's sensor scatters by at most [m], from the second differences of its samples; of a simulated one 0.
+    start : str
+        From which it began.
     """
 
     K: float
-    stands: bool | None
+    rests: bool | None
+    quiet: bool | None
     verdict: str
-    amplitude: float
-    frequency: float | None
-    drawn: float
-    duration: float
+    buzz: float = math.nan
+    amplitude: float = 0.0
+    frequency: float | None = None
+    drawn: float = 0.0
+    duration: float = 0.0
     scatter: float = 0.0
+    start: str = ""
 
     def __str__(self) -> str:
         tone = "" if self.frequency is None else f" at {self.frequency:.4g} Hz"
         swing = f", {1e3 * self.amplitude:.3g} mm{tone}" if self.amplitude else ""
-        outcome = {True: "stands   ", False: "chatters ", None: "undecided"}[self.stands]
-        return f"{self.K:10.5g} N/m  {outcome} {self.verdict}{swing}"
+        buzz = "" if math.isnan(self.buzz) else f", ripple {self.buzz:.2g} N"
+        start = f" ({self.start})" if self.start else ""
+        return f"{self.K:10.5g} N/m  {self.outcome:<9} {self.verdict}{swing}{buzz}{start}"
+
+    @property
+    def outcome(self) -> str:
+        """In a word: "quiet", "buzzes", "unstable", or "undecided" where either question is open."""
+        if self.rests is False:
+            return "unstable"
+        return "undecided" if self.rests is None or self.quiet is None else "quiet" if self.quiet else "buzzes"
 
 
-def try_wall(paddle, scene, *, K, place, duration, longest, buzz_max=0.05, noise=0.0):
-    """Try one stiffness, longer and longer until the record tells; a simulated handle starts at rest at ``place`` [m].
+def try_wall(paddle, scene, start, *, K, place, duration, longest, buzz_max=0.05, noise=0.0):
+    """Try one stiffness from a ``start``, longer and longer until the record tells whether the swing dies out, and how it buzzes.
 
-    A limit cycle and a decay too slow to see look alike. At ``longest`` [s] a decay has to be five times its own standard
-    error; what then lasts counts as chatter, and what neither lasts nor dies out is undecided. A handle that dithers over
-    the edge of one encoder count stands where the force jumps by no more than ``buzz_max`` [N]. A motion that follows a
+    At ``longest`` [s] the ripple is judged beside a swing that still lives. An oscillation over four encoder counts or fewer
+    is the encoder's; the wall is quiet where the amplitude of its force is ``buzz_max`` [N] at most. A motion that follows a
     simulated hand's moving intent is no chatter; nor is what stays within six standard deviations ``noise`` of the sensor [m],
     which the loop colours.
     """
     needs = ENOUGH * period_on(paddle, K)
     if needs > longest * 1.001:
-        return Trial(
-            K, None, f"not tried: three swings take {needs:.3g} s; needs Judgement(longest={needs:.2g})", 0.0, None, 0.0, 0.0
-        )
+        untried = f"not tried: three swings take {needs:.3g} s; needs Judgement(longest={needs:.2g})"
+        return Trial(K, None, None, untried, start=str(start))
     duration = max(duration, min(needs, longest))
     while True:
-        log = run_from(paddle, scene, place, duration)
+        log = run_from(paddle, scene, place + start.depth, duration)
         last = 2 * duration > longest * 1.001
-        outcome = _judged(paddle, log, place, buzz_max, last, noise)
+        outcome = _judged(paddle, log, place, start, last, noise, buzz_max)
         if outcome is not None:
-            stands, verdict, amplitude, frequency, *scatter = outcome
+            rests, verdict, buzz, found = outcome
+            quiet = buzz <= buzz_max if rests and not math.isnan(buzz) else None
+            quiet = False if rests is False or buzz > buzz_max else quiet
             drawn = max(0.0, float(log.drawn.max(initial=0.0)))
-            return Trial(K, stands, verdict, amplitude, frequency, drawn, duration, *scatter)
+            seen = (found.amplitude, found.frequency) if found else (0.0, None)
+            scatter = 0.0 if isinstance(paddle, SimulatedPaddle) else float(np.std(np.diff(log.x, 2))) / math.sqrt(6)
+            return Trial(K, rests, quiet, verdict, buzz, *seen, drawn, duration, scatter, str(start))
         duration *= 2
 
 
-def _judged(paddle, log, place, buzz_max, last, noise):
-    """(stands, verdict, amplitude, frequency, scatter where it rests), or None where a longer record may tell."""
+def _judged(paddle, log, place, start, last, noise, buzz_max):
+    """(rests, verdict, ripple of the force, chatter found), or None where a longer record may tell."""
     stopped = _stopped(log)
     if stopped:
-        return *stopped, 0.0, None
+        return *stopped, math.nan, None
+    log = _of_the_wall(log, start.push)
     hand = getattr(paddle, "hand", None)
-    found = chatter(log, driven=hand if hand is not None and hand.moves else None)
-    swing, x = (found.amplitude, found.frequency), log.channels.get("x_true", log.x)
-    way, half = float(abs(x - place).max()), len(x) // 2
-    if way < MOVED:
-        return None, "the push did not move the handle: friction holds it; push harder", *swing
+    driven = hand if hand is not None and hand.moves else None
+    found = chatter(log, driven=driven)
+    x, count = log.channels.get("x_true", log.x), count_of(paddle)
+    way = float(abs(x - place).max())
+    if way < MOVED and start.run_up is not None:
+        return None, "the push did not move the handle: friction holds it; push harder", math.nan, found
+    felt, grows = ripple(log, driven=driven), found.state in ("growing", "runaway")
+    counted = 0 < 2 * found.amplitude <= COUNTS * count
+    rests = None
     if found.scatter or (found.state == "none" and found.travel < RESTS * way):
-        return True, "it comes to rest", *swing, found.scatter
-    if found.state == "driven":
-        return True, "it only follows the hand", *swing
-    if found.dither or ("x_true" not in log.channels and 0 < found.amplitude < 1.01 * count_of(paddle)):
-        jump = float(np.ptp(log.F[half:]))
-        felt = "too little to feel" if jump <= buzz_max else "felt"
-        return jump <= buzz_max, f"it buzzes by {_counts(found)}, {jump:.2g} N, {felt}", *swing
-    if 0 < found.amplitude < SCATTER * noise:
-        return True, "it rests but for the noise of its sensor", *swing
-    # what bounces or is clipped may decay onto a small chatter; what stays inside is nearly linear: it dies out
-    clipped = log.saturated is not None and bool(np.any(log.saturated[half:]))
-    nonlinear = clipped or found.levels_off or bool((x[half:] < place).any())
-    decays = found.state == "decaying" or (found.state != "chatter" and last and found.growth < -SURE * found.growth_error)
-    if decays and not nonlinear:
-        return True, "it dies out", *swing
-    if found.state == "growing" or (last and found.state == "runaway"):
-        return False, "it grows", *swing
+        rests = "it comes to rest"
+    elif found.state == "driven":
+        rests = "it only follows the hand"
+    elif 0 < found.amplitude < SCATTER * noise:
+        rests = "it rests but for the noise of its sensor"
+    elif last or not grows:
+        if counted:
+            rests = "it dithers by encoder counts"
+        elif count and felt <= buzz_max:
+            rests = "it swings by less than is felt"
+    if rests:
+        return True, rests, felt, found
+    if found.state == "growing" and (last or not count or (felt > buzz_max and not counted)):
+        return False, "it grows", math.nan, found
+    if found.state == "decaying" and not found.levels_off:
+        ripples = ripple(log, (found.frequency, found.growth), driven)
+        # a sensor without steps or noise makes none, also where it bounces still and there is no swing to subtract
+        if not (count or getattr(paddle, "noise", 0.0)) and math.isnan(ripples):
+            ripples = 0.0
+        if last or not math.isnan(ripples):
+            return True, "it dies out", ripples, found
     if not last:
         return None
     seconds = f"{log.t[-1]:.3g} s"
-    if found.state == "chatter":
-        return False, "it lasts", *swing
-    ends = f"it decays, onto a cycle perhaps; still moving after {seconds}" if decays else f"no rest and no cycle in {seconds}"
-    return None, ends, *swing
+    if found.state in ("chatter", "runaway"):
+        return False, "it lasts" if found.state == "chatter" else "it runs away", math.nan, found
+    ends = "it decays, onto a cycle perhaps" if found.state == "decaying" else "neither rest nor a cycle is in sight"
+    return None, f"{ends} after {seconds}", math.nan, found
+
+
+def _of_the_wall(log, push):
+    """The record with the force of the wall alone, without the motor's push: it is zero where the handle is outside."""
+    F = np.asarray(log.F, float)
+    return replace(log, F=np.where(np.isclose(F, -push, rtol=1e-6, atol=0.0), 0.0, F + push)) if push else log
 
 
 def _stopped(log):
-    """(stands, why) of a trial that was cut short, or None."""
+    """(rests, why) of a trial that was cut short, or None."""
     if log.fault:  # a wall too soft for its push lets the handle through its travel as a wall that throws it does
         return (None if "OVER_TRAVEL" in log.fault else False), f"the paddle stopped: {log.fault}"
     if log.tripped.any():
@@ -153,15 +186,16 @@ def _stopped(log):
     return None
 
 
-def _counts(found):
-    return "one encoder count" if found.dither else "an encoder count or two"
-
-
 def period_on(paddle, K):
     """The period of handle and hand on a spring of K [s]."""
     hand = getattr(paddle, "hand", None)
-    m = paddle.m if isinstance(paddle, SimulatedPaddle) else getattr(paddle.settings, "m", 0.0) or A_HANDLE
+    m = mass_of(paddle)
     return 2 * math.pi * math.sqrt((m + (hand.m if hand else 0.0)) / (K + (hand.k if hand else 0.0)))
+
+
+def mass_of(paddle):
+    """The mass of a handle [kg], or 50 g where a board does not say it."""
+    return paddle.m if isinstance(paddle, SimulatedPaddle) else getattr(paddle.settings, "m", 0.0) or A_HANDLE
 
 
 def count_of(paddle):
@@ -171,18 +205,17 @@ def count_of(paddle):
     return abs(paddle.settings.metres_per_count)
 
 
-def run_from(paddle, scene, place, duration):
-    """Run a scene from rest at a place [m]; the motor of a board leads its handle there first, softly, and is off after."""
+def run_from(paddle, scene, x, duration):
+    """Run a scene from rest at x [m]; the motor of a board leads its handle there first, softly, and is off after."""
     if isinstance(paddle, SimulatedPaddle):
-        return paddle.run(scene, duration=duration, x=place, progress=False)
-    lead_back(paddle, place)
+        return paddle.run(scene, duration=duration, x=x, progress=False)
+    lead_back(paddle, x)
     return paddle.run(scene, duration=duration, progress=False)
 
 
 def lead_back(paddle, place, force_max=math.inf):
     """Lead the handle of a board to a place [m] with a soft spring of at most so much force [N]; let go of it at rest."""
-    m = getattr(paddle.settings, "m", 0.0) or A_HANDLE
-    damper = 2 * WELL_DAMPED * math.sqrt(LEADS_BACK * m)
+    damper = 2 * WELL_DAMPED * math.sqrt(LEADS_BACK * mass_of(paddle))
     spring = wall(unilateral=None)(k=LEADS_BACK, B=damper, x_o=place)
     safe = guarded(spring, energy_max=0.1, speed_max=speed_limit(paddle, 2.0))
     log = paddle.run(safe, duration=TAKES, force_max=force_max, progress=False)
@@ -195,7 +228,7 @@ def lead_back(paddle, place, force_max=math.inf):
 
 def speed_limit(paddle, speed):
     """A speed limit [m/s] that leaves room for a jump of some encoder counts in one period."""
-    return max(speed, COUNTS * count_of(paddle) / paddle.T)
+    return max(speed, JUMP * count_of(paddle) / paddle.T)
 
 
 def wall_of(law: LawName | Scene, parameter: str = "k") -> Scene:

@@ -1,4 +1,4 @@
-"""Z-width: the border of stiffness and virtual damping that a paddle renders, measured, beside what theory promises."""
+"""Z-width: the borders of stiffness over virtual damping that a paddle renders, measured, beside what theory promises."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ BELOW = 5.0
 
 @dataclass(frozen=True, eq=False)
 class ZWidth:
-    """The K-B border of a law on a paddle.
+    """The K-B borders of a law on a paddle.
 
     Attributes
     ----------
     B : array, shape (N,)
         Virtual damping [N s/m].
     K : array, shape (N,)
-        The largest stiffness that stood a trial [N/m]; 0 where all chattered, nan where the trials could not tell.
-    chatters_at : array, shape (N,)
-        The smallest that did not [N/m].
+        The largest stiffness that both borders allow, from every start [N/m]; 0 where all failed, nan where undecided.
+    unstable, buzz : array, shape (N, 2)
+        Up to which stiffness walls come to rest, and up to which no buzz is felt [N/m]: lowest and highest over the starts.
     passivity, stability : array, shape (N,)
         What theory promises at each B [N/m]; nan where it does not know the paddle or the law.
     searches : tuple of LargestStiffness
@@ -46,27 +46,30 @@ class ZWidth:
 
     Notes
     -----
-    Colgate and Brown (1994) call the range of impedances that a device renders passively its Z-width. Measured here is the
-    border of what comes to rest after one entry, in one hand.
+    Colgate and Brown (1994) call the range of impedances that a device renders passively its Z-width. Measured here is what
+    comes to rest, and quietly, from the starts of the searches.
     """
 
     B: Array
     K: Array
-    chatters_at: Array
+    unstable: Array
+    buzz: Array
     passivity: Array
     stability: Array
     searches: tuple[LargestStiffness, ...]
     law: str
 
     def plot(self) -> Figure:
-        """Draw the border with passivity and exact stability."""
+        """Draw both borders with passivity and exact stability."""
         return plot_border(self)
 
     def __str__(self) -> str:
         about = next((s.about for s in self.searches if s.trials), "no trial made")
-        rows = [f"{b:10.4g} {k:12.5g} {top:12.5g} {p:12.5g} {s:12.5g}" for b, k, top, p, s in zip(
-            self.B, self.K, self.chatters_at, self.passivity, self.stability, strict=True)]  # fmt: skip
-        head = f"{'B [N s/m]':>10} {'K stands':>12} {'K does not':>12} {'passivity':>12} {'stability':>12}  K in N/m"
+        ends = [("comes to rest", self.unstable), ("no buzz felt", self.buzz)]
+        borders = [[f"{low:.5g} to {high:.5g}" for low, high in border] for _, border in ends]
+        rows = [f"{b:10.4g} {k:10.5g} {rest:>20} {quiet:>20} {p:10.5g} {s:10.5g}" for b, k, rest, quiet, p, s in zip(
+            self.B, self.K, *borders, self.passivity, self.stability, strict=True)]  # fmt: skip
+        head = f"{'B [N s/m]':>10} {'K':>10} {ends[0][0]:>20} {ends[1][0]:>20} {'passivity':>10} {'stability':>10}  K in N/m"
         return "\n".join([f"Z-width, law {self.law}: {about}", head, *rows])
 
     def __repr__(self) -> str:
@@ -82,7 +85,7 @@ def z_width(
     search: Search = SEARCH,
     **options: Any,
 ) -> ZWidth:
-    """Measure the K-B border of a wall on a paddle: a search of the largest stiffness at every virtual damping.
+    """Measure the K-B borders of a wall on a paddle: a search of the largest stiffness at every virtual damping.
 
     Parameters
     ----------
@@ -95,7 +98,7 @@ def z_width(
         As :func:`hapticlab.measure.largest_stiffness` takes it; where it says no ``first``, the search at each next damping
         begins well below the border at the last.
     **options
-        Of :func:`hapticlab.measure.largest_stiffness`: push, place, judged.
+        Of :func:`hapticlab.measure.largest_stiffness`: starts, place, judged.
 
     Returns
     -------
@@ -126,6 +129,9 @@ def z_width(
     def column(name):
         return np.array([s.theory[name].K if name in s.theory else np.nan for s in searches])
 
-    K, top = np.array([s.K for s in searches]), np.array([s.chatters_at for s in searches])
+    def ends(border):
+        return np.array([(border(s).lowest, border(s).highest) for s in searches])
+
+    K, unstable, buzz = np.array([s.K for s in searches]), ends(lambda s: s.unstable), ends(lambda s: s.buzz)
     name = law.name if isinstance(law, Scene) else law
-    return ZWidth(B, K, top, column("passivity"), column("stability"), tuple(searches), name)
+    return ZWidth(B, K, unstable, buzz, column("passivity"), column("stability"), tuple(searches), name)

@@ -57,7 +57,11 @@ CALLS = {
     "kalman": (lambda noise: hl.velocity.kalman(acceleration=10, noise=noise), "8 um", 8e-6),
     "window": (lambda deviation: hl.velocity.window(deviation=deviation), "20 um", 20e-6),
     "spin_down": (lambda m: hl.identify.spin_down(FREE.run(hl.wall(k=0), 0.2, v=0.1), m=m), "50 g", 0.05),
-    "largest_stiffness": (lambda push: hl.measure.largest_stiffness(PADDLE, push=push), "1 N", 1.0),
+    "largest_stiffness": (
+        lambda B: hl.measure.largest_stiffness(PADDLE, B=B, search=hl.measure.Search(tolerance=0.1)),
+        "0.1 N*s/m",
+        0.1,
+    ),
     "reach": (lambda end: hl.people.reach(PADDLE, hl.wall(k=100, x_o=0.1), end=end), "20 mm", 0.02),
     "stiffness_task": (lambda standard: hl.people.stiffness_task(standard=standard).standard, "200 N/m", 200.0),
     "handle_motions": (lambda travel: [motion.name for motion in hl.methods.handle_motions(travel=travel)], "50 mm", 0.05),
