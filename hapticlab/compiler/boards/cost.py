@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ...errors import ProgramError
 from ..engines.bytecode import encode, instructions_of, layout, words_of
+from ..engines.skipped_arms import Arm, Demand
 from ..ir.program import Program
 from .board_records import BOARDS, Board
 from .cost_plot import plot_cost
@@ -105,6 +106,16 @@ class Cost:
         return self.memory_problem is None and self._holds(self.T, promise=True)
 
     @property
+    def of_cases(self):
+        """Typical cycles of what only some cases need, such as the forces of contacts: a board takes them in every tick."""
+        if not self.period:
+            return 0
+        tick, of = self.program.tick, tables()[self.board.name]["operations"]
+        arms = [item for item in Demand(tick).arranged(range(len(tick.instructions))) if isinstance(item, Arm)]
+        ops = [tick.instructions[k].op for arm in arms for k in arm.positions()]
+        return round(sum(of[op][0] for op in ops if op in of))
+
+    @property
     def memory_problem(self):
         """What does not fit in memory, in words, or None."""
         if self.arena > self.board.arena:
@@ -172,6 +183,11 @@ class Cost:
             encoder = f"{self.edges:.0f} cycles a second" if self.edges else "none counted"
             lines += [
                 f"  scene      {self.typical} cycles, at most {self.bound}; the first tick up to {self.first} more",
+                *(
+                    [f"  cases      {self.of_cases} of these for cases that may not hold, computed all the same"]
+                    if self.of_cases
+                    else []
+                ),
                 f"  step       {self.step[0]} cycles, {self.step[1]} in motion, at most {self.step[2]}: sensor, motor, record",
                 f"  link       {self.frame} cycles of telemetry; up to {most} interrupt one step",
                 f"  encoder    {encoder} for edges of a quadrature encoder",

@@ -128,7 +128,11 @@ class Contact(_InASum):
         """The normal force [N], an expression."""
         if not self.is_force:
             return reaction(self.name, self.unit)
-        return when(self.gap <= 0, self.contact_law.force(self.gap, Rate(self.gap)))
+        return self._pressed()
+
+    def _pressed(self, along=sp.S.One):
+        """The force of a force law times a factor, of which an open contact needs nothing."""
+        return when(self.gap <= 0, self.contact_law.force(self.gap, Rate(self.gap)) * along)
 
     @property
     def impulse(self) -> sp.Expr:
@@ -167,6 +171,8 @@ class Contact(_InASum):
         With friction in its impacts, the leaf ``rub`` along dslip/dq' too, zero at all other times.
         """
         along = Partial(self.gap, q)
+        if self.is_force and not along.is_number:
+            return self._pressed(along)
         normal = self.force * along if along != 0 else along
         if self.slip == 0:
             return normal
