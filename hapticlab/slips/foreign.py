@@ -21,7 +21,9 @@ CONDITION = r"'(?:\w+Than|Equality|Unequality|And|Or|Not|Boolean\w+)'"
 #: functions of numbers whose name in SymPy is another
 IN_SYMPY = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "ceil": "ceiling", "fabs": "Abs",
             "absolute": "Abs", "int": "floor", "round": "floor", "trunc": "floor", "rint": "floor"}  # fmt: skip
-PLAIN = set("sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt floor ceiling Abs sign".split())
+FUNCTIONS = set("sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt floor ceiling Abs sign".split())
+#: what Python and NumPy call values that are no symbols, nor made of them
+PLAIN = set("int float complex bool str list tuple dict set NoneType function method module range ndarray numpy.ndarray".split())
 RATES = {"dot", "d", "dt", "ddot", "prime", "velocity", "rate", "derivative"}
 RECORD = "Samples are in the record of a run: log = paddle.run(scene, 2.0), then log.x."
 
@@ -29,6 +31,9 @@ RECORD = "Samples are in the record of a run: log = paddle.run(scene, 2.0), then
 def in_our_words(problem: BaseException, own: OwnLine) -> str:
     """The sentence about an error of another library; empty where the table does not know it."""
     said = str(problem)
+    kinds = set(re.findall(r"'([\w.]+)'", said))
+    if kinds and kinds <= PLAIN and not re.search(r"\^|NoneType|callable", said):
+        return ""  # about Python's own numbers and lists
     for pattern, rule in TABLE:
         if (match := re.search(pattern, said)) and (sentence := rule(own, match)):
             return sentence
@@ -44,7 +49,7 @@ def _number_wanted(own, match):
     call = first(own, ast.Call, ast.FormattedValue)
     if isinstance(call, ast.FormattedValue):
         return _format(own, match)
-    if not isinstance(call, ast.Call):
+    if not isinstance(call, ast.Call) or not any(_symbolic(own, one) for one in call.args):
         return ""
     function, given = code_of(call.func), ", ".join(map(code_of, call.args))
     name = function.rpartition(".")[2]
@@ -55,8 +60,14 @@ def _number_wanted(own, match):
     if name == "heaviside":
         return f"`{function}` takes numbers. A step is a condition: write hl.when({code_of(call.args[0])} >= 0, 1, 0)."
     name = IN_SYMPY.get(name, name)
-    cure = f"Write sp.{name}({given})" if name in PLAIN else "Of a run take the numbers of its record, such as log.x"
+    cure = f"Write sp.{name}({given})" if name in FUNCTIONS else "Of a run take the numbers of its record, such as log.x"
     return f"`{function}` takes numbers, but {given} is an expression, whose value changes from sample to sample. {cure}."
+
+
+def _symbolic(own, node):
+    """Whether a name in a part stands for an expression, or for what hapticlab made."""
+    names = [own.value(one) for one in ast.walk(node) if isinstance(one, ast.Name)]
+    return any(hasattr(one, "free_symbols") or ours(one) for one in names)
 
 
 def _format(own, match):
@@ -148,6 +159,8 @@ def _called(own, node):
 
 def _attribute(own, match):
     name = match[2]
+    if match[1] in PLAIN:
+        return ""
     node = next((a for a in own.nodes() + own.walk() if isinstance(a, ast.Attribute) and a.attr == name), None)
     if node is None:
         return ""
@@ -158,7 +171,7 @@ def _attribute(own, match):
         return f"{of}.{name}: a scene has no {name} of its own. {cure}."
     if name in ("n", "t"):
         return _rounded(f"{of}.{name}", of, name)
-    if IN_SYMPY.get(name, name) in PLAIN:
+    if IN_SYMPY.get(name, name) in FUNCTIONS:
         return f"{of}.{name}: a symbol has no such function of its own. Write sp.{IN_SYMPY.get(name, name)}({of})."
     if name in RATES:
         return f"{of}.{name} is not known. The rate of a coordinate is {of}.diff(t), its second derivative {of}.diff(t, 2)."
@@ -169,7 +182,7 @@ def _attribute(own, match):
 
 def _call(own, match):
     call = first(own, ast.Call)
-    if not isinstance(call, ast.Call):
+    if not isinstance(call, ast.Call) or match[1] in PLAIN - {"int", "float"}:
         return ""
     of, given = code_of(call.func), ", ".join(map(code_of, call.args))
     if getattr(type(own.value(call.func)), "role", "") == "coordinate":
@@ -218,7 +231,10 @@ TABLE: tuple[tuple[str, Rule], ...] = (
     (r"cannot determine truth value of Relational: (.*)", decided),
     (r"truth value of an array with more than one element is ambiguous", decided),
     (r"Cannot convert expression to float|Cannot convert symbols to int|Cannot round symbolic", _number_wanted),
-    (r"cannot be interpreted as an integer|loop of ufunc does not support argument|ufunc '\w+' not supported", _number_wanted),
+    (
+        r"interpreted as an integer|loop of ufunc does not support argument 0 of type (?!int|float)|ufunc '\w+' not supported",
+        _number_wanted,
+    ),
     (r"unsupported format string passed to", _format),
     (r"only (?:0-dimensional|length-1|size-1) arrays can be converted", _array_in_math),
     (r"unsupported operand type\(s\) for \^", _power),
@@ -230,7 +246,7 @@ TABLE: tuple[tuple[str, Rule], ...] = (
     (r"unsupported operand type\(s\) for .*'(?:function|method)'", _with_function),
     (r"'(\w+)'(?: object)? is not subscriptable", _subscript),
     (r"'(\w+)'(?: object)? has no attribute '(\w+)'", _attribute),
-    (r"'\w+' object is not callable", _call),
+    (r"'(\w+)' object is not callable", _call),
     (r"'\w+'(?: object is not iterable| has no len\(\))", _record),
     (r"not supported between instances of .*_Unapplied", _uncalled),
     (r"([\w.]+)\(\) got an unexpected keyword argument '(\w+)'", _keyword),

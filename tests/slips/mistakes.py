@@ -240,6 +240,12 @@ CHECKS = {
         "1//2",
         "1/2",
     ),
+    "^ in an answer": ("hl.check('02.period_leak', lambda k, D: k*D^2/2)", r"`\^` is not a power", r"D\*\*2"),
+    "None in an answer": (
+        "def f(k, D):\n    print(D**2)\nhl.check('02.period_leak', lambda k, D: k*f(k, D)/2)",
+        "None, which is no number",
+        "return",
+    ),
     # lab 06
     "order of the step": (
         "stepped(lambda spring, b_c, v, w, m: (spring + b_c*(v - w))/m, old=True)",
