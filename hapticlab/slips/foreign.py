@@ -24,6 +24,11 @@ IN_SYMPY = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "at
 FUNCTIONS = set("sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt floor ceiling Abs sign".split())
 #: what Python and NumPy call values that are no symbols, nor made of them
 PLAIN = set("int float complex bool str list tuple dict set NoneType function method module range ndarray numpy.ndarray".split())
+CLOCK_AND_HANDLE = ("x", "v", "n", "t", "T")
+IMPORTS = {
+    "np": "import numpy as np", "sp": "import sympy as sp", "math": "import math", "plt": "import matplotlib.pyplot as plt",
+    "hl": "import hapticlab as hl", "numpy": "import numpy", "sympy": "import sympy", "hapticlab": "import hapticlab",
+}  # fmt: skip
 RATES = {"dot", "d", "dt", "ddot", "prime", "velocity", "rate", "derivative"}
 RECORD = "Samples are in the record of a run: log = paddle.run(scene, 2.0), then log.x."
 
@@ -182,9 +187,11 @@ def _attribute(own, match):
 
 def _call(own, match):
     call = first(own, ast.Call)
-    if not isinstance(call, ast.Call) or match[1] in PLAIN - {"int", "float"}:
+    if not isinstance(call, ast.Call) or match[1] in {"list", "tuple", "dict", "set", "str", "NoneType", "module"}:
         return ""
     of, given = code_of(call.func), ", ".join(map(code_of, call.args))
+    if of in CLOCK_AND_HANDLE:
+        return f"{of} was given another value in your code, so {of}({given}) is no sample. Write: from hapticlab import {of}."
     if getattr(type(own.value(call.func)), "role", "") == "coordinate":
         return f"{of}({given}): a coordinate is a function of time already, so it is not called. Write {of} alone."
     return f"{of}({given}) calls {of} as if it were a function. Python needs the sign of a multiplication: write {of}*({given})."
@@ -213,7 +220,8 @@ def _keyword(own, match):
     function = own.value(call.func) if isinstance(call, ast.Call) else None
     if not ours(function):
         return ""
-    shown, taken = code_of(call.func), [name for name in signature(function).parameters if name not in ("self", "values")]
+    known = signature(function).parameters.values()
+    shown, taken = code_of(call.func), [one.name for one in known if one.name != "self" and one.kind != one.VAR_KEYWORD]
     takes = f"It takes {', '.join(taken)}."
     if "unexpected" in match[0]:
         near = [one for one in taken if one.lower() == match[2].lower()] or get_close_matches(match[2], taken, 1, 0.5)
@@ -221,9 +229,39 @@ def _keyword(own, match):
         return f"{shown} has no argument {match[2]}. {f'Did you mean {near[0]}? ' if near else ''}{takes}"
     if "missing" in match[0]:
         given = " and ".join(f"{name} = {code_of(one)}" for name, one in zip(taken, call.args, strict=False))
-        lacking = match[2].replace("'", "")
-        return f"{shown} was given {given or 'nothing'}, and lacks {lacking}. {takes} Write {shown}({taken[0]}, {lacking}=...)."
+        lacking = re.findall(r"'(\w+)'", match[2])
+        cure = ", ".join([*(one for one in taken[:1] if one not in lacking), *(f"{one}=..." for one in lacking)])
+        return f"{shown} was given {given or 'nothing'}, and lacks {', '.join(lacking)}. {takes} Write {shown}({cure})."
     return f"{shown} was given too many values without a name. {takes} Write the name before each: name=value."
+
+
+def _unknown_name(own, match):
+    """A name that a cell above should have made, or a library's function without its library."""
+    name, function = match[1], IN_SYMPY.get(match[1], match[1])
+    if name in IMPORTS:
+        return f"{name} is not known yet. Write {IMPORTS[name]} above, and run it."
+    if name in CLOCK_AND_HANDLE:
+        return f"{name} is not known yet. Write from hapticlab import {name} above, and run it."
+    if function in FUNCTIONS:
+        return f"{name} is not known by itself. Write sp.{function}(...) of expressions, or np.{name}(...) of numbers."
+    return ""
+
+
+def _kept(own, match):
+    target = next(iter(getattr(own.statement, "targets", [])), None)
+    owner = getattr(target, "value", None)
+    if isinstance(target, ast.Subscript) and isinstance(owner, ast.Attribute):
+        owner = owner.value  # of wall.values["k"]
+    value = own.value(owner) if owner else None
+    if not ours(value):
+        return ""
+    kind, name = type(value).__name__, code_of(target.slice).strip("'\"") if isinstance(target, ast.Subscript) else match[1]
+    new = f"{code_of(owner)}({name}=...)" if kind == "Scene" else f"hl.{kind}(..., {name}=...)"
+    return f"A {kind} keeps its values once it is made. Make another one with {name}: {new}."
+
+
+def _rate(own, match):
+    return f"A rate is a derivative over time, but {match[1]} is none. Write .diff(t), with t from hapticlab."
 
 
 ITEMS = r"'(list|tuple|dict|set)'"
@@ -246,8 +284,11 @@ TABLE: tuple[tuple[str, Rule], ...] = (
     (r"unsupported operand type\(s\) for .*'(?:function|method)'", _with_function),
     (r"'(\w+)'(?: object)? is not subscriptable", _subscript),
     (r"'(\w+)'(?: object)? has no attribute '(\w+)'", _attribute),
-    (r"'(\w+)' object is not callable", _call),
+    (r"'([\w.]+)' object is not callable", _call),
     (r"'\w+'(?: object is not iterable| has no len\(\))", _record),
+    (r"name '(\w+)' is not defined", _unknown_name),
+    (r"cannot assign to field '(\w+)'|'Frozen' object does not support item assignment", _kept),
+    (r"calculate derivative wrt (.*?)\.", _rate),
     (r"not supported between instances of .*_Unapplied", _uncalled),
     (r"([\w.]+)\(\) got an unexpected keyword argument '(\w+)'", _keyword),
     (r"([\w.]+)\(\) missing \d+ required (?:positional|keyword-only) arguments?: (.*)", _keyword),

@@ -12,18 +12,29 @@ from traitlets.config import Config
 
 from hapticlab.slips.shown import show_in
 
+#: these open pyplot, every page, or pint
+SLOW = ("plot of a symbol", "misspelt name", "unit Nm-1")
 ANSI = re.compile(r"\x1b\[[0-9;]*m")
 
 
 @pytest.fixture(scope="module")
-def shell():
+def kernel():
     main = sys.modules["__main__"]
     shell = InteractiveShell(config=Config(HistoryManager={"enabled": False}))
     show_in(shell)
-    shell.run_cell(BEFORE).raise_error()
-    yield shell
+    for cell in (BEFORE, PENDULUM):
+        shell.run_cell(cell).raise_error()
+    yield shell, dict(shell.user_ns)
     plt.close("all")
     sys.modules["__main__"] = main
+
+
+@pytest.fixture
+def shell(kernel):
+    """The shell with every name as before the first cell, whatever another one did to it."""
+    shell, names = kernel
+    shell.user_ns.update(names)
+    return shell
 
 
 def said(shell, capsys, cell):
@@ -37,7 +48,7 @@ def said(shell, capsys, cell):
     return ANSI.sub("", "".join((*warned, err, out)))
 
 
-@pytest.mark.parametrize("name", CELLS)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.wide] * (name in SLOW)) for name in CELLS])
 def test_a_mistake_is_named_with_its_cure(shell, capsys, name):
     cell, mistake, cure = CELLS[name]
     text = said(shell, capsys, cell)
@@ -47,12 +58,6 @@ def test_a_mistake_is_named_with_its_cure(shell, capsys, name):
     assert "site-packages" not in text and "hapticlab/" not in text, text
 
 
-@pytest.fixture(scope="module")
-def lab_06(shell):
-    shell.run_cell(PENDULUM).raise_error()
-
-
-@pytest.mark.usefixtures("lab_06")
 @pytest.mark.parametrize("name", CHECKS)
 def test_a_wrong_answer_is_named_with_its_cure(shell, capsys, name):
     cell, mistake, cure = CHECKS[name]
@@ -80,7 +85,7 @@ def test_an_error_is_the_own_line_and_the_sentence_and_the_rest_one_call_away(sh
         assert "hapticlab/scene/notation/units.py" in whole.replace("\\", "/")
 
 
-@pytest.mark.parametrize("xmode", ["Plain", "Context"])
+@pytest.mark.parametrize("xmode", [pytest.param("Plain", marks=pytest.mark.wide), "Context"])
 @pytest.mark.parametrize(
     "cell",
     [
