@@ -155,9 +155,9 @@ against all. With delay the plain spring asks for most of slow motion, and predi
 above, Eq. (23.5) from half a period on, Eq. (23.7) from two.
 
 **The condition knows nothing of switching.** Through `gate` and one period of delay, the cycle x = 0 (just outside), 0.7865,
-1, 0.1739 makes the law of Eq. (23.7) draw energy up to b = 1.5331 K T, past the 1.5282 of the table. Without delay a
-search over cycles of up to 12 samples found none beyond the table, for any law, `gate` or `clip`; for the plain law that is
-proven.
+1, 0.1739 makes the law of Eq. (23.7) draw energy up to b = 1.5331 K T, past the 1.5282 of the table; with half a period, a
+cycle of three samples up to 1.3306 K T, past 1.3150. Without delay a search over cycles of up to 12 samples found none beyond
+the table, for any law, `gate` or `clip`; for the plain law that is proven. `hl.passivity.worst_motion` searches such cycles.
 
 ## A damper on a filtered velocity
 

@@ -5,13 +5,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...compiler.engines.engine import load
-from ...compiler.ir.program import Channel
+from ...compiler.ir.program import REAL_TYPES, Channel
+from ...compiler.tick.handle_samples import is_past_sample
 from ...limits.limit import whole_and_fraction
 
-#: periods after which the force along a closed motion must repeat itself
-LONGEST = 2000
+#: cycles after which what remembers samples alone repeats itself, and Newton steps to where bodies do
+SETTLED, STEPS = 4, 4
 #: relative difference of the force from one cycle to the next below which it repeats itself
 REPEATS = 1e-6
+#: relative change of a state by which its effect is measured
+CHANGE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,13 @@ class ClosedMotions:
     delay : float
         [s]
 
+    Attributes
+    ----------
+    work : float
+        Instructions that a motion of one sample takes, about.
+    spent : float
+        Instructions so far.
+
     Examples
     --------
     >>> import hapticlab as hl
@@ -66,7 +76,9 @@ class ClosedMotions:
         parts = (fraction, 1 - fraction) if fraction else (1.0,)
         self.durations = program.T * np.array(parts)
         self._values, self._loaded = list(program.values), load(_moved(program))
-        self._remembers = bool(program.states)
+        self._bodies = [k for k, c in enumerate(program.states) if c.type in REAL_TYPES and not is_past_sample(c.name)]
+        self._length, self.spent = len(program), 0.0
+        self.work = self._length * (SETTLED + (STEPS * (len(self._bodies) + 1) if self._bodies else 0))
 
     def books(self, positions):
         """Return the :class:`Books` of motions: positions [m] of shape (P, L), P a whole number of samples."""
@@ -79,21 +91,53 @@ class ClosedMotions:
         return Books(-(held * steps).sum(0), (steps**2 / durations).sum(0), np.abs(steps).sum(0), held, repeats)
 
     def _forces(self, sampled):
-        """Return the forces along the last cycle, shape (samples, L), and whether they were the same one cycle before."""
+        """Return the forces along a cycle after which they repeat themselves, shape (samples, L), and whether they do."""
+        force, states = self._cycle(sampled, None)
+        for _ in range(SETTLED - 1):
+            before, (force, states) = force, self._cycle(sampled, states)
+            repeats = _alike(force, before)
+            if repeats.all():
+                return force, repeats
+        late = np.flatnonzero(~repeats)
+        if self._bodies:
+            force[:, late], repeats[late] = self._shot(sampled[:, late], states[:, late])
+        return force, repeats
+
+    def _shot(self, sampled, states):
+        """Return what :meth:`_forces` does, from the states to which a cycle leads back: shooting, by Newton's method."""
+        lanes, bodies = sampled.shape[1], len(self._bodies)
+        many = np.tile(sampled, bodies + 1)
+        for _ in range(STEPS):
+            begun = np.tile(states, bodies + 1)
+            change = CHANGE * (np.abs(states[self._bodies]).max(axis=1) + CHANGE)
+            for k, (row, by) in enumerate(zip(self._bodies, change, strict=True), 1):
+                begun[row, k * lanes : (k + 1) * lanes] += by
+            ended = self._cycle(many, begun)[1][self._bodies].reshape(bodies, bodies + 1, lanes)
+            with np.errstate(all="ignore"):
+                slopes = np.moveaxis((ended[:, 1:] - ended[:, :1]) / change[:, None], 2, 0)
+                left = (ended[:, 0] - states[self._bodies]).T[..., None]
+                known = np.isfinite(slopes).all((1, 2)) & np.isfinite(left).all((1, 2))
+                inverse = np.linalg.pinv(np.eye(bodies) - np.where(known[:, None, None], slopes, 0.0))
+                states[self._bodies] += (inverse @ np.where(known[:, None, None], left, 0.0))[..., 0].T
+        before, states = self._cycle(sampled, states)
+        force, _ = self._cycle(sampled, states)
+        return force, _alike(force, before)
+
+    def _cycle(self, sampled, states):
+        """Return the forces at the samples, and the states after them."""
+        self.spent += self._length * sampled.size
         rows = np.empty((len(self._values) + 1, sampled.shape[1]))
         rows[:-1] = np.array(self._values, float)[:, None]
-        states, before = None, np.full(sampled.shape, np.nan)
-        for _ in range(max(3, LONGEST // len(sampled)) if self._remembers else 2):
-            force = np.empty(sampled.shape)
-            for k, rows[-1] in enumerate(sampled):
-                outputs, states = self._loaded.run(1, None, rows, states)
-                force[k] = outputs[0, 0]
-            with np.errstate(invalid="ignore", over="ignore"):
-                repeats = (np.abs(force - before) <= REPEATS * np.abs(force).max(0)).all(0)
-            if repeats.all():
-                break
-            before = force
-        return force, repeats
+        force = np.empty(sampled.shape)
+        for k, rows[-1] in enumerate(sampled):
+            outputs, states = self._loaded.run(1, None, rows, states)
+            force[k] = outputs[0, 0]
+        return force, states
+
+
+def _alike(force, before):
+    with np.errstate(invalid="ignore", over="ignore"):
+        return (np.abs(force - before) <= REPEATS * np.abs(force).max(0)).all(0)
 
 
 def _moved(program):

@@ -12,12 +12,16 @@ MOST, DRAWN = 50_000, 1000
 KEPT = 60
 #: what stretches of a motion are shifted by, as parts of the reach
 SHIFTS = np.outer([1, -1], [0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.0003]).ravel()
+#: of how many motions of one length stretches are shifted; of longer ones than so many samples, of the best alone
+SHIFTED, LONG = 4, 12
 #: how many lengths of stretches, from one position to all but one
 STRETCHES = 8
 #: numbers of samples that are looked at
 LENGTHS = (*range(2, 13), 16, 24, 32, 48, 64)
-#: a motion is better by this part
-BETTER = 1e-4
+#: a coarse position beside a switch, as a part of the reach
+BESIDE = 0.15
+#: a motion is better by this part, and as good within this part of the best
+BETTER, EQUAL = 3e-5, 1e-6
 
 
 class MotionSearch:
@@ -47,7 +51,7 @@ class MotionSearch:
     def __init__(self, score, about, reach, surfaces, parts, seed, most=MOST):
         self.score, self.about, self.reach, self.parts, self.most = score, about, reach, parts, most
         self.random, self.tried = np.random.default_rng(seed), 0
-        sides = [(surface - about) / reach + side * GRAIN / 2 for surface in surfaces for side in (-1, 1)]
+        sides = [(surface - about) / reach + side for surface in surfaces for side in (-BESIDE, -GRAIN / 2, GRAIN / 2, BESIDE)]
         self.letters = np.unique(np.clip([-1, -1 / 3, *sides, 1 / 3, 1], -1, 1))
 
     def best_of(self, samples, known=()):
@@ -57,7 +61,9 @@ class MotionSearch:
             begin = [(x[:, None] - self.about) / self.reach for x in known if len(x) == size]
             starts = np.concatenate([*begin, *self._starts(size, best)], axis=1)
             best = self._best(starts)
-            best[:, 0] = self._shifted(best[:, 0])
+            several = SHIFTED if size <= LONG * self.parts else 1
+            best[:, :several] = np.stack([self._shifted(shape) for shape in best.T[:several]], axis=1)
+            best = self._best(best)
             yield self.place(best[:, 0])
 
     def place(self, shape):
@@ -72,7 +78,8 @@ class MotionSearch:
     def _best(self, shapes):
         """Return the shapes of the largest scores, the best first."""
         scores = self._scores(shapes)
-        _, first = np.unique(scores, return_index=True)  # of equally good ones a single one
+        alike = EQUAL * np.abs(scores[np.isfinite(scores)]).max(initial=1e-300)
+        _, first = np.unique(np.round(scores / alike), return_index=True)  # of equally good ones a single one
         return shapes[:, first[::-1][:KEPT]]
 
     def _starts(self, size, best):
@@ -105,7 +112,7 @@ class MotionSearch:
                 tried = self.random.choice(tried, self.most, axis=1, replace=False)
             scores = self._scores(tried)
             k = scores.argmax()
-            if not scores[k] > most + BETTER * abs(scores[k]):
+            if not (np.isfinite(scores[k]) and scores[k] > most + BETTER * abs(scores[k])):
                 break
             shape, most = tried[:, k], scores[k]
         return shape

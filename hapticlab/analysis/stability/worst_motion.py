@@ -18,10 +18,10 @@ from ...errors import AnalysisError, UnusualValueWarning
 from ...scene.notation.symbols import n, parameters, signal, when
 from ...scene.notation.written import no_scene
 from ...scene.scene import Scene
-from .closed_motions import LONGEST, ClosedMotions
+from .closed_motions import ClosedMotions
 from .condition_switches import switched
 from .limit_plots import plot_worst_motion
-from .motion_search import LENGTHS, MotionSearch
+from .motion_search import LENGTHS, MOST, MotionSearch
 from .operating_points import TRAVEL, borders, operating_points
 
 if TYPE_CHECKING:
@@ -40,6 +40,8 @@ SMALLEST = 1e-2
 PLACES = 4
 #: a longer motion has to be better by this part, and a steeper place than those where the force switches
 BETTER, STEEPER = 1e-3, 0.1
+#: instructions of one call of a search, and of all; some 20 s
+CALL, WORK = 5e8, 2e10
 #: samples that are printed
 SHOWN = 16
 #: a hand that moves the handle as it is told answers within this part of a period
@@ -208,8 +210,12 @@ def worst_motion(
     The hand may move the handle in any way, so a motion is its positions at N samples, again and again. In the period after
     sample n the scene gives the hand -F (x(n+1) - x(n)), and the device dissipates b (x(n+1) - x(n))^2/T + f_c |x(n+1) -
     x(n)| at the least, with a constant velocity; its mass stores and returns. Colgate and Schenkel's criterion is that no
-    such motion draws energy, which is the same here for scenes that switch or are not linear. The program runs over each
-    motion until its force repeats itself. Positions are exact, velocities their backward differences.
+    such motion draws energy, which is the same here for scenes that switch or are not linear. The compiled program runs over each
+    motion until its force repeats itself; bodies begin in the states to which the motion leads them back. Positions are exact,
+    velocities their backward differences, and the motor does not saturate.
+
+    All coarse motions of few samples are tried, longer ones are made from the best, and stretches of the best are shifted until
+    nothing is gained. The search ends early, with shorter motions, where a scene takes many instructions.
 
     Parameters
     ----------
@@ -257,27 +263,29 @@ def worst_motion(
     gains = _Gains(ClosedMotions(program, delay), coulomb, b, SMALLEST * reach)
     surfaces = _surfaces(scene, T)
     places = _places(gains, surfaces, reach) if about is None else [number("about", x, "m", "a motion") for x in np.ravel(about)]
+    most, share = int(np.clip(CALL / gains.motions.work, 100, MOST)), WORK / (2 * len(places))
     needing, powerful, tried = [], [], 0
     for place in places:
         near = [s for s in surfaces if abs(s - place) < reach]
-        search = MotionSearch(gains.damping, place, reach, near, len(gains.motions.durations), seed)
-        known_here = list(search.best_of(samples))
-        needing += [gains.enlarged(x, place, reach) for x in known_here]
+        search = MotionSearch(gains.damping, place, reach, near, len(gains.motions.durations), seed, most)
+        some = gains.within(share, search.best_of(samples))
+        needing += [gains.enlarged(x, place, reach) for x in some]
         if b is not None:
             search.score = gains.power
-            powerful += search.best_of(samples, known_here)
+            powerful += gains.within(share, search.best_of(samples, some))
         tried += search.tried
     x, b_req = _shortest(needing, gains.damping)
     if not np.isfinite(b_req):
         raise AnalysisError(
-            f"{scene.name}: of {tried} closed motions none had a force that repeats itself within {LONGEST} periods; a scene "
-            "whose bodies never come to rest has no closed motion. Give its bodies some damping."
+            f"{scene.name}: of {tried} closed motions none had a force that repeats itself from cycle to cycle. Search about a "
+            "place where the scene has a rest, about=..., or within a smaller reach."
         )
     if b is not None and b_req > b:
         x, _ = _shortest(powerful, gains.power)
     books = gains.motions.books(x[:, None])
     at = ", ".join(f"{1e3 * place:.4g}" for place in places)
-    searched = f"{tried} closed motions of 2 to {samples} samples within {1e3 * reach:g} mm of x = {at} mm, seed {seed}"
+    longest = max(len(x) for x in needing) // len(gains.motions.durations)
+    searched = f"{tried} closed motions of 2 to {longest} samples within {1e3 * reach:g} mm of x = {at} mm, seed {seed}"
     return WorstMotion(
         scene.name, x, books.held[:, 0], np.resize(gains.motions.durations, len(x)), float(books.drawn[0]),
         float(books.viscous[0]), coulomb * float(books.path[0]), b_req, b, searched, program,
@@ -305,6 +313,15 @@ class _Gains:
         books = self.motions.books(x)
         gained = books.drawn - self.coulomb * books.path - self.b * books.viscous
         return np.where(books.repeats, gained / len(x), -np.inf)
+
+    def within(self, share, search):
+        """Return the motions of a search, which ends after so many instructions, however long its motions are by then."""
+        end, found = self.motions.spent + share, []
+        for x in search:
+            found.append(x)
+            if self.motions.spent > end:
+                break
+        return found
 
     def enlarged(self, x, about, reach):
         """Return a motion that fills the reach, where that needs no less damping."""
