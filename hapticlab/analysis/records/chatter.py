@@ -10,9 +10,21 @@ import numpy as np
 
 from ...base.telemetry import check_record
 from ...errors import AnalysisError
-from .chatter_end import SWINGS, linear_trend, swings_of, verdict
+from .chatter_end import swings_of
 from .chatter_findings import Chatter
-from .chatter_signs import contact_rate, leaves_its_drive, levels_off, runs_away, scatter, upward_crossings
+from .chatter_inside import inside
+from .chatter_signs import (
+    around_trend,
+    contact_rate,
+    leaves_its_drive,
+    levels_off,
+    runs_away,
+    scatter,
+    sinks_to_counts,
+    strength,
+    upward_crossings,
+)
+from .chatter_wall import OfTheWall, of_the_wall
 from .driven_motion import drive_of, following
 
 if TYPE_CHECKING:
@@ -26,10 +38,6 @@ if TYPE_CHECKING:
 
 #: amplitudes of the last two quarters within this ratio count as one sustained oscillation
 LOCK = 0.01
-#: swings of fewer samples than this are known too badly to be fitted
-COARSE = 3
-#: a trend of a linear motion is told from none where it exceeds its error by this
-SURE = 5.0
 #: fewer cycles in a quarter of the record than this do not tell a sustained oscillation from a growing one
 CYCLES = 3
 #: swings that differ by less are the same, turning points being located between samples
@@ -44,8 +52,6 @@ FOLLOWS = 0.02
 RESTS = 0.01
 #: a cycle repeats itself where it comes back within this part of its amplitude; it is looked for up to so many samples
 REPEATS, LONGEST_CYCLE = 1e-4, 2000
-#: a swing over so many counts of the encoder or fewer: its unevenness may be what is left of a decay
-COUNTS = 4
 
 
 def chatter(log: Telemetry, driven: Hand | Callable[[Array], ArrayLike] | str | ArrayLike | None = None) -> Chatter:
@@ -106,10 +112,11 @@ def _found(log, driven):
     contacts = contact_rate(F[-half:], log.T)
     rest, travel = float(x[-quarter:].mean()), float(np.ptp(x[-quarter:]))
     least = max(1e-9, 1e-6 * np.ptp(x), 4 * np.finfo(np.float32).eps * abs(x).max())
-    size, quarter_before = 0.0, slice(-2 * quarter, -quarter)
+    size = 0.0
 
-    def still(state, scatter=0.0, amplitude=0.0, growth=0.0):
-        return Chatter(state, amplitude, None, contacts, growth, False, False, rest, travel, None, size, math.nan, scatter)
+    def still(state, scatter=0.0, amplitude=0.0, growth=0.0, inner=math.nan):
+        found = (None, size, math.nan, scatter, False, None, None, travel / 2 if amplitude else 0.0, inner)
+        return Chatter(state, amplitude, None, contacts, growth, False, False, rest, travel, *found)
 
     whole = float(np.ptp(x))
     if driven is not None:
@@ -118,80 +125,58 @@ def _found(log, driven):
             return still("runaway")
         follows = following(x, drive)
         size, x = float(np.ptp(follows)) / 2, x[-half:] - follows
-        if _strength(x) < max(least, FOLLOWS * _strength(follows)):
+        if strength(x) < max(least, FOLLOWS * strength(follows)):
             return still("driven")
     turns = _reversals(x[-half:])
-    if turns == 1 and travel > RESTS * whole and not size and _strength(x[-quarter:]) >= least:
-        return still("undecided", 0.0, float(np.ptp(x[-half:]) / 2), math.nan)
-    if _strength(x[-quarter:]) < least or turns < REVERSALS:
+    if turns == 1 and travel > RESTS * whole and not size and strength(x[-quarter:]) >= least:
+        inner = inside(x[-half:], F[-half:]).growth if np.all(F[-quarter:] != 0) else math.nan
+        state = "decaying" if inner < 0 else "growing" if inner > 0 else "undecided"
+        return still(state, 0.0, float(np.ptp(x[-half:]) / 2), math.nan, inner / log.T)
+    if strength(x[-quarter:]) < least or turns < REVERSALS:
         return still("runaway" if runs_away(x, quarter) else "none")
-    y, _ = _around_trend(x[-half:])
+    y, _ = around_trend(x[-half:])
     if "x_true" not in log.channels and len(np.unique(log.x[-half:])) > 2 and (noise := scatter(y)):
         return still("none", noise)
     crossings = upward_crossings(y) * log.T
     frequency = float((len(crossings) - 1) / (crossings[-1] - crossings[0])) if len(crossings) > 1 else None
     clipped = bool(log.saturated is not None and np.any(log.saturated[-half:]))
-    uneven, ends = math.nan, None
-    if len(crossings) > 2 * CYCLES:
-        ratio = math.log(_strength(x[-quarter:]) / max(_strength(x[quarter_before]), least * 1e-3))
-        uneven = _irregularity(y)
-        locked = abs(ratio) < LOCK or abs(ratio) < 2 * uneven
-        state = "chatter" if locked else "growing" if ratio > 0 else "decaying"
-        if _sinks_to_counts(y, log.x[-half:]):
-            state, locked = ("chatter", True) if abs(ratio) < LOCK else ("growing" if ratio > 0 else "decaying", False)
-    else:
-        (state, ratio), locked = _compare_swings(x, quarter), False
-    if driven is None:
-        state, locked, ends = _of_the_wall(state, locked, x[-half:], F[-half:], log, clipped)
+    state, locked, ratio, uneven = _by_quarters(x[-half:], y, log.x[-half:], len(crossings), least)
+    wall = OfTheWall(state, locked)
+    if np.ptp(x[-(quarter // 4) :]) < least:  # it has come to rest
+        wall = OfTheWall("decaying", False)
+    elif driven is None:
+        wall = of_the_wall(state, locked, x[-half:], F[-half:], log, clipped)
+    state, locked, ends = wall.state, wall.locked, wall.ends
     dither, amplitude = len(np.unique(log.x[-half:])) == 2, float(np.ptp(y) / 2)
     period = cycle_length(x[-half:], amplitude) if locked else None
     growth, error = ratio / (quarter * log.T), uneven / (quarter * log.T)
     slower = state == "decaying" and (clipped or levels_off(_amplitudes(x[-half:], y, len(crossings)))) and ends is None
-    longer = 2 * len(t) * log.T if state == "undecided" else None
-    found = (period, size, error, 0.0, slower, ends, longer)
+    slower = slower and math.isnan(wall.growth)
+    longer = 2 * len(log.t) * log.T if state == "undecided" else None
+    last = len(x) // 8 if frequency is None else min(half, math.ceil(1 / (frequency * log.T)) + 1)
+    found = (period, size, error, 0.0, slower, ends, longer, float(np.ptp(x[-last:]) / 2), wall.growth / log.T)
     return Chatter(state, amplitude, frequency, contacts, growth, locked, dither, rest, travel, *found)
 
 
-def _of_the_wall(state, locked, x, F, log, clipped):
-    """The state, whether it has settled, and the amplitudes between which it ends, by what the force does to the swing.
-
-    Where the handle leaves the wall, or the motor is at its limit, the swings are fitted. Where the force is linear there
-    is no cycle, and what does not grow dies out, however slowly.
-    """
-    outside = np.flatnonzero(F == 0)
-    bounces = len(outside) > 0 and np.any(F) and outside[-1] >= len(F) // 2
-    if _sinks_to_counts(_around_trend(x)[0], log.x[-len(x) :]) or not (bounces or clipped):
-        inside = slice(outside[-1] + 1 if len(outside) else 0, None)
-        if locked and abs(trend := linear_trend(x[inside], F[inside])) > SURE:
-            state, locked = ("growing" if trend > 0 else "decaying"), False
-        return state, locked, None
-    at, swings = swings_of(x)
-    if state == "growing" or len(x) < COARSE * len(swings):
-        return state, locked, None
-    if len(swings) < SWINGS:
-        return "undecided", False, None
-    state, (low, high) = verdict(at * log.T, swings, x, F, clipped)
-    return state, locked and state == "chatter", (low / 2, high / 2)
+def _by_quarters(x, y, sensed, cycles, least):
+    """The state by the two quarters of x, whether it has settled, the logarithm of their ratio and its standard error."""
+    quarter = len(x) // 2
+    if cycles <= 2 * CYCLES:
+        state, ratio = _compare_swings(x, quarter)
+        return state, False, ratio, math.nan
+    ratio = math.log(strength(x[-quarter:]) / max(strength(x[-2 * quarter : -quarter]), least * 1e-3))
+    uneven, falls = _irregularity(y)
+    even = abs(ratio) < LOCK
+    locked = even or (abs(ratio) < 2 * uneven and not falls and not sinks_to_counts(y, sensed))
+    return "chatter" if locked else "growing" if ratio > 0 else "decaying", locked, ratio, uneven
 
 
 def _amplitudes(x, y, cycles):
     """Return amplitudes one after the other: of four windows that hold three cycles each, or else of every swing."""
     size = len(y) // 4
     if cycles > 4 * CYCLES:
-        return [_strength(y[i * size : (i + 1) * size]) for i in range(4)]
+        return [strength(y[i * size : (i + 1) * size]) for i in range(4)]
     return swings_of(x)[1]
-
-
-def _sinks_to_counts(y, sensed):
-    """Tell whether a swing of a few encoder counts has lost a third: a decay, perhaps onto a smaller cycle.
-
-    Four windows make a decay that has just ended look as uneven as an irregular cycle.
-    """
-    size = len(y) // 4
-    first, second, third, fourth = (_strength(y[i * size : (i + 1) * size]) for i in range(4))
-    steps = np.diff(np.unique(sensed))
-    few = len(steps) > 0 and round(steps.sum() / steps.min()) <= COUNTS
-    return few and max(third, fourth) < 2 / 3 * max(first, second)
 
 
 def cycle_length(x, amplitude):
@@ -234,33 +219,16 @@ def _reversals(x):
     return int(np.count_nonzero(moves[1:] != moves[:-1]))
 
 
-def _around_trend(x):
-    """Return x less its straight line, and the weights of the fit: a drift is no oscillation.
-
-    The line is fitted under a Hann window, which makes whole cycles unnecessary.
-    """
-    n = np.linspace(-1, 1, len(x))
-    window = np.hanning(len(x) + 2)[1:-1]
-    window /= window.sum()
-    x = x - window @ x
-    return x - n * ((window * n) @ x) / ((window * n) @ n), window
-
-
-def _strength(x):
-    """Return the amplitude of the sinusoid of equal energy."""
-    y, window = _around_trend(x)
-    return math.sqrt(2 * (window @ y**2))
-
-
 def _irregularity(y):
-    """Return the standard error of the logarithm of the amplitude's ratio between the two halves of y.
+    """Return the standard error of the logarithm of the amplitude's ratio between the two halves of y, and whether it falls.
 
     Four windows, a straight line through the logarithms of their amplitudes: exponential growth lies on it, the ups and
-    downs of an irregular limit cycle (encoder, friction, contacts between samples) do not.
+    downs of an irregular limit cycle (encoder, friction, contacts between samples) do not. An amplitude falls where each
+    window has less than the one before, as friction makes it do, faster and faster.
     """
     size = len(y) // 4
-    logs = np.log([_strength(y[i * size : (i + 1) * size]) + 1e-300 for i in range(4)])
+    logs = np.log([strength(y[i * size : (i + 1) * size]) + 1e-300 for i in range(4)])
     at = np.array([-0.75, -0.25, 0.25, 0.75])  # so that the slope is the change from one half to the other
     slope = (at @ logs) / (at @ at)
     residual = logs - logs.mean() - slope * at
-    return math.sqrt((residual @ residual) / 2 / (at @ at))
+    return math.sqrt((residual @ residual) / 2 / (at @ at)), bool(np.all(np.diff(logs) < -LOCK))

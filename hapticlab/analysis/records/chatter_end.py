@@ -26,8 +26,15 @@ UNEVEN = 0.02
 KNOWN, DEPTH = 2e-5, 2e-3
 #: without a depth to compare with: an end above the first part of the present swing is a cycle, below the second it is rest
 LARGE, SMALL = 0.5, 0.1
+#: a cycle has been seen where it ends surely above this part of the present swing, and rest where it ends surely below this
+#: part of the swing that leaves the wall; between the two the record does not tell
+REACHED, CLEARLY = 0.7, 0.7
+#: a swing this much smaller than one beside it is a wiggle of noise; where more than this part are, swings tell nothing
+WIGGLE, RAGGED = 0.1, 0.1
 #: what has come so near to its end has settled
 SETTLED = 0.01
+#: a trend of a linear motion is told from none where it exceeds its error by this
+SURE = 5.0
 #: a force is linear in the samples where what is left of it is below this part of its range
 LINEAR = 1e-4
 
@@ -43,16 +50,25 @@ def swings_of(x):
     return b[1:], abs(np.diff(peak))
 
 
-def verdict(t, swings, x, F, clipped):
-    """Return the state of an oscillation that is not linear, and between which swings it ends [m]."""
+def ragged(swings):
+    """Return whether noise turns the handle round again and again between its true turning points."""
+    beside = np.maximum(swings[:-2], swings[2:])
+    return bool(np.mean(swings[1:-1] < WIGGLE * beside) > RAGGED) if len(swings) > 2 else False
+
+
+def verdict(t, swings, x, F, clipped, attracts=False):
+    """Return the state of an oscillation that is not linear, and between which swings it ends [m].
+
+    ``attracts`` says that rest inside the wall is known to attract.
+    """
     best, lowest, highest = swings_end(t, swings)
     now = float(np.median(swings[-5:]))
     least, most = (0.0, math.inf) if clipped else leaving_swing(x, F)
     least, most = (SMALL * now, LARGE * now) if math.isinf(most) else (least, most)
-    if lowest > most:
+    if lowest > max(most, REACHED * now) or lowest > (1 - SETTLED) * now:
         state = "growing" if best > (1 + SETTLED) * now and not lowest <= now <= highest else "chatter"
     else:
-        state = "decaying" if highest < least else "undecided"
+        state = "decaying" if highest < (1.0 if attracts else CLEARLY) * least else "undecided"
     return state, (float(max(lowest, 0.0)), float(max(highest, 0.0)))
 
 
@@ -130,7 +146,10 @@ def _depth(x, F):
 
 
 def linear_trend(x, F):
-    """Return the trend of the logarithm of the swings over its error, where the force acts throughout and is linear; else 0."""
+    """Return the trend of the logarithm of the swings [1/sample] where the force acts throughout and is linear; else 0.
+
+    It is 0 too where it does not exceed its error. Over many swings it shows what rounding hides from sample to sample.
+    """
     if not np.all(F != 0):
         return 0.0
     terms = np.c_[x[2:], x[1:-1], x[:-2]]
@@ -142,4 +161,5 @@ def linear_trend(x, F):
     at, logs = at - at.mean(), np.log(swings + 1e-300)
     slope = (at @ logs) / (at @ at)
     left = logs - logs.mean() - slope * at
-    return float(slope * math.sqrt((at @ at) * _free(left) / (left @ left + 1e-300)))
+    error = math.sqrt(left @ left / (at @ at) / _free(left))
+    return float(slope) if abs(slope) > SURE * error else 0.0

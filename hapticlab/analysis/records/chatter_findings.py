@@ -58,7 +58,13 @@ class Chatter:
         Lowest and highest amplitude at which the oscillation ends [m], by a constant plus an exponential through its
         swings; None where it was not looked for: the handle leaves no wall and no motor is at its limit.
     longer : float or None
-        Where it is undecided, the length of a record that may decide [s]: twice this one.
+        Where it is undecided, the length of a record that may decide [s]: twice this one. Of 458 records undecided on a map of
+        random plants, twice as long decided 304.
+    amplitude_at_end : float
+        Half the peak-to-peak of the last cycle [m]; of the last quarter where no cycle is seen.
+    inside_growth : float
+        How small oscillations grow that do not leave the wall [1/s], by the linear motion of the samples inside; nan where
+        the record does not show it: an encoder, friction or noise, a law that is not linear, or too few samples.
     record : Telemetry
         Where it was found.
     """
@@ -79,6 +85,8 @@ class Chatter:
     levels_off: bool = False
     ends_at: tuple[float, float] | None = None
     longer: float | None = None
+    amplitude_at_end: float = 0.0
+    inside_growth: float = math.nan
     record: Telemetry | None = field(default=None, repr=False, compare=False)
 
     def plot(self) -> Figure:
@@ -98,19 +106,26 @@ class Chatter:
             where = f"moves on by {1e3 * self.travel:.4g} mm" if moves else f"rests at {1e3 * self.rest:.4g} mm"
             return f"none: the handle {where}, with no oscillation in the last half"
         tone = "no measurable frequency" if self.frequency is None else f"{self.frequency:.4g} Hz"
-        place = f"{1e3 * self.amplitude:.4g} mm at {tone}, {self.contacts_per_second:.4g} contacts/s"
+        size = f"{1e3 * self.amplitude:.4g} mm"
+        if self.state == "decaying":
+            size = f"{1e3 * self.amplitude_at_end:.3g} mm at the end, of up to {size} in the last half,"
+        place = f"{size} at {tone}, {self.contacts_per_second:.4g} contacts/s"
         if self.dither:
             place += "; the sensed position moves by one encoder count only: dither of the encoder"
         place += f", beside {1e3 * self.driven:.4g} mm that are driven" if self.driven else ""
         if self.locked:
             cycle = f", repeats itself every {self.period} samples" if self.period else ""
             return f"chatter: {place}; sustained (growth {self.growth:+.2g} 1/s){cycle}"
+        if self.state == "chatter" and self.inside_growth > 0:
+            return (
+                f"chatter: {place}; it ends in a cycle: inside the wall small oscillations grow by {self.inside_growth:.2g} 1/s"
+            )
         if self.state == "chatter" and self.ends_at:
             low, high = (1e3 * a for a in self.ends_at)
             return f"chatter: {place}; it shrinks towards a cycle of {low:.3g} to {high:.3g} mm (growth {self.growth:+.3g} 1/s)"
         cure = "it dies out" if self.state == "decaying" else "run longer for its final amplitude"
         cure = "it may end in a cycle and not at rest: run longer" if self.levels_off else cure
         if self.state == "undecided":
-            cure = "it may die out or last: run longer" + (f", {self.longer:.3g} s for example" if self.longer else "")
+            cure = "it may die out or last: run longer" + (f", {self.longer:.2g} s may tell" if self.longer else "")
         growth = "growth unknown" if math.isnan(self.growth) else f"growth {self.growth:+.3g} 1/s"
         return f"{self.state}: {place}; not locked ({growth}): {cure}"

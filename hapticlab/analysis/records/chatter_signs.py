@@ -12,6 +12,8 @@ LAGS, CORRELATED = 40, 0.2
 OUTGROWS, ONE_SIDE = 2.0, 0.25
 #: a decay loses in the second half at least this part of what it lost in the first
 LEVELS = 0.5
+#: a swing over so many counts of the encoder or fewer: its unevenness may be what is left of a decay
+COUNTS = 4
 
 
 def runs_away(x, quarter):
@@ -71,3 +73,33 @@ def contact_rate(F, T):
         if max(begins[0], len(F) - begins[-1]) < 2 * between:
             return float(1 / (between * T))
     return float(len(begins) / (len(F) * T))
+
+
+def around_trend(x):
+    """Return x less its straight line, and the weights of the fit: a drift is no oscillation.
+
+    The line is fitted under a Hann window, which makes whole cycles unnecessary.
+    """
+    n = np.linspace(-1, 1, len(x))
+    window = np.hanning(len(x) + 2)[1:-1]
+    window /= window.sum()
+    x = x - window @ x
+    return x - n * ((window * n) @ x) / ((window * n) @ n), window
+
+
+def strength(x):
+    """Return the amplitude of the sinusoid of equal energy."""
+    y, window = around_trend(x)
+    return math.sqrt(2 * (window @ y**2))
+
+
+def sinks_to_counts(y, sensed):
+    """Tell whether a swing of a few encoder counts has lost a third: a decay, perhaps onto a smaller cycle.
+
+    Four windows make a decay that has just ended look as uneven as an irregular cycle.
+    """
+    size = len(y) // 4
+    first, second, third, fourth = (strength(y[i * size : (i + 1) * size]) for i in range(4))
+    steps = np.diff(np.unique(sensed))
+    few = len(steps) > 0 and round(steps.sum() / steps.min()) <= COUNTS
+    return few and max(third, fourth) < 2 / 3 * max(first, second)

@@ -209,3 +209,31 @@ def test_a_decay_onto_a_cycle_is_told_from_one_to_rest(f):
     assert dies.state == "decaying" and not dies.levels_off and "it dies out" in str(dies)
     assert ends.state == "chatter" and "it shrinks towards a cycle of" in str(ends)
     assert ends.ends_at == pytest.approx((0.5e-3, 0.5e-3), rel=0.02)
+
+
+@pytest.mark.parametrize("stops", [1.5, 2.2, 2.9])
+def test_what_friction_stops_in_the_record_has_died_out(stops):
+    """Friction takes as much from every swing, so the last quarters differ by far more than an irregular cycle's."""
+    t = np.arange(3000) * T
+    x = 2e-3 + 1e-3 * np.maximum(0, 1 - t / stops) * np.sin(2 * np.pi * 25 * t)
+    found = chatter(record(x))
+    assert found.state == ("decaying" if stops > 2.25 else "none" if stops < 2 else found.state) != "chatter"
+    if found.state == "decaying":
+        assert found.amplitude_at_end < 0.05 * found.amplitude and "mm at the end, of up to" in str(found)
+
+
+def test_noise_that_turns_the_handle_does_not_make_a_decay_grow():
+    """Wiggles between the turning points are no swings: a handle that bounces lower and lower has none that lasts."""
+    paddle = hl.SimulatedPaddle(m=0.07, b=0.25, T=5e-4, noise=2e-6, hand=hl.Hand(k=150.0, push=0.5))
+    log = paddle.run(hl.wall()(k=600.0), duration=1.0, x=-5e-3, progress=False)
+    bare = Telemetry(t=log.t, x=log.x, v=log.v, F=log.F, T=log.T)
+    assert chatter(bare).state in ("undecided", "decaying")
+
+
+def test_a_heavily_damped_handle_that_creeps_to_rest_dies_out():
+    """One turn in the last half: half a swing says nothing, but the motion inside the wall is that of a linear law."""
+    t = np.arange(1000) * T
+    for rate, state in ((-3.0, "decaying"), (0.5, "growing")):
+        x = 5e-3 + 4e-3 * np.exp(rate * t) * np.cos(2 * np.pi * 1.2 * t + 1.0)
+        found = chatter(record(x, F=200 * x))
+        assert found.state == state and found.inside_growth == pytest.approx(rate, rel=2e-3)
