@@ -58,8 +58,8 @@ class Chatter:
         Lowest and highest amplitude at which the oscillation ends [m], by a constant plus an exponential through its
         swings; None where it was not looked for: the handle leaves no wall and no motor is at its limit.
     longer : float or None
-        Where it is undecided, the length of a record that may decide [s]: twice this one. Of 458 records undecided on a map of
-        random plants, twice as long decided 304.
+        Where it is undecided, the length of a record that may decide [s]: twice this one, which decided about
+        two thirds of such records on a map of random plants.
     amplitude_at_end : float
         Half the peak-to-peak of the last cycle [m]; of the last quarter where no cycle is seen.
     inside_growth : float
