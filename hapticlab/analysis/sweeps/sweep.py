@@ -103,7 +103,8 @@ def sweep(
     metric : {"chatter", "growth", "contacts", "energy", "peak_force"}
         ``chatter`` sustained or growing amplitude [m]: half the largest swing, from turning point to turning point, of the
         last quarter. 0 where the handle rests, where every swing of the last quarter is smaller than every one of the
-        quarter before, and within one encoder count or 20 nm. nan where the run cannot tell: nothing moves the handle, or
+        quarter before, even if they shrink towards a cycle, which :func:`hapticlab.chatter` says of a single run;
+        and within one encoder count or 20 nm. nan where the run cannot tell: nothing moves the handle, or
         a quarter has no whole swing; lengthen ``duration``. Driven motion (noise, a moving intent) is not told apart.
         ``growth`` logarithm of the
         swing's ratio between these quarters [1/s].
