@@ -77,9 +77,10 @@ and ``live_limits`` how far each may go. The result is a ``program``:
 Fig. 23.7 of the chapter has three processes, each with its model. Here they are:
 
 - Collision detector, on the geometric model (``scene.shapes.shapes``, ``scene.shapes.curves``). Broad phase:
-  ``broad_phase``, once, when the scene is compiled. Narrow phase: ``scene.shapes.gaps`` with ``polygon_distance`` and
-  ``gjk``, or tracked in ``scene.shapes.curves``. When bodies touch: ``guards`` and ``polynomial_crossing`` of method
-  "taylor"; a case of the force at the sample, with other methods.
+  ``broad_phase``, once, when the scene is compiled; of polygons ``gjk``, while it runs. Narrow phase:
+  ``scene.shapes.gaps`` with ``polygon_distance`` and ``gjk``, or tracked in ``scene.shapes.curves``. When bodies
+  touch: ``guards`` and ``polynomial_crossing`` of method "taylor"; a case of the force at the sample, with other
+  methods.
 - Interaction calculator, on the interaction model (``scene.contact.penalty_laws``, ``scene.contact.instant_laws``).
   ``scene_contacts``, with forces that go into f or into ``complementarity``; impulses, that is new initial conditions,
   by ``impacts``, ``touch`` and ``impulses``, which ask the dynamic model for its mass.

@@ -151,6 +151,12 @@ class Translator:
         return result
 
     def _relation(self, expr):
+        in_graph = self.graph is None or self.graph.builder is self.builder  # which is differentiated, and does not run
+        near = None if in_graph else gjk.near(self, expr)  # first, so that an engine knows it before it searches
+        holds = self._compared(expr)
+        return holds if near is None else near & holds
+
+    def _compared(self, expr):
         a, b = self(expr.lhs), self(expr.rhs)
         if "bool" in (a.type, b.type):
             raise ProgramError(f"{expr} compares conditions; combine them with &, | and ~ instead")

@@ -10,6 +10,8 @@ depth too, and costs less up to 16 corners each: 393 instructions against 1106 f
 corners that a radius widens.
 """
 
+import math
+
 import sympy as sp
 from sympy.core.symbol import Str
 
@@ -117,6 +119,31 @@ def trace(translator, node):
     for part, value in zip(PARTS, (distance, *normal, *point), strict=True):
         translator.known[ClosestPoints(first, second, method, label, Str(part))] = value
     return translator.known[node]
+
+
+def near(translator, condition):
+    """Whether two bodies are so near that a condition ``gap <= 0`` of theirs may hold; None where nothing cheap tells.
+
+    No point of a body is further from its origin than its reach, so where the origins are further apart along an axis
+    than both reaches, and rounding, the gap is open. What is looked for once a sample must do for a period: there it is
+    twice the reaches, which no body travels in a period unless it may pass through others between two samples as well.
+    """
+    nodes = [part for part in sp.Add.make_args(condition.lhs) if isinstance(part, ClosestPoints) and part.part == "distance"]
+    if condition.rel_op != "<=" or condition.rhs != 0 or len(nodes) != 1:
+        return None
+    first, second, method, *_ = nodes[0].args
+    if not first[0] or condition.lhs - nodes[0] != -(first[4] + second[4]):
+        return None
+    translate, slack = (_at_sample(translator), 2.0) if method.name == "sample" else (translator, 1.001)
+    corners = [[[translator(u).constant for u in p] for core in body[0] for p in core] for body in (first, second)]
+    radii = [translator(body[4]).constant for body in (first, second)]
+    if None in (*radii, *(u for body in corners for p in body for u in p)):
+        return None
+    reach = slack * (sum(radii) + sum(max(math.hypot(*p) for p in body) for body in corners))
+    x, y = (abs(translate(second[k]) - translate(first[k])) for k in (1, 2))
+    found = (x <= reach) & (y <= reach)
+    translator.builder.implied.add(found.id)
+    return found
 
 
 def _pairs(translate, first, second, method):

@@ -154,12 +154,12 @@ def _reached_in(instructions, positions, leaf, value):
 class _Freezing:
     def __init__(self, builder, targets, moving, rates, new, where):
         self.builder, self.instructions, self.new = builder, builder.instructions, new
-        self.order = reachable(self.instructions, [t.id for t in targets])
+        self.order = reachable(self.instructions, [t.id for t in targets], builder.implied)
         self.moves, self.of_rates = self._reached(moving), self._reached(rates)
         self.guards, self.reactions, self.leaves, self.known = [], [], {}, {}
         self.zero = builder.const(0.0).id
         self.surfaces = None  # while they are looked for, every comparison is one
-        self.surfaces = self._surfaces(reachable(self.instructions, [t.id for t in where]))
+        self.surfaces = self._surfaces(reachable(self.instructions, [t.id for t in where], builder.implied))
 
     def _reached(self, leaves):
         reached = set(leaves)
@@ -168,9 +168,15 @@ class _Freezing:
                 reached.add(p)
         return reached
 
+    def _told(self, p):
+        """The instruction at p, or of what it and an implied condition hold together."""
+        i = self.instructions[p]
+        others = [a for a in i.args if a not in self.builder.implied]
+        return self._told(others[0]) if i.op == "and" and len(others) == 1 else i
+
     def _surface_of(self, p):
         """(key, sense) of the comparison at p: True for first < second, or (None, None)."""
-        i = self.instructions[p]
+        i = self._told(p)
         if i.op == "not":
             key, sense = self._surface_of(i.args[0])
             return key, None if key is None else not sense
@@ -205,7 +211,7 @@ class _Freezing:
                 found.setdefault(key, _Surface("lt", key if sense else key[::-1]))
             elif i.op == "floor":
                 found[p] = _Surface(i.op, i.args)
-            for place, a in enumerate(i.args):
+            for place, a in enumerate(i.args if self._told(p) is i else ()):
                 key, _ = self._surface_of(a)
                 if key is not None:
                     direct = i.op == "select" and place == 0

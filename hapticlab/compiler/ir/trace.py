@@ -25,6 +25,7 @@ class Builder:
     def __init__(self, real="f64"):
         self.real = real
         self.instructions = []
+        self.implied = set()  #: results that hold wherever another condition beside them in an "and" does
         self._known = {}
 
     def const(self, value, type=None):

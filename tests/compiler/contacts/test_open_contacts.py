@@ -5,6 +5,7 @@ import pytest
 from random_programs import assert_same_bits
 
 import hapticlab as hl
+from hapticlab.compiler.algebra import gjk
 from hapticlab.compiler.boards.cost import cost
 from hapticlab.compiler.engines.engine import load
 from hapticlab.compiler.engines.skipped_arms import Arm, Demand
@@ -13,7 +14,7 @@ from hapticlab.scene.notation.derivative import Partial
 VALUES = {"m": 0.05, "g": 9.81, "J": 2e-5}
 SHAPES = {
     "discs": [hl.shapes.Circle("10 mm")] * 4,
-    "many discs": [hl.shapes.Circle("10 mm")] * 8,
+    "more discs": [hl.shapes.Circle("10 mm")] * 5,
     "boxes": [hl.shapes.Box("20 mm", "16 mm")] * 2,
     "mixed": [hl.shapes.Circle("10 mm"), hl.shapes.Box("20 mm", "16 mm"), hl.shapes.Capsule("20 mm", "6 mm")],
 }
@@ -71,12 +72,77 @@ def test_the_motion_is_that_of_whole_forces(kind):
 
 
 def test_pairs_that_are_apart_cost_little():
-    """Of 8 discs and the ground, 36 pairs, half of the instructions are needed while nothing touches."""
+    """Of discs and the ground half of the instructions are needed while nothing touches."""
     pytest.importorskip("llvmlite")
-    tick = hl.compile(heap("many discs"), "semi_implicit_euler", T=5e-4).tick
+    tick = hl.compile(heap("more discs"), "semi_implicit_euler", T=5e-4).tick
     items = Demand(tick).arranged(range(len(tick.instructions)))
-    assert sum(isinstance(item, Arm) for item in items) >= 28  # each pair of discs
-    assert sum(not isinstance(item, Arm) for item in items) < 0.55 * len(tick.instructions)
+    assert sum(isinstance(item, Arm) for item in items) >= 10  # each pair of discs
+    assert sum(not isinstance(item, Arm) for item in items) < 0.6 * len(tick.instructions)
+
+
+PAIRS = {
+    "boxes": (hl.shapes.Box("40 mm", "30 mm"), hl.shapes.Box("10 mm", "30 mm")),
+    "bars": (hl.shapes.Capsule("40 mm", "5 mm"), hl.shapes.Capsule("10 mm", "8 mm")),
+    "corner": (hl.shapes.Polygon([(0, 0), (0.04, 0), (0.04, 0.01), (0.01, 0.01), (0.01, 0.04), (0, 0.04)]),
+               hl.shapes.Capsule("20 mm", "4 mm")),
+}  # fmt: skip
+
+
+def placed(shapes, method, name, by="rk4"):
+    """A program of two bodies, where each is being a live parameter; watched is the force between them."""
+    bodies, coordinates = [], []
+    m, J = hl.parameters("m J", units="kg kg*m^2", values=(0.05, 2e-5))
+    for k, shape in enumerate(shapes):
+        names, units = [f"{q}{k}" for q in "XYA"], ["m", "m", "rad"]
+        starts = hl.parameters(" ".join(f"{q}_0" for q in names), units=" ".join(units), values=(0.5 * k, 0, 0))
+        X, Y, A = (hl.coordinate(q, unit=u, initial=at) for q, u, at in zip(names, units, starts, strict=True))
+        bodies.append(shape.at(x=X, y=Y, angle=A, name=f"body{k}"))
+        coordinates += [X, Y, A]
+    rates = [q.diff(hl.t) for q in coordinates]
+    L = sum((J if k % 3 == 2 else m) * w**2 / 2 for k, w in enumerate(rates))
+    contacts = hl.contact.between(bodies, contact_law=hl.contact.penalty(k="500 N/m", b="0.1 N*s/m"), method=method)
+    motion = hl.mechanics.lagrange(L, contacts=contacts)
+    watch = {"N": contacts[0].force} | {q.func.__name__: q for q in coordinates}
+    return hl.compile(hl.Scene(force=0, eom=[motion], watch=watch, name=name), by, T=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("method", "kind"),
+    [("sample", "boxes"), ("sample", "bars"), ("sample", "corner"), ("faces", "boxes"), ("faces", "corner"), ("gjk", "bars")],
+)
+@pytest.mark.always("sample-boxes")
+def test_a_guarded_pair_has_the_force_of_an_unguarded_one(method, kind, monkeypatch):
+    """Wherever two bodies are: apart, in touch, in each other; with and without a look at how far apart they are."""
+    guarded = placed(PAIRS[kind], method, "guarded")
+    monkeypatch.setattr(gjk, "near", lambda translator, condition: None)
+    whole = placed(PAIRS[kind], method, "whole")
+    assert len(whole) < len(guarded) < 1.1 * len(whole)
+    generator = np.random.default_rng(41)
+    at = {c.name: generator.uniform(-3.2, 3.2, 1000) * (1 if c.name[0] == "A" else 0.02) for c in guarded.parameters}
+    at |= {"m": np.full(1000, 0.05), "J": np.full(1000, 2e-5)}
+    found = []
+    for program in (guarded, whole):
+        parameters = np.array([at[c.name] for c in program.parameters])
+        found.append(load(program).run(5, np.zeros((5, len(program.inputs))), parameters).outputs)
+    assert_same_bits(*found)
+    pressed = found[0][:, 1] > 0
+    assert pressed.any(axis=0).mean() > 0.08 and (~pressed).all(axis=0).mean() > 0.3
+
+
+def test_method_taylor_takes_no_look_for_a_surface(monkeypatch):
+    """How far apart two bodies are is no surface at which their motion changes: its modes and events stay those of touch."""
+    one = placed(PAIRS["bars"], "sample", "guarded", "taylor")
+    monkeypatch.setattr(gjk, "near", lambda translator, condition: None)
+    other = placed(PAIRS["bars"], "sample", "whole", "taylor")
+    assert len(other) <= len(one) < len(other) + 10  # the force that is watched at the sample looks
+    assert one.facts == other.facts
+
+
+def test_polygons_that_are_apart_cost_next_to_nothing():
+    """The search for the closest edges and corners is left out, and it is nearly all that boxes take."""
+    tick = placed(PAIRS["boxes"], "faces", "boxes").tick
+    items = Demand(tick).arranged(range(len(tick.instructions)))
+    assert sum(not isinstance(item, Arm) for item in items) < 0.06 * len(tick.instructions)
 
 
 def test_a_board_says_what_it_pays_for_open_contacts():
