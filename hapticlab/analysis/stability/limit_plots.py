@@ -1,6 +1,7 @@
 """Figures of predictions: how much a step makes motions grow, and how much damping each frequency asks for."""
 
 import itertools
+import textwrap
 
 import numpy as np
 
@@ -95,6 +96,7 @@ def plot_worst_motion(motion):
             rate = motion.friction / max(np.abs(steps[: len(motion.held)]).sum(), 1e-300)
             lost = motion.b_device * steps**2 / np.tile(motion.durations, 2) + rate * np.abs(steps)
             below.plot(1e3 * t, 1e6 * np.cumsum(np.r_[0.0, lost]), label="dissipated by the device", **STYLES[2])
-        below.set(xlabel=f"time t [ms]\nsearched: {motion.searched}", ylabel="energy [uJ]")
+        searched = textwrap.fill(f"searched: {motion.searched}", 72)
+        below.set(xlabel=f"time t [ms]\n{searched}", ylabel="energy [uJ]")
         below.legend(fontsize="small")
     return figure
