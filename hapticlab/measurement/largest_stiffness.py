@@ -92,7 +92,8 @@ class LargestStiffness:
             head = f"{self.K:.5g} N/m comes to rest quietly from every start"
         borders = [f"  comes to rest up to {self.unstable}", f"  no buzz felt up to  {self.buzz}"]
         rows = [f"  {name:<10} {limit.K:.5g} N/m: {limit.kind}" for name, limit in self.theory.items()]
-        made = f"  simulated outcome, {self.about}; {len(self.trials)} trials, which .plot() draws"
+        undecided = sum(t.outcome == "undecided" for t in self.trials)
+        made = f"  simulated outcome, {self.about}; {len(self.trials)} trials, {undecided} undecided, which .plot() draws"
         return "\n".join([f"{self.law}: {head}", *borders, made, *rows])
 
     def __repr__(self) -> str:

@@ -33,8 +33,10 @@ MOVED = 1e-7
 RESTS = 0.01
 #: standard deviations of the sensor's noise that a resting handle may swing by
 SCATTER = 6.0
-#: a swing over so many encoder counts is the encoder's: it is no instability, and may be a buzz
-COUNTS = 4
+#: a swing over so many encoder counts is the encoder's: it is no instability, and may be a buzz; fewer if it leaves the wall
+COUNTS, COUNTS_OUTSIDE = 4, 2
+#: a wall that throws out a handle which a hand held deeper in it than this shows nothing [m]
+FARTHEST = 1e-3
 #: encoder counts in a period that a speed limit must leave room for
 JUMP = 3
 
@@ -99,10 +101,10 @@ class Trial:
 def try_wall(paddle, scene, start, *, K, place, duration, longest, buzz_max=0.05, noise=0.0):
     """Try one stiffness from a ``start``, longer and longer until the record tells whether the swing dies out, and how it buzzes.
 
-    At ``longest`` [s] the ripple is judged beside a swing that still lives. An oscillation over four encoder counts or fewer
-    is the encoder's; the wall is quiet where the amplitude of its force is ``buzz_max`` [N] at most. A motion that follows a
-    simulated hand's moving intent is no chatter; nor is what stays within six standard deviations ``noise`` of the sensor [m],
-    which the loop colours.
+    The ripple is judged beside a swing that still lives. An oscillation over four encoder counts or fewer is the encoder's,
+    or over two where it leaves the wall; the wall is quiet where the amplitude of its force is ``buzz_max`` [N] at most. A
+    motion that follows a simulated hand's moving intent is no chatter; nor is what stays within six standard deviations
+    ``noise`` of the sensor [m], which the loop colours.
     """
     needs = ENOUGH * period_on(paddle, K)
     if needs > longest * 1.001:
@@ -126,7 +128,7 @@ def try_wall(paddle, scene, start, *, K, place, duration, longest, buzz_max=0.05
 
 def _judged(paddle, log, place, start, last, noise, buzz_max):
     """(rests, verdict, ripple of the force, chatter found), or None where a longer record may tell."""
-    stopped = _stopped(log)
+    stopped = _stopped(log, place + start.depth)
     if stopped:
         return *stopped, math.nan, None
     log = _of_the_wall(log, start.push)
@@ -138,7 +140,8 @@ def _judged(paddle, log, place, start, last, noise, buzz_max):
     if way < MOVED and start.run_up is not None:
         return None, "the push did not move the handle: friction holds it; push harder", math.nan, found
     felt, grows = ripple(log, driven=driven), found.state in ("growing", "runaway")
-    counted = 0 < 2 * found.amplitude <= COUNTS * count
+    leaves = bool(np.any(log.F[len(log.F) // 2 :] == 0))
+    counted = 0 < 2 * found.amplitude <= (COUNTS_OUTSIDE if leaves else COUNTS) * count
     rests = None
     if found.scatter or (found.state == "none" and found.travel < RESTS * way):
         rests = "it comes to rest"
@@ -157,10 +160,7 @@ def _judged(paddle, log, place, start, last, noise, buzz_max):
         return False, "it grows", math.nan, found
     if found.state == "decaying" and not found.levels_off:
         ripples = ripple(log, (found.frequency, found.growth), driven)
-        # a sensor without steps or noise makes none, also where it bounces still and there is no swing to subtract
-        if not (count or getattr(paddle, "noise", 0.0)) and math.isnan(ripples):
-            ripples = 0.0
-        if last or not math.isnan(ripples):
+        if not math.isnan(ripples):  # where it bounces still, an unstable wall may let it grow again once it does not
             return True, "it dies out", ripples, found
     if not last:
         return None
@@ -177,10 +177,13 @@ def _of_the_wall(log, push):
     return replace(log, F=np.where(np.isclose(F, -push, rtol=1e-6, atol=0.0), 0.0, F + push)) if push else log
 
 
-def _stopped(log):
+def _stopped(log, x):
     """(rests, why) of a trial that was cut short, or None."""
     if log.fault:  # a wall too soft for its push lets the handle through its travel as a wall that throws it does
         return (None if "OVER_TRAVEL" in log.fault else False), f"the paddle stopped: {log.fault}"
+    if log.tripped.any() and log.x[0] - x > FARTHEST:
+        deep = f"the handle began {1e3 * (log.x[0] - x):.2g} mm too deep, and the guard cut the motor"
+        return None, f"{deep}: hold the handle loosely while the motor leads it back"
     if log.tripped.any():
         return False, f"the guard cut the motor after {log.t[log.tripped.argmax()]:.3g} s"
     return None

@@ -109,6 +109,14 @@ def test_a_fault_of_the_paddle_is_told():
     assert found.rests is None and "OVER_TRAVEL" in found.verdict and found.verdict.startswith("the paddle stopped:")
 
 
+def test_a_handle_that_a_hand_holds_in_the_wall_shows_nothing():
+    """5 N against the hand's spring and the motor's: 15 mm in a wall of 1000 N/m hold twice the energy of the guard."""
+    with hl.connect("sim://hapkit", paddle=paddle(hand=hl.Hand(k=300.0, b=2.0, push=5.0))) as board:
+        made = board.program(scene(1000.0, energy_max=0.05, speed_max=3.0))
+        found = try_wall(board, made, start(board), K=1000.0, place=0.0, duration=1.0, longest=1.0)
+    assert found.rests is None and found.quiet is None and "hold the handle loosely" in found.verdict
+
+
 def test_a_handle_that_cannot_be_led_back_is_told():
     pushed = paddle(hand=hl.Hand(push=20.0))
     with hl.connect("sim://hapkit", paddle=pushed) as board:

@@ -10,7 +10,6 @@ import numpy as np
 import sympy as sp
 
 from ...base.arguments import count, instance, number
-from ...compiler.algebra.phase import TICKS
 from ...compiler.tick.compile_scene import compile
 from ...device.device import known
 from ...device.hand.hand import Hand
@@ -130,7 +129,6 @@ class WorstMotion:
         paddle : SimulatedPaddle
             Its T is that of the search; its hand is replaced.
         cycles : int
-            A scene with bodies begins at its start, and needs more of them until it repeats itself.
 
         Raises
         ------
@@ -245,7 +243,7 @@ def worst_motion(
     Raises
     ------
     AnalysisError
-        The scene depends on time, or no motion has a force that repeats itself.
+        No motion has a force that repeats itself.
 
     Examples
     --------
@@ -262,11 +260,6 @@ def worst_motion(
     reach = number("reach", reach, "m", "a motion", above=0)
     samples = count("samples", samples, "a motion", least=2, most=LENGTHS[-1])
     program = compile(scene, T=T, dtype="float64", live=(), **options)
-    if any(c.name in TICKS for c in program.states):
-        raise AnalysisError(
-            f"{scene.name} depends on the time t, so along a closed motion its force does not repeat itself. Search a scene "
-            "whose force and equations of motion are without t."
-        )
     gains = _Gains(ClosedMotions(program, delay), coulomb, b, SMALLEST * reach)
     surfaces = _surfaces(scene, T)
     places = _places(gains, surfaces, reach) if about is None else [number("about", x, "m", "a motion") for x in np.ravel(about)]

@@ -231,9 +231,6 @@ def test_a_body_on_a_coupler_asks_for_what_theory_says(damper):
     found = hl.passivity.worst_motion(hl.Device(T=T, b=0.9 * expected), scene, samples=3, **options)
     assert found.b_req == pytest.approx(expected, rel=1e-4) and found.found
     assert found.b_req == pytest.approx(hl.passivity.port(hl.Device(T=T), scene, **options).b_req, rel=1e-4)
-    log, samples = found.run(hl.SimulatedPaddle(m=0.05, b=0.9 * expected, T=T), cycles=1500), len(found.x)
-    W = hl.energy(log).W
-    assert W[-1 - samples] - W[-1] == pytest.approx(found.drawn, rel=1e-3)
 
 
 def test_a_run_confirms_the_energy():
@@ -259,8 +256,6 @@ def test_where_none_is_found_it_says_what_was_searched():
     text = str(found)
     assert "no motion was found" in text and "2 to 4 samples within 2 mm of x = 10 mm" in text and "proves no passivity" in text
     assert "2 to 4 samples" in found.plot().axes[1].get_xlabel()
-    with pytest.raises(AnalysisError, match="tuned absorber depends on the time t"):
-        hl.passivity.worst_motion(hl.Device(T=T), hl.library.tuned_absorber(), samples=2)
     with pytest.raises(AnalysisError, match="samples = 1"):
         hl.passivity.worst_motion(hl.Device(T=T), hl.wall()(k=300), samples=1)
     with pytest.raises(AnalysisError, match="reach = 0 m"):
