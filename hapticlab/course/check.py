@@ -6,9 +6,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..base.in_notebook import display, in_a_notebook
 from ..errors import CourseError
 from ..slips.own_line import of_call
 from ..slips.swallowed import swallowed
+from .cards.card import Card
+from .cards.progress import remember
 from .evaluate import evaluate
 from .judge import verdict
 from .labs import find_lab
@@ -19,6 +22,8 @@ if TYPE_CHECKING:
 
 #: of what a student's code prints while it is checked
 MOST_LINES, MOST_CHARACTERS = 10, 200
+#: characters of what a case gives
+MOST_GIVEN = 90
 
 
 @dataclass(frozen=True)
@@ -33,15 +38,19 @@ class CheckResult:
         Every case is right; of what is only noted, that something is there.
     answered : bool
     verdicts : tuple of Verdict
-    text : str
-        What was printed.
+    card : Card
     """
 
     name: str
     passed: bool
     answered: bool
     verdicts: tuple[Verdict, ...]
-    text: str
+    card: Card
+
+    @property
+    def text(self) -> str:
+        """The card in lines, as it is printed."""
+        return self.card.text()
 
     def require(self) -> None:
         """Raise AssertionError with the text unless the check passed: for a test cell of nbgrader."""
@@ -52,11 +61,14 @@ class CheckResult:
         return self.text
 
     def _ipython_display_(self) -> None:
-        """Show nothing: the check has printed it."""
+        """Show nothing: the check has shown it."""
 
 
 def check(name: str, answer: object) -> CheckResult:
-    """Check an answer by the public cases of its exercise; prints, and never raises.
+    """Check an answer by the public cases of its exercise; shows a card, and never raises.
+
+    In a notebook the card is HTML, and the exercises that are right are remembered in a file beside the notebook, which
+    counts for no mark; elsewhere it is printed.
 
     Parameters
     ----------
@@ -77,30 +89,55 @@ def check(name: str, answer: object) -> CheckResult:
     >>> result.passed
     False
     """
+    lab, exercise = None, None
     try:
-        result = checked(name, _exercise(name), answer)
+        lab, exercise = _found(name)
+        result = checked(name, exercise, answer)
     except CourseError as problem:
-        result = _failed(name, problem)
+        result = _failed(name, str(problem))
     except Exception as problem:  # a mistake of a lab's author stops no student
         result = _failed(name, f"the check itself failed, which is no fault of yours: {type(problem).__name__}: {problem}")
     own = of_call()
     if own and result.answered and not result.passed and (lost := swallowed(own, "")):
-        result = replace(result, text=f"{result.text}\n  {lost}")
-    print(result.text)
+        result = _with_rows(result, ("in your line", lost))
+    if in_a_notebook():
+        if lab and exercise and exercise.judged and exercise.cases:
+            rows = _progress(lab, exercise, result.passed)
+            result = _with_rows(result, *rows) if result.answered else result
+        display({"text/plain": result.text, "text/html": result.card.html()})
+    else:
+        print(result.text)
     return result
 
 
 def _failed(name, words):
     name = name[:60] if isinstance(name, str) else "hl.check"
-    return CheckResult(name, False, False, (), f"{name}: {words}")
+    return CheckResult(name, False, False, (), Card(name, "open", words))
 
 
-def _exercise(name):
-    """Return the exercise of a name such as "01.wall_force", from the checks beside the notebook or the package's."""
+def _with_rows(result, *rows):
+    return replace(result, card=replace(result.card, rows=(*result.card.rows, *rows)))
+
+
+def _progress(lab, exercise, right):
+    """Remember whether an exercise is right; return rows on how much of the lab is, and on what is next."""
+    done = remember(Path.cwd(), lab.number, exercise.name, right)
+    judged = [one.name for one in lab.exercises if one.judged and one.cases]
+    left = [name for name in judged if name not in done]
+    rows = [("this lab", f"{len(judged) - len(left)} of {len(judged)} exercises right in the public cases (counts for no mark)")]
+    if right and left:  # the first after this one, or of those that were left out
+        after = judged.index(exercise.name)
+        rows.append(("next", next((name for name in judged[after:] if name in left), left[0])))
+    return rows
+
+
+def _found(name):
+    """Return lab and exercise of a name such as "01.wall_force", from the checks beside the notebook or the package's."""
     lab, _, exercise = (part.strip() for part in name.partition(".")) if isinstance(name, str) else ("", "", "")
     if not (lab and exercise):
         raise CourseError('needs lab and exercise first, such as hl.check("01.wall_force", wall_force)')
-    return find_lab(lab.zfill(2), beside=Path.cwd()).exercise(exercise)
+    found = find_lab(lab.zfill(2), beside=Path.cwd())
+    return found, found.exercise(exercise)
 
 
 def checked(name: str, exercise: Exercise, answer: object) -> CheckResult:
@@ -109,15 +146,43 @@ def checked(name: str, exercise: Exercise, answer: object) -> CheckResult:
         return _noted(name, exercise, answer)
     outcomes = [evaluate(exercise.kind, answer, case.given) for case in exercise.cases]
     if not any(outcome.answered for outcome in outcomes):
-        return CheckResult(name, False, False, (), _unanswered(name, exercise))
+        return _unanswered(name, exercise)
     verdicts = tuple(verdict(exercise, case, outcome) for case, outcome in zip(exercise.cases, outcomes, strict=True))
     passed = all(v.right for v in verdicts)
     verdicts = _of_the_lab(exercise, verdicts)
-    lines = [f"{name}: {'right' if passed else 'not right yet'} ({points_words(exercise.points)})"]
-    lines += _printed(outcomes)
-    lines += [_line(exercise, case, v) for case, v in zip(exercise.cases, verdicts, strict=True)]
-    lines += [f"  hint: {exercise.hint}"] if exercise.hint and not passed else []
-    return CheckResult(name, passed, True, verdicts, "\n".join(lines))
+    rows = (*_case_rows(exercise, verdicts), *_printed(outcomes))
+    rows += (("why it matters", exercise.matters),) if exercise.matters and passed else ()
+    state, head = _state(verdicts)
+    card = Card(name, state, head, f"worth {points_words(exercise.points)}", rows)
+    return CheckResult(name, passed, True, verdicts, card)
+
+
+def _state(verdicts):
+    """Return state and head of a card: what was judged is the public cases, and no more."""
+    right, cases = sum(v.right for v in verdicts), len(verdicts)
+    if right == cases:
+        return "right", "right in the public cases"
+    return ("partly", f"partly right, not right yet: {right} of {cases} public cases") if right else ("wrong", "not right yet")
+
+
+def _case_rows(exercise, verdicts):
+    """Yield a row for what is wrong first, for each likely slip and the hint, then for the other cases."""
+    told = {}
+    for case, found in zip(exercise.cases, verdicts, strict=True):
+        told.setdefault(("right" if found.right else "wrong", _without_slip(found)), []).append(case)
+    wrong = [row for row in told if row[0] == "wrong"]
+    for row in wrong[:1]:
+        yield row[0], row[1] + _at(exercise, told.pop(row))
+        yield from dict.fromkeys(("likely slip", v.slip) for v in verdicts if v.slip)
+        yield from [("hint", exercise.hint)] if exercise.hint else []
+    for (state, words), cases in sorted(told.items(), key=lambda one: one[0][0] == "right"):
+        yield "also wrong" if state == "wrong" else state, words + _at(exercise, cases)
+
+
+def _without_slip(found):
+    """Return the words of a verdict without the sentence that teaches; one sentence alone loses its full stop."""
+    words = " ".join(found.words.replace(found.slip, "", 1).split()) if found.slip else found.words
+    return words.removesuffix(".") if ". " not in words and not words.endswith("...") else words
 
 
 def _of_the_lab(exercise, verdicts):
@@ -125,7 +190,7 @@ def _of_the_lab(exercise, verdicts):
     own = {sentence for case in exercise.cases for _, sentence in case.slips}
     if not any(v.slip in own for v in verdicts):
         return verdicts
-    return tuple(v if v.slip in own else replace(v, words=v.words.removesuffix(v.slip).rstrip(), slip="") for v in verdicts)
+    return tuple(v if v.slip in own else replace(v, words=_without_slip(v), slip="") for v in verdicts)
 
 
 def points_words(points: float) -> str:
@@ -137,27 +202,31 @@ def _noted(name, exercise, answer):
     """Return the result for what is handed in and not judged here."""
     outcome = evaluate("value", answer, {})
     if not outcome.answered:
-        return CheckResult(name, False, False, (), _unanswered(name, exercise))
-    if outcome.problem:
-        return CheckResult(name, False, True, (), f"{name}: {outcome.problem}")
+        return _unanswered(name, exercise)
     words = len(outcome.value.split()) if isinstance(outcome.value, str) else 0
+    if outcome.problem:
+        return CheckResult(name, False, True, (), Card(name, "wrong", outcome.problem))
     if words < exercise.least_words:
         said = f"{words} words, needs at least {exercise.least_words}: {exercise.asks}"
-        return CheckResult(name, False, True, (), f"{name}: {said}")
+        return CheckResult(name, False, True, (), Card(name, "wrong", said))
     later = {"prediction": "noted; compare it with what you find", "text": f"{words} words noted; a person reads them"}
     said = later.get(exercise.kind, "noted; it is judged when handed in")
-    return CheckResult(name, True, True, (), f"{name}: {said}")
+    return CheckResult(name, True, True, (), Card(name, "saved", said))
 
 
 def _unanswered(name, exercise):
-    return f"{name}: not answered yet: {exercise.asks}"
+    return CheckResult(name, False, False, (), Card(name, "open", f"not answered yet: {exercise.asks}"))
 
 
-def _line(exercise, case, found):
-    """Return a case in a line; of an expression the words name the point."""
-    shown = {} if exercise.kind == "expression" else case.given
+def _at(exercise, cases):
+    """Return where words hold, in brackets: in a case, by what was given, or in several; of an expression they name the point."""
+    if len(cases) > 1:
+        return f" (in {len(cases)} cases)"
+    shown = {} if exercise.kind == "expression" else cases[0].given
     given = ", ".join(f"{name} = {_brief(value)}" for name, value in shown.items())
-    return f"  {'right' if found.right else 'wrong'}: {given + ': ' if given else ''}{found.words}"
+    if len(given) > MOST_GIVEN:
+        given = f"{given[:MOST_GIVEN].rpartition(', ')[0]}, ..."
+    return f" ({given})" if given else ""
 
 
 def _brief(value):
@@ -174,4 +243,4 @@ def _printed(outcomes):
     """First lines that a student's code printed."""
     lines = "".join(outcome.printed for outcome in outcomes).splitlines()
     more = len(lines) - MOST_LINES
-    return [f"  printed: {line[:MOST_CHARACTERS]}" for line in lines[:MOST_LINES]] + [f"  ... {more} lines more"] * (more > 0)
+    return [("printed", line[:MOST_CHARACTERS]) for line in lines[:MOST_LINES]] + [("printed", f"{more} lines more")] * (more > 0)

@@ -79,6 +79,8 @@ class Exercise:
         Printed where a case is wrong.
     least_words : int
         Of a text.
+    matters : str
+        Printed where every case is right: why the result matters, in a sentence that holds for any numbers.
 
     Examples
     --------
@@ -96,6 +98,7 @@ class Exercise:
     atol: float = 1e-12
     hint: str = ""
     least_words: int = 0
+    matters: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "cases", tuple(self.cases))

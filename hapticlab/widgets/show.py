@@ -1,12 +1,12 @@
-"""Figures in a notebook with a text for who cannot see them; the only module that opens IPython."""
+"""Figures in a notebook with a text for who cannot see them."""
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from ..analysis.records.plots import plot
 from ..base.drawing import bundle, describe, forget
+from ..base.in_notebook import display, in_a_notebook
 from ..base.telemetry import Telemetry
 from ..errors import AnalysisError
 
@@ -43,13 +43,10 @@ def show(figure: Any, alt: str | None = None) -> None:
     elif not isinstance(alt, str) or not alt.strip():
         raise AnalysisError(f"alt = {alt!r}; needs what there is to see in a sentence or two, or leave it out")
     forget(drawn)
-    if not _in_a_notebook():
+    if in_a_notebook():
+        display(*bundle(drawn, alt))
+    else:
         print(alt)
-        return
-    from IPython.display import display
-
-    data, metadata = bundle(drawn, alt)
-    display(data, metadata=metadata, raw=True)
 
 
 def _told(words, described):
@@ -73,12 +70,3 @@ def _drawn(given):
             f"hl.show of a {type(given).__name__}; needs a figure, as hl.plot(log) makes one, or a result that has .plot()"
         )
     return given.plot(), str(given)
-
-
-def _in_a_notebook():
-    """Tell whether IPython runs this; it is not imported to find out."""
-    if "IPython" not in sys.modules:
-        return False
-    from IPython import get_ipython
-
-    return get_ipython() is not None

@@ -43,6 +43,10 @@ LAB = Lab(
                 ),
             ),
             hint="two questions: how many metres is a count, with its sign? And what does the sensor read in the middle?",
+            matters=(
+                "Every force is computed from this position, so an error in its scale or sign is an error in "
+                "every wall that you feel."
+            ),
         ),
         Exercise(
             "which_way",
@@ -65,6 +69,9 @@ LAB = Lab(
                 ),
             ),
             hint="Which of the two does F push, the wall or the handle? And whom does the motor stand for (Fig. 23.5)?",
+            matters=(
+                "Every lab uses this sign convention. With one sign wrong, the motor supplies energy where a wall should resist."
+            ),
         ),
         Exercise(
             "sign_evidence",
@@ -93,6 +100,7 @@ LAB = Lab(
                 ),
             ),
             hint="What is the work of one interval, and with which sign does it count? How large would such a sum be by chance?",
+            matters="A test with random signs finds a swapped motor wire even while a hand moves the handle.",
         ),
         Exercise(
             "force_full",
@@ -114,6 +122,7 @@ LAB = Lab(
                 ),
             ),
             hint="Against which variable do the readings lie on a line? Which of its two numbers is asked for, in newtons?",
+            matters="The program computes newtons, but the motor takes a duty. This number connects the two.",
         ),
         Exercise(
             "felt_stiffness",
@@ -135,6 +144,7 @@ LAB = Lab(
                 ),
             ),
             hint="the k that makes sum((F - k x)^2) least",
+            matters="A measured stiffness tests the sensor, the sign and the scale of the force together.",
         ),
         Exercise(
             "limits",
@@ -156,6 +166,10 @@ LAB = Lab(
                 ),
             ),
             hint="where does k x reach force_max? What does one count more do to k x? What speed is one count in one period?",
+            matters=(
+                "These three numbers limit every wall on this paddle: how deep it works, and how coarse its force "
+                "and velocity are."
+            ),
         ),
         Exercise(
             "discussion",

@@ -50,6 +50,7 @@ LAB = Lab(
                 ),
             ),
             hint="stretch a spring with your hands: which way do you push it where x > 0? Then the same for the damper",
+            matters=("Every environment in these labs is a force like this one, and one sign convention keeps them consistent."),
         ),
         Exercise(
             "spring_damper",
@@ -65,6 +66,7 @@ LAB = Lab(
                 ),
             ),
             hint="What did spring_damper_force say? Which of k, b, x(n), v(n) stands for which of its arguments?",
+            matters="You wrote only the physics. The same scene runs in the simulation and on a board.",
         ),
         Exercise(
             "thousand",
@@ -83,6 +85,7 @@ LAB = Lab(
                 ),
             ),
             hint="Compile the same scene with T=5e-4 and compare: what became of the 1000?",
+            matters="If you can read the compiled program, you can find out where each number in a force comes from.",
         ),
         Exercise(
             "spring_and_damper",
@@ -112,6 +115,7 @@ LAB = Lab(
                 ),
             ),
             hint="Each sample is one equation for k and b: what stands beside k in it, and what beside b?",
+            matters="The same fit measures stiffness and damping from the recording of a real device.",
         ),
         Exercise(
             "count_step",
@@ -136,6 +140,7 @@ LAB = Lab(
                 ),
             ),
             hint="Which of x(n), x(n-1) and x(n-2) has moved at that sample, and which has not yet?",
+            matters=("A force from a second difference jumps at every encoder count, so a virtual mass needs another approach."),
         ),
         Exercise(
             "mass_equation",
@@ -177,6 +182,7 @@ LAB = Lab(
                 ),
             ),
             hint="Newton: m z'' is the sum of the forces ON the mass. With the handle to its right, which way is it pulled?",
+            matters=("The acceleration of the mass now follows from forces, so nobody has to differentiate the encoder twice."),
         ),
         Exercise(
             "mass_on_coupler",
@@ -317,6 +323,9 @@ LAB = Lab(
                 ),
             ),
             hint="What does the hand feel, and what the mass? How often does F_c appear, then, and which way does it pull?",
+            matters=(
+                "A force law with equations of motion describes any virtual body; the labs on pendulums and contact do the same."
+            ),
         ),
         Exercise(
             "resonance",
@@ -340,6 +349,7 @@ LAB = Lab(
                 ),
             ),
             hint="What does Newton's law of the mass become with x = 0? And how does a first course write the same equation?",
+            matters=("You can feel this frequency in your hand and find it in a recording, so it tests theory and simulation."),
         ),
         Exercise(
             "discussion",

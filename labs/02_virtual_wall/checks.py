@@ -47,6 +47,9 @@ LAB = Lab(
                 Case({"k": 300.0, "x": 1e-3, "D": -2e-4}, -6e-5, unit="J", slips={-5.4e-5: MEAN, -4.8e-5: END}),
             ),
             hint=HELD,
+            matters=(
+                "The motor holds each force while the handle moves on. The energy that a sampled wall generates comes from this."
+            ),
         ),
         Exercise(
             "period_leak",
@@ -57,6 +60,7 @@ LAB = Lab(
                 Case({"k": 300.0, "D": -2e-4}, 6e-6, unit="J", slips={1.2e-5: FULL, -6e-6: TAKEN}),
             ),
             hint="Have you taken what the handle paid from what the spring holds more? Does x go from it?",
+            matters="The leaks of the way in and of the way out do not cancel, so energy builds up in every contact.",
         ),
         Exercise(
             "bounce_gain",
@@ -79,6 +83,7 @@ LAB = Lab(
                 Case({"k": 2000.0, "m": 0.05, "T": 1e-3}, 0.3141592653589793, slips={0.36910718607437147: SECOND}),
             ),
             hint="For how long is the handle inside, and what is the mean of v^2 over that time? Does v0 go from the share?",
+            matters="The speed is not in this share, so a gentle knock gains as large a share as a hard one.",
         ),
         Exercise(
             "energy_generated",
@@ -105,6 +110,7 @@ LAB = Lab(
                 ),
             ),
             hint="Which force was held while the handle went from x(n) to x(n+1)? And whose work is asked for?",
+            matters="With the right pairing of force and motion, any recording shows whether a wall generates energy.",
         ),
         Exercise(
             "two_walls",
@@ -147,6 +153,7 @@ LAB = Lab(
                 ),
             ),
             hint="Where does each wall begin, how far is the handle beyond it, and which way does it press there?",
+            matters=("Each boundary has a condition of its own. In this way you can build a box, a channel or a button."),
         ),
         Exercise(
             "damping_that_pays",
@@ -167,6 +174,10 @@ LAB = Lab(
             ),
             rtol=1e-3,
             hint="Leak and damper are both a number times the integral of v^2. Which number is each?",
+            matters=(
+                "One bounce leads to the passivity condition, Eq. (23.10): how stiff a wall may be depends on the "
+                "damping of the device."
+            ),
         ),
         Exercise(
             "who_pays",
@@ -186,6 +197,7 @@ LAB = Lab(
                 ),
             ),
             hint="Who does work on the handle when it is thrown out?",
+            matters="If you know where the energy comes from, you know what must dissipate it.",
         ),
         Exercise("discussion", kind="text", least_words=60, asks="the wrong pairing, and why a still hand meets chatter"),
     ),

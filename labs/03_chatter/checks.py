@@ -63,6 +63,7 @@ LAB = Lab(
                 ),
             ),
             hint="How late is the force in all? What does a spring that is late do to the damping of the loop?",
+            matters="Sampling and computation both make the force late, so a faster loop allows a stiffer wall.",
         ),
         Exercise(
             "limit_over_delay",
@@ -93,6 +94,7 @@ LAB = Lab(
                 ),
             ),
             hint="Is it one line through many points? Do both labels end in a unit such as [ms], and are the numbers in it?",
+            matters="The curve shows how much stiffness each millisecond of delay costs.",
         ),
         Exercise(
             "growth_per_sample",
@@ -112,6 +114,7 @@ LAB = Lab(
             ),
             rtol=1e-7,
             hint="Which matrix takes (x, v) to the next sample? What does its determinant say of two complex eigenvalues?",
+            matters=("Without damping every sampled wall chatters, however soft the wall and however fast the computer."),
         ),
         Exercise(
             "late_wall",
@@ -139,6 +142,7 @@ LAB = Lab(
                 ),
             ),
             hint="What does a wall know that has not seen x(n) yet?",
+            matters=("A slow computer or a filter delays the force in the same way, so you can try their effect in one line."),
         ),
         Exercise(
             "chatter_frequency",
@@ -165,6 +169,7 @@ LAB = Lab(
             ),
             rtol=0.02,
             hint="Between which samples does x rise through its mean? How many cycles lie between first and last crossing?",
+            matters=("The frequency helps to find the cause, because a hand cannot oscillate on purpose at tens of hertz."),
         ),
         Exercise(
             "threshold_speed",
@@ -199,6 +204,7 @@ LAB = Lab(
                 ),
             ),
             hint="How far does the handle go in a whole cycle? What is the integral of its speed squared over that cycle?",
+            matters=("Dry friction can hide an unstable wall: whether the wall chatters then depends on how you touch it."),
         ),
         Exercise(
             "quantised_limit",
@@ -219,6 +225,7 @@ LAB = Lab(
                 ),
             ),
             hint="Two leaks, each with its own payer. Both have to be paid for.",
+            matters="The hold and the encoder are two separate causes of chatter, and each needs a remedy of its own.",
         ),
         Exercise(
             "culprit",
@@ -244,6 +251,9 @@ LAB = Lab(
                 ),
             ),
             hint="Look at what the sensed position does, and at what did not change anything.",
+            matters=(
+                "A remedy for the wrong cause changes nothing. A recording can separate the causes before you change the device."
+            ),
         ),
         Exercise("discussion", kind="text", least_words=60, asks="what you would double, why, and why not the others"),
     ),

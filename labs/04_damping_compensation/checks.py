@@ -85,6 +85,7 @@ LAB = Lab(
                 ),
             ),
             hint="How far beyond x_o is each sample that the law uses? Which sample decides whether the wall acts?",
+            matters=("A look half a sample ahead removes nearly all of the leak of a bounce, without any change to the device."),
         ),
         Exercise(
             "ellis_wall",
@@ -113,6 +114,7 @@ LAB = Lab(
                 ),
             ),
             hint="What does each hat stand for in samples you know? A handle at rest feels k x: what do the weights sum to?",
+            matters=("A correction can improve a prediction, but its larger weights also amplify the steps of the encoder."),
         ),
         Exercise(
             "nyquist_damping",
@@ -135,6 +137,7 @@ LAB = Lab(
                 Case({"taps": [0.5, 0.5], "k": 200.0, "T": 1e-3}, 0.0, unit="N s/m", slips={0.1: ABSOLUTE, 0.2: TWICE}),
             ),
             hint="Which sign has each sample that the law sees? Does the damper take all that is given away in a period?",
+            matters="A law that removes the leak of a slow bounce can still need much damping in the fastest motion.",
         ),
         Exercise(
             "stiffest_passive",
@@ -156,6 +159,9 @@ LAB = Lab(
                 Case({"b": 0.1, "b_added": 0.0, "B": -0.2, "T": 1e-3}, 0.0, unit="N/m", slips={-200.0: NEGATIVE}),
             ),
             hint="In Eq. (23.10) b is all the real damping there is. Is there a stiffness left?",
+            matters=(
+                "In this bound only real damping helps; a virtual damper of either sign lowers the largest passive stiffness."
+            ),
         ),
         Exercise(
             "prediction_free_air",
@@ -203,6 +209,7 @@ LAB = Lab(
                 ),
             ),
             hint="Which law acts where x(n) < x_o, and what is the velocity there, from the last two positions?",
+            matters=("A virtual damper can help in one place and harm in another, so a rule about it must say where it acts."),
         ),
         Exercise(
             "deadbeat_forces",
@@ -229,6 +236,7 @@ LAB = Lab(
             rtol=1e-6,
             atol=1e-9,
             hint="What does each force do to the last velocity, what to the last position? Which has longer to work?",
+            matters="Position and velocity are two numbers, so two held forces are the fewest that can set both.",
         ),
         Exercise(
             "which_law",
@@ -257,6 +265,7 @@ LAB = Lab(
                 ),
             ),
             hint="What does each law need to know, and what does it do with what it does not know?",
+            matters="No law is best in general. The sensor, the delay and the hands decide which law suits a device.",
         ),
         Exercise(
             "discussion",

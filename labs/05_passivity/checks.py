@@ -63,6 +63,10 @@ LAB = Lab(
             ),
             rtol=1e-5,
             hint="what does the spring hold before and after, and what did the held force take in? What does friction cost?",
+            matters=(
+                "Where the loss is at least as large as the leak in every period, no motion of the handle gains "
+                "energy."
+            ),
         ),
         Exercise(
             "damper_gives",
@@ -98,6 +102,7 @@ LAB = Lab(
             ),
             rtol=1e-5,
             hint="which force is held from x(n) on, and does the handle go on with it or against it? Who gives then?",
+            matters="A virtual damper acts one period late, so it cannot replace a real damper in fast motion.",
         ),
         Exercise(
             "observed_energy",
@@ -125,6 +130,7 @@ LAB = Lab(
                 ),
             ),
             hint="which sample's force does the motor hold on the way to x[n]? How many such ways are there until then?",
+            matters="A controller can compute this sum while the wall runs, without a model of the hand.",
         ),
         Exercise(
             "damping_asked",
@@ -144,6 +150,7 @@ LAB = Lab(
                 ),
             ),
             hint="which power of e^(j theta) belongs to a sample that is i periods old? (Python writes j as 1j.)",
+            matters="The same calculation compares any two linear laws, whatever idea they were derived from.",
         ),
         Exercise(
             "disk_size",
@@ -174,6 +181,7 @@ LAB = Lab(
                 ),
             ),
             hint="c is complex: how large is it, and what does the map divide by? (Python writes j as 1j.)",
+            matters="While this size stays below 1 at every frequency, no passive hand can make the loop unstable.",
         ),
         Exercise(
             "controlled_force",
@@ -212,6 +220,10 @@ LAB = Lab(
                 Case({"f": 0.8, "credit": -1e-4, "D": 0.0, "T": 1e-3, "alpha_max": 5.0}, 0.8, unit="N"),
             ),
             hint="in which two cases does it do nothing? What bounds alpha in all others?",
+            matters=(
+                "The controller adds damping only when the observed energy requires it, so a well-behaved wall "
+                "feels unchanged."
+            ),
         ),
         Exercise(
             "why_it_failed",
@@ -236,6 +248,7 @@ LAB = Lab(
                 ),
             ),
             hint="compare the credit on arrival in the three runs; when does the controller act?",
+            matters="A guarantee about the total energy does not mean that the wall behaves well at each moment.",
         ),
         Exercise("discussion", kind="text", least_words=60, asks="your comparison, at least 60 words"),
     ),

@@ -42,6 +42,7 @@ LAB = Lab(
                 ),
             ),
             hint="Which z, w make the force? And which w carries the position: the one before the step, or the one after it?",
+            matters=("The order of two lines decides whether the virtual body keeps its energy or gains some in every step."),
         ),
         Exercise(
             "pendulum",
@@ -287,6 +288,9 @@ LAB = Lab(
                 ),
             ),
             hint="How fast is the bob along the rail, and how fast up? What is each mass's kinetic energy? How high is the bob?",
+            matters=(
+                "The paddle measures only its handle. The motion of the pendulum is computed, and you feel it through one force."
+            ),
         ),
         Exercise(
             "coupler_stiffness",
@@ -311,6 +315,7 @@ LAB = Lab(
                 ),
             ),
             hint="What of b is left for the spring, once the coupler's damper is paid? What does each N/m cost?",
+            matters="The hand meets the coupler first, so its stiffness limits how hard anything behind it can feel.",
         ),
         Exercise(
             "felt_wall",
@@ -332,6 +337,7 @@ LAB = Lab(
                 Case({"K": 300.0, "k": 100.0}, 75.0, unit="N/m", slips={30000.0: PRODUCT, 100.0: SOFTER}),
             ),
             hint="What do coupler and wall have in common, the force or the deflection? And what adds up?",
+            matters="A wall behind a coupler never feels stiffer than the coupler, however stiff you make the wall.",
         ),
         Exercise(
             "longest_period",
@@ -353,6 +359,7 @@ LAB = Lab(
             ),
             rtol=1e-3,
             hint="Which K in series with the wall feels like that? What T does b pay for, with this K?",
+            matters="This is how to choose a sampling rate for a stiffness that users should feel.",
         ),
         Exercise(
             "swing_frequency",
@@ -385,6 +392,7 @@ LAB = Lab(
             ),
             hint="When do two homogeneous equations for two amplitudes have a solution other than zero? Which of the two "
             "frequencies goes to sqrt(g/l) for a stiff coupler?",
+            matters=("The coupler changes what you feel of the pendulum. A good rendering keeps this change small and known."),
         ),
         Exercise(
             "who_pays",
@@ -405,6 +413,7 @@ LAB = Lab(
                 ),
             ),
             hint="run it with hands that have only a mass, only a spring, only a damper",
+            matters=("A stability limit holds for the hand that was assumed. In another hand the same scene may chatter."),
         ),
         Exercise(
             "discussion",

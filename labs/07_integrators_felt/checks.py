@@ -63,6 +63,7 @@ LAB = Lab(
                 ),
             ),
             hint="where does one step take z - x = 1, u = 0? That is one column of the matrix; and the other?",
+            matters="The eigenvalues of this matrix describe every motion that the method can produce.",
         ),
         Exercise(
             "euler_growth",
@@ -92,6 +93,10 @@ LAB = Lab(
                 ),
             ),
             hint="what is the product of a complex pair, and what is the product of all eigenvalues of a matrix?",
+            matters=(
+                "A method can generate energy that the equations of motion do not contain, and you feel it as a "
+                "growing oscillation."
+            ),
         ),
         Exercise(
             "longest_step",
@@ -118,6 +123,7 @@ LAB = Lab(
                 ),
             ),
             hint="what are trace and determinant of your matrix? Of two roots, which one can be a step?",
+            matters="Stiff couplers and light bodies need short steps, so this limit bounds what a board can render.",
         ),
         Exercise(
             "order_seen",
@@ -143,6 +149,10 @@ LAB = Lab(
             ),
             rtol=1e-5,
             hint="numpy.polyfit(x, y, 1) fits a straight line; what are x and y here?",
+            matters=(
+                "The order shows how much a shorter step gains. A measured order that is too low reveals an error "
+                "elsewhere."
+            ),
         ),
         Exercise(
             "why_order_one",
@@ -167,6 +177,7 @@ LAB = Lab(
                 ),
             ),
             hint="what changed between the two rows of RK4 in the table?",
+            matters="A more accurate method cannot correct an error that is made elsewhere in the loop.",
         ),
         Exercise(
             "shortest_period",
@@ -192,6 +203,7 @@ LAB = Lab(
                 ),
             ),
             hint="how many cycles has a period T, and how many of them may be used?",
+            matters="The cost of a method limits the sampling rate, and the sampling rate limits the stiffness.",
         ),
         Exercise("discussion", kind="text", least_words=60, asks="your comparison, at least 60 words"),
     ),

@@ -72,6 +72,7 @@ LAB = Lab(
                 ),
             ),
             hint="where may it act at all, and which sign may it never have, whatever the damper asks for?",
+            matters="A contact can push but never pull. A law without this condition makes bodies stick together.",
         ),
         Exercise(
             "stiffest_penalty",
@@ -99,6 +100,7 @@ LAB = Lab(
                 ),
             ),
             hint="how long does a contact last, and how long are ten steps?",
+            matters=("A contact that lasts only a few steps bounces differently each time, so the step limits the stiffness."),
         ),
         Exercise(
             "two_springs",
@@ -123,6 +125,7 @@ LAB = Lab(
                 ),
             ),
             hint="which spring sees the sampled handle, and which one only the solver?",
+            matters="Each spring has a limit of its own, so you can tell which of them you may still make stiffer.",
         ),
         Exercise(
             "impact",
@@ -159,6 +162,7 @@ LAB = Lab(
                 ),
             ),
             hint="three unknowns need three equations: what does p do to each body, and what does restitution say?",
+            matters="An impact that is solved as an event needs neither a stiff spring nor a short step.",
         ),
         Exercise(
             "pulse_time",
@@ -179,6 +183,10 @@ LAB = Lab(
                 ),
             ),
             hint="where does the pulse peak, and how large is F(s) there?",
+            matters=(
+                "No motor applies an impulse in zero time. A pulse delivers the same impulse with a force that "
+                "the motor can produce."
+            ),
         ),
         Exercise(
             "reaction",
@@ -209,6 +217,7 @@ LAB = Lab(
                 Case({"a": -9.81, "m": 0.05, "g": 9.81}, {"N": 0.0, "gap_acceleration": 0.0}),
             ),
             hint="which N would keep the gap closed? And what if that N would have to pull?",
+            matters="One condition decides between resting and taking off, without any stiffness of the contact.",
         ),
         Exercise(
             "largest_multiplier",
@@ -232,6 +241,7 @@ LAB = Lab(
                 ),
             ),
             hint="which eigenvalue decides in the long run? They may be complex or negative (numpy.linalg.eigvals).",
+            matters="It shows whether a small deviation dies out or grows from one impact to the next.",
         ),
         Exercise("discussion", kind="text", least_words=60, asks="your comparison, at least 60 words"),
     ),

@@ -65,6 +65,7 @@ LAB = Lab(
                 ),
             ),
             hint="Which speed does the handle head for, and how does its distance from there shrink? What happens on the way?",
+            matters="Damping and dry friction slow a handle differently, so one coasting motion can separate them.",
         ),
         Exercise(
             "coast_fit",
@@ -89,6 +90,9 @@ LAB = Lab(
                 ),
             ),
             hint="What stands beside each of the four unknowns? And how large is the integral at the first time?",
+            matters=(
+                "A fit of the integrated equation does not differentiate the counts, so the encoder disturbs the result far less."
+            ),
         ),
         Exercise(
             "mass_and_friction",
@@ -113,6 +117,7 @@ LAB = Lab(
                 Case({"A": 0.3, "rising": 10.0, "falling": 10.0}, {"m": 0.03, "coulomb": 0.0}),
             ),
             hint="Friction changes sides. In which combination of the two slopes does it drop out, and in which the motor?",
+            matters="A known force gives the scale. Without it a recording shows only ratios such as b/m.",
         ),
         Exercise(
             "what_95_means",
@@ -140,6 +145,7 @@ LAB = Lab(
                 ),
             ),
             hint="What differs from bar to bar in the figure, and what does not?",
+            matters="A limit on stiffness is only as certain as the damping from which you computed it.",
         ),
         Exercise(
             "promised_stiffness",
@@ -176,6 +182,10 @@ LAB = Lab(
                 ),
             ),
             hint="Which b of the interval do you dare to put in? What does B cost, whatever its sign? And where nothing is left?",
+            matters=(
+                "A guarantee must hold for every value that the measurement allows, so a better measurement "
+                "permits a stiffer wall."
+            ),
         ),
         Exercise(
             "hand_constants",
@@ -202,6 +212,7 @@ LAB = Lab(
                 ),
             ),
             hint="What swings, and what slows it: the hand alone, or hand and handle? Whose is the spring?",
+            matters="Your hand is part of the loop, so its constants decide which walls are stable for you.",
         ),
         Exercise(
             "which_window",
@@ -227,6 +238,7 @@ LAB = Lab(
                 ),
             ),
             hint="Until when is the hand what the model says? And up to there, what does a longer record give?",
+            matters="The choice of the data is part of the measurement: another window gives another hand.",
         ),
         Exercise("discussion", kind="text", least_words=80, asks="your discussion, 80 words or more"),
     ),

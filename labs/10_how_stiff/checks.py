@@ -53,6 +53,7 @@ LAB = Lab(
                 Case({"k_1": 100.0, "k_2": 100.0, "weber": 0.3}, 0.5),
             ),
             hint="Which level do the walls make, whichever comes first? How many sigmas is that, of two looks?",
+            matters="This curve connects the proportion of right answers to the difference between two walls.",
         ),
         Exercise(
             "staircase",
@@ -72,6 +73,7 @@ LAB = Lab(
                 Case({"answers": [0, 1], "start": 0.5, "factor": 1.25}, (0.5, 0.625)),
             ),
             hint="At which level was the very first answer given? And which answers in a row have changed the level by then?",
+            matters="A staircase spends most of its trials near the threshold, where answers carry most information.",
         ),
         Exercise(
             "converges_to",
@@ -95,6 +97,7 @@ LAB = Lab(
             ),
             hint="How likely is a step down, and how likely a step up, and how long is each? Where do they balance?",
             rtol=1e-5,
+            matters=("The rule sets the proportion of right answers at which a staircase settles; the person sets the level."),
         ),
         Exercise(
             "log_likelihood",
@@ -118,6 +121,7 @@ LAB = Lab(
                 Case({"threshold": 0.3, "levels": [0.3], "right": [1]}, -0.274108039),
             ),
             hint="How likely was each answer, a right one and a wrong one? And what does a logarithm make of a product?",
+            matters="The likelihood uses every answer of the experiment, not only the turning points of a staircase.",
         ),
         Exercise(
             "at_d_prime_1",
@@ -144,6 +148,7 @@ LAB = Lab(
                 ),
             ),
             hint="d' is proportional to the level. What is d' where this part is right? NormalDist().inv_cdf undoes cdf.",
+            matters="On a common scale you can compare thresholds from experiments with different rules.",
         ),
         Exercise(
             "standard_first",
@@ -169,6 +174,7 @@ LAB = Lab(
                 ),
             ),
             hint="What would somebody score who feels nothing and always says 'second'?",
+            matters=("A habit of answering can look like a sharp sense of touch, so the procedure must exclude the habit."),
         ),
         Exercise(
             "steps_between",
@@ -189,6 +195,7 @@ LAB = Lab(
                 Case({"k_low": 50.0, "k_high": 50.0, "weber": 0.1}, 0.0),
             ),
             hint="How often must 1 + weber be multiplied with itself to make k_high/k_low?",
+            matters="This number estimates how many walls of a device a person can tell apart.",
         ),
         Exercise("discussion", kind="text", least_words=80, asks="your discussion, 80 words or more"),
     ),

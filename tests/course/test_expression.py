@@ -114,7 +114,7 @@ def test_nothing_is_said_of_a_symbol_where_what_is_expected_is_zero_anyway(seed)
 def test_a_wrong_point_is_shown_with_its_numbers():
     case = Case({"at": {"k": [200.0, 200.0], "x(n)": [0.01, 0.02]}}, [2.0, 4.0], unit="N")
     spring = Exercise("spring", "expression", points=1, cases=[case], hint="Hooke")
-    assert "wrong: 1 of 2 points differ, first at k = 200, x(n) = 0.02: 8 N, expected 4 N." in said(spring, 2e4 * x(n) ** 2)
+    assert "wrong: 1 of 2 points differ, first at k = 200, x(n) = 0.02: 8 N, expected 4 N" in said(spring, 2e4 * x(n) ** 2)
     assert said(spring, None) == "98.spring: not answered yet: "
     assert said(spring, k * x(n)).endswith("right: 2 points")
 

@@ -67,7 +67,7 @@ def test_what_is_handed_out_is_checked_without_the_numbers_that_came_with_the_la
     assert not hl.check("02.who_pays", "a").passed
     said = capsys.readouterr().out.splitlines()
     assert said[0] == "02.damping_that_pays: noted; it is judged when handed in"
-    assert said[2] == "02.who_pays: not right yet (1 point)"
+    assert said[2] == "02.who_pays: not right yet (worth 1 point)"
     other = tmp_path / "ada" / "08_contact"
     for path in other.iterdir():  # without own numbers, as it came
         assert path.read_bytes() == (WALL.path.parent / other.name / path.name).read_bytes()

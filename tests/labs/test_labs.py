@@ -57,6 +57,7 @@ def test_lab_is_well_formed(folder):
     assert lab.points == 10
     assert 4 <= len(judged) <= 8
     assert all(e.points > 0 and e.asks for e in judged)
+    assert all(e.matters.endswith(".") and len(e.matters) <= 130 for e in judged), "one sentence or two on why it matters"
     assert {e.kind for e in lab.exercises} > {"prediction", "text"}, "predict first; a text is handed in"
 
 
@@ -82,8 +83,10 @@ def test_untouched_lab_runs_and_earns_nothing(folder, tmp_path, monkeypatch, rec
 
 
 def printed(cell):
-    """Return what a cell printed; a kernel sends it in pieces."""
-    return "".join(output.get("text", "") for output in cell.get("outputs", ()) if output.get("name") == "stdout")
+    """Return what a cell printed, which a kernel sends in pieces, and its cards in text."""
+    outputs = cell.get("outputs", ())
+    cards = [o["data"].get("text/plain", "") for o in outputs if o.get("output_type") == "display_data"]
+    return "".join([*(o.get("text", "") for o in outputs if o.get("name") == "stdout"), *cards])
 
 
 @pytest.mark.always("01_*", "02_*", "05_*", "10_*")

@@ -37,7 +37,7 @@ def notebook(monkeypatch):
     """Stand in for a notebook; give what it was shown."""
     display = pytest.importorskip("IPython.display")
     shown = []
-    monkeypatch.setattr(module, "_in_a_notebook", lambda: True)
+    monkeypatch.setattr(module, "in_a_notebook", lambda: True)
     monkeypatch.setattr(display, "display", lambda data, **more: shown.append((data, more)))
     return shown
 

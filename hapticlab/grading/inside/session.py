@@ -95,7 +95,7 @@ class Session:
 
 def quiet_names():
     """Return the names a notebook starts with; nothing that runs is judged, shown or asked."""
-    passed = checks.CheckResult("", True, True, (), "")
+    passed = checks.CheckResult("", True, True, (), checks.Card("", "saved", ""))
     sys.modules["hapticlab"].check = checks.check = lambda *_, **__: passed
     random.seed(0)
     np.random.seed(0)  # noqa: NPY002 what students call without a generator of their own

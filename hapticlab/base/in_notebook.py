@@ -1,0 +1,23 @@
+"""Where IPython runs a program, and what is shown there: the only module that opens IPython."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+
+def in_a_notebook() -> bool:
+    """Tell whether IPython runs this; it is not imported to find out."""
+    if "IPython" not in sys.modules:
+        return False
+    from IPython import get_ipython
+
+    return get_ipython() is not None
+
+
+def display(data: Mapping[str, Any], metadata: Mapping[str, Any] | None = None) -> None:
+    """Show one output in several forms, such as {"text/plain": ..., "text/html": ...}; the front end takes the richest."""
+    from IPython.display import display as show
+
+    show(dict(data), metadata=dict(metadata or {}), raw=True)
