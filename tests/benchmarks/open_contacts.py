@@ -69,7 +69,8 @@ def board(program):
     try:
         paid = cost(program, "cortex-m4f")
     except ProgramLimitError as too_large:
-        return f"does not fit: {str(too_large).split(": ", 2)[1].split(";")[0]}"
+        said = str(too_large).split(": ", 2)[1]
+        return f"does not fit: {said.split(';')[0]}"
     return f"Cortex-M4F: {paid.typical} cycles, {paid.of_cases} of cases, at most {paid.bound}"
 
 
