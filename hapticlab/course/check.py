@@ -11,6 +11,7 @@ from ..errors import CourseError
 from ..slips.own_line import of_call
 from ..slips.swallowed import swallowed
 from .cards.card import Card
+from .cards.case_figures import WrongCase, figures
 from .cards.progress import remember
 from .evaluate import evaluate
 from .judge import verdict
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 MOST_LINES, MOST_CHARACTERS = 10, 200
 #: characters of what a case gives
 MOST_GIVEN = 90
+MOST_DRAWN = 2
 
 
 @dataclass(frozen=True)
@@ -153,7 +155,8 @@ def checked(name: str, exercise: Exercise, answer: object) -> CheckResult:
     rows = (*_case_rows(exercise, verdicts), *_printed(outcomes))
     rows += (("why it matters", exercise.matters),) if exercise.matters and passed else ()
     state, head = _state(verdicts)
-    card = Card(name, state, head, f"worth {points_words(exercise.points)}", rows)
+    drawn = _drawn(exercise, outcomes, verdicts)
+    card = Card(name, state, head, f"worth {points_words(exercise.points)}", rows, drawn)
     return CheckResult(name, passed, True, verdicts, card)
 
 
@@ -163,6 +166,17 @@ def _state(verdicts):
     if right == cases:
         return "right", "right in the public cases"
     return ("partly", f"partly right, not right yet: {right} of {cases} public cases") if right else ("wrong", "not right yet")
+
+
+def _drawn(exercise, outcomes, verdicts):
+    """Return figures of the first wrong case that has lists or curves: what came beside what was expected, where that is told."""
+    if exercise.kind in ("value", "choice"):
+        return ()
+    for case, outcome, found in zip(exercise.cases, outcomes, verdicts, strict=True):
+        if not found.right and outcome.value is not None:
+            wrong = WrongCase(exercise.name, exercise.kind, case.given, outcome.value, case.expected, case.unit)
+            return tuple(figures(wrong, lambda name, otherwise="": otherwise)[:MOST_DRAWN])
+    return ()
 
 
 def _case_rows(exercise, verdicts):

@@ -192,7 +192,7 @@ def _digits(one, other):
 def _value(number, unit, digits=6):
     if np.ndim(number):
         return f"{np.size(number)} numbers"
-    return f"{float(number):.{digits}g} {unit}".strip()
+    return f"{float(number) + 0.0:.{digits}g} {unit}".strip()  # no sign on a zero
 
 
 def _shape_words(shape):

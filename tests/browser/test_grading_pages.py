@@ -4,7 +4,7 @@ import pytest
 from class_reports import class_of
 from lab import picture
 
-from hapticlab.grading.pages.page_text import file_name
+from hapticlab.course.cards.page_text import file_name
 from hapticlab.grading.pages.pages import write_pages
 
 #: of an A4 page within its margins [px]

@@ -96,6 +96,23 @@ def test_every_text_of_a_card_is_escaped():
     assert {tag for tag, _ in Reader(card.html()).elements} <= {"div", "p", "span", "strong", "code"}
 
 
+TABLE = Exercise("table", cases=[Case({"x": [0.0, 0.01, 0.02, 0.04]}, [0.0, 2.0, 4.0, 8.0], unit="N")])
+
+
+def test_where_lists_differ_both_are_drawn_with_their_words():
+    page = Reader(checked("98.table", TABLE, lambda x: 100 * x).card.html())
+    drawn = [attributes for tag, attributes in page.elements if tag == "svg"]
+    assert len(drawn) == 1 and drawn[0]["role"] == "img" and drawn[0]["aria-label"].startswith("table: ")
+    assert "The largest difference is at handle position x = 40 mm: 4 came, 8 is expected." in page.text
+    assert not {name for _, attributes in page.elements for name in attributes} & {"id", "onload", "href", "src"}
+    assert checked("98.table", TABLE, lambda x: 200 * x).card.figures == ()
+
+
+def test_what_is_the_answer_itself_is_never_drawn():
+    value = Exercise("k", "value", 1, cases=[Case({}, [1.0, 2.0, 3.0, 4.0])])
+    assert checked("98.k", value, [1.0, 2.0, 3.0, 5.0]).card.figures == ()
+
+
 @pytest.fixture
 def notebook(monkeypatch, tmp_path):
     """A folder as a notebook's, and the outputs that a front end gets."""

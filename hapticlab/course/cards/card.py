@@ -22,6 +22,9 @@ STYLES = {
     "sign": "display: inline-block; min-width: 1.4em; text-align: center; border-radius: .25em; color: #fff; font-weight: 700;",
     "aside": "opacity: .8; white-space: nowrap;",
     "row": "margin: .35rem 0;",
+    # a picture keeps its own light ground
+    "figure": "margin: .5rem 0; padding: .4rem; background: #fff; color: #1b1b1b; font: 13px sans-serif; ",
+    "picture": "display: block; max-width: 100%; height: auto;",
     **{f"line-{state}": f"border-left: .4rem {line} {COLOURS[state]};" for state, line in LINES.items()},
     **{f"sign-{state}": f"background: {colour};" for state, colour in COLOURS.items()},
 }
@@ -48,6 +51,8 @@ class Card:
         Beside the head.
     rows : sequence of (str, str)
         Label and words.
+    figures : sequence of (str, str)
+        An SVG, and its sentence; in HTML alone, after the first row.
 
     Examples
     --------
@@ -65,6 +70,7 @@ class Card:
     head: str
     aside: str = ""
     rows: tuple[tuple[str, str], ...] = ()
+    figures: tuple[tuple[str, str], ...] = ()
 
     def text(self) -> str:
         """Return the card in lines, the form that is printed, logged and graded."""
@@ -82,5 +88,13 @@ class Card:
         sign = f'<span aria-hidden="true"{look("sign", f"sign-{self.state}")}>{SIGNS[self.state]}</span>'
         aside = f" <span{look('aside')}>({escape(self.aside)})</span>" if self.aside else ""
         head = f"{sign} <strong>{escape(self.head)}</strong> <code>{escape(self.name)}</code>{aside}"
-        rows = [f"<p{look('row')}><strong>{escape(label)}:</strong> {escape(words)}</p>" for label, words in self.rows]
-        return "\n".join([f"<div{look('card', f'line-{self.state}')}><p{look('head')}>{head}</p>", *rows]) + "</div>"
+        rows = [f"<p{look('row')}><strong>{escape(label)}:</strong> {_unbroken(words)}</p>" for label, words in self.rows]
+        svgs = [(svg.replace("<svg", f"<svg{look('picture')}", 1), escape(words)) for svg, words in self.figures]
+        drawn = [f"<figure{look('figure')}>{svg}<figcaption>{words}</figcaption></figure>" for svg, words in svgs]
+        first = f"<div{look('card', f'line-{self.state}')}><p{look('head')}>{head}</p>"
+        return "\n".join([first, *rows[:1], *drawn, *rows[1:]]) + "</div>"
+
+
+def _unbroken(words):
+    """Return words for a page, where no line ends within "x = 2"."""
+    return escape(words).replace(" = ", "\u00a0=\u00a0")

@@ -4,8 +4,8 @@ import re
 
 import numpy as np
 
-from .case_figures import figures, is_curve, numbers
-from .page_text import pair, shown
+from ...course.cards.case_figures import WrongCase, figures, is_curve, numbers
+from ...course.cards.page_text import pair, shown
 
 #: lists of more numbers are told by their first ones, tables of more too; a figure shows all
 MOST_NUMBERS, MOST_ROWS = 6, 24
@@ -17,7 +17,9 @@ TOLERANCE = 1e-6, 1e-12
 
 def drawn(one, lab):
     """Pairs of an SVG and what it says in words, one for each list of the case."""
-    return figures(one, lambda name, other: unit_of(name, one, lab, other))
+    case = one.failing
+    wrong = WrongCase(one.name, one.kind, case.given, case.value, case.expected, case.unit)
+    return figures(wrong, lambda name, other: unit_of(name, one, lab, other))
 
 
 def unit_of(name, one, lab, otherwise=""):

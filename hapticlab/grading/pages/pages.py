@@ -8,13 +8,13 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...course.cards.page_text import BLOCK, SENTENCE, clean, file_name, shown
 from ...course.exercise import NOTED
 from ...errors import CourseError
 from ..formats.words import state
 from .class_page import WORDS, broken, class_facts
 from .failing_case import compared, drawn, given
 from .page_figures import bars, shares
-from .page_text import BLOCK, SENTENCE, clean, file_name, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from hapticlab.grading.pages.page_figures import bounded, chart
+from hapticlab.course.cards.chart import bounded, chart
 
 
 def test_a_figure_stands_where_its_numbers_are():

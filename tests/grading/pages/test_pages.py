@@ -13,10 +13,10 @@ import pytest
 from class_reports import class_of
 from page_reader import ATTRIBUTES, TAGS, Page
 
+from hapticlab.course.cards.page_text import clean, file_name
 from hapticlab.course.exercise import Case, Exercise, Lab
 from hapticlab.errors import CourseError
 from hapticlab.grading.formats.words import state
-from hapticlab.grading.pages.page_text import clean, file_name
 from hapticlab.grading.pages.pages import write_pages
 from hapticlab.grading.report import ExerciseReport, Failing, Report
 

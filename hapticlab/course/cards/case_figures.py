@@ -1,12 +1,14 @@
 """Figures of a wrong case: each list that was expected, with what came in its place."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ...base.drawing import axis_label
-from ...course.plotted_curves import UNIT
-from .page_figures import POINT, SAMPLE, bounded, chart
+from ..plotted_curves import UNIT
+from .chart import POINT, SAMPLE, bounded, chart
 from .page_text import pair
 
 LEAST_DRAWN, MOST_FIGURES, LEAST_COLUMN = 3, 4, 7
@@ -30,17 +32,28 @@ class Panel:
     axes: tuple = ()
 
 
+@dataclass(frozen=True)
+class WrongCase:
+    """A wrong case to draw: of which exercise, what was given, what came and what was expected, as plain values."""
+
+    name: str
+    kind: str
+    given: Mapping[str, Any]
+    value: Any
+    expected: Any
+    unit: str
+
+
 def figures(one, unit):
     """Figures of a wrong case, at most a few: each an SVG, and what it says in words.
 
     Parameters
     ----------
-    one : ExerciseReport
-        With a failing case that tells what is expected.
+    one : WrongCase
     unit : callable
         Name, and a unit where nothing says one, to unit.
     """
-    found = [panel for panel in panels(one.name, one.failing.value, one.failing.expected) if len(panel.expected) >= LEAST_DRAWN]
+    found = [panel for panel in panels(one.name, one.value, one.expected) if len(panel.expected) >= LEAST_DRAWN]
     return [_figure(one, panel, unit) for panel in found[:MOST_FIGURES]]
 
 
@@ -114,7 +127,7 @@ def _figure(one, panel, unit):
     else:
         size = max(len(panel.expected), 0 if panel.got is None else len(panel.got))
         x_got, across = _across(one, size, unit)
-        x, (scale, label) = x_got[: len(panel.expected)], axis_label(panel.name, unit(panel.name, one.failing.unit))
+        x, (scale, label) = x_got[: len(panel.expected)], axis_label(panel.name, unit(panel.name, one.unit))
     across, label = across.removesuffix(" []"), label.removesuffix(" []")
     lines = {"expected": (x, bounded(panel.expected) * scale)}
     if panel.got is not None:
@@ -126,7 +139,7 @@ def _figure(one, panel, unit):
 def _across(one, size, unit):
     """The abscissae of a figure, and their label: t, else x where it grows or falls all the way, else counted."""
     for name, otherwise in ALONG.items():
-        x = numbers(one.failing.given.get(name), 1)
+        x = numbers(one.given.get(name), 1)
         if x is not None and x.shape == (size,) and np.isfinite(x).all():
             steps = np.diff(bounded(x))
             if (steps > 0).all() or (steps < 0).all():
