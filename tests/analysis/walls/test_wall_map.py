@@ -174,7 +174,8 @@ def test_a_scene_of_its_own():
     assert found.limit("stability")[0] == pytest.approx(hl.stability_limit(BARE, law="ellis").K, rel=1e-7)
     assert list(found.limits) == ["stability"] and found.share("passive") == 0
     swept = hl.sweep(filtered, BARE, duration=0.2, progress=False, v=0.1, k=axes["K"], B=axes["B"])
-    assert ((found.amplitude == swept.values) | (np.isnan(swept.values) & np.isnan(found.amplitude)))[:2].all()
+    slow = np.isnan(swept.values) & (found.amplitude == 0)  # bounces that shrink slowly: a map goes by theory there
+    assert (slow | (found.amplitude == swept.values) | (np.isnan(swept.values) & np.isnan(found.amplitude)))[:2].all()
     blind = wall_map(BARE, law=filtered, over=("K", "delay"), K=[100.0, 5e4], delay=[0.0, 1e-3])
     assert blind.limits == {} and blind.regions[0, 0] == 1 and blind.regions[1, 1] == 3
     assert blind.plot().axes[0].get_title().startswith("filtered zoh wall")
