@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
-from ..base.arguments import number
+from ..base.arguments import having, instance, number
 from ..device.live_parameters import named_values
 from ..device.simulated.simulated_paddle import SimulatedPaddle
 from ..errors import AnalysisError, PaddleError
@@ -174,6 +174,10 @@ def largest_stiffness(
     True
     """
     B = number("B", B, "N s/m")
+    having(paddle, "a paddle, as hl.SimulatedPaddle(...) or hl.connect()", "program", error=PaddleError)
+    instance("starts", starts, Starts, "hl.measure.Starts(run_ups=...)")
+    instance("search", search, Search, "hl.measure.Search(first=...)")
+    instance("judged", judged, Judgement, "hl.measure.Judgement(longest=...)")
     scene = wall_of(law, parameter)
     name = law if isinstance(law, str) else scene.name
     durations = durations_of(paddle, judged.duration, judged.longest)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ..base.arguments import count, number, numbers
 from ..device.hand.hand import Hand
 from ..errors import AnalysisError
@@ -77,7 +79,7 @@ class Starts:
     def __post_init__(self) -> None:
         run_ups = tuple(number("run_ups", way, "m", "a start", least=0) for way in _each(self.run_ups))
         pushes = tuple(number("pushes", push, "N", "a start") for push in _each(self.pushes))
-        hands = tuple(self.hands)
+        hands = _each(self.hands)
         if not run_ups or not all(isinstance(hand, Hand) for hand in hands):
             raise AnalysisError(
                 f"run_ups = {run_ups}, hands = {hands}; a start needs one run-up at least, and hands as hl.Hand('pinch')"
@@ -88,7 +90,7 @@ class Starts:
 
 
 def _each(given):
-    return (given,) if isinstance(given, str | int | float) else tuple(given)
+    return tuple(given) if np.iterable(given) and not isinstance(given, str) else (given,)
 
 
 @dataclass(frozen=True, kw_only=True)

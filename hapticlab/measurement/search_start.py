@@ -88,10 +88,10 @@ def _pushes(paddle, push, place, seconds):
         at = float(np.mean(hand.samples(ticks, paddle.T))) if hand.moves else hand.intent or 0.0
         leaning = hand.push + hand.k * (at - place)
     push = (0.0 if leaning else min(PUSH, OF_LIMIT * most)) if push is None else float(push)
-    if hand is not None and push + leaning <= 0:
+    if push + leaning <= 0:
+        who = "the hand pulls" if leaning else "the push pulls"
         raise AnalysisError(
-            f"the hand pulls the handle off the wall with {-push - leaning:g} N; "
-            f"needs a push: Starts(pushes={PUSH - leaning:.3g})"
+            f"{who} the handle off the wall with {-push - leaning:g} N; needs a push: Starts(pushes={PUSH - leaning:.3g})"
         )
     if push + leaning >= most:
         raise AnalysisError(

@@ -24,6 +24,8 @@ IN_SYMPY = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "at
 FUNCTIONS = set("sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt floor ceiling Abs sign".split())
 #: what Python and NumPy call values that are no symbols, nor made of them
 PLAIN = set("int float complex bool str list tuple dict set NoneType function method module range ndarray numpy.ndarray".split())
+#: of hapticlab, which are no expressions either
+OWN_OBJECTS = {"Scene", "Hand", "Device", "SimulatedPaddle", "_Library"}
 CLOCK_AND_HANDLE = ("x", "v", "n", "t", "T")
 IMPORTS = {
     "np": "import numpy as np", "sp": "import sympy as sp", "math": "import math", "plt": "import matplotlib.pyplot as plt",
@@ -200,6 +202,8 @@ def _call(own, match):
 def _record(own, match):
     if "'Telemetry'" in match[0]:
         return "A record holds several columns of numbers. Take one of them, such as log.x or log.F."
+    if match[1] in PLAIN | OWN_OBJECTS:
+        return ""
     what = {"len()": "`len` counts items", "iterable": "A loop takes one item after the other"}
     word = next(words for key, words in what.items() if key in match[0])
     return f"{word}, but this is one expression, not a list of numbers. {RECORD}"
@@ -285,7 +289,7 @@ TABLE: tuple[tuple[str, Rule], ...] = (
     (r"'(\w+)'(?: object)? is not subscriptable", _subscript),
     (r"'(\w+)'(?: object)? has no attribute '(\w+)'", _attribute),
     (r"'([\w.]+)' object is not callable", _call),
-    (r"'\w+'(?: object is not iterable| has no len\(\))", _record),
+    (r"'(\w+)'(?: object is not iterable| has no len\(\))", _record),
     (r"name '(\w+)' is not defined", _unknown_name),
     (r"cannot assign to field '(\w+)'|'Frozen' object does not support item assignment", _kept),
     (r"calculate derivative wrt (.*?)\.", _rate),

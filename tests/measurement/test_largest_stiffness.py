@@ -258,6 +258,30 @@ def test_a_hand_that_pulls_away_is_refused_with_the_push_that_would_do():
         largest_stiffness(paddle(hand=hl.Hand(push=-2.0)))
 
 
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"paddle": None}, "a NoneType has no program; needs a paddle"),
+        ({"paddle": hl.Device(m=0.05, b=0.1, T=1e-3)}, "a Device has no program; needs a paddle"),
+        ({"starts": 3}, "starts = 3; needs hl.measure.Starts"),
+        ({"search": "fast"}, "search = 'fast'; needs hl.measure.Search"),
+        ({"judged": None}, "judged = None; needs hl.measure.Judgement"),
+        ({"starts": hl.measure.Starts(pushes=-1)}, "the push pulls the handle off the wall with 1 N; .*pushes=0.2"),
+    ],
+)
+def test_what_is_no_paddle_or_no_option_is_refused_in_words(given, words):
+    with pytest.raises(hl.errors.HapticlabError, match=words):
+        largest_stiffness(**{"paddle": paddle()} | given)
+
+
+def test_a_start_takes_one_value_or_several():
+    hand = hl.Hand("pinch")
+    assert hl.measure.Starts(hands=hand).hands == (hand,) and hl.measure.Starts(run_ups="1 mm").run_ups == (1e-3,)
+    for wrong in ({"run_ups": None}, {"hands": "pinch"}, {"hands": 3}):
+        with pytest.raises(hl.errors.AnalysisError, match="a start needs"):
+            hl.measure.Starts(**wrong)
+
+
 def test_friction_keeps_a_count_quiet():
     """Diolaiti: what sticks does not dither up to K = 2 f_c/count, 80 N/m here; beyond, it depends on where it rests."""
     coarse = paddle(b=0.5, counts_per_metre=1 / 0.5e-3, coulomb=0.02)

@@ -102,3 +102,12 @@ def test_code_is_written_as_students_do():
 def test_a_message_that_the_table_does_not_know_has_no_words():
     problem = caught(lambda: int("a"))
     assert in_our_words(problem, of_error(problem.__traceback__)) == ""
+
+
+def test_a_loop_over_what_is_no_expression_is_not_called_one():
+    wrong = [lambda: list(hl.Hand("pinch")), lambda: list(hl.library), lambda: [hl.Scene(force=0) for _ in None]]
+    for call in wrong:
+        problem = caught(call)
+        assert "one expression" not in in_our_words(problem, of_error(problem.__traceback__))
+    problem = caught(lambda: list(hl.x(hl.n)))
+    assert "one expression" in in_our_words(problem, of_error(problem.__traceback__))

@@ -77,7 +77,7 @@ class ClosedMotions:
         self.durations = program.T * np.array(parts)
         self._values, self._loaded = list(program.values), load(_moved(program))
         self._bodies = [k for k, c in enumerate(program.states) if c.type in REAL_TYPES and not is_past_sample(c.name)]
-        self._length, self.spent = len(program), 0.0
+        self._length, self.spent = len(program) or 1, 0.0  # a constant force takes none
         self.work = self._length * (SETTLED + (STEPS * (len(self._bodies) + 1) if self._bodies else 0))
 
     def books(self, positions):

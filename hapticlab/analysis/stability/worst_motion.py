@@ -259,10 +259,13 @@ def worst_motion(
     T, delay, coulomb, b = known(device, "T", "delay", "coulomb", or_none="b")
     reach = number("reach", reach, "m", "a motion", above=0)
     samples = count("samples", samples, "a motion", least=2, most=LENGTHS[-1])
+    seed = count("seed", seed, "a search", least=0)
     program = compile(scene, T=T, dtype="float64", live=(), **options)
     gains = _Gains(ClosedMotions(program, delay), coulomb, b, SMALLEST * reach)
     surfaces = _surfaces(scene, T)
     places = _places(gains, surfaces, reach) if about is None else [number("about", x, "m", "a motion") for x in np.ravel(about)]
+    if not places:
+        raise AnalysisError(f"about = {about!r}; a search needs one place at least, as about=0, or none given to find its own")
     most, share = int(np.clip(CALL / gains.motions.work, 100, MOST)), WORK / (2 * len(places))
     needing, powerful, tried = [], [], 0
     for place in places:

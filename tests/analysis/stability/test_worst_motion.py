@@ -260,3 +260,13 @@ def test_where_none_is_found_it_says_what_was_searched():
         hl.passivity.worst_motion(hl.Device(T=T), hl.wall()(k=300), samples=1)
     with pytest.raises(AnalysisError, match="reach = 0 m"):
         hl.passivity.worst_motion(hl.Device(T=T), hl.wall()(k=300), reach=0)
+    with pytest.raises(AnalysisError, match="seed = -1"):
+        hl.passivity.worst_motion(hl.Device(T=T), hl.wall()(k=300), seed=-1)
+    with pytest.raises(AnalysisError, match="needs one place at least"):
+        hl.passivity.worst_motion(hl.Device(T=T), hl.wall()(k=300), about=[])
+
+
+def test_a_force_that_does_not_change_draws_nothing():
+    for force in (0, hl.parameters("F_c", units="N", values=1.0)):
+        found = hl.passivity.worst_motion(hl.Device(b=0.2, T=T), hl.Scene(force=force), samples=3)
+        assert found.found is False and found.b_req == pytest.approx(0, abs=1e-9)
