@@ -32,6 +32,22 @@ def test_verdicts_agree_with_exact_limit_cycles():
         assert verdict.contacts_per_second == pytest.approx(exact.rate, rel=4e-3)
 
 
+@pytest.mark.wide
+def test_a_map_over_many_plants():
+    """Of 960 verdicts none is wrong, and at 4 s at most 5 % are undecided."""
+    plants = (chatter_map.PLANTS[2], chatter_map.PLANTS[5], *chatter_map.random_plants(number=1, seed=11))
+    counts, _ = chatter_map.measured(plants, ratios=(0.7, 0.93, 1.13, 1.7), seconds=20.0)
+    at_4 = {key: n for key, n in counts.items() if key[1] == 4}
+    assert sum(counts.values()) >= 500 and not any(o == "wrong" for *_, o in counts)
+    assert sum(n for (*_, o), n in at_4.items() if o == "undecided") <= 0.05 * sum(at_4.values())
+
+
+@pytest.mark.slow
+def test_the_whole_map():
+    counts, _ = chatter_map.measured()
+    assert sum(counts.values()) == 5600 and not any(o == "wrong" for *_, o in counts)
+
+
 def test_a_decay_onto_a_cycle_is_chatter_in_two_seconds():
     """1.5, 2 and 3 times the exact limit, from three times the height: 'it dies out' would be wrong."""
     plant = chatter_map.Plant(m=0.05, b=0.3, T=1e-3, push=1.0)
