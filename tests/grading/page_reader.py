@@ -5,13 +5,14 @@ from html.parser import HTMLParser
 VOID = {"meta", "path", "rect", "circle", "br"}
 #: all that a page is made of: nothing here loads or runs anything
 TAGS = {
-    "html", "head", "meta", "title", "style", "body", "header", "main", "footer", "section", "h1", "h2", "h3", "p",
+    "html", "head", "meta", "title", "style", "body", "header", "main", "footer", "section", "div", "h1", "h2", "h3", "p",
     "pre", "code",
     "strong", "span", "bdi", "a", "table", "caption", "thead", "tbody", "tr", "th", "td", "figure", "figcaption", "details",
     "summary", "svg", "path", "rect", "circle", "text", "defs", "pattern",
 }  # fmt: skip
 ATTRIBUTES = {
-    "lang", "charset", "http-equiv", "content", "name", "class", "id", "href", "scope", "role", "aria-label", "dir",
+    "lang", "charset", "http-equiv", "content", "name", "class", "id", "href", "scope", "role", "aria-label", "aria-hidden",
+    "dir",
     "viewbox", "width", "height", "d", "fill", "stroke", "stroke-width", "stroke-linecap", "stroke-dasharray", "x",
     "y", "cx", "cy",
     "r", "text-anchor", "transform", "patternunits", "patterntransform",

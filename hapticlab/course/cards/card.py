@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from html import escape
 from typing import Literal
+
+from .page_text import clean
 
 State = Literal["right", "partly", "wrong", "open", "saved"]
 #: state -> the sign that stands before its words, which is not read aloud
@@ -42,7 +43,7 @@ class Card:
     Attributes
     ----------
     name : str
-        Lab and exercise, "01.wall_force".
+        Lab and exercise, "01.wall_force"; empty where it stands above the card.
     state : {"right", "partly", "wrong", "open", "saved"}
         "open" where there is no answer, or no such check; "saved" for what is not marked.
     head : str
@@ -86,10 +87,11 @@ class Card:
             Parts of STYLES to an attribute of an element, with a space before it.
         """
         sign = f'<span aria-hidden="true"{look("sign", f"sign-{self.state}")}>{SIGNS[self.state]}</span>'
-        aside = f" <span{look('aside')}>({escape(self.aside)})</span>" if self.aside else ""
-        head = f"{sign} <strong>{escape(self.head)}</strong> <code>{escape(self.name)}</code>{aside}"
-        rows = [f"<p{look('row')}><strong>{escape(label)}:</strong> {_unbroken(words)}</p>" for label, words in self.rows]
-        svgs = [(svg.replace("<svg", f"<svg{look('picture')}", 1), escape(words)) for svg, words in self.figures]
+        aside = f" <span{look('aside')}>({clean(self.aside)})</span>" if self.aside else ""
+        name = f" <code>{clean(self.name)}</code>" if self.name else ""
+        head = f"{sign} <strong>{clean(self.head)}</strong>{name}{aside}"
+        rows = [f"<p{look('row')}><strong>{clean(label)}:</strong> {_unbroken(words)}</p>" for label, words in self.rows]
+        svgs = [(svg.replace("<svg", f"<svg{look('picture')}", 1), clean(words)) for svg, words in self.figures]
         drawn = [f"<figure{look('figure')}>{svg}<figcaption>{words}</figcaption></figure>" for svg, words in svgs]
         first = f"<div{look('card', f'line-{self.state}')}><p{look('head')}>{head}</p>"
         return "\n".join([first, *rows[:1], *drawn, *rows[1:]]) + "</div>"
@@ -97,4 +99,4 @@ class Card:
 
 def _unbroken(words):
     """Return words for a page, where no line ends within "x = 2"."""
-    return escape(words).replace(" = ", "\u00a0=\u00a0")
+    return clean(words).replace(" = ", "\u00a0=\u00a0")

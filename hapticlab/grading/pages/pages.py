@@ -13,6 +13,7 @@ from ...course.exercise import NOTED
 from ...errors import CourseError
 from ..formats.words import state
 from .class_page import WORDS, broken, class_facts
+from .exercise_card import SHEET, card
 from .failing_case import compared, drawn, given
 from .page_figures import bars, shares
 
@@ -29,7 +30,8 @@ HERE = Path(__file__).parent
 #: what the templates call
 NAMES = {
     "BLOCK": BLOCK, "MOST_CELLS": 40, "NOTED": NOTED, "WORDS": WORDS,
-    "bars": bars, "broken": broken, "compared": compared, "drawn": drawn, "given": given, "shares": shares, "state": state,
+    "bars": bars, "broken": broken, "card": card,
+    "compared": compared, "drawn": drawn, "given": given, "shares": shares, "state": state,
 }  # fmt: skip
 
 
@@ -57,7 +59,7 @@ def _templates():
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    style = (HERE / "pages.css").read_text("utf-8")
+    style = (HERE / "pages.css").read_text("utf-8") + SHEET
     allowed = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
     pages.globals |= {**NAMES, "style": Markup(style), "allowed": allowed}
     pages.filters |= {"clean": text, "shown": shown, "g": "{:g}".format}

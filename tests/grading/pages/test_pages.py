@@ -49,8 +49,11 @@ def test_every_student_has_a_page_that_tells_the_mark_and_what_is_wrong(written)
         assert len(places) == len(report.exercises) and places == sorted(places)
         for one in report.exercises:
             wrong = state(one) == "wrong"
-            assert (" ".join(one.words.split()) in page.words) or not wrong
-            assert (f"Hint: {one.hint}" in page.words) or not (one.hint and wrong)
+            if wrong:
+                told = page.words.rpartition(f"{one.name} ✗ wrong")[2].partition("The first case that is wrong")[0]
+                assert f"{one.right} of {one.cases} cases right wrong: " in told and not re.search(r"expected -?[\dTF]", told)
+                assert told.count(" ".join(one.slip.split()) or "likely slip:") == bool(one.slip)
+                assert f"hint: {one.hint}" in told or not one.hint
             assert " ".join(one.text.split()) in page.words
         assert ("Cells that failed" in page.words) == bool(report.cells)
 
