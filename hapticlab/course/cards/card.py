@@ -89,7 +89,8 @@ class Card:
         sign = f'<span aria-hidden="true"{look("sign", f"sign-{self.state}")}>{SIGNS[self.state]}</span>'
         aside = f" <span{look('aside')}>({clean(self.aside)})</span>" if self.aside else ""
         name = f" <code>{clean(self.name)}</code>" if self.name else ""
-        head = f"{sign} <strong>{clean(self.head)}</strong>{name}{aside}"
+        said, colon, more = clean(self.head).partition(": ")
+        head = f"{sign} <strong>{said}</strong>{colon}{more}{name}{aside}"
         rows = [f"<p{look('row')}><strong>{clean(label)}:</strong> {_unbroken(words)}</p>" for label, words in self.rows]
         svgs = [(svg.replace("<svg", f"<svg{look('picture')}", 1), clean(words)) for svg, words in self.figures]
         drawn = [f"<figure{look('figure')}>{svg}<figcaption>{words}</figcaption></figure>" for svg, words in svgs]
