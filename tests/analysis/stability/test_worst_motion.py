@@ -270,3 +270,14 @@ def test_a_force_that_does_not_change_draws_nothing():
     for force in (0, hl.parameters("F_c", units="N", values=1.0)):
         found = hl.passivity.worst_motion(hl.Device(b=0.2, T=T), hl.Scene(force=force), samples=3)
         assert found.found is False and found.b_req == pytest.approx(0, abs=1e-9)
+
+
+def test_a_count_and_a_sum_never_repeat_themselves():
+    """A Newton step along what a cycle hands on whole would go to 1e12, where the force changes by no part of itself."""
+    s, total = hl.signal("s", unit="1"), hl.signal("total", unit="m")
+    counted = hl.Scene(force=K * X * s(n), eom=[sp.Eq(s(n), s(n - 1) + 1)])(K=300)
+    with pytest.raises(AnalysisError, match="none had a force that repeats itself"):
+        hl.passivity.worst_motion(hl.Device(b=0.2, T=T), counted, samples=3, about=0)
+    summed = hl.Scene(force=K * X + H * total(n), eom=[sp.Eq(total(n), total(n - 1) + X)])(K=300, H=30)
+    found = hl.passivity.worst_motion(hl.Device(b=0.2, T=T), summed, samples=4, about=0)
+    assert abs(found.x.sum()) < 1e-6 and np.abs(found.held).max() < 2
