@@ -173,7 +173,7 @@ def largest_stiffness(
     >>> abs(float(found) / hl.stability_limit(paddle).K - 1) < 0.01
     True
     """
-    B = number("B", B, "N s/m")
+    B, place = number("B", B, "N s/m"), number("place", place, "m")
     having(paddle, "a paddle, as hl.SimulatedPaddle(...) or hl.connect()", "program", error=PaddleError)
     instance("starts", starts, Starts, "hl.measure.Starts(run_ups=...)")
     instance("search", search, Search, "hl.measure.Search(first=...)")

@@ -61,6 +61,8 @@ def _number_wanted(own, match):
     function, given = code_of(call.func), ", ".join(map(code_of, call.args))
     name = function.rpartition(".")[2]
     if name == "float":
+        if "(" in given:  # a sample
+            return f"`float` needs a number, but {given} changes from sample to sample. {RECORD}"
         return f"`float` needs a number, but {given} has none before a scene gives it one. Take the scene's: scene.values['k']."
     if name == "range":
         return f"`range` needs a whole number, but {given} changes from sample to sample. Give a plain number, such as range(10)."

@@ -265,6 +265,7 @@ def test_a_hand_that_pulls_away_is_refused_with_the_push_that_would_do():
         ({"paddle": hl.Device(m=0.05, b=0.1, T=1e-3)}, "a Device has no program; needs a paddle"),
         ({"starts": 3}, "starts = 3; needs hl.measure.Starts"),
         ({"search": "fast"}, "search = 'fast'; needs hl.measure.Search"),
+        ({"place": "here"}, "place = 'here'; needs .* m"),
         ({"judged": None}, "judged = None; needs hl.measure.Judgement"),
         ({"starts": hl.measure.Starts(pushes=-1)}, "the push pulls the handle off the wall with 1 N; .*pushes=0.2"),
     ],

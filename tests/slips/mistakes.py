@@ -53,6 +53,7 @@ CELLS = {
     "math.floor": ("math.floor(x(n)/x_o)", r"math\.floor", r"sp\.floor"),
     "from math import sin": ("from math import sin\nsin(theta)", r"`sin`", r"sp\.sin"),
     "float": ("float(k)", r"float", r"values"),
+    "float of a sample": ("float(x(n))", r"float.*sample", r"log\.x"),
     "int": ("int(x(n)/x_o)", r"int", r"sp\.floor"),
     "round": ("round(x(n)/x_o)", r"round", r"sp\.floor"),
     "range": ("for i in range(x(n)):\n    pass", r"range", r"number"),
