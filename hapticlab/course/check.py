@@ -11,8 +11,8 @@ from ..errors import CourseError
 from ..slips.own_line import of_call
 from ..slips.swallowed import swallowed
 from .cards.card import Card
-from .cards.case_figures import WrongCase, figures
 from .cards.progress import remember
+from .cards.rows import case_rows, drawn, printed, state, without_slip
 from .evaluate import evaluate
 from .judge import verdict
 from .labs import find_lab
@@ -20,12 +20,6 @@ from .labs import find_lab
 if TYPE_CHECKING:
     from .exercise import Exercise
     from .judge import Verdict
-
-#: of what a student's code prints while it is checked
-MOST_LINES, MOST_CHARACTERS = 10, 200
-#: characters of what a case gives
-MOST_GIVEN = 90
-MOST_DRAWN = 2
 
 
 @dataclass(frozen=True)
@@ -152,51 +146,11 @@ def checked(name: str, exercise: Exercise, answer: object) -> CheckResult:
     verdicts = tuple(verdict(exercise, case, outcome) for case, outcome in zip(exercise.cases, outcomes, strict=True))
     passed = all(v.right for v in verdicts)
     verdicts = _of_the_lab(exercise, verdicts)
-    rows = (*_case_rows(exercise, verdicts), *_printed(outcomes))
+    rows = (*case_rows(exercise, verdicts), *printed(outcomes))
     rows += (("why it matters", exercise.matters),) if exercise.matters and passed else ()
-    state, head = _state(verdicts)
-    drawn = _drawn(exercise, outcomes, verdicts)
-    card = Card(name, state, head, f"worth {points_words(exercise.points)}", rows, drawn)
+    went, head = state(verdicts)
+    card = Card(name, went, head, f"worth {points_words(exercise.points)}", rows, drawn(exercise, outcomes, verdicts))
     return CheckResult(name, passed, True, verdicts, card)
-
-
-def _state(verdicts):
-    """Return state and head of a card: what was judged is the public cases, and no more."""
-    right, cases = sum(v.right for v in verdicts), len(verdicts)
-    if right == cases:
-        return "right", "right in the public cases"
-    return ("partly", f"partly right, not right yet: {right} of {cases} public cases") if right else ("wrong", "not right yet")
-
-
-def _drawn(exercise, outcomes, verdicts):
-    """Return figures of the first wrong case that has lists or curves: what came beside what was expected, where that is told."""
-    if exercise.kind in ("value", "choice"):
-        return ()
-    for case, outcome, found in zip(exercise.cases, outcomes, verdicts, strict=True):
-        if not found.right and outcome.value is not None:
-            wrong = WrongCase(exercise.name, exercise.kind, case.given, outcome.value, case.expected, case.unit)
-            return tuple(figures(wrong, lambda name, otherwise="": otherwise)[:MOST_DRAWN])
-    return ()
-
-
-def _case_rows(exercise, verdicts):
-    """Yield a row for what is wrong first, for each likely slip and the hint, then for the other cases."""
-    told = {}
-    for case, found in zip(exercise.cases, verdicts, strict=True):
-        told.setdefault(("right" if found.right else "wrong", _without_slip(found)), []).append(case)
-    wrong = [row for row in told if row[0] == "wrong"]
-    for row in wrong[:1]:
-        yield row[0], row[1] + _at(exercise, told.pop(row))
-        yield from dict.fromkeys(("likely slip", v.slip) for v in verdicts if v.slip)
-        yield from [("hint", exercise.hint)] if exercise.hint else []
-    for (state, words), cases in sorted(told.items(), key=lambda one: one[0][0] == "right"):
-        yield "also wrong" if state == "wrong" else state, words + _at(exercise, cases)
-
-
-def _without_slip(found):
-    """Return the words of a verdict without the sentence that teaches; one sentence alone loses its full stop."""
-    words = " ".join(found.words.replace(found.slip, "", 1).split()) if found.slip else found.words
-    return words.removesuffix(".") if ". " not in words and not words.endswith("...") else words
 
 
 def _of_the_lab(exercise, verdicts):
@@ -204,7 +158,7 @@ def _of_the_lab(exercise, verdicts):
     own = {sentence for case in exercise.cases for _, sentence in case.slips}
     if not any(v.slip in own for v in verdicts):
         return verdicts
-    return tuple(v if v.slip in own else replace(v, words=_without_slip(v), slip="") for v in verdicts)
+    return tuple(v if v.slip in own else replace(v, words=without_slip(v), slip="") for v in verdicts)
 
 
 def points_words(points: float) -> str:
@@ -230,31 +184,3 @@ def _noted(name, exercise, answer):
 
 def _unanswered(name, exercise):
     return CheckResult(name, False, False, (), Card(name, "open", f"not answered yet: {exercise.asks}"))
-
-
-def _at(exercise, cases):
-    """Return where words hold, in brackets: in a case, by what was given, or in several; of an expression they name the point."""
-    if len(cases) > 1:
-        return f" (in {len(cases)} cases)"
-    shown = {} if exercise.kind == "expression" else cases[0].given
-    given = ", ".join(f"{name} = {_brief(value)}" for name, value in shown.items())
-    if len(given) > MOST_GIVEN:
-        given = f"{given[:MOST_GIVEN].rpartition(', ')[0]}, ..."
-    return f" ({given})" if given else ""
-
-
-def _brief(value):
-    """Return a given in a few characters."""
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{name}: {_brief(part)}" for name, part in value.items()) + "}"
-    if isinstance(value, list | tuple):
-        shown = ", ".join(_brief(part) for part in value[:4])
-        return f"[{shown}]" if len(value) <= 4 else f"[{shown}, ... {len(value)} in all]"
-    return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-def _printed(outcomes):
-    """First lines that a student's code printed."""
-    lines = "".join(outcome.printed for outcome in outcomes).splitlines()
-    more = len(lines) - MOST_LINES
-    return [("printed", line[:MOST_CHARACTERS]) for line in lines[:MOST_LINES]] + [("printed", f"{more} lines more")] * (more > 0)
