@@ -35,6 +35,8 @@ RESTS = 0.01
 SCATTER = 6.0
 #: a swing over so many encoder counts is the encoder's: it is no instability, and may be a buzz; fewer if it leaves the wall
 COUNTS, COUNTS_OUTSIDE = 4, 2
+#: encoder counts of the largest cycle that an encoder was seen to feed where a wall without one comes to rest, near its border
+FED = 60
 #: a wall that throws out a handle which a hand held deeper in it than this shows nothing [m]
 FARTHEST = 1e-3
 #: encoder counts in a period that a speed limit must leave room for
@@ -114,7 +116,7 @@ def try_wall(paddle, scene, start, *, K, place, duration, longest, buzz_max=0.05
     while True:
         log = run_from(paddle, scene, place + start.depth, duration)
         last = 2 * duration > longest * 1.001
-        outcome = _judged(paddle, log, place, start, last, noise, buzz_max)
+        outcome = _judged(paddle, log, K, place, start, last, noise, buzz_max)
         if outcome is not None:
             rests, verdict, buzz, found = outcome
             quiet = buzz <= buzz_max if rests and not math.isnan(buzz) else None
@@ -126,7 +128,7 @@ def try_wall(paddle, scene, start, *, K, place, duration, longest, buzz_max=0.05
         duration *= 2
 
 
-def _judged(paddle, log, place, start, last, noise, buzz_max):
+def _judged(paddle, log, K, place, start, last, noise, buzz_max):
     """(rests, verdict, ripple of the force, chatter found), or None where a longer record may tell."""
     stopped = _stopped(log, place + start.depth)
     if stopped:
@@ -158,9 +160,11 @@ def _judged(paddle, log, place, start, last, noise, buzz_max):
         return True, rests, felt, found
     if found.state == "growing" and (last or not count or (felt > buzz_max and not counted)):
         return False, "it grows", math.nan, found
+    ripples = math.nan
     if found.state == "decaying" and not found.levels_off:
         ripples = ripple(log, (found.frequency, found.growth), driven)
-        if not math.isnan(ripples):  # where it bounces still, an unstable wall may let it grow again once it does not
+        fed = K * FED * count / 2 > buzz_max  # onto a cycle of the encoder's that is felt: the decay has to be waited out
+        if not math.isnan(ripples) and not fed:  # where it bounces still, an unstable wall may let it grow again once it does not
             return True, "it dies out", ripples, found
     if not last:
         return None
@@ -168,7 +172,7 @@ def _judged(paddle, log, place, start, last, noise, buzz_max):
     if found.state in ("chatter", "runaway"):
         return False, "it lasts" if found.state == "chatter" else "it runs away", math.nan, found
     ends = "it decays, onto a cycle perhaps" if found.state == "decaying" else "neither rest nor a cycle is in sight"
-    return None, f"{ends} after {seconds}", math.nan, found
+    return None, f"{ends} after {seconds}", ripples, found
 
 
 def _of_the_wall(log, push):

@@ -93,7 +93,8 @@ def _of_weights(weights, inverse, error, number, constant):
     # errors in the positions themselves bias the weights, by the square of the errors
     bias = number * error**2 / (1 + weights @ weights) * abs(slope @ inverse @ inverse.T @ weights)
     growth, margin = abs(largest) - 1, SURE * error * np.linalg.norm(slope @ inverse) + 2 * bias
-    return Inside(float(growth), float(constant / (1 - weights.sum()))) if abs(growth) > margin else Inside()
+    stiffness = 1 - weights.sum()  # none where the motion inside drifts, without a rest
+    return Inside(float(growth), float(constant / stiffness)) if abs(growth) > margin and stiffness else Inside()
 
 
 def loses_each_cycle(at, swings, growth):
