@@ -93,7 +93,9 @@ def test_clipping_calms_the_backward_difference():
     paddle = hl.SimulatedPaddle(m=0.166, b=0.057, T=PERIOD, hand=hl.Hand(push=1.0))
     K = 0.96 * hl.stability_limit(paddle, law="backward_difference").K
     gate, clip = (
-        hl.sweep(hl.wall("backward_difference", unilateral=variant), paddle, duration=160.0, progress=False, k=[K], x=-0.02).values
+        hl.sweep(
+            hl.wall("backward_difference", unilateral=variant), paddle, duration=160.0, progress=False, k=[K], x=-0.02
+        ).values
         for variant in ("gate", "clip")
     )
     assert gate[0] > 1e-4

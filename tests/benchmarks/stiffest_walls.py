@@ -57,10 +57,8 @@ def main():
             found[name] += bool(lasting)
             found["buzzing"] += bool(buzzing)
             if lasting or buzzing:
-                print(
-                    f"{name} {border:.5g} N/m: {[round(float(e), 2) for e in lasting or buzzing]} of {law}, B = {B:g}, {paddle!r}",
-                    flush=True,
-                )
+                values = [round(float(e), 2) for e in lasting or buzzing]
+                print(f"{name} {border:.5g} N/m: {values} of {law}, B = {B:g}, {paddle!r}", flush=True)
     print(f"{number} paddles: lasting swings below the unstable border {found['rests']}, below K {found['quiet']}; "
           f"buzzes below K {found['buzzing']}")  # fmt: skip
 
