@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.arguments import number
 from ..errors import AnalysisError
 from ..scene.scene import Scene
 from .largest_stiffness import SEARCH, LargestStiffness, largest_stiffness
@@ -92,7 +93,7 @@ def z_width(
     paddle : SimulatedPaddle or SerialPaddle
     law : str or Scene
         As :func:`hapticlab.measure.largest_stiffness` takes it.
-    B : sequence of float
+    B : number or text, or sequence of them
         Virtual damping [N s/m], of either sign.
     search : Search
         As :func:`hapticlab.measure.largest_stiffness` takes it; where it says no ``first``, the search at each next damping
@@ -116,9 +117,9 @@ def z_width(
     >>> bool(found.K[1] > 5 * found.K[0]), found.passivity.tolist()
     (True, [200.0, 0.0])
     """
-    B = np.atleast_1d(np.asarray(B, float))
-    if B.ndim != 1 or not B.size or not np.isfinite(B).all():
-        raise AnalysisError(f"B = {B}; needs one or more finite numbers [N s/m], as in B=[0, 0.5, 1]")
+    B = np.array([number("B", b, "N*s/m", "a virtual damper") for b in np.ravel(np.asarray(B, object))])
+    if not B.size:
+        raise AnalysisError("B = []; needs one or more dampings [N s/m], as in B=[0, 0.5, 1]")
     searches: list[LargestStiffness] = []
     for b in B.tolist():
         begin = search

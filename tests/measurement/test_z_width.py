@@ -31,5 +31,14 @@ def test_beyond_the_stable_dampers_nothing_stands():
 
 
 def test_what_is_no_damping_is_refused():
-    with pytest.raises(hl.errors.AnalysisError, match="finite numbers"):
+    with pytest.raises(hl.errors.AnalysisError, match="finite B"):
         z_width(PADDLE, B=[np.nan])
+
+
+def test_dampings_are_numbers_or_texts_with_units():
+    quick = {"judged": hl.measure.Judgement(longest=2.0), "search": hl.measure.Search(tolerance=0.3)}
+    assert z_width(PADDLE, B=["0.5 N*s/m"], **quick).B.tolist() == [0.5]
+    with pytest.raises(hl.errors.AnalysisError, match="B = 'wide'; "):
+        z_width(PADDLE, B="wide")
+    with pytest.raises(hl.errors.AnalysisError, match=r"B = \[\]; needs one or more dampings"):
+        z_width(PADDLE, B=[])

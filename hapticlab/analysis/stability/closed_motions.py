@@ -63,6 +63,8 @@ class ClosedMotions:
         Instructions that a motion of one sample takes, about.
     spent : float
         Instructions so far.
+    adrift : int
+        Motions so far whose force does not repeat itself from cycle to cycle.
 
     Examples
     --------
@@ -79,13 +81,14 @@ class ClosedMotions:
         self.durations = program.T * np.array(parts)
         self._values, self._loaded = list(program.values), load(_moved(program))
         self._bodies = [k for k, c in enumerate(program.states) if c.type in REAL_TYPES and not is_past_sample(c.name)]
-        self._length, self.spent = len(program) or 1, 0.0  # a constant force takes none
+        self._length, self.spent, self.adrift = len(program) or 1, 0.0, 0  # a constant force takes no instruction
         self.work = self._length * (SETTLED + (STEPS * (len(self._bodies) + 1) if self._bodies else 0))
 
     def books(self, positions):
         """Return the :class:`Books` of motions: positions [m] of shape (P, L), P a whole number of samples."""
         sampled = positions[:: len(self.durations)]
         force, repeats = self._forces(sampled)
+        self.adrift += np.count_nonzero(~repeats)
         late = [np.roll(force, self.whole + k, axis=0) for k in range(len(self.durations))]
         held = np.stack(late[::-1], axis=1).reshape(positions.shape)
         steps = np.roll(positions, -1, axis=0) - positions

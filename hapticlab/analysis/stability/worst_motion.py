@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from ...base.arguments import count, instance, number
+from ...base.arguments import choice, count, instance, number
 from ...compiler.tick.compile_scene import compile
 from ...device.device import known
 from ...device.hand.hand import Hand
@@ -40,6 +40,8 @@ SMALLEST = 1e-2
 PLACES = 4
 #: a longer motion has to be better by this part, and a steeper place than those where the force switches
 BETTER, STEEPER = 1e-3, 0.1
+#: of hl.compile, what a search takes
+OPTIONS = ("method", "substeps", "hold", "force_at")
 #: instructions of one call of a search, and of all; some 20 s
 CALL, WORK = 5e8, 2e10
 #: samples that are printed
@@ -260,6 +262,8 @@ def worst_motion(
     reach = number("reach", reach, "m", "a motion", above=0)
     samples = count("samples", samples, "a motion", least=2, most=LENGTHS[-1])
     seed = count("seed", seed, "a search", least=0)
+    for name in options:
+        choice("option", name, OPTIONS)
     program = compile(scene, T=T, dtype="float64", live=(), **options)
     gains = _Gains(ClosedMotions(program, delay), coulomb, b, SMALLEST * reach)
     surfaces = _surfaces(scene, T)
@@ -289,6 +293,8 @@ def worst_motion(
     at = ", ".join(f"{1e3 * place:.4g}" for place in places)
     longest = max(len(x) for x in needing) // len(gains.motions.durations)
     searched = f"{tried} closed motions of 2 to {longest} samples within {1e3 * reach:g} mm of x = {at} mm, seed {seed}"
+    if gains.motions.adrift:
+        searched += f"; left out are {gains.motions.adrift} whose force does not repeat itself from cycle to cycle"
     return WorstMotion(
         scene.name, x, books.held[:, 0], np.resize(gains.motions.durations, len(x)), float(books.drawn[0]),
         float(books.viscous[0]), coulomb * float(books.path[0]), b_req, b, searched, program,

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
-from ...base.arguments import choice, number
+from ...base.arguments import choice, instance, number
 from ...base.guesses import Guessed
 from ...base.units import in_si
 from ...base.unusual import warn_at_own_line
 from ...compiler.methods.chosen_method import chosen_method
 from ...compiler.prune.constraint_lengths import held
 from ...device.progress import progress_bar
+from ...device.simulated.simulated_paddle import SimulatedPaddle
 from ...errors import AnalysisError, MissedEventWarning
 from ...scene.scene import Scene
 from ..records.plots import plot_sweep
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ...base.annotations import Array, File, Number
-    from ...device.simulated.simulated_paddle import SimulatedPaddle
     from ...limits.limit import Limit
 
 #: what a sweep may say about how its scene is compiled; a parameter of that name goes first
@@ -168,6 +168,7 @@ def sweep(
         bound = scene(**{name: float(end(a)) for name, a in axes.items() if name in own})
     if chosen_method(options.get("method")).exact:
         options["live"] = [name for name in axes if name in own]
+    instance("paddle", paddle, SimulatedPaddle, "an hl.SimulatedPaddle(...)", error=AnalysisError)
     paddle_here = replace(paddle, **{name: a for name, a in fixed.items() if name in PADDLE_AXES})
     starts = {name: fixed.get(name, 0.0) for name in START_AXES}
     grid = Grid(paddle_here, axes, held(scene))

@@ -281,3 +281,19 @@ def test_a_count_and_a_sum_never_repeat_themselves():
     summed = hl.Scene(force=K * X + H * total(n), eom=[sp.Eq(total(n), total(n - 1) + X)])(K=300, H=30)
     found = hl.passivity.worst_motion(hl.Device(b=0.2, T=T), summed, samples=4, about=0)
     assert abs(found.x.sum()) < 1e-6 and np.abs(found.held).max() < 2
+
+
+def test_what_a_search_does_not_take_is_refused():
+    with pytest.raises(AnalysisError, match="option = 'dtype'; needs one of method, substeps, hold, force_at"):
+        hl.passivity.worst_motion(hl.Device(b=0.2, T=1e-3), hl.wall()(k=500), dtype="float32")
+
+
+def test_motions_that_never_repeat_are_counted():
+    """A wall with an integral of the depth: every motion that goes inside winds it up."""
+    total = hl.signal("total", unit="m")
+    wound = sp.Eq(total(n), total(n - 1) + sp.Max(X, 0))
+    scene = hl.Scene(force=when(X >= 0, K * X) + H * total(n), eom=[wound])(K=300, H=30)
+    found = hl.passivity.worst_motion(hl.Device(b=0.35, T=1e-3), scene, samples=4)
+    assert "whose force does not repeat itself from cycle to cycle" in found.searched
+    plain = hl.passivity.worst_motion(hl.Device(b=0.35, T=1e-3), hl.wall()(k=300), samples=4)
+    assert "does not repeat" not in plain.searched

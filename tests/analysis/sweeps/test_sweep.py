@@ -312,3 +312,8 @@ def test_bounces_that_shrink_slowly_are_not_called_calm(m, b, T, duration):
     assert not (found == 0).any()
     inside = sweep(wall(), paddle, duration=4.0, progress=False, x=0.9 / k[0], k=k[:1] / 3).values
     assert (inside == 0).all()  # a handle that stays inside a linear wall comes to rest, however slowly
+
+
+def test_what_is_no_simulated_paddle_is_refused_in_words():
+    with pytest.raises(AnalysisError, match=r"paddle = None; needs an hl.SimulatedPaddle"):
+        sweep(wall(), None, k=[100.0, 200.0])
