@@ -22,16 +22,16 @@ def ripple(log, swing=None, driven=None):
     exponential with the (frequency [Hz], growth [1/s]) given, which are refined, is fitted and subtracted, where the handle
     stays in the wall for long enough to do so.
     """
+    from scipy.signal import butter, detrend, sosfiltfilt
+
     F = np.asarray(log.F, float)
     if FASTEST < 0.5 / log.T:
-        from scipy.signal import butter, sosfiltfilt
-
         F = sosfiltfilt(butter(2, FASTEST, fs=1 / log.T, output="sos"), F)
     last = F[-(len(F) // 2) :]
     if driven is not None and np.ptp(F) > 0:
         last = last - following(F, drive_of(log, driven))
     if swing is None:
-        return _amplitude(_without_trend(last[len(last) // 2 :]))
+        return _amplitude(detrend(last[len(last) // 2 :]))
     outside = np.flatnonzero(np.asarray(log.F)[-len(last) :] == 0)
     inside = last[outside[-1] + 1 if len(outside) else 0 :]
     cycles = len(inside) * log.T * (swing[0] or 0.0)
@@ -43,12 +43,6 @@ def ripple(log, swing=None, driven=None):
 
 def _amplitude(y):
     return math.sqrt(2 * float(np.mean(y**2)))
-
-
-def _without_trend(F):
-    """Return a force less its straight line."""
-    n = np.arange(len(F))
-    return F - np.polyval(np.polyfit(n, F, 1), n)
 
 
 def _without_swing(F, frequency, growth, T):

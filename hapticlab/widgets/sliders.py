@@ -37,7 +37,7 @@ class FollowedPicture:
         self._moved()
 
     def drawn(self, values):
-        """The picture where the sliders stand at these values: (figure, sentence below it, words for who cannot see it)."""
+        """(figure, sentence below it, words for who cannot see it) at these values of the sliders: each picture draws its own."""
         raise NotImplementedError
 
     def set(self, **values):

@@ -12,7 +12,7 @@ from ...device.simulated.lanes import device_values, together
 from ...device.simulated.plant import decided
 from ...errors import AnalysisError
 from ..records.chatter import SHORTEST
-from .sweep_measures import LEAST, WithFault, f64, lasting
+from .sweep_measures import WithFault, f64, lasting, moves
 from .workers import number_of, spread
 
 #: lanes of one call of an engine: few enough for every worker to get some
@@ -109,7 +109,7 @@ class LaneRuns:
         before, (largest, _, turns, heading, v, fault) = found[1], found[2]
         numbers = before[0], before[1], largest, turns, heading, v
         value = lasting(numbers, count=count, quarter=quarter * linked.T)
-        return where, value, np.where(largest > np.maximum(1.001 * count, LEAST), largest / 2, 0.0), fault > 0
+        return where, value, np.where(moves(largest, count), largest / 2, 0.0), fault > 0
 
     def _ready(self, paddle):
         """Return the linked program of a structure of paddle, and the engine that runs it."""

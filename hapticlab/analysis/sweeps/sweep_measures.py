@@ -94,14 +94,19 @@ class Chatter(Swing):
         *swings, outside = outputs
         largest_before, _, largest, *_ = swings
         found = lasting(swings, count=count, quarter=quarter)
-        slow = (largest > np.maximum(1.001 * count, LEAST)) & (largest > FALLEN * largest_before)
+        slow = moves(largest, count) & (largest > FALLEN * largest_before)
         return np.where((found == 0) & slow & (outside > 0), np.nan, found)
+
+
+def moves(swing, count):
+    """Tell whether a swing [m] is more than one encoder count, and more than rounding."""
+    return swing > np.maximum(1.001 * count, LEAST)
 
 
 def lasting(outputs, *, count, quarter):
     """Return the sustained or growing amplitude of a :class:`Swing` [m], 0 also where it shrinks slowly; nan if nothing tells."""
     largest_before, least_before, largest, turns, heading, v = outputs
-    seen = largest > np.maximum(1.001 * count, LEAST)
+    seen = moves(largest, count)
     lasts = seen & ~decaying(largest, least_before, largest_before)
     still = (turns == 0) & (heading == 0)
     away = (turns > 0) & (largest == 0) & (abs(v) * quarter > LEAST)  # thrown off, and not back in time

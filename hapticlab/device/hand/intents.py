@@ -23,6 +23,7 @@ class Intent:
     """A path of the hand: a function of an array of times [s] that gives positions [m]. Two of them add up."""
 
     def __call__(self, t: ArrayLike) -> Array:
+        """Positions [m] at times [s]: each kind of intent has its own."""
         raise NotImplementedError
 
     def __add__(self, other: Callable[..., Any]) -> Any:

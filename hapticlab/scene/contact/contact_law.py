@@ -60,7 +60,7 @@ class ContactLaw:
     allowed: ClassVar[dict[str, Allowed]] = {}
 
     def check(self, gap: sp.Expr, where: str) -> None:
-        """Refuse constants whose units do not belong to the gap."""
+        """Refuse constants whose units do not belong to the gap: each law knows its own."""
         raise NotImplementedError
 
 
