@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from axe import findings
 from lab import picture
 from test_grading_pages import CONTRAST, OUTSIDE
 
@@ -42,8 +43,10 @@ def cards():
 def test_cards_are_read_on_any_ground(browser, ground, width):
     page = browser.new_page(viewport={"width": width, "height": 900})
     behind, text = GROUNDS[ground]
-    page.set_content(f'<body style="background: {behind}; color: {text}; font: 14px sans-serif">{"".join(cards())}</body>')
+    style = f"background: {behind}; color: {text}; font: 14px sans-serif"
+    page.set_content(f'<html lang="en"><title>cards</title><body style="{style}"><main>{"".join(cards())}</main></body></html>')
     try:
+        assert findings(page) == []
         least, words = page.evaluate(CONTRAST)
         assert least >= 4.5, words
         assert page.evaluate(OUTSIDE) == [] and page.evaluate(WIDE) == []
