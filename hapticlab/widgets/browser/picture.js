@@ -19,18 +19,19 @@ function between(frame, next, part) {
 }
 
 class Picture {
-  constructor(canvas, box) {
+  constructor(canvas, about) {
     this.canvas = canvas
     this.context = canvas.getContext("2d")
-    this.box = box // left, right, bottom, top [m]
+    this.box = about.box // left, right, bottom, top [m]
     this.ink = new Map()
   }
 
-  resize(width) {
+  // Take so much room [px]; without a height, as much as the picture needs of it.
+  resize(width, height) {
     const [left, right, bottom, top] = this.box
     this.width = width
     const most = Math.min(Math.max(0.4 * window.innerHeight, 160), 300)
-    this.height = Math.min(Math.max((width * (top - bottom)) / (right - left), 130), most)
+    this.height = height || Math.min(Math.max((width * (top - bottom)) / (right - left), 130), most)
     this.font = `${Math.round(Math.min(Math.max(width / 60, 12), 16))}px system-ui, sans-serif`
     fit(this.canvas, this.width, this.height)
     this.scale = Math.min(width / (right - left), (this.height - AXIS) / (top - bottom))
@@ -46,7 +47,9 @@ class Picture {
     return this.base - this.scale * metres
   }
 
-  draw(shape, points, theme) {
+  // Show items at points [m], where ``state`` is what is known of the moment: F [N], x, intent [m], contact, running.
+  draw(shape, points, theme, state = {}) {
+    this.state = state
     const context = this.context
     context.clearRect(0, 0, this.width, this.height)
     this.theme = theme

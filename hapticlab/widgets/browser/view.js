@@ -27,7 +27,7 @@ class View {
     this.shape = []
     this.cleanups = []
     this.build(el)
-    this.picture = new Picture(this.stage, this.about.box)
+    this.picture = new Picture(this.stage, this.about)
     this.traces = new Traces(this.graph, this.about.traces, this.about.seconds)
     this.traces.notes.F = "(on the environment; the motor applies -F)"
     if (this.about.kind === "simulated") this.traces.notes.x = "(dashed: where the hand means to be)"
