@@ -11,6 +11,7 @@ Next: ``hl.connect()`` opens a board, ``hl.doctor()`` checks it, ``hl.identify.p
 """
 
 from .base.telemetry import PaddleProfile
+from .course.drawings.drawing import drawing
 from .device.board.serial_paddle import SerialPaddle
 from .device.paddle import Paddle
 from .device.profiles import profile
@@ -22,6 +23,7 @@ __all__ = [
     "PaddleProfile",
     "SerialPaddle",
     "SimulatedPaddle",
+    "drawing",
     "profile",
 ]
 

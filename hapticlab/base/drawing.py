@@ -139,6 +139,14 @@ def png(figure):
     return buffer.getvalue()
 
 
+def svg(figure):
+    """Return a figure as an SVG without a background, for the inside of a page; its letters are outlines."""
+    buffer = io.StringIO()
+    figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
+    drawn = re.sub(r"<metadata>.*?</metadata>", "", buffer.getvalue(), flags=re.S)
+    return drawn[drawn.index("<svg") :]
+
+
 def bundle(figure, alt):
     """A notebook's bundle of a figure, and its metadata: the picture and the text that stands for it.
 
