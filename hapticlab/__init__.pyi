@@ -20,7 +20,7 @@ from . import (
 )
 from .analysis.records.chatter import chatter
 from .analysis.records.energy import energy
-from .analysis.records.plots import plot
+from .analysis.records.plot import plot
 from .analysis.sweeps.sweep import sweep
 from .compiler.tick.compile_scene import compile
 from .course.check import check

@@ -15,6 +15,18 @@ import numpy as np
 
 #: a light and a dark colour, told apart in grey print too
 WARM, COLD = "#cc5a1a", "#1a4b84"
+#: class of a picture that keeps its own light ground, and the rule that turns light and dark where a page is dark: hues stay.
+#: Where a notebook says so itself its own ground shows through; where styles are stripped a picture stays light
+PICTURE = "hapticlab-figure"
+DARK = """<style>
+@media screen {
+:is([data-jp-theme-light="false"], .vscode-dark, .vscode-high-contrast, [theme="dark"]) .hapticlab-figure
+{ filter: invert(1) hue-rotate(180deg); mix-blend-mode: screen }
+}
+@media screen and (prefers-color-scheme: dark) {
+body:not([data-jp-theme-light], [class*="vscode-"], [theme]) .hapticlab-figure { filter: invert(.9) hue-rotate(180deg) }
+}
+</style>"""
 #: readable on a projector and in grey print: neighbours differ in dash and by a fifth of the way from black to white at
 #: least; each has a contrast of 3 on white
 STYLES: list[dict[str, Any]] = [
@@ -96,26 +108,28 @@ def legend_above(axes, lines):
 
 
 def log_scales(axes):
-    """Make both scales logarithmic, with plain numbers: at 1, 2 and 5 within two decades, else at powers of ten."""
+    """Make both scales logarithmic, with plain numbers."""
+    for side in "xy":
+        plain_log(axes, side)
+
+
+def plain_log(axes, side):
+    """Make the x or y scale logarithmic, with plain numbers: at 1, 2 and 5 within two decades, else at powers of ten."""
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-    axes.set(xscale="log", yscale="log")
-    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 100 else (1,)))
-        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-        axis.set_minor_formatter(NullFormatter())
+    axes.set(**{f"{side}scale": "log"})
+    axis, (low, high) = getattr(axes, f"{side}axis"), sorted(getattr(axes, f"get_{side}lim")())
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 100 else (1,)))
+    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def scale_axis(axes, side, array):
-    """Scale the x or y side as its values are spaced; a logarithmic one shows plain numbers at 1, 2 and 5."""
-    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
-
-    axes.set(**{f"{side}scale": spacing(array)})
-    axis = getattr(axes, f"{side}axis")
+    """Scale the x or y side as its values are spaced; a logarithmic one shows plain numbers."""
     if spacing(array) == "log":
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-        axis.set_minor_formatter(NullFormatter())
+        plain_log(axes, side)
+    else:
+        axes.set(**{f"{side}scale": "linear"})
 
 
 def spacing(array):
@@ -153,7 +167,8 @@ def bundle(figure, alt):
     JupyterLab shows the HTML, whose image carries the text; a PDF takes the PNG.
     """
     encoded = base64.b64encode(png(figure)).decode()
-    shown = f'<img src="data:image/png;base64,{encoded}" alt="{html.escape(alt)}" style="max-width: 100%">'
+    image = f'<img class="{PICTURE}" src="data:image/png;base64,{encoded}" alt="{html.escape(alt)}" style="max-width: 100%">'
+    shown = f"{DARK}{image}"
     return {"text/html": shown, "image/png": encoded, "text/plain": alt}, {"image/png": {"alt": alt}}
 
 
@@ -203,6 +218,7 @@ def _panel(axes):
         text = f"{up.split(', ')[0] if told and axes.lines else up} over {across}"
     text += (": " if told else "") + "; ".join(told)
     marked = dict.fromkeys(word for word in (_plain(one.get_text()) for one in axes.texts) if re.search("[a-zA-Z]{3}", word))
+    marked = [word for word in marked if word not in {_plain(line.get_label()) for line in axes.lines}]
     marked = _sentence(f"marked: {', '.join(marked)}") if marked else ""
     return " ".join(filter(None, [title, _sentence(text), marked, _legend([axes.get_legend()], [axes])]))
 
@@ -211,7 +227,7 @@ def _span(axes, side):
     """Return the label of one side with its range, or the words at its ticks."""
     peers = getattr(axes, f"get_shared_{side}_axes")().get_siblings(axes)
     labels = [getattr(peer, f"get_{side}label")() for peer in (axes, *peers)]
-    label = _plain(next(filter(None, labels), ""))
+    label = _plain(next(filter(None, [*labels, getattr(axes.figure, f"get_sup{side}label")()]), ""))
     words = [_plain(text.get_text()) for text in getattr(axes, f"get_{side}ticklabels")()]
     words = [word for word in words if re.search("[a-zA-Z]{2}", word)]
     if words:
@@ -224,14 +240,14 @@ def _span(axes, side):
 
 
 def _ends(line, side):
-    values = np.asarray(line.get_data()["xy".index(side)], float)
+    values = np.asarray(line.get_data(orig=False)["xy".index(side)], float)
     values = values[np.isfinite(values)]
     return (values.min(), values.max()) if len(values) else ()
 
 
 def _course(axes, line):
     """The course of one line in words; nothing for what only guides the eye."""
-    name, (xs, ys) = _plain(line.get_label()), (np.asarray(part, float) for part in line.get_data())
+    name, (xs, ys) = _plain(line.get_label()), (np.asarray(part, float) for part in line.get_data(orig=False))
     guide = name.startswith("_")
     if line.get_transform() != axes.transData:  # drawn right across: a level, or a place
         side, at = ("y", ys[0]) if np.ptp(ys) == 0 else ("x", xs[0])
@@ -245,9 +261,17 @@ def _course(axes, line):
     name = "" if guide else f"{name}: "
     if len(ys) == 1:
         return f"{name}at {xs[0]:.3g}, {ys[0]:.3g}"
+    if line.get_linestyle() == "None":
+        return f"{name}{_points(ys)}"
     if (np.diff(xs) < 0).any() and (np.diff(xs) > 0).any():
         return f"{name}a curve" if name else ""
     return name + _trend(ys)
+
+
+def _points(ys):
+    if len(ys) <= 6:
+        return f"points at {', '.join(f'{y:.3g}' for y in ys)}"
+    return f"{len(ys)} points between {ys.min():.3g} and {ys.max():.3g}"
 
 
 def _trend(ys):

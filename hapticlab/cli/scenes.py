@@ -9,7 +9,7 @@ from pathlib import Path
 from .. import __version__
 from ..analysis.accuracy.tradeoff import tradeoff as measure_tradeoff
 from ..analysis.accuracy.tradeoff_asked import Conditions, Tried
-from ..analysis.records.plots import plot
+from ..analysis.records.plot import plot
 from ..compiler.events.taylor_method import Taylor
 from ..compiler.methods.chosen_method import EXACT
 from ..compiler.methods.method_table import METHODS

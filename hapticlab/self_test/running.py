@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..analysis.records.plots import plot
+from ..analysis.records.plot import plot
 from ..analysis.sweeps.sweep import sweep
 from ..cli.scene_file import load_scene, report_of, run_scene
 from ..compiler.engines.engine import load

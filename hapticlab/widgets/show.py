@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..analysis.records.plots import plot
+from ..analysis.records.plot import plot
 from ..base.drawing import bundle, describe, forget
 from ..base.in_notebook import display, in_a_notebook
 from ..base.telemetry import Telemetry

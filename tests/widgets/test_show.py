@@ -45,6 +45,7 @@ def notebook(monkeypatch):
 def check(data, metadata, alt):
     """Check that picture and words are there, in every form a front end may choose."""
     (image,) = Images(data["text/html"]).found
+    assert f".{image['class']} " in data["text/html"].split("</style>")[0]  # turned dark on a dark page
     assert image["alt"] == alt and metadata == {"image/png": {"alt": alt}} and data["text/plain"] == alt
     assert image["src"] == "data:image/png;base64," + data["image/png"]
     assert base64.b64decode(data["image/png"]).startswith(b"\x89PNG")

@@ -18,7 +18,7 @@ from ...device.progress import progress_bar
 from ...device.simulated.simulated_paddle import SimulatedPaddle
 from ...errors import AnalysisError, MissedEventWarning
 from ...scene.scene import Scene
-from ..records.plots import plot_sweep
+from ..records.sweep_plot import plot_sweep
 from .sweep_chunks import measured
 from .sweep_file import Partial
 from .sweep_grid import PADDLE_AXES, START_AXES, Grid
@@ -68,7 +68,7 @@ class Sweep(Guessed):
     about: str = ""
 
     def plot(self, *, limits: Limit | Sequence[Limit] | Mapping[str, Limit | Sequence[Limit]] | None = None) -> Figure:
-        """Draw lines or a map; see :func:`hapticlab.analysis.records.plots.plot_sweep`."""
+        """Draw lines or a map; see :func:`hapticlab.analysis.records.sweep_plot.plot_sweep`."""
         return plot_sweep(self, limits=limits)
 
     def __repr__(self) -> str:

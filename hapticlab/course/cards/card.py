@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from ...base.drawing import DARK, PICTURE
 from .page_text import clean
 
 State = Literal["right", "partly", "wrong", "open", "saved"]
@@ -23,7 +24,7 @@ STYLES = {
     "sign": "display: inline-block; min-width: 1.4em; text-align: center; border-radius: .25em; color: #fff; font-weight: 700;",
     "aside": "opacity: .8; white-space: nowrap;",
     "row": "margin: .35rem 0;",
-    # a picture keeps its own light ground
+    # a picture has a light ground of its own, which a dark page turns dark with it
     "figure": "margin: .5rem 0; padding: .4rem; background: #fff; color: #1b1b1b; font: 13px sans-serif; ",
     "picture": "display: block; max-width: 100%; height: auto;",
     **{f"line-{state}": f"border-left: .4rem {line} {COLOURS[state]};" for state, line in LINES.items()},
@@ -32,8 +33,9 @@ STYLES = {
 
 
 def inline(*parts: str) -> str:
-    """Return the style attribute of parts, for a page that takes no style sheet, such as a notebook."""
-    return f' style="{" ".join(STYLES[part] for part in parts)}"'
+    """Return the attributes of an element with these parts, for a page that takes no style sheet, such as a notebook."""
+    turned = f' class="{PICTURE}"' if "figure" in parts else ""
+    return f'{turned} style="{" ".join(STYLES[part] for part in parts)}"'
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,7 @@ class Card:
         svgs = [(svg.replace("<svg", f"<svg{look('picture')}", 1), clean(words)) for svg, words in self.figures]
         drawn = [f"<figure{look('figure')}>{svg}<figcaption>{words}</figcaption></figure>" for svg, words in svgs]
         first = f"<div{look('card', f'line-{self.state}')}><p{look('head')}>{head}</p>"
-        return "\n".join([first, *rows[:1], *drawn, *rows[1:]]) + "</div>"
+        return "\n".join([*[DARK] * bool(drawn and look is inline), first, *rows[:1], *drawn, *rows[1:]]) + "</div>"
 
 
 def _unbroken(words):

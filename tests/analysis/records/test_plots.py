@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hapticlab.analysis.records.plots import plot, plot_sweep
+from hapticlab.analysis.records.plot import plot
+from hapticlab.analysis.records.sweep_plot import plot_sweep
 from hapticlab.analysis.sweeps.sweep import Sweep
 from hapticlab.base.telemetry import Telemetry
 from hapticlab.errors import AnalysisError
@@ -39,10 +40,30 @@ def swept(**axes):
 def test_a_record_is_drawn_in_millimetres_and_newtons():
     log = record()
     figure = plot(log, "x", "F", "z")
-    assert [a.get_ylabel() for a in figure.axes] == ["handle position x [mm]", "force F [N]", "z [mm]"]
+    assert [" ".join(a.get_ylabel().split()) for a in figure.axes] == ["handle position x [mm]", "force F [N]", "z [mm]"]
     assert figure.axes[-1].get_xlabel() == "time t [s]"
     np.testing.assert_allclose(figure.axes[0].lines[0].get_ydata(), 1e3 * log.x, rtol=1e-15)
     np.testing.assert_allclose(figure.axes[1].lines[0].get_ydata(), log.F, rtol=1e-15)
+
+
+def test_force_over_position_is_held_from_sample_to_sample():
+    log = record()
+    (axes,) = plot(log, over="x").axes
+    (line,) = axes.lines
+    assert line.get_drawstyle() == "steps-post" and axes.get_xlabel() == "handle position x [mm]"
+    np.testing.assert_allclose(line.get_xydata(), np.transpose([1e3 * log.x, log.F]), rtol=1e-15)
+
+
+def test_periods_with_a_force_are_shaded_where_there_are_others():
+    log = record()
+    assert all(len(axes.collections) == 1 for axes in plot(log).axes)  # F is 0 at the first sample alone
+    (path,) = plot(log).axes[0].collections[0].get_paths()
+    assert (path.vertices[:, 0].min(), path.vertices[:, 0].max()) == (log.t[1], log.t[-1])
+    assert not plot(replace(log, F=log.F + 1)).axes[0].collections
+
+
+def test_three_quantities_are_at_most_520_pixels_high():
+    assert 110 * plot(record(), "x", "v", "F").get_size_inches()[1] <= 520
 
 
 def test_a_notebook_can_show_it_and_a_script_save_it(tmp_path):

@@ -1,4 +1,4 @@
-"""Figures of records, sweeps and limits."""
+"""Figures of sweeps, with limits drawn across."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.drawing import FRAME, SHOWN, STYLES, axis_label, colour_map, house_style, new_figure, outline, scale_axis
-from ...base.telemetry import check_record
 from ...errors import AnalysisError
 
 if TYPE_CHECKING:
@@ -15,65 +14,13 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ...base.telemetry import Telemetry
     from ...limits.limit import Limit
     from ..sweeps.sweep import Sweep
 
-#: forces, which a board holds from one sample to the next
-HELD = ("F", "F_applied")
 LIMIT_DASHES = [(0, (1, 1)), (0, (6, 2)), (0, (4, 1, 1, 1))]
 NONE = "#e4e4e4"
 #: two axes with at most this many values of one are drawn as lines, else as a map
 FAMILY = len(STYLES)
-
-
-def plot(log: Telemetry, *names: str) -> Figure:
-    """Draw recorded quantities against time, one below the other.
-
-    Parameters
-    ----------
-    log : Telemetry
-    *names : str
-        Of what was recorded: ``"x"``, ``"v"``, ``"F"``, a watched state; ``"x"`` and ``"F"`` by default. Lengths are shown
-        in millimetres. A force is drawn as it is held: in steps, one a period.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-
-    Raises
-    ------
-    AnalysisError
-        For a name that was not recorded.
-
-    Examples
-    --------
-    >>> from hapticlab.base.telemetry import Telemetry
-    >>> log = Telemetry(t=[0, 1e-3], x=[0, 1e-3], v=[0, 1], F=[0, 0.1], T=1e-3)
-    >>> [axes.get_ylabel() for axes in plot(log, "x", "F").axes]
-    ['handle position x [mm]', 'force F [N]']
-    """
-    check_record(log, "plot", whole=False)
-    names = names or ("x", "F")
-    if not all(isinstance(name, str) for name in names):
-        raise AnalysisError(f'plot of {names}; needs names one by one, as in hl.plot(log, "x", "F")')
-    missing = [name for name in names if name not in log.columns]
-    if missing:
-        recorded = ", ".join(log.columns)
-        raise AnalysisError(f"{missing[0]} was not recorded; this log has {recorded}. Watch it: hl.Scene(..., watch=[...])")
-    with house_style():
-        figure = new_figure(height=1.2 + 1.7 * len(names))
-        rows = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
-        for axes, name in zip(rows, names, strict=True):
-            scale, label = axis_label(name, log.units.get(name, "1"))
-            thin = {"linewidth": 0.6} if len(log.t) > 5000 else {}  # thousands of cycles would be a black bar
-            held = {"drawstyle": "steps-post"} if name in HELD and log.every == 1 else {}
-            axes.plot(log.t, scale * np.asarray(getattr(log, name)), **STYLES[0], **thin, **held)
-            axes.set_ylabel(label)
-        rows[-1].set_xlabel("time t [s]")
-        if log.fault:
-            rows[0].set_title(f"fault: {log.fault}", fontsize="small")
-    return figure
 
 
 def plot_sweep(result: Sweep, *, limits: Limit | Sequence[Limit] | Mapping[str, Limit | Sequence[Limit]] | None = None) -> Figure:
