@@ -9,9 +9,11 @@
 Next: ``found.plot()`` shows what the fit leaves unexplained; ``hl.identify.hand`` identifies whoever holds the handle.
 """
 
+from .identification.free_motion import coasting, throw
 from .identification.hand import identify_hand as hand
 from .identification.handle_records import HandleRecord, chirp_response, spin_down, step_response
 from .identification.handle_records import identify as handle
+from .identification.interval_plot import plot_intervals
 from .identification.paddle import identify_paddle as paddle
 from .identification.pushes import push_hand as pushes
 from .vocabulary import page
@@ -19,12 +21,15 @@ from .vocabulary import page
 __all__ = [
     "HandleRecord",
     "chirp_response",
+    "coasting",
     "hand",
     "handle",
     "paddle",
+    "plot_intervals",
     "pushes",
     "spin_down",
     "step_response",
+    "throw",
 ]
 
 page(__name__)

@@ -40,6 +40,7 @@ def live(
     time_scale: float = 1.0,
     picture: Any = None,
     show_force: bool = True,
+    let_go: bool = False,
     rehearsal: Rehearsal = REHEARSAL,
     **compile_options: Any,
 ) -> LiveView:
@@ -64,7 +65,10 @@ def live(
     picture : str, shapes or callable, optional
         Instead of the scene's own picture: see :func:`~hapticlab.widgets.picture.moving_picture`.
     show_force : bool
-        False shows neither force nor energy: for experiments whose answer they would tell.
+        False shows neither force, energy nor target position: for experiments whose answer they would tell.
+    let_go : bool
+        True: a hand that is dragged by the pointer lets go of the handle where the drag is released, so that the handle can be
+        thrown. On a board the hand is yours, and nothing changes.
     rehearsal : Rehearsal
         What the hand does for ``view.rehearsal``: ``hl.people.Rehearsal(intent=, duration=)``.
     **compile_options
@@ -99,7 +103,7 @@ def live(
         raise PaddleError(f"time_scale = {time_scale:g}; a board runs in real time: leave it out, or take a SimulatedPaddle.")
     instance("rehearsal", rehearsal, Rehearsal, "hl.people.Rehearsal(intent=..., duration=...)", error=PaddleError)
     _check_options(compile_options)
-    looks = {"sliders": sliders, "speed": time_scale, "picture": picture, "show_force": show_force}
+    looks = {"sliders": sliders, "speed": time_scale, "picture": picture, "show_force": show_force, "let_go": let_go}
     session = Session(paddle, scene, **looks, **compile_options)
     return LiveView(session, rehearsal, compile_options)
 

@@ -34,7 +34,7 @@ class Session:
     ----------
     paddle : SimulatedPaddle or SerialPaddle
     scene : Scene
-    sliders, speed, picture, show_force
+    sliders, speed, picture, show_force, let_go
         As for :func:`hapticlab.live`.
     clock : callable
         Seconds, as time.monotonic gives them.
@@ -45,11 +45,11 @@ class Session:
     """
 
     def __init__(
-        self, paddle, scene, *, sliders=None, speed=1.0, picture=None, show_force=True, clock=time.monotonic,
-        in_thread=True, **options,
+        self, paddle, scene, *, sliders=None, speed=1.0, picture=None, show_force=True, let_go=False,
+        clock=time.monotonic, in_thread=True, **options,
     ):  # fmt: skip
         self.clock, self._in_thread = clock, in_thread
-        looks = {"sliders": sliders, "speed": speed, "picture": picture, "show_force": show_force}
+        looks = {"sliders": sliders, "speed": speed, "picture": picture, "show_force": show_force, "let_go": let_go}
         self.stage = Stage(paddle, scene, clock=clock, **looks, **options)
         self.scene, self.spans, self.picture = self.stage.scene, self.stage.spans, self.stage.picture
         self.source, self.motion, self.description = self.stage.source, self.stage.motion, self.stage.description

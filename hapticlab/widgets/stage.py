@@ -36,14 +36,14 @@ class Stage:
 
     Parameters
     ----------
-    paddle, scene, sliders, speed, picture, show_force, **options
+    paddle, scene, sliders, speed, picture, show_force, let_go, **options
         As for :func:`hapticlab.live`.
     clock : callable
         Seconds.
     """
 
-    def __init__(self, paddle, scene, *, clock, sliders=None, speed=1.0, picture=None, show_force=True, **options):
-        self.picture, self._show_force = moving_picture(scene, paddle, picture), show_force
+    def __init__(self, paddle, scene, *, clock, sliders=None, speed=1.0, picture=None, show_force=True, let_go=False, **options):
+        self._let_go, self.picture, self._show_force = bool(let_go), moving_picture(scene, paddle, picture), show_force
         self.scene = replace(scene, watch={**scene.watch, **self.picture.channels})
         self.source = source_of(paddle, self.scene, **options)
         self.spans = spans(self.source.program, sliders)
@@ -65,7 +65,8 @@ class Stage:
         ``title``; ``kind``, "simulated" or "board"; ``parameters``, a list of {name, unit, value, low, high, limit_words};
         ``traces``, a list of {name, label, unit_shown, scale}, where shown = scale * value in SI, in the order of a frame's
         columns after t; ``x_range``, how far a hand goes, and ``box``, [left, right, bottom, top], of the picture [m];
-        ``along``, the direction in which the handle moves there; ``help``, words on what moves it; ``speed``; ``columns``.
+        ``along``, the direction in which the handle moves there; ``let_go``, whether a drag that is released lets go;
+        ``help``, words on what moves it; ``speed``; ``columns``.
         """
         box, values = self.picture.box, self.values
         return {
@@ -76,6 +77,7 @@ class Stage:
             "x_range": list(self.picture.reach),
             "box": list(box),
             "along": list(self.picture.along),
+            "let_go": self._let_go,
             "help": help_words(self.source, self.motion.speed),
             "speed": self.motion.speed,
             "columns": list(COLUMNS),
@@ -282,7 +284,7 @@ class Stage:
     def _drawn(self, wanted):
         """Return the picture; one that cannot be drawn is told, and the scene goes on without it."""
         try:
-            hidden = {} if self._show_force else {"F": math.nan}
+            hidden = {} if self._show_force else {"F": math.nan, "intent": math.nan}
             return self.picture.draw({**self.motion.values(wanted), **hidden})
         except Exception as problem:
             self.tell(f"The picture cannot be drawn: {type(problem).__name__}: {problem}")

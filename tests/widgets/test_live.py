@@ -686,3 +686,14 @@ def test_a_view_tells_from_the_first_event_on_that_was_left_out():
         stage.session.pressed("pause")
         stage.go(0.4)
         assert stage.session.status.startswith("Paused.") and ("unlocated" in stage.session.status) == told
+
+
+def test_a_released_drag_lets_go_where_asked_and_a_blind_picture_hides_where_the_hand_aims():
+    paddle = hl.SimulatedPaddle.from_profile("hapkit", hand=hl.Hand("pinch"))
+    shown, told = [], {}
+    for show_force in (True, False):
+        session = Session(paddle, hl.wall()(k=300, x_o=0.01), show_force=show_force, let_go=not show_force, in_thread=False)
+        told[show_force] = session.description()["let_go"]
+        shown.append([item[0] for item in session.stage._drawn(0.02)])
+    assert told == {True: False, False: True}
+    assert len(shown[0]) > len(shown[1])

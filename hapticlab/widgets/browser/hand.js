@@ -13,7 +13,8 @@ class Hand {
     this.stage.addEventListener("pointerdown", (event) => this.grasp(event))
     this.stage.addEventListener("pointermove", (event) => this.follow(event)) // as often as pictures are shown
     this.stage.addEventListener("pointerrawupdate", (event) => this.follow(event)) // at once, where a browser has it
-    for (const end of ["pointerup", "pointercancel"]) this.stage.addEventListener(end, () => (this.grab = null))
+    this.stage.addEventListener("pointerup", (event) => this.release(event))
+    this.stage.addEventListener("pointercancel", () => (this.grab = null))
     this.stage.addEventListener("keydown", (event) => this.key(event))
   }
 
@@ -42,6 +43,15 @@ class Hand {
     const way = this.along(event) - this.grab.from
     if (way !== this.grab.way) this.take(this.grab.intent + way)
     this.grab.way = way
+  }
+
+  // The end of a drag: where the handle can be thrown, the hand lets go of it as it moves.
+  release(event) {
+    if (this.grab?.pointer === event.pointerId && this.view.about.let_go) {
+      if (this.intending) this.say()
+      this.view.tell("hold", 0)
+    }
+    this.grab = null
   }
 
   // How far along the handle's way a pointer is [m].
@@ -75,14 +85,16 @@ class Hand {
   // Say where the hand means to be, at once but not too often; the last word is always said.
   intend() {
     if (this.intending) return
-    const say = () => {
-      this.intending = null
-      this.intended = performance.now()
-      this.view.tell("intend", this.intent)
-    }
     const wait = SOONEST - (performance.now() - this.intended)
-    if (wait > 0) this.intending = setTimeout(say, wait)
-    else say()
+    if (wait > 0) this.intending = setTimeout(() => this.say(), wait)
+    else this.say()
+  }
+
+  say() {
+    clearTimeout(this.intending)
+    this.intending = null
+    this.intended = performance.now()
+    this.view.tell("intend", this.intent)
   }
 
   // Another view, a program, or a page that was here before led it: begin where that left it.
