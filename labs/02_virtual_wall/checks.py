@@ -2,31 +2,40 @@
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
-HELD = "Which force acts in this period, and does it change while the handle is on its way?"
-MEAN = "That is the work at the mean force, which is what a spring takes that is not sampled. The motor holds the first force."
-END = "That is the force of the end of the period. It is computed at the beginning, and held."
-FULL = "The square is right. What the held force leaves out is the corner below the spring line: a triangle, not a square."
-TAKEN = "That is what the held spring took less what the spring stored: the leak with its sign turned."
-WRONG_WAY = (
-    "F(n) was paired with the way from x(n-1) to x(n). It is computed from x(n) and acts after "
-    "it, while the handle goes on to "
-    "x(n+1). Paired the wrong way round, a wall that generates energy looks like one that takes it."
+HELD = "Which force acts during this period, and does it change while the handle moves?"
+MEAN = (
+    "That is the work of the mean force, as of a spring that is not sampled. The motor holds the first force for the "
+    "whole period."
 )
-MEAN_FORCE = "That is nearly zero: the mean of two forces is the spring that is not sampled. The motor holds F(n) all the way."
-TAKES = "That is the work of the handle on the wall. What the wall generated is minus that."
+END = "That uses the force at the end of the period. The force is computed at the beginning of the period and then held."
+FULL = "The square is right. The held force leaves out the area below the spring line, which is a triangle, not a rectangle."
+TAKEN = "That is the work of the held force minus the increase in stored energy, so the sign of the leak is wrong."
+WRONG_WAY = (
+    "You paired F(n) with the displacement from x(n-1) to x(n). F(n) is computed from x(n) and acts after it, while the "
+    "handle moves to x(n+1). With the wrong pairing, a wall that generates energy seems to absorb it."
+)
+MEAN_FORCE = (
+    "That is nearly zero: the mean of two successive forces is the force of a spring that is not sampled. The motor holds "
+    "F(n) during the whole displacement."
+)
+TAKES = "That is the work of the handle on the wall. The energy that the wall generated is minus that work."
 EVERYWHERE = (
-    "The wall acts outside too. F is zero where x < 0, and in the periods that cross the boundary the leak is less than k D^2/2."
+    "Your wall also acts outside. F is zero where x < 0, so in the periods in which the handle crosses the boundary the leak "
+    "is less than k D^2/2."
 )
 SECOND = (
-    "That is the next order too, e^(pi w T/2) - 1, and nearer to what is measured. Asked "
-    "for is the first order: v of the "
-    "undisturbed bounce put into the integral."
+    "That is e^(pi w T/2) - 1, which includes the next order and is nearer to the measurement. The question asks for the "
+    "first order: insert v of the undisturbed bounce into the integral."
 )
-WHOLE = "That is twice too much: the handle is inside for half a period of its oscillation, pi/w, not for a whole one."
-NO_HALF = "Half of what is expected: the energy that came in is m v0^2/2, and the mean of cos^2 is 1/2."
-NO_MASS = "The share depends on w = sqrt(k/m), the square root."
-SWAPPED = "k and m are swapped in w = sqrt(k/m): a stiffer spring throws the handle out sooner, a heavier handle later."
-PERCENT = "That is in percent. Asked for is the share itself: half of it would be 0.5."
+WHOLE = (
+    "That is twice as large as expected: the handle is inside for half a cycle of its oscillation, pi/w, not for a whole cycle."
+)
+NO_HALF = "That is half as large as expected: the energy that went in is m v0^2/2, and the mean of cos^2 is 1/2."
+NO_MASS = "The fraction depends on w = sqrt(k/m); the square root is missing."
+SWAPPED = (
+    "k and m are swapped in w = sqrt(k/m): a stiffer spring throws the handle out sooner, and a heavier handle leaves later."
+)
+PERCENT = "That is in percent. The question asks for the fraction itself: half of the energy would be 0.5."
 GATES = (
     "Both conditions are the wrong way round: each wall pulls while the handle is outside it, and exerts no force on a "
     "handle inside it. Write >= where you wrote <=, and <= where you wrote >=."
@@ -37,35 +46,35 @@ LAB = Lab(
     title="The virtual wall, and where its energy comes from",
     minutes=90,
     exercises=(
-        Exercise("prediction", kind="prediction", asks="the energy that comes out on top of what came in [%]"),
+        Exercise("prediction", kind="prediction", asks="the energy that comes out in excess of the energy that went in [%]"),
         Exercise(
             "held_work",
             points=1,
-            asks="the work of the handle on the wall [J] in one period, at x [m], moving by D [m]",
+            asks="the work of the handle on the wall [J] in one period that begins at x [m], for a displacement D [m]",
             cases=(
                 Case({"k": 500.0, "x": 2e-3, "D": 1e-4}, 1e-4, unit="J", slips={1.025e-4: MEAN, 1.05e-4: END}),
                 Case({"k": 300.0, "x": 1e-3, "D": -2e-4}, -6e-5, unit="J", slips={-5.4e-5: MEAN, -4.8e-5: END}),
             ),
             hint=HELD,
             matters=(
-                "The motor holds each force while the handle moves on. The energy that a sampled wall generates comes from this."
+                "The motor holds each force while the handle moves on. This is where the energy of a sampled wall comes from."
             ),
         ),
         Exercise(
             "period_leak",
             points=1,
-            asks="the energy [J] the wall gives away in a period in which the handle moves by D [m]",
+            asks="the energy [J] that the wall generates in a period in which the handle moves by D [m]",
             cases=(
                 Case({"k": 500.0, "D": 1e-4}, 2.5e-6, unit="J", slips={5e-6: FULL, -2.5e-6: TAKEN}),
                 Case({"k": 300.0, "D": -2e-4}, 6e-6, unit="J", slips={1.2e-5: FULL, -6e-6: TAKEN}),
             ),
-            hint="Have you taken what the handle paid from what the spring holds more? Does x go from it?",
-            matters="The leaks of the way in and of the way out do not cancel, so energy builds up in every contact.",
+            hint="Did you subtract the work done by the handle from the increase in the energy of the spring? Does x cancel?",
+            matters="The leaks on the way in and on the way out do not cancel, so energy builds up in every contact.",
         ),
         Exercise(
             "bounce_gain",
             points=2,
-            asks="the energy generated in one bounce over that which came in, to first order in T",
+            asks="the energy generated in one bounce over the energy that went in, to first order in T",
             cases=(
                 Case(
                     {"k": 800.0, "m": 0.05, "T": 1e-3},
@@ -82,13 +91,16 @@ LAB = Lab(
                 Case({"k": 1200.0, "m": 0.03, "T": 5e-4}, 0.15707963267948966, slips={0.17008878749642195: SECOND}),
                 Case({"k": 2000.0, "m": 0.05, "T": 1e-3}, 0.3141592653589793, slips={0.36910718607437147: SECOND}),
             ),
-            hint="For how long is the handle inside, and what is the mean of v^2 over that time? Does v0 go from the share?",
-            matters="The speed is not in this share, so a gentle knock gains as large a share as a hard one.",
+            hint=(
+                "For how long is the handle inside, and what is the mean of v^2? Does v0 cancel when you divide by "
+                "the incoming energy?"
+            ),
+            matters="The speed does not appear in this fraction, so a gentle knock gains as large a fraction as a hard knock.",
         ),
         Exercise(
             "energy_generated",
             points=2,
-            asks="the energy [J] the wall F = k x (x >= 0) generated over positions x [m] that begin and end outside",
+            asks="the energy [J] that the wall F = k x (x >= 0) generates over positions x [m] that begin and end outside",
             cases=(
                 Case(
                     {"x": [-1e-3, 1e-3, 3e-3, 5e-3, 4e-3, 2e-3, -1e-3], "k": 100.0},
@@ -109,7 +121,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="Which force was held while the handle went from x(n) to x(n+1)? And whose work is asked for?",
+            hint="Which force was held while the handle moved from x(n) to x(n+1)? Whose work does the question ask for?",
             matters="With the right pairing of force and motion, any recording shows whether a wall generates energy.",
         ),
         Exercise(
@@ -125,80 +137,97 @@ LAB = Lab(
                     slips=(
                         (
                             (1.5, 0.0, 0.0, 0.0, 1.0),
-                            "The left wall pulls: there the handle presses towards -x, so F_e < 0.",
+                            "Your left wall pulls. There the handle presses in the direction of -x, so F_e < 0.",
                         ),
-                        ((0.0, 0.0, 0.0, 0.0, 1.0), "Only the right wall is there."),
+                        ((0.0, 0.0, 0.0, 0.0, 1.0), "Only the right wall acts. Add the wall at -x_o."),
                         (
                             (-2.5, -1.0, 0.0, 0.0, 2.0),
-                            "Each spring begins at its own wall, not at x = 0: beyond x_o it is pressed by x - x_o.",
+                            "Each spring begins at its own boundary, not at x = 0. Beyond x_o the penetration depth is x - x_o.",
                         ),
                         (
                             (-2.5, -1.0, 0.0, 0.0, 1.0),
-                            "The left spring begins at x = 0: beyond -x_o it is pressed by x + x_o.",
+                            (
+                                "Your left spring begins at x = 0. Beyond -x_o, at the left, the handle is inside by "
+                                "x + x_o, which is negative."
+                            ),
                         ),
                         (
                             (-3.5, -2.0, 0.0, 0.0, 1.0),
-                            "The left wall is at -x_o, so the handle is beyond it by x - (-x_o) = x + x_o, which is < 0.",
+                            "The left boundary is at -x_o, so the handle is inside by x - (-x_o) = x + x_o, which is negative.",
                         ),
                         ((-3.5, -2.0, 0.0, 1.0, 3.0), GATES),
                         (
                             (-3.5, -2.0, 0.0, 0.0, 3.0),
-                            "Each spring has the boundary of the other wall: beyond x_o it is pressed by x - x_o.",
+                            "Each spring uses the boundary of the other wall. Beyond x_o the penetration depth is x - x_o.",
                         ),
                         (
                             (1.5, 0.0, 0.0, 0.0, -1.0),
-                            "Both signs are turned: force is F_e, the force ON the environment.",
+                            "Both signs are wrong: `force` is F_e, the force ON the environment.",
                         ),
                     ),
                 ),
             ),
-            hint="Where does each wall begin, how far is the handle beyond it, and which way does it press there?",
-            matters=("Each boundary has a condition of its own. In this way you can build a box, a channel or a button."),
+            hint="How deep is the handle inside each wall? In which direction does the handle press there?",
+            matters="Each boundary has its own condition. In this way you can build a box, a channel or a button.",
         ),
         Exercise(
             "damping_that_pays",
             kind="value",
             points=1,
-            asks="the damper b [N s/m] of the device that takes what a held spring of K_OWN gives at T_OWN",
+            asks="the damper b [N s/m] of the device that dissipates what a held spring of K_OWN generates at T_OWN",
             cases=(
                 Case(
                     {},
                     0.25,
                     unit="N s/m",
                     slips={
-                        0.5: "k T is a whole sample of delay; the hold is late by half a sample in the mean.",
-                        -0.25: "That is the damper the hold puts beside the spring. The device needs one that takes as much.",
-                        250.0: "T = 1 ms is 0.001 s.",
+                        0.5: "k T belongs to a delay of a whole period. On average the hold is late by half a period.",
+                        -0.25: (
+                            "That is the negative damper that the hold adds in parallel with the spring. The device "
+                            "needs a damper that dissipates as much."
+                        ),
+                        250.0: "T is in seconds: 1 ms is 0.001 s.",
                     },
                 ),
             ),
             rtol=1e-3,
-            hint="Leak and damper are both a number times the integral of v^2. Which number is each?",
+            hint="Leak and damper are both a constant times the integral of v^2. What are the two constants?",
             matters=(
-                "One bounce leads to the passivity condition, Eq. (23.10): how stiff a wall may be depends on the "
-                "damping of the device."
+                "One bounce leads to the passivity condition, Eq. (23.10): the damping of the device limits the stiffness of "
+                "the wall."
             ),
         ),
         Exercise(
             "who_pays",
             kind="choice",
             points=1,
-            asks="who supplies the energy that the staircase shows",
+            asks="who supplies, on a real paddle, the energy that the staircase shows",
             options={"a": "the hand", "b": "the sensor", "c": "the wall's spring", "d": "the motor's supply"},
             cases=(
                 Case(
                     {},
                     "d",
                     slips={
-                        "a": "The record says what the hand gave: the work on the way in. More than that came out.",
-                        "b": "The sensor's supply never reaches the handle.",
-                        "c": "Before the contact the handle was outside and the wall's spring at rest: it held nothing.",
+                        "a": (
+                            "The recording shows the energy that the hand supplied: the work on the way in. More "
+                            "energy than that came out."
+                        ),
+                        "b": "The sensor only reads the position. Its supply does no work on the handle.",
+                        "c": (
+                            "Before the contact the handle was outside and the spring of the wall was relaxed, so it "
+                            "stored no energy."
+                        ),
                     },
                 ),
             ),
-            hint="Who does work on the handle when it is thrown out?",
-            matters="If you know where the energy comes from, you know what must dissipate it.",
+            hint="Who does work on the handle while the wall throws it out?",
+            matters="If you know where the energy comes from, you know where it must be dissipated.",
         ),
-        Exercise("discussion", kind="text", least_words=60, asks="the wrong pairing, and why a still hand meets chatter"),
+        Exercise(
+            "discussion",
+            kind="text",
+            least_words=60,
+            asks="why the wrong pairing misleads, and why a wall chatters in a hand that keeps still",
+        ),
     ),
 )

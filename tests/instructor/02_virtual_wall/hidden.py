@@ -6,10 +6,10 @@ import numpy as np
 def cases(random):
     """Return givens by exercise, drawn from a NumPy Generator."""
     stiffness = lambda: float(random.uniform(50, 3000))  # noqa: E731
-    way = lambda: float(random.choice([-1, 1]) * random.uniform(2e-5, 4e-4))  # noqa: E731
+    displacement = lambda: float(random.choice([-1, 1]) * random.uniform(2e-5, 4e-4))  # noqa: E731
     return {
-        "held_work": lambda: [{"k": stiffness(), "x": float(random.uniform(5e-4, 5e-3)), "D": way()} for _ in range(3)],
-        "period_leak": lambda: [{"k": stiffness(), "D": way()} for _ in range(3)],
+        "held_work": lambda: [{"k": stiffness(), "x": float(random.uniform(5e-4, 5e-3)), "D": displacement()} for _ in range(3)],
+        "period_leak": lambda: [{"k": stiffness(), "D": displacement()} for _ in range(3)],
         "bounce_gain": lambda: [
             {"k": stiffness(), "m": float(random.uniform(0.02, 0.3)), "T": float(random.uniform(2e-4, 2e-3))} for _ in range(3)
         ],

@@ -9,17 +9,17 @@ prediction = "16 %"  # a text is noted as well
 
 
 def held_work(k, x, D):
-    """Work of the handle on the wall in one period [J]: the held force times the way."""
+    """Work of the handle on the wall in one period [J]: the held force times the displacement."""
     return k * x * D
 
 
 def period_leak(k, D):
-    """Energy that the wall gives away in one period [J]."""
+    """Energy that the wall generates in one period [J]."""
     return k * D**2 / 2
 
 
 def bounce_gain(k, m, T):
-    """Energy generated in one bounce over the energy that came in, to first order in T."""
+    """Energy generated in one bounce over the energy that went in, to first order in T."""
     return np.pi / 2 * T * np.sqrt(k / m)
 
 
@@ -37,10 +37,10 @@ T_OWN = 1e-3
 damping_that_pays = K_OWN * T_OWN / 2
 who_pays = "d"
 discussion = """
-The force computed from x(n) acts while the handle leaves x(n), so pairing it with the way that led there gives
-every period the force of its end instead of its beginning. Each period is then wrong by the held force's step, k D,
-times D: twice the leak, with the other sign, and a wall that generates energy seems to take as much. Slow pressing
-leaks little because the leak goes with the square of the speed, but so does everything else of a small motion: the
-ratio of leak to stored energy of an oscillation does not depend on its size. A still hand on a stiff wall begins
-with a tiny oscillation, which grows by the same share each cycle.
+The force computed from x(n) acts while the handle leaves x(n). Pairing it with the displacement that ends at x(n) gives
+each period the force of its end instead of its beginning. Each period is then wrong by the step of the held force, k D,
+times D: twice the leak, with the other sign, so that a wall that generates energy seems to absorb as much. Slow pressing
+leaks little because the leak grows with the square of the speed, but so does the energy of a small oscillation: the
+ratio of leak to stored energy does not depend on the amplitude. A still hand on a stiff wall begins with a tiny
+oscillation, which grows by the same fraction in each cycle.
 """

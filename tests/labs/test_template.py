@@ -1,0 +1,62 @@
+"""Every lab is set by one template, so that who knows one finds the way in all."""
+
+import ast
+import re
+
+import pytest
+from reading_time import LABS, reading_time, text_of, written
+
+from hapticlab.course.labs import find_labs
+from hapticlab.course.notebook import code_of, read
+
+#: labs that are set by it
+SET = ("02",)
+SECTIONS = ("Predict", "Derive", "Compile", "Feel", "Measure", "Compare", "Hand in")
+FOLDERS = [folder for folder in find_labs(LABS) if folder.number in SET]
+
+pytestmark = pytest.mark.parametrize("folder", FOLDERS, ids=[folder.name for folder in FOLDERS])
+
+
+def test_sections_come_in_the_order_of_the_template(folder):
+    lab, notebook = folder.lab(), read(folder.notebook)
+    first = "".join(notebook["cells"][0]["source"])
+    assert first.startswith(f"# Lab {lab.number}: {lab.title}\n\n")
+    parts = ["**After this lab you can**", "**Before it:**", f"**Time:** {lab.minutes} minutes", "**Needs:**"]
+    assert [at for part in parts if (at := first.find(part)) < 0] == []
+    assert sorted(parts, key=first.find) == parts
+    headings = re.findall(r"^## (.*)$", text_of(notebook), re.M)
+    found = [re.fullmatch(r"([1-7]) ([A-Z][a-z ]+)(?:: .+)?", heading) for heading in headings]
+    assert [heading for heading, match in zip(headings, found, strict=True) if match is None] == []
+    assert {match[2] for match in found if match[2] != SECTIONS[int(match[1]) - 1]} == set()
+    begun = list(dict.fromkeys(int(match[1]) for match in found))
+    assert begun == sorted(begun) and begun[0] == 1 and begun[-1] == 7
+    assert headings[-1] == "7 Hand in"
+
+
+def test_text_is_typeset(folder):
+    text = text_of(read(folder.notebook))
+    assert not re.search(r"^\s*[-*] \[[ x]\]", text, re.M), "a disabled box without a name, for a screen reader"
+    assert not re.search(r"\d u[mJ]\b|\[u[mJ]\]", text), "µm, µJ"
+    assert re.findall(r"!\[\]\(|<img(?![^>]* alt=\"[^\"])[^>]*>", text) == [], "alternative text"
+    assert text.count("$") % 2 == 0
+
+
+def test_code_is_short_and_about_the_subject(folder):
+    notebook = read(folder.notebook)
+    wide = [line for code in code_of(notebook) for line in code.splitlines() if len(line) > 88]
+    assert wide == []
+    for code in code_of(notebook):
+        for node in ast.walk(ast.parse(code)):
+            if isinstance(node, ast.ImportFrom | ast.Import):
+                named = [node.module] if isinstance(node, ast.ImportFrom) else [alias.name for alias in node.names]
+                assert not [name for name in named if name.startswith("hapticlab.")], "hapticlab's public names alone"
+            if isinstance(node, ast.Call) and ast.unparse(node.func) == "hl.show":
+                words = next((one.value for one in node.keywords if one.arg == "alt"), None)
+                assert words or ast.unparse(node.args[0]).startswith("hl.") or ".plot(" in ast.unparse(node.args[0])
+    assert "widgets" not in notebook["metadata"]
+    assert [cell["id"] for cell in notebook["cells"] if cell.get("outputs") or cell.get("execution_count")] == []
+
+
+def test_reading_time_stands_in_the_list(folder):
+    readme = (LABS / "README.md").read_text("utf-8")
+    assert readme == written(readme, {folder.number: reading_time(folder)[-1]}), "python tests/labs/reading_time.py --write"
