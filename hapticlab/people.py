@@ -9,11 +9,13 @@ A hand takes a movement as its ``intent``. Here it reaches 20 mm in the way that
 >>> round(1000 * float(log.x[-1]))
 20
 
-``print(hl.people.hand_presets())`` lists the nominal hands. Next: ``hl.people.forced_choice`` asks what a person feels.
+``print(hl.people.hand_presets())`` lists the nominal hands, and ``hl.people.random_hands`` draws others. Next:
+``hl.people.forced_choice`` asks what a person feels.
 """
 
 from .device.hand.hand_presets import hand_presets
 from .device.hand.intents import MinimumJerk, Tremor
+from .device.hand.random_hands import random_hands
 from .device.hand.reacting_hand import Reacting
 from .device.hand.rehearsal import Rehearsal
 from .experiments.displays import compare_displays
@@ -57,6 +59,7 @@ __all__ = [
     "hand_presets",
     "juggle",
     "psychometric",
+    "random_hands",
     "reach",
     "stiffness_task",
     "texture_task",

@@ -14,6 +14,7 @@ Next: ``hl.plot(log)``, ``hl.energy(log)``, ``hl.chatter(log)``; ``log.save`` an
 """
 
 from .analysis.programs.replay import replay
+from .analysis.records.cycles import frequency
 from .analysis.records.energy_books import balance, energy_books
 from .analysis.records.staircase import staircase
 from .analysis.records.storage import storage
@@ -26,6 +27,7 @@ __all__ = [
     "balance",
     "energy_books",
     "evaluate",
+    "frequency",
     "replay",
     "staircase",
     "storage",

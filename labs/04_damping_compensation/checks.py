@@ -2,43 +2,48 @@
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
-PLAIN = "That is Eq. (23.1), which does not look ahead."
-WHOLE = "That is a whole sample ahead, 2 x(n) - x(n-1). Eq. (23.2) takes the mean of it and of x(n)."
-BACK = "That looks half a sample back: the mean of the last two samples makes the staircase later, not earlier."
-STRICT = "At x(n) = x_o the wall acts: >=, not >."
+PLAIN = "That is Eq. (23.1), which does not predict."
+WHOLE = "That is a whole sample ahead, 2 x(n) - x(n-1). Eq. (23.2) takes the mean of this prediction and x(n)."
+BACK = "That is half a sample back: the mean of the last two samples makes the staircase later, not earlier."
+ELLIS = "That is Ellis's law, Eq. (23.7), with its correction. This exercise asks for Eq. (23.5), without it."
+STRICT = "The wall also acts at x(n) = x_o: use >=, not >."
 CLIPPED = (
-    "The past was clipped at the boundary. It is a wall too (hl.wall calls it unilateral='clip'); "
-    "asked for is the raw past, with "
-    "zero only where x(n) < x_o."
+    "You clipped past samples at the boundary. That is also a wall (hl.wall calls it unilateral='clip'), but this "
+    "exercise uses the past samples as they are, and the force is zero only where x(n) < x_o."
 )
-ALWAYS = "It acts outside as well: zero where x(n) < x_o."
-ONE_SHIFT = "Each sample is taken from x_o on: with 1.5 x(n) - 0.5 x(n-1) - 1.5 x_o the boundary moves."
-FULL_WEIGHT = "The correction was added with its full weight. In Eq. (23.6) it stands within the bracket, behind k/2."
+ALWAYS = "Your force also acts outside the wall. It must be zero where x(n) < x_o."
+ONE_SHIFT = "Subtract x_o from each sample: with 1.5 x(n) - 0.5 x(n-1) - 1.5 x_o the boundary moves."
+NO_BOUNDARY = "The spring is compressed by x - x_o, not by x."
+FULL_WEIGHT = "You added the correction with its full weight. In Eq. (23.6) it is inside the bracket, multiplied by k/2."
 ADAMS = (
-    "Those are the weights of Adams-Bashforth, 23/12, -16/12, 5/12: a parabola through three "
-    "samples. Ellis corrects a straight line."
+    "Those are the weights of Adams-Bashforth, 23/12, -16/12, 5/12, for a parabola through three samples. "
+    "Ellis corrects a straight line."
 )
+UNCORRECTED = "That is Eq. (23.5), without the correction."
 SUM_OF_TAPS = (
-    "That sums the weights, which is what slow motion finds. At half the sampling rate the samples alternate: signs +, -, +."
+    "That is the sum of the weights, which is right for slow motion. At half the sampling rate the samples alternate, so "
+    "their signs are +, -, +."
 )
 ABSOLUTE = (
-    "That sums the weights without their signs; a weight on x(n-1) meets a sample of the other sign, so c_1 counts as -c_1."
+    "You summed the weights without their own signs. The weight on x(n-1) meets a sample of the other sign: c_1 counts as -c_1."
 )
-TWICE = "Twice too much: the damper's force b 2a/T acts along 2a, and that is 4 b a^2/T against 2 k a^2 h."
-ADDED = "A virtual damper of either sign costs: Eq. (23.10) has |B|. A negative one feeds slow motion."
-NEGATIVE_HELPS = "B < 0 was counted as if it helped: it takes away from what b gives, so it is b + b_added - |B| that is left."
-NO_B = "Eq. (23.10) asks for K T/2 + |B|: the virtual damper has its share."
-HALF = "K T/2 is to be paid: K = 2 (...)/T."
-NEGATIVE = "Below zero there is no stiffness at all: return 0."
-INSIDE_TOO = "B acts inside the wall as well. It is the whole point that it acts only where x(n) < x_o."
-NOT_OUTSIDE = "Nothing acts outside: hl.when(condition, inside, outside) takes the virtual damper as its third argument."
-TURNED_DAMPER = "The damper's sign is wrong: a damper's force on the environment is B v, and here B itself is negative."
-ACCELERATION = "The sign is turned: F is on the environment, the handle feels -F."
+TWICE = "That is twice as large as expected. The damper's force b 2a/T acts along 2a, so 4 b a^2/T must cover 2 k a^2 h."
+ADDED = "A virtual damper of either sign lowers the limit: Eq. (23.10) has |B|. A negative one generates energy in slow motion."
+NEGATIVE_HELPS = "You counted B < 0 as a help. It uses up a share of the damping, so b + b_added - |B| is left."
+NO_B = "Eq. (23.10) requires K T/2 + |B|, so subtract the share of the virtual damper as well."
+HALF = "The damping must cover K T/2, so K = 2 (...)/T."
+NEGATIVE = "Below zero no stiffness is passive: return 0."
+INSIDE_TOO = "B also acts inside the wall. Here it must act only where x(n) < x_o."
+NOT_OUTSIDE = "Nothing acts outside the wall: hl.when(condition, inside, outside) takes the virtual damper as its third argument."
+TURNED_DAMPER = "The sign of the damper is wrong: its force on the environment is B v, and here B itself is negative."
+LAWS_SWAPPED = "The two laws are swapped: hl.when(condition, inside, outside) takes the law for x(n) >= x_o first."
+LATE_VELOCITY = "The velocity is one sample late: use the displacement that ends at x(n), x(n) - x(n-1)."
+NOT_ALWAYS_1_MS = "The period is not always 1 ms: divide by hl.T, the period at which the scene runs."
+ACCELERATION = "The sign is wrong: F is the force on the environment, and the handle feels -F."
 SWAPPED = "These are the right two forces in the wrong order."
 EULER = (
-    "The handle moves on a parabola while the force is held: x + T v - (T^2/2m) F in one "
-    "period, and the first force goes on "
-    "moving it in the second."
+    "While a force is held, the handle moves on a parabola: x + T v - (T^2/2m) F in one period. The velocity that the first "
+    "force causes also moves the handle in the second period."
 )
 
 LAB = Lab(
@@ -49,7 +54,7 @@ LAB = Lab(
         Exercise(
             "prediction",
             kind="prediction",
-            asks="what is left of the leak under Eq. (23.5) [% of the energy that came in]",
+            asks="the leak that is left under Eq. (23.5) [% of the incoming energy]",
         ),
         Exercise(
             "half_sample_wall",
@@ -68,6 +73,7 @@ LAB = Lab(
                         ((0.0, 0.75, 2.0, 3.0, 0.25, 0.0), CLIPPED),
                         ((0.0, 0.75, 2.0, 3.0, 0.25, -0.5), CLIPPED),
                         ((-0.5, 1.0, 2.0, 3.0, 0.25, -1.25), ALWAYS),
+                        ((0.0, 1.5, 2.0, 3.0, -1.0, 0.0), ELLIS),
                     ),
                 ),
                 Case(
@@ -80,12 +86,13 @@ LAB = Lab(
                         ((0.0, 0.0, 0.0, 1.25, 2.75, -0.25, 0.0), STRICT),
                         ((0.0, 0.0, 0.0, 0.75, 2.75, -0.25, 0.0), CLIPPED),
                         ((0.0, 0.0, 0.0, 0.75, 2.75, -0.25, -0.25), CLIPPED),
-                        ((0.0, 1.0, 0.0, 1.75, 3.25, 0.25, 0.0), "The spring is pressed by x - x_o, not by x."),
+                        ((0.0, 1.0, 0.0, 1.75, 3.25, 0.25, 0.0), NO_BOUNDARY),
+                        ((0.0, 1.0, 0.0, 2.5, 2.75, -1.75, 0.0), ELLIS),
                     ),
                 ),
             ),
             hint="How far beyond x_o is each sample that the law uses? Which sample decides whether the wall acts?",
-            matters=("A look half a sample ahead removes nearly all of the leak of a bounce, without any change to the device."),
+            matters="A prediction of half a sample removes nearly all of the leak of a bounce, without any change to the device.",
         ),
         Exercise(
             "ellis_wall",
@@ -100,7 +107,7 @@ LAB = Lab(
                     slips=(
                         ((0.0, 2.0, 2.0, 3.0, -2.25, 0.0), FULL_WEIGHT),
                         ((0.0, 1.4166666666666667, 2.0, 3.0, -0.79166666666666667, 0.0), ADAMS),
-                        ((0.0, 1.0, 2.0, 3.0, 0.25, 0.0), "That is Eq. (23.5), without the correction."),
+                        ((0.0, 1.0, 2.0, 3.0, 0.25, 0.0), UNCORRECTED),
                     ),
                 ),
                 Case(
@@ -108,18 +115,18 @@ LAB = Lab(
                     [0.0, 3.0, 2.0, 1.5, 1.0, 0.0],
                     unit="N",
                     slips=(
-                        ((0.0, 4.0, 3.0, 2.5, 2.0, 0.0), "The spring is pressed by x - x_o, not by x."),
-                        ((0.0, 2.0, 2.5, 2.0, 1.25, 0.0), "That is Eq. (23.5), without the correction."),
+                        ((0.0, 4.0, 3.0, 2.5, 2.0, 0.0), NO_BOUNDARY),
+                        ((0.0, 2.0, 2.5, 2.0, 1.25, 0.0), UNCORRECTED),
                     ),
                 ),
             ),
-            hint="What does each hat stand for in samples you know? A handle at rest feels k x: what do the weights sum to?",
-            matters=("A correction can improve a prediction, but its larger weights also amplify the steps of the encoder."),
+            hint="Which known samples does each hat stand for? A handle at rest feels k x, so what is the sum of the weights?",
+            matters="A correction can improve a prediction, but its larger weights also amplify the steps of the encoder.",
         ),
         Exercise(
             "nyquist_damping",
             points=2,
-            asks="the device damping [N s/m] that pays for samples that alternate, of taps c_0, c_1, ..., k [N/m], T [s]",
+            asks="the device damping [N s/m] that pays for alternating samples, from taps c_0, c_1, ..., k [N/m], T [s]",
             cases=(
                 Case({"taps": [1.0], "k": 200.0, "T": 1e-3}, 0.1, unit="N s/m", slips={0.2: TWICE}),
                 Case(
@@ -136,13 +143,13 @@ LAB = Lab(
                 ),
                 Case({"taps": [0.5, 0.5], "k": 200.0, "T": 1e-3}, 0.0, unit="N s/m", slips={0.1: ABSOLUTE, 0.2: TWICE}),
             ),
-            hint="Which sign has each sample that the law sees? Does the damper take all that is given away in a period?",
+            hint="Which sign does each sample have? Does the damper dissipate all the energy that the law generates in a period?",
             matters="A law that removes the leak of a slow bounce can still need much damping in the fastest motion.",
         ),
         Exercise(
             "stiffest_passive",
             points=1,
-            asks="the largest passive stiffness [N/m] of Eq. (23.1), of b, b_added, B [N s/m], T [s]",
+            asks="the largest passive stiffness [N/m] of Eq. (23.1), from b, b_added, B [N s/m], T [s]",
             cases=(
                 Case(
                     {"b": 0.1, "b_added": 0.25, "B": -0.15, "T": 1e-3},
@@ -158,7 +165,7 @@ LAB = Lab(
                 ),
                 Case({"b": 0.1, "b_added": 0.0, "B": -0.2, "T": 1e-3}, 0.0, unit="N/m", slips={-200.0: NEGATIVE}),
             ),
-            hint="In Eq. (23.10) b is all the real damping there is. Is there a stiffness left?",
+            hint="Which dampers are real, and therefore part of b in Eq. (23.10)? Can the result become negative?",
             matters=(
                 "In this bound only real damping helps; a virtual damper of either sign lowers the largest passive stiffness."
             ),
@@ -166,7 +173,7 @@ LAB = Lab(
         Exercise(
             "prediction_free_air",
             kind="prediction",
-            asks="the stiffness up to which the wall chatters in no light hand, B in free air only [N/m]",
+            asks="the stiffness [N/m] up to which no light hand makes the wall chatter, with B in free air only",
         ),
         Exercise(
             "free_air_wall",
@@ -186,6 +193,8 @@ LAB = Lab(
                         ((0.0, -0.15, -0.1, 0.25, 0.4, 0.2, 0.075), INSIDE_TOO),
                         ((0.0, 0.0, 0.0, 0.5, 0.3, 0.0, 0.0), NOT_OUTSIDE),
                         ((0.0, 0.15, 0.0, 0.5, 0.3, -0.2, -0.075), TURNED_DAMPER),
+                        ((-0.5, -0.2, -0.1, -0.25, 0.1, -0.1, -0.25), LAWS_SWAPPED),
+                        ((0.0, 0.0, 0.0, 0.5, 0.3, 0.1, 0.2), LATE_VELOCITY),
                     ),
                 ),
                 Case(
@@ -197,19 +206,18 @@ LAB = Lab(
                     [0.0, -0.16, 0.0, 0.36, 0.14, 0.08],
                     unit="N",
                     slips=(
-                        ((0.0, -0.16, 0.6, 0.96, 0.14, 0.08), "The spring is pressed by x - x_o, not by x."),
+                        ((0.0, -0.16, 0.6, 0.96, 0.14, 0.08), NO_BOUNDARY),
                         ((0.0, -0.16, -0.04, 0.36, 0.14, 0.08), STRICT),
                         ((0.0, -0.16, -0.04, 0.24, 0.14, 0.08), INSIDE_TOO),
                         ((0.0, 0.0, 0.0, 0.36, 0.0, 0.0), NOT_OUTSIDE),
-                        (
-                            (0.0, -0.08, 0.0, 0.36, 0.07, 0.04),
-                            "The period is not always 1 ms: divide by hl.T, which is the period that the scene runs at.",
-                        ),
+                        ((0.0, -0.08, 0.0, 0.36, 0.07, 0.04), NOT_ALWAYS_1_MS),
+                        ((-0.6, -0.12, -0.04, -0.12, -0.06, -0.3), LAWS_SWAPPED),
+                        ((0.0, 0.0, 0.0, 0.36, -0.12, 0.14), LATE_VELOCITY),
                     ),
                 ),
             ),
-            hint="Which law acts where x(n) < x_o, and what is the velocity there, from the last two positions?",
-            matters=("A virtual damper can help in one place and harm in another, so a rule about it must say where it acts."),
+            hint="Which law acts where x(n) < x_o? How do you get the velocity at sample n from the last two positions?",
+            matters="A virtual damper can help in one place and harm in another, so a rule about it must say where it acts.",
         ),
         Exercise(
             "deadbeat_forces",
@@ -235,14 +243,14 @@ LAB = Lab(
             ),
             rtol=1e-6,
             atol=1e-9,
-            hint="What does each force do to the last velocity, what to the last position? Which has longer to work?",
+            hint="How does each force change the last velocity and the last position? Which force has longer to act?",
             matters="Position and velocity are two numbers, so two held forces are the fewest that can set both.",
         ),
         Exercise(
             "which_law",
             kind="choice",
             points=1,
-            asks="the law for an encoder, a period of delay and thirty different hands",
+            asks="the law that suits an encoder, one period of delay and thirty different hands",
             options={
                 "a": "model-based half sample",
                 "b": "Ellis",
@@ -254,24 +262,23 @@ LAB = Lab(
                     {},
                     "a",
                     slips={
-                        "b": "Ellis pays for the hold, and nobody pays for the period of delay: the second table of section 5. "
-                        "And each count of the encoder is felt up to four times: section 6.",
-                        "c": "Inside a plain wall the two dampers cancel in slow motion: section 7, "
-                        "and the row `damped` of section 5.",
-                        "d": "Its forces follow the position with m/T^2, so each count of the "
-                        "encoder is a kick, and its model is of "
-                        "one hand, not of thirty.",
+                        "b": "Ellis's law compensates for the hold, but not for the period of delay: see the second table of "
+                        "section 5. It also amplifies each encoder count up to four times: see section 6.",
+                        "c": "Inside a plain wall the two dampers cancel in slow motion: see section 7 and the row `damped` of "
+                        "section 5.",
+                        "d": "Its forces change with the position by m/T^2, so each encoder count is a kick. Its model also "
+                        "describes one hand, not thirty.",
                     },
                 ),
             ),
-            hint="What does each law need to know, and what does it do with what it does not know?",
+            hint="What does each law need to know? How does it react to the encoder, the delay and an unknown hand?",
             matters="No law is best in general. The sensor, the delay and the hands decide which law suits a device.",
         ),
         Exercise(
             "discussion",
             kind="text",
             least_words=60,
-            asks="for which law, and where, the directive holds and why, and where a predictor errs",
+            asks="for which law and where the directive is true, why, and where a predictor is wrong",
         ),
     ),
 )

@@ -5,7 +5,7 @@ import numpy as np
 import hapticlab as hl
 from hapticlab import n, x
 
-prediction = "nothing"  # a text is noted as well
+prediction = "nothing"  # a text is saved as well
 
 k, x_o = hl.parameters("k x_o", units="N/m m")
 half_sample_wall = hl.Scene(force=hl.when(x(n) >= x_o, k * (1.5 * (x(n) - x_o) - 0.5 * (x(n - 1) - x_o))))
@@ -38,11 +38,11 @@ def deadbeat_forces(m, T, x, v, x_goal, v_goal):
 
 which_law = "a"
 discussion = """
-For the plain wall with the virtual damper inside it is not true: the hold leaks at every frequency alike, and in slow
-motion the virtual damper takes away what the real one gives, so the limit is that of the damping that is felt. With the
-virtual damper in free air only it is nearly true: the two are needed at different places, and meet at the crossing
-alone; but inside the wall the real damper is felt. For the laws that look ahead
-it is true: they pay for slow motion themselves and ask for the damper only in fast motion, where the virtual damper
-does not undo it. A straight line is furthest from the path where the force jumps or bends it, at the boundary and
-at the deepest point: in the period of the crossing every predictor errs.
+For the plain wall with the virtual damper inside it the directive is false: the hold leaks at every frequency alike, and in
+slow motion the virtual damper removes what the real one adds, so the limit is that of the damping that is felt. With the
+virtual damper in free air only, the directive is nearly true: the two are needed at different positions and meet only at the
+crossing; but inside the wall the hand feels the real damper. For the laws that predict the directive is true: they compensate
+for slow motion themselves and need the damper only in fast motion, where the virtual damper does not cancel it. A straight
+line is furthest from the path where the force jumps or bends the path, at the boundary and at the deepest point: in the
+period of the crossing every predictor is wrong.
 """
