@@ -2,39 +2,45 @@
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
-STORED = "That is what the spring stores more at the end; the leak is that less what the held force took in, F_e(n) D."
-TAKEN = "That is what the held force took in; the leak is what the spring holds more at the end, less that."
-NEXT = "F_e(n+1) acts in the next period. In this one the motor holds F_e(n) = K x(n)."
-NO_T = "The loss is b v times the way D, with v = D/T: one division by T is missing."
-FORCE = "That is the damper's force b D/T; the loss is that force times the way D."
-NO_HALF = "The half belongs to a spring, whose force grows on the way; this force is held all the way."
-TAKES = "The force on the environment times the way is what the damper takes in; what it gives is less than nothing."
-HELD = "The held force is that of the last period's velocity, -D/T: it goes the other way than this period's motion."
-SIGNED = "Keep the sign of B: below zero it turns which of the two motions is paid for."
-LATE = (
-    "F[n] is paired with the way that led to x[n]. It acts after that sample: from x[n] to x[n+1]. Paired so, a wall "
-    "that leaks looks like one that dissipates."
+STORED = "That is the increase in stored energy. The leak is this increase minus the work of the held force, F_e(n) D."
+TAKEN = "That is the work of the held force. The leak is the increase in stored energy minus this work."
+NEXT = "F_e(n+1) acts in the next period. In this period the motor holds F_e(n) = K x(n)."
+NO_T = "The loss is b v times the displacement D, with v = D/T: one division by T is missing."
+FORCE = "That is the damper's force b D/T. The loss is this force times the displacement."
+NO_HALF = (
+    "The factor 1/2 belongs to a spring, whose force grows with the displacement. Here the force is constant for the period."
 )
-MEAN = "The mean of two forces is right for a spring of steel; the motor holds F[n] all the way to the next sample."
-PERIODS = "Those are the works of single periods; W adds them up."
+TAKES = (
+    "The force on the environment times the displacement is the energy that the damper takes in. It gives the negative of this."
+)
+HELD = "The held force uses the velocity of the last period, -D/T, so it acts opposite to the motion of this period."
+SIGNED = "Keep the sign of B: a negative B changes which of the two motions draws energy."
+LATE = (
+    "You paired F[n] with the displacement that ends at x[n]. F[n] acts after this sample, from x[n] to x[n+1]. With your "
+    "pairing a wall that leaks seems to dissipate."
+)
+MEAN = "The mean of two forces is right for a steel spring. The motor holds F[n] until the next sample."
+PERIODS = "Those are the works of single periods. W is their running sum."
 NO_HALF_T = "The factor T/2 is missing."
-ADVANCED = "H belongs to z = e^(j theta), and a past sample x(n-i) to z^-i: e^(-j i theta)."
-NO_TURN = "That is only K times the radius: the map divides by |1 + H c|."
-TWICE = "c is twice too large: with r = -(T/2)(1 + j cot(theta/2)), the disk is about r/(2b)."
-REAL = "c is complex; its imaginary part, -(T/4b) cot(theta/2), belongs into 1 + H c as well."
-REAL_RADIUS = "The radius is |c|, its imaginary part included, and the map divides by |1 + H c|."
-MINUS = "The loop is 1 + H G with G about +c, and c is negative in its real part: 1 + H c."
+ADVANCED = "H is taken at z = e^(j theta), and a past sample x(n-i) belongs to z^-i, so its factor is e^(-j i theta)."
+PRODUCT = "Take the real part of the product, not the product of the real parts."
+NO_TURN = "That is only K times the radius. The map also divides by |1 + H c|."
+TWICE = "Your c is twice as large as expected: its factor is T/(4b), not T/(2b)."
+REAL = "c is complex: its imaginary part, -(T/4b) cot(theta/2), also belongs in 1 + H c."
+REAL_RADIUS = "The radius is |c| with its imaginary part included, and the map divides by |1 + H c|."
+MINUS = "The loop is 1 + H G, and the disk of G is about +c, whose real part is negative: use 1 + H c."
+NOTHING_OWED = "The credit is not negative, so the controller must not act."
 
 LAB = Lab(
     number="05",
-    title="Passivity, a promise about every hand",
+    title="Passivity, a guarantee for every hand",
     minutes=120,
     exercises=(
         Exercise("prediction", kind="prediction", asks="the stiffest wall that is stable under the light finger [N/m]"),
         Exercise(
             "period_energy",
             points=2,
-            asks='{"leak": what the spring could give back beyond what it took, "loss": least loss of the damper} [J]',
+            asks='{"leak": energy that the wall can give back beyond its work, "loss": smallest loss of the damper} [J]',
             cases=(
                 Case(
                     {"x": 0.003, "D": 4e-4, "K": 300.0, "b": 0.1, "T": 1e-3},
@@ -62,7 +68,7 @@ LAB = Lab(
                 ),
             ),
             rtol=1e-5,
-            hint="what does the spring hold before and after, and what did the held force take in? What does friction cost?",
+            hint="How much energy does the spring store before and after? What are the work of the held force and the loss at v = D/T?",
             matters=(
                 "Where the loss is at least as large as the leak in every period, no motion of the handle gains "
                 "energy."
@@ -71,7 +77,7 @@ LAB = Lab(
         Exercise(
             "damper_gives",
             points=2,
-            asks='{"slow": and "alternating": energy [J] that the held virtual damper gives in a period}',
+            asks='{"slow": ..., "alternating": ...}, the energy [J] that the held virtual damper gives in a period',
             cases=(
                 Case(
                     {"D": 4e-4, "B": 0.25, "T": 1e-3},
@@ -101,7 +107,8 @@ LAB = Lab(
                 ),
             ),
             rtol=1e-5,
-            hint="which force is held from x(n) on, and does the handle go on with it or against it? Who gives then?",
+            hint="Which force is held after sample n? Does the handle move with that force or against it, and does the damper "
+            "therefore take in energy or give it out?",
             matters="A virtual damper acts one period late, so it cannot replace a real damper in fast motion.",
         ),
         Exercise(
@@ -129,13 +136,13 @@ LAB = Lab(
                     slips={(0.0, 0.0002, 0.0008, 0.0018, 0.0014, 0.001, 0.001): LATE},
                 ),
             ),
-            hint="which sample's force does the motor hold on the way to x[n]? How many such ways are there until then?",
+            hint="Which sample's force does the motor hold while the handle moves to x[n]? Which displacements come before x[n]?",
             matters="A controller can compute this sum while the wall runs, without a model of the hand.",
         ),
         Exercise(
             "damping_asked",
             points=1,
-            asks="the damping [N s/m] that motion at theta asks of the device",
+            asks="the damping [N s/m] that motion at theta requires from the device",
             cases=(
                 Case({"taps": [100.0], "theta": 1.0, "T": 1e-3}, 0.05, unit="N s/m", slips={100.0: NO_HALF_T}),
                 Case({"taps": [150.0, -50.0], "theta": 3.141592653589793, "T": 1e-3}, 0.1, unit="N s/m"),
@@ -145,11 +152,11 @@ LAB = Lab(
                     unit="N s/m",
                     slips={
                         0.18535533905932738: ADVANCED,
-                        0.15303300858899108: "Take the real part of the product, not the product of the real parts.",
+                        0.15303300858899108: PRODUCT,
                     },
                 ),
             ),
-            hint="which power of e^(j theta) belongs to a sample that is i periods old? (Python writes j as 1j.)",
+            hint="Which power of e^(j theta) belongs to a sample that is i periods old? (Python writes j as 1j.)",
             matters="The same calculation compares any two linear laws, whatever idea they were derived from.",
         ),
         Exercise(
@@ -180,7 +187,7 @@ LAB = Lab(
                     },
                 ),
             ),
-            hint="c is complex: how large is it, and what does the map divide by? (Python writes j as 1j.)",
+            hint="c is complex: what is its magnitude, and by what does the map divide? (Python writes j as 1j.)",
             matters="While this size stays below 1 at every frequency, no passive hand can make the loop unstable.",
         ),
         Exercise(
@@ -193,9 +200,9 @@ LAB = Lab(
                     1.02,
                     unit="N",
                     slips={
-                        0.98: "The damper adds to F, the force on the environment: going in, the handle must pay more.",
-                        1.00002: "The damper's force is alpha times the velocity D/T, not times D.",
-                        1.5: "alpha = -credit T/D^2: without the T it is too large, and alpha_max hides it.",
+                        0.98: "Add the damper to F, the force on the environment: on the way in, the handle must do more work.",
+                        1.00002: "The force of the damper is alpha times the velocity D/T, not times D.",
+                        1.5: "alpha = -credit T/D^2: without the factor T it is too large, and alpha_max hides this.",
                     },
                 ),
                 Case(
@@ -203,8 +210,8 @@ LAB = Lab(
                     0.3,
                     unit="N",
                     slips={
-                        -0.5: "alpha is to stay below alpha_max; what it cannot take back at once waits.",
-                        0.7: "On the way out D < 0, and the damper lowers the force that pushes out: keep D's sign.",
+                        -0.5: "alpha must not exceed alpha_max. The controller takes back the rest in later periods.",
+                        0.7: "On the way out D < 0, and the damper reduces the force on the handle: keep the sign of D.",
                     },
                 ),
                 Case(
@@ -212,14 +219,14 @@ LAB = Lab(
                     0.8,
                     unit="N",
                     slips={
-                        -0.2: "Nothing is owed: with credit >= 0 the controller does nothing.",
-                        0.3: "Nothing is owed: with credit >= 0 the controller does nothing.",
-                        1.3: "Nothing is owed: with credit >= 0 the controller does nothing.",
+                        -0.2: NOTHING_OWED,
+                        0.3: NOTHING_OWED,
+                        1.3: NOTHING_OWED,
                     },
                 ),
                 Case({"f": 0.8, "credit": -1e-4, "D": 0.0, "T": 1e-3, "alpha_max": 5.0}, 0.8, unit="N"),
             ),
-            hint="in which two cases does it do nothing? What bounds alpha in all others?",
+            hint="In which two cases does the controller do nothing? What limits alpha in all other cases?",
             matters=(
                 "The controller adds damping only when the observed energy requires it, so a well-behaved wall "
                 "feels unchanged."
@@ -232,7 +239,7 @@ LAB = Lab(
             asks='"a", "b", "c" or "d"',
             options={
                 "a": "stirring filled the credit, and the controller waits until the chatter has spent it",
-                "b": "the honey's damper, held for a period, generates the energy of the chatter",
+                "b": "the damper of the honey, held for a period, generates the energy of the chatter",
                 "c": "alpha_max is too small",
                 "d": "the encoder hides the energy",
             },
@@ -241,15 +248,15 @@ LAB = Lab(
                     {},
                     "a",
                     slips={
-                        "b": "b = 0.1 pays for a honey of 0.05; and while it leans the finger is not in the honey.",
-                        "c": "The same alpha_max settled the same wall where nobody had stirred: look at the credits.",
-                        "d": "The same encoder was there in the first run, which settled: look at the credits.",
+                        "b": "b = 0.1 pays for a honey of 0.05. Also, the finger is not in the honey while it leans.",
+                        "c": "The same alpha_max was enough for the same wall without stirring: compare the credits.",
+                        "d": "The first run had the same encoder and came to rest: compare the credits.",
                     },
                 ),
             ),
-            hint="compare the credit on arrival in the three runs; when does the controller act?",
+            hint="What was the credit on arrival in the three runs? When does the controller act?",
             matters="A guarantee about the total energy does not mean that the wall behaves well at each moment.",
         ),
-        Exercise("discussion", kind="text", least_words=60, asks="your comparison, at least 60 words"),
+        Exercise("discussion", kind="text", least_words=60, asks="your comparison, in 60 words or more"),
     ),
 )  # fmt: skip

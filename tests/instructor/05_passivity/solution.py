@@ -43,8 +43,8 @@ def controlled_force(f, credit, D, T, alpha_max):
 why_it_failed = "a"
 
 discussion = (
-    "I predicted 1000 N/m for the light finger, and it is 240, since I counted on a damping that "
-    "it does not bring; the bound counts on nothing but the device. I would insist on it for a surgeon's handle "
-    "that anybody may touch in any way, and not for a knob that is always held firmly. With b = 0.5 and B = -0.3 "
-    "the bound is 400 N/m, twice that of the bare paddle, while slow motion feels only 0.2 N s/m."
+    "I predicted 1000 N/m for the light finger, and its limit is 240, because I counted on a damping that this finger does "
+    "not have; the bound counts on the damping of the device alone. I would insist on it for the handle of a surgeon, which "
+    "anybody may touch in any way, and not for a knob that is always held firmly. With b = 0.5 and B = -0.3 the bound is "
+    "400 N/m, twice that of the bare paddle, while slow motion feels only 0.2 N s/m."
 )
