@@ -68,7 +68,8 @@ LAB = Lab(
                 ),
             ),
             rtol=1e-5,
-            hint="How much energy does the spring store before and after? What are the work of the held force and the loss at v = D/T?",
+            hint="How much energy does the spring store before and after? What are the work of the held force and the "
+            "loss at v = D/T?",
             matters=(
                 "Where the loss is at least as large as the leak in every period, no motion of the handle gains "
                 "energy."
