@@ -50,11 +50,12 @@ def browsing():
 class Lab:
     """A server, a browser for it, and the folder ``notebooks`` of both.
 
-    ``prompt`` is whether hapticlab's extension is on. The browser may be given later and replaced.
+    ``prompt`` is whether hapticlab's extension is on, ``package`` the checkout whose hapticlab runs. The browser may be
+    given later and replaced.
     """
 
-    def __init__(self, folder, browser=None, *, prompt=True):
-        self.folder, self.browser, self.prompt = Path(folder), browser, prompt
+    def __init__(self, folder, browser=None, *, prompt=True, package=REPOSITORY):
+        self.folder, self.browser, self.prompt, self.package = Path(folder), browser, prompt, Path(package)
         self.notebooks = self.folder / "notebooks"
         self.notebooks.mkdir(parents=True)
 
@@ -81,7 +82,7 @@ class Lab:
             "JUPYTER_CONFIG_DIR": "config", "JUPYTER_DATA_DIR": "data", "JUPYTER_RUNTIME_DIR": "runtime", "IPYTHONDIR": "ipython",
         }  # fmt: skip
         environment = os.environ | {name: str(home / folder) for name, folder in own_folders.items()}
-        environment["PYTHONPATH"] = os.pathsep.join([str(REPOSITORY), os.environ.get("PYTHONPATH", "")])
+        environment["PYTHONPATH"] = os.pathsep.join([str(self.package), os.environ.get("PYTHONPATH", "")])
         own = {"ServerApp": {"jpserver_extensions": {"hapticlab._jupyter": self.prompt}}}
         (home / "config" / "jupyter_server_config.json").write_text(json.dumps(own))
         command = [
