@@ -60,20 +60,32 @@ def live(scene):
     return f"view = hl.live(paddle, {scene})\nview"
 
 
+SLIP = """
+def force():
+    if x(n) >= x_o:
+        return k*(x(n) - x_o)
+    return 0
+
+hl.Scene(force=force())
+"""
+RECORD = "log = paddle.run(wall(k=500, x_o=0), duration=1.0)\nlog"
+COMPILED = 'paddle.compile(wall(k=300, x_o="10 mm"))'
+WALL = live("wall(k=500, x_o=0.01)")
+PENDULUM = live("hl.library.pendulum_on_the_handle()")
 SHOTS = (
     Shot("error", "A force whose terms have different units.", ("hl.Scene(force=k*x(n) + x(n))",)),
-    Shot("slip", "A condition in Python's own words.", ("def force():\n    if x(n) >= x_o:\n        return k*(x(n) - x_o)\n    return 0\n\nhl.Scene(force=force())",)),
-    Shot("scene", "A scene and a compiled program as the last line of a cell.", ("wall(k=300, x_o=\"10 mm\")", "paddle.compile(wall(k=300, x_o=\"10 mm\"))")),
-    Shot("record", "A recording and its energy.", ("log = paddle.run(wall(k=500, x_o=0), duration=1.0)\nlog", "hl.energy(log)")),
-    Shot("check", "The check of a wrong answer.", (f"{HELD}\nhl.check(\"02.held_work\", held_work)",)),
-    Shot("wall", "A wall, with the handle pressed into it.", (live("wall(k=500, x_o=0.01)"),), press=True, source=False),
-    Shot("wall_dark", "The same wall in a dark notebook.", (live("wall(k=500, x_o=0.01)"),), press=True, source=False, dark=True),
-    Shot("pendulum", "A pendulum of the library with all its parameters.", (live("hl.library.pendulum_on_the_handle()"),), press=True, source=False),
+    Shot("slip", "A condition in Python's own words.", (SLIP,)),
+    Shot("scene", "A scene and a compiled program as the last line of a cell.", ('wall(k=300, x_o="10 mm")', COMPILED)),
+    Shot("record", "A recording and its energy.", (RECORD, "hl.energy(log)")),
+    Shot("check", "The check of a wrong answer.", (f'{HELD}\nhl.check("02.held_work", held_work)',)),
+    Shot("wall", "A wall, with the handle pressed into it.", (WALL,), press=True, source=False),
+    Shot("wall_dark", "The same wall in a dark notebook.", (WALL,), press=True, source=False, dark=True),
+    Shot("pendulum", "A pendulum of the library with all its parameters.", (PENDULUM,), press=True, source=False),
     Shot("ball", "A ball on the paddle.", (live("hl.library.ball_on_the_paddle()"),), source=False),
-    Shot("silence", "The view two seconds after the kernel has ended.", (live("wall(k=500, x_o=0.01)"),), source=False, kill=True),
+    Shot("silence", "The view two seconds after the kernel has ended.", (WALL,), source=False, kill=True),
     Shot("lab_00", "The first screen of lab 00.", lab="00_meet_the_paddle"),
     Shot("lab_04", "The first screen of lab 04.", lab="04_damping_compensation"),
-)  # fmt: skip
+)
 
 
 def main():
