@@ -10,7 +10,7 @@ A hand takes a movement as its ``intent``. Here it reaches 20 mm in the way that
 20
 
 ``print(hl.people.hand_presets())`` lists the nominal hands, and ``hl.people.random_hands`` draws others. Next:
-``hl.people.forced_choice`` asks what a person feels.
+``hl.people.forced_choice`` asks what a person feels, and ``hl.people.compare_blind`` asks it in a notebook.
 """
 
 from .device.hand.hand_presets import hand_presets
@@ -31,6 +31,7 @@ from .experiments.shared_control import assistance
 from .experiments.tasks import Task, damping_task, stiffness_task, texture_task
 from .experiments.up_down import Levels, UpDown
 from .vocabulary import page
+from .widgets.blind.comparison import compare_blind
 
 __all__ = [
     "ConstantLevels",
@@ -51,6 +52,7 @@ __all__ = [
     "Tremor",
     "UpDown",
     "assistance",
+    "compare_blind",
     "compare_displays",
     "damping_task",
     "fitts",

@@ -192,7 +192,7 @@ def around(words=""):
 
 @cache
 def _around():
-    anywidget, traitlets = _open_anywidget()
+    anywidget, traitlets = open_anywidget()
 
     class Around(anywidget.AnyWidget):
         """Shows nothing."""
@@ -206,7 +206,7 @@ def _around():
 @cache
 def _canvas():
     """Return the class of the widget; all that it draws with travels in it, so no network is needed."""
-    anywidget, traitlets = _open_anywidget()
+    anywidget, traitlets = open_anywidget()
 
     class LiveCanvas(anywidget.AnyWidget):
         """A canvas with buttons and sliders."""
@@ -218,7 +218,8 @@ def _canvas():
     return LiveCanvas
 
 
-def _open_anywidget():
+def open_anywidget():
+    """Return the modules anywidget and traitlets; where they do not import, an error with the cure."""
     try:
         import anywidget
         import traitlets

@@ -77,6 +77,7 @@ class Motion:
         self.source.stop()
         self.traces, self._at, self._noticed, self.missed = Traces(self.source.period), 0.0, {}, False
         self.source.start()
+        self._last = {"x": self.source.place, "F": 0.0}  # not where it was before
         self.running = True
         if waits:
             self.record()

@@ -139,6 +139,12 @@ class Session:
                 return self._end
             return self.stage.words() if self._views else f"Not on view, so nothing moves. {self.stage.note}".rstrip()
 
+    @property
+    def at_limit(self):
+        """Whether the motor was at its limit within the last second."""
+        with self._lock:
+            return "saturated" in self.motion.noticed()
+
     def recorded(self):
         """The last record, or None."""
         with self._lock:
