@@ -15,6 +15,7 @@ from .course.drawings.drawing import drawing
 from .device.board.serial_paddle import SerialPaddle
 from .device.paddle import Paddle
 from .device.profiles import profile
+from .device.setup.practice import practice_board
 from .device.simulated.simulated_paddle import SimulatedPaddle
 from .vocabulary import page
 
@@ -24,6 +25,7 @@ __all__ = [
     "SerialPaddle",
     "SimulatedPaddle",
     "drawing",
+    "practice_board",
     "profile",
 ]
 

@@ -3,7 +3,6 @@
 import json
 import sys
 from contextlib import nullcontext, redirect_stdout
-from datetime import date
 from functools import partial
 
 from ..device.link.serial_ports import available_ports
@@ -60,7 +59,7 @@ def calibrate(parser, options):
     _agree(options, person, "The motor will pull the handle by 0.5 N at first, by up to 2 N after its sign is checked.")
     with connect(options.port) as paddle:
         _tell_notices(paddle)
-        kept = calibrate_paddle(paddle, person, date=int(date.today().strftime("%Y%m%d")), only=options.only)
+        kept = calibrate_paddle(paddle, person, only=options.only)
     return 0 if kept is not None else 1
 
 

@@ -3,8 +3,11 @@
 from hapticlab.course.exercise import Case, Exercise, Lab
 
 TOSSES = {"asked": [0.5, -0.4, 0.3, -0.5, 0.2, 0.45], "on": [1, 1, 0, 0, 1, 0]}
-NO_COINS = "The coins are missing: e is +1 where the spring was on and -1 where it was off."
-ONLY_ON = "Intervals without the spring count, too, with e = -1: without them the work of the hand does not average out."
+NO_COINS = "The signs of the coins are missing: e is +1 where the spring was on and -1 where it was off."
+ONLY_ON = (
+    "You left out the intervals without the spring. They count with e = -1; without them the work of the hand "
+    "does not average out."
+)
 SCALE = {"duty": [0, 0.237, 0.335, 0.411, 0.474], "grams": [2, 42, 82, 122, 163]}
 
 LAB = Lab(
@@ -24,11 +27,15 @@ LAB = Lab(
                     [-0.044, 0.0, 0.011810781, 0.044],
                     unit="m",
                     slips={
-                        (-0.043709571, 0.000290429, 0.01210121, 0.044290429): "Count from the middle of the two stops: "
-                        "the sensor's own zero is wherever it was switched on.",
-                        (0.0, 0.044, 0.055810781, 0.088): "That is the distance from the left stop; x = 0 is the middle.",
-                        (-0.022, 0.0, 0.005905391, 0.022): "The travel is the whole way from stop to stop, and so is "
-                        "right - left; a count is travel / (right - left).",
+                        (-0.043709571, 0.000290429, 0.01210121, 0.044290429): (
+                            "You used the zero of the sensor, which is wherever the paddle was switched on. Measure "
+                            "from the middle between the two stops."
+                        ),
+                        (0.0, 0.044, 0.055810781, 0.088): "That is the distance from the left stop. x = 0 is the middle.",
+                        (-0.022, 0.0, 0.005905391, 0.022): (
+                            "That is half as large as expected. Both travel and right - left are measured from stop "
+                            "to stop, so one count is travel / (right - left)."
+                        ),
                     },
                 ),
                 Case(
@@ -36,13 +43,15 @@ LAB = Lab(
                     [-0.04, -0.01, 0.04],
                     unit="m",
                     slips={
-                        (0.04, 0.01, -0.04): "Here counts fall to the right, and x must still grow to the right: keep "
-                        "the sign of right - left, take no abs().",
-                        (0.0, 0.03, 0.08): "That is the distance from the left stop; x = 0 is the middle.",
+                        (0.04, 0.01, -0.04): (
+                            "In this case the counts decrease to the right, but x must still grow to the right. "
+                            "Keep the sign of right - left; do not take its absolute value."
+                        ),
+                        (0.0, 0.03, 0.08): "That is the distance from the left stop. x = 0 is the middle.",
                     },
                 ),
             ),
-            hint="two questions: how many metres is a count, with its sign? And what does the sensor read in the middle?",
+            hint="How many metres is one count, with its sign? What does the sensor read in the middle?",
             matters=(
                 "Every force is computed from this position, so an error in its scale or sign is an error in "
                 "every wall that you feel."
@@ -55,7 +64,7 @@ LAB = Lab(
             asks='"a", "b" or "c"',
             options={
                 "a": "to the right, deeper into the wall",
-                "b": "that depends on which way the handle moves",
+                "b": "in a direction that depends on how the handle moves",
                 "c": "to the left, out of the wall",
             },
             cases=(
@@ -63,12 +72,15 @@ LAB = Lab(
                     {},
                     "c",
                     slips={
-                        "a": "F is the force on the wall, which points into it; the wall, and so the motor, pushes back.",
-                        "b": "A spring does not ask for the velocity: its force follows from the position alone.",
+                        "a": (
+                            "F is the force on the wall and points into the wall. The wall, and so the motor, "
+                            "pushes the handle back."
+                        ),
+                        "b": "The force of a spring depends on the position alone, not on the velocity.",
                     },
                 ),
             ),
-            hint="Which of the two does F push, the wall or the handle? And whom does the motor stand for (Fig. 23.5)?",
+            hint="What does F push, the wall or the handle? What does the motor stand for (Fig. 23.5)?",
             matters=(
                 "Every lab uses this sign convention. With one sign wrong, the motor supplies energy where a wall should resist."
             ),
@@ -76,7 +88,7 @@ LAB = Lab(
         Exercise(
             "sign_evidence",
             points=2,
-            asks="Z, the signed work of all intervals over the root of the sum of its squares",
+            asks="Z, the sum of the signed work of all intervals over the root of the sum of its squares",
             rtol=1e-5,
             cases=(
                 Case(
@@ -85,8 +97,14 @@ LAB = Lab(
                     slips={
                         0.337209718: NO_COINS,
                         1.222385227: ONLY_ON,
-                        0.003: "That is W, in joules; divide by the root of the sum of squares, so that chance has a size.",
-                        0.00122474487: "Divide by the root of the sum of the squares of asked*moved, not of their number.",
+                        0.003: (
+                            "That is W, in joules. Divide it by the root of the sum of squares, so that it can "
+                            "be compared with chance."
+                        ),
+                        0.00122474487: (
+                            "You divided by the root of the number of intervals. Divide by the root of the sum "
+                            "of (asked*moved)^2."
+                        ),
                     },
                 ),
                 Case(
@@ -95,11 +113,14 @@ LAB = Lab(
                     slips={
                         0.478106348: NO_COINS,
                         -0.767663714: ONLY_ON,
-                        2.013433775: "The sign is what it is all about: a motor that pulls the wrong way gives Z < 0.",
+                        2.013433775: (
+                            "The sign is wrong. Z must be negative for a motor that pulls in the wrong "
+                            "direction, so keep its sign."
+                        ),
                     },
                 ),
             ),
-            hint="What is the work of one interval, and with which sign does it count? How large would such a sum be by chance?",
+            hint="What is the work in one interval, and with which sign does it count? How large would such a sum be by chance?",
             matters="A test with random signs finds a swapped motor wire even while a hand moves the handle.",
         ),
         Exercise(
@@ -113,15 +134,17 @@ LAB = Lab(
                     7.013345881,
                     unit="N",
                     slips={
-                        3.215756712: "That is the slope over the duty. On this driver the force grows with its square.",
-                        715.16225: "The scale shows grams: a kilogram weighs 9.80665 N.",
-                        0.71516225: "That is a mass, in kg: times 9.80665 it is a force.",
-                        7.119022309: "The scale showed 2 g with the motor off: fit the offset F_0 as well.",
-                        7013.345881: "Grams are not kilograms: a factor of 1e-3 is missing.",
+                        3.215756712: (
+                            "That is the slope over the duty. With this driver the force grows with the square of the duty."
+                        ),
+                        715.16225: "That is still in grams. Convert the readings to newtons: 1 kg weighs 9.80665 N.",
+                        0.71516225: "That is a mass in kg. Multiply it by 9.80665 N/kg to get a force.",
+                        7.119022309: "The scale showed 2 g while the motor was off. Fit the offset F_0 as well.",
+                        7013.345881: "The readings are in grams, not in kilograms, so a factor of 1e-3 is missing.",
                     },
                 ),
             ),
-            hint="Against which variable do the readings lie on a line? Which of its two numbers is asked for, in newtons?",
+            hint="Over which variable do the readings lie on a line? Which constant of this line does the question ask for?",
             matters="The program computes newtons, but the motor takes a duty. This number connects the two.",
         ),
         Exercise(
@@ -135,15 +158,21 @@ LAB = Lab(
                     298.809034908,
                     unit="N/m",
                     slips={
-                        311.987178977: "The mean of F/x trusts the sample next to x = 0 most, where a small error of F "
-                        "is a large one of F/x. Least squares trusts the samples far out.",
-                        298.68522602: "That is the slope of a line with an offset; this one goes through the origin.",
-                        0.003346261747: "Upside down: metres per newton is a compliance.",
-                        317.142857143: "Sums of F and of x cancel from left to right; weigh each sample by its x.",
+                        311.987178977: (
+                            "That is the mean of F/x. It gives the sample next to x = 0 the same weight, although a "
+                            "small error of F there is a large error of F/x. Least squares gives more weight to "
+                            "large x."
+                        ),
+                        298.68522602: "That is the slope of a line with an offset. The line F = k x goes through the origin.",
+                        0.003346261747: "That is upside down: metres per newton is a compliance.",
+                        317.142857143: (
+                            "In the sums of F and of x, the samples on the left and on the right cancel. "
+                            "Multiply each sample by its x first."
+                        ),
                     },
                 ),
             ),
-            hint="the k that makes sum((F - k x)^2) least",
+            hint="Which k makes sum((F - k x)^2) smallest? What is its derivative with respect to k there?",
             matters="A measured stiffness tests the sensor, the sign and the scale of the force together.",
         ),
         Exercise(
@@ -156,8 +185,11 @@ LAB = Lab(
                     {"k": 300.0, "metres_per_count": 12.8e-6, "force_max": 3.3, "T": 1e-3},
                     {"reach": 0.011, "force_step": 0.00384, "speed_step": 0.0128},
                     slips=(
-                        ({"reach": 90.909090909}, "Upside down: reach is the x at which k x is the motor's largest force."),
-                        ({"speed_step": 1.28e-8}, "A speed is a distance over a time: one count, in one period T."),
+                        (
+                            {"reach": 90.909090909},
+                            "That is upside down: reach is the x at which k x equals the largest force of the motor.",
+                        ),
+                        ({"speed_step": 1.28e-8}, "A speed is a distance divided by a time: one count divided by one period T."),
                     ),
                 ),
                 Case(
@@ -165,16 +197,18 @@ LAB = Lab(
                     {"reach": 0.00416666667, "force_step": 0.8904, "speed_step": 1.484},
                 ),
             ),
-            hint="where does k x reach force_max? What does one count more do to k x? What speed is one count in one period?",
+            hint=(
+                "Where does k x reach force_max, and by how much does one more count change k x? What speed is "
+                "one count per period?"
+            ),
             matters=(
-                "These three numbers limit every wall on this paddle: how deep it works, and how coarse its force "
-                "and velocity are."
+                "These three numbers limit every wall on this paddle: its depth, and how coarse its force and velocity are."
             ),
         ),
         Exercise(
             "discussion",
             kind="text",
-            asks="what a wall does with swapped wires, and which protections end it, in 40 words or more",
+            asks="what the handle does at a wall with swapped wires, and which protections end it, in 40 words or more",
             least_words=40,
         ),
     ),

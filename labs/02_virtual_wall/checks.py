@@ -4,28 +4,28 @@ from hapticlab.course.exercise import Case, Exercise, Lab
 
 HELD = "Which force acts during this period, and does it change while the handle moves?"
 MEAN = (
-    "That is the work of the mean force, as of a spring that is not sampled. The motor holds the first force for the "
-    "whole period."
+    "That is the work of the mean force, as of a spring that is not sampled. The motor holds the first force "
+    "for the whole period."
 )
 END = "That uses the force at the end of the period. The force is computed at the beginning of the period and then held."
 FULL = "The square is right. The held force leaves out the area below the spring line, which is a triangle, not a rectangle."
 TAKEN = "That is the work of the held force minus the increase in stored energy, so the sign of the leak is wrong."
 WRONG_WAY = (
-    "You paired F(n) with the displacement from x(n-1) to x(n). F(n) is computed from x(n) and acts after it, while the "
-    "handle moves to x(n+1). With the wrong pairing, a wall that generates energy seems to absorb it."
+    "You paired F(n) with the displacement from x(n-1) to x(n). F(n) is computed from x(n) and acts after it, "
+    "while the handle moves to x(n+1). With the wrong pairing, a wall that generates energy seems to absorb it."
 )
 MEAN_FORCE = (
-    "That is nearly zero: the mean of two successive forces is the force of a spring that is not sampled. The motor holds "
-    "F(n) during the whole displacement."
+    "That is nearly zero: the mean of two successive forces is the force of a spring that is not sampled. The "
+    "motor holds F(n) during the whole displacement."
 )
 TAKES = "That is the work of the handle on the wall. The energy that the wall generated is minus that work."
 EVERYWHERE = (
-    "Your wall also acts outside. F is zero where x < 0, so in the periods in which the handle crosses the boundary the leak "
-    "is less than k D^2/2."
+    "Your wall also acts outside. F is zero where x < 0, so in the periods in which the handle crosses the "
+    "boundary the leak is less than k D^2/2."
 )
 SECOND = (
-    "That is e^(pi w T/2) - 1, which includes the next order and is nearer to the measurement. The question asks for the "
-    "first order: insert v of the undisturbed bounce into the integral."
+    "That is e^(pi w T/2) - 1, which includes the next order and is nearer to the measurement. The question "
+    "asks for the first order: insert v of the undisturbed bounce into the integral."
 )
 WHOLE = (
     "That is twice as large as expected: the handle is inside for half a cycle of its oscillation, pi/w, not for a whole cycle."
@@ -37,8 +37,8 @@ SWAPPED = (
 )
 PERCENT = "That is in percent. The question asks for the fraction itself: half of the energy would be 0.5."
 GATES = (
-    "Both conditions are the wrong way round: each wall pulls while the handle is outside it, and exerts no force on a "
-    "handle inside it. Write >= where you wrote <=, and <= where you wrote >=."
+    "Both conditions are the wrong way round: each wall pulls while the handle is outside it, and exerts no "
+    "force on a handle inside it. Write >= where you wrote <=, and <= where you wrote >=."
 )
 
 LAB = Lab(
@@ -92,8 +92,8 @@ LAB = Lab(
                 Case({"k": 2000.0, "m": 0.05, "T": 1e-3}, 0.3141592653589793, slips={0.36910718607437147: SECOND}),
             ),
             hint=(
-                "For how long is the handle inside, and what is the mean of v^2? Does v0 cancel when you divide by "
-                "the incoming energy?"
+                "For how long is the handle inside, and what is the mean of v^2? Does v0 cancel when you divide "
+                "by the incoming energy?"
             ),
             matters="The speed does not appear in this fraction, so a gentle knock gains as large a fraction as a hard knock.",
         ),
@@ -147,8 +147,8 @@ LAB = Lab(
                         (
                             (-2.5, -1.0, 0.0, 0.0, 1.0),
                             (
-                                "Your left spring begins at x = 0. Beyond -x_o, at the left, the handle is inside by "
-                                "x + x_o, which is negative."
+                                "Your left spring begins at x = 0. Beyond -x_o, at the left, the handle is "
+                                "inside by x + x_o, which is negative."
                             ),
                         ),
                         (
@@ -183,8 +183,8 @@ LAB = Lab(
                     slips={
                         0.5: "k T belongs to a delay of a whole period. On average the hold is late by half a period.",
                         -0.25: (
-                            "That is the negative damper that the hold adds in parallel with the spring. The device "
-                            "needs a damper that dissipates as much."
+                            "That is the negative damper that the hold adds in parallel with the spring. The "
+                            "device needs a damper that dissipates as much."
                         ),
                         250.0: "T is in seconds: 1 ms is 0.001 s.",
                     },
@@ -193,8 +193,8 @@ LAB = Lab(
             rtol=1e-3,
             hint="Leak and damper are both a constant times the integral of v^2. What are the two constants?",
             matters=(
-                "One bounce leads to the passivity condition, Eq. (23.10): the damping of the device limits the stiffness of "
-                "the wall."
+                "One bounce leads to the passivity condition, Eq. (23.10): the damping of the device limits the "
+                "stiffness of the wall."
             ),
         ),
         Exercise(
@@ -209,13 +209,13 @@ LAB = Lab(
                     "d",
                     slips={
                         "a": (
-                            "The recording shows the energy that the hand supplied: the work on the way in. More "
-                            "energy than that came out."
+                            "The recording shows the energy that the hand supplied: the work on the way in. "
+                            "More energy than that came out."
                         ),
                         "b": "The sensor only reads the position. Its supply does no work on the handle.",
                         "c": (
-                            "Before the contact the handle was outside and the spring of the wall was relaxed, so it "
-                            "stored no energy."
+                            "Before the contact the handle was outside and the spring of the wall was relaxed, "
+                            "so it stored no energy."
                         ),
                     },
                 ),

@@ -45,7 +45,7 @@ def test_a_student_works_through_a_lab(lab):
     passed = run_cell(page, 'hl.check("02.held_work"')
     assert "right in the public cases" in passed and "right in the public cases" not in taught.partition("this lab")[0]
     assert "1 of 7 exercises" in passed and "0 of 7" in taught
-    assert "the force of the end of the period" in taught  # it says what the mistake was
+    assert "the force at the end of the period" in taught  # it says what the mistake was
     picture(page, "lab-2-checked")
     page.close()
 

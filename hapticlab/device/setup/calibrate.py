@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from datetime import date as calendar
 from typing import TYPE_CHECKING
 
 from ...errors import PaddleError
@@ -21,7 +22,9 @@ if TYPE_CHECKING:
 STEPS = ("stops", "sign", "force")
 
 
-def calibrate(paddle: SerialPaddle, person: Person | None = None, *, date: int, only: str | None = None) -> Settings | None:
+def calibrate(
+    paddle: SerialPaddle, person: Person | None = None, *, date: int | None = None, only: str | None = None
+) -> Settings | None:
     """Measure what a paddle is and store it on its board; nothing is written that the person did not agree to.
 
     Parameters
@@ -29,8 +32,8 @@ def calibrate(paddle: SerialPaddle, person: Person | None = None, *, date: int, 
     paddle : SerialPaddle
     person : Person, optional
         Who holds the handle and answers; by default whoever sits at this terminal.
-    date : int
-        Today, as 20261120; kept with the calibration.
+    date : int, optional
+        Of the calibration, with which it is kept: today by default, as 20261120.
     only : {"stops", "sign", "force"}, optional
         This step alone.
 
@@ -52,6 +55,7 @@ def calibrate(paddle: SerialPaddle, person: Person | None = None, *, date: int, 
     """
     if only is not None and only not in STEPS:
         raise PaddleError(f"only = {only!r}; a calibration has the steps {', '.join(STEPS)}, or None for all.")
+    date = int(calendar.today().strftime("%Y%m%d")) if date is None else date
     if not 20200101 <= date <= 99991231:
         raise PaddleError(f"date = {date}; needs today's, as 20261120.")
     person = person or Person()

@@ -38,9 +38,9 @@ def limits(k, metres_per_count, force_max, T):
 
 
 discussion = """
-With the wires swapped the motor applies +F_e instead of -F_e, so the wall behaves as a spring of stiffness -300 N/m about
-its boundary: the deeper the handle is, the harder it is pulled in. The equilibrium at the boundary is unstable and the
-handle runs away, exponentially with sqrt(k/m), until the stop. The board gives at most 0.5 N before the sign is checked,
-and its limits of speed, of travel and of force held too long switch the motor off with a fault; the switch of the motor's
-supply does it at once.
+With the wires swapped, the motor applies +F_e to the handle instead of -F_e, so the wall acts as a spring of stiffness
+-300 N/m at its boundary: the deeper the handle is, the harder the motor pulls it in. The equilibrium at the boundary is
+unstable, and the handle runs away, exponentially with the rate sqrt(k/m), until it meets the stop. The board allows at most
+0.5 N before the sign is checked. Its limits on speed, on travel and on the time for which a force is held switch the motor
+off with a fault. The switch of the motor's supply ends the motion at once.
 """

@@ -1,0 +1,22 @@
+"""The board to practise on: calibration finds what is true of it, for any tosses."""
+
+from datetime import date
+
+import pytest
+
+import hapticlab as hl
+from hapticlab.device.setup import sign_check
+
+
+@pytest.mark.parametrize("seed", [1, 2, pytest.param(3, marks=pytest.mark.wide)])
+def test_a_calibration_finds_the_constants_and_the_swapped_wires(seed, monkeypatch, capsys):
+    monkeypatch.setattr(sign_check.secrets, "randbits", lambda _: seed)
+    board, person = hl.devices.practice_board()
+    assert (board.settings.metres_per_count, board.settings.force_full) == pytest.approx((12.8e-6, 8.0))
+    began = date.today()
+    kept = hl.calibrate(board, person)
+    assert (kept.motor_sign, kept.checked) == (-board.exchange.port.settings.motor_sign, 1)
+    assert kept.metres_per_count == pytest.approx(12.1e-6, rel=1e-3)
+    assert kept.force_full == pytest.approx(7.0, rel=0.005)
+    assert f"{began:%Y%m%d}" <= str(kept.date) <= f"{date.today():%Y%m%d}"
+    assert "its two wires are swapped" in capsys.readouterr().out
