@@ -2,10 +2,27 @@
 
 from hapticlab.course.exercise import Case, Exercise, Lab
 
-OLD = "Semi-implicit: the position takes the step with the NEW velocity. With the old one, it is explicit Euler, and grows."
-SMALL_ANGLES = "That holds for small angles only; keep sine and cosine, the solver does not mind them."
-PRODUCT = "That is the product of both, in (N/m)^2, which is no stiffness. What has it to be divided by?"
-SOFTER = "The softer one bounds what is felt, but both springs give way, and their deflections add."
+OLD = (
+    "In a semi-implicit step the position uses the NEW velocity. With the old velocity the step is explicit Euler, and it grows."
+)
+SMALL_ANGLES = "That holds for small angles only. Keep sine and cosine: the solver does not need small angles."
+PRODUCT = "That is the product of both, in (N/m)^2, which is not a stiffness. By what must you divide it?"
+SOFTER = "The softer spring bounds the result, but both springs give way, and their deflections add."
+OWN_DAMPER = "The coupler's own damper is rendered with a delay as well, so b must also pay for b_c: K T/2 + b_c."
+TWO_ONCE = "That is twice as large as expected. The condition K T/2 + b_c <= b gives the factor 2 once."
+HALF_INVERTED = (
+    "That is a quarter of the expected value. In K T/2 the stiffness is divided by 2, so solving for K multiplies by 2."
+)
+NO_PERIOD = "The period is missing: K T/2 is a damping, so divide the damping that is left by T."
+TIMES_T = "You multiplied by T. K T/2 is a damping, so divide the damping that is left by T/2."
+BRACKETS = "The division by T acts on b_c alone. Put b - b_c in brackets."
+MEAN = "That is a mean of the two stiffnesses. In series the result is softer than either spring: their deflections add."
+NOT_TWICE = "That is twice as large as expected: two equal springs in series have half the stiffness of one."
+DIFFERENCE = "You divided by the difference of the stiffnesses. The deflections of both springs add."
+STILL_CARRIAGE = "That is sqrt(g/l), the pendulum on a carriage that cannot move. The coupler gives way."
+FASTER = "That is the faster mode, the carriage on the coupler. The pendulum swings in the slower mode."
+FREE_CARRIAGE = "That is the pendulum on a carriage without a coupler, the limit for K to 0. Keep K z in the first equation."
+NO_PENDULUM = "That is the carriage on the coupler without a swinging pendulum. Keep theta in both equations."
 LED = {
     "x": [0, 0.004, 0.01, 0.014, 0.015, 0.015, 0.015, 0.015, 0.01, 0.004, 0, 0],
     "T": 0.02,
@@ -18,7 +35,7 @@ LAB = Lab(
     title="A pendulum in the hand",
     minutes=120,
     exercises=(
-        Exercise("prediction", kind="prediction", asks="how fast the pendulum swings when you let go of the handle [Hz]"),
+        Exercise("prediction", kind="prediction", asks="the frequency [Hz] of the pendulum after you let go of the handle"),
         Exercise(
             "euler_step",
             points=1,
@@ -29,10 +46,21 @@ LAB = Lab(
                     {"z": 0.0095304, "w": -0.2348},
                     slips=(
                         ({"z": 0.0096}, OLD),
+                        (
+                            {"z": 0.0095652},
+                            "The position uses the new velocity for the whole step, not the mean of both velocities.",
+                        ),
+                        ({"z": 0.0102}, "You moved the mass with the handle's velocity v. Its own velocity is w."),
+                        ({"z": 0.0035304}, "The new position starts at the old position z of the mass, not at the handle's x."),
                         ({"w": -0.2384}, "The damper of the coupler is missing: b_c (v - w)."),
+                        ({"w": -0.1964}, "The spring of the coupler is missing: K (x - z)."),
                         ({"w": -0.1652}, "The mass is pushed away from the handle: F_c = K (x - z) + ... pulls it there."),
-                        ({"w": -0.236}, "The damper lies between handle and mass: it sees v - w, not w alone."),
+                        ({"w": -0.158}, "The sign of the spring is wrong: it pulls the mass towards the handle with K (x - z)."),
+                        ({"w": -0.242}, "The sign of the damper is wrong: it pulls the mass along with b_c (v - w)."),
+                        ({"w": -0.236}, "The damper lies between handle and mass: it uses v - w, not w alone."),
                         ({"w": -0.20174}, "The acceleration is F_c over m."),
+                        ({"w": -17.6}, "The period is missing: the acceleration changes the velocity by T times F_c/m."),
+                        ({"w": -0.0348}, "The step adds to the old velocity: w + T F_c/m."),
                     ),
                 ),
                 Case(
@@ -41,7 +69,7 @@ LAB = Lab(
                     slips=(({"z": 0.0005}, OLD),),
                 ),
             ),
-            hint="Which z, w make the force? And which w carries the position: the one before the step, or the one after it?",
+            hint="Which z and w determine the force? Which w moves the position, the one before the step or the one after it?",
             matters=("The order of two lines decides whether the virtual body keeps its energy or gains some in every step."),
         ),
         Exercise(
@@ -112,8 +140,8 @@ LAB = Lab(
                             -0.62940692,
                             0.242860414,
                             1.426756488,
-                        ): "The product of z' and theta' goes with the "
-                        "cosine: where the rod hangs down, the bob moves along the rail.",
+                        ): "The product of z' and theta' has the factor "
+                        "cosine: where the rod hangs straight down, the bob moves along the rail.",
                         (
                             0.0,
                             0.441296066,
@@ -141,7 +169,7 @@ LAB = Lab(
                             -0.035522013,
                             -0.0425376,
                             0.371228055,
-                        ): "Half of m v^2, for the bob as for the carriage.",
+                        ): "The kinetic energy is half of m v^2, for the bob as well as for the carriage.",
                         (
                             0.0,
                             0.517807162,
@@ -170,7 +198,7 @@ LAB = Lab(
                             -0.097990531,
                             -0.07061865,
                             0.419281936,
-                        ): "Rayleigh's function is half the power lost, c theta'^2/2: with all of it the bearing resists twice.",
+                        ): "Rayleigh's function is half the power lost, c theta'^2/2. Yours makes the bearing twice as strong.",
                         (
                             0.0,
                             0.38683385,
@@ -198,7 +226,7 @@ LAB = Lab(
                             0.061512887,
                             0.074157944,
                             -0.388594836,
-                        ): "The sign is turned: the force on the environment is the force on the carriage, force=F_c.",
+                        ): "The sign is wrong: the force on the environment is the force on the carriage, force=F_c.",
                         (
                             0.0,
                             0.394243206,
@@ -269,7 +297,7 @@ LAB = Lab(
                             -2.643536863,
                             -3.370423332,
                             -3.596984852,
-                        ): "Nothing moves the carriage: what the hand feels must also act on it, forces={z: F_c}.",
+                        ): "Nothing moves the carriage: the coupler's force must also act on it, forces={z: F_c}.",
                     },
                 ),
                 Case(
@@ -287,7 +315,7 @@ LAB = Lab(
                     ),
                 ),
             ),
-            hint="How fast is the bob along the rail, and how fast up? What is each mass's kinetic energy? How high is the bob?",
+            hint="What are the bob's velocities along the rail and upwards? What are both kinetic energies and its height?",
             matters=(
                 "The paddle measures only its handle. The motion of the pendulum is computed, and you feel it through one force."
             ),
@@ -295,32 +323,43 @@ LAB = Lab(
         Exercise(
             "coupler_stiffness",
             points=1,
-            asks="the stiffest K [N/m] that b pays for, beside b_c",
+            asks="the largest K [N/m] that b pays for, in addition to b_c",
             cases=(
                 Case(
                     {"b": 0.1, "T": 1e-3, "b_c": 0.02},
                     160.0,
                     unit="N/m",
                     slips={
-                        200.0: "The coupler's own damper is rendered with a delay, too, and must be paid for: K T/2 + b_c.",
-                        80.0: "The hold delays by half a period on the average, so it is K T/2 that b pays for, not K T.",
-                        240.0: "A virtual damper does not help to pay, it costs: |B| stands on the other side of Eq. (23.10).",
+                        200.0: OWN_DAMPER,
+                        80.0: "The hold delays by half a period on average, so b pays for K T/2, not K T.",
+                        240.0: "A virtual damper does not help to pay: |B| stands on the other side of Eq. (23.10).",
+                        320.0: TWO_ONCE,
+                        40.0: HALF_INVERTED,
+                        1.6e-4: TIMES_T,
+                        -19.8: BRACKETS,
                     },
                 ),
                 Case(
                     {"b": 2.0, "T": 2e-3, "b_c": 0.5},
                     1500.0,
                     unit="N/m",
-                    slips={2000.0: "The coupler's own damper must be paid for, too: K T/2 + b_c."},
+                    slips={
+                        2000.0: OWN_DAMPER,
+                        3000.0: TWO_ONCE,
+                        375.0: HALF_INVERTED,
+                        3.0: NO_PERIOD,
+                        0.006: TIMES_T,
+                        -246.0: BRACKETS,
+                    },
                 ),
             ),
-            hint="What of b is left for the spring, once the coupler's damper is paid? What does each N/m cost?",
+            hint="How much of b is left for the spring after it has paid for b_c? How much damping does each N/m need?",
             matters="The hand meets the coupler first, so its stiffness limits how hard anything behind it can feel.",
         ),
         Exercise(
             "felt_wall",
             points=1,
-            asks="the stiffness [N/m] felt of a wall k behind a coupler K",
+            asks="the stiffness [N/m] that is felt of a wall k behind a coupler K",
             cases=(
                 Case(
                     {"K": 160.0, "k": 500.0},
@@ -329,14 +368,30 @@ LAB = Lab(
                     slips={
                         80000.0: PRODUCT,
                         160.0: SOFTER,
-                        660.0: "Stiffnesses add side by side. These are one behind the other: their deflections add.",
-                        0.00825: "That is the compliance, in m/N; its inverse is the stiffness.",
-                        500.0: "The coupler lies between handle and wall, and gives way, too.",
+                        660.0: "Stiffnesses add in parallel. These are in series, one behind the other: their deflections add.",
+                        0.00825: "That is the compliance, in m/N. The stiffness is its inverse.",
+                        500.0: "The coupler lies between handle and wall, and it gives way as well.",
+                        330.0: MEAN,
+                        282.842712475: MEAN,
+                        242.424242424: NOT_TWICE,
+                        235.294117647: DIFFERENCE,
                     },
                 ),
-                Case({"K": 300.0, "k": 100.0}, 75.0, unit="N/m", slips={30000.0: PRODUCT, 100.0: SOFTER}),
+                Case(
+                    {"K": 300.0, "k": 100.0},
+                    75.0,
+                    unit="N/m",
+                    slips={
+                        30000.0: PRODUCT,
+                        100.0: SOFTER,
+                        200.0: MEAN,
+                        173.205080757: MEAN,
+                        150.0: NOT_TWICE,
+                        -150.0: DIFFERENCE,
+                    },
+                ),
             ),
-            hint="What do coupler and wall have in common, the force or the deflection? And what adds up?",
+            hint="Do coupler and wall share the force or the deflection? Which quantities add up?",
             matters="A wall behind a coupler never feels stiffer than the coupler, however stiff you make the wall.",
         ),
         Exercise(
@@ -350,15 +405,18 @@ LAB = Lab(
                     1.2e-4,
                     unit="s",
                     slips={
-                        1.5e-4: "The coupler's own damper is to be paid as well.",
-                        2e-4: "That is for a coupler as stiff as what is felt. In series with the wall it must be stiffer.",
-                        8e-5: "That is for a coupler as stiff as the wall, and then half of that is felt.",
-                        6e-5: "The hold costs K T/2, not K T.",
+                        1.5e-4: "b must also pay for the coupler's own damper b_c.",
+                        2e-4: "That is for a coupler as stiff as K_FELT. In series with the wall it must be stiffer.",
+                        8e-5: "That is for a coupler as stiff as K_WALL. The hand then feels only half of this stiffness.",
+                        6e-5: "The hold needs K T/2, not K T.",
+                        5.714285714e-5: "You added the two stiffnesses. Which K gives K_FELT in series with K_WALL?",
+                        2.8e-4: "You put K_FELT in series with K_WALL. K_FELT is the result of the series, not a part of it.",
+                        1.2e-7: "The period is in seconds: 1 ms is 1e-3 s.",
                     },
                 ),
             ),
             rtol=1e-3,
-            hint="Which K in series with the wall feels like that? What T does b pay for, with this K?",
+            hint="Which K in series with K_WALL feels like K_FELT? For which T does b pay for this K?",
             matters="This is how to choose a sampling rate for a stiffness that users should feel.",
         ),
         Exercise(
@@ -372,12 +430,16 @@ LAB = Lab(
                     1.272990412,
                     unit="Hz",
                     slips={
-                        1.287090266: "That is sqrt(g/l): the pendulum on a carriage that cannot move. The coupler gives way.",
-                        8.813829239: "That is the faster mode, the carriage on the coupler; the swing is the slower one.",
-                        7.998434654: "That is in rad/s; a hertz is 2 pi of them.",
-                        63.974956916: "That is omega squared; its root is omega.",
-                        10.181930627: "That is omega squared over 2 pi; take its root first.",
-                        8.087026647: "That is sqrt(g/l) in rad/s; in hertz, and on a coupler that gives way, it is slower.",
+                        1.287090266: STILL_CARRIAGE,
+                        8.813829239: FASTER,
+                        55.378922: "That is the faster mode, and in rad/s. Take the slower mode, and divide by 2 pi.",
+                        1.82022051: FREE_CARRIAGE,
+                        6.164044441: NO_PENDULUM,
+                        8.717275247: NO_PENDULUM,
+                        7.998434654: "That is in rad/s. Divide by 2 pi to get hertz.",
+                        63.974956916: "That is omega squared. Take its square root, and divide by 2 pi to get hertz.",
+                        10.181930627: "That is omega squared divided by 2 pi. Take the square root first.",
+                        8.087026647: "That is sqrt(g/l) in rad/s. Divide by 2 pi to get hertz; the coupler also gives way.",
                     },
                 ),
                 Case(
@@ -385,13 +447,16 @@ LAB = Lab(
                     0.777200302,
                     unit="Hz",
                     slips={
-                        2.635701216: "That is the faster mode; the swing is the slower one.",
-                        0.910110255: "That is sqrt(g/l): the pendulum on a carriage that cannot move. The coupler gives way.",
+                        2.635701216: FASTER,
+                        0.910110255: STILL_CARRIAGE,
+                        1.576357202: FREE_CARRIAGE,
+                        1.299494669: NO_PENDULUM,
+                        2.25079079: NO_PENDULUM,
                     },
                 ),
             ),
-            hint="When do two homogeneous equations for two amplitudes have a solution other than zero? Which of the two "
-            "frequencies goes to sqrt(g/l) for a stiff coupler?",
+            hint="When do two homogeneous equations for two amplitudes have a nonzero solution? Which of the two frequencies "
+            "goes to sqrt(g/l) for a stiff coupler?",
             matters=("The coupler changes what you feel of the pendulum. A good rendering keeps this change small and known."),
         ),
         Exercise(
@@ -405,20 +470,20 @@ LAB = Lab(
                     {},
                     "c",
                     slips={
-                        "a": "Mass stores energy and gives it back; it pays for none. Try a hand that is only mass, "
+                        "a": "A mass stores energy and gives it back, so it dissipates nothing. Try a hand that is only a mass, "
                         "hl.Hand(m=0.02), at 640 N/m.",
-                        "b": "This hand is a mass, a spring and a damper: it does not react. And a real one reacts too late "
-                        "for a rattle of more than 10 Hz.",
+                        "b": "This hand is a mass, a spring and a damper: it does not react. A real hand also reacts too late "
+                        "for chatter of more than 10 Hz.",
                     },
                 ),
             ),
-            hint="run it with hands that have only a mass, only a spring, only a damper",
+            hint="What happens with hands that have only a mass, only a spring, or only a damper?",
             matters=("A stability limit holds for the hand that was assumed. In another hand the same scene may chatter."),
         ),
         Exercise(
             "discussion",
             kind="text",
-            asks="two ways to a felt wall of 2000 N/m, with numbers, in 60 words or more",
+            asks="two ways to a wall that feels like 2000 N/m, with numbers, in 60 words or more",
             least_words=60,
         ),
     ),
