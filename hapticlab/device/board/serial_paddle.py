@@ -355,8 +355,10 @@ class SerialPaddle(Paddle):
     def __exit__(self, *failure: Any) -> None:
         self.close()
 
+    hidden = ("board", "settings")
+
     def __repr__(self) -> str:
-        return "\n".join([f"<SerialPaddle {self.url}: {self}>", *self.notices])
+        return f"<SerialPaddle {self.url}: {'; '.join([str(self), *self.notices])}>"
 
     def __str__(self) -> str:
         return introduction(self.board, self.settings, self.T)
