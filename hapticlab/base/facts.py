@@ -7,14 +7,13 @@ comes from the same lines, so that no unit is written twice.
 from __future__ import annotations
 
 import inspect
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cache
 from textwrap import shorten
 from typing import Any, NamedTuple
-
-import numpy as np
 
 #: SI unit -> (below which size, factor, what is shown), the smallest first
 _PREFIXED = {
@@ -104,9 +103,9 @@ def shown_unit(values: Any, unit: str) -> tuple[float, str]:
     >>> shown_unit([0.0, 0.002], "m")
     (1000.0, 'mm')
     """
-    sizes = np.abs(np.asarray(values, float).ravel())
-    sizes = sizes[np.isfinite(sizes)]
-    largest = sizes.max() if len(sizes) else 0.0
+    if hasattr(values, "ravel"):
+        values = values.ravel().tolist()
+    largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
     if largest > 0:
         for below, factor, name in _PREFIXED.get(unit, ()):
             if largest < below:
@@ -124,20 +123,22 @@ def in_words(value: Any, unit: str = "") -> tuple[str, str]:
 
     Examples
     --------
-    >>> in_words(0.0123, "m"), in_words(True), in_words(np.linspace(0, 2, 5), "N")
-    (('12.3', 'mm'), ('yes', ''), ('5 values, 0 to 2', 'N'))
+    >>> in_words(0.0123, "m"), in_words(True), in_words([0.0, 0.5, 2.0], "N")
+    (('12.3', 'mm'), ('yes', ''), ('0, 0.5, 2', 'N'))
     """
-    if isinstance(value, (bool, np.bool_)):
+    if hasattr(value, "dtype"):
+        if value.shape:
+            return _of_array(value, unit)
+        value = value.item()
+    if isinstance(value, bool):
         return "yes" if value else "no", ""
-    if isinstance(value, (int, np.integer)) and not unit:
+    if isinstance(value, int) and not unit:
         return str(value), ""
-    if isinstance(value, (int, float, np.integer, np.floating)):
-        factor, unit = shown_unit(value, unit)
+    if isinstance(value, (int, float)):
+        factor, unit = shown_unit([value], unit)
         return ("not known", "") if value != value else (f"{value * factor:.5g}", unit)
     if isinstance(value, str):
         return str(value), ""
-    if isinstance(value, np.ndarray):
-        return _of_array(value, unit)
     if isinstance(value, Mapping):
         parts = [f"{name}: {_joined(in_words(one))}" for name, one in value.items()]
         return ("; ".join(parts), "") if all(not part.endswith(": ") for part in parts) else ("", "")
@@ -156,19 +157,18 @@ def _of_array(array, unit):
     if array.dtype.kind not in "fiub":
         return f"{array.size} complex values" if array.dtype.kind == "c" else f"array of shape {array.shape}", unit
     if array.dtype.kind == "b":
-        return f"{np.count_nonzero(array)} of {array.size}", ""
-    known = array[np.isfinite(array)]
+        return f"{array.sum()} of {array.size}", ""
+    known = array[abs(array) < math.inf]
     factor, unit = shown_unit(known, unit)
     span = f", {known.min() * factor:.4g} to {known.max() * factor:.4g}" if len(known) else ""
-    size = " x ".join(map(str, array.shape))
-    return f"{size} values{span}", unit
+    return f"{' x '.join(map(str, array.shape))} values{span}", unit
 
 
 def _of_sequence(parts, unit):
-    if len(parts) > 6 and all(isinstance(part, (int, float)) for part in parts):
-        return _of_array(np.array(parts, float), unit)
-    if len(parts) <= 6 and parts and all(isinstance(part, (int, float)) and not isinstance(part, bool) for part in parts):
+    if parts and all(isinstance(part, (int, float)) and not isinstance(part, bool) for part in parts):
         factor, unit = shown_unit(parts, unit)
+        if len(parts) > 6:
+            return f"{len(parts)} values, {min(parts) * factor:.4g} to {max(parts) * factor:.4g}", unit
         return ", ".join(f"{part * factor:.5g}" for part in parts), unit
     if len(parts) > 6 or any(is_dataclass(part) for part in parts):
         return f"{len(parts)} of them", ""
@@ -178,7 +178,7 @@ def _of_sequence(parts, unit):
 def are_records(given: Any) -> bool:
     """Whether these are records of one class, in a row or by name, which a table shows with a line for each."""
     parts = given.values() if isinstance(given, Mapping) else given
-    if isinstance(given, (str, np.ndarray)) or not isinstance(given, (Mapping, Sequence)) or not len(given):
+    if isinstance(given, str) or not isinstance(given, (Mapping, Sequence)) or not given:
         return False
     kinds = {type(one) for one in parts}
     return len(kinds) == 1 and is_dataclass(next(iter(kinds)))

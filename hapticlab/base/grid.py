@@ -6,8 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any
 
-import numpy as np
-
 from ..errors import AnalysisError
 from .facts import facts, in_words, shown_unit
 
@@ -30,9 +28,7 @@ class Grid:
     (['law', 'depth [mm]'], [['zoh', '2'], ['ellis', '1.5']])
     """
 
-    def __init__(
-        self, columns: Mapping[str, Sequence[Any] | np.ndarray], units: Mapping[str, str] | None = None, all: str = ""
-    ) -> None:
+    def __init__(self, columns: Mapping[str, Sequence[Any]], units: Mapping[str, str] | None = None, all: str = "") -> None:
         self.columns, self.units = dict(columns), dict(units or {})
         self.all = all or "print it to see all."
         numbers = {name: _numbers(values) for name, values in self.columns.items()}
@@ -49,7 +45,7 @@ class Grid:
         columns = {f.name: [] for f in listed[0] if f.name not in hidden} if listed else {}  # type: ignore[var-annotated]
         for fact in (fact for known in listed for fact in known if fact.name in columns):
             columns[fact.name].append(fact.value)
-        shown = {name: columns[name] for name in names or columns if any(map(_fits_a_cell, columns[name]))}
+        shown = {name: columns[name] for name in names or columns if any(map(_fits_a_cell, columns.get(name, ())))}
         return cls({**named, **shown}, {fact.name: fact.unit for fact in listed[0]} if listed else {})
 
     def __len__(self) -> int:
@@ -68,7 +64,8 @@ class Grid:
 
     def _cell(self, name, value):
         factor, _ = self._scales[name]
-        if isinstance(value, (float, np.floating)):
+        value = value.item() if hasattr(value, "item") and not value.shape else value
+        if isinstance(value, float):
             return "" if value != value else f"{value * factor:.5g}"
         return " ".join(filter(None, in_words(value)))
 
@@ -78,11 +75,12 @@ class Grid:
 
 
 def _fits_a_cell(value):
-    return not isinstance(value, np.ndarray) and bool(in_words(value)[0])
+    return not getattr(value, "shape", ()) and bool(in_words(value)[0])
 
 
 def _numbers(values):
-    return [value for value in values if isinstance(value, (int, float, np.number)) and not isinstance(value, bool)]
+    plain = (value.item() if hasattr(value, "item") and not value.shape else value for value in values)
+    return [value for value in plain if isinstance(value, (int, float)) and not isinstance(value, bool)]
 
 
 def frame(columns: Mapping[str, Any], units: Mapping[str, str], **attrs: Any) -> Any:

@@ -120,7 +120,7 @@ class ShowsItself:
         return "".join(told)
 
 
-def _in_one_line(self):
+def _in_one_line(self: ShowsItself) -> str:
     return self._line()
 
 
@@ -202,9 +202,7 @@ def _drawn(figure):
         return f'<p style="{_QUIET}">No figure: {escape(str(nothing))}</p>'
     if drawn is None:
         return ""
-    from .drawing import bundle, describe
-
-    data, _ = bundle(drawn, getattr(drawn, "alt", None) or describe(drawn))
+    data, _ = drawn._repr_mimebundle_()
     return data["text/html"]
 
 

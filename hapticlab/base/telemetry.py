@@ -16,6 +16,7 @@ from .facts import Fact, facts
 from .grid import frame, labelled
 from .missed_events import depth_words, ends_inside
 from .shows_itself import ShowsItself
+from .thumbnail import thumbnail
 
 if TYPE_CHECKING:
     from .annotations import File
@@ -282,21 +283,6 @@ class Telemetry(ShowsItself):
             table.writerow(header)
             table.writerows(zip(*columns, strict=True))
         return Path(path)
-
-
-def thumbnail(log: Telemetry) -> Any:
-    """A small figure of position and force over time; None of a record too short to draw."""
-    if len(log) < 2:
-        return None
-    from .drawing import COLD, WARM, axis_label, house_style, new_figure
-
-    with house_style():
-        figure = new_figure(height=1.7, width=6.4)
-        for axes, name, colour in zip(figure.subplots(1, 2), ("x", "F"), (COLD, WARM), strict=True):
-            scale, label = axis_label(name, log.units[name])
-            axes.plot(log.t, scale * getattr(log, name), color=colour)
-            axes.set(xlabel="time t [s]", ylabel=label)
-    return figure
 
 
 def _column(name, values, samples, type):

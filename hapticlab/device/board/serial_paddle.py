@@ -355,8 +355,6 @@ class SerialPaddle(Paddle):
     def __exit__(self, *failure: Any) -> None:
         self.close()
 
-    hidden = ("board", "settings")
-
     def __repr__(self) -> str:
         return f"<SerialPaddle {self.url}: {'; '.join([str(self), *self.notices])}>"
 
