@@ -36,16 +36,16 @@ enum {
 /* what hl_verify, hl_init and hl_tick return */
 typedef enum {
     HL_OK = 0, /* nothing is wrong */
-    HL_SIZE = 1, /* the program is cut, or longer than its header says: send it again */
+    HL_SIZE = 1, /* the program is incomplete, or longer than its header says: send it again */
     HL_MAGIC = 2, /* these bytes are not a program: send one made by hapticlab */
     HL_VERSION = 3, /* another format version: flash the firmware of this hapticlab */
     HL_WORD = 4, /* another word size: encode the program for this board */
     HL_TABLE = 5, /* another table of operations: flash the firmware of this hapticlab */
-    HL_CRC = 6, /* the program was changed on its way: send it again */
+    HL_CRC = 6, /* the program was changed during transfer: send it again */
     HL_REGISTERS = 7, /* more registers than the board has: use a smaller scene or fewer substeps */
     HL_TYPE = 8, /* a type byte or a bool constant has no meaning */
     HL_OPCODE = 9, /* an instruction has no meaning, or the code does not end where it should */
-    HL_OPERAND = 10, /* an operand is not a result of the right type that exists by then */
+    HL_OPERAND = 10, /* an operand is not an earlier result of the right type */
     HL_UNSET = 11, /* a state or an output has no value of its type */
     HL_OUTPUT_NOT_FINITE = 12, /* an output is nan or infinite: look for a division by zero or an unstable scene */
     HL_STATE_NOT_FINITE = 13, /* a state is nan or infinite: look for a division by zero or an unstable scene */

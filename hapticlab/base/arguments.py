@@ -60,8 +60,8 @@ def number(
     need = _needs(owner, _range(what or name, least, above, most, finite))
     if value is None:
         reason = f": {why}" if why and not why.endswith(".") else ""
-        form = f"a number in {unit}, or a text with its unit, as '2 {unit}'" if has_unit else "a number"
-        raise error(f"{name} = {given!r}; {need}{reason}, as {form}")
+        form = f"a number in {unit}, or a text with its unit, such as '2 {unit}'" if has_unit else "a number"
+        raise error(f"{name} = {given!r}; {need}{reason}. Give {form}")
     why = why if finite else ""
     reason = why and (f". {why}" if why[0].isupper() else f": {why}")
     raise error(f"{name} = {value:.12g}{f' {unit}' if has_unit else ''}; {need}{reason}")

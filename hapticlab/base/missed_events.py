@@ -31,23 +31,23 @@ def missed_words(log: Telemetry) -> str:
     >>> from hapticlab.base.telemetry import Telemetry
     >>> still = {name: [0.0, 0.0] for name in ("x", "v", "F")}
     >>> missed_words(Telemetry(t=[0, 1e-3], **still, T=1e-3, channels={"unlocated": [0, 1]}))
-    '1 of 2 samples left an event unlocated, the first at t = 0.001 s. The motion may be wrong from then on. Locate more \
-events per step, method=hl.methods.Taylor(events=8), or take a shorter T.'
+    '1 of 2 samples left an event unlocated, the first at t = 0.001 s. The motion may be wrong after that. Locate more \
+events per step, method=hl.methods.Taylor(events=8), or use a shorter T.'
     """
     none = np.zeros(len(log))
     missed, overlap = log.channels.get("unlocated", none) > 0, log.channels.get("overlap", none)
     if not missed.any() and not ends_inside(log):
         return ""
-    deep, said, cure = overlap > DEPTH, [], "Locate more events per step, method=hl.methods.Taylor(events=8), or take a shorter T"
+    deep, said, cure = overlap > DEPTH, [], "Locate more events per step, method=hl.methods.Taylor(events=8), or use a shorter T"
     if missed.any():
         first = log.t[np.argmax(missed)]
         said.append(f"{np.count_nonzero(missed)} of {len(log)} samples left an event unlocated, the first at t = {first:g} s")
     if deep.any():
         first, most, last = log.t[np.argmax(deep)], np.nanmax(overlap), overlap[-1]
         depths = f"{depth_words(log, most)} at most and by {depth_words(log, last)} at the end"
-        said.append(f"Bodies got inside each other at t = {first:g} s, by {depths}")
-    said.append("The motion may be wrong from then on")
-    said.append(f"{cure}, or a contact that gives way, hl.contact.penalty" if "overlap" in log.channels else cure)
+        said.append(f"From t = {first:g} s bodies overlapped, by {depths}")
+    said.append("The motion may be wrong after that")
+    said.append(f"{cure}, or use a contact that yields, hl.contact.penalty" if "overlap" in log.channels else cure)
     return f"{'. '.join(said)}."
 
 

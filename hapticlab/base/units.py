@@ -104,7 +104,7 @@ def in_si(value, unit, name):
             return float(value)
     except (TypeError, ValueError, OverflowError):
         pass  # refused below, in words
-    shown = "a number past 1e308" if isinstance(value, int) and abs(value) > 1e308 else repr(value)
+    shown = "a number above 1e308" if isinstance(value, int) and abs(value) > 1e308 else repr(value)
     raise ParameterError(f"{name} = {shown}; needs a number in {unit} or a text such as '10 {unit}'")
 
 

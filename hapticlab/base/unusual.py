@@ -10,25 +10,25 @@ from ..slips.own_line import of_call
 
 #: of a scene's parameters: SI unit -> (largest usual size, what is said of more, the unit that was likely meant)
 SCENE = {
-    "m": (1.0, "a paddle reaches some 0.1 m", "mm"),
-    "kg": (20.0, "a paddle moves some 0.1 kg", "g"),
-    "s": (100.0, "a paddle is sampled every 0.001 s", "ms"),
-    "N/m": (1e7, "the stiffest virtual walls have some 10000 N/m", "N/m"),
-    "N*s/m": (1e5, "a paddle's own damping is some 0.1 N s/m", "N s/m"),
+    "m": (1.0, "a paddle reaches about 0.1 m", "mm"),
+    "kg": (20.0, "a paddle moves about 0.1 kg", "g"),
+    "s": (100.0, "a paddle is sampled about every 0.001 s", "ms"),
+    "N/m": (1e7, "the stiffest virtual walls have about 10000 N/m", "N/m"),
+    "N*s/m": (1e5, "a paddle's own damping is about 0.1 N s/m", "N s/m"),
     "rad": (7.0, "a full turn has 6.28 rad", "deg"),
 }
 #: of a device, by the name of the number: the same three
 DEVICE = {
-    "m": (5.0, "a paddle's handle weighs some 0.05 kg", "g"),
+    "m": (5.0, "the handle of a paddle has a mass of about 0.05 kg", "g"),
     "T": (0.1, "a hand feels each sample of more than 0.1 s as a step", "ms"),
-    "delay": (1.0, "a force comes some 0.001 s after its sample", "ms"),
-    "b": (1e3, "a paddle's own damping is some 0.1 N s/m", "N s/m"),
-    "duration": (3600.0, "a run takes some 2 s", "ms"),
+    "delay": (1.0, "a force comes about 0.001 s after its sample", "ms"),
+    "b": (1e3, "a paddle's own damping is about 0.1 N s/m", "N s/m"),
+    "duration": (3600.0, "a run takes about 2 s", "ms"),
 }
 #: of a hand, likewise
 HAND = {
-    "m": (10.0, "an arm on the handle weighs some 0.5 kg", "g"),
-    "k": (1e5, "a firm grip has some 500 N/m", "N/m"),
+    "m": (10.0, "an arm on the handle has a mass of about 0.5 kg", "g"),
+    "k": (1e5, "a firm grip has about 500 N/m", "N/m"),
 }
 
 
@@ -42,7 +42,7 @@ def warn_of_unusual(name: str, value: float, unit: str, usual: tuple[float, str,
     ...     warnings.simplefilter("always")
     ...     warn_of_unusual("x_o", 10.0, "m", SCENE["m"])
     >>> print(caught[0].message)
-    x_o = 10 m: a paddle reaches some 0.1 m. If you mean 10 mm, write x_o='10 mm'.
+    x_o = 10 m: a paddle reaches about 0.1 m. If you mean 10 mm, write x_o='10 mm'.
     """
     if usual is None or not abs(value) > usual[0]:
         return

@@ -6,7 +6,6 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..base.arguments import having, number
-from ..base.shows_itself import ShowsItself
 from ..base.unusual import DEVICE, warn_of_unusual
 from ..errors import AnalysisError, PaddleError
 
@@ -23,14 +22,14 @@ _UNITS = {"m": "kg", "b": "N s/m", "T": "s", "delay": "s", "coulomb": "N", "coun
 _ABOVE_ZERO = ("m", "T", "counts_per_metre")
 _NEVER_UNKNOWN = ("delay", "coulomb")
 _WHY = {
-    "b": "its damping pays for the hold",
+    "b": "its damping dissipates the energy that the hold generates",
     "delay": "a force cannot come before its sample",
     "coulomb": "friction opposes motion",
 }
 
 
 @dataclass(frozen=True, kw_only=True)
-class Device(ShowsItself):
+class Device:
     """The numbers of a paddle, for a limit or a bound where no paddle is at hand.
 
     A limit asks for the numbers that it depends on, and refuses in words where one is missing.
@@ -99,12 +98,6 @@ class Device(ShowsItself):
                 warn_of_unusual(name, value, _UNITS[name], DEVICE.get(name))
         if self.velocity not in ("backward_difference", "measured"):
             raise PaddleError(f"velocity = {self.velocity!r}; needs 'backward_difference' or 'measured'")
-
-    def _sentence(self):
-        return f"the numbers of a paddle: {self}"
-
-    def _line(self):
-        return f"Device({self})"
 
     def __str__(self) -> str:
         known = {f.name: getattr(self, f.name) for f in fields(self) if f.name in _UNITS}

@@ -32,9 +32,11 @@ def checked(program, values):
     unknown = sorted(set(values) - set(names))
     if unknown:
         listed, why = ", ".join(names) or "none", why_of(program.notes, unknown[0])
-        raise ParameterError(f"{unknown[0]} is no live parameter of {program.name}{why}; it has {listed}.")
+        raise ParameterError(f"{unknown[0]} is not a live parameter of {program.name}{why}. It has {listed}.")
     if len(values) > MOST_AT_ONCE:
-        raise ParameterError(f"{len(values)} parameters at once; a board takes {MOST_AT_ONCE} between two ticks: set fewer")
+        raise ParameterError(
+            f"{len(values)} parameters at once; a board accepts at most {MOST_AT_ONCE} between two ticks. Set fewer"
+        )
     declared = {c.name: Parameter(c.name, c.unit, c.low, c.high) for c in program.parameters}
     numbers = {name: _within(declared[name], value, program.notes) for name, value in values.items()}
     with np.errstate(over="ignore"):
@@ -65,7 +67,7 @@ def check_stable(program, numbers):
     if steps.taylor:
         why = f"a step of {steps.h:g} s turns by {growth:.3g} rad; method='taylor' needs at most 1"
     else:
-        why = f"what vibrates doubles in {steps.doubles(growth):.2g} s"
+        why = f"an oscillation doubles in {steps.doubles(growth):.2g} s"
     why += "" if steps.linear else f" ({SMALL_MOTIONS})"
     past = next((one for one in (_past(program, name, values[name]) for name in changed) if one), None)
     shown = ", ".join(f"{name} = {values[name]:.4g}" for name in changed)
@@ -103,8 +105,8 @@ def _check_parts(program, numbers, values):
             raise ParameterError(f"{past}; {HOW}")
     shown = ", ".join(f"{name} = {values[name]:.4g} ({100 * part:.0f} %)" for name, part in taken.items())
     raise ParameterError(
-        f"{shown}: a step may be unstable. Each takes a part of the way to its own limit, and the parts add up to "
-        f"{100 * sum(taken.values()):.0f} %; needs 100 % at most: move one back, {HOW}"
+        f"{shown}: a step may be unstable. Each value uses a fraction of the distance to its own limit, and the fractions "
+        f"add up to {100 * sum(taken.values()):.0f} %; needs at most 100 %. Move one back, {HOW}"
     )
 
 
@@ -116,9 +118,11 @@ def check_margin(program):
         growth = steps.growth(values)
         doubles = steps.doubles(growth) if growth > steps.allowed else np.inf
     if doubles < SLOW:
-        otherwise = UnstableNote(f"what vibrates doubles in {doubles:.2g} s; take more substeps")
+        otherwise = UnstableNote(f"an oscillation doubles in {doubles:.2g} s. Use more substeps")
         why = next((note for note in program.notes if isinstance(note, UnstableNote)), otherwise)
-        raise PaddleError(f"{program.name}: {why}. A motor would follow what grows; passive=True runs with the motor off.")
+        raise PaddleError(
+            f"{program.name}: {why}. The motor would follow the growing motion; passive=True runs with the motor off."
+        )
 
 
 def _within(parameter, value, notes):

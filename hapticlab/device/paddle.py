@@ -7,7 +7,6 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
 from ..base.arguments import number
-from ..base.shows_itself import ShowsItself
 from ..base.unusual import DEVICE, warn_of_unusual
 from ..compiler.ir.program import Program
 from ..compiler.tick.compile_scene import compile
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
     from ..base.telemetry import Telemetry
 
 
-class Paddle(ShowsItself, ABC):
+class Paddle(ABC):
     """A one-axis haptic device, simulated or real.
 
     A paddle samples its handle every T seconds, runs the scene's program on the sample, and applies the force until the
@@ -35,7 +34,6 @@ class Paddle(ShowsItself, ABC):
         Where v(n) comes from; "measured" is exact and exists in simulation only.
     """
 
-    hidden = ("board", "settings")
     T: float
 
     @property
@@ -56,7 +54,7 @@ class Paddle(ShowsItself, ABC):
         duration = number("duration", duration, "s", "a run", above=0, error=PaddleError)
         warn_of_unusual("duration", duration, "s", DEVICE["duration"])
         if not math.isfinite(duration / self.T):
-            raise PaddleError(f"duration = {duration:g} s is more samples than numbers count; run less.")
+            raise PaddleError(f"duration = {duration:g} s has too many samples to count; run for a shorter time.")
         ticks = math.floor(duration / self.T + 0.5)
         if ticks < 1:
             raise PaddleError(f"duration = {duration:g} s; needs at least one period T = {self.T:g} s.")
@@ -75,11 +73,11 @@ class Paddle(ShowsItself, ABC):
         if isinstance(scene, Program):
             if options:
                 given = ", ".join(options)
-                raise PaddleError(f"{given}: a program is compiled already; give compile options with a scene.")
+                raise PaddleError(f"{given}: a program is already compiled; give compile options with a scene only.")
             program = scene
         else:
             if "T" in options:
-                raise PaddleError(f"T is the paddle's own, {self.T:g} s; make a paddle with another one.")
+                raise PaddleError(f"T is that of the paddle, {self.T:g} s. For a different T make a new paddle.")
             program = compile(scene, **{"T": self.T, "velocity": self.velocity, **options})
         missing = [c for c, value in zip(program.parameters, program.values, strict=True) if math.isnan(value)]
         if missing:
@@ -99,10 +97,10 @@ class Paddle(ShowsItself, ABC):
         wanted = [c.name for c in program.inputs]
         unknown = sorted(set(wanted) - {"x", "v"})
         if unknown:
-            raise PaddleError(f"{name} wants the input {unknown[0]}; a paddle gives x [m] and v [m/s] only.")
+            raise PaddleError(f"{name} needs the input {unknown[0]}; a paddle gives x [m] and v [m/s] only.")
         if "v" in wanted and self.velocity != "measured":
             raise PaddleError(
-                f"{name} wants a measured v; this paddle has only its {self.velocity.replace('_', ' ')}. "
+                f"{name} needs a measured v; this paddle has only its {self.velocity.replace('_', ' ')}. "
                 "Compile with velocity='backward_difference'."
             )
         if not program.outputs or program.outputs[0].name != "F":

@@ -79,7 +79,8 @@ def check_port_mass(program, paddle):
     limit = largest_port_mass(m=m, T=paddle.T, delay=getattr(paddle, "delay", paddle.T), velocity=program.facts["velocity"])
     if not felt < limit:
         raise PaddleError(
-            f"{program.name}: through the constraint on the handle {felt:.4g} kg are felt, and the handle itself is {m:g} kg. "
-            f"Its acceleration is estimated from samples, which is stable below {limit:.4g} kg only. Put a coupler between "
+            f"{program.name}: the constraint on the handle makes {felt:.4g} kg felt, and the mass of the handle itself is "
+            f"{m:g} kg. Its acceleration is estimated from samples, which is stable below {limit:.4g} kg only. Put a "
+            "coupler between "
             "the handle and the body (a spring and damper instead of the constraint), or make the body lighter"
         )

@@ -46,5 +46,7 @@ def profile(name: str) -> PaddleProfile:
     0.166
     """
     if name not in PROFILES:
-        raise PaddleError(f"no profile {name!r}; there are {', '.join(PROFILES)}. Others: hl.devices.PaddleProfile(...)")
+        raise PaddleError(
+            f"no profile {name!r}; there are {', '.join(PROFILES)}. For a profile of your own write hl.devices.PaddleProfile(...)"
+        )
     return PROFILES[name]

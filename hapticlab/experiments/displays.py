@@ -10,7 +10,6 @@ import numpy as np
 
 from ..base.arguments import number
 from ..base.drawing import house_style, new_figure, scale_axis, style_of
-from ..base.shows_itself import ShowsItself, Tabular
 from ..device.hand.hand import Hand
 from ..errors import AnalysisError
 from .display_laws import Admittance, Impedance, display_motion, largest_stiffness
@@ -31,16 +30,15 @@ REST = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class Rendered(ShowsItself):
+class Rendered:
     """One task on one display.
 
     Attributes
     ----------
     display : str
     k, mass, damping, friction : float
-        Stiffness [N/m], mass [kg], damping [N s/m] and Coulomb friction [N]: what the hand felt, by the force sensor's
-        record. Mass, damping and friction moving freely, by least squares; k holding still in the wall, or by least
-        squares where it still moves.
+        What the hand felt, by the force sensor's record: mass, damping and Coulomb friction moving freely, by least
+        squares; k holding still in the wall, or by least squares where it still moves. SI.
     misfit : float
         What mass, damping and friction leave of the force felt moving freely, root mean square [N]: friction below it says
         nothing.
@@ -121,7 +119,7 @@ def _task(t):
 
 
 @dataclass(frozen=True, eq=False)
-class Displays(Tabular):
+class Displays:
     """Both displays over several stiffnesses.
 
     Attributes
@@ -133,11 +131,6 @@ class Displays(Tabular):
 
     rows: tuple[Rendered, ...]
     limits: dict[str, float]
-
-    def _sentence(self):
-        asked = ", ".join(f"{k:g}" for k in dict.fromkeys(row.wanted for row in self.rows))
-        unstable = sum(row.state == "unstable" for row in self.rows)
-        return f"walls of {asked} N/m on both displays, {unstable} of {len(self.rows)} unstable"
 
     def __str__(self) -> str:
         limits = ", ".join(f"{name} {limit:.4g} N/m" for name, limit in self.limits.items())

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.drawing import FRAME, house_style, new_figure, style_of
-from ..base.shows_itself import ShowsItself, Tabular
 from ..device.hand.intents import Intent
 from ..device.hand.reacting_hand import REACTION, Reacting
 from ..errors import AnalysisError
@@ -38,7 +37,7 @@ EFFECTIVE = math.sqrt(2 * math.pi * math.e)
 
 
 @dataclass(frozen=True)
-class Targets(ShowsItself):
+class Targets:
     """Movements between two targets of one width.
 
     Attributes
@@ -78,7 +77,7 @@ class Targets(ShowsItself):
 
 
 @dataclass(frozen=True)
-class Fitts(Tabular):
+class Fitts:
     """Movement times over several targets.
 
     Attributes

@@ -14,7 +14,6 @@ import numpy as np
 
 from ..base.arguments import instance
 from ..base.drawing import COLD, WARM, house_style, new_figure, scale_axis
-from ..base.shows_itself import ShowsItself, Tabular
 from ..device.setup.person import Person
 from ..errors import AnalysisError
 from .observers import PersonObserver, SimulatedObserver
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Trial(ShowsItself):
+class Trial:
     """One comparison: the level ln(comparison/standard), what was shown first and second, and the answer."""
 
     level: float
@@ -45,7 +44,7 @@ class Trial(ShowsItself):
 
 
 @dataclass(frozen=True)
-class ForcedChoice(Tabular):
+class ForcedChoice:
     """What was asked and answered.
 
     Attributes

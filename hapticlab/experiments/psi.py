@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from .likelihood import CERTAIN
 from .response_curves import rise
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Grid(ShowsItself):
+class Grid:
     """The levels, thresholds and slopes over which the psi method keeps its belief.
 
     Parameters
@@ -51,7 +50,7 @@ class Grid(ShowsItself):
 GRID = Grid()
 
 
-class Psi(ShowsItself):
+class Psi:
     """Bayesian adaptive estimation of threshold and slope; L. L. Kontsevich and C. W. Tyler, *Vision Res.* 39 (1999) 2729.
 
     A probability of every threshold and slope on a grid is kept; the next level is the one whose answer is expected to
@@ -151,7 +150,7 @@ class Psi(ShowsItself):
         return f"psi, {self.most_trials} trials at levels from {self.levels[0]:.3g} to {self.levels[-1]:.3g}"
 
 
-class ConstantLevels(ShowsItself):
+class ConstantLevels:
     """Method of constant stimuli: each level so many times, in an order drawn from the seed.
 
     Examples

@@ -13,7 +13,6 @@ import numpy as np
 
 from ..base.arguments import choice, instance, number, numbers
 from ..base.drawing import house_style, new_figure, style_of
-from ..base.shows_itself import ShowsItself
 from ..base.telemetry import Telemetry
 from ..device.hand.hand import UNITS
 from ..device.hand.intents import Intent, MinimumJerk
@@ -46,7 +45,7 @@ class Path(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Load(ShowsItself):
+class Load:
     """What a person believes to move, beside their own hand.
 
     Parameters
@@ -75,7 +74,7 @@ class Load(ShowsItself):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Control(ShowsItself):
+class Control:
     """By what a person moves a handle: by knowing the load, by looking, or by both.
 
     Parameters
@@ -116,7 +115,7 @@ CONTROL = Control()
 
 
 @dataclass(frozen=True, eq=False)
-class Reach(ShowsItself):
+class Reach:
     """How a reach went.
 
     Attributes

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from ..base.arguments import choice
-from ..base.shows_itself import ShowsItself
 from ..base.statistics import normal
 from ..errors import AnalysisError
 
@@ -24,7 +23,7 @@ ROOT_2, ROOT_PI = math.sqrt(2), math.sqrt(math.pi)
 
 
 @dataclass(frozen=True)
-class Psychometric(ShowsItself):
+class Psychometric:
     """Psychometric function P = guess + (1 - guess - lapse) F(level).
 
     ===========  =====================================  ====================================================

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.arguments import number
-from ..base.shows_itself import ShowsItself
 from ..device.hand.hand import Hand
 from ..device.hand.reacting_hand import Reacting
 from ..device.simulated.closed_loop import link, load_linked
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Task(ShowsItself):
+class Task:
     """A property of a scene that differs between two presentations.
 
     Attributes

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.arguments import number
-from ..base.shows_itself import ShowsItself
 from ..base.telemetry import Telemetry, check_record
 from ..errors import AnalysisError
 from .fit_result import told
@@ -32,7 +31,7 @@ FORCE_CONSTANT = (
 
 
 @dataclass(frozen=True, eq=False)
-class HandleRecord(ShowsItself):
+class HandleRecord:
     """A record of a free handle, and what is known to have been beside it.
 
     Attributes

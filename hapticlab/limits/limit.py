@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from ..base.guesses import Guessed
-from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from .plots import plot_limit
 
@@ -23,7 +22,7 @@ class AnyHand(str):
 
 
 @dataclass(frozen=True)
-class Limit(ShowsItself, Guessed):
+class Limit(Guessed):
     """The largest stiffness, and what it promises.
 
     Attributes

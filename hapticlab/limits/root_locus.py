@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.drawing import STYLES, house_style, new_figure
-from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from .limit import Limit
 from .loop import Loop
@@ -31,7 +30,7 @@ MOST_POINTS = 4000
 
 
 @dataclass(frozen=True, eq=False)
-class RootLocus(ShowsItself):
+class RootLocus:
     """The poles of handle, hand, delay and law at many stiffnesses.
 
     Attributes
@@ -76,6 +75,8 @@ class RootLocus(ShowsItself):
         ]
         lines += [f"  poles on the unit circle at K = {K:.6g} N/m, {f:.4g} Hz" for K, f in self.crossings]
         return "\n".join(lines)
+
+    __repr__ = __str__
 
 
 def root_locus(

@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.shows_itself import ShowsItself
 from .plots import plot_two_port
 
 if TYPE_CHECKING:
@@ -60,7 +59,7 @@ def stopped(frequency: float | None) -> str:
 
 
 @dataclass(frozen=True)
-class TwoPort(ShowsItself):
+class TwoPort:
     """A display between a hand and a virtual environment.
 
     Attributes

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, get_args
 
 from ..base.arguments import choice, count, numbers
-from ..base.shows_itself import ShowsItself
 from .impedance_signal import How
 
 if TYPE_CHECKING:
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Excitation(ShowsItself):
+class Excitation:
     """What shakes the handle while its impedance is measured.
 
     Parameters
@@ -53,7 +52,7 @@ class Excitation(ShowsItself):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Averaging(ShowsItself):
+class Averaging:
     """How much is recorded, and what of it is kept.
 
     Parameters
@@ -84,7 +83,7 @@ class Averaging(ShowsItself):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Safety(ShowsItself):
+class Safety:
     """What the handle of a board may do while its motor shakes it; a simulated handle is free.
 
     Parameters

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.drawing import axis_label, house_style, new_figure, style_of
-from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from .model import WallModel
 
@@ -30,7 +29,7 @@ MOST = 1000
 
 
 @dataclass(frozen=True, eq=False)
-class HybridMotion(ShowsItself):
+class HybridMotion:
     """The exact motion against a wall, at the samples.
 
     Attributes

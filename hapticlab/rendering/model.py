@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.arguments import number
-from ..base.shows_itself import ShowsItself
 from ..device.device import known
 from ..device.hand.hand import Hand
 from ..device.simulated.transition import transition
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class WallModel(ShowsItself):
+class WallModel:
     """Handle, hand and target wall in numbers.
 
     Attributes

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.drawing import house_style, new_figure, style_of
-from ..base.shows_itself import ShowsItself, Tabular
 from ..base.telemetry import Telemetry
 from ..compiler.boards.cost import cost
 from ..compiler.engines.engine import load
@@ -28,7 +27,7 @@ MARKERS = "osD^v*P"
 
 
 @dataclass(frozen=True)
-class VelocityError(ShowsItself):
+class VelocityError:
     """What one estimate says of a record whose velocity is known.
 
     Attributes
@@ -62,7 +61,7 @@ class VelocityError(ShowsItself):
 
 
 @dataclass(frozen=True)
-class VelocityErrors(Tabular):
+class VelocityErrors:
     """Estimators on one record, in the order given; prints a table and plots.
 
     Attributes
@@ -83,10 +82,6 @@ class VelocityErrors(Tabular):
 
     def __getitem__(self, name: str) -> VelocityError:
         return next(row for row in self.rows if row.name == name)
-
-    def _sentence(self):
-        least = min(self.rows, key=lambda row: row.rms)
-        return f"{len(self.rows)} estimates of one velocity, T = {1e3 * self.T:g} ms; the smallest error has {least.name}"
 
     def __str__(self) -> str:
         titles = f"{'velocity':<34} {'rms mm/s':>9} {'lag ms':>9} {'noise mm/s':>10} {'cycles':>8}"

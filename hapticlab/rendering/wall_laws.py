@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Literal
 import sympy as sp
 
 from ..base.arguments import choice
-from ..base.shows_itself import ShowsItself
 from ..errors import AnalysisError
 from ..scene.laws.chapter_laws import wall
 from ..scene.laws.taps import SPRING_LAWS
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class WallLaw(ShowsItself):
+class WallLaw:
     """A wall as a law renders it, and the paddle it needs.
 
     Attributes
@@ -45,7 +44,7 @@ class WallLaw(ShowsItself):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rendering(ShowsItself):
+class Rendering:
     """How laws that are compared render a wall, beside their own formulas.
 
     Parameters

@@ -56,8 +56,8 @@ def substituted(expr, known):
             handle = [a for a in put[d].atoms(sp.Derivative) if isinstance(a.expr, (x, v))]
             if handle:
                 raise SceneError(
-                    f"{d} is the rate of {known[d.expr]}, which holds the acceleration of the handle, and no sample knows "
-                    "it; give the mass a coordinate of its own behind a coupler"
+                    f"{d} is the rate of {known[d.expr]}, which contains the acceleration of the handle, and no sample "
+                    "gives that. Give the mass a coordinate of its own behind a coupler"
                 )
     return expr.xreplace(put)
 
@@ -65,7 +65,9 @@ def substituted(expr, known):
 def _solve(q, written, solved, on_the_way):
     if q in on_the_way:
         loop = " -> ".join(str(a) for a in [*on_the_way[on_the_way.index(q) :], q])
-        raise SceneError(f"{loop}: defined by each other; an equation of motion or a spring between them breaks the loop")
+        raise SceneError(
+            f"{loop}: these are defined by each other. Put an equation of motion or a spring between them to break the loop"
+        )
     if q not in solved:
         for other in sorted(written[q].atoms(sp.Function) & set(written), key=str):
             _solve(other, written, solved, [*on_the_way, q])
@@ -77,7 +79,7 @@ def _check_starts(written, coordinates):
         kind = type(q)
         starts = [kind.initial, kind.rate]
         if q in written and starts != [0, 0]:
-            raise SceneError(f"{kind.__name__} is defined by {q} = {written[q]}, which gives its start too; leave out initial=")
+            raise SceneError(f"{kind.__name__} is defined by {q} = {written[q]}, which also gives its start. Leave out initial=")
         used = next((a for a in written for start in starts if start.has(a)), None)
         if used is not None:
             raise SceneError(f"{kind.__name__} starts at {kind.initial}; write {written[used]} for {used} there")

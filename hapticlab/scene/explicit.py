@@ -8,18 +8,16 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ..base.shows_itself import Typeset
 from ..errors import MassError, SceneError
 from .aliases import definitions, substituted
 from .mechanics.lagrange import Mechanics
 from .notation.checks import applied
 from .notation.derivative import Rate
 from .notation.symbols import t
-from .notation.typeset import typeset
 
 
 @dataclass(frozen=True)
-class ExplicitForm(Typeset):
+class ExplicitForm:
     """``M a = f`` with the difference equations and the outputs beside it.
 
     Attributes
@@ -44,17 +42,6 @@ class ExplicitForm(Typeset):
     force: sp.Expr
     watch: dict
     models: tuple = ()
-
-    def _sentence(self):
-        return f"the equations solved for {len(self.coordinates)} accelerations and {len(self.updates)} signals"
-
-    def _facts(self):
-        return []
-
-    def _equations(self):
-        rows = [sum(m * a for m, a in zip(row, self.unknowns, strict=True)) for row in self.M]
-        lines = [f"{typeset(row)} = {typeset(right)}" for row, right in zip(rows, self.f, strict=True)]
-        return [f"F_e = {typeset(self.force)}", *lines, *(f"{typeset(y)} = {typeset(expr)}" for y, expr in self.updates.items())]
 
     def __str__(self):
         lines = [f"F = {self.force}"]
@@ -143,11 +130,12 @@ def _check_gaps(contacts, orders):
     for c in contacts:
         first = [type(q).__name__ for q in applied([getattr(c, "gap", sp.S.Zero)], "coordinate") if orders.get(q) == 1]
         if first and (not c.is_force or c.force.has(Rate)):
-            asks = "damps by the rate" if c.is_force else "needs the acceleration"
+            asks = "damps with the rate" if c.is_force else "needs the acceleration"
             raise SceneError(
-                f"{c.name}: its gap holds {first[0]}, which has an equation of first order, and its law {asks} of the gap. Take "
-                "a penalty law without damping, hl.contact.penalty(k=...). With found = hl.shapes.track(...), a damped law works "
-                "as forces={q: found.generalized_force(law, q)} in place of the contact"
+                f"{c.name}: its gap contains {first[0]}, which has an equation of first order, and its law {asks} of the "
+                "gap. Use a penalty law without damping, hl.contact.penalty(k=...). With found = hl.shapes.track(...), a "
+                "damped law works "
+                "as forces={q: found.generalized_force(law, q)} instead of the contact"
             )
 
 
@@ -156,8 +144,8 @@ def _check_unmodelled(equations, modelled):
         if any(d.expr == q and d.derivative_count == 2 for e in equations for d in e.atoms(sp.Derivative)):
             name = type(q).__name__
             raise MassError(
-                f"{name} is moved by a Lagrangian, which moves every coordinate it holds, and by an equation of its own; "
-                f"add its energy to the Lagrangian, forces={{{name}: ...}}, and leave the equation out"
+                f"{name} is moved by a Lagrangian, which moves every coordinate in it, and also by an equation of its own. "
+                f"Add the energy of {name} to the Lagrangian, its forces as forces={{{name}: ...}}, and leave out the equation"
             )
 
 
@@ -167,16 +155,16 @@ def _order(q, equations):
     name = type(q).__name__
     if not counts:
         raise MassError(
-            f"no equation determines {name}: none holds its rate or acceleration; "
-            f"add an equation of motion with {name}.diff(t, 2), or define {name} as an expression"
+            f"no equation determines {name}, because none contains its rate or acceleration. Add an equation of motion with "
+            f"{name}.diff(t, 2), or define {name} as an expression"
         )
     if max(counts) > 2:
         raise MassError(f"{name} appears with derivative {max(counts)}; equations of motion go up to the second")
     rate = getattr(type(q), "rate", sp.S.Zero)
     if max(counts) == 1 and rate != 0:
         raise SceneError(
-            f"{name} has an equation of first order, which gives its rate; rate={rate} would be lost: leave it out, "
-            f"or write an equation with {name}.diff(t, 2)"
+            f"{name} has an equation of first order, which gives its rate, so rate={rate} would have no effect. Leave it "
+            f"out, or write an equation with {name}.diff(t, 2)"
         )
     return max(counts)
 
@@ -238,7 +226,5 @@ def _in_order(M, f, columns, coordinates):
 
     if not all(place(row, set()) for row in range(len(columns))):
         missing = next((type(coordinates[column]).__name__ for column, row in row_of.items() if row is None), "?")
-        raise MassError(
-            f"singular mass: no equation is left to determine {missing}; each coordinate needs an equation of its own"
-        )
+        raise MassError(f"singular mass: no equation determines {missing}; each coordinate needs an equation of its own")
     return [M[row_of[column]] for column in columns], [f[row_of[column]] for column in columns]

@@ -35,11 +35,14 @@ def quiet(scene, method, duration=0.03):
 
 
 def test_a_run_that_left_events_out_warns_and_says_so_where_it_prints():
-    words = r"30 of 30 samples left an event unlocated, the first at t = 0 s\. Bodies got inside .*Taylor\(events=8\), .*penalty"
+    words = (
+        r"30 of 30 samples left an event unlocated, the first at t = 0 s\. From t = 0 s bodies overlapped, "
+        r".*Taylor\(events=8\), .*penalty"
+    )
     with pytest.warns(MissedEventWarning, match=words) as told:
         log = PADDLE.run(thrown(), 0.03, method=FEW)
     assert log.fault is None and told[0].filename == __file__
-    assert "not located in 30 of them" in str(log) and f"bodies end {1e3 * log.overlap[-1]:.3g} mm inside each other" in str(log)
+    assert "not located in 30 of them" in str(log) and f"at the end bodies overlap by {1e3 * log.overlap[-1]:.3g} mm" in str(log)
 
 
 def test_with_enough_events_nothing_is_told_and_the_ball_is_where_it_must_be():
@@ -63,7 +66,7 @@ def test_bodies_that_end_inside_each_other_are_told_though_no_event_was_counted(
         channels = {**both, "overlap": overlap}
         return hl.records.Telemetry(t=np.arange(3) * T, **still, T=T, channels=channels, units={"overlap": unit})
 
-    assert "at t = 0.001 s, by 2 mm at most and by 0.5 mm at the end" in missed_words(log([0, 2e-3, 5e-4]))
+    assert "From t = 0.001 s bodies overlapped, by 2 mm at most and by 0.5 mm at the end." in missed_words(log([0, 2e-3, 5e-4]))
     assert "by 0.02 rad at most" in missed_words(log([0, 0.02, 0.01], "rad"))
     assert missed_words(log([0, 1e-4, 0])) == "" == missed_words(log([0, np.nan, np.nan]))  # the handle jumps; a fault says more
 

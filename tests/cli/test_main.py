@@ -455,8 +455,8 @@ def test_a_number_of_ticks_is_whole(capsys):
     [
         ("/dev/no-such-port", "no such port"),
         ("sim://nobody", "no such paddle"),
-        ("socket://127.0.0.1:1", "nothing answers there"),
-        ("magic://x", "no port speaks 'magic'"),
+        ("socket://127.0.0.1:1", "no program answers there"),
+        ("magic://x", "the scheme 'magic' is not known"),
     ],
 )
 def test_a_board_that_is_not_there_is_one_sentence(tmp_path, url, words):
@@ -558,7 +558,7 @@ def test_flash_takes_the_only_board_or_the_one_named(monkeypatch, capsys):
 
 def test_calibrate_stores_what_the_person_agreed_to(monkeypatch, capsys):
     paddle = workbench.paddle(store=nominal("hapkit", ident=9).to_bytes())
-    person = workbench.Scripted(paddle, workbench.STOPS | {"Store this": "yes", "Go on?": "yes"})
+    person = workbench.Scripted(paddle, workbench.STOPS | {"Store these settings": "yes", "Go on?": "yes"})
     monkeypatch.setattr(board_command, "connect", lambda port: paddle)
     monkeypatch.setattr(board_command, "Person", lambda: person)
     monkeypatch.setattr(sys, "stdin", type("Terminal", (), {"isatty": staticmethod(lambda: True)})())

@@ -234,6 +234,6 @@ def test_a_fault_names_the_angle_that_may_have_caused_it():
     assert "beyond 8192 rad, which has no sine in float32" in paddle.run(swept, duration=0.2).fault
     assert "beyond 1e+08 rad, which has no sine in float64" in paddle.run(swept(c=1e11), duration=0.2, dtype="float64").fault
     broken = hl.Scene(force=F0 * sp.sqrt(-1 - (x(n) / u) ** 2))
-    assert paddle.run(broken, duration=0.01).fault.endswith("the motor is off from there on")
+    assert paddle.run(broken, duration=0.01).fault.endswith("the motor is off from then on")
     vibration = F0 * sp.sin(2 * sp.pi * hl.parameters("f", units="Hz", values=250) * t)
     assert paddle.run(hl.Scene(force=vibration), duration=6).fault is None

@@ -141,9 +141,9 @@ def test_stiff_damping_under_an_explicit_step_stops_the_motor(method):
 @pytest.mark.parametrize(
     "stiffness, method, words",
     [
-        (1e5, "rk4", r"top: the contact lasts 2.22 ms .*rk4 needs 10. Take substeps=5, method='taylor'"),
-        (1e30, "verlet", r"lasts 7.02e-13 ms .* verlet needs 10. Take a shorter T, method='taylor'"),
-        (1e30, "taylor", r"needs at most 1: take a shorter T or, for what is linear, method='exact'"),
+        (1e5, "rk4", r"top: the contact lasts 2.22 ms .*rk4 needs 10. Use substeps=5, method='taylor'"),
+        (1e30, "verlet", r"lasts 7.02e-13 ms .* verlet needs 10. Use a shorter T, method='taylor'"),
+        (1e30, "taylor", r"needs at most 1. Use a shorter T or, for what is linear, method='exact'"),
         (-1.0, "taylor", r"k = -1; a contact needs a stiffness k >= 0"),
     ],
 )

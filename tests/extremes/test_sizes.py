@@ -137,7 +137,7 @@ def test_a_paddle_of_any_size_stays_finite(constants):
         (dict(K=math.inf), "K = inf; needs a finite number"),
         (dict(K=-1), "K = -1 N/m; a stiffness needs K >= 0"),
         (dict(b="2 kg"), "b = '2 kg'; needs a quantity in N[*]s/m"),
-        (dict(K=10**400), "K = a number past 1e308; needs a number in N/m"),
+        (dict(K=10**400), "K = a number above 1e308; needs a number in N/m"),
     ],
 )
 def test_a_value_out_of_its_range_is_refused_where_it_is_bound(values, words):
@@ -154,20 +154,20 @@ def test_a_value_out_of_its_range_is_refused_where_it_is_bound(values, words):
         (
             dict(m=1e-300),
             dict(dtype="float64", method="exact", live=()),
-            "rates of z are .* past 1e[+]150.*look at its masses",
+            "rates of z are .* above 1e[+]150.*Check the masses",
         ),
         (
             dict(m=1e-12),
             dict(method="taylor"),
-            r"omega = .* rad/s.*needs at most 1: take a shorter T or, for what is linear",
+            r"omega = .* rad/s.*needs at most 1. Use a shorter T or, for what is linear",
         ),
-        (dict(K=1e5), dict(method="taylor"), r"omega = 1414 rad/s.*take substeps=2$"),
+        (dict(K=1e5), dict(method="taylor"), r"omega = 1414 rad/s.*Use substeps=2$"),
         (dict(), dict(T=0), "T = 0 s; a sampling period needs T > 0"),
         (dict(), dict(T=-1e-3), "T = -0.001 s"),
         (dict(), dict(T=math.nan), "T = nan s"),
         (dict(), dict(T=1e-320), "T = .* is 0 in float32"),
         (dict(), dict(T=1e300), "T = 1e[+]300 s is inf in float32"),
-        (dict(), dict(substeps=10**9), "needs 50000 a period at most; take fewer substeps"),
+        (dict(), dict(substeps=10**9), "a period has at most 50000. Use fewer substeps"),
     ],
 )
 def test_a_size_that_no_program_can_have_is_refused_when_it_is_compiled(values, options, words):
@@ -212,7 +212,7 @@ def test_a_paddle_that_cannot_be_is_refused(constants):
 )
 def test_what_a_step_makes_infinite_stops_with_the_motor_off(scene, method):
     log = paddle(force_max=4.0).run(scene, duration=0.3, method=method)
-    assert "was not finite; the motor is off from there on" in log.fault
+    assert "was not finite; the motor is off from then on" in log.fault
     first = int(log.fault.split()[1])
     assert not log.F[first:].any() and np.isfinite(log.F).all() and np.abs(log.F).max() <= 4.0
     assert np.isfinite(log.x).all()

@@ -92,7 +92,7 @@ def test_what_turns_like_a_motor_meets_the_limit_when_the_page_says(dtype, step)
     if step is None:
         assert log.fault is None
     else:  # float32 adds up 0.4 rad with a rounding each tick
-        assert abs(float(log.fault.split("t = ")[1].split(" s")[0]) - step) < 0.01 and "take dtype='float64'" in log.fault
+        assert abs(float(log.fault.split("t = ")[1].split(" s")[0]) - step) < 0.01 and "use dtype='float64'" in log.fault
     page = (Path(__file__).parents[2] / "docs" / "engines.md").read_text("utf-8")
     largest = TABLES[{"float32": "f32", "float64": "f64"}[dtype]].angle_limit
     apart, seconds = np.spacing(np.nextafter(np.dtype(dtype).type(largest), 0)), largest / 400
@@ -127,7 +127,7 @@ def test_a_force_several_ticks_late_is_stable_up_to_its_limit(periods):
 @pytest.mark.parametrize(
     "force, error, words",
     [
-        (k * x(n - 10**6), ProgramLimitError, "more than 2000 states.*take fewer samples back"),
+        (k * x(n - 10**6), ProgramLimitError, "more than 2000 states.*Use fewer past samples"),
         (k * x(n - 10**18), ProgramLimitError, "more than 2000 states"),
     ],
 )

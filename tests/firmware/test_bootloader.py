@@ -172,8 +172,8 @@ def test_a_cut_leaves_a_board_that_stands_still(connect, tmp_path, page, bytes_o
     flash("test://", old)
     assert heard(board) == {ord("o")}
     cut_at[0] = page
-    state = "stands still with its motor off" if page < 9 else "motor's supply off"  # the ninth is the first page
-    with pytest.raises(PortError, match=f"left during use.*was on the board is gone.*{state}. Flash it again") as caught:
+    state = "is stopped with its motor off" if page < 9 else "motor's supply off"  # the ninth is the first page
+    with pytest.raises(PortError, match=f"disconnected during use.*old firmware is erased.*{state}. Flash it again") as caught:
         flash("test://", new)
     assert caught.value.cause == "left"
     assert stands_still(board) and bytes(board.flash[:PAGE]) == STAND_STILL * 64

@@ -29,4 +29,4 @@ def test_a_frame_damaged_on_the_way_is_told():
 
         paddle.exchange.wait = wait_on_a_bad_line
         _, link = loop_and_link(paddle)
-        assert link.state == "attention" and "1 damaged" in link.found and "another cable" in link.cure
+        assert link.state == "attention" and "1 damaged" in link.found and "a different, short cable" in link.cure

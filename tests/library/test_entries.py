@@ -60,7 +60,7 @@ def test_it_compiles_runs_and_opens_live_as_it_comes(entry):
     assert paddle.run(scene, duration=0.02, progress=False).fault is None
     hl.live(paddle, scene).close()
     located = [c for model in scene.explicit().models for c in model.contacts]
-    told = [note for note in program.notes if "taken automatically" in note]
+    told = [note for note in program.notes if "chosen automatically" in note]
     assert program.facts.get("method") == ("taylor" if located else "rk4" if scene.coordinates else None)
     assert len(told) == bool(scene.coordinates) and all(note in str(program) for note in told)
 

@@ -125,7 +125,11 @@ def test_a_limit_at_rest_is_said_in_words():
         ({"delay": -1e-3}, "delay = -0.001 s; a device needs delay >= 0: a force cannot come before its sample"),
         ({"delay": 1.0}, "at most 200 periods"),
         ({"law": "foh"}, f"law = 'foh'; needs one of {', '.join(TAPS)}"),
-        ({"b": "thick"}, "b = 'thick'; a device needs b >= 0: its damping pays for the hold, as a number in N s/m"),
+        (
+            {"b": "thick"},
+            "b = 'thick'; a device needs b >= 0: its damping dissipates the energy that the hold generates. "
+            "Give a number in N s/m",
+        ),
     ],
 )
 def test_bad_arguments_are_named_with_value_and_unit(change, words):

@@ -61,7 +61,7 @@ COARSE = hl.measure.Search(first=300.0, tolerance=0.1)
 
 
 def test_more_damping_does_not_look_worse_behind_an_encoder():
-    """100 um a count, no dry friction: one count buzzes at any damping, and the unstable border is the exact limit's."""
+    """100 um per count, no dry friction: one count buzzes at any damping, and the unstable border is the exact limit's."""
     little, much = (largest_stiffness(heavy(b, counts_per_metre=1e4), starts=ONE, search=COARSE) for b in (0.5, 8.0))
     assert 0.8 * 5006 < little.unstable.lowest < 5006 and 0.8 * 20097 < much.unstable.lowest < 20097
     for found in (little, much):  # steps of K count; a square wave of them has the power of a sinusoid of K count / sqrt(2)

@@ -42,7 +42,7 @@ def test_a_gear_costs_what_its_definition_costs():
 @pytest.mark.parametrize(
     ("equations", "said"),
     [
-        ([sp.Eq(y, 2 * w), sp.Eq(w, z + y), sp.Eq(z, w)], r"y\(t\) -> w\(t\) -> y\(t\): defined by each other"),
+        ([sp.Eq(y, 2 * w), sp.Eq(w, z + y), sp.Eq(z, w)], r"y\(t\) -> w\(t\) -> y\(t\): these are defined by each other."),
         ([sp.Eq(y, z), sp.Eq(y, 2 * z)], "two equations define y"),
     ],
 )
@@ -53,7 +53,7 @@ def test_what_is_not_defined(equations, said):
 
 def test_starts_are_not_lost():
     a = hl.coordinate("a", unit="m", initial=1)
-    with pytest.raises(SceneError, match="a is defined by .* leave out initial"):
+    with pytest.raises(SceneError, match="a is defined by .* Leave out initial="):
         definitions([sp.Eq(a, z)], (a, z))
     c = hl.coordinate("c", unit="m", initial=2 * y)
     with pytest.raises(SceneError, match="c starts at 2.*; write z"):

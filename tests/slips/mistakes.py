@@ -113,7 +113,7 @@ CELLS = {
     "wall.k = 200": ("wall.k = 200", "keeps its values", r"wall\(k=\.\.\.\)"),
     "wall.values[k] = 200": ("wall.values['k'] = 200", "keeps its values", r"wall\(k=\.\.\.\)"),
     "a plain symbol": ("hl.Scene(force=sp.Symbol('q')*x(n))", "plain SymPy symbol", r"q = hl\.parameters"),
-    "a plot of a scene": ("hl.plot(wall)", "plot of a Scene", r"log = paddle\.run"),
+    "a plot of a scene": ("hl.plot(wall)", "plot was given a Scene", r"log = paddle\.run"),
     "scene and paddle swapped": ("hl.live(wall, paddle)", "is not a scene", r"hl\.wall\(\)"),
     "no T": ("hl.compile(wall)", "lacks T", r"hl\.compile\(scene, T="),
     "no values": ("paddle.run(hl.wall(), 0.1)", r"no value for k \[N/m\]", r"scene\(k="),

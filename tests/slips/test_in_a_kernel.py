@@ -35,5 +35,5 @@ def test_a_notebook_keeps_the_own_line_and_the_sentence(tmp_path, monkeypatch):
     )
     assert "Traceback (most recent call last)" in whole and "in agree(" in whole
     assert foreign.startswith("TypeError in Cell In[4], line 1\n    if x(n) >= x_o:\n\n`if` has to know at once")
-    assert warned.startswith("Cell In[5]:1: UnusualValueWarning: x_o = 10 m: a paddle reaches some 0.1 m. If you mean 10 mm")
+    assert warned.startswith("Cell In[5]:1: UnusualValueWarning: x_o = 10 m: a paddle reaches about 0.1 m. If you mean 10 mm")
     assert other.startswith("-----") and "KeyError: 'a'" in other

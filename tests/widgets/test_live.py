@@ -600,7 +600,7 @@ def test_what_makes_no_sense_is_refused_at_once(given, word):
     [
         ({"intent": 5}, "needs an intent"),
         ({"intent": lambda t: "a"}, "needs an intent"),
-        ({"intent": lambda t: np.nan * t}, "one finite place"),
+        ({"intent": lambda t: np.nan * t}, "one finite position"),
         ({"duration": 1e9}, "duration >= 0.01 and <= 600"),
         ({"duration": 0}, "duration = 0"),
     ],

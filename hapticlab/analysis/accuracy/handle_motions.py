@@ -11,7 +11,6 @@ import sympy as sp
 
 from ...base.arguments import number
 from ...base.drawing import STYLES, house_style, new_figure
-from ...base.shows_itself import ShowsItself
 from ...compiler.algebra.graph import Graph, driven
 from ...errors import AnalysisError
 from ...scene.notation.derivative import Partial
@@ -32,7 +31,7 @@ ONSET = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class HandleMotion(ShowsItself):
+class HandleMotion:
     """A motion x(t) of the handle, as an expression of time.
 
     Attributes

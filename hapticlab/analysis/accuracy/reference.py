@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.shows_itself import ShowsItself
 from ...compiler.algebra.graph import Graph
 from ...compiler.algebra.graph import driven as turning
 from ...compiler.engines.engine import load
@@ -44,7 +43,7 @@ EVERY = 16
 
 
 @dataclass(frozen=True, eq=False)
-class Reference(ShowsItself):
+class Reference:
     """F(t) of a scene whose handle moves as given, without sampling, hold and method.
 
     Attributes

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import TYPE_CHECKING, Literal
 
-from ...base.shows_itself import ShowsItself
 from ...compiler.events.taylor_method import Taylor
 from ...compiler.ir.options import choice, period
 from ...compiler.methods.chosen_method import chosen_method
@@ -31,7 +30,7 @@ def several(given):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tried(ShowsItself):
+class Tried:
     """The settings that a trade-off tries: every combination of these.
 
     Parameters
@@ -71,7 +70,7 @@ class Tried(ShowsItself):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Conditions(ShowsItself):
+class Conditions:
     """What is the same for every setting of a trade-off: how the handle moves, and what the program is asked for.
 
     Parameters

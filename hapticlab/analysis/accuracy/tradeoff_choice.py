@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ...base.shows_itself import ShowsItself
 from ...errors import AnalysisError
 from .tradeoff_rows import NOT_TRIED, REFUSED, TOO_LARGE, UNSURE, Row, percent
 
@@ -21,7 +20,7 @@ COARSEST = 0.1
 
 
 @dataclass(frozen=True)
-class Configuration(ShowsItself):
+class Configuration:
     """What was chosen: ``hl.compile(scene, **configuration.options)``.
 
     Attributes
@@ -58,7 +57,7 @@ class Configuration(ShowsItself):
 
 
 @dataclass(frozen=True)
-class NotFeasible(ShowsItself):
+class NotFeasible:
     """Nothing meets what was asked; false where a truth is asked of it.
 
     Attributes

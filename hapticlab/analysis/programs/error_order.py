@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import sympy as sp
 
-from ...base.shows_itself import ShowsItself
 from ...compiler.algebra.first_sample import numbers
 from ...compiler.algebra.graph import Graph, driven
 from ...compiler.ir.channels import short
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Order(ShowsItself):
+class Order:
     """The order of an error in T, with what sets it.
 
     Attributes

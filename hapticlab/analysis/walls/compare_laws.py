@@ -10,7 +10,6 @@ import numpy as np
 
 from ...base.arguments import count, number
 from ...base.drawing import COLD, WARM, house_style, new_figure
-from ...base.shows_itself import ShowsItself, Tabular
 from ...base.telemetry import Telemetry
 from ...device.simulated.closed_loop import link, load_linked
 from ...device.simulated.simulated_paddle import SimulatedPaddle
@@ -29,7 +28,7 @@ APPROACH = 4
 
 
 @dataclass(frozen=True)
-class Bounce(ShowsItself):
+class Bounce:
     """What a law makes of one bounce, over entries at every part of a period.
 
     Attributes
@@ -58,7 +57,7 @@ class Bounce(ShowsItself):
 
 
 @dataclass(frozen=True)
-class LawComparison(Tabular):
+class LawComparison:
     """One bounce under every law.
 
     Attributes

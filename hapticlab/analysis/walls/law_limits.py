@@ -10,7 +10,6 @@ import numpy as np
 
 from ...base.arguments import number
 from ...base.drawing import COLD, house_style, new_figure, scale_axis
-from ...base.shows_itself import ShowsItself, Tabular
 from ...device.hand.hand import Hand
 from ...errors import AnalysisError, HapticlabError
 from ...rendering.wall_laws import LAWS, RENDERING, Rendering, wall_law
@@ -32,7 +31,7 @@ LONGEST = 32.0
 
 
 @dataclass(frozen=True)
-class LawLimit(ShowsItself):
+class LawLimit:
     """The stiffest wall that stood, and what happened beyond.
 
     Attributes
@@ -56,7 +55,7 @@ class LawLimit(ShowsItself):
 
 
 @dataclass(frozen=True)
-class LawLimits(Tabular):
+class LawLimits:
     """The stiffest wall of every law.
 
     Attributes

@@ -79,8 +79,8 @@ def complementarity(W, q, touching=None, names=None):
         if len(island) > MOST_TOGETHER:
             named = ", ".join(names[i] for i in island) if names else f"{len(island)} contacts"
             raise SceneError(
-                f"{named} act on each other at once; needs at most {MOST_TOGETHER} for exact reactions (every set of them "
-                "is tried); give some of them a penalty or hunt_crossley law"
+                f"{named} act on each other at the same time; exact reactions need at most {MOST_TOGETHER} of them, because "
+                "every set is tried. Give some of them a penalty or hunt_crossley law"
             )
         part = _enumerate([[W[i][j] for j in island] for i in island], [q[i] for i in island], [touching[i] for i in island])
         for i, value in zip(island, part, strict=True):

@@ -60,11 +60,14 @@ class Translator:
         """Return a message that names the smallest part that took most of the instructions."""
         now = len(self.builder.instructions)
         grown = [(expr, now - before) for expr, before in self.started if now - before > MOST_INSTRUCTIONS / 2]
-        reason = "they are of many parts, none of which is most of them; take fewer coordinates, contacts or substeps; "
-        reason += "constraints take the least with enforce='embed', and a method of few stages, such as 'rk4', less than 'taylor'"
+        reason = "they come from many parts, none of which is the largest. Use fewer coordinates, contacts or substeps; "
+        reason += (
+            "constraints need the fewest with enforce='embed', and a method of few stages, such as 'rk4', needs fewer "
+            "than 'taylor'"
+        )
         if grown:
             expr, size = grown[-1]
-            reason = f"{size} of them for {str(expr)[:60]}...; write it with fewer terms, or not expanded in symbols"
+            reason = f"{size} of them are for {str(expr)[:60]}...; write it with fewer terms, or do not expand it in symbols"
         return f"more than {MOST_INSTRUCTIONS} instructions: {reason}"
 
     def _translate(self, expr):
@@ -80,7 +83,7 @@ class Translator:
         if isinstance(expr, tuple(_FUNCTIONS)):
             return _FUNCTIONS[next(kind for kind in _FUNCTIONS if isinstance(expr, kind))](*map(self, expr.args))
         names = ", ".join(sorted(kind.__name__ for kind in _FUNCTIONS))
-        what = f"unknown function {type(expr).__name__} in {expr}" if expr.is_Function else f"no meaning for {expr} here"
+        what = f"unknown function {type(expr).__name__} in {expr}" if expr.is_Function else f"{expr} has no meaning here"
         raise ProgramError(f"{what}; the functions that run at the sample rate are {names}, when, delay and powers")
 
     def _number(self, expr):

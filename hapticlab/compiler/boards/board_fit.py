@@ -65,7 +65,7 @@ def fit(scene, board="uno", *, every=1, edges_per_second=0.0, promise=False, **o
     else:
         offers = [_seldom(taken, promise, beside), _slower(taken, promise)]
     offers = [o for o in offers if o][:MOST_NAMED]
-    cure = "; fits " + ", or ".join(offers) if offers else "; simplify the scene: nothing cheaper was found that fits"
+    cure = "; fits " + ", or ".join(offers) if offers else "; simplify the scene, because no cheaper options were found that fit"
     raise ProgramLimitError(_what(taken, promise) + cure)
 
 
@@ -128,7 +128,7 @@ def _seldom(taken, promise, beside):
     for ticks in (2, 5, 10):
         found = cost(taken.program, taken.board, **beside | {"every": max(beside["every"], ticks)})
         if found.promised if promise else found.fits:
-            return f"with every={ticks} (a sample of telemetry in {ticks} ticks)"
+            return f"with every={ticks} (one sample of telemetry per {ticks} ticks)"
     return None
 
 

@@ -12,8 +12,6 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ...base.grid import Grid
-from ...base.shows_itself import ShowsItself
 from ...errors import ProgramError
 from ..engines.bytecode import encode, instructions_of, layout, words_of
 from ..engines.skipped_arms import Arm, Demand
@@ -33,7 +31,7 @@ OWN_CHANNELS = 2
 
 
 @dataclass(frozen=True)
-class Cost(ShowsItself):
+class Cost:
     """What a program takes of a board; printing it says so in words.
 
     Attributes
@@ -166,16 +164,14 @@ class Cost(ShowsItself):
         rest, needed = self.longest(promise) - cycles, self.T_needed(promise)
         return (
             f"{cycles / self.board.hz * 1e3:.2g} ms of a {self.T * 1e3:g} ms period on {self.board.name} "
-            f"({cycles / self.period:.0%}, {'promised bound' if promise else 'typical'}), beside up to "
-            f"{rest / self.board.hz * 1e3:.2g} ms for the rest of the step and what the link interrupts it for; "
-            f"with telemetry it needs T >= {needed * 1e3:.3g} ms"
+            f"({cycles / self.period:.0%}, {'guaranteed bound' if promise else 'typical'}), in addition to up to "
+            f"{rest / self.board.hz * 1e3:.2g} ms for the rest of the step and for interruptions by the link; with "
+            f"telemetry it needs T >= {needed * 1e3:.3g} ms"
         )
 
     def plot(self):
         """Return a figure: what a step takes of its period, typically and at most."""
         return plot_cost(self)
-
-    hidden = ("board", "step", "traffic")
 
     def __str__(self):
         lines = [
@@ -184,11 +180,11 @@ class Cost(ShowsItself):
         ]
         if self.period:
             most = math.ceil(self.traffic.interrupts(self.T))
-            encoder = f"{self.edges:.0f} cycles a second" if self.edges else "none counted"
+            encoder = f"{self.edges:.0f} cycles per second" if self.edges else "none counted"
             lines += [
                 f"  scene      {self.typical} cycles, at most {self.bound}; the first tick up to {self.first} more",
                 *(
-                    [f"  cases      {self.of_cases} of these for cases that may not hold, computed all the same"]
+                    [f"cases      {self.of_cases} of these for cases that may not hold but are computed in any case"]
                     if self.of_cases
                     else []
                 ),
@@ -205,9 +201,9 @@ class Cost(ShowsItself):
     def verdict(self):
         """One of three answers, in words."""
         if self.promised:
-            return "fits, promised for any operands"
+            return "fits, guaranteed for any operands"
         if self.fits:
-            return "fits; with denormal or cancelling operands throughout a step could be late, which the board counts"
+            return "fits; a step could be late if all its operands are denormal or cancel, and the board counts late steps"
         return "does not fit"
 
 
@@ -254,14 +250,6 @@ def costs(program, boards, *, every=1, edges_per_second=0.0):
     data = {bits: encode(program, word_bits=bits) for bits in {board.word_bits for board in given}}
     far = far_angles(program) if any(board.hz for board in given) else []
     return [_cost(program, board, data[board.word_bits], far, every, edges_per_second) for board in given]
-
-
-def on_boards(program):
-    """The table of what a program takes on every board whose time is limited."""
-    found = costs(program, [board for board in BOARDS.values() if board.hz])
-    columns = {"board": [one.board.name for one in found], "of the period": [f"{one.share:.0%}" for one in found]}
-    columns["bytes"] = [f"{one.arena} of {one.board.arena}" for one in found]
-    return Grid({**columns, "verdict": [one.verdict for one in found]})
 
 
 def _cost(program, given, data, far, every, edges_per_second):

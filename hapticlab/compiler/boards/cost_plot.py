@@ -22,7 +22,7 @@ def plot_cost(cost):
         Time is not limited on this board.
     """
     if not cost.period:
-        raise ProgramError(f"{cost.board.name}: its time is not limited, so there is no period to fill; ask for board='uno'")
+        raise ProgramError(f"{cost.board.name}: its time is not limited, so there is no period to fill. Give board='uno'")
     typical, most = (cost.typical, cost.step[0], cost.frame), (cost.bound, cost.step[2], cost.longest(True))
     rest = most[2] - most[0] - most[1]
     parts = (

@@ -63,7 +63,7 @@ def enforcement(
     assembly = _assembled(constraints, coordinates, tuple(start.items()))
     definite = _definite(M) if definite is None else definite
     weight = 0.0 if definite or M is None else _weight(M, assembly, coordinates)
-    reason = "a constraint of rates has none" if len(positions) < len(constraints) else ""
+    reason = "a constraint on rates has none" if len(positions) < len(constraints) else ""
     if enforce in ("auto", "embed") and not reason:
         try:
             embedding, note = _closed(constraints, coordinates, tuple(start.items()))
@@ -76,8 +76,8 @@ def enforcement(
         raise SceneError(f"no closed form for the constraints: {reason}. Use enforce='auto' or 'kkt'")
     if M is not None and not np.allclose(M, np.transpose(M), rtol=1e-9, atol=1e-12 * np.abs(M).max()):
         raise MassError(
-            "the mass matrix is not symmetric, so its rows are no generalized forces, and a reaction has no place in them; "
-            "take the equations from hl.mechanics.lagrange"
+            "the mass matrix is not symmetric, so its rows are not generalized forces, and no reaction can be added to "
+            "them. Use the equations of hl.mechanics.lagrange"
         )
     check_start(assembly, constraints, positions, coordinates, start)
     faults = check_rank(assembly, constraints, coordinates, real)
@@ -122,7 +122,7 @@ def _check_wraps(wraps, used):
         dummy = sp.Dummy()
         of_turns = {f: dummy for e in used for f in e.atoms(sp.sin, sp.cos) if f.has(q)}
         if any(e.xreplace({**of_turns, q.diff(t): dummy}).has(q) for e in used):
-            raise NotClosed(f"{name(q)} turns on and on, and is used other than in a cosine or sine")
+            raise NotClosed(f"{name(q)} turns without end, and is used outside a cosine or sine")
 
 
 def _note_of(embedding):
@@ -134,14 +134,14 @@ def _note_of(embedding):
 def _followers(assembly, positions, constraints, coordinates, real):
     """The coordinates to solve for: those that the constraints determine best where they do it worst."""
     if len(positions) < len(constraints):
-        raise SceneError("enforce='numeric' solves constraints of positions; one of rates needs enforce='kkt'")
+        raise SceneError("enforce='numeric' solves constraints on positions; a constraint on rates needs enforce='kkt'")
     choices = list(itertools.combinations(range(len(coordinates)), len(constraints)))[:MOST_CHOICES]
     best = max(choices, key=lambda columns: np.min(assembly.weakness(assembly.reached, list(columns))))
     followers = [coordinates[k] for k in best]
     value, q = assembly.weakest(list(best))
     if value < SMALLEST[real]:
         raise SceneError(
-            f"no coordinates follow the others everywhere: even {names(followers)} have a dead centre, at "
+            f"no coordinates can follow the others everywhere: even {names(followers)} have a dead centre, at "
             f"{shown_at(coordinates, q)}. Use enforce='kkt'"
         )
     return followers

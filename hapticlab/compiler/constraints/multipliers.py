@@ -132,7 +132,9 @@ def largest_feedback(method, most=100.0):
     if isinstance(method, Taylor):
         return 1.0
     if _radius(method, 1e-3) >= 1:
-        raise SceneError(f"{method.name} does not damp a drift at any alpha; take another method, or the projection")
+        raise SceneError(
+            f"{method.name} does not damp a drift at any alpha. Use another method, or the projection, enforce='kkt'"
+        )
     low = high = 1e-3
     while high < most and _radius(method, high) < 1:
         low, high = high, high * 1.05
@@ -156,5 +158,5 @@ def check_feedback(alpha, method, h):
     if not 0 < alpha < limit:
         raise SceneError(
             f"alpha = {alpha:g} 1/s: with {method.name} at steps of {h:g} s Baumgarte's feedback needs "
-            f"0 < alpha < {limit:.4g} 1/s. Take half of that, smaller steps, or the projection, enforce='kkt'"
+            f"0 < alpha < {limit:.4g} 1/s. Use half of that, smaller steps, or the projection, enforce='kkt'"
         )

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ...scene.contact.contact import Contact
 from ...scene.notation.amount import number_of
@@ -55,7 +54,7 @@ class Pairs:
     ranges: dict = field(hash=False)
 
 
-class Contacts(ShowsItself, tuple):
+class Contacts(tuple):
     """Contacts between bodies; a tuple, with what was left out.
 
     Attributes
@@ -95,12 +94,10 @@ class Contacts(ShowsItself, tuple):
         """
         return {name: number_of(d) / T for name, d in self.thickness.items()}
 
-    hidden = ("thickness", "places", "values")
-
     def __str__(self):
         lines = [f"{len(self)} contacts: {', '.join(c.name for c in self) or 'none'}"]
         lines += [f"left out {d.first} and {d.second}: {d.why}" for d in self.dropped]
-        lines += [f"while {q} stays within {low:g} and {high:g}" for q, (low, high) in self.ranges.items()]
+        lines += [f"while {q} stays between {low:g} and {high:g}" for q, (low, high) in self.ranges.items()]
         return "\n".join(lines)
 
 
@@ -168,8 +165,8 @@ def contacts_between(
             thickness[name] = a.shape.thickness + b.shape.thickness
             if thickness[name] == 0:
                 warnings.warn(
-                    f"{a.name} and {b.name} have no thickness: between two samples they pass through each other at any "
-                    "speed; give one of them a radius, such as hl.shapes.Capsule",
+                    f"{a.name} and {b.name} have no thickness, so they can pass through each other between two samples at "
+                    "any speed. Give one of them a radius, such as hl.shapes.Capsule",
                     stacklevel=2,
                 )
     check_apart(made, values or {})
@@ -251,7 +248,7 @@ def _reason(a, b, boxes, close, ignored, ranges):
     apart, _ = ranges(number_of(sp.expand(b.x - a.x) ** 2 + sp.expand(b.y - a.y) ** 2))
     reach = _reach(a, ranges) + _reach(b, ranges)
     if math.sqrt(max(apart, 0.0)) > reach:
-        return f"their origins stay at least {math.sqrt(apart):.6g} m apart, and they reach {reach:.6g} m"
+        return f"their origins stay at least {math.sqrt(apart):.6g} m apart, and their radii add up to {reach:.6g} m"
     return None
 
 
@@ -277,7 +274,7 @@ def _checked(bodies):
     names = [b.name for b in bodies]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice:
-        raise SceneError(f"two bodies are called {twice}; give each a name of its own, shape.at(..., name='{twice}_2')")
+        raise SceneError(f"two bodies have the name {twice}; give each a name of its own, shape.at(..., name='{twice}_2')")
     return bodies
 
 
@@ -294,8 +291,8 @@ def check_apart(contacts, values):
         depth = -(numbers([contact.gap], values) or [0.0])[0]
         if depth > TOUCHING:
             raise SceneError(
-                f"{contact.name}: the bodies start {depth:.4g} m in each other; start them apart (initial=), or leave the "
-                "pair out: ignore=[(one, other)]"
+                f"{contact.name}: at the start the bodies overlap by {depth:.4g} m; start them apart (initial=), or leave "
+                "out the pair: ignore=[(one, other)]"
             )
 
 

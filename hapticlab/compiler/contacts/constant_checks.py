@@ -114,8 +114,8 @@ class _Constant:
         first = live[0]
         shown = f"{self.part} = {self.written}" if self.written != first else self.part
         raise SceneError(
-            f"{self.where}: {shown} lies anywhere in {ends[0]:.4g}..{ends[1]:.4g} while {names} may be set, and "
-            f"{self.why}: {self._needs()} everywhere. Declare ranges that keep it so, such as hl.parameters('{first.name}', "
+            f"{self.where}: {shown} can reach any value in {ends[0]:.4g}..{ends[1]:.4g} while {names} is live, and "
+            f"{self.why}: {self._needs()} everywhere. Declare ranges that ensure this, such as hl.parameters('{first.name}', "
             f"units='{first.unit}', ranges=(0, {1 if self.part == 'e' else 5})), or leave {names} out of live="
         )
 

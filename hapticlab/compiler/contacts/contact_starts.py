@@ -45,8 +45,8 @@ def _check_apart(contact, form, values):
     unit = "m" if contact.unit == "N" else "rad"
     where = ", with the handle at 0" if contact.gap.has(x) else ""
     raise SceneError(
-        f"{contact.name}: gap = {contact.gap} is {-depth:.4g} {unit} at the start{where}: the bodies overlap; a gap is > 0 "
-        "apart: turn its sign round, or start elsewhere (initial=)"
+        f"{contact.name}: gap = {contact.gap} is {-depth:.4g} {unit} at the start{where}: the bodies overlap. A gap is > 0 "
+        "where the bodies are apart: change its sign, or start elsewhere (initial=)"
     )
 
 
@@ -78,5 +78,5 @@ def _check_friction(rub, values):
     if breaking < sliding:
         raise SceneError(
             f"{rub.name}: breakaway = {rub.breakaway} is below coulomb = {rub.coulomb} at the start, {breaking:.4g} < "
-            f"{sliding:.4g}; breaking away takes at least the sliding force"
+            f"{sliding:.4g}; a breakaway force is at least as large as the sliding force"
         )

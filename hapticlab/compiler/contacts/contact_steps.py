@@ -129,6 +129,6 @@ def check_contact_steps(contact, k, W, h, T, speed=1.0, method="rk4"):
     at = f" at {speed:g} m/s" if contact.contact_law.speed_matters else ""
     raise SceneError(
         f"{contact.name}: the contact{at} lasts {1e3 * lasts:.3g} ms (k = {k:g}, effective mass {1 / W:.3g}), which is "
-        f"{lasts / h:.1f} steps of {1e3 * h:g} ms; {method} needs {STEPS_PER_CONTACT}. Take {more}, "
-        "method='taylor' (which locates touch and leave), or a softer contact"
+        f"{lasts / h:.1f} steps of {1e3 * h:g} ms; {method} needs {STEPS_PER_CONTACT}. Use {more}, method='taylor' (which "
+        "locates touch and leave), or a softer contact"
     )

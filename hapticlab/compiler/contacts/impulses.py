@@ -193,8 +193,8 @@ def check_rest_speed(rest_speed, acceleration, T, name):
     if rest_speed < needed:
         raise SceneError(
             f"{name}: rest_speed = {rest_speed:g} m/s; needs at least a T/2 = {needed:g} m/s, with the acceleration "
-            f"a = {acceleration:g} m/s^2 that closes the gap and T = {T:g} s: slower rebounds would be back more than "
-            "once a period; raise rest_speed, shorten T, or leave rest_speed out"
+            f"a = {acceleration:g} m/s^2 that closes the gap and T = {T:g} s: slower rebounds would come back more than "
+            "once per period. Raise rest_speed, shorten T, or leave out rest_speed"
         )
 
 

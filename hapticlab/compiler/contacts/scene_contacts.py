@@ -85,8 +85,8 @@ class InstantContacts:
         if len(touching) < 2 or not any(c.gap.has(x(t)) for c in touching):
             return ()
         where = (
-            f"no force keeps contacts apart ({', '.join(c.name for c in touching)}): the handle presses a body "
-            "against something that does not give; use penalty, or a coupler between handle and body"
+            f"no force keeps contacts apart ({', '.join(c.name for c in touching)}): the handle presses a body against "
+            "something that does not yield. Use penalty, or a coupler between handle and body"
         )
         return (UndefinedForceNote(where),)
 
@@ -214,14 +214,14 @@ def unfelt(form):
     for c in (c for model in form.models for c in model.contacts if not isinstance(c, friction)):
         if c.is_located and c.gap.has(x(t)) and c.impulse not in read:
             pulse = f"hl.contact.felt_impulse({c.name}, tau='5 ms') makes them felt"
-            yield f"{c.name} acts by impulses, which {c.name}.force does not hold; {pulse}"
+            yield f"{c.name} acts by impulses, which {c.name}.force does not contain; {pulse}"
 
 
 def _check_names(elements):
     names = [e.name for e in elements]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice:
-        raise SceneError(f"two contacts are called {twice}; give each a name of its own, name='...'")
+        raise SceneError(f"two contacts have the name {twice}; give each a name of its own, name='...'")
 
 
 def _order(contacts):
@@ -233,7 +233,7 @@ def _order(contacts):
     rubbing = [c.name for c in contacts if c.contact_law.mu != 0]
     if rubbing and order == "simultaneous" and len(contacts) > 1:
         raise SceneError(
-            f"{rubbing[0]}: friction in impacts at several contacts at once has no unique outcome; take order='sequential', "
+            f"{rubbing[0]}: friction in impacts at several contacts at once has no unique outcome. Use order='sequential', "
             "or mu = 0"
         )
     return order

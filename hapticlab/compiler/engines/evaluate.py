@@ -63,9 +63,9 @@ def evaluate(
     T, position = program.T, given["x"]
     wanted = [c.name for c in program.inputs]
     if "v" in wanted and v is None:
-        raise ProgramError(f"{program.name} was compiled with velocity='measured'; give v=, one value a sample")
+        raise ProgramError(f"{program.name} was compiled with velocity='measured'; give v=, one value per sample")
     if v is not None and (len(given["v"]) != len(position) or "v" not in wanted):
-        cure = "give as many values as x has" if "v" in wanted else "it estimates v from x; leave v out, or watch it"
+        cure = "give as many values as x has" if "v" in wanted else "the program estimates v from x. Leave out v, or watch it"
         raise ProgramError(f"{program.name}: v has {len(given['v'])} values, x {len(position)}; {cure}")
     rows = np.column_stack([given[name] for name in wanted]) if wanted else None
     numbers = _values(program, values)
@@ -82,7 +82,7 @@ def evaluate(
 def _column(name, given):
     array = np.asarray(given)
     if array.dtype.kind not in "iuf" or array.ndim != 1 or not array.size or not np.isfinite(array).all():
-        raise ProgramError(f"{name} has shape {array.shape}; needs one finite number a sample, x=[0, 0.001, 0.002]")
+        raise ProgramError(f"{name} has shape {array.shape}; needs one finite number per sample, x=[0, 0.001, 0.002]")
     return array.astype(float)
 
 
@@ -91,6 +91,6 @@ def _values(program, given):
     declared = {c.name: Parameter(c.name, c.unit, c.low, c.high) for c in program.parameters}
     if unknown := sorted(given.keys() - declared.keys()):
         known = ", ".join(declared) or "none"
-        raise ParameterError(f"{unknown[0]} is no live parameter of {program.name}; it has {known}")
+        raise ParameterError(f"{unknown[0]} is not a live parameter of {program.name}. It has {known}")
     values = dict(zip(declared, program.values, strict=True))
     return values | {name: declared[name].check(value) for name, value in given.items()}

@@ -16,7 +16,7 @@ from ...errors import EngineMissingError
 from . import toolchain
 
 PACKAGE = Path(__file__).resolve().parents[2]
-INSTEAD = 'engine="interpreter" runs without it, and hl.SimulatedPaddle stands in for sim://'
+INSTEAD = 'engine="interpreter" runs without it, and hl.SimulatedPaddle replaces sim://'
 CURE = f"install a C compiler, or do: pip install ziglang; {INSTEAD}"
 
 
@@ -77,8 +77,8 @@ def _make_folder(folder):
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise EngineMissingError(
-            f"the firmware's library is kept in {folder}, which is not to be written ({error.strerror}); "
-            f"set XDG_CACHE_HOME to a folder of yours; {INSTEAD}"
+            f"the firmware's library is kept in {folder}, which cannot be written ({error.strerror}). Set XDG_CACHE_HOME to "
+            f"a folder of yours; {INSTEAD}"
         ) from error
 
 

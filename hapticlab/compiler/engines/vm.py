@@ -49,7 +49,7 @@ class Vm:
             self.bytes, len(self.bytes), *memory, ticks, every, lanes, states is not None, *arrays
         )
         if verified:
-            raise ProgramError(f"{self.program.name}: the virtual machine refuses it: {meaning(verified)}")
+            raise ProgramError(f"{self.program.name}: the virtual machine rejects it: {meaning(verified)}")
         self.faults = tuple(meaning(f) if f else None for f in faults)
         return outputs, carried
 

@@ -91,8 +91,8 @@ def motion_of(builder, rates, second, first=0, events=None):
     parts = iter(values[len(a) + len(ds) :])
     if any(r.level == 2 and {leaf.id for leaf in s} & {*reachable(builder.instructions, [r.measure.id])} for r in given):
         raise ProgramError(
-            "the gap of a contact holds a coordinate of first order, whose acceleration no equation gives; a gap is made of "
-            "coordinates with masses, the handle and time: give that coordinate a mass, or use a penalty law"
+            "the gap of a contact contains a coordinate of first order, whose acceleration no equation gives. A gap depends "
+            "on coordinates with masses, the handle and time: give that coordinate a mass, or use a penalty law"
         )
     given = [Reaction(r.leaf, next(parts), r.level, next(parts), next(parts), r.lean, r.side) for r in given]
     guards = hidden(guards, found, values)

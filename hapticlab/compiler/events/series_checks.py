@@ -176,12 +176,12 @@ def check_step(omega, T, substeps, name, live=()):
     """
     if omega * T / substeps > 1.0:
         shown = ", ".join(f"{parameter} = {live[parameter]:g}" for parameter in live)
-        where = f"at {shown}, to which it may be set while it runs, " if live else ""
+        where = f"at {shown}, a value that is allowed while it runs, " if live else ""
         cure = f", declare a narrower range, or leave {', '.join(live)} out of live=" if live else ""
         more = proposed(omega * T, "a shorter T or, for what is linear, method='exact'")
         raise LongStepError(
             f"{name}: {where}its fastest part turns with omega = {omega:.4g} rad/s, by omega T/substeps = "
-            f"{omega * T / substeps:.3g} rad in a step of {T / substeps:g} s; method='taylor' needs at most 1: take {more}{cure}",
+            f"{omega * T / substeps:.3g} rad in a step of {T / substeps:g} s; method='taylor' needs at most 1. Use {more}{cure}",
             math.ceil(omega * T) if omega * T <= MOST_SUBSTEPS else None,
         )
 
@@ -295,7 +295,7 @@ def check_smooth(motion, name):
     for p in reachable(instructions, [rate.id for rate in (*motion.a, *motion.ds)]):
         if instructions[p].op in ("sqrt", "log") and vanishes(instructions[p].args[0]):
             raise ProgramError(
-                f"{name}: a broken power or logarithm of what is zero on a surface, such as d**(3/2) at touch or "
-                "sqrt(Abs(y)), has no Taylor series there; method='taylor' takes whole exponents: exponent=1 or 2, or use "
-                "method='rk4' with ten substeps a contact"
+                f"{name}: a fractional power or a logarithm of a quantity that is zero on a surface, such as d**(3/2) at "
+                "touch or sqrt(Abs(y)), has no Taylor series there. method='taylor' needs whole exponents: use exponent=1 "
+                "or 2, or method='rk4' with ten substeps per contact"
             )

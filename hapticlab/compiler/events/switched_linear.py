@@ -73,8 +73,8 @@ class Maps:
             raise self._refused()
         if len(self.choices) > MOST_SURFACES:
             raise ProgramError(
-                f"{why[0]}; method='exact' takes the modes of at most {MOST_SURFACES} surfaces (cases, Max, Min, contacts, "
-                f"frictions), and there are {len(self.choices)}: use method='taylor'"
+                f"{why[0]}; method='exact' allows at most {MOST_SURFACES} surfaces (cases, Max, Min, contacts, frictions), "
+                f"and there are {len(self.choices)}. Use method='taylor'"
             )
         self.surfaces = list(self._surfaces())
         first = self._sides(start, number)
@@ -155,8 +155,8 @@ class Maps:
         if not live:
             raise self._refused()
         raise LiveConstantError(
-            f"{self.why[0]}; method='exact' makes constants of each mode, and {', '.join(live)} may be set while it runs; fix "
-            f"what modes are made of, hl.compile(..., method='exact', live=[...]) without {', '.join(live)}, or use 'taylor'",
+            f"{self.why[0]}; method='exact' computes the constants of each mode in advance, but {', '.join(live)} is live. "
+            f"Compile with hl.compile(..., method='exact', live=[...]) without {', '.join(live)}, or use 'taylor'",
             live,
         )
 
@@ -268,8 +268,8 @@ def _changes_from(first):
 def linear_between(facts):
     """The note of a program that is linear between switches."""
     return (
-        f"linear between switches: a constant map for each of {facts['maps']} modes, wherever no switch can be reached within "
-        f"the period; where one may be, it is located, in at most {facts['pieces']} pieces"
+        f"linear between switches: a constant map for each of {facts['maps']} modes is used where no switch can be reached "
+        f"within the period; elsewhere switches are located, in at most {facts['pieces']} pieces"
     )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...base.shows_itself import ShowsItself
 from ...errors import ProgramError, ProgramLimitError
 from ..algebra.polynomial_crossing import FEWER_STEPS, STEPS
 from ..ir.program import Channel
@@ -38,7 +37,7 @@ _LEAST, _MOST = 73, 100
 
 
 @dataclass(frozen=True)
-class Taylor(ShowsItself):
+class Taylor:
     """The motion over a step as a Taylor series, with the instants located at which its equations change.
 
     Where the motion between events is linear, it is the closed form to rounding; elsewhere its error is that of the
@@ -207,8 +206,9 @@ def switched(method, tracing, motion, groups, h, name, impact, number):
     if turns > MOST_TURNS:
         raise ProgramLimitError(
             f"{name}: its fastest part turns with omega = {maps.omega:.4g} rad/s, by {turns:.4g} rad in a period of {h:g} s; "
-            f"method='exact' locates switches in pieces of a radian, {MOST_TURNS} at most: take T <= "
-            f"{MOST_TURNS / maps.omega:.2g} s, a softer contact, or one that does not give (hl.contact.impulse, hl.contact.rigid)"
+            f"method='exact' locates switches in pieces of a radian, {MOST_TURNS} at most. Use T <= "
+            f"{MOST_TURNS / maps.omega:.2g} s, a softer contact, or one that does not yield (hl.contact.impulse, "
+            "hl.contact.rigid)"
         )
     _check_pieces(name, surfaces, turns, h, tracing.real)
     order, events, pieces = _pieces(surfaces, turns, tracing.real)
@@ -245,6 +245,6 @@ def _check_pieces(name, surfaces, turns, h, real):
     cures = [f"T <= {h / shorter:.2g} s"] * bool(shorter) + [f"{fewer} surfaces at most"] * bool(fewer) + ["a softer contact"]
     raise ProgramLimitError(
         f"{name}: method='exact' locates switches at {surfaces} surfaces (cases, Max, Min, contacts, frictions) in "
-        f"{_pieces(surfaces, turns, real)[2]} pieces of a period of {h:g} s, {least} instructions or more, and a program has "
-        f"{MOST_INSTRUCTIONS} at most: take {', '.join(cures[:-1])} or {cures[-1]}"
+        f"{_pieces(surfaces, turns, real)[2]} pieces of a period of {h:g} s, which is {least} instructions or more, and a "
+        f"program has {MOST_INSTRUCTIONS} at most. Use {', '.join(cures[:-1])} or {cures[-1]}"
     )

@@ -61,7 +61,7 @@ def steps(substeps):
     if count < 1:
         raise ProgramError(f"substeps = {substeps!r}; needs a whole number >= 1")
     if count > _MOST_STEPS:
-        raise ProgramLimitError(f"substeps = {count}: needs {_MOST_STEPS} a period at most; take fewer substeps")
+        raise ProgramLimitError(f"substeps = {count}; a period has at most {_MOST_STEPS}. Use fewer substeps")
     return count
 
 
@@ -69,10 +69,13 @@ def unusual(T, size):
     """Return notes on a sampling period [s] that no haptic loop has, and on a program of very many instructions."""
     notes = []
     if not USUAL[0] <= T <= USUAL[1]:
-        why = "no board computes a force so often" if T < USUAL[0] else "a hand feels each sample as a step"
-        notes.append(f"T = {T:g} s: {why}; a haptic loop has 10 us to 100 ms, usually T=1e-3 [s]")
+        why = "no board computes a force that often" if T < USUAL[0] else "a hand feels each sample as a step"
+        notes.append(f"T = {T:g} s: {why}; a haptic loop has a period of 10 us to 100 ms, usually T=1e-3 [s]")
     if size > LARGE:
-        notes.append(f"{size} instructions a tick: slow to compile and far past any board; fewer surfaces, a shorter T or rk4")
+        notes.append(
+            f"{size} instructions per tick are slow to compile and far too many for any board. Use fewer surfaces, "
+            "a shorter T or rk4"
+        )
     return notes
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ...base.shows_itself import ShowsItself
 from ..events.taylor_method import Taylor
 from ..ir.options import choice
 from .method_table import METHODS, Method
@@ -18,7 +17,7 @@ EXACT = "exact"
 
 
 @dataclass(frozen=True)
-class Exact(ShowsItself):
+class Exact:
     """What is linear advanced by its matrix exponential; ``rest`` names the method of what is not.
 
     Its error is rounding, at any stiffness, so that it has no order. A step costs a product with a constant matrix, and the
@@ -109,5 +108,5 @@ def to_locate(form: ExplicitForm) -> list[str]:
 def why_automatic(form: ExplicitForm) -> str:
     """The sentence on the method that was taken because none was asked for."""
     if names := to_locate(form):
-        return f"method = 'taylor', taken automatically: {', '.join(names)} must be located inside the step"
-    return "method = 'rk4', taken automatically: no contact or friction of this motion must be located inside the step"
+        return f"method = 'taylor', chosen automatically: {', '.join(names)} must be located inside the step"
+    return "method = 'rk4', chosen automatically: no contact or friction of this motion must be located inside the step"

@@ -128,8 +128,8 @@ class Exact:
             for jump in sorted(f.atoms(*JUMPS) if self._has_time([f]) else (), key=str):
                 if self._has_time(jump.args):
                     yield (
-                        f"{short(jump, 40)} in the equation of {type(q).__name__} is taken at the start, middle and end of "
-                        "each period, so that it switches up to T/3 early or late; method='taylor' locates it"
+                        f"{short(jump, 40)} in the equation of {type(q).__name__} is evaluated at the start, middle and end "
+                        "of each period, so it switches up to T/3 early or late. method='taylor' locates the switch"
                     )
 
 
@@ -198,8 +198,8 @@ def _check_size(linear, name):
     if not largest < _LARGEST_RATE:
         names = ", ".join(type(q).__name__ for q in linear.coordinates)
         raise ProgramError(
-            f"{name}: the rates of {names} are {largest:.3g} times what they depend on, past {_LARGEST_RATE:g}: no exponential "
-            "of that is a number; look at its masses, stiffnesses and dampings"
+            f"{name}: the rates of {names} are {largest:.3g} times the quantities they depend on, which is above "
+            f"{_LARGEST_RATE:g}, so the matrix exponential is not finite. Check the masses, stiffnesses and dampings"
         )
 
 
@@ -236,18 +236,18 @@ def linear_part(scene, form, constants, T, rest, graph):
     names = ", ".join(type(form.coordinates[k]).__name__ for k in rows)
     reason = f"{scene.name}: {next(iter(reasons.values()), '')}"
     if reasons and any(located(model.contacts) for model in coupled(form)):
-        raise NotLinear(reason, "use method='taylor', which locates that and is exact where motion is linear")
+        raise NotLinear(reason, "use method='taylor', which locates the switch and is exact where the motion is linear")
     if reasons and not rows:
-        other = "'taylor', which locates that" if any(f.has(*JUMPS) for f in form.f) else "'rk4'"
-        raise NotLinear(reason, f"nothing is left for method='exact', use {other}")
+        other = "'taylor', which locates the switch" if any(f.has(*JUMPS) for f in form.f) else "'rk4'"
+        raise NotLinear(reason, f"method='exact' has no linear part to solve. Use {other}")
     if reasons and rest is None:
-        raise NotLinear(reason, f"method='exact+rk4' takes {names} exactly and the rest by rk4")
+        raise NotLinear(reason, f"method='exact+rk4' solves {names} exactly and the rest by rk4")
     live = coefficients.live(rows)
     if live:
         keep = " ".join(sorted(set(scene.parameters) - set(live) - set(constants)))
         raise LiveConstantError(
-            f"{scene.name}: method='exact' makes constants of the motion of {names}, and {', '.join(live)} of it may be set "
-            f"while it runs; fix what it is made of, hl.compile(..., method='exact', live={keep!r})",
+            f"{scene.name}: method='exact' computes constants for the motion of {names}, but {', '.join(live)} in it is "
+            f"live. Compile with hl.compile(..., method='exact', live={keep!r})",
             live,
         )
     return coefficients.linear(rows), part_of(form, sorted(reasons))

@@ -27,8 +27,8 @@ def averaged(form, graph):
     for c in (c for model in form.models for c in model.contacts if getattr(c, "force", None) in variables):
         if not (c.is_force or c.is_located):
             raise ProgramError(
-                f"force_at = 'mean': {c.force} acts in an instant at the end of a step, between which it is nothing; take "
-                "force_at='before', which holds the force of its impulse over the period"
+                f"force_at = 'mean': {c.force} acts only at the instants where steps end. Use force_at='before', which "
+                "holds the force of its impulse over the period"
             )
     return replace(
         form,
@@ -52,11 +52,11 @@ def hints(form, graph, options):
         return
     if options.force_at == "after" and options.hold != "zoh":
         yield (
-            f"force_at = 'after' with hold = {options.hold!r}: lightly damped bodies ask a device for more damping than with "
-            "'before', or with hold='zoh'; hl.passivity.port tells how much"
+            f"force_at = 'after' with hold = {options.hold!r}: lightly damped bodies need more device damping than with "
+            "'before' or with hold='zoh'; hl.passivity.port computes how much"
         )
     if options.substeps > 1 and options.hold == "zoh" and options.method.rest is not None:
         yield (
-            f"hold = 'zoh' sets the error, of order 1: {options.substeps} substeps shorten the step for stability and contacts, "
-            "not the error, which hold='foh' or 'soh' makes smaller"
+            f"hold = 'zoh' sets the error, of order 1: {options.substeps} substeps shorten the step, which helps stability "
+            "and contacts but not this error; hold='foh' or 'soh' makes the error smaller"
         )

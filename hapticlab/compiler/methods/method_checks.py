@@ -29,19 +29,21 @@ def check_suited(method, form, graph, exact=False):
         _check_smooth(method, form, graph)
         if exact:
             raise ProgramError(
-                f"method = 'exact+{method.name}': RK4 finds the rates before the first sample, and knows nothing of the exact "
-                "part there; take 'exact+rk4'"
+                f"method = 'exact+{method.name}': RK4 computes the rates before the first sample, where the exact part is "
+                "not known. Use 'exact+rk4'"
             )
 
 
 def _check_free_of_velocity(method, form, graph):
-    cure = f"with it {method.name} has order {method.order_with_velocity}, not {method.order}; take 'rk4'"
+    cure = f"with it {method.name} has order {method.order_with_velocity}, not {method.order}. Use 'rk4'"
     first = [q for q, order in zip(form.coordinates, form.orders, strict=True) if order == 1 and q != IMPULSE]
     if first:
         name = type(first[0]).__name__
-        raise ProgramError(f"{name} has an equation of first order, and {method.name} knows those of second order; take 'rk4'")
+        raise ProgramError(
+            f"{name} has an equation of first order, but {method.name} integrates only those of second order. Use 'rk4'"
+        )
     if any(model.constraints for model in form.models):
-        raise ProgramError(f"constraints turn the accelerations with the square of velocities; {cure}")
+        raise ProgramError(f"constraints add terms with the square of velocities to the accelerations; {cure}")
     rates = [q.diff(t) for q in form.coordinates]
     for q, f in zip(form.coordinates, form.f, strict=True):
         for rate in rates:
@@ -53,7 +55,7 @@ def _check_free_of_velocity(method, form, graph):
 
 
 def _check_smooth(method, form, graph):
-    cure = f"{method.name} carries rates from steps before, which are those of another case after it; take 'rk4' or 'taylor'"
+    cure = f"{method.name} uses rates from earlier steps, which after a switch belong to a different case. Use 'rk4' or 'taylor'"
     contacts = [c.name for model in form.models for c in model.contacts]
     if contacts:
         raise ProgramError(f"{contacts[0]} starts and ends within a step: {cure}")

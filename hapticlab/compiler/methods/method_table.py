@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ...base.card import card
-from ...base.shows_itself import ShowsItself
 from ..ir.trace import Builder
 from . import stability_region
 from .steps import RK4, adams_bashforth, nystrom, runge_kutta, semi_implicit_euler, verlet
 
 
 @dataclass(frozen=True, repr=False)
-class Method(ShowsItself):
+class Method:
     """A method and what it is known for; printing it says so.
 
     Attributes
@@ -57,11 +56,11 @@ class Method(ShowsItself):
     def __reduce__(self):
         return method_named, (self.name,)
 
-    def __str__(self) -> str:
+    def __repr__(self):
         each = "evaluation" if self.evaluations == 1 else "evaluations"
         first = f"; {self.order_with_velocity} where accelerations depend on velocities" if self.order_with_velocity else ""
         step = (
-            f"{self.evaluations} {each} of the equations of motion a step, {self.instructions} instructions a coordinate beside"
+            f"{self.evaluations} {each} of the equations of motion per step, plus {self.instructions} instructions per coordinate"
         )
         facts = {"order": f"{self.order}{first}", "cost": step, "stable": self.stable, "source": self.source}
         return card(f"{self.name}: {self.says}", {**facts, "not to be confused with": self.confused_with})
@@ -69,7 +68,11 @@ class Method(ShowsItself):
     @property
     def stable(self):
         """Up to which step it is stable, in words; h is the step, omega the frequency of a spring without damping."""
-        spring = f"h omega <= {self.imaginary:.4g} of a spring" if self.imaginary else "no step of a spring without damping"
+        spring = (
+            f"h omega <= {self.imaginary:.4g} of a spring"
+            if self.imaginary
+            else ("no step is stable for a spring without damping")
+        )
         damper = "any step" if math.isinf(self.real) else f"h b/m <= {self.real:.4g}"
         return spring if math.isnan(self.real) else f"{spring}; {damper} of a damper"
 
@@ -144,23 +147,25 @@ METHODS = {
             "verlet", 2, 2, verlet,
             says="Velocity Verlet: the position by the present acceleration, the velocity by the mean of two.",
             source="Hairer, Lubich and Wanner, Geometric Numerical Integration, ch. I; Verlet, Physical Review 159 (1967)",
-            confused_with="leapfrog, the same positions with velocities half a step beside them",
+            confused_with="leapfrog, the same positions with velocities offset by half a step",
         ),
         Method(
             "midpoint", 2, 2, runge_kutta([(), (1 / 2,)], [0, 1]),
-            says="Explicit midpoint: a whole step by the rates half a step on.",
+            says="Explicit midpoint: a whole step with the rates at half the step.",
             source="Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, ch. II.1; Runge (1895)",
-            confused_with="the implicit midpoint rule, stable at every step; semi_implicit_euler, of less order and longer steps",
+            confused_with="the implicit midpoint rule, stable at every step; semi_implicit_euler, of lower order and with "
+                          "longer steps",
         ),
         Method(
             "heun", 2, 2, runge_kutta([(), (1,)], [1 / 2, 1 / 2]),
-            says="Heun: the mean of the rates at both ends, the far end by Euler.",
+            says="Heun: the mean of the rates at both ends; the end of the step is estimated by Euler.",
             source="Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, ch. II.1",
             confused_with="the trapezoidal rule (Tustin), which is implicit; Heun's method of order 3",
         ),
         Method(
             "ssprk3", 3, 3, runge_kutta([(), (1,), (1 / 4, 1 / 4)], [1 / 6, 1 / 6, 2 / 3]),
-            says="Runge-Kutta of order 3 that is a mean of Euler steps, so that what Euler keeps bounded stays bounded.",
+            says="Runge-Kutta of order 3 that is a mean of Euler steps, so that a quantity that Euler keeps bounded stays "
+                 "bounded.",
             source="Gottlieb, Shu and Tadmor, SIAM Review 43 (2001)",
             confused_with="Kutta's method of order 3, of the same order and stable interval, not a mean of Euler steps",
         ),
@@ -168,7 +173,7 @@ METHODS = {
             "nystrom4", 4, 3, nystrom, order_with_velocity=2,
             says="Nystrom: order 4 from three evaluations, where accelerations are free of velocities.",
             source="Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, ch. II.14",
-            confused_with="rk4, which takes dampers and first-order states too, for one evaluation more",
+            confused_with="rk4, which also integrates dampers and first-order states, with one evaluation more",
         ),
         Method(
             "adams_bashforth2", 2, 1, adams_bashforth((3 / 2, -1 / 2)), steps=2,

@@ -50,7 +50,7 @@ class Coefficients:
         of = name if q == form.coordinates[k] else f"that couples {name} and {type(q).__name__}"
         of = f"of {of}" if of == name else of
         if not self._varies(m):
-            return f"the inertia {short(m.doit(), 60)} {of} is written with {leaves}, though it stays the same; simplify it"
+            return f"the inertia {short(m.doit(), 60)} {of} is written with {leaves}, although it is constant; simplify it"
         return f"the inertia {short(m.doit(), 60)} {of} changes with {leaves}"
 
     def slope_moves(self, expr, where):
@@ -65,7 +65,9 @@ class Coefficients:
                 if moving and self._varies(Partial(term, variable)):
                     return f"{short(term.doit(), 60)} {where} is not linear: its slope changes with {moving}"
                 if moving:
-                    cancels = cancels or f"what comes to {short(term.doit(), 60)} {where} is written with {moving}; simplify it"
+                    cancels = cancels or (
+                        f"{short(term.doit(), 60)} {where} is written with {moving}, although they cancel; simplify it"
+                    )
         return cancels
 
     def _varies(self, expr):
@@ -130,7 +132,7 @@ def _what_ties(name, model):
     if model.constraints:
         return f"{name} is tied by a constraint"
     element = next(c for c in model.contacts if not c.is_force)
-    does = "stops it in an instant" if isinstance(element, Contact) else "may stick"
+    does = "stops it instantaneously" if isinstance(element, Contact) else "may stick"
     return f"{name} is a coordinate of a model with {element.name}, which {does}"
 
 

@@ -23,7 +23,9 @@ def assembled(constraints, coordinates, start):
         if is_holonomic(g):
             off.append(g)
         elif any(entry.has(*rates) for entry in rows[-1]):
-            raise SceneError(f"{shown([g])} is not linear in the rates; a constraint holds positions, or is linear in rates")
+            raise SceneError(
+                f"{shown([g])} is not linear in the rates; a constraint contains positions only, or is linear in rates"
+            )
     rest = {s: sp.Float(value) for s, value in start.items() if s not in coordinates}
     # the coordinates first: t stands in them, too
     written = [e.xreplace(dict(zip(coordinates, q, strict=True))).xreplace(rest) for e in itertools.chain(off, *rows)]
@@ -50,7 +52,7 @@ def check_independent(assembly, constraints, positions, coordinates):
     if not np.all(np.abs(left[:, 0]) <= 1e-9 * np.where(sizes > 0, sizes, 1.0)):
         worst = [g for g, off, size in zip(positions, left[:, 0], sizes, strict=True) if not abs(off) <= 1e-9 * (size or 1.0)]
         raise SceneError(
-            f"{shown(worst)} cannot hold together near the start: the closest the mechanism comes is "
+            f"{shown(worst)} cannot be satisfied together near the start: the closest the mechanism comes is "
             f"{shown_at(coordinates, q[:, 0])}, off by {', '.join(f'{off:.3g}' for off in left[:, 0] if off)}. The constraints "
             "contradict each other, or the start is far from every assembly"
         )
@@ -64,7 +66,7 @@ def check_independent(assembly, constraints, positions, coordinates):
     if all(assembly.dependent(at) is not None for at in elsewhere.T):
         raise SceneError(
             f"redundant constraints: {shown(involved)} repeat each other (their gradients are dependent at every "
-            "configuration), so their reactions are not determined. Leave one out"
+            "configuration), so their reactions are not determined. Leave out one of them"
         )
     raise SceneError(_lost(involved, coordinates, q[:, 0], "at the start"))
 
@@ -78,8 +80,8 @@ def check_start(assembly, constraints, positions, coordinates, start):
         residuals = ", ".join(f"{value:.3g}" for value in off[:, 0])
         wanted = ", ".join(in_unit(p, value) for p, value, far in zip(coordinates, q, moved, strict=True) if far)
         raise SceneError(
-            f"the start {values(coordinates, start)} is off the constraints {shown(positions)}: the left sides are "
-            f"{residuals}. The closest start on them is {wanted}"
+            f"the start {values(coordinates, start)} does not satisfy the constraints {shown(positions)}: their left sides "
+            f"are {residuals}. The closest start that satisfies them is {wanted}"
         )
     check_rates(assembly, constraints, coordinates, start)
 
@@ -97,8 +99,8 @@ def check_rates(assembly, constraints, coordinates, start, drivers=()):
     if far.any():
         wanted = ", ".join(in_unit(p, rate, "/s") for p, rate, off in zip(coordinates, rates + change, far, strict=True) if off)
         raise SceneError(
-            f"the rates at the start break the constraints {shown(constraints)}: they change at "
-            f"{', '.join(f'{s:.3g}' for s in slip)} a second. The closest rates that keep them are {wanted}"
+            f"the rates at the start violate the constraints {shown(constraints)}: their left sides change at "
+            f"{', '.join(f'{s:.3g}' for s in slip)} per second. The closest rates that satisfy them are {wanted}"
         )
 
 
@@ -124,13 +126,14 @@ def check_rank(assembly, constraints, coordinates, real):
     declared = all(math.isfinite(limit) for p in held for limit in declared_range(p))
     if declared or len(held) - len(constraints) <= 1:
         raise SceneError(_lost(constraints, coordinates, q, "within the range it can reach"))
-    return (f"the constraints lose a rank at {shown_at(coordinates, q)}: a motion that meets it turns the motor off",)
+    return (f"the constraints lose a rank at {shown_at(coordinates, q)}: a motion that reaches it switches the motor off",)
 
 
 def _lost(constraints, coordinates, q, where):
     return (
-        f"{shown(constraints)} lose a rank {where}, at {shown_at(coordinates, q)}: there the mechanism can leave by two ways "
-        "(a change point), and the reactions are not determined. Change its lengths, or declare ranges that keep away from it"
+        f"{shown(constraints)} lose a rank {where}, at {shown_at(coordinates, q)}: there the mechanism can continue in two "
+        "ways (a change point), and the reactions are not determined. Change its lengths, or declare ranges that exclude "
+        "this point"
     )
 
 

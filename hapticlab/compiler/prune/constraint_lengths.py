@@ -44,8 +44,8 @@ def check_live(scene, live):
             value = scene.values.get(name, math.nan)
             limits = f"({value / 2:g}, {2 * value:g})" if value > 0 else "(low, high)"
             raise ParameterError(
-                f"live: {name} stands in a constraint, so the mechanism would jump to its new length when it is set; bind it, "
-                f"scene({name}=...), and leave it out of live. If a jump is meant, declare where it stays: "
+                f"live: {name} is in a constraint, so the mechanism would jump to its new length when the value changes. "
+                f"Bind it, scene({name}=...), and leave it out of live. If you want the jump, declare a range: "
                 f"hl.parameters('{name}', units='{p.unit}', ranges={limits})"
             )
 
@@ -53,9 +53,9 @@ def check_live(scene, live):
 def notes_on(scene, folded):
     """The notes of a program on the parameters that constraints hold."""
     return tuple(
-        ParameterNote(name, "held by a constraint, so not live")
+        ParameterNote(name, "in a constraint, so not live")
         if name in folded
-        else ParameterNote(name, "live, and held by a constraint: the mechanism jumps to the new length when it is set")
+        else ParameterNote(name, "live, and in a constraint: the mechanism jumps to the new length when the value changes")
         for name in held(scene)
     )
 
@@ -89,7 +89,7 @@ def check_lengths(constraints, coordinates, start, folded, real, embedding=None)
                 check_rank(assembled(constraints, coordinates, at), constraints, coordinates, real)
         except (SceneError, NotClosed) as why:
             shown = ", ".join(f"{p.name} = {value:.4g} {p.unit}" for p, value in lengths.items())
-            raise SceneError(f"with {shown}, which is live and may be set within its declared range: {why}") from None
+            raise SceneError(f"with {shown}, which is live and can have any value in its declared range: {why}") from None
 
 
 def _places(live, start):

@@ -131,7 +131,9 @@ def _checked(method, T, substeps, hold, dtype, velocity, live, force_at):
     choice("force_at", force_at, FORCE_AT)
     options = Options(method, period(T), steps(substeps), hold, dtype, velocity, live_names(live), force_at)
     if method and method.exact and method.rest is None and options.substeps > 1:
-        raise ProgramError(f"substeps = {options.substeps}: method='exact' takes the whole period at once; leave substeps out")
+        raise ProgramError(
+            f"substeps = {options.substeps}: method='exact' solves the whole period in one step. Leave out substeps"
+        )
     return options
 
 
@@ -154,7 +156,7 @@ def lowered(scene, method, T, substeps, hold, dtype, velocity, live, force_at, u
         return replace(program, notes=(*program.notes, *notes)) if notes else program
     except RecursionError:
         raise ProgramError(
-            f"{scene.name}: an expression is nested too deeply to compile; name its parts as signals, "
+            f"{scene.name}: an expression is nested too deeply to compile. Name its parts as signals, "
             "y = hl.signal(...), with an equation for each"
         ) from None
 

@@ -106,7 +106,7 @@ class Equations:
             if held:
                 name = type(form.coordinates[k]).__name__
                 raise SceneError(
-                    f"the equation of {name} holds the acceleration of {held[0]}, which a constraint determines; "
+                    f"the equation of {name} contains the acceleration of {held[0]}, which a constraint determines; "
                     f"put {name} into the same hl.mechanics.lagrange(...)"
                 )
         return [[form.M[k][j] for j in at] for k in at], [form.f[k] for k in at]
@@ -253,7 +253,9 @@ class Dynamics:
         equations = self.equations
         if equations.enforced:
             names = ", ".join(c.name for c in self.contacts.hovering)
-            raise SceneError(f"{names}: micro-impulses know no constraints; take the law impulse or rigid, with method='taylor'")
+            raise SceneError(
+                f"{names}: micro-impulses do not account for constraints. Use the law impulse or rigid, with method='taylor'"
+            )
         translate, (q, w, s) = self.at(tau, *state).translate, state
         M, f = equations.at(translate, equations.second)
         w, amounts = self.contacts.hover(translate, w, M, f, equations.second, equations.h, equations.definite, self.sample)
@@ -348,7 +350,7 @@ def one_period(dynamics, method, substeps, start, name, at_start):
         )  # fmt: skip
         facts, unlocated, reactions = done.facts, done.unlocated, done.reactions if touching else ()
         notes = (linear_between(facts),) if "maps" in facts else ()
-        notes += (UndefinedForceNote("the Taylor series of a step diverges; take more substeps"),) if "remainder" in facts else ()
+        notes += (UndefinedForceNote("the Taylor series of a step diverges. Use more substeps"),) if "remainder" in facts else ()
         notes += dynamics.contacts.faults if dynamics.contacts else ()
         if touching:
             dynamics = replace(dynamics, unknowns=dynamics.unknowns | touching.unknowns)

@@ -3,14 +3,13 @@
 from dataclasses import dataclass
 
 from ...base.card import card
-from ...base.shows_itself import ShowsItself
 from ...scene.notation.symbols import t, v, x
 from ..ir.options import choice
 from ..ir.program import Channel
 
 
 @dataclass(frozen=True, repr=False)
-class Hold(ShowsItself):
+class Hold:
     """How an equation of motion sees the handle between two samples; printing it says so.
 
     Attributes
@@ -38,7 +37,7 @@ class Hold(ShowsItself):
     def __post_init__(self) -> None:
         object.__setattr__(self, "__doc__", self.says)  # what help and hl.find read
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         facts = {"order": f"{self.order_of_x} of x(t), {self.order_of_v} of v(t)", "cost": self.cost, "source": self.source}
         return card(f"{self.name}: {self.says}", {**facts, "not to be confused with": self.confused_with})
 
@@ -53,15 +52,15 @@ HOLDS = {
         ),
         Hold(
             "foh", "First-order hold: the line through the sample with the velocity v(n).", 2, 1,
-            "a product and a sum an evaluation",
+            "a product and a sum per evaluation",
             "Franklin, Powell and Workman, Digital Control of Dynamic Systems: hold equivalents",
-            "the triangle hold, which needs the next sample, and which some programs call foh",
+            "the triangle hold, which needs the next sample and is called foh in some programs",
         ),
         Hold(
             "soh", "Second-order hold: the parabola through three samples, or with two measured velocities.", 3, 2,
-            "one sample more to remember, two products and sums an evaluation",
-            "the same extrapolation, of one order more",
-            "a filter of the position: the parabola passes through the samples, and carries their counts on",
+            "one sample more to store, two products and sums per evaluation",
+            "the same extrapolation, one order higher",
+            "a filter of the position: the parabola passes through the samples, so it extrapolates their quantisation too",
         ),
     )
 }  # fmt: skip

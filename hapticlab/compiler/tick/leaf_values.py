@@ -183,8 +183,12 @@ def unknown_reaction(expr):
     """Refuse a reaction, or what impacts add up to, that no model of the scene has."""
     kind = type(expr)
     if hasattr(kind, "constraint"):
-        raise SceneError(f"{expr} is the reaction of {kind.constraint} = 0; add it to the constraints of hl.mechanics.lagrange")
-    raise SceneError(f"{kind.contact} is used but no model has it: hl.mechanics.lagrange(..., contacts=[{kind.contact}])")
+        raise SceneError(
+            f"{expr} is the reaction of {kind.constraint} = 0; add this constraint to those of hl.mechanics.lagrange"
+        )
+    raise SceneError(
+        f"{kind.contact} is used but belongs to no model. Write hl.mechanics.lagrange(..., contacts=[{kind.contact}])"
+    )
 
 
 def outputs_at_sample(scene, form, tracing, sample, force_now):

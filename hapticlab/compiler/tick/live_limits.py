@@ -32,7 +32,7 @@ FIRST, CLOSER_BY, ROUNDS = (40, 16), 7, 4
 #: parts of the way to the limits at which places between them are looked at
 CLOSER = (1.0, 0.99, 0.97, 0.93, 0.85, 0.7, 0.5, 0.25)
 #: how the note of a program begins of whose steps nothing is known
-UNKNOWN = "whether its steps are stable is not looked at: "
+UNKNOWN = "the stability of its steps is not checked: "
 #: operations by which a motion has modes
 COMPARING = ("lt", "le", "eq", "abs", "floor")
 #: limits that a note names are within so many times the value bound
@@ -87,7 +87,7 @@ def kept_stable(program, stepped, form, graph):
         return program
     fed_back = _fed_back(form, graph.variables_of)
     if fed_back is not None:
-        note = f"{UNKNOWN}its motion is fed back by {fed_back}, of samples; simulate it"
+        note = f"{UNKNOWN}its motion is fed back through samples, by {fed_back}. Simulate it"
         return replace(program, notes=(*program.notes, note), limits=Limits())
     limits = Limits({}, stepped)
     if isinstance(method, Taylor) or states > MOST_STATES:
@@ -97,7 +97,7 @@ def kept_stable(program, stepped, form, graph):
     if unbound or not steps.known_at(values):
         names = unbound or [name for name in steps.live if not math.isfinite(values.get(name, math.nan))]
         unbound = ", ".join(names)
-        note = f"{UNKNOWN}{unbound} has no value; it is looked at when it is set"
+        note = f"{UNKNOWN}{unbound} has no value. It is checked when the value is set"
         return replace(program, limits=limits, notes=(*program.notes, note))
     limits = limits if steps.live else Limits()
     program = replace(_told(program, steps), limits=limits)
@@ -110,7 +110,10 @@ def kept_stable(program, stepped, form, graph):
     units = {c.name: c.unit for c in program.parameters}
     ends = [f"{name} {'<=' if side else '>='} {end:.4g} {units[name]}" for (name, side), end in near.items()]
     worth = "" if steps.linear else f" {SMALL_MOTIONS}"
-    said = f"{steps.name} in steps of {steps.h:g} s is stable{worth} for {', '.join(ends)}, each with the others as bound"
+    said = (
+        f"{steps.name} in steps of {steps.h:g} s is stable{worth} for {', '.join(ends)}, each with the others at their "
+        "bound values"
+    )
     return replace(program, notes=(*program.notes, *([f"{said}; more substeps allow more"] if ends else [])))
 
 
@@ -147,10 +150,10 @@ def _told(program, steps):
     if margin >= 1 and growth <= steps.allowed:
         return replace(program, facts=facts)
     doubles = steps.doubles(growth)
-    why = f"what vibrates doubles in {doubles:.2g} s"
+    why = f"an oscillation doubles in {doubles:.2g} s"
     why = f"its longest step is {margin * steps.h:.3g} s, and {why}" if 0 < margin < 1 else why
     worth = "" if steps.linear else f", {SMALL_MOTIONS}"
-    why = f"{steps.name} in steps of {steps.h:g} s, {why}{worth}; take more substeps, a shorter T or another method"
+    why = f"{steps.name} in steps of {steps.h:g} s, {why}{worth}. Use more substeps, a shorter T or another method"
     note = UnstableNote(why)
     return replace(program, facts=facts | {"doubles_s": float(f"{doubles:.3g}")}, notes=(*program.notes, note))
 

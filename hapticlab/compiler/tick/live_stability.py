@@ -1,7 +1,7 @@
 """Whether the steps of a program are stable at values of its live parameters, in every mode of its motion.
 
 The motion is taken from the instructions that the program is traced from, with its comparisons as modes, differentiated,
-and stepped as the program steps it. Where it is not linear, that holds for small motions about the places looked at.
+and stepped as the program steps it. Where it is not linear, that holds for small motions about the positions that were examined.
 """
 
 import itertools
@@ -30,7 +30,7 @@ SLOW = 10.0
 #: steps looked at for the margin, times the largest |eigenvalue|, and how the limit is closed in
 STEPS, CLOSING = np.geomspace(1e-2, 1e2, 30), (17, 17)
 #: what a linearisation is worth where the motion is not linear
-SMALL_MOTIONS = "for small motions about the places looked at"
+SMALL_MOTIONS = "for small motions about the positions that were examined"
 
 
 @dataclass(frozen=True)

@@ -123,7 +123,7 @@ def bodies_at_sample(form, equations, contacts, exact, tracing, state_at_sample)
         q, order = (leaf.expr, leaf.derivative_count) if isinstance(leaf, sp.Derivative) else (leaf, 0)
         if order >= form.orders[form.coordinates.index(q)]:
             raise SceneError(
-                f"{leaf} is what the equations of motion solve for; the force and what is watched may use "
+                f"the equations of motion are solved for {leaf}; the force and the watched expressions may use "
                 f"{type(q).__name__} and lower derivatives"
             )
         return state_at_sample(leaf)

@@ -37,8 +37,8 @@ class Tracing:
         if key not in self._states:
             if len(self._states) == MOST_STATES:
                 raise ProgramLimitError(
-                    f"more than {MOST_STATES} states, the last of them {channel.name}: a past sample is kept with all that "
-                    "came after it; take fewer samples back, or a longer T"
+                    f"more than {MOST_STATES} states, the last of them {channel.name}: a past sample is stored together "
+                    "with all samples after it. Use fewer past samples, or a longer T"
                 )
             self._numbers[key] = len(self._states)
             self._states[key] = [channel, first, None]
@@ -89,7 +89,7 @@ class Tracing:
         order = {"state": {k: new for new, k in enumerate(alive)}, "param": {k: new for new, k in enumerate(kept)}}
         last = max((i.index for block in (init, tick) for i in block.instructions if i.op == "input"), default=0)
         named = [self.parameters[k] for k in kept]
-        notes = (f"left out, because no output can see it: {', '.join(dropped)}",) if dropped else ()
+        notes = (f"left out, because no output depends on it: {', '.join(dropped)}",) if dropped else ()
         return Program(
             name=name,
             inputs=tuple(self.inputs[: last + 1]),

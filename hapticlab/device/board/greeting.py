@@ -22,13 +22,13 @@ def say_hello(exchange, url, seconds):
         said = exchange.ask("HELLO", exchange.session, patience=AGAIN, tries=max(1, round(seconds / AGAIN))).fields
     except LinkError:
         raise LinkError(
-            f"{url}: no paddle answers within {seconds:g} s. Either the board has no hapticlab firmware "
-            "(`hapticlab flash` puts it there) or this is another device: `hapticlab ports` lists what is plugged in."
+            f"{url}: no paddle answers within {seconds:g} s. Either the board has no hapticlab firmware (`hapticlab flash` "
+            "installs it) or this is a different device. `hapticlab ports` lists the devices that are plugged in."
         ) from None
     if said["table"] != table_hash():
         raise LinkError(
-            f"{url}: the board's firmware {said['major']}.{said['minor']} speaks another version of the messages than "
-            "this package; flash the firmware that came with it: hapticlab flash",
+            f"{url}: the board's firmware {said['major']}.{said['minor']} uses a different version of the messages from "
+            "this package. Flash the firmware of this package: hapticlab flash",
             "VERSION",
         )
     return said | {"board": said["board"].rstrip(b"\0").decode("ascii", "replace")}
@@ -48,18 +48,18 @@ def cleared(exchange, url):
     if state["state"] != STATES["FAULT"]:
         return []
     exchange.command("CLEAR")
-    return [f"{url}: a fault stood: {fault_words(state)}"]
+    return [f"{url}: a fault was pending: {fault_words(state)}"]
 
 
 def introduction(board, settings, T):
     """Return a paddle in one line: board, firmware, period, calibration, limit."""
     parts = [f"{board['board']} {board['ident']:04X}", f"firmware {board['major']}.{board['minor']}", f"T = {T * 1e3:g} ms"]
     if settings is None:
-        return ", ".join([*parts, "not calibrated: gives no force (run `hapticlab calibrate`)"])
+        return ", ".join([*parts, "not calibrated, so the motor stays off (run `hapticlab calibrate`)"])
     day = str(settings.date)
     calibrated = "nominal constants, not calibrated" if settings.is_nominal else f"calibrated {day[:4]}-{day[4:6]}-{day[6:]}"
     parts += [calibrated, f"|F| <= {min(settings.force_max, settings.force_full):.4g} N"]
-    return ", ".join(parts if settings.checked else [*parts, "motor sign not checked: 0.5 N at most"])
+    return ", ".join(parts if settings.checked else [*parts, "motor sign not checked, so at most 0.5 N"])
 
 
 def explain_silence(exchange, url):
@@ -67,15 +67,15 @@ def explain_silence(exchange, url):
     state = exchange.refresh()
     if state["session"] not in (0, exchange.session):
         raise LinkError(
-            f"{url}: another program said hello to the board while the scene ran, which ended it: the board is that "
-            "program's now. End it (another notebook, another user of the same socket), then connect again."
+            f"{url}: another program connected to the board while the scene ran, which ended the scene. End that program "
+            "(another notebook, another user of the same socket), then connect again."
         )
     if state["session"] != exchange.session:
         raise LinkError(
-            f"{url}: the board was reset while the scene ran, and its motor is off: a supply that falls too low when the "
-            "motor pulls, or its reset button. Check the supply, then connect again."
+            f"{url}: the board was reset while the scene ran, and its motor is off. Either its supply voltage fell too low "
+            "when the motor drew current, or its reset button was pressed. Check the supply, then connect again."
         )
     if state["state"] == STATES["FAULT"]:  # and the report of it was lost on its way
         return {"fault": state["fault"], "tick": state["tick"], "value": math.nan}
-    what = "runs but sends no samples" if state["state"] == STATES["RUN"] else "was told to stop by somebody else"
+    what = "runs but sends no samples" if state["state"] == STATES["RUN"] else "was stopped by another program"
     raise LinkError(f"{url}: the board {what}; connect again")

@@ -20,13 +20,15 @@ def home(exchange, settings, at=None, timeout=60.0):
     if at is None and state_flag(exchange, "HOMED"):
         return
     if settings is None:
-        raise PaddleError("the board has no calibration, so its stops tell nothing: run `hapticlab calibrate` first.")
+        raise PaddleError(
+            "the board has no calibration, so the positions of its stops are not known. Run `hapticlab calibrate` first."
+        )
     if at is not None:
         at = number("at", at, "m", "a position", error=PaddleError)
         if not settings.travel_min <= at <= settings.travel_max:
             raise PaddleError(
                 f"at = {at:g} m; the handle's travel is {settings.travel_min:g} to {settings.travel_max:g} m. "
-                "Hold it within, or calibrate its stops again."
+                "Hold the handle within this range, or calibrate its stops again."
             )
         exchange.command("HOME", at)
         return
@@ -34,17 +36,21 @@ def home(exchange, settings, at=None, timeout=60.0):
         exchange.port.lead(0.0)
         exchange.command("HOME", 0.0)
         return
-    print("Lead the handle slowly to one stop, then to the other, and back: the board finds its position.")
+    print("Move the handle slowly to one stop, then to the other, and back, so that the board finds its position.")
     timeout = number("timeout", timeout, "s", least=0, error=PaddleError)
     deadline = exchange.now() + timeout
     while exchange.now() < deadline:
         if state_flag(exchange, "HOMED"):
             return
         exchange.wait(lambda: False, LOOK_AGAIN)
-    met = "more travel than was calibrated" if state_flag(exchange, "TRAVEL_MISMATCH") else "not both stops"
+    met = (
+        "the handle met more travel than was calibrated"
+        if state_flag(exchange, "TRAVEL_MISMATCH")
+        else "the handle did not meet both stops"
+    )
     raise PaddleError(
-        f"home: {met} within {timeout:g} s; lead the handle to both stops, or hold it in the middle and call "
-        "paddle.home(at=0.0). If it repeats, run `hapticlab calibrate`."
+        f"home: {met} within {timeout:g} s. Move the handle to both stops, or hold it in the middle and call "
+        "paddle.home(at=0.0). If this happens again, run `hapticlab calibrate`."
     )
 
 

@@ -132,8 +132,8 @@ def decimation(program, port, every=None):
         return least
     if every < least or every != int(every) or every > 65535:
         raise PaddleError(
-            f"every = {every}; at T = {program.T:g} s with {channels} numbers a sample this link carries one in {least}: "
-            "give a whole number from there on, watch fewer channels, or leave it out."
+            f"every = {every}; at T = {program.T:g} s with {channels} numbers per sample, this link transmits one sample in "
+            f"{least}. Give every={least} or more, watch fewer channels, or leave out every=."
         )
     return int(every)
 
@@ -144,7 +144,7 @@ def fault_words(fault, T=None):
         return None
     name, cause, cure = row_of(FAULTS, fault["fault"]) or ("UNKNOWN", "", "")
     when = f"tick {fault['tick']}" + (f" (t = {fault['tick'] * T:g} s)" if T else "")
-    return f"{when}: {name}: {cause}; the motor is off from there on. {cure[:1].upper()}{cure[1:]}."
+    return f"{when}: {name}: {cause}; the motor is off from then on. {cure[:1].upper()}{cure[1:]}."
 
 
 class Timing:

@@ -41,7 +41,7 @@ LOOK = 500
 #: the smallest size that BEGIN takes: one byte beside the CRC-32 at the end
 SMALLEST = 5
 #: what starts it, for whoever stands beside it
-GESTURE = "lead the handle to both stops, then hold it in the middle for 1 s: the force comes on"
+GESTURE = "move the handle to both stops, then hold it in the middle for 1 s; the force then switches on"
 
 
 @contextmanager
@@ -157,7 +157,7 @@ class SerialPaddle(Paddle):
         PaddleError, LinkError, PortError, ProgramLimitError
         """
         if x is not None or v is not None:
-            raise PaddleError("x, v: a handle on a board starts where it is; move it there, or use a SimulatedPaddle.")
+            raise PaddleError("x, v: on a board the handle starts where it is. Move the handle there, or use a SimulatedPaddle.")
         ticks = self.ticks(duration)
         with guarded(self.abandon):
             self.start(scene, **options)
@@ -220,7 +220,7 @@ class SerialPaddle(Paddle):
         """
         with self._lock, guarded(self._motor_off):
             if self._loaded is None:
-                raise PaddleError("nothing is on the board yet; start a scene first: paddle.start(scene)")
+                raise PaddleError("the board has no scene yet; start one first: paddle.start(scene)")
             numbers = checked(self._loaded.program, values)
             tick = send(self.exchange, self._loaded.program, numbers)
             self._loaded = self._loaded.with_values(numbers)
@@ -298,14 +298,14 @@ class SerialPaddle(Paddle):
         >>> import hapticlab as hl
         >>> with hl.connect("sim://hapkit") as paddle:
         ...     print(paddle.keep(hl.wall()(k=150, x_o=0.01)))
-        lead the handle to both stops, then hold it in the middle for 1 s: the force comes on
+        move the handle to both stops, then hold it in the middle for 1 s; the force then switches on
         """
         with self._lock:
             self._require_idle("keep")
             if self.settings is None or not self.settings.checked:
                 raise PaddleError(
-                    "the motor's sign was not checked on this board; a board without a computer must not push the wrong way: "
-                    "run `hapticlab calibrate` first."
+                    "the sign of the motor was not checked on this board, and a board without a computer must not push in "
+                    "the wrong direction. Run `hapticlab calibrate` first."
                 )
             program = self.program(scene, live=(), **options)
             check_margin(program)
@@ -356,7 +356,7 @@ class SerialPaddle(Paddle):
         self.close()
 
     def __repr__(self) -> str:
-        return f"<SerialPaddle {self.url}: {'; '.join([str(self), *self.notices])}>"
+        return "\n".join([f"<SerialPaddle {self.url}: {self}>", *self.notices])
 
     def __str__(self) -> str:
         return introduction(self.board, self.settings, self.T)
@@ -373,7 +373,7 @@ class SerialPaddle(Paddle):
         """The program of a scene that fits the board, or None for the one that is there."""
         if scene is None:
             if self._loaded is None:
-                raise PaddleError("nothing is on the board yet; give a scene: paddle.start(scene)")
+                raise PaddleError("the board has no scene yet; give one: paddle.start(scene)")
             return None
         program = self.program(scene, **options)
         sent = decimation(program, self.exchange.port, every)
@@ -384,11 +384,11 @@ class SerialPaddle(Paddle):
 
     def _require_idle(self, asked):
         if self._run is not None:
-            raise PaddleError(f"{asked}: a scene runs; end it first: paddle.stop()")
+            raise PaddleError(f"{asked}: a scene is running; end it first: paddle.stop()")
 
     def _running(self):
         if self._run is None:
-            raise PaddleError("nothing runs; start a scene first: paddle.start(scene)")
+            raise PaddleError("no scene is running; start one first: paddle.start(scene)")
         return self._run
 
     def _begin(self, program, every, options, force_max):
@@ -426,7 +426,7 @@ class SerialPaddle(Paddle):
                 lambda enough=next_look: run.last_tick >= enough or run.fault or self._run is not run, PATIENCE + look * self.T
             )
             if self._run is not run:
-                raise PaddleError("another thread ended this run, or began another; what was recorded went to that thread.")
+                raise PaddleError("another thread ended this run or began a new one, and received the recording.")
             if not came and run.last_tick == before:
                 run.fault = run.fault or explain_silence(exchange, self.url)
             if bar is not None:

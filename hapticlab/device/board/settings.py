@@ -4,8 +4,6 @@ import math
 import zlib
 from dataclasses import dataclass, fields, replace
 
-from ...base.facts import Fact
-from ...base.shows_itself import ShowsItself
 from ...errors import PaddleError
 from ..device import Device
 from ..link.messages import (
@@ -29,7 +27,7 @@ _CHOICES = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Settings(ShowsItself):
+class Settings:
     """The record a board keeps; units and meanings are in messages.SETTINGS, and ``print`` shows them.
 
     Examples
@@ -63,10 +61,10 @@ class Settings(ShowsItself):
         for name, (low, high) in SETTING_RANGES.items():
             value = getattr(self, name)
             if not low <= value <= high:
-                raise PaddleError(f"{name} = {value:g}; a board's settings need {low:g} to {high:g}. Calibrate again.")
+                raise PaddleError(f"{name} = {value:g}; a setting of a board needs {low:g} to {high:g}. Calibrate again.")
         step = abs(self.metres_per_count)
         if step < METRES_PER_COUNT_MIN:
-            raise PaddleError(f"metres_per_count = {self.metres_per_count:g}; needs {METRES_PER_COUNT_MIN:g} at least.")
+            raise PaddleError(f"metres_per_count = {self.metres_per_count:g}; needs at least {METRES_PER_COUNT_MIN:g}.")
         if not self.travel_min < self.travel_max:
             raise PaddleError(f"travel from {self.travel_min:g} to {self.travel_max:g} m; needs the lower stop first.")
         counts = max(-self.travel_min, self.travel_max, key=abs) / step
@@ -76,7 +74,9 @@ class Settings(ShowsItself):
             if getattr(self, name) not in allowed:
                 raise PaddleError(f"{name} = {getattr(self, name)!r}; needs {_spoken(allowed)}.")
         if self.sensor == SENSORS["MAGNETORESISTIVE"] and not WRAP_MIN <= self.wrap <= WRAP_MAX:
-            raise PaddleError(f"wrap = {self.wrap}; a magnetoresistive sensor needs {WRAP_MIN} to {WRAP_MAX} counts a half turn.")
+            raise PaddleError(
+                f"wrap = {self.wrap}; a magnetoresistive sensor needs {WRAP_MIN} to {WRAP_MAX} counts per half turn."
+            )
 
     def to_bytes(self):
         """Return the record as a board keeps it, its CRC-32 at the end."""
@@ -111,21 +111,14 @@ class Settings(ShowsItself):
         part = abs(duty) if self.motor_law == MOTOR_LAWS["LINEAR"] else duty * duty
         return math.copysign(part * self.force_full, duty) * self.motor_sign
 
-    def _sentence(self):
-        found = "nominal constants, nothing measured on this paddle" if self.is_nominal else f"calibrated on {self.date}"
-        return f"what a board keeps of paddle {self.ident:04X}: {found}"
-
-    def _facts(self):
-        return [Fact(name, getattr(self, name), unit, meaning) for _, name, unit, meaning in SETTINGS[1:-1]]
-
     def __str__(self):
         rows = {name: (unit, meaning) for _, name, unit, meaning in SETTINGS}
         lines = [f"{f.name:<17} {getattr(self, f.name):<12.7g} {'' if rows[f.name][0] == '1' else rows[f.name][0]:<6}"
                  f" {rows[f.name][1]}" for f in fields(self)]  # fmt: skip
-        return "\n".join([*lines, "nominal: nothing here was measured on this paddle"] if self.is_nominal else lines)
+        return "\n".join([*lines, "nominal: no value here was measured on this paddle"] if self.is_nominal else lines)
 
 
-#: what the profiles do not say. Hapkit: KMA210 on its nominal 920 counts per half turn, 12.8 um a count; the square-root
+#: what the profiles do not say. Hapkit: KMA210 on its nominal 920 counts per half turn, 12.8 um per count; the square-root
 #: law and 8 N at full duty are of the published sketches; travel, heating and speed are guesses that keep a motor cool
 _NOMINAL = {
     "hapkit": {
@@ -151,7 +144,7 @@ def nominal(profile, **changes):
         Fields that are known better.
     """
     if profile not in _NOMINAL:
-        raise PaddleError(f"no nominal settings for {profile!r}; there are some for {', '.join(_NOMINAL)}.")
+        raise PaddleError(f"no nominal settings for {profile!r}; they exist for {', '.join(_NOMINAL)}.")
     kind = named_profile(profile)
     known = {"metres_per_count": 1 / kind.counts_per_metre, "force_max": kind.force_max, "m": kind.m, "b": kind.b}
     return Settings(**{**known, "coulomb": kind.coulomb, **_NOMINAL[profile], **changes})
@@ -172,5 +165,5 @@ def changed(settings, **values):
     """Return the settings with some fields replaced; a misspelt one is refused."""
     unknown = sorted(set(values) - {f.name for f in fields(Settings)})
     if unknown:
-        raise PaddleError(f"{unknown[0]} is no setting; there are {', '.join(f.name for f in fields(Settings))}.")
+        raise PaddleError(f"{unknown[0]} is not a setting; the settings are {', '.join(f.name for f in fields(Settings))}.")
     return replace(settings, **values)

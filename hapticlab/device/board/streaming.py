@@ -13,7 +13,7 @@ from .serial_paddle import PATIENCE
 
 #: a board is fed so long after the last look at its samples, then its motor goes off by itself [s]
 LEASH = 1.0
-LEAD = "Lead the handle slowly to one stop, then to the other, and back: the board finds its position"
+LEAD = "Move the handle slowly to one stop, then to the other, and back, so that the board finds its position"
 
 
 class Streaming:
@@ -165,7 +165,7 @@ class Streaming:
         if exchange.broken is not None:
             return str(exchange.broken)
         if exchange.closed:
-            return "this paddle was closed: connect it again, and run the view's cell again"
+            return "this paddle was closed. Connect it again, and run the view's cell again"
         return "another cell began a scene on this paddle, or ended this one"
 
     def _delay(self):

@@ -45,10 +45,10 @@ def check_room(board, settings, program):
     check_period(board, program.T, settings)
     watched, room = len(program.outputs) - 1, board["channels"] - 3
     if watched > room:
-        raise PaddleError(f"{program.name} watches {watched} channels; this board passes {room} on: watch fewer.")
+        raise PaddleError(f"{program.name} watches {watched} channels; this board transmits at most {room}. Watch fewer.")
     odd = [c.name for c in program.parameters if c.type != "f32"]
     if odd:
-        raise PaddleError(f"{program.name}: {odd[0]} is no float32; a board's parameters are: compile with dtype='float32'.")
+        raise PaddleError(f"{program.name}: {odd[0]} is not a float32, which a board needs. Compile with dtype='float32'.")
 
 
 def check_period(board, T, settings=None):
@@ -59,10 +59,10 @@ def check_period(board, T, settings=None):
         unseen = 0.375 * settings.wrap * abs(settings.metres_per_count) / settings.speed_max
         if high > unseen:
             high = math.floor(unseen * 1e6) * 1e-6
-            why = f", as its magnet must not turn over unseen at speed_max = {settings.speed_max:g} m/s"
+            why = f", because at speed_max = {settings.speed_max:g} m/s its magnet must not make half a turn between two samples"
     if not low * (1 - 1e-9) <= T <= high * (1 + 1e-9):
         nearer = low if T < low else high
-        raise PaddleError(f"T = {T:g} s; this board does {low:g} to {high:g} s{why}: take T={nearer:g}")
+        raise PaddleError(f"T = {T:g} s; this board needs {low:g} to {high:g} s{why}. Use T={nearer:g}")
 
 
 def read_settings(exchange):

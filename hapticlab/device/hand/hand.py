@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arguments import number
-from ...base.shows_itself import ShowsItself
 from ...base.unusual import HAND, warn_of_unusual
 from ...errors import PaddleError
 from .hand_presets import PRESETS, HandPreset
@@ -20,15 +19,15 @@ if TYPE_CHECKING:
 _NOTHING = HandPreset(0.0, 0.0, 0.0, "", "")
 UNITS = {"m": "kg", "b": "N s/m", "k": "N/m", "push": "N", "push_noise": "N"}
 _REASONS = {
-    "m": "A negative mass is no mass.",
-    "b": "A negative damper feeds energy to the handle.",
+    "m": "No body has a negative mass.",
+    "b": "A negative damper supplies energy to the handle.",
     "k": "A negative spring pushes the handle away and is not passive.",
     "push_noise": "It is a standard deviation.",
 }
 
 
 @dataclass(frozen=True, kw_only=True, init=False)
-class Hand(ShowsItself):
+class Hand:
     """A hand lumped on the handle: (m + m_hand) x'' = push - b_hand (x' - intent') - k_hand (x - intent) - ...
 
     A linear hand that does not react: it holds for some 30 ms after contact, before reflexes. Passive with push = 0 and
@@ -91,11 +90,17 @@ class Hand(ShowsItself):
         push_noise: Number = 0.0,
     ) -> None:
         if preset is not None and preset not in PRESETS:
-            raise PaddleError(f"no hand {preset!r}; there are {', '.join(PRESETS)}. Others: hl.Hand(m=..., b=..., k=...)")
-        why = "It is the firmness beside the preset's."
+            raise PaddleError(
+                f"no hand {preset!r}; the presets are {', '.join(PRESETS)}. For a hand of your own write "
+                "hl.Hand(m=..., b=..., k=...)"
+            )
+        why = "It is the firmness relative to the preset."
         grip = number("grip", grip, "", "a hand", above=0, why=why, error=PaddleError)
         if preset is None and grip != 1:
-            raise PaddleError(f"grip = {grip:g}: it makes a preset firmer, as in hl.Hand('pinch', grip=2); give b and k instead")
+            raise PaddleError(
+                f"grip = {grip:g}: grip makes a preset firmer, as in hl.Hand('pinch', grip=2). Without a "
+                "preset, give b and k instead"
+            )
         known = PRESETS[preset] if preset is not None else _NOTHING
         numbers = {"m": known.m, "b": grip * known.b, "k": grip * known.k}
         given = {name: value for name, value in (("m", m), ("b", b), ("k", k)) if value is not None}
@@ -115,8 +120,8 @@ class Hand(ShowsItself):
             object.__setattr__(self, "intent", number("intent", self.intent, "m", "a hand", error=PaddleError))
         if self.k == 0 and self.b == 0:
             raise PaddleError(
-                "intent without k or b: an intended place acts through the hand's spring or damper. "
-                "Give Hand(k=..., intent=...) in N/m, or b in N s/m."
+                "intent without k or b: a target position acts through the hand's spring or damper. Give Hand(k=..., "
+                "intent=...) in N/m, or b in N s/m."
             )
 
     @property
@@ -127,24 +132,18 @@ class Hand(ShowsItself):
     def samples(self, ticks: int, T: float, first: int = 0) -> Array:
         """Return the intent at the ticks first ... first + ticks (one more than the ticks) [m], shape (ticks + 1,)."""
         times = np.arange(first, first + ticks + 1) * T
-        assert callable(self.intent), "asked of a hand that moves"
+        assert callable(self.intent), "needed by a hand that moves"
         places = np.asarray(self.intent(times), float)
         if places.shape not in ((), times.shape):
             raise PaddleError(
-                f"intent gave shape {places.shape} for {ticks + 1} times; needs one position [m] for each: "
-                "use NumPy functions of the whole array, as in lambda t: 0.01*np.sin(t)."
+                f"intent gave shape {places.shape} for {ticks + 1} times; needs one position [m] for each. Use NumPy "
+                "functions of the whole array, as in lambda t: 0.01*np.sin(t)."
             )
         bad = ~np.isfinite(places)
         if bad.any():
             when = float(np.broadcast_to(times, bad.shape)[bad][0]) if bad.ndim else 0.0
             raise PaddleError(f"intent is not finite at t = {when:g} s; needs a position [m] at every tick.")
         return np.broadcast_to(places, times.shape)
-
-    def _sentence(self):
-        return f"a hand: {self}"
-
-    def _line(self):
-        return f"Hand({self})"
 
     def __str__(self) -> str:
         parts = [f"{name} = {getattr(self, name):g} {unit}" for name, unit in UNITS.items() if getattr(self, name)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-ILLUSTRATIVE = "illustrative round numbers, measured on nobody"
+ILLUSTRATIVE = "illustrative round numbers, not measured"
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,6 @@ def hand_presets() -> str:
     Examples
     --------
     >>> print(hand_presets().splitlines()[0])
-    pinch: thumb and finger, relaxed; m = 0.02 kg, b = 1 N s/m, k = 200 N/m (illustrative round numbers, measured on nobody)
+    pinch: thumb and finger, relaxed; m = 0.02 kg, b = 1 N s/m, k = 200 N/m (illustrative round numbers, not measured)
     """
     return "\n".join(f"{name}: {preset}" for name, preset in PRESETS.items())

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arguments import number
-from ...base.shows_itself import ShowsItself
 from ...errors import PaddleError
 
 if TYPE_CHECKING:
@@ -47,7 +46,7 @@ class Together(Intent):
 
 
 @dataclass(frozen=True, kw_only=True)
-class MinimumJerk(ShowsItself, Intent):
+class MinimumJerk(Intent):
     """The smooth reach of a hand, which has the least mean square jerk: x = start + (end - start)(10 s^3 - 15 s^4 + 6 s^5).
 
     Flash and Hogan (1985): s runs from 0 to 1 over the duration. The fastest point is half way, at 1.875 times the mean
@@ -97,7 +96,7 @@ class MinimumJerk(ShowsItself, Intent):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tremor(ShowsItself, Intent):
+class Tremor(Intent):
     """Physiological tremor: a narrow band of noise, drawn once, as so many sinusoids of random phase.
 
     The hand's tremor has its peak between 6 and 12 Hz (Lakie et al., J. Physiol. 593, 2015); the amplitude is yours to
@@ -138,7 +137,7 @@ class Tremor(ShowsItself, Intent):
     def __post_init__(self) -> None:
         for name, unit, low in (("rms", "m", 0), ("low", "Hz", 0), ("high", "Hz", 0)):
             object.__setattr__(self, name, number(name, getattr(self, name), unit, "a tremor", least=low, error=PaddleError))
-        why = "It is the upper edge."
+        why = "It is the upper limit of the band."
         number("high", self.high, "Hz", "a band of tremor", above=self.low, why=why, error=PaddleError)
         if not isinstance(self.lines, int) or self.lines < 1:
             raise PaddleError(f"lines = {self.lines!r}; a tremor needs a whole number of sinusoids >= 1.")

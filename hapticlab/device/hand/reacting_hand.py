@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arguments import number
-from ...base.shows_itself import ShowsItself
 from ...errors import PaddleError
 from .intents import Intent, Together
 
@@ -42,11 +41,11 @@ class Seen:
         columns = self.__dict__.get("columns", {})
         if name in columns:
             return columns[name]
-        raise AttributeError(f"{name!r} was not seen; there are {', '.join(columns)}. Watch it: hl.Scene(..., watch=[...])")
+        raise AttributeError(f"{name!r} is not available; there are {', '.join(columns)}. Watch it: hl.Scene(..., watch=[...])")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reacting(ShowsItself, Intent):
+class Reacting(Intent):
     """An intent that answers what happened, a reaction time ago: the feedback path of Section 23.3.3.
 
     Every so often the plan is asked where to be by the next time; the hand moves there in a straight line. What the plan
@@ -106,14 +105,14 @@ class Reacting(ShowsItself, Intent):
 
     def __call__(self, t: Any) -> NoReturn:
         raise PaddleError(
-            "this hand reacts to what happens, so its intent is no function of time; it runs on SimulatedPaddle.run alone. "
-            "Give a path instead, such as hl.people.MinimumJerk(...)."
+            "this hand reacts to the motion, so its intent is not a function of time, and it runs on SimulatedPaddle.run "
+            "only. Give a path instead, such as hl.people.MinimumJerk(...)."
         )
 
     def with_path(self, path: Callable[..., Any]) -> Reacting:
         """Return this plan with a path of time beside it, :class:`Tremor` for one."""
         if isinstance(path, Reacting):
-            raise PaddleError("two plans for one hand; give one Reacting(plan=...) that does what both do.")
+            raise PaddleError("this hand has two plans; give one Reacting(plan=...) that does the work of both.")
         return replace(self, beside=path if self.beside is None else Together((self.beside, path)))
 
     __add__ = __radd__ = with_path

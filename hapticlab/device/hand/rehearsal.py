@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from ...base.arguments import numbers
-from ...base.shows_itself import ShowsItself
 from ...errors import PaddleError
 from .intents import MinimumJerk
 
@@ -20,7 +19,7 @@ DURATIONS = (0.01, 600.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rehearsal(ShowsItself):
+class Rehearsal:
     """What the hand does for ``view.rehearsal``, where nobody recorded.
 
     Parameters
@@ -59,11 +58,11 @@ def _check_intent(intent):
         at_zero = np.asarray(intent(np.zeros(1)), float)
     except Exception as problem:
         raise PaddleError(
-            f"intent = {intent!r}; a rehearsal needs an intent: a function of an array of times [s] that returns places [m], as "
-            f"hl.people.MinimumJerk(end=0.02, duration=1.0) is. At 0 s: {type(problem).__name__}: {problem}"
+            f"intent = {intent!r}; a rehearsal needs an intent: a function of an array of times [s] that returns positions "
+            f"[m], such as hl.people.MinimumJerk(end=0.02, duration=1.0). At 0 s: {type(problem).__name__}: {problem}"
         ) from problem
     if at_zero.size != 1 or not np.isfinite(at_zero).all():
-        raise PaddleError(f"the rehearsal's intent at 0 s is {at_zero}; needs one finite place [m] for each time")
+        raise PaddleError(f"the rehearsal's intent at 0 s is {at_zero}; needs one finite position [m] for each time")
 
 
 def _push(duration):

@@ -98,7 +98,7 @@ class Exchange:
         said = reply.fields
         if said["result"]:
             name, meaning = _result(said["result"])
-            raise LinkError(f"the board refused {message}: {name}: {meaning}", name)
+            raise LinkError(f"the board rejected {message}: {name}: {meaning}", name)
         return said["tick"]
 
     def refresh(self):
@@ -154,8 +154,8 @@ class Exchange:
     def _require_my_time(self):
         if self._waiting not in (None, threading.get_ident()):
             raise PaddleError(
-                f"{self.port.port}: time is virtual here and passes for the thread that waits; another thread waits now. "
-                "Ask between its waits, or let time pass by itself: sim://hapkit?pace=real"
+                f"{self.port.port}: time is virtual here and passes only while a thread waits, and another thread is "
+                "waiting now. Call this between its waits, or let time pass by itself: sim://hapkit?pace=real"
             )
 
     def _next_sequence(self, message):

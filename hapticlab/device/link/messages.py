@@ -99,21 +99,25 @@ RESULTS = {
     "BUSY": (32, "not while a scene runs: paddle.stop() first"),
     "NO_PROGRAM": (33, "the board holds no verified program of that CRC: send the scene again"),
     "NOT_HOMED": (34, "the position is unknown since the last reset: paddle.home()"),
-    "LENGTH": (35, "a message of a wrong length: flash the firmware of this hapticlab"),
-    "GUARD": (36, "a damaged message, or one of another session: connect again"),
-    "STALE": (37, "a message older than one already obeyed: connect again"),
+    "LENGTH": (35, "a message of the wrong length: flash the firmware of this hapticlab"),
+    "GUARD": (36, "a damaged message, or one of a different session: connect again"),
+    "STALE": (37, "a message older than one that was already executed: connect again"),
     "RANGE": (38, "a value outside what the board allows"),
     "TOO_LARGE": (39, "more bytes than the board holds: use a smaller scene, fewer substeps, or another method"),
     "NO_VALUE": (40, "a parameter has no finite value: set every parameter before the start"),
-    "STORE": (41, "the memory that survives power-off did not keep what was written: write again, then replace the board"),
-    "UNKNOWN": (42, "a message this firmware does not know: flash the firmware of this hapticlab"),
-    "FAULT": (43, "a fault stands: read it, remove its cause, then paddle.clear()"),
+    "STORE": (
+        41,
+        "the memory that survives power-off did not keep the values that were written: write again; if it fails "
+        "again, replace the board",
+    ),
+    "UNKNOWN": (42, "a message that this firmware does not know: flash the firmware of this hapticlab"),
+    "FAULT": (43, "a fault is pending: read it, remove its cause, then call paddle.clear()"),
     "NOT_CALIBRATED": (44, "the board has no calibration: run `hapticlab calibrate`"),
-    "CHANNELS": (45, "more watched outputs, or inputs other than x, than the board passes on: watch fewer"),
+    "CHANNELS": (45, "more watched outputs, or inputs other than x, than the board transmits: watch fewer"),
     "ALIAS": (
         47,
-        "at this period the sensor's magnet could make half a turn unseen below the speed limit: a shorter T, "
-        "a lower speed_max (calibrate), or a quadrature encoder",
+        "at this period the sensor's magnet could make half a turn between two samples, below the speed limit: use a "
+        "shorter T, a lower speed_max (calibrate), or a quadrature encoder",
     ),
     "HOT": (46, "the motor is hot from earlier forces: let it cool for some minutes"),
 }
@@ -127,11 +131,19 @@ FAULTS = {
         "look for a division by zero, an unstable scene or a sine of more than 8192 rad",
     ),
     "OVER_SPEED": (3, "the handle moved faster than the limit", "hold the handle; lower the stiffness or add damping"),
-    "OVER_TRAVEL": (4, "the handle left its calibrated travel", "home again; if it repeats, run `hapticlab calibrate`"),
-    "OVER_HEAT": (5, "the motor gave much force for long and is hot", "let it cool for some minutes; use less force"),
-    "OVERRUN": (6, "steps took longer than the period, again and again", "raise T, or use a cheaper method or scene"),
-    "BAD_PROGRAM": (7, "the program in memory changed while it ran", "send the scene again; if it repeats, replace the board"),
-    "SENSOR": (8, "the position sensor reads what it cannot", "check the sensor's wires and magnet, then home again"),
+    "OVER_TRAVEL": (4, "the handle left its calibrated travel", "home again; if this happens again, run `hapticlab calibrate`"),
+    "OVER_HEAT": (5, "the motor gave a large force for a long time and is hot", "let it cool for some minutes; use less force"),
+    "OVERRUN": (6, "steps repeatedly took longer than the period", "raise T, or use a cheaper method or scene"),
+    "BAD_PROGRAM": (
+        7,
+        "the program in memory changed while it ran",
+        "send the scene again; if this happens again, replace the board",
+    ),
+    "SENSOR": (
+        8,
+        "the position sensor gave an impossible reading or lost counts",
+        "check the sensor's wires and magnet, then home again",
+    ),
     "MEMORY": (9, "the stack reached the data", "send a smaller scene and report this with the scene"),
 }
 STATES = {"IDLE": 0, "RUN": 1, "FAULT": 2}
@@ -143,7 +155,7 @@ SAMPLE_FLAGS = {"SATURATED": 1, "OVERRUN": 2, "FIRST": 4}
 #: bits of START.options; PASSIVE leaves the motor off and needs no home
 OPTIONS = {"PASSIVE": 1}
 RESET_CAUSES = {
-    "POWER_OR_RESET": (0, "power-on or reset; the bootloader leaves no more to tell"),
+    "POWER_OR_RESET": (0, "power-on or reset (the bootloader hides which)"),
     "POWER": (1, "power-on"),
     "EXTERNAL": (2, "the reset pin: opening the port, or the button"),
     "BROWN_OUT": (3, "the supply fell too low: check the power supply and its plug"),

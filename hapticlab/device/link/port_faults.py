@@ -21,29 +21,29 @@ def explain(url, baudrate, problem, ports):
     code, text = _code_of(problem), str(problem)
     if code == errno.ENOENT:
         there = ", ".join(map(str, ports))
-        return f"{url}: no such port; there {f'are: {there}' if there else 'is none. Plug the board in'}", "missing"
+        return f"{url}: no such port; there {f'are: {there}' if there else 'is none. Plug in the board'}", "missing"
     if code in (errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK):
-        return f"{url} is taken by {_holder(url)}; close it there, then connect again{_modem_manager()}", "busy"
+        return f"{url} is in use by {_holder(url)}; close it there, then connect again{_modem_manager()}", "busy"
     if code in (errno.EACCES, errno.EPERM):
         return f"{url}: permission denied; {permission_cure()}", "permission"
     if code in (errno.ENOTTY, errno.EISDIR, errno.EINVAL, errno.ENXIO, errno.ENODEV, errno.EIO):
-        return f"{url} is no serial port that answers ({text}); plug it in again, or name another port", "missing"
+        return f"{url} is not a serial port that answers ({text}); plug it in again, or name a different port", "missing"
     if isinstance(problem, ValueError) or "baud" in text:
-        return f"{url} cannot be set to {baudrate} baud ({text}); use a port that can, or another USB adapter", "settings"
-    return f"{url} did not open ({text}); plug the board in again, then connect again", "failed"
+        return f"{url} cannot be set to {baudrate} baud ({text}); use a port or a USB adapter that can", "settings"
+    return f"{url} did not open ({text}); plug in the board again, then connect again", "failed"
 
 
 def _explain_url(url, problem):
     scheme = url.split("://", 1)[0]
     if isinstance(problem, ValueError) and "protocol" in str(problem):
         return (
-            f"{url}: no port speaks {scheme!r}; give a port such as {'COM3' if os.name == 'nt' else '/dev/ttyACM0'}, "
+            f"{url}: the scheme {scheme!r} is not known; give a port such as {'COM3' if os.name == 'nt' else '/dev/ttyACM0'}, "
             "or sim://hapkit, or socket://host:port",
             "url",
         )
     if isinstance(problem, ValueError) or any(w in str(problem) for w in ("debug|info", "not supported between")):
-        return f"{url}: not a port's address; write it as in socket://host:port", "url"
-    return f"{url}: nothing answers there ({problem}); start what should, or check the address", "refused"
+        return f"{url}: not the address of a port; write it like socket://host:port", "url"
+    return f"{url}: no program answers there ({problem}); start it, or check the address", "refused"
 
 
 def _code_of(problem):
@@ -82,7 +82,7 @@ def _holder(device):
 def _modem_manager():
     if not sys.platform.startswith("linux"):
         return ""
-    return f". In the first seconds after plugging in it may be ModemManager, which {RULES} keeps away"
+    return f". In the first seconds after plugging in, this may be ModemManager; {RULES} keeps it away"
 
 
 def rules_file():

@@ -86,11 +86,13 @@ def open_port(url, *, baudrate=500000, timeout=0.05):
     import serial
 
     if not isinstance(url, str) or not url:
-        raise PortError(f'{url!r} is no port; needs its name or address as text: "COM3", "/dev/ttyACM0", "sim://hapkit"', "url")
+        raise PortError(
+            f'{url!r} is not a port; needs its name or address as text: "COM3", "/dev/ttyACM0", "sim://hapkit"', "url"
+        )
     if os.environ.get(PORTS) == "sim" and not url.lower().startswith("sim://"):
         raise PortError(
-            f"{url}: {PORTS}=sim lets only simulated paddles open, as while a notebook is graded; use sim://hapkit there, "
-            "or unset it for a paddle with a person at it",
+            f"{url}: {PORTS}=sim allows simulated paddles only, for example while a notebook is graded. Use sim://hapkit "
+            "there, or unset it for a real paddle with a person at the handle",
             "refused",
         )
     if HANDLERS not in serial.protocol_handler_packages:
@@ -137,11 +139,11 @@ def port_watched(port):
             raise
         if "timeout" in str(problem).lower():
             raise PortError(
-                f"{port.port}: the device takes no data for {port.write_timeout} s; plug it in again, then connect again",
+                f"{port.port}: the device accepted no data for {port.write_timeout} s; plug it in again, then connect again",
                 "silent",
             ) from problem
         raise PortError(
-            f"{port.port}: the device left during use ({problem}). Check its cable and supply, plug it in again, "
+            f"{port.port}: the device disconnected during use ({problem}). Check its cable and supply, plug it in again, "
             "then connect again",
             "left",
         ) from problem

@@ -54,10 +54,10 @@ def calibrate(
     heating and speed limits stay nominal: a lab identifies them.
     """
     if only is not None and only not in STEPS:
-        raise PaddleError(f"only = {only!r}; a calibration has the steps {', '.join(STEPS)}, or None for all.")
+        raise PaddleError(f"only = {only!r}; needs one of the steps {', '.join(STEPS)}, or None for all.")
     date = int(calendar.today().strftime("%Y%m%d")) if date is None else date
     if not 20200101 <= date <= 99991231:
-        raise PaddleError(f"date = {date}; needs today's, as 20261120.")
+        raise PaddleError(f"date = {date}; needs today's date as a number, such as 20261120.")
     person = person or Person()
     if paddle.settings is None and not _begin(paddle, person):
         return None
@@ -80,7 +80,7 @@ def still_nominal(settings):
 def _begin(paddle, person):
     """Store nominal constants on a new board: the sensor's kind decides how it counts. Returns whether it was agreed to."""
     kind = person.choose(
-        "This board has no settings yet. Which sensor has the paddle?",
+        "This board has no settings yet. Which sensor does the paddle have?",
         {"hapkit": "magnetoresistive sensor on A2, as on a Hapkit", "encoder": "quadrature encoder on D2 and D3"},
     )
     sensor = SENSORS["MAGNETORESISTIVE" if kind == "hapkit" else "QUADRATURE"]
@@ -97,7 +97,11 @@ def _stops(paddle, person, date):
     found = measure_stops(paddle, person)
     was = paddle.settings.metres_per_count
     settings = changed(found.into(paddle.settings), date=date, ident=_named(paddle.settings.ident))
-    words = [*found.words(), f"before     {abs(was) * 1e6:.4g} um a count", f"kept       force_full = {settings.force_full:g} N"]
+    words = [
+        *found.words(),
+        f"before     {abs(was) * 1e6:.4g} um per count",
+        f"kept       force_full = {settings.force_full:g} N",
+    ]
     return offer(paddle, person, settings, words)
 
 

@@ -44,9 +44,11 @@ def rights(url=None, platform=sys.platform):
     if platform == "darwin":
         if (url or "").startswith("/dev/tty."):
             return Check("rights", "fault", f"{url} waits for a modem", f"name {url.replace('/tty.', '/cu.')} instead")
-        return Check("rights", "ok", "macOS asks for none; of the two names of a port take the one with cu.")
+        return Check("rights", "ok", "macOS needs none; of the two names of a port, use the one with cu.")
     return Check(
-        "rights", "ok", "Windows asks for none, but lends a port to one program at a time: other notebooks, the serial monitor"
+        "rights",
+        "ok",
+        "Windows needs none, but only one program at a time can open a port (close other notebooks and the serial monitor)",
     )
 
 
@@ -54,13 +56,15 @@ def _linux_rights():
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         return Check("rights", "ok", "root may open every port")
     if any((Path(folder) / RULES).is_file() for folder in UDEV):
-        return Check("rights", "ok", f"{RULES} lets the user at this screen open the boards, and keeps ModemManager away")
+        return Check("rights", "ok", f"{RULES} allows the user at this screen to open the boards, and keeps ModemManager away")
     held, listed = _groups()
     if held:
         return Check("rights", "ok", f"this user is in {held}; {RULES} would also keep ModemManager away")
     if listed:
-        cure = "log out and in again, or restart: a group is taken up at login"
-        return Check("rights", "attention", f"this user was added to {listed}, but this login has not taken it up", cure)
+        cure = "log out and in again, or restart, because a new group takes effect at login"
+        return Check(
+            "rights", "attention", f"this user was added to {listed}, but the group takes effect at the next login", cure
+        )
     return Check("rights", "attention", f"neither {RULES} nor a group lets this user open serial ports", permission_cure())
 
 

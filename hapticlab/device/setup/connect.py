@@ -52,7 +52,7 @@ def connect(
         raise PaddleError(f"paddle = {paddle!r}; needs a SimulatedPaddle, the mechanics of a simulated board.")
     T = T if T is None else number("T", T, "s", "a paddle", above=0, error=PaddleError)
     if paddle is not None and T not in (None, paddle.T):
-        raise PaddleError(f"T = {T} s, and the paddle has T = {paddle.T:g} s; give one of them.")
+        raise PaddleError(f"T = {T} s, but the paddle has T = {paddle.T:g} s. Give only one of them.")
     T = T if T is not None else paddle.T if paddle is not None else 1e-3
     if port is None:
         if paddle is not None:
@@ -62,7 +62,7 @@ def connect(
     if not hasattr(opened, "put_on"):
         if paddle is not None:
             opened.close()
-            raise PaddleError(f'paddle= is for a simulated board, and {port} is none: connect("sim://hapkit", paddle=...)')
+            raise PaddleError(f'paddle= is for a simulated board, which {port} is not. Write connect("sim://hapkit", paddle=...)')
         return SerialPaddle(port, T=T, port=opened, hello=hello)
     if paddle is not None:
         opened.put_on(paddle)

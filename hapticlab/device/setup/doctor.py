@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
-from ...base.shows_itself import ShowsItself
 from ...errors import HapticlabError
 from ..board.serial_paddle import SerialPaddle
 from ..link.port_faults import permission_cure
@@ -22,7 +21,7 @@ STATES = ("ok", "attention", "fault", "skipped")
 
 
 @dataclass(frozen=True)
-class Report(ShowsItself):
+class Report:
     """Every step's Check, in order; prints as lines."""
 
     checks: tuple
@@ -40,11 +39,11 @@ class Report(ShowsItself):
         """Return the checks as dictionaries."""
         return [asdict(check) for check in self.checks]
 
-    def _sentence(self):
-        return ", ".join(f"{count} {s}" for s in STATES if (count := sum(c.state == s for c in self.checks)))
-
     def __str__(self):
-        return "\n".join([*map(str, self.checks), self._sentence()])
+        counted = ", ".join(f"{count} {s}" for s in STATES if (count := sum(c.state == s for c in self.checks)))
+        return "\n".join([*map(str, self.checks), counted])
+
+    __repr__ = __str__  # what a notebook shows
 
 
 def doctor(url: str | None = None, person: Person | None = None, *, tell: Callable[[Any], Any] = lambda check: None) -> Report:
@@ -103,7 +102,7 @@ def _walk(url, person):
         if paddle is not None:
             yield from _on_board(paddle, person)
     except HapticlabError as problem:
-        yield checks.Check("link", "fault", "the walk ended here", str(problem))
+        yield checks.Check("link", "fault", "the checks ended here", str(problem))
     finally:
         if paddle is not None:
             paddle.close()
@@ -134,7 +133,7 @@ def _ports(url):
         names = ", ".join(port.device for port in known)
         return checks.Check("computer", "fault", f"{len(known)} known boards: {listed}", f"name one of {names} with --port"), None
     cure = (
-        "plug the board in; try another cable, as some carry power only, and another USB socket without a hub. Copies with "
-        "a CH340 need its driver on Windows and older macOS. If the port is there but not known, name it with --port"
+        "plug in the board. Try another cable, because some carry power only, and a USB socket without a hub. Copies with a "
+        "CH340 need its driver on Windows and older macOS. If the port is listed but not recognised, name it with --port"
     )
     return checks.Check("computer", "fault", f"no known board: {listed}", f"{cure}; Linux: {permission_cure()}"), None

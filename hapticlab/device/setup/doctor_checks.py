@@ -53,7 +53,7 @@ def firmware(port, url, connected):
         return [Check("firmware", "fault", "the port failed", str(problem))], None
     except LinkError as problem:
         return [_other_firmware(url, problem)], None
-    same = f"messages {table_hash():08x} as here; {paddle}"
+    same = f"messages {table_hash():08x}, the same as in this package; {paddle}"
     return [Check("firmware", "ok", same), _reset_cause(paddle.board["reset_cause"])], paddle
 
 
@@ -61,8 +61,8 @@ def _other_firmware(url, problem):
     if problem.result == "VERSION":
         return Check("firmware", "fault", "hapticlab firmware of another version", str(problem))
     if "://" in url or not _bootloader_answers(url):
-        return Check("firmware", "fault", "no paddle answers, no bootloader either", str(problem))
-    cure = f"put the firmware on it: hapticlab flash --port {url}"
+        return Check("firmware", "fault", "neither a paddle nor a bootloader answers", str(problem))
+    cure = f"install the firmware: hapticlab flash --port {url}"
     return Check("firmware", "fault", "a board with a bootloader, but no hapticlab firmware", cure)
 
 
@@ -85,13 +85,18 @@ def settings(paddle):
     """Whether the board has settings, and whether anything in them was measured."""
     kept = paddle.settings
     if kept is None:
-        return Check("settings", "attention", "none: this board gives no force", "run `hapticlab calibrate`")
+        return Check("settings", "attention", "none, so this board gives no force", "run `hapticlab calibrate`")
     sensor = next(name for name, k in SENSORS.items() if k == kept.sensor).lower()
-    words = f"{abs(kept.metres_per_count) * 1e6:.4g} um a count, {sensor}, force_full = {kept.force_full:.4g} N"
+    words = f"{abs(kept.metres_per_count) * 1e6:.4g} um per count, {sensor}, force_full = {kept.force_full:.4g} N"
     if kept.is_nominal and paddle.url.startswith("sim://"):
         return Check("settings", "ok", f"as simulated: {words}")
     if kept.is_nominal:
-        return Check("settings", "attention", f"nominal: {words}", "run `hapticlab calibrate`: nothing was measured here")
+        return Check(
+            "settings",
+            "attention",
+            f"nominal: {words}",
+            "run `hapticlab calibrate`, because no value was measured on this paddle",
+        )
     day = str(kept.date)
     return Check("settings", "ok", f"{words}, calibrated {day[:4]}-{day[4:6]}-{day[6:]}")
 
@@ -112,13 +117,13 @@ def latency(paddle):
 
 def _latency_cure(median):
     if median < LAZY:
-        return "use a USB socket of the computer itself, no hub; walls run on the board and do not feel it"
+        return "use a USB socket of the computer itself, not a hub; walls run on the board, so this does not affect them"
     where = {
         "win32": "Device Manager > Ports > properties > Port Settings > Advanced > Latency Timer: 1 ms",
-        "linux": "it was asked for less when the port was opened, and its driver did not follow: "
-        "echo 1 | sudo tee /sys/bus/usb-serial/devices/ttyUSB*/latency_timer",
-    }.get(sys.platform, "the FTDI driver of the system sets it; Apple's own has 1 ms to 16 ms by its version")
-    return f"an FTDI adapter waits 16 ms by default: {where}. Walls run on the board and do not feel it"
+        "linux": "a shorter time was requested when the port was opened, but the driver ignored it: echo 1 | sudo tee "
+        "/sys/bus/usb-serial/devices/ttyUSB*/latency_timer",
+    }.get(sys.platform, "the system's FTDI driver sets it; Apple's driver uses 1 ms to 16 ms, depending on its version")
+    return f"an FTDI adapter waits 16 ms by default: {where}. Walls run on the board, so this does not affect them"
 
 
 def loop_and_link(paddle):
@@ -132,7 +137,7 @@ def loop_and_link(paddle):
     missing = int(np.sum(log.gap)) if log.gap is not None else 0
     damaged = _damaged(paddle) - before
     words = f"{len(log)} samples of {expected // round(log.T / paddle.T)}, {missing} gaps, {timing.lost} lost, {damaged} damaged"
-    cure = "another cable, short, away from the motor's wires; no hub" if missing or damaged or timing.lost else ""
+    cure = "use a different, short cable away from the motor's wires, and no hub" if missing or damaged or timing.lost else ""
     return [loop, Check("link", "attention" if cure else "ok", words, cure)]
 
 
@@ -148,7 +153,10 @@ def sensor_at_rest(paddle):
     words = f"at rest {wide:.0f} counts wide, {np.std(counts):.2f} rms"
     if wide <= NOISY:
         return Check("noise", "ok", words)
-    cure = "let go of the handle; else check the sensor's supply and ground, and keep its wires from the motor's"
+    cure = (
+        "release the handle; if it still moves, check the supply and ground of the sensor, and keep its wires away from "
+        "those of the motor"
+    )
     return Check("noise", "attention", words, cure)
 
 
@@ -156,18 +164,21 @@ def sensor_moved(paddle, person):
     """Whether the sensor follows the handle, over its wraps, without jumps."""
     if person is None:
         return Check("sensor", "skipped", "whether it follows the handle: needs a person")
-    person.ask(f"Press Enter, then lead the handle slowly from stop to stop and back, for {MOVED:g} s. The motor is off.")
+    person.ask(f"Press Enter, then move the handle slowly from stop to stop and back, for {MOVED:g} s. The motor is off.")
     counts = _counts(paddle, _watch(paddle, MOVED))
     sweep, jump = float(np.ptp(counts)), _largest_jump(counts)
     if sweep < LEAST_SWEEP:
         cure = "check the sensor's wires (A2, or D2 and D3), that its magnet is there and turns, and the kind of sensor"
-        return Check("sensor", "fault", f"{sweep:.0f} counts while the handle was led to and fro", cure)
+        return Check("sensor", "fault", f"{sweep:.0f} counts while the handle was moved back and forth", cure)
     kept = paddle.settings
     wraps = f", {sweep / kept.wrap:.1f} turns of {kept.wrap}" if kept and kept.sensor == SENSORS["MAGNETORESISTIVE"] else ""
     words = f"{sweep:.0f} counts from end to end{wraps}, largest jump {jump:.0f}"
     if jump <= JUMP:
         return Check("sensor", "ok", words)
-    cure = "lead it slowly and try again; else the magnet is loose or far off, or counts are lost where the sensor wraps"
+    cure = (
+        "move the handle slowly and try again; if it fails again, the magnet is loose or too far away, or counts are "
+        "lost where the sensor wraps"
+    )
     return Check("sensor", "attention", words, cure)
 
 
@@ -178,7 +189,7 @@ def home(paddle, person):
     if state_flag(paddle.exchange, "HOMED"):
         return Check("home", "ok", f"the position is known: x = {paddle.state()['x'] * 1e3:.2f} mm")
     if person is None:
-        return Check("home", "skipped", "unknown since the last reset; leading the handle to both stops needs a person")
+        return Check("home", "skipped", "unknown since the last reset; a person must move the handle to both stops")
     try:
         lead_home(paddle, person)
     except PaddleError as problem:
@@ -191,9 +202,9 @@ def sign(paddle, person):
     kept = paddle.settings
     if kept is None or not state_flag(paddle.exchange, "HOMED"):
         return Check("motor", "skipped", "its sign: needs a calibration and a known position")
-    before = "checked, as the board keeps" if kept.checked else "not checked: 0.5 N at most"
+    before = "checked, as stored on the board" if kept.checked else "not checked, so at most 0.5 N"
     cure = "" if kept.checked else "run `hapticlab calibrate --only sign`"
-    if person is None or not agrees(person, f"The motor's sign is {before}. Check it now, with 0.5 N at most?"):
+    if person is None or not agrees(person, f"The motor's sign is {before}. Check it now, with at most 0.5 N?"):
         return Check("motor", "ok" if kept.checked else "attention", f"its sign is {before}", cure)
     found = check_sign(paddle, person)
     state = {"right": "ok", "wrong": "fault"}.get(found.verdict, "attention")

@@ -90,7 +90,7 @@ def flash(port, image=None, board="uno", *, progress=True, tell=lambda sentence:
         bootloader = find_bootloader(opened, how)
         check_fits(content, bootloader, path.name)
         check_chip(opened, how)
-        tell(f"Writing {path.name} into {port}; its motor is off meanwhile. Leave the cable in.")
+        tell(f"Writing {path.name} to {port}. The motor stays off. Do not unplug the cable.")
         _write_and_verify(opened, content, how.page, progress)
     finally:
         opened.close()
@@ -101,7 +101,7 @@ def prebuilt_image(how):
     """Return the path of the image that comes with the package."""
     path = firmware_folder() / "prebuilt" / how.image
     if not path.is_file():
-        raise PaddleError(f"this hapticlab came without {how.image}; give an image, or install a release")
+        raise PaddleError(f"this installation does not contain {how.image}; give an image, or install a release")
     return path
 
 
@@ -110,12 +110,12 @@ def read_image(path):
     try:
         text = path.read_text("ascii")
     except UnicodeDecodeError:
-        raise PaddleError(f"{path.name} is no Intel HEX file (an .elf or .bin?); give the .hex") from None
+        raise PaddleError(f"{path.name} is not an Intel HEX file (is it an .elf or .bin?); give the .hex file") from None
     except OSError as problem:
         raise PaddleError(f"{path} does not open ({problem.strerror}); give the path of a .hex file") from None
     content = parse_hex(text, path.name)
     if content[:2] == b"\xff\xff":
-        raise PaddleError(f"{path.name} has nothing at address 0, where a board starts; is it a bootloader's file?")
+        raise PaddleError(f"{path.name} has no data at address 0, where a board starts. Is it the file of a bootloader?")
     return content
 
 
@@ -123,8 +123,8 @@ def check_fits(content, bootloader, name):
     """Refuse an image that would overwrite the bootloader."""
     if len(content) > bootloader.start:
         raise PaddleError(
-            f"{name} ends at 0x{len(content) - 1:04x}; a program has to end below 0x{bootloader.start:04x}, where "
-            f"{bootloader.name} begins. It is too large for this board"
+            f"{name} ends at 0x{len(content) - 1:04x}; a program must end below 0x{bootloader.start:04x}, where "
+            f"{bootloader.name} begins. The program is too large for this board"
         )
 
 
@@ -141,8 +141,8 @@ def find_bootloader(port, how):
                     _receive(port, 256, 0.05)  # late answers to earlier tries
                     return bootloader
     raise PortError(
-        f"{port.port}: no bootloader answers. Is it this port, is it {how.called}, is nothing wired to pins 0 and 1? "
-        "Press the board's reset button just as you start again",
+        f"{port.port}: no bootloader answers. Is this the right port? Is the board {how.called}? Are pins 0 and 1 free? "
+        "Press the board's reset button at the moment when you start again",
         "silent",
     )
 
@@ -153,7 +153,7 @@ def check_chip(port, how):
     if signature != how.signature:
         name = CHIPS.get(signature, "an unknown chip")
         raise PaddleError(
-            f"{port.port} is {name} (signature {signature.hex()}), needs {how.chip} ({how.signature.hex()}); "
+            f"{port.port} is {name} (signature {signature.hex()}); needs {how.chip} ({how.signature.hex()}); "
             f"nothing was written. Choose the port of {how.called}"
         )
 
@@ -179,10 +179,9 @@ def _write_and_verify(port, content, size, progress):
         raise
     except PortError as problem:
         # the 20 ms in which the first page is erased and not yet written are the only ones without it
-        state = "stands still with its motor off" if at else "has no beginning: switch its motor's supply off"
+        state = "is stopped with its motor off" if at else "cannot start: switch off the supply of its motor"
         raise PortError(
-            f"{problem}. The firmware that was on the board is gone and the new one not complete; the board {state}. "
-            "Flash it again",
+            f"{problem}. The old firmware is erased and the new one is incomplete; the board {state}. Flash it again",
             problem.cause,
         ) from problem
     with suppress(PortError):  # all is compared; unasked, the bootloader starts it a second later
@@ -201,7 +200,7 @@ def _verify(port, at, page):
     if wrong is not None:
         raise VerificationError(
             f"{port.port}: verification failed at 0x{at + wrong:04x}: it reads 0x{found[wrong]:02x}, needs "
-            f"0x{page[wrong]:02x}. The board stands still with its motor off. Flash it again; if it fails at the same "
+            f"0x{page[wrong]:02x}. The board is stopped with its motor off. Flash it again; if it fails at the same "
             "address, the chip's flash is worn out"
         )
 
@@ -213,8 +212,8 @@ def _ask(port, command, length=0):
     if len(answer) < length + 2 or answer[:1] != IN_SYNC or answer[-1:] != OK:
         got = answer.hex(" ") or "nothing"
         raise PortError(
-            f"{port.port}: the bootloader stopped making sense: it answered {command[:1]!r} with {got[:60]}, "
-            f"needs 14, {length} bytes, 10. Flash it again",
+            f"{port.port}: the bootloader gave an invalid answer: to {command[:1]!r} it sent {got[:60]}; needs 14, {length} "
+            "bytes, 10. Flash it again",
             "silent",
         )
     return answer[1:-1]

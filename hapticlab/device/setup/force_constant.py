@@ -30,9 +30,12 @@ def measure_force(paddle, person):
     lead_home(paddle, person)
     settings, law = paddle.settings, next(name for name, k in MOTOR_LAWS.items() if k == paddle.settings.motor_law)
     if not settings.checked:
-        person.say(f"The motor's sign is not checked yet, so forces stay below {UNCHECKED_FORCE_N} N and are read less finely.")
+        person.say(
+            f"The sign of the motor is not checked yet, so forces stay below {UNCHECKED_FORCE_N} N and the readings "
+            "are less precise."
+        )
     how = person.choose(
-        "How shall the force be measured?",
+        "How do you want to measure the force?",
         {"scale": "the handle presses on a kitchen scale", "weight": "the handle lifts a hanging weight of known mass"},
     )
     with paddle.attended():
@@ -45,7 +48,8 @@ def measure_force(paddle, person):
 def on_scale(paddle, person):
     """Return the forces asked for and those read from a scale [N]."""
     way = person.choose(
-        "Fix the paddle so that the handle rests on a kitchen scale, and set the scale to zero. Which way does it press?",
+        "Fix the paddle so that the handle rests on a kitchen scale, and set the scale to zero. In which direction does the "
+        "handle press?",
         {"wall": "towards the walls", "away": "away from the walls"},
     )
     forces, newtons = [], []
@@ -75,16 +79,22 @@ def with_weights(paddle, person):
         at_most = largest_force(paddle.settings)
         grams = number(
             person,
-            f"Hang a weight on the handle that pulls it to a stop, about {at_most / 2 / GRAVITY * 1e3:.0f} g by what is known; "
-            "keep your hands off. How much is it [g]?",
+            f"Hang a weight on the handle that pulls it to a stop, about {at_most / 2 / GRAVITY * 1e3:.0f} g by the present "
+            "settings. Do not touch the handle. What is the mass of the weight [g]?",
             low=1,
             high=20000,
         )
         up, down = _lift(paddle, at_most)
-        person.say(f"It rises at {up:.3g} N, falls at {down:.3g} N, as the board reckons: friction {abs(up - down) / 2:.2g} N.")
+        person.say(
+            f"The weight rises at {up:.3g} N and falls at {down:.3g} N, by the present settings: friction "
+            f"{abs(up - down) / 2:.2g} N."
+        )
         forces.append((up + down) / 2)
         newtons.append(grams * 1e-3 * GRAVITY)
-        if person.choose("Another weight? Three tell the motor's law, too.", {"yes": "", "no": ""}) == "no":
+        if (
+            person.choose("Do you want to measure another weight? Three weights also show the motor law.", {"yes": "", "no": ""})
+            == "no"
+        ):
             return forces, newtons
 
 
@@ -103,7 +113,8 @@ def _lift(paddle, at_most):
     if up is None:
         _stop(paddle)
         raise PaddleError(
-            f"force: {at_most:.3g} N, as the board reckons, does not lift the weight off its stop. Hang less, check the motor's "
+            f"force: {at_most:.3g} N, by the present settings, does not lift the weight off its stop. Hang a lighter "
+            "weight, check the motor's "
             "supply, and see that the thread pulls along the handle's path."
         )
     paddle.wait(SETTLES)
@@ -115,7 +126,9 @@ def _lift(paddle, at_most):
             _stop(paddle)
             return up, down
     _stop(paddle)
-    raise PaddleError("force: the weight does not pull the handle back; friction is more than its weight. Hang more.")
+    raise PaddleError(
+        "force: the weight does not pull the handle back, because friction is larger than its weight. Hang a heavier weight."
+    )
 
 
 def _start(paddle, F):
@@ -131,4 +144,4 @@ def _step(paddle, F):
 def _stop(paddle):
     log = paddle.stop()
     if log.fault:
-        raise PaddleError(f"force: the measurement was cut short at {log.fault}")
+        raise PaddleError(f"force: the measurement ended early: {log.fault}")

@@ -30,9 +30,9 @@ class ForceFit:
         error = f" +- {self.error:.2g}" if np.isfinite(self.error) else ""
         lines = [f"measured   force_full = {self.force_full:.4g}{error} N", f"measured   residual {rms}"]
         if self.law != was:
-            return [*lines, f"measured   force follows {self.law}, not {was}: the law is changed, too"]
+            return [*lines, f"measured   force follows {self.law}, not {was}; the stored law changes too"]
         told = len([a for a in self.residuals.values() if np.isfinite(a)]) > 1
-        return [*lines, f"kept       motor law {was}" + ("" if told else ": so few points tell no law")]
+        return [*lines, f"kept       motor law {was}" + ("" if told else ", because so few points do not show the law")]
 
 
 def duty_of(force, settings, duty_full):
@@ -79,8 +79,8 @@ def fit_force(duties, forces, law, *, intercept=True):
         worst = int(np.argmax(np.abs(rest)))
         raise PaddleError(
             f"force: no motor law fits: residual {rms:.3g} N, {allowed:.3g} N is allowed. The reading {forces[worst]:.3g} N at "
-            f"duty {duties[worst]:.2f} is {rest[worst]:+.2g} N off; tap the table before each reading, see that the handle "
-            "touches nothing but the scale, and measure again."
+            f"duty {duties[worst]:.2f} is {rest[worst]:+.2g} N off; tap the table before each reading, make sure that the "
+            "handle touches only the scale, and measure again."
         )
     _require_sense(full, error)
     return ForceFit(full, error, best, {name: fit[2] for name, fit in fits.items()})
@@ -106,13 +106,15 @@ def _require_growth(full, forces):
         )
     if full <= 0:
         raise PaddleError(
-            f"force: {full:.3g} N at full duty; it falls as the duty grows. The handle presses the other way: choose the other "
-            "direction, or check the motor's sign."
+            f"force: {full:.3g} N at full duty, and the force falls as the duty grows, so the handle presses in the other "
+            "direction. Choose the other direction, or check the sign of the motor."
         )
 
 
 def _require_sense(full, error):
     if not LEAST <= full <= MOST:
-        raise PaddleError(f"force: {full:.3g} N at full duty; a paddle has {LEAST:g} to {MOST:g} N. Were grams typed?")
+        raise PaddleError(f"force: {full:.3g} N at full duty; a paddle has {LEAST:g} to {MOST:g} N. Did you enter grams?")
     if np.isfinite(error) and error > full / 5:
-        raise PaddleError(f"force: {full:.3g} +- {error:.2g} N at full duty is too uncertain; take more care, or more force.")
+        raise PaddleError(
+            f"force: {full:.3g} +- {error:.2g} N at full duty is too uncertain; measure more carefully, or with a larger force."
+        )

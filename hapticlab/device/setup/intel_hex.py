@@ -42,7 +42,7 @@ def parse_hex(text, name="the image"):
         elif kind not in (START_SEGMENT, START_LINEAR):  # where a PC would start it: nothing to a board
             raise _damaged(here, f"has kind {kind}; there are 0 to 5")
     if not ended:
-        raise _damaged(name, "has no end record, so a part is missing")
+        raise _damaged(name, "has no end record, so part of the file is missing")
     if not content:
         raise _damaged(name, "holds no data")
     return content_bytes(content, name)
@@ -52,7 +52,10 @@ def content_bytes(content, name):
     """Return bytes by address as one piece, 0xFF between."""
     size = max(content) + 1
     if size > 1 << 20:
-        raise PaddleError(f"{name} reaches 0x{size - 1:x}; a board's flash ends far below. Is it another chip's file?")
+        raise PaddleError(
+            f"{name} reaches 0x{size - 1:x}; the flash memory of a board ends far below that. Is this the "
+            "file of a different chip?"
+        )
     return bytes(content.get(at, 0xFF) for at in range(size))
 
 
@@ -62,9 +65,9 @@ def _record(line, here):
     try:
         raw = bytes.fromhex(line[1:])
     except ValueError:
-        raise _damaged(here, "has what is no hexadecimal digit, or half a byte") from None
+        raise _damaged(here, "has a character that is not a hexadecimal digit, or half a byte") from None
     if len(raw) < 5 or len(raw) != raw[0] + 5:
-        raise _damaged(here, "has another length than it says")
+        raise _damaged(here, "does not have the length that it states")
     if sum(raw) % 256:
         raise _damaged(here, "has a wrong checksum")
     return int.from_bytes(raw[1:3], "big"), raw[3], raw[4:-1]

@@ -27,7 +27,7 @@ class Person:
         try:
             return input(f"{question} ").strip()
         except EOFError:
-            raise PaddleError("nobody answers here; run this in a terminal, with a person at the paddle") from None
+            raise PaddleError("there is no keyboard input here; run this in a terminal, with a person at the paddle") from None
 
     def choose(self, question, options):
         """Return the key of one of the options, a dict {key: meaning}; the first letter is enough where it tells."""
@@ -37,7 +37,7 @@ class Person:
             meant = [key for key in options if typed in (key, key[0])]
             if len(meant) == 1:
                 return meant[0]
-            self.say(f"{typed!r} is none of {', '.join(options)}")
+            self.say(f"{typed!r} is not one of {', '.join(options)}")
 
 
 def agrees(person, question):
@@ -52,7 +52,7 @@ def number(person, question, *, low, high):
         try:
             value = float(typed.replace(",", "."))
         except ValueError:
-            person.say(f"{typed!r} is no number")
+            person.say(f"{typed!r} is not a number")
             continue
         if math.isfinite(value) and low <= value <= high:
             return value

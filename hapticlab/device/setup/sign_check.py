@@ -61,13 +61,13 @@ class SignCheck:
     def __str__(self):
         seen = f"Z = {self.Z:+.1f} of {self.intervals} intervals (clear from {CLEAR} on), {self.work * 1e6:+.0f} uJ each"
         words = {
-            "right": "the motor pulls the handle the way it is told",
-            "wrong": "the motor pushes the handle the wrong way: its two wires are swapped",
-            "one way": "the motor pushes one way only: check the wire of its direction (D8)",
-            "unclear": "the motor works, but its sign is not clear; go on, slowly, without letting go, on both sides",
-            "unmoved": f"the handle moved by {self.motion * 1e3:.1f} mm only; move it 10 to 20 mm from the middle and let go",
-            "nothing": "the motor does nothing that can be told from the hand: check its supply, its plug and its wires; "
-            "a handle that turns heavily, or is held fast, hides it too",
+            "right": "the motor pulls the handle in the right direction",
+            "wrong": "the motor pushes the handle in the wrong direction: its two wires are swapped",
+            "one way": "the motor pushes in one direction only: check the wire of its direction pin (D8)",
+            "unclear": "the motor works, but its sign is not clear; continue slowly, without releasing the handle, on both sides",
+            "unmoved": f"the handle moved by {self.motion * 1e3:.1f} mm only; move it 10 to 20 mm from the middle and release it",
+            "nothing": "no effect of the motor was found: check its supply, its plug and its wires; a handle that moves "
+            "stiffly or is held firmly can also hide the effect",
         }
         return f"{words[self.verdict]} ({seen})"
 
@@ -79,8 +79,8 @@ def measure_sign(paddle, person, *, seed=None):
     for _ in range(LOOKS):
         lead_home(paddle, person)
         person.ask(
-            "Hold the handle lightly in the middle and press Enter. Then, for 6 seconds: lead it slowly 10 to 20 mm to "
-            "one side, let go, to the other side, let go, and so on. The motor tugs with 0.5 N at most."
+            "Hold the handle lightly in the middle and press Enter. Then, for 6 seconds, move it slowly 10 to 20 mm to one "
+            "side, release it, move it to the other side, release it, and so on. The motor pulls with at most 0.5 N."
         )
         log = _tugged(paddle, [tosses.random() < 0.5 for _ in range(TOSSES)])
         more, on, side = intervals(log)
@@ -150,17 +150,17 @@ def check_sign(paddle, person, *, seed=None):
         If the board has no settings, or the sign is still wrong after it was turned.
     """
     if paddle.settings is None:
-        raise PaddleError("the board has no settings yet, so no force can be asked of it: calibrate the stops first")
+        raise PaddleError("the board has no settings yet, so it cannot give a force. Calibrate the stops first")
     found = measure_sign(paddle, person, seed=seed)
     if found.verdict == "wrong":
         turned = changed(paddle.settings, motor_sign=-paddle.settings.motor_sign, checked=0)
         words = [f"measured   {found}", f"to store   motor_sign = {turned.motor_sign}, not checked yet"]
         if not offer(paddle, person, turned, words):
-            person.say("Every wall will push the wrong way: use this paddle only after its sign is turned.")
+            person.say("Every wall will push in the wrong direction. Use this paddle only after its sign is corrected.")
             return found
         found = measure_sign(paddle, person, seed=None if seed is None else seed + 1)
         if found.verdict == "wrong":
-            raise PaddleError(f"with its sign turned {found}. Neither sign is right: check the direction pin's wire (D8).")
+            raise PaddleError(f"with the opposite sign {found}. Neither sign is right; check the wire of the direction pin (D8).")
     if found.verdict == "right" and not paddle.settings.checked:
         words = [f"measured   {found}", "to store   the motor's sign is checked: full force from now on"]
         offer(paddle, person, changed(paddle.settings, checked=1), words)

@@ -37,8 +37,8 @@ class Stops:
         """The stops in lines."""
         return [
             f"measured   {abs(self.span):.0f} counts between the stops ({self.spread:.0f} counts between two sweeps)",
-            f"measured   travel {self.travel * 1e3:g} mm, so {abs(self.metres_per_count) * 1e6:.4g} um a count",
-            f"chosen     x grows into the wall as counts {'grow' if self.span > 0 else 'fall'}; x = 0 is the middle",
+            f"measured   travel {self.travel * 1e3:g} mm, so {abs(self.metres_per_count) * 1e6:.4g} um per count",
+            f"chosen     x increases into the wall as counts {'increase' if self.span > 0 else 'decrease'}; x = 0 is the middle",
         ]
 
 
@@ -53,7 +53,7 @@ def measure_stops(paddle, person):
     ends = [(_resting_at(paddle, person, "LEFT", again), _resting_at(paddle, person, "RIGHT", again)) for again in ("", " again")]
     spread = _compared(ends)
     span = sum(right - left for left, right in ends) / 2
-    side = person.choose("On which side shall the walls be? x grows into them.", {"left": "", "right": ""})
+    side = person.choose("On which side do you want the walls? x increases into them.", {"left": "", "right": ""})
     return Stops(span if side == "right" else -span, spread, _travel(person))
 
 
@@ -68,11 +68,11 @@ def read_counts(paddle):
 
 def _resting_at(paddle, person, side, again):
     while True:
-        person.ask(f"Lead the handle slowly to the {side} stop{again}, rest it there; press Enter.")
+        person.ask(f"Move the handle slowly to the {side} stop{again}, hold it there, and press Enter.")
         mean, moved = read_counts(paddle)
         if moved <= STILL:
             return mean
-        person.say(f"The sensor moved by {moved} counts meanwhile; rest the handle against the stop.")
+        person.say(f"The sensor moved by {moved} counts during the reading. Hold the handle still against the stop.")
 
 
 def _compared(ends):
@@ -82,21 +82,21 @@ def _compared(ends):
     allowed = max(AGREE, AGREE_PART * abs(spans[0]))
     if min(map(abs, spans)) < LEAST_SPAN:
         raise PaddleError(
-            f"stops: {min(map(abs, spans)):.0f} counts from stop to stop; a sweep has {LEAST_SPAN} at least. Check the "
-            "sensor's wires and its magnet, and lead the handle from one stop to the other."
+            f"stops: {min(map(abs, spans)):.0f} counts from stop to stop; a sweep needs at least {LEAST_SPAN}. Check the "
+            "sensor's wires and its magnet, and move the handle from one stop to the other."
         )
     spread = abs(spans[1] - spans[0])
     if spread > allowed:
         raise PaddleError(
             f"stops: {spans[0]:.0f} counts in the first sweep, {spans[1]:.0f} in the second; they may differ by {allowed:.0f}. "
-            "Lead the handle slowly and rest it against each stop; tighten cable, belt or wheel, and see that the magnet "
-            "sits fast and close to the sensor."
+            "Move the handle slowly and hold it against each stop. Tighten the cable, belt or wheel, and make sure that the "
+            "magnet is fixed and close to the sensor."
         )
     shift = max(abs(left_again - left), abs(right_again - right))
     if shift > 2 * allowed:
         raise PaddleError(
-            f"stops: between the sweeps both stops moved by {shift:.0f} counts; the drive slipped. Tighten cable, belt or "
-            "wheel, clean it, then sweep again."
+            f"stops: between the sweeps both stops moved by {shift:.0f} counts; the drive slipped. Tighten and clean the "
+            "cable, belt or wheel, then sweep again."
         )
     return spread
 
@@ -108,5 +108,5 @@ def _travel(person):
     )
     if how == "mm":
         return number(person, "Travel from stop to stop [mm]?", low=5, high=1000) * 1e-3
-    radius = number(person, "From the axis to where the fingers are [mm]?", low=5, high=1000) * 1e-3
+    radius = number(person, "Distance from the axis to the fingers [mm]?", low=5, high=1000) * 1e-3
     return radius * math.radians(number(person, "Angle between the stops [degrees]?", low=2, high=360))

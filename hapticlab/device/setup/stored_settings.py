@@ -12,11 +12,11 @@ TRIES = 3
 def offer(paddle, person, settings, found):
     """Show what is to be stored and store it if the person agrees; return whether it was."""
     person.say("\n".join(["", *found]))
-    if not agrees(person, "Store this on the board?"):
+    if not agrees(person, "Store these settings on the board?"):
         person.say("Nothing was written.")
         return False
     store(paddle, settings)
-    person.say("Stored, read back, and equal in every bit.")
+    person.say("Stored, read back and found equal in every bit.")
     return True
 
 
@@ -31,7 +31,11 @@ def store(paddle, settings):
     upload(paddle.exchange, "SETTINGS", settings.to_bytes())
     kept = read_settings(paddle.exchange)
     if kept is None or kept.to_bytes() != settings.to_bytes():
-        raise LinkError(f"{paddle.url}: the board keeps other settings than were sent; write again, then replace it", "STORE")
+        raise LinkError(
+            f"{paddle.url}: the board stored settings that differ from those sent; write them again, and if it "
+            "fails again, replace the board",
+            "STORE",
+        )
     paddle.settings = kept
     paddle.board["ident"] = kept.ident
 
@@ -41,10 +45,10 @@ def lead_home(paddle, person):
     if state_flag(paddle.exchange, "HOMED"):
         return
     for _ in range(TRIES):
-        person.ask("Lead the handle slowly to one stop, then to the other, back to the middle; then press Enter.")
+        person.ask("Move the handle slowly to one stop, then to the other, then back to the middle, and press Enter.")
         if state_flag(paddle.exchange, "HOMED"):
             return
-        person.say("The board has not seen both stops yet; once more, against each stop.")
+        person.say("The handle has not met both stops yet. Move it once more against each stop.")
     if state_flag(paddle.exchange, "TRAVEL_MISMATCH"):
-        raise PaddleError("the handle moved further than between the calibrated stops: calibrate the stops again")
-    raise PaddleError("the handle did not reach both calibrated stops: free its way, or calibrate the stops again")
+        raise PaddleError("the handle moved further than the distance between the calibrated stops: calibrate the stops again")
+    raise PaddleError("the handle did not reach both calibrated stops: remove any obstacle, or calibrate the stops again")

@@ -64,8 +64,8 @@ def check_pieces(length, M, b, k, *, m, T):
         least = m - M + (b + k / most) / most
         sooner = f"T <= {T * MOST_PIECES / (g * length) / ROUNDED_UP:.3g} s, " if math.isfinite(g) else ""
         raise PaddleError(
-            f"m = {m:g} kg, T = {T:g} s, coulomb > 0, and b = {b:g} N s/m with the hand's: the handle settles in {1 / g:.3g} s, "
-            f"which would cut the period into {g * length:.3g} pieces; at most {MOST_PIECES}. Use m >= "
+            f"m = {m:g} kg, T = {T:g} s, coulomb > 0, and b = {b:g} N s/m with the hand's: the handle settles in "
+            f"{1 / g:.3g} s, which would divide the period into {g * length:.3g} pieces; at most {MOST_PIECES}. Use m >= "
             f"{least * ROUNDED_UP:.3g} kg, {sooner}a softer or less damped hand, or coulomb=0."
         )
 

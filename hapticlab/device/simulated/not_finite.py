@@ -22,7 +22,7 @@ def not_finite(program, code, tick, T):
     names = ["the force F", *watched, *(f"the state {c.name}" for c in program.states)]
     culprit = f"{names[int(code) - 1]} of {program.name}"
     when = f"tick {tick} (t = {tick * T:g} s)"
-    return f"{when}: {culprit} was not finite; the motor is off from there on{_likely_cause(program)}"
+    return f"{when}: {culprit} was not finite; the motor is off from then on{_likely_cause(program)}"
 
 
 def _likely_cause(program):
@@ -33,7 +33,7 @@ def _likely_cause(program):
         return likely
     real = program.outputs[0].type
     dtype = "float32" if real == "f32" else "float64"
-    longer = f"take dtype='float64' (sines up to {TABLES['f64'].angle_limit:g} rad), or " if real == "f32" else ""
+    longer = f"use dtype='float64' (sines up to {TABLES['f64'].angle_limit:g} rad), or " if real == "f32" else ""
     return (
         f"{likely}. Look for an angle beyond {TABLES[real].angle_limit:g} rad, which has no sine in {dtype}: {longer}keep the "
         "angle within a turn by a signal, sp.Eq(turn(n), (turn(n-1) + w*T) % (2*sp.pi))"

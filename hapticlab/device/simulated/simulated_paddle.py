@@ -41,7 +41,7 @@ LONGEST_DELAY = 1000
 FINEST_ENCODER = 1e12
 _POSITIVE = {"m": "kg", "T": "s"}
 _NOT_NEGATIVE = {
-    "b": ("N s/m", "A negative damper feeds energy to the user."),
+    "b": ("N s/m", "A negative damper supplies energy to the user."),
     "delay": ("s", "A force cannot be felt before it is computed."),
     "coulomb": ("N", "Friction opposes motion."),
     "noise": ("m", "It is a standard deviation."),
@@ -97,7 +97,7 @@ class SimulatedPaddle(Paddle):
       delay      0.0015 s = 1 whole sample + 0.5
       hand       push = 2 N
       between samples: matrix exponential; v measured
-      not in it: encoder, noise, Coulomb friction, force limit
+      not modelled: encoder, noise, Coulomb friction, force limit
     """
 
     m: float
@@ -142,13 +142,13 @@ class SimulatedPaddle(Paddle):
                 self._take(name, unit, "None leaves it out.", above=0)
         if self.counts_per_metre is not None and self.counts_per_metre > FINEST_ENCODER:
             raise PaddleError(
-                f"counts_per_metre = {self.counts_per_metre:g} 1/m; an encoder needs at most {FINEST_ENCODER:g}, a count a "
-                "picometre. None leaves it out."
+                f"counts_per_metre = {self.counts_per_metre:g} 1/m; an encoder needs at most {FINEST_ENCODER:g}, one count "
+                "per picometre. None leaves it out."
             )
         if self.delay > LONGEST_DELAY * self.T:
             raise PaddleError(
-                f"delay = {self.delay:g} s is {self.delay / self.T:.0f} samples; a simulated paddle keeps "
-                f"{LONGEST_DELAY} forces under way at most: delay <= {LONGEST_DELAY * self.T:g} s at T = {self.T:g} s."
+                f"delay = {self.delay:g} s is {self.delay / self.T:.0f} samples; a simulated paddle stores at most "
+                f"{LONGEST_DELAY} delayed forces: delay <= {LONGEST_DELAY * self.T:g} s at T = {self.T:g} s."
             )
         if self.rounding not in ("floor", "nearest"):
             raise PaddleError(f"rounding = {self.rounding!r}; an encoder needs 'floor' or 'nearest'.")
@@ -168,8 +168,9 @@ class SimulatedPaddle(Paddle):
         least = float(smallest_mass(b, k, self.T))
         if least > M:
             raise PaddleError(
-                f"m = {self.m:g} kg; with b = {b:g} N s/m and k = {k:g} N/m of handle and hand its motion over T = {self.T:g} s "
-                f"is lost in rounding. A simulated paddle needs m >= {least * ROUNDED_UP:.3g} kg here, a smaller T or a softer "
+                f"m = {self.m:g} kg; with b = {b:g} N s/m and k = {k:g} N/m of handle and hand the motion over T = "
+                f"{self.T:g} s is lost in rounding. A simulated paddle needs m >= {least * ROUNDED_UP:.3g} kg here, a "
+                "smaller T or a softer "
                 "hand."
             )
 
@@ -181,7 +182,7 @@ class SimulatedPaddle(Paddle):
         unknown = sorted(set(changes) - {f.name for f in fields(cls)})
         if unknown:
             known = ", ".join(f.name for f in fields(cls))
-            raise PaddleError(f"{unknown[0]} is not an argument of SimulatedPaddle; it has {known}.")
+            raise PaddleError(f"{unknown[0]} is not an argument of SimulatedPaddle. The arguments are {known}.")
         return cls(**{**{name: getattr(profile, name) for name in names}, "profile": profile, **changes})
 
     @property
@@ -258,7 +259,7 @@ class SimulatedPaddle(Paddle):
         if ticks > LONGEST_RUN:
             raise PaddleError(
                 f"duration = {ticks * self.T:g} s is {ticks:.3g} samples; a run keeps at most {LONGEST_RUN} "
-                f"({LONGEST_RUN * self.T:g} s here). Run less, or measure with hl.sweep, which keeps none."
+                f"({LONGEST_RUN * self.T:g} s here). Run for a shorter time, or measure with hl.sweep, which stores no samples."
             )
         program = self.program(scene, **options)
         linked = link(program, self)
@@ -286,9 +287,6 @@ class SimulatedPaddle(Paddle):
             fault=fault, saturated=limited,
         )  # fmt: skip
 
-    def _line(self):
-        return f"SimulatedPaddle({self._sentence().removeprefix('simulated paddle: ')})"
-
     def __str__(self) -> str:
         whole, fraction = delay_parts(self)
         samples = f"{whole} whole sample{'s' * (whole != 1)}" + (f" + {fraction:g}" if fraction else "")
@@ -308,7 +306,7 @@ class SimulatedPaddle(Paddle):
         source = self.velocity.replace("_", " ")
         lines.append(f"  between samples: {between if plant.coulomb else 'matrix exponential'}; v {source}")
         absent = [name for name, text in rows.items() if not text]
-        lines += [f"  not in it: {', '.join(absent)}"] if absent else []
+        lines += [f"  not modelled: {', '.join(absent)}"] if absent else []
         if self.profile is not None:
             lines.append(f"  from {self.profile}")
         return "\n".join(lines)

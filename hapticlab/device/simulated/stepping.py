@@ -201,7 +201,7 @@ class _Loop:
 
 def told(t):
     """Stand for an intent that is told as it goes."""
-    raise PaddleError("this hand is told where to go as it goes; give hl.Hand(..., intent=...) a path for a run of its own.")
+    raise PaddleError("the intent of this hand is set while it moves. For a separate run, give hl.Hand(..., intent=...) a path.")
 
 
 def with_grip(paddle, intent=told):

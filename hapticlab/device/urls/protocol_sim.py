@@ -138,7 +138,9 @@ def _parts(url):
     options = parse_qs(parts.query, keep_blank_values=True)
     unknown = sorted(set(options) - {"pace"}) + [part for part in parts.path.split("/") if part]
     if unknown:
-        raise PaddleError(f"{url}: {unknown[0]} is no option of a simulated board; there is pace=real: sim://hapkit?pace=real")
+        raise PaddleError(
+            f"{url}: {unknown[0]} is not an option of a simulated board. The only option is pace=real: sim://hapkit?pace=real"
+        )
     return parts.netloc, options.get("pace", ["virtual"])[0]
 
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import sympy as sp
 
-from ...base.shows_itself import ShowsItself
 from ...base.units import si_name
 from ...errors import SceneError, SignalError
 from ..notation.amount import number_of
@@ -37,7 +36,7 @@ class _InASum:
 
 
 @dataclass(frozen=True)
-class Contact(ShowsItself, _InASum):
+class Contact(_InASum):
     """Two bodies, or a body and the handle, that cannot pass each other.
 
     Parameters
@@ -91,8 +90,8 @@ class Contact(ShowsItself, _InASum):
         gap_units(gap, f"{self.name}: gap")
         if not self.is_force and not applied([gap], "coordinate"):
             raise SceneError(
-                f"{self.name}: gap = {gap} holds the handle alone, which no impulse can turn round; put a body behind a "
-                "virtual coupler, or take a penalty, hunt_crossley, or hl.laws.proxy_wall"
+                f"{self.name}: gap = {gap} contains only the handle, whose velocity no impulse can reverse. Put a body "
+                "behind a virtual coupler, or use a penalty, hunt_crossley or hl.laws.proxy_wall"
             )
         self.contact_law.check(gap, self.name)
         mu = getattr(self.contact_law, "mu", sp.S.Zero)
@@ -101,7 +100,7 @@ class Contact(ShowsItself, _InASum):
         if slip != 0:
             _check_slip(slip, self.name)
             if not hasattr(self.contact_law, "mu"):
-                cure = "add hl.contact.friction(slip=..., coulomb=mu*contact.force) beside the contact"
+                cure = "add hl.contact.friction(slip=..., coulomb=mu*contact.force) in addition to the contact"
                 raise SceneError(f"{self.name}: a {type(self.contact_law).__name__} has no friction of its own; {cure}")
 
     @property
@@ -181,7 +180,7 @@ class Contact(ShowsItself, _InASum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class friction(ShowsItself, _InASum):
+class friction(_InASum):
     """Coulomb friction between two surfaces that slip on each other.
 
     Sliding: ``coulomb`` against the slip. Sticking: whatever keeps the slip at zero, up to ``breakaway``. Sticking is a
@@ -218,7 +217,7 @@ class friction(ShowsItself, _InASum):
     allowed: ClassVar = {
         "coulomb": OPPOSING,
         "breakaway": OPPOSING,
-        "stick_speed": Allowed(0.0, math.inf, "the speed up to which the line goes is above 0", above=True),
+        "stick_speed": Allowed(0.0, math.inf, "the line needs a speed above 0 at which it ends", above=True),
     }
     __repr__ = written_out
 
@@ -229,7 +228,9 @@ class friction(ShowsItself, _InASum):
             if given is not None:
                 object.__setattr__(self, part, constant(given, f"{self.name}: {part}"))
         if self.breakaway is not None and self.stick_speed is not None:
-            raise SceneError(f"{self.name}: stick_speed replaces sticking, so there is no breakaway force; leave one out")
+            raise SceneError(
+                f"{self.name}: stick_speed replaces sticking, so there is no breakaway force. Give only one of the two"
+            )
         if self.breakaway is None:
             object.__setattr__(self, "breakaway", self.coulomb)
         if self.slip == 0:
@@ -244,7 +245,7 @@ class friction(ShowsItself, _InASum):
             check_constant(getattr(self, part), unit, f"{self.name}, {part}")
         if (number_of(self.breakaway) - number_of(self.coulomb)).is_negative:
             given = f"breakaway = {self.breakaway} < coulomb = {self.coulomb}"
-            raise SceneError(f"{self.name}: {given}; breaking away takes at least the sliding force")
+            raise SceneError(f"{self.name}: {given}; a breakaway force is at least as large as the sliding force")
         if self.stick_speed is not None:
             check_constant(self.stick_speed, si_name(dimension_of(self.slip, self.name)), f"{self.name}, stick_speed")
 
@@ -299,27 +300,35 @@ def _as_latex(leaf, printer, exp=None):
 def _check_is_distance(gap, name):
     if isinstance(gap, sp.core.relational.Relational):
         apart = gap.gts - gap.lts if hasattr(gap, "gts") else gap.lhs - gap.rhs
-        raise SceneError(f"{name}: gap = {gap} is a condition; a contact takes the distance itself, >= 0 apart: {apart}")
+        raise SceneError(
+            f"{name}: gap = {gap} is a condition; a contact needs the distance itself, >= 0 where the bodies "
+            f"are apart. Write {apart}"
+        )
 
 
 def _check_gap(gap, name):
     check_symbols([gap])
     moving = applied([gap], "coordinate", "handle")
     if not moving:
-        raise SceneError(f"{name}: gap = {gap} holds no coordinate and not x(t), so nothing can close it")
+        raise SceneError(
+            f"{name}: gap = {gap} contains neither a coordinate nor x(t), so nothing can close the gap. Write "
+            "a distance that depends on one"
+        )
     for sample in applied([gap], "handle", "signal"):
         if lag_of(sample) is not None:
-            raise SignalError(f"{name}: gap holds the sample {sample}; a contact sees the handle between samples too: x(t)")
+            raise SignalError(f"{name}: gap contains the sample {sample}, but a contact also acts between samples. Write x(t)")
     if gap.atoms(sp.Derivative) or gap.has(v(t)):
-        raise SceneError(f"{name}: gap = {gap} holds a velocity; a gap is a distance, of positions alone")
+        raise SceneError(f"{name}: gap = {gap} contains a velocity; a gap is a distance. Write it with positions only")
 
 
 def _check_slip(slip, name):
     check_symbols([slip])
     rates = [*slip.atoms(sp.Derivative), *({v(t)} & slip.atoms(v))]
     if not rates:
-        raise SceneError(f"{name}: slip = {slip} holds no velocity; needs a relative velocity such as q.diff(t) - v(t)")
+        raise SceneError(f"{name}: slip = {slip} contains no velocity; needs a relative velocity such as q.diff(t) - v(t)")
     dummies = {rate: sp.Dummy() for rate in rates}
     plain = slip.xreplace(dummies)
     if any(plain.diff(a, b) != 0 for a in dummies.values() for b in dummies.values()):
-        raise SceneError(f"{name}: slip = {slip} is not linear in the velocities; a relative velocity is")
+        raise SceneError(
+            f"{name}: slip = {slip} is not linear in the velocities; needs a relative velocity such as q.diff(t) - v(t)"
+        )

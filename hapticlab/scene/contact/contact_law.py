@@ -39,7 +39,7 @@ class Allowed:
 PASSIVE = Allowed(0.0, math.inf, "a negative one is not passive")
 OPPOSING = Allowed(0.0, math.inf, "friction opposes the slip")
 RESTITUTION = Allowed(
-    0.0, 1.0, "above 1 every bounce would feed energy to the user, below 0 bodies would pass through each other"
+    0.0, 1.0, "above 1 every bounce would supply energy to the user, and below 0 the bodies would pass through each other"
 )
 
 
@@ -82,7 +82,7 @@ def gap_units(gap, where):
     """Units of force, stiffness, damping and speed that belong to a gap in m, or in rad."""
     units = _OF_GAP.get(dimension_of(gap, where))
     if units is None:
-        raise SceneError(f"{where}: a gap is a distance in m, or an angle in rad; {gap} is neither")
+        raise SceneError(f"{where}: {gap} is neither a length nor an angle; a gap is a distance in m or an angle in rad")
     return units
 
 

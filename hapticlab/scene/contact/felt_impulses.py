@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ...base.shows_itself import ShowsItself
 from ...base.units import in_si
 from ...errors import SceneError
 from ..notation.amount import amount
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class FeltImpulse(ShowsItself):
+class FeltImpulse:
     """A force for a scene, the difference equations it needs, and what is worth watching.
 
     Attributes
@@ -38,9 +37,6 @@ class FeltImpulse(ShowsItself):
     force: sp.Expr
     equations: tuple
     watch: dict
-
-    def __str__(self) -> str:
-        return f"the force of a felt impulse, with {len(self.equations)} difference equations"
 
 
 def felt_impulse(contact: Contact, *, tau: Term, F_max: Term | None = None) -> FeltImpulse:
@@ -81,12 +77,15 @@ def felt_impulse(contact: Contact, *, tau: Term, F_max: Term | None = None) -> F
     (['ball_rise(n)', 'ball_pulse(n)'], ['ball_saturates'])
     """
     if not isinstance(contact, Contact) or contact.is_force:
-        raise SceneError(f"{contact!r}: only an impact needs a pulse; a force law is felt by -contact.generalized_force(x(t))")
+        raise SceneError(f"{contact!r}: only an impact needs a pulse. To feel a force law, use -contact.generalized_force(x(t))")
     if not contact.gap.has(x(t)):
-        raise SceneError(f"{contact.name}: its gap = {contact.gap} does not hold x(t), so the handle has no part in it")
+        raise SceneError(
+            f"{contact.name}: its gap = {contact.gap} does not contain x(t), so the handle feels nothing of "
+            "it. Write a gap with x(t)"
+        )
     tau = amount(tau, "s", f"{contact.name}: tau")
     if tau == 0 or tau.is_negative:
-        raise SceneError(f"{contact.name}: tau = {tau} s; needs a time > 0 over which the impulse is felt")
+        raise SceneError(f"{contact.name}: tau = {tau} s; the impulse is felt over this time, which needs to be > 0 s")
     name = contact.name
     unit = contact.unit
     rise = signal(f"{name}_rise", unit=unit)

@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 import sympy as sp
 
 from ...base.arguments import choice
-from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.amount import amount
 from ..notation.checks import agree_with
@@ -22,7 +21,7 @@ ORDERS = ("sequential", "simultaneous")
 
 
 @dataclass(frozen=True, kw_only=True)
-class impulse(ShowsItself, ContactLaw):
+class impulse(ContactLaw):
     """Impact with restitution: in the instant of touch, u+ = -e u- for the rates u of the gap (Newton).
 
     For one frictionless contact Newton's law and Poisson's (release impulse = e times compression impulse) agree. For
@@ -52,7 +51,7 @@ class impulse(ShowsItself, ContactLaw):
     >>> import hapticlab as hl
     >>> hl.contact.impulse(e=1.3)
     Traceback (most recent call last):
-    hapticlab.errors.SceneError: e = 1.3; restitution lies in 0..1: above 1 every bounce would feed energy to the user
+    hapticlab.errors.SceneError: e = 1.3; restitution lies in 0..1: above 1 every bounce would supply energy to the user
     """
 
     e: Any
@@ -64,7 +63,7 @@ class impulse(ShowsItself, ContactLaw):
     allowed: ClassVar = {
         "e": RESTITUTION,
         "mu": OPPOSING,
-        "rest_speed": Allowed(0.0, math.inf, "the speed below which a contact rests is above 0", above=True),
+        "rest_speed": Allowed(0.0, math.inf, "the speed below which a contact comes to rest needs to be > 0", above=True),
     }
     __repr__ = written_out
 
@@ -89,7 +88,7 @@ class impulse(ShowsItself, ContactLaw):
 
 
 @dataclass(frozen=True, kw_only=True)
-class micro_impulse(ShowsItself, ContactLaw):
+class micro_impulse(ContactLaw):
     """Repeated impulses at the end of each step, for lasting contact too.
 
     Mirtich and Canny, *Impulse-based simulation of rigid bodies*, Symp. Interactive 3D Graphics (1995) 181-188: no
@@ -117,13 +116,13 @@ class micro_impulse(ShowsItself, ContactLaw):
 
     allowed: ClassVar = {
         "e": RESTITUTION,
-        "envelope": Allowed(0.0, math.inf, "the distance at which bodies count as in contact is above 0", above=True),
+        "envelope": Allowed(0.0, math.inf, "the distance at which bodies are regarded as in contact needs to be > 0", above=True),
     }
     __repr__ = written_out
 
     def __post_init__(self) -> None:
         _take_restitution(self)
-        length = _positive(self.envelope, "envelope", "m", "the distance at which bodies count as in contact")
+        length = _positive(self.envelope, "envelope", "m", "the distance at which bodies are regarded as in contact")
         object.__setattr__(self, "envelope", length)
 
     def check(self, gap: sp.Expr, where: str) -> None:
@@ -133,7 +132,7 @@ class micro_impulse(ShowsItself, ContactLaw):
 
 
 @dataclass(frozen=True, kw_only=True)
-class rigid(ShowsItself, ContactLaw):
+class rigid(ContactLaw):
     """Rigid contact without rebound: the reaction keeps the gap closed while it pushes, and lets go when it would pull.
 
     The reactions solve the linear complementarity problem 0 <= N, 0 <= d2gap/dt2, N d2gap/dt2 = 0 (Baraff, *Fast contact
@@ -177,7 +176,7 @@ def _take_restitution(law):
     e = expression(law.e, "e")
     if e.is_number and not (e.is_real and 0 <= e <= 1):
         through = "below 0 the bodies would pass through each other"
-        why = "above 1 every bounce would feed energy to the user" if e.is_real and e > 1 else through
+        why = "above 1 every bounce would supply energy to the user" if e.is_real and e > 1 else through
         raise SceneError(f"e = {shown(e)}; restitution lies in 0..1: {why}")
     if isinstance(e, Parameter) and not (e.low >= 0 and e.high <= 1):
         raise SceneError(

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from ...base.arguments import count, instance
-from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.amount import amount
 from ..notation.parameters import T
@@ -31,7 +30,7 @@ LONGEST_PULSE = 1000
 
 
 @dataclass(frozen=True, kw_only=True)
-class Entry(ShowsItself):
+class Entry:
     """Where the handle enters, and the speed that it is taken to come in with.
 
     Parameters
@@ -116,7 +115,7 @@ def braking_pulse(
         taken = amount(impulse, "N*s", "impulse", "a pulse", above=0)
     else:
         part = amount(part, "1", "part", "a pulse", above=0)
-        amount(part, "1", "part", "more than the whole momentum throws the handle back:", most=1)
+        amount(part, "1", "part", "a pulse above the whole momentum throws the handle back:", most=1)
         taken = part * amount(mass, "kg", "mass", "a pulse", above=0) * sp.Max(moving, 0)
     force = taken / (periods * T)
     force = force if force_max is None else sp.Min(force, amount(force_max, "N", "force_max", "a pulse", above=0))
@@ -194,7 +193,7 @@ def _speed(velocity):
 def _crossing(scene, x_o):
     """Two conditions: this sample is the first one inside, and it is inside."""
     if x_o is None and "x_o" not in scene.parameters:
-        raise SceneError(f"{scene.name} has no parameter x_o; say where its boundary is: entry=hl.laws.Entry(x_o=0.01), in m")
+        raise SceneError(f"{scene.name} has no parameter x_o. Give its boundary in m: entry=hl.laws.Entry(x_o=0.01)")
     boundary = scene.parameters["x_o"] if x_o is None else amount(x_o, "m", "x_o")
     return (x(n) >= boundary) & (x(n - 1) < boundary), x(n) >= boundary
 

@@ -23,7 +23,6 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from ...base.card import card
-from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.amount import amount, number_of
 from ..notation.parameters import T
@@ -37,7 +36,7 @@ AN_ESTIMATE = "an estimate, as in velocity=hl.velocity.filtered(tau='4 ms')"
 
 
 @dataclass(frozen=True)
-class VelocityEstimate(ShowsItself):
+class VelocityEstimate:
     """An estimate of the handle's velocity, for :func:`~hapticlab.scene.laws.chapter_laws.wall` or any scene.
 
     Attributes

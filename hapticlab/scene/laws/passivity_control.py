@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from ...base.arguments import choice
-from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.symbols import T, delay, n, parameters, signal, v, when, x
 from ..notation.written import expression
@@ -80,7 +79,7 @@ def passivity_observer(scene: Scene, *, lag: int = 0) -> Scene:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Credit(ShowsItself):
+class Credit:
     """What counts as the credit of an environment that a passivity controller keeps, and what is struck off.
 
     Parameters
@@ -313,5 +312,5 @@ def _check(form, scene, stored, predict, lag):
 def _fresh(scene, watch):
     twice = sorted(set(watch) & set(scene.watch))
     if twice:
-        raise SceneError(f"{scene.name} watches {', '.join(twice)} already, which this records; rename it")
+        raise SceneError(f"{scene.name} already watches {', '.join(twice)}, a name that is needed here; rename yours")
     return watch

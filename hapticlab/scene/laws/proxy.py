@@ -104,7 +104,7 @@ def proxy_curve(height: Callable[[sp.Expr], sp.Expr], *, load: Term, mu: Term = 
     if P == 0 or P.is_negative:
         raise SceneError(f"load = {P}; needs the force > 0 N with which the finger rests on the curve")
     if friction.is_negative:
-        raise SceneError(f"mu = {float(friction):g}; friction opposes the slip: needs mu >= 0")
+        raise SceneError(f"mu = {float(friction):g}; friction opposes the slip, so it needs mu >= 0")
     count("steps", steps, of="Newton steps", error=SceneError)
     z = signal("z", unit="m", initial=x(n))
     along = sp.Dummy("z", real=True)

@@ -9,10 +9,9 @@ from __future__ import annotations
 from typing import Literal
 
 from ...base.card import card
-from ...base.shows_itself import ShowsItself
 
 
-class SpringLaw(ShowsItself, str):
+class SpringLaw(str):
     """A spring law: the text of its name, which ``law=`` takes, and what is known of it; printing it says that.
 
     Attributes
@@ -34,7 +33,7 @@ class SpringLaw(ShowsItself, str):
     >>> print(hl.laws.EllisSpring)
     ellis: predictor-corrector, Eq. (23.7)
       force                    K (2 x[n] - 1.5 x[n-1] + 0.5 x[n-2])
-      order                    looks half a period ahead
+      order                    predicts half a period ahead
       cost                     2 past positions to remember
       source                   R. B. Gillespie, Haptic Interface to Virtual Environments, ch. 23
       not to be confused with  its closed form under a force filter: Eq. (23.8) around Eq. (23.1) is the same law
@@ -61,11 +60,13 @@ class SpringLaw(ShowsItself, str):
         past = len(self.taps) - 1
         facts = {
             "force": f"K ({self._sum()})",
-            "order": "looks half a period ahead" if past or self.lead else "looks at the sample alone",
+            "order": "predicts half a period ahead" if past or self.lead else "uses the sample alone",
             "cost": f"{past} past position{'s' * (past > 1)} to remember" if past else "nothing to remember",
             "source": "R. B. Gillespie, Haptic Interface to Virtual Environments, ch. 23",
         }
         return card(f"{self:s}: {self.says}", {**facts, "not to be confused with": self.confused_with})
+
+    __repr__ = __str__
 
     def _sum(self):
         terms = [(tap, f"x[n-{lag}]" if lag else "x[n]") for lag, tap in enumerate(self.taps)]
@@ -81,7 +82,7 @@ SPRING_LAWS: dict[str, SpringLaw] = {
     for law in (
         SpringLaw("zoh", (1.0,), "K p(n), Eq. (23.1)", "hold='zoh', how equations of motion see the handle between samples"),
         SpringLaw(
-            "half_sample", (1.0,), "velocity half a sample on, Eq. (23.3)",
+            "half_sample", (1.0,), "velocity half a sample later, Eq. (23.3)",
             "backward_difference, which it is where the velocity is the backward difference of the position", lead=0.5,
         ),
         SpringLaw(

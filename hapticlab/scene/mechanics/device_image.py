@@ -65,7 +65,7 @@ def device_image(constraint: Any, *, name: str = "image") -> Any:
     constraint = zero_of(constraint, name)
     along = Partial(constraint, x(t)).doit()
     if along == 0:
-        raise SceneError(f"{name}: {constraint} = 0 does not hold x(t), so the handle has no part in it; write q - x(t)")
+        raise SceneError(f"{name}: {constraint} = 0 does not contain x(t), so it does not act on the handle. Write q - x(t)")
     unit = si_name(tuple((k, -p) for k, p in (dimension_of(constraint, name) or ())) or ())
     reaction = sp.Function(name, real=True, unit=_per(unit), role="reaction", constraint=constraint)(t)
     force = -reaction * along

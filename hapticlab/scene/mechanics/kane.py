@@ -14,7 +14,7 @@ from .sympy_symbols import Vocabulary, gathered
 
 #: what is read of a KanesMethod beside its documented attributes, in SymPy 1.14
 READ = ("_f_h", "_f_nh", "_k_nh", "_uaux", "_udep", "_inertial", "_k_ku_implicit", "_k_kqdot_implicit", "_f_k_implicit")
-DRIFTS = "constraints of speeds are kept by their rate alone, as KanesMethod writes them: they drift by the step's error"
+DRIFTS = "constraints on speeds are enforced by their rate alone, as KanesMethod writes them, so they drift by the step's error"
 
 #: of a constraint's gradient, of size one: what is left of it when it follows from others
 REPEATED = 1e-9
@@ -40,7 +40,7 @@ def check_version(method, names):
     """Refuse a SymPy that keeps its equations under other names."""
     missing = next((name for name in names if not hasattr(method, name)), None)
     if missing:
-        raise SceneError(f"SymPy {sp.__version__} keeps no {missing} in a {type(method).__name__}; install sympy 1.14")
+        raise SceneError(f"SymPy {sp.__version__} stores no {missing} in a {type(method).__name__}; install sympy 1.14")
 
 
 def _formed(method):

@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from ...base.arguments import choice
-from ...base.shows_itself import Typeset
 from ...errors import MassError, SceneError
 from ..contact.contact import Contact, friction
 from ..notation.checks import agree_with, applied
 from ..notation.derivative import Partial, Rate
 from ..notation.symbols import t
-from ..notation.typeset import typeset
 from ..notation.units import agree, unit_of
 from ..notation.written import expression, zero_of
 
@@ -23,13 +21,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-#: equations of more coordinates take long to work out, and their Lagrangian is read more easily
-MOST_WORKED_OUT = 3
 ENFORCE = ("auto", "embed", "kkt", "baumgarte", "numeric")
 
 
 @dataclass(frozen=True)
-class Mechanics(Typeset):
+class Mechanics:
     """Equations of motion ``M a = f`` of some coordinates, their constraints and contacts; one entry of a scene's ``eom``.
 
     Made by :func:`lagrange` or :func:`~hapticlab.scene.mechanics.sympy_models.from_mechanics`.
@@ -80,8 +76,8 @@ class Mechanics(Typeset):
         choice("enforce", self.enforce, ENFORCE, error=SceneError)
         if self.alpha is not None and self.enforce != "baumgarte":
             raise SceneError(
-                f"alpha = {self.alpha} is the feedback of Baumgarte's stabilisation, and enforce = {self.enforce!r} has none; "
-                "write enforce='baumgarte', or leave alpha out"
+                f"alpha = {self.alpha} is the feedback of Baumgarte's stabilisation, which enforce = {self.enforce!r} does "
+                "not use. Write enforce='baumgarte', or leave out alpha"
             )
         names = [c.name for c in self.contacts]
         twice = next((name for name in names if names.count(name) > 1), None)
@@ -101,7 +97,7 @@ class Mechanics(Typeset):
     def energy(self) -> sp.Expr:
         """The energy [J] that a Lagrangian without time in it conserves: the sum of q' dL/dq', less L."""
         if self.lagrangian is None:
-            raise SceneError("these equations came without a Lagrangian, so they do not tell their energy")
+            raise SceneError("these equations came without a Lagrangian, so their energy is not known")
         rates = [q.diff(t) for q in self.coordinates]
         return sp.Add(*(w * Partial(self.lagrangian, w) for w in rates)) - self.lagrangian
 
@@ -122,17 +118,9 @@ class Mechanics(Typeset):
         contacts = [f"{c.name}: {getattr(c, 'gap', None) if isinstance(c, Contact) else c.slip}" for c in self.contacts]
         return "\n  ".join([head, *(f"0 = {g}" for g in self.constraints), *contacts])
 
-    def _sentence(self):
-        kept = f" under {len(self.constraints)} constraints" if self.constraints else ""
-        return f"equations of motion of {', '.join(type(q).__name__ for q in self.coordinates)}{kept}"
-
-    def _facts(self):
-        return []
-
-    def _equations(self):
-        if len(self.coordinates) > MOST_WORKED_OUT and self.lagrangian is not None:
-            return [f"L = {typeset(self.lagrangian)}"]
-        return [*map(typeset, self.equations), *(f"0 = {typeset(g)}" for g in self.constraints)]
+    def _repr_latex_(self):
+        rows = [sp.latex(e) for e in self.equations] + [f"0 = {sp.latex(g)}" for g in self.constraints]
+        return "$\\displaystyle \\begin{array}{l}" + r" \\ ".join(rows) + "\\end{array}$"
 
 
 def lagrange(
@@ -194,7 +182,7 @@ def lagrange(
     contacts = _listed(contacts)
     for c in contacts:
         if not isinstance(c, (Contact, friction)):
-            raise SceneError(f"contacts holds {c!r}; needs hl.contact.Contact(gap, law) or hl.contact.friction(slip=...)")
+            raise SceneError(f"contacts contains {c!r}; needs hl.contact.Contact(gap, law) or hl.contact.friction(slip=...)")
     forces = {q: expression(Q, f"force on {q}") for q, Q in _forces(forces).items()}
     # a coordinate that gaps alone hold, such as the closest point of hl.shapes.track, moves by an equation of its own
     coordinates = tuple(applied([L, R, *zeros, *forces], "coordinate"))
@@ -252,10 +240,10 @@ def _along(g, q):
 
 def _check(L, R, forces, coordinates):
     if not coordinates:
-        raise MassError(f"L = {L} holds no coordinate; declare one, z = hl.coordinate('z', unit='m')")
+        raise MassError(f"L = {L} contains no coordinate; declare one, z = hl.coordinate('z', unit='m')")
     second = next((d for d in (L + R).atoms(sp.Derivative) if d.derivative_count > 1), None)
     if second is not None:
-        raise SceneError(f"L or the dissipation holds {second}; energies are of positions and rates alone")
+        raise SceneError(f"L or the dissipation contains {second}; energies depend on positions and rates only")
     for q in forces:
         if q not in coordinates or getattr(type(q), "role", None) != "coordinate":
             raise SceneError(f"forces has {q}; its keys are coordinates: {', '.join(map(str, coordinates))}")

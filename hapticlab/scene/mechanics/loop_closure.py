@@ -28,7 +28,7 @@ def check_range(drivers, sources, start):
         return
     for q in drivers:
         if _limits(q, start) is None:
-            raise NotClosed(f"{name(q)} has no declared range on which to check that the loop closes")
+            raise NotClosed(f"{name(q)} has no declared range over which the closing of the loop can be checked")
     margin, which, worst = _closest(drivers, sources, start)
     where = ", ".join(f"{name(q)} = {value:.4g}" for q, value in zip(drivers, worst, strict=True))
     loop = shown([group for group, steps in sources for _ in steps][which])
@@ -67,7 +67,7 @@ def _where_it_closes(drivers, sources, start):
         return ""
     low = here - int(np.argmin([*closes[here::-1], False])) + 1
     high = here + int(np.argmin([*closes[here:], False])) - 1
-    return f"; about the start it closes from {name(drivers[0])} = {points[low]:.3g} to {points[high]:.3g}"
+    return f"; near the start it closes from {name(drivers[0])} = {points[low]:.3g} to {points[high]:.3g}"
 
 
 def _box(q, start):

@@ -81,7 +81,7 @@ class Equations(Terms):
         sign = -1 if angle.coeff(q) == -1 else 1
         rest = sp.expand(angle - sign * q)
         if rest.has(q):
-            raise NotClosed(f"{angle} is not {q} beside known angles")
+            raise NotClosed(f"{angle} is not {q} plus known angles")
         if rest == 0:
             return Step(q, _atan2(sign * sin, cos, self.start[q]), margin, cos, sign * sin)
         return Step(q, sign * (_atan2(sin, cos, number(angle, self.start)) - rest), margin)

@@ -111,7 +111,7 @@ def _groups(constraints, coordinates):
     for constraint in constraints:
         joined = [g for g in groups if constraint.has(*g[1])]
         if not joined:
-            raise SceneError(f"{constraint} = 0 holds no coordinate, so it constrains nothing; leave it out")
+            raise SceneError(f"{constraint} = 0 contains no coordinate, so it constrains nothing; leave it out")
         groups = [g for g in groups if g not in joined]
         groups.append((sum((g[0] for g in joined), [constraint]), sum((g[1] for g in joined), ())))
     order = list(constraints)
@@ -162,10 +162,10 @@ def _staged(equations, constraints, unknown):
 
 
 def _next(equations, left, held):
-    reason = NotClosed("the equations cannot be taken one or two at a time")
+    reason = NotClosed("the equations cannot be solved one or two at a time")
     for c in left:
         if not held[c]:
-            raise NotClosed(f"{c} = 0 is left when all else is solved")
+            raise NotClosed(f"{c} = 0 remains when all other equations are solved")
         if len(held[c]) == 1:
             try:
                 return (c,), (equations.alone(c, held[c][0]),)
@@ -198,7 +198,8 @@ def _check_start(constraints, sources, start):
         if abs(at[step.coordinate] - start[step.coordinate]) > AGREEING
     )
     raise SceneError(
-        f"the start {values(moving, start)} is off the constraint {shown(off)}: the left side is {residuals}. Start with {wanted}"
+        f"the start {values(moving, start)} does not satisfy the constraint {shown(off)}: its left side is {residuals}. "
+        f"Start with {wanted}"
     )
 
 

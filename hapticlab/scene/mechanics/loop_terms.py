@@ -100,7 +100,7 @@ def _of_angle(expr, unknown, angles):
     parts = sp.Add.make_args(sp.expand(expr.args[0]))
     own = sp.Add(*(part for part in parts if part.has(*unknown)))
     if any(not (part / u).is_number for part in sp.Add.make_args(own) for u in unknown if part.has(u)):
-        raise NotClosed(f"{expr} is not of an angle")
+        raise NotClosed(f"{expr} does not contain an angle")
     sign = -1 if own.could_extract_minus_sign() else 1
     angle = angles.setdefault(sign * own, sp.expand(sign * expr.args[0]))
     known = sp.expand(expr.args[0] - sign * angle)

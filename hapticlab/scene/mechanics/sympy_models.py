@@ -111,7 +111,7 @@ def _of_lagrange(method, given, enforce):
     words = Vocabulary(q, parts, {}, **given)
     for p in q:
         if not any(sp.sympify(e).has(p) for e in parts):
-            raise MassError(f"no energy, load or constraint holds {p}, so nothing determines it; leave it out")
+            raise MassError(f"no energy, load or constraint contains {p}, so nothing determines it; leave it out")
     coordinates = tuple(words.table[p] for p in q if p in words.table)
     L, zeros, loads = words(L), tuple(map(words, constraints)), [tuple(map(words, pair)) for pair in loads]
     forces = {p: sp.Add(*(force * Partial(rate, p.diff(t)) for rate, force in loads)) for p in coordinates}
@@ -127,7 +127,7 @@ def _loads(method):
     if not method.forcelist:
         return []
     if method.inertial is None:
-        raise SceneError("LagrangesMethod has loads but no frame to measure velocities in; give it frame=N")
+        raise SceneError("LagrangesMethod has loads but no frame in which velocities are measured; give it frame=N")
     pairs = []
     for where, load in method.forcelist:
         moving = where.vel(method.inertial) if hasattr(where, "vel") else where.ang_vel_in(method.inertial)

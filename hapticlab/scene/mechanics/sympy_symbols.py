@@ -60,7 +60,7 @@ class Vocabulary:
         initial = self._keyed(initial, "initial", rates=True)
         wrong = next((s for s in initial if s in constants), None)
         if wrong is not None:
-            raise SceneError(f"initial has {wrong}, which does not move; what it is goes into values={{{wrong}: ...}}")
+            raise SceneError(f"initial has {wrong}, which does not move. Give its value in values={{{wrong}: ...}}")
         self._coordinates(replace, units, initial)
         for symbol, given in replace.items():
             if symbol not in self.table:
@@ -93,8 +93,8 @@ class Vocabulary:
             allowed = most.get(getattr(type(part), "role", None), most.get(type(part), 9))
             if order > allowed or (isinstance(part, sp.Derivative) and order > 0):
                 raise SceneError(
-                    f"the equations hold {d}, and {d.expr} = {given} was given: that asks for an acceleration of {part}, "
-                    f"which the equations are solved for. Let {d.expr} be a function of t or x(t), or write the rate as an input"
+                    f"the equations contain {d}, and {d.expr} = {given} was given. That needs an acceleration of {part}, "
+                    f"for which the equations are solved. Let {d.expr} be a function of t or x(t), or write the rate as an input"
                 )
         for _ in range(order):
             given = Rate(given)
@@ -110,9 +110,9 @@ class Vocabulary:
         for key, value in dict(given or {}).items():
             if key not in known:
                 there = ", ".join(map(_name, self.symbols))
-                raise SceneError(f"{what} has {key}, which is nothing that these equations hold; they hold {there}")
+                raise SceneError(f"{what} has {key}, which is not in these equations. They contain {there}")
             if names.count(key) > 1:
-                raise SceneError(f"{what} has {key!r}, which two symbols of the model are called; give the symbol itself")
+                raise SceneError(f"{what} has {key!r}, the name of two symbols of the model. Give the symbol itself")
             found[known[key]] = expression(value, f"replace[{key}]") if what == "replace" else value
         return found
 
@@ -121,13 +121,15 @@ class Vocabulary:
         if missing:
             shown = ", ".join(map(str, missing))
             raise SceneError(
-                f"{shown}: neither a coordinate nor a speed, so an input of the model (a force, or a motion that is driven). "
-                f"Say what it is, replace={{{missing[0]}: ...}}, with an expression of x(t), v(t), t, coordinates and "
+                f"{shown}: neither a coordinate nor a speed, so an input of the model (a force, or a driven motion). Define "
+                f"it, replace={{{missing[0]}: ...}}, with an expression of x(t), v(t), t, coordinates and "
                 "parameters, or 0"
             )
         wrong = next((s for s in (*units, *values) if s in replace), None)
         if wrong is not None:
-            raise SceneError(f"{wrong} is replaced by {replace[wrong]}, which has its unit and its value; give it no other")
+            raise SceneError(
+                f"{wrong} is replaced by {replace[wrong]}, which has a unit and a value of its own. Leave out {wrong}"
+            )
         wrong = next((s for s in constants if replace.get(s, sp.S.Zero).has(t, sp.Function)), None)
         if wrong is not None:
             raise SceneError(
@@ -136,10 +138,10 @@ class Vocabulary:
             )
         wrong = next((s for s in values if s not in constants), None)
         if wrong is not None:
-            raise SceneError(f"values has {wrong}, which moves; where it starts is initial={{{wrong}: ...}}")
+            raise SceneError(f"values has {wrong}, which moves. Give its start in initial={{{wrong}: ...}}")
         wrong = next((s for s in replace if s in self.speeds), None)
         if wrong is not None:
-            raise SceneError(f"replace has {wrong}, the rate of {self.speeds[wrong]}; replace that")
+            raise SceneError(f"replace has {wrong}, the rate of {self.speeds[wrong]}. Replace {self.speeds[wrong]} instead")
 
     def _parameter(self, symbol, unit, value):
         return parameters(self._word(symbol), units=unit, values=value)
@@ -208,10 +210,10 @@ def _symbols(expressions):
         functions |= {f for f in expr.atoms(AppliedUndef) if not hasattr(type(f), "role")}
     clock = next((s for s in constants if s.name == "t"), None)
     if clock is not None:
-        raise SceneError(f"{clock} is another symbol than the time of SymPy's dynamicsymbols, sympy.Symbol('t'); write that")
+        raise SceneError(f"{clock} is not the time of SymPy's dynamicsymbols. Write sympy.Symbol('t')")
     strange = next((f for f in functions if f.args != (t,)), None)
     if strange is not None:
-        raise SceneError(f"{strange} is no function of time alone; write it as an expression of coordinates and constants")
+        raise SceneError(f"{strange} is not a function of time alone; write it as an expression of coordinates and constants")
     return sorted(constants, key=_order), sorted(functions, key=_order)
 
 

@@ -40,8 +40,8 @@ def check_size(expressions):
         waiting.extend(part.args)
         if len(seen) > MOST_PARTS:
             raise SceneError(
-                f"the force and the equations have more than {MOST_PARTS} different parts, each an instruction of every tick "
-                "or more; a long sum or series needs fewer terms, a table of values a hl.shapes.Curve"
+                f"the force and the equations have more than {MOST_PARTS} different parts, and each costs at least one "
+                "instruction per tick. Use fewer terms in a long sum or series, and a hl.shapes.Curve for a table of values"
             )
 
 
@@ -60,12 +60,12 @@ def equations(eom):
             continue
         if hasattr(equation, "generalized_force"):
             raise SceneError(
-                f"eom holds {equation.name}, which is no equation; it goes to those of its bodies: "
+                f"eom contains {equation.name}, which is not an equation. Add it to the equations of its bodies: "
                 "hl.mechanics.lagrange(L, contacts=[...])"
             )
         if not isinstance(equation, sp.Eq):
             raise SceneError(
-                f"eom holds {equation!r}; needs equations, sp.Eq(left side, right side), or hl.mechanics.lagrange(...)"
+                f"eom contains {equation!r}; needs equations, sp.Eq(left side, right side), or hl.mechanics.lagrange(...)"
             )
         left = equation.lhs
         for side in equation.args:
@@ -112,7 +112,10 @@ def named(watch, coordinates):
         is_named = getattr(type(expr), "role", None) == "coordinate" or hasattr(type(expr), "contact")
         name = type(expr).__name__ if is_named else sp.sstr(expr)
         if name in RESERVED:
-            raise SceneError(f"watch [{name}]: a record has its own {name}; name the channel, watch={{'{name}_1': {name}}}")
+            raise SceneError(
+                f"watch [{name}]: a record has a column {name} of its own. Give the channel another name, "
+                f"watch={{'{name}_1': {name}}}"
+            )
         channels[name] = expr
     return channels
 
@@ -127,7 +130,7 @@ def check_symbols(expressions):
     for expr in expressions:
         for f in expr.atoms(AppliedUndef):
             if type(f).__name__ in CLOCK_AND_HANDLE:
-                raise SceneError(f"{f} is another function of that name; from hapticlab import {type(f).__name__}")
+                raise SceneError(f"{f} is a different function with this name. Write from hapticlab import {type(f).__name__}")
             if not hasattr(type(f), "role"):
                 raise SceneError(
                     f"unknown function {f}; declare a coordinate, {type(f).__name__} = "
@@ -153,19 +156,22 @@ def _check_arguments(expressions):
 def _without_rate(d):
     of, name = d.expr, type(d.expr).__name__
     if of == x(t) and d.derivative_count == 1:
-        return f"{d} is not worked out; write v(t), or x(t).diff(t)"
+        return f"{d} is a derivative that was not evaluated. Write v(t), or x(t).diff(t)"
     if of in (x(t), v(t)):
         cure = "write (v(n) - v(n-1))/T in a force, or give its mass to a coordinate behind a coupler"
-        return f"{d} is the acceleration of the handle, which no sample holds; {cure}"
+        return f"{d} is the acceleration of the handle, which no sample gives; {cure}"
     if isinstance(of, (x, v, delay)) or getattr(type(of), "role", None) == "signal":
         cure = {"x": "v(n)", "delay": f"({of.args[0]} - {of})/T"}.get(name, f"({name}(n) - {name}(n-1))/T")
-        return f"{of} has no derivative: it is known at the samples only; write {cure}"
-    return f"{d} is not worked out; a coordinate has a rate q.diff(t), anything else needs .doit()"
+        return f"{of} has no derivative, because it is known at the samples only; write {cure}"
+    return (
+        f"{d} is a derivative that was not evaluated. For the rate of a coordinate write q.diff(t); for any other "
+        "expression add .doit()"
+    )
 
 
 def _undeclared(symbol):
     if symbol.name in CLOCK_AND_HANDLE:
-        return f"{symbol} is another symbol of that name; from hapticlab import {symbol}"
+        return f"{symbol} is a different symbol with this name. Write from hapticlab import {symbol}"
     return (
         f"{symbol} is a plain SymPy symbol: it has no unit and no range; declare it, "
         f"{symbol} = hl.parameters('{symbol}', units='...')"
@@ -211,7 +217,7 @@ def check_units(force, eom, watch, moving):
     except UnitsError as refusal:
         if applied([force], "handle", "signal", "coordinate"):
             raise
-        cure = "Neither x(n) nor v(n) is in it: was x or v given another value? from hapticlab import x, v"
+        cure = "The force contains neither x(n) nor v(n). Was x or v given another value? Write from hapticlab import x, v"
         raise UnitsError(f"{refusal} {cure}") from None
     for number, equation in enumerate(eom, 1):
         agree(equation.args, f"equation of motion {number}")
@@ -239,9 +245,12 @@ def check_angles(expressions):
         factor, rest = angle.as_independent(*angle.free_symbols, *angle.atoms(AppliedUndef, x, v), as_Add=False)
         if angle.is_number and not angle.has(sp.pi) and abs(angle) > 2 * sp.pi:
             cure = f"If you mean {angle} degrees, write sp.{type(f).__name__}(sp.pi*{angle}/180)."
-            warn_at_own_line(f"{f}: sines take radians, and a full turn has 6.28. {cure}")
+            warn_at_own_line(f"{f}: the argument is in radians, and a full turn has 6.28 rad. {cure}")
         elif factor.is_number and abs(factor * sp.pi / 180 - 1) < 1e-6:
-            warn_at_own_line(f"{f}: sines take radians, and 180/pi makes degrees of them. Write {type(f).__name__}({rest}).")
+            warn_at_own_line(
+                f"{f}: the argument is in radians, and the factor 180/pi converts it to degrees. Write "
+                f"{type(f).__name__}({rest})."
+            )
 
 
 def check_swallowed(named):

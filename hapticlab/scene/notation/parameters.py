@@ -46,10 +46,10 @@ class Parameter(sp.Symbol):
             if not word:
                 return f"needs {self.name} >= 0"
             return (
-                f"a {word} needs {self.name} >= 0. A negative one is not passive; if that is meant, "
-                f"declare it: hl.parameters('{self.name}', units='{self.unit}', ranges=(-limit, limit))"
+                f"a {word} needs {self.name} >= 0. A negative one is not passive; if you want one, declare it: "
+                f"hl.parameters('{self.name}', units='{self.unit}', ranges=(-limit, limit))"
             )
-        return f"it was declared to lie within {self.low:g} and {self.high:g}"
+        return f"it was declared to lie between {self.low:g} and {self.high:g}"
 
 
 #: sampling period [s], bound when a scene is compiled
@@ -91,7 +91,7 @@ def parameters(names: str, *, units: str, values: Any = None, ranges: Any = None
     if len(names) != len(units) or not names:
         raise ParameterError(
             f"{len(names)} names ({' '.join(names)}) but {len(units)} units ({' '.join(units)}); "
-            "give one unit a name, separated by spaces, and a product with *, such as units='N/m N*s/m'"
+            "give one unit for each name, separated by spaces, and a product with *, such as units='N/m N*s/m'"
         )
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice:
@@ -109,7 +109,7 @@ def parameters(names: str, *, units: str, values: Any = None, ranges: Any = None
 def _words(what, given, whole=False):
     if not isinstance(given, str):
         example = "hl.parameters('k m', units='N/m kg')"
-        raise ParameterError(f"{what} = {given!r}; needs one text with spaces between, as in {example}")
+        raise ParameterError(f"{what} = {given!r}; needs one text, with spaces between names, as in {example}")
     return [given.strip()] if whole and given.strip() else given.replace(",", " ").split()
 
 

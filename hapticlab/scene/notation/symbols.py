@@ -175,7 +175,9 @@ def lag_of(applied):
         )
     clock = sorted({s.name for s in argument.free_symbols - {n, t}} & {"n", "t"})
     if clock:
-        raise SignalError(f"{applied}: this {clock[0]} is another symbol of that name; from hapticlab import {clock[0]}")
+        raise SignalError(
+            f"{applied}: this {clock[0]} is a different symbol with this name. Write from hapticlab import {clock[0]}"
+        )
     cure = f"write {name}(n), {name}(n-1), ... or {name}(t), with n and t from hapticlab"
     raise SignalError(f"{applied} is not a sample: {cure}")
 
@@ -196,8 +198,10 @@ class _HandleSignal(_Sampled, sp.Function, metaclass=_Unapplied):
     def eval(cls, argument: sp.Expr) -> None:
         # SymPy tries other arguments while it substitutes and compares; in a scene they are refused later
         if not isinstance(argument, sp.Expr):
-            what = f"{cls.__name__} was given an array or another object that is no expression"
-            raise SignalError(f"{what}: was n or t given another value? from hapticlab import n, t, and write {cls.__name__}(n)")
+            what = f"{cls.__name__} was given an array or another object that is not an expression"
+            raise SignalError(
+                f"{what}. Was n or t given another value? Write from hapticlab import n, t, and then {cls.__name__}(n)"
+            )
         if any((argument - clock).is_number for clock in (n, t)):
             lag_of(sp.Basic.__new__(cls, argument))
 

@@ -142,7 +142,7 @@ def _pure(expr, where):
         d = dimension_of(a, where)
         if d:
             raise UnitsError(
-                f"{where}: {type(expr).__name__} takes a pure number, but {a} is in {si_name(d)}; "
+                f"{where}: {type(expr).__name__} needs a number without unit, but {a} is in {si_name(d)}; "
                 "divide it by a quantity of the same unit first"
             )
     return ()

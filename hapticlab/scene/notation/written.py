@@ -28,12 +28,12 @@ def check_name(name, what, error=SceneError):
     >>> from hapticlab.scene.notation.written import check_name
     >>> check_name("x", "coordinate")
     Traceback (most recent call last):
-    hapticlab.errors.SceneError: 'x' cannot name a coordinate: a scene or its record has its own x; take x_1
+    hapticlab.errors.SceneError: 'x' cannot name a coordinate, because a scene or its record already uses the name x. Use x_1
     """
     if not (isinstance(name, str) and name.isidentifier()) or iskeyword(name) or name.startswith("__"):
         raise error(f"{name!r} cannot name a {what}; needs one word of letters, digits and _, such as k_1")
     if name in RESERVED:
-        raise error(f"{name!r} cannot name a {what}: a scene or its record has its own {name}; take {name}_1")
+        raise error(f"{name!r} cannot name a {what}, because a scene or its record already uses the name {name}. Use {name}_1")
     return name
 
 
@@ -44,7 +44,7 @@ def expression(given, where):
     except (sp.SympifyError, TypeError):
         expr = None
     if isinstance(expr, sp.Eq):
-        raise SceneError(f"{where} = {expr} is an equation; an expression alone is needed here, such as its right side")
+        raise SceneError(f"{where} = {expr} is an equation; needs an expression, such as its right side")
     if isinstance(expr, CONDITIONS):
         raise SceneError(f"{where}: a condition is not a number; write hl.when(condition, 1, 0)")
     if isinstance(expr, sp.Expr):
@@ -59,9 +59,12 @@ def expression(given, where):
 def zero_of(given, where):
     """The expression that a constraint sets to zero, from an equation or that expression."""
     if isinstance(given, bool):
-        raise SceneError(f"{where} is {given}: == is Python's own and compares at once; write sp.Eq(a, b)")
+        raise SceneError(f"{where} is {given}: Python's == compares at once. Write sp.Eq(a, b)")
     if given in (sp.true, sp.false):
-        raise SceneError(f"{where} is {given}: its sides are equal for every motion, or never; it constrains nothing")
+        raise SceneError(
+            f"{where} is {given}: its sides are equal for every motion or for none, so it determines nothing. "
+            "Write an equation with x(n) or a coordinate"
+        )
     return expression(given.lhs - given.rhs if isinstance(given, sp.Eq) else given, where)
 
 

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from ...base.shows_itself import ShowsItself
 from ...errors import SceneError
 from ..notation.amount import number_of
 from ..notation.cases import when
@@ -38,7 +37,7 @@ GRID = 128
 ON_MINIMUM = 1e-6
 
 
-class Curve(ShowsItself, Shape):
+class Curve(Shape):
     """Smooth closed curve around a body, counter-clockwise; a shape that :func:`track` takes, and no other gap.
 
     Parameters
@@ -181,10 +180,10 @@ def track(
 def _checked(a, b):
     for body in (a, b):
         if not isinstance(body, Placed):
-            raise SceneError(f"{body!r} is no shape in its place; write Curve(...).at(x=..., y=...)")
+            raise SceneError(f"{body!r} is not a shape with a position; write Curve(...).at(x=..., y=...)")
     if not isinstance(a.shape, Curve) or not isinstance(b.shape, (Curve, Circle)):
         raise SceneError(
-            f"{a.name} and {b.name}: track takes a Curve, and a Curve or a Circle; for the others there is hl.shapes.gap"
+            f"{a.name} and {b.name}: track needs a Curve, and a Curve or a Circle. For other shapes use hl.shapes.gap"
         )
     return [body for body in (a, b) if isinstance(body.shape, Curve)]
 
@@ -260,18 +259,18 @@ def _minimum(a, b, of, place, given):
     where = ", ".join(f"{p:.6g}" for p in place)
     if least <= 0 or not np.isfinite(least):
         raise SceneError(
-            f"{a.name} and {b.name}: the distance {size:.4g} m at {where} is no minimum (its second derivative there has the "
-            f"eigenvalue {least:.4g} m^2; needs > 0): the curves bend more than they are apart, or lie in each other; "
-            "start elsewhere"
+            f"{a.name} and {b.name}: the distance {size:.4g} m at {where} is not a minimum (its second derivative there has "
+            f"the eigenvalue {least:.4g} m^2; needs > 0). The curves bend more sharply than their distance allows, or they "
+            "overlap. Start elsewhere"
         )
     if slope.max() > ON_MINIMUM * max(size, 1e-3):
         raise SceneError(
             f"{a.name} and {b.name}: {where} is not where they are closest (the distance still changes by "
-            f"{slope.max():.4g} m); leave near= out, and it is looked for"
+            f"{slope.max():.4g} m); leave out near=, and the closest points are searched"
         )
     if gap < 0 or size <= ON_MINIMUM * np.sqrt(np.diag(J).max()):
         raise SceneError(
-            f"{a.name} and {b.name} touch or start in each other (gap {gap:.4g} m at {where}), or {a.name} runs clockwise: "
+            f"{a.name} and {b.name} touch or overlap at the start (gap {gap:.4g} m at {where}), or {a.name} runs clockwise: "
             "start them apart, and let every curve run counter-clockwise"
         )
     return [float(p) for p in place]

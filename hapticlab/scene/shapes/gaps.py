@@ -114,7 +114,7 @@ def closest(a: Placed, b: Placed, *, method: str = "faces") -> Any:
 def check_placed(body):
     """Refuse what is no shape in its place, and a curve, whose gap takes equations of its own."""
     if not isinstance(body, Placed):
-        raise SceneError(f"{body!r} is no shape in its place; write hl.shapes.Circle(0.01).at(x=..., y=..., name='ball')")
+        raise SceneError(f"{body!r} is not a shape with a position; write hl.shapes.Circle(0.01).at(x=..., y=..., name='ball')")
     if body.shape.tracked:
         raise SceneError(f"{body.name} is a curve, whose closest point is followed by an equation of motion: hl.shapes.track")
 
@@ -122,7 +122,7 @@ def check_placed(body):
 def corners(a, b):
     """A :class:`Closest` for each corner of b above the half-plane a, which together hold a box that lies flat."""
     if not isinstance(a.shape, HalfPlane):
-        raise SceneError(f"{a.name} is a {type(a.shape).__name__}; each corner has a gap of its own above a HalfPlane only")
+        raise SceneError(f"{a.name} is a {type(a.shape).__name__}; separate gaps for the corners exist only above a HalfPlane")
     return tuple(Closest(a, b, *found) for found in _above(a, b))
 
 
@@ -136,8 +136,8 @@ def _closest(a, b, method):
     radii = a.shape.radius + b.shape.radius
     if method == "gjk" and radii == 0:
         raise SceneError(
-            f"{a.name} and {b.name}: gjk gives no negative distance, so nothing would be felt; give one of them a radius, "
-            "or take method='faces'"
+            f"{a.name} and {b.name}: gjk gives no negative distance, so no force would be felt. Give one of them a radius, "
+            "or use method='faces'"
         )
     known = {part: ClosestPoints(_cores(a), _cores(b), Str(method), Str(f"{a.name}, {b.name}"), Str(part)) for part in PARTS}
     normal, r = (known["normal_x"], known["normal_y"]), b.shape.radius

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ...base.shows_itself import ShowsItself
 from ...base.units import in_si
 from ...errors import SceneError
 from ..notation.amount import amount, take_lengths
@@ -73,7 +72,7 @@ class Shape:
 
 
 @dataclass(frozen=True)
-class Circle(ShowsItself, Shape):
+class Circle(Shape):
     """Disc around its origin.
 
     Parameters
@@ -95,7 +94,7 @@ class Circle(ShowsItself, Shape):
 
 
 @dataclass(frozen=True)
-class Box(ShowsItself, Shape):
+class Box(Shape):
     """Rectangle around its origin, ``width`` along x and ``height`` along y, each > 0 [m].
 
     Examples
@@ -122,7 +121,7 @@ class Box(ShowsItself, Shape):
 
 
 @dataclass(frozen=True)
-class Capsule(ShowsItself, Shape):
+class Capsule(Shape):
     """Bar with round ends around its origin: a segment of ``length`` along x, widened by ``radius``; both > 0 [m].
 
     Examples
@@ -145,7 +144,7 @@ class Capsule(ShowsItself, Shape):
 
 
 @dataclass(frozen=True)
-class Segment(ShowsItself, Shape):
+class Segment(Shape):
     """Straight line of ``length`` [m] > 0 along x around its origin, without a thickness.
 
     Touched by a :class:`Circle` it has no inside: the distance is never negative. A body that passes it between two
@@ -167,7 +166,7 @@ class Segment(ShowsItself, Shape):
 
 
 @dataclass(frozen=True)
-class Polygon(ShowsItself, Shape):
+class Polygon(Shape):
     """Simple polygon; where it is not convex it is split into convex parts, once, when it is made.
 
     Parameters
@@ -214,7 +213,7 @@ class Polygon(ShowsItself, Shape):
 
 
 @dataclass(frozen=True)
-class HalfPlane(ShowsItself, Shape):
+class HalfPlane(Shape):
     """Everything below its own x axis: a floor; turned by pi/2, a wall that is solid to the right of its origin.
 
     Examples
@@ -244,7 +243,7 @@ def ground(y: Term = 0, *, name: str = "ground") -> Placed:
 
 
 @dataclass(frozen=True, repr=False)
-class Placed(ShowsItself):
+class Placed:
     """A shape in its place: its origin at (x, y) [m], turned by ``angle`` [rad], each an expression."""
 
     shape: Shape

@@ -153,7 +153,9 @@ def test_contacts_that_cannot_act_on_each_other_are_solved_apart():
 
 def test_too_many_at_once_are_refused_by_name():
     W = (np.eye(5) * 6 - 1).tolist()
-    with pytest.raises(SceneError, match=r"a, b, c, d, e act on each other at once; needs at most 4.*penalty"):
+    with pytest.raises(
+        SceneError, match=r"a, b, c, d, e act on each other at the same time; exact reactions need at most 4 of them,.*penalty"
+    ):
         complementarity(W, [-1.0] * 5, names=list("abcde"))
 
 

@@ -51,7 +51,7 @@ def test_the_longest_step_is_a_sum_done_by_hand():
     assert said.longest(promise=True) == at_most
     turning = cost(wall_program(), edges_per_second=20_000)
     assert turning.longest(promise=True) == at_most + 20 * uno["edge"]
-    assert "1900000 cycles a second for edges" in str(turning) and "none counted for edges" in str(said)
+    assert "1900000 cycles per second for edges" in str(turning) and "none counted for edges" in str(said)
     with pytest.raises(ProgramError, match="edges_per_second = -1; needs"):
         cost(wall_program(), edges_per_second=-1)
 
@@ -144,7 +144,7 @@ def test_a_cost_prints_its_figures_and_its_answer():
     said = cost(wall_program(2e-3))
     for number in (said.typical, said.bound, *said.step, said.frame, said.arena, "registers"):
         assert str(number) in text
-    assert "fits, promised for any operands" in text
+    assert "fits, guaranteed for any operands" in text
     assert "modelled, not measured" in str(cost(wall_program(), "cortex-m4f"))
 
 
@@ -232,7 +232,7 @@ def test_less_telemetry_is_offered_where_that_is_enough():
     said = cost(program)
     T = next(T * 1e-6 for T in range(300, 2000) if cost(replace(program, T=T * 1e-6), every=2).fits)
     assert T < said.T_needed() - 50e-6
-    with pytest.raises(ProgramLimitError, match=r"fits with every=2 \(a sample of telemetry in 2 ticks\)"):
+    with pytest.raises(ProgramLimitError, match=r"fits with every=2 \(one sample of telemetry per 2 ticks\),"):
         fit(replace(program, T=T))
     assert fit(replace(program, T=T), every=2).fits
 

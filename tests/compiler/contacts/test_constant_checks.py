@@ -55,7 +55,7 @@ SOFT = floor(hl.contact.penalty(k=named("k", "N/m", 300)))
         ([hl.contact.friction(slip=X.diff(t), coulomb=F_c * (1 - hl.x(t) / named("r", "m", 0.1)), name="rub")], {"F_c": -1},
          r"rub: coulomb = .* is -1 N at the start; friction opposes"),
         ([hl.contact.friction(slip=X.diff(t), coulomb="1 N", stick_speed=named("v_s", "m/s", 0.0), name="rub")], {},
-         r"rub: stick_speed = v_s is 0 m/s at the start; the speed up to which the line goes is above 0: needs stick_speed > 0"),
+         r"rub: stick_speed = v_s is 0 m/s at the start; the line needs a speed above 0 at which it ends: needs stick_speed > 0"),
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("live", [None, ""])
@@ -115,11 +115,12 @@ def test_one_that_is_no_factor_stays_free():
     ("contact", "told"),
     [
         (hl.contact.friction(slip=X.diff(t), coulomb=named("F_c", "N", 0.5, (-5, 5)), name="rub"),
-         r"rub: coulomb lies anywhere in -5\.\.5 while F_c may be set, .*hl\.parameters\('F_c', units='N', ranges=\(0, 5\)\), or "
+         r"rub: coulomb can reach any value in -5\.\.5 while F_c is live, .*hl\.parameters\('F_c', units='N', ranges=\(0, "
+         r"5\)\), or "
          "leave F_c out of live="),
-        (floor(hl.contact.impulse(e=2 * e)), r"floor: e = 2\*e lies anywhere in 0\.\.2 while e may be set, .* needs 0"),
+        (floor(hl.contact.impulse(e=2 * e)), r"floor: e = 2\*e can reach any value in 0\.\.2 while e is live,.* needs 0"),
         (hl.contact.friction(slip=X.diff(t), coulomb=named("a", "N", 1) - named("F_c", "N", 0.5), name="rub"),
-         r"coulomb = .* lies anywhere in -inf\.\.inf while \w+, \w+ may be set"),
+         r"coulomb = .* reach any value in -inf\.\.inf while F_c, a is live,"),
     ],
 )  # fmt: skip
 def test_a_range_that_reaches_what_feeds_energy_is_refused_while_it_is_live(contact, told):

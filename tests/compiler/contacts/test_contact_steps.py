@@ -39,7 +39,7 @@ def test_a_contact_lasts_as_long_as_its_integration(exponent, unit):
 def test_a_contact_too_short_is_refused_with_the_substeps_it_needs():
     stiff = Contact(Q, penalty(k=K), name="wall")
     lasts = math.pi * math.sqrt(0.05 / 50000)
-    message = rf"wall: the contact lasts 3.14 ms .* 3.1 steps of 1 ms; rk4 needs 10. Take substeps={math.ceil(1e-2 / lasts)}"
+    message = rf"wall: the contact lasts 3.14 ms .* 3.1 steps of 1 ms; rk4 needs 10. Use substeps={math.ceil(1e-2 / lasts)}"
     with pytest.raises(SceneError, match=message):
         check_contact_steps(stiff, 50000.0, 20.0, 1e-3, 1e-3)
     check_contact_steps(stiff, 50000.0, 20.0, 1e-3 / math.ceil(1e-2 / lasts), 1e-3)

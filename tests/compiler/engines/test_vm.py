@@ -357,5 +357,5 @@ def test_nothing_of_the_c_library_but_the_square_root_is_called(tmp_path):
 def test_the_machine_says_what_it_refuses():
     machine = vm.Vm(reciprocal())
     machine.bytes = machine.bytes[:-1]
-    with pytest.raises(ProgramError, match="reciprocal: the virtual machine refuses it: SIZE: the program is cut"):
+    with pytest.raises(ProgramError, match="reciprocal: the virtual machine rejects it: SIZE: the program is incomplete,"):
         machine.run(1, np.ones((1, 1)), np.empty((0, 1)))

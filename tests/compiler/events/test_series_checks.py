@@ -24,7 +24,7 @@ def test_a_step_is_short_enough_at_the_ends_of_declared_ranges():
     # omega = sqrt(K/m): 22.4 rad/s as bound, 1 rad a step of 1 ms at 1e5 N/m, and three times that at 9e5 N/m
     assert hl.compile(mass_on_a_spring((0, 0.99e5)), "taylor", T=1e-3).facts["omega"] == pytest.approx(math.sqrt(500), rel=1e-3)
     with pytest.raises(
-        ProgramError, match=r"spring: at K = 900000, to which it may be set while it runs.*substeps=3, declare"
+        ProgramError, match=r"spring: at K = 900000, a value that is allowed while it runs,.*substeps=3, declare"
     ) as found:
         hl.compile(mass_on_a_spring((0, 9e5)), "taylor", T=1e-3)
     assert found.value.substeps == 3

@@ -35,7 +35,7 @@ def test_what_exact_makes_constants_of_is_told_by_name():
     z = hl.coordinate("z", unit="m")
     m, K = hl.parameters("m K", units="kg N/m", values=(0.1, 200))
     scene = hl.Scene(force=K * (hl.x(hl.t) - z), eom=[sp.Eq(m * z.diff(hl.t, 2), K * (hl.x(hl.t) - z))])
-    with pytest.raises(hl.errors.ProgramError, match="makes constants of the motion of z, and K of it") as refused:
+    with pytest.raises(hl.errors.ProgramError, match="computes constants for the motion of z, but K in it is live.") as refused:
         hl.compile(scene, "exact", T=1e-3, live="K")
     assert refused.value.live == ("K",)
     assert pickle.loads(pickle.dumps(refused.value)).live == ("K",)

@@ -137,7 +137,7 @@ def test_the_interface_is_checked():
         (replace(good, parameters=(Channel("k", "N/m", None),)), "p: k is of type None"),
         (replace(good, states=(z,)), "p, init: gives 0 states, needs 1"),
         (replace(good, states=(z,), init=Block((X,), states=(0,))), "p, tick: gives 0 states, needs 1"),
-        (twice, "p: 2 outputs are called F; give each a name of its own"),
+        (twice, "p: 2 outputs have the name F; give each a name of its own"),
     ):
         with pytest.raises(ProgramError) as caught:
             broken.verify()
@@ -175,7 +175,7 @@ def test_the_listing_names_everything_and_counts_what_computes():
     text = str(p)
     assert len(p) == 2 and p.types == ("f32",)
     for line in (
-        "program p: T = 0.001 s, 2 instructions a tick", "inputs     x [m] f32", "parameters k = 150 N/m",
+        "program p: T = 0.001 s, 2 instructions per tick", "inputs     x [m] f32", "parameters k = 150 N/m",
         "%3    f32   mul      x  k", "%4    f32   sub      %3  2", "output F = %4",
     ):  # fmt: skip
         assert line in text

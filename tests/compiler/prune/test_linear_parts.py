@@ -207,11 +207,11 @@ STOP = hl.when(z > w, k * (z - w))
 @pytest.mark.parametrize(
     ("eom", "options", "said"),
     [
-        ([sp.Eq(m * z.diff(t, 2), F)], {"live": "k"}, r"motion of z, and k of it may be set .* method='exact', live=''"),
-        ([sp.Eq(m * z.diff(t, 2), F)], {"live": None}, "k, m of it may be set"),
+        ([sp.Eq(m * z.diff(t, 2), F)], {"live": "k"}, r"motion of z, but k in it is live..* method='exact', live=''"),
+        ([sp.Eq(m * z.diff(t, 2), F)], {"live": None}, "k, m in it is live"),
         ([sp.Eq(m * z.diff(t, 2), F - k * sp.sin(z / w) * w), sp.Eq(m * w.diff(t, 2), -k * w)], {}, r"sin\(.*\).* is not linear"),
         ([sp.Eq(m * z.diff(t, 2), F - STOP), sp.Eq(m * w.diff(t, 2), -k * w)], {"live": "k"},
-         r"Piecewise.* in the equation of z .* w\(t\).* makes constants of each mode, and k may be set"),
+         r"Piecewise.* in the equation of z .* w\(t\).* the constants of each mode in advance,"),
         ([sp.Eq(m * z.diff(t, 2) * (1 + z / w) ** 2, F), sp.Eq(m * w.diff(t, 2), F)], {}, r"the inertia m\*.* of z changes"),
         ([sp.Eq(m * z.diff(t, 2), F + k * z * x(n) / w), sp.Eq(b * w.diff(t), F)], {}, r"slope changes with"),
         ([sp.Eq(b * z.diff(t), F * hl.parameters("f", units="1/s", values=3) * t)], {}, "slope changes with time"),
@@ -235,7 +235,7 @@ def test_a_switch_of_time_is_noted():
     free = hl.Scene(force=k * x(n), eom=[sp.Eq(m * z.diff(t, 2), push - b * z.diff(t))], watch=[z.diff(t)])
     program = hl.compile(free, T=T, method="exact", live=())
     (note,) = (note for note in program.notes if "T/3" in note)
-    assert note.startswith("t0 < t in the equation of z is taken at the start, middle and end") and "'taylor' locates" in note
+    assert note.startswith("t0 < t in the equation of z is evaluated at the start, middle and end") and "'taylor' locates" in note
     fast, exact = (run(free, np.zeros(13), method=method)[-1, 1] for method in ("exact", "taylor"))
     late = -(fast - exact) * 0.05 / 0.5 * np.exp(0.8 / 0.05 * 1.6e-3)  # of a step of A/m that decays with b/m
     assert late == pytest.approx((1 / 6 - 0.4) * T, rel=0.01)
@@ -247,7 +247,7 @@ def test_a_switch_of_time_is_noted():
 
 def test_it_names_what_could_be_had():
     scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F), pendulum(z)], watch=[th])
-    with pytest.raises(ProgramError, match=r"sin\(th\(t\)\).* method='exact\+rk4' takes z exactly and the rest by rk4"):
+    with pytest.raises(ProgramError, match=r"sin\(th\(t\)\).* method='exact\+rk4' solves z exactly and the rest by rk4"):
         hl.compile(scene, T=T, method="exact", live=())
     for method in ("exact+euler2", "exact+taylor", "rk4+exact", "exakt", 4):
         with pytest.raises(ProgramError, match="needs one of"):
@@ -259,7 +259,7 @@ def test_scenes_without_motion_to_take():
     assert hl.compile(wall, T=T, method="exact").tick == hl.compile(wall, T=T).tick
     unseen = hl.Scene(force=k * x(n), eom=[sp.Eq(m * z.diff(t, 2), F)])
     assert len(hl.compile(unseen, T=T, method="exact").states) == 0
-    with pytest.raises(ProgramError, match="takes the whole period at once"):
+    with pytest.raises(ProgramError, match="solves the whole period in one step."):
         hl.compile(unseen, T=T, method="exact", substeps=2)
 
 

@@ -98,7 +98,7 @@ def test_what_is_unstable_as_bound_is_noted():
 def test_what_grows_slowly_is_noted_and_limited_to_slow_growth():
     """Heun's step multiplies what vibrates by (1 + y^4/4)^(1/2), y = omega h."""
     program = hl.compile(coupler(B=0), "heun", T=T, live="K")
-    assert program.facts["margin"] == 0 and "what vibrates doubles in" in program.notes[0]
+    assert program.facts["margin"] == 0 and "an oscillation doubles in" in program.notes[0]
     assert program.facts["doubles_s"] == pytest.approx(2 * T * np.log(2) / np.log1p(0.1**4 / 4), rel=5e-3)
     y = (4 * np.expm1(2 * T * np.log(2) / SLOW)) ** 0.25
     assert program.limits["K"][2] == pytest.approx(0.05 * (y / T) ** 2, rel=0.02)
@@ -179,7 +179,7 @@ def test_nothing_is_claimed_of_what_is_fed_back_by_samples():
         scene = hl.Scene(force=F, eom=[sp.Eq(m * z.diff(t, 2), F - k * held), *more])
         program = hl.compile(scene, "semi_implicit_euler", T=T, live="K")
         assert "margin" not in program.facts and not program.limits and program.limits.steps is None
-        assert any("fed back by" in note for note in program.notes)
+        assert any("fed back through samples, by" in note for note in program.notes)
 
 
 def test_nothing_is_said_where_nothing_is_known_or_needed():
@@ -207,7 +207,7 @@ def test_a_pendulum_is_looked_at_at_rest_too():
     program = hl.compile(scene, "euler", T=T, live="c", dtype="float64")
     assert program.facts["margin"] == pytest.approx(2 / (1e-3 / 0.01 / 1e-4) / T, rel=0.01)
     assert program.limits["c"][2] == pytest.approx(2 * 1e-4 * 0.01 / T, rel=0.01)
-    assert any("stable for small motions about the places looked at" in note for note in program.notes)
+    assert any("stable for small motions about the positions that were examined" in note for note in program.notes)
 
 
 def test_when_the_force_is_computed_does_not_change_what_is_stable():

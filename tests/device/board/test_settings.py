@@ -129,9 +129,9 @@ def test_force_of_duty_undoes_the_boards_law():
 
 def test_every_profile_makes_settings_or_says_why_not():
     assert nominal("hapkit").is_nominal and not changed(nominal("hapkit"), date=20261121).is_nominal
-    with pytest.raises(PaddleError, match="no nominal settings for 'eth'; there are some for hapkit"):
+    with pytest.raises(PaddleError, match="no nominal settings for 'eth'; they exist for hapkit."):
         nominal("eth")
-    with pytest.raises(PaddleError, match="stiffness is no setting; there are ident"):
+    with pytest.raises(PaddleError, match="stiffness is not a setting; the settings are ident"):
         changed(nominal("hapkit"), stiffness=1)
     for name in PROFILES:
         assert board_takes(simulated(SimulatedPaddle.from_profile(name)).to_bytes()) == "OK"

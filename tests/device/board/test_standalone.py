@@ -46,12 +46,12 @@ def test_a_forgotten_scene_never_starts():
 def test_it_is_refused_where_it_would_not_be_safe():
     with hl.connect("sim://hapkit") as paddle:
         paddle.start(SPRING(k=40))
-        with pytest.raises(PaddleError, match="a scene runs; end it first"):
+        with pytest.raises(PaddleError, match="a scene is running; end it first:"):
             paddle.keep(SPRING(k=40))
         paddle.stop()
         unchecked = nominal("hapkit", checked=0)
         paddle.settings = unchecked
-        with pytest.raises(PaddleError, match="the motor's sign was not checked"):
+        with pytest.raises(PaddleError, match="the sign of the motor was not checked"):
             paddle.keep(SPRING(k=40))
 
 
@@ -69,7 +69,9 @@ def test_a_scene_that_could_be_late_is_not_kept():
     scene = hl.Scene(force=slow, name="eight sines")(A=0.1, x_o=0.05)
     with hl.connect("sim://hapkit") as paddle:
         paddle.board["board"] = "uno"
-        with pytest.raises(ProgramLimitError, match=r"eight sines: .* of a 1 ms period on uno .*promised bound.*; fits at T = "):
+        with pytest.raises(
+            ProgramLimitError, match=r"eight sines: .* of a 1 ms period on uno .*guaranteed bound.*; fits at T = "
+        ):
             paddle.keep(scene)
         assert "both stops" in paddle.keep(hl.Scene(force=0.1 * hl.parameters("k", units="N/m") * hl.x(hl.n), name="s")(k=1))
         paddle.board["board"] = "due"

@@ -79,10 +79,10 @@ UNO = {"period_min": 250, "period_max": 10_000, "channels": 8}
 @pytest.mark.parametrize(
     ("T", "kept", "words"),
     [
-        (20e-3, settings(), r"T = 0.02 s; this board does 0.00025 to 0.01 s: take T=0.01"),
-        (1e-4, settings(), r"T = 0.0001 s; this board does 0.00025 to 0.01 s: take T=0.00025"),
+        (20e-3, settings(), r"T = 0.02 s; this board needs 0.00025 to 0.01 s. Use T=0.01"),
+        (1e-4, settings(), r"T = 0.0001 s; this board needs 0.00025 to 0.01 s. Use T=0.00025"),
         # 3/8 of 920 counts of 12.8 um at 2 m/s: 2.208 ms
-        (4e-3, nominal("hapkit"), r"does 0.00025 to 0.002208 s, as its magnet .* speed_max = 2 m/s: take T=0.002208"),
+        (4e-3, nominal("hapkit"), r"needs 0.00025 to 0.002208 s, because at speed_max = 2 m/s its magnet .* Use T=0.002208"),
     ],
 )
 def test_a_period_the_board_cannot_do_is_refused_with_the_nearest_it_can(T, kept, words):

@@ -13,12 +13,12 @@ NAN = float("nan")
     ("given", "said"),
     [
         ({"k": -50}, r"k = -50 N/m; a hand needs k >= 0\. A negative spring pushes the handle away"),
-        ({"b": -1}, r"b = -1 N s/m; a hand needs b >= 0\. A negative damper feeds energy"),
+        ({"b": -1}, r"b = -1 N s/m; a hand needs b >= 0\. A negative damper supplies energy to the handle."),
         ({"m": -0.1}, r"m = -0.1 kg; a hand needs m >= 0"),
         ({"m": NAN}, r"m = nan kg; a hand needs m >= 0 and finite"),
         ({"push": NAN}, r"push = nan N; a hand needs a finite push"),
         ({"push": float("inf")}, r"push = inf N"),
-        ({"k": "stiff"}, r"k = 'stiff'; a hand needs k >= 0, as a number in N/m"),
+        ({"k": "stiff"}, r"k = 'stiff'; a hand needs k >= 0. Give a number in N/m"),
         ({"intent": 0.1}, r"intent without k or b"),
         ({"intent": np.sin}, r"intent without k or b"),
         ({"intent": NAN, "k": 1}, r"intent = nan m"),
@@ -30,7 +30,7 @@ def test_bad_values_are_refused(given, said):
 
 
 def test_a_number_is_no_preset():
-    with pytest.raises(PaddleError, match=r"no hand 0.1; there are pinch, .*hl.Hand\(m="):
+    with pytest.raises(PaddleError, match=r"no hand 0.1; the presets are pinch,.*hl.Hand\(m="):
         Hand(0.1)
 
 

@@ -23,13 +23,13 @@ def test_a_firmer_grip_stiffens_and_damps_and_keeps_the_mass():
 
 
 def test_unknown_hands_and_grips_are_refused():
-    with pytest.raises(PaddleError, match="no hand 'fist'; there are pinch, grip, arm"):
+    with pytest.raises(PaddleError, match="no hand 'fist'; the presets are pinch, grip, arm,"):
         Hand("fist")
     with pytest.raises(PaddleError, match="grip = 0"):
         Hand("pinch", grip=0)
     with pytest.raises(TypeError, match="stiffness"):
         Hand("pinch", stiffness=3)
-    with pytest.raises(PaddleError, match="grip = 2: it makes a preset firmer"):
+    with pytest.raises(PaddleError, match="grip = 2: grip makes a preset firmer"):
         Hand(grip=2, k=100)
 
 

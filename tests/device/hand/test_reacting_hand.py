@@ -74,7 +74,7 @@ def test_feedback_through_a_reaction_time_is_stable_up_to_the_limit_of_a_delayed
     [
         (lambda t, seen, intent: math.nan, "plan gave nan at t = 0.01 s; needs one position"),
         (lambda t, seen, intent: None, "plan gave None"),
-        (lambda t, seen, intent: seen.z[-1], "'z' was not seen; there are t, x, v, F. Watch it"),
+        (lambda t, seen, intent: seen.z[-1], "'z' is not available; there are t, x, v, F. Watch it:"),
     ],
 )
 def test_bad_plans_are_told(plan, said):
@@ -85,7 +85,7 @@ def test_bad_plans_are_told(plan, said):
 def test_a_hand_that_reacts_runs_nowhere_else():
     with pytest.raises(PaddleError, match="plan = 3; needs a function"):
         hl.people.Reacting(plan=3)
-    with pytest.raises(PaddleError, match="runs on SimulatedPaddle.run alone"):
+    with pytest.raises(PaddleError, match="runs on SimulatedPaddle.run only."):
         hl.sweep(hl.wall(), paddle(lambda t, seen, intent: 0.0), k=[10.0, 20.0], progress=False)
 
 
@@ -98,7 +98,7 @@ def test_tremor_beside_a_plan_is_added_to_what_it_intends():
         for intent in (*both, lambda t: 0.01 * t + tremor(t))
     ]
     assert all(np.allclose(log.x, runs[-1].x, atol=1e-15, rtol=0) for log in runs[:-1]) and np.ptp(runs[-1].x) > 1e-3
-    with pytest.raises(PaddleError, match="two plans for one hand"):
+    with pytest.raises(PaddleError, match=r"two plans; give one Reacting\(plan=...\) that does the work"):
         hl.people.Reacting(plan=plan) + hl.people.Reacting(plan=plan)
     with pytest.raises(TypeError):
         tremor + 3

@@ -86,7 +86,9 @@ def test_silence_ends_in_words():
 
 def test_a_refusal_is_the_boards_word():
     exchange = Exchange(Script(lambda frame: ack(frame, result=34)))
-    with pytest.raises(LinkError, match="the board refused START: NOT_HOMED: the position is unknown") as refusal:
+    with pytest.raises(
+        LinkError, match="the board rejected START: NOT_HOMED: the position is unknown since the last reset:"
+    ) as refusal:
         exchange.command("START", 0, 1, 0, 1.0)
     assert refusal.value.result == "NOT_HOMED"
     with pytest.raises(LinkError, match="result 99"):

@@ -20,7 +20,7 @@ from hapticlab.device.simulated.simulated_paddle import SimulatedPaddle
 from hapticlab.errors import LinkError, PaddleError
 
 TODAY = 20261121
-YES = {"Store this": "yes"}
+YES = {"Store these settings": "yes"}
 KNOWN = nominal("hapkit", metres_per_count=2 * STOP / 7000, travel_min=-STOP, travel_max=STOP)
 
 
@@ -67,7 +67,7 @@ class TestStops:
 
     def test_radius_and_angle(self):
         paddle = bench.paddle(store=KNOWN.to_bytes())
-        by_angle = {"How was the travel": "angle", "From the axis": "80", "Angle between": "64.4"}
+        by_angle = {"How was the travel": "angle", "Distance from the axis": "80", "Angle between": "64.4"}
         found = calibrate(paddle, bench.Scripted(paddle, STOPS | YES | by_angle), date=TODAY, only="stops")
         assert found.travel_max - found.travel_min == pytest.approx(0.080 * 64.4 * math.pi / 180, rel=1e-6)
 
@@ -80,14 +80,14 @@ class TestStops:
             person.handle.hand = holding(person.handle.x)
 
         person = bench.Scripted(paddle, {"to the RIGHT stop again": slipped} | STOPS | YES)
-        with pytest.raises(PaddleError, match="first sweep.*second.*tighten"):
+        with pytest.raises(PaddleError, match="first sweep.*second.*Tighten the cable,"):
             calibrate(paddle, person, date=TODAY, only="stops")
         assert kept_on_board(paddle) == KNOWN.to_float32()
 
     def test_a_sensor_that_does_not_move_is_told(self):
         paddle = bench.paddle(store=KNOWN.to_bytes())
         still = {"to the LEFT stop": at(0.0), "to the RIGHT stop": at(0.0)}
-        with pytest.raises(PaddleError, match="a sweep has 50 at least.*magnet"):
+        with pytest.raises(PaddleError, match="a sweep needs at least 50..*magnet"):
             calibrate(paddle, bench.Scripted(paddle, still), date=TODAY, only="stops")
 
     def test_a_handle_that_does_not_rest_is_asked_again(self):
@@ -102,14 +102,14 @@ class TestStored:
     def test_nothing_is_written_without_a_yes(self):
         paddle = bench.paddle(store=KNOWN.to_bytes())
         before = paddle.exchange.port.board.store
-        calibrate(paddle, bench.Scripted(paddle, STOPS | {"Store this": "no"}), date=TODAY, only="stops")
+        calibrate(paddle, bench.Scripted(paddle, STOPS | {"Store these settings": "no"}), date=TODAY, only="stops")
         assert paddle.exchange.port.board.store == before
         assert paddle.settings == KNOWN.to_float32()
 
     def test_a_new_board_begins_with_nominal_constants_if_agreed(self):
         paddle = bench.paddle()
         assert paddle.settings is None
-        refusing = bench.Scripted(paddle, {"Which sensor": "hapkit", "Store this": "no"})
+        refusing = bench.Scripted(paddle, {"Which sensor": "hapkit", "Store these settings": "no"})
         assert calibrate(paddle, refusing, date=TODAY) is None
         assert set(paddle.exchange.port.board.store[:80]) == {0xFF}
         answers = STOPS | YES | {"Which sensor": "hapkit"}
@@ -120,7 +120,7 @@ class TestStored:
     def test_a_board_that_keeps_something_else_is_refused(self, monkeypatch):
         paddle = bench.paddle(store=KNOWN.to_bytes())
         monkeypatch.setattr(stored_settings, "read_settings", lambda exchange: nominal("hapkit", ident=1))
-        with pytest.raises(LinkError, match="keeps other settings"):
+        with pytest.raises(LinkError, match="the board stored settings that differ"):
             stored_settings.store(paddle, nominal("hapkit", ident=2))
         assert read_settings(paddle.exchange).ident == 2
 
@@ -216,10 +216,10 @@ class TestSign:
 
     def test_swapped_wires_stay_if_the_person_says_no(self):
         paddle = bench.paddle(store=KNOWN.to_bytes(), wiring=-1)
-        person = bench.Scripted(paddle, HOMING | {"Store this": "no"} | tugged(swaying()))
+        person = bench.Scripted(paddle, HOMING | {"Store these settings": "no"} | tugged(swaying()))
         assert check_sign(paddle, person, seed=3).verdict == "wrong"
         assert kept_on_board(paddle) == KNOWN.to_float32()
-        assert "push the wrong way" in person.words
+        assert "push in the wrong direction" in person.words
 
     def test_no_more_than_half_a_newton_is_asked(self):
         paddle = bench.paddle(store=KNOWN.to_bytes())
@@ -230,7 +230,7 @@ class TestSign:
         assert np.mean(logs[0].F == 0) > 0.3
 
     def test_a_board_without_settings_is_refused(self):
-        with pytest.raises(PaddleError, match="calibrate the stops first"):
+        with pytest.raises(PaddleError, match="Calibrate the stops first"):
             check_sign(bench.paddle(), bench.Scripted(None, {}))
 
 
@@ -247,7 +247,11 @@ def scale(direction=1, resolution=1.0, offset=0.0):
 
 
 def on_a_scale(**settings):
-    return {"How shall the force": "scale", "Which way does it press": "wall", "what does the scale show": scale(**settings)}
+    return {
+        "How do you want to measure the force": "scale",
+        "In which direction does the handle press": "wall",
+        "what does the scale show": scale(**settings),
+    }
 
 
 CHECKED = nominal("hapkit", metres_per_count=2 * STOP / 7000, travel_min=-STOP, travel_max=STOP, checked=1)
@@ -264,13 +268,15 @@ class TestForce:
         # 1 g steps of the scale are 3 mN rms; the largest force is 1.8 N as the board first reckons
         assert found.force_full == pytest.approx(truth, rel=0.01)
         assert found.checked == 1
-        assert ("not SQRT: the law is changed" in person.words) == (law == "LINEAR")
+        assert ("not SQRT; the stored law changes" in person.words) == (law == "LINEAR")
 
     def test_the_scale_may_be_on_the_other_side(self):
         paddle = bench.paddle(store=CHECKED.to_bytes(), force_full=6.0)
-        person = bench.Scripted(paddle, HOMING | YES | on_a_scale(direction=-1) | {"Which way does it press": "away"})
+        person = bench.Scripted(
+            paddle, HOMING | YES | on_a_scale(direction=-1) | {"In which direction does the handle press": "away"}
+        )
         assert calibrate(paddle, person, date=TODAY, only="force").force_full == pytest.approx(6.0, rel=0.01)
-        with pytest.raises(PaddleError, match="presses the other way"):
+        with pytest.raises(PaddleError, match="presses in the other direction"):
             calibrate(paddle, bench.Scripted(paddle, HOMING | YES | on_a_scale(direction=-1)), date=TODAY, only="force")
 
     def test_after_it_the_motor_gives_what_is_asked(self):
@@ -291,9 +297,9 @@ class TestForce:
         ("readings", "words"),
         [
             (["0", "20", "40", "60", "30"], "no motor law fits.*tap the table"),
-            (["200", "150", "100", "50", "0"], "presses the other way"),
+            (["200", "150", "100", "50", "0"], "presses in the other direction"),
             (["3"] * 5, "no supply"),
-            (["0", "4000", "8000", "12000", "16000"], "Were grams typed"),
+            (["0", "4000", "8000", "12000", "16000"], "Did you enter grams"),
         ],
     )
     def test_nonsense_is_refused(self, readings, words):
@@ -327,7 +333,7 @@ class TestForce:
         once = on_a_scale() | {"what does the scale show": lambda person: next(typed, None) or asked(person)}
         person = bench.Scripted(paddle, HOMING | YES | once)
         assert calibrate(paddle, person, date=TODAY, only="force").force_full == pytest.approx(6.0, rel=0.02)
-        assert "'abc' is no number" in person.words
+        assert "'abc' is not a number" in person.words
         assert "1e+09: needs a number from" in person.words
 
     @pytest.mark.wide
@@ -338,9 +344,9 @@ class TestForce:
         paddle = bench.paddle(store=CHECKED.to_bytes(), force_full=6.0, mechanics=mechanics)
         grams = iter([40, 70, 100])
         hung = {
-            "How shall the force": "weight",
+            "How do you want to measure the force": "weight",
             "Hang a weight": lambda person: bench.hang(person, next(grams), side),
-            "Another weight": ["yes", "yes", "no"],
+            "another weight": ["yes", "yes", "no"],
         }
         person = bench.Scripted(paddle, HOMING | YES | hung)
         found = calibrate(paddle, person, date=TODAY, only="force")
@@ -349,8 +355,8 @@ class TestForce:
 
     def test_a_weight_too_heavy_is_told(self):
         paddle = bench.paddle(store=CHECKED.to_bytes())
-        hung = {"How shall the force": "weight", "Hang a weight": lambda person: bench.hang(person, 900, 1)}
-        with pytest.raises(PaddleError, match="does not lift the weight.*Hang less"):
+        hung = {"How do you want to measure the force": "weight", "Hang a weight": lambda person: bench.hang(person, 900, 1)}
+        with pytest.raises(PaddleError, match="does not lift the weight.*Hang a lighter weight"):
             calibrate(paddle, bench.Scripted(paddle, HOMING | YES | hung), date=TODAY, only="force")
         assert paddle.state()["state"] == 0
 
@@ -365,7 +371,7 @@ class TestForce:
     def test_one_weight_tells_no_law(self):
         found = fit_force([0.2], [0.3], "LINEAR", intercept=False)
         assert found.force_full == pytest.approx(1.5, rel=1e-12)
-        assert "so few points tell no law" in "\n".join(found.words("LINEAR"))
+        assert "so few points do not show the law" in "\n".join(found.words("LINEAR"))
 
     @pytest.mark.parametrize("law", MOTOR_LAWS)
     def test_duties_are_the_boards(self, law):

@@ -63,14 +63,14 @@ def test_a_known_board_without_our_firmware_is_told_apart(plugged, monkeypatch):
 
 def test_firmware_of_another_version_is_refused_with_the_cure(monkeypatch):
     monkeypatch.setattr("hapticlab.device.board.greeting.table_hash", lambda: 1)
-    with pytest.raises(LinkError, match=r"firmware 1.0 speaks another version.*hapticlab flash"):
+    with pytest.raises(LinkError, match=r"firmware 1.0 uses a different version of the messages from this.*hapticlab flash"):
         hl.connect("sim://hapkit")
 
 
 def test_mechanics_are_for_simulated_boards_only():
     with pytest.raises(PaddleError, match='connect\\("sim://hapkit", paddle=...\\)'):
         hl.connect(paddle=hl.SimulatedPaddle(m=1, b=1, T=1e-3))
-    with pytest.raises(PaddleError, match="loop:// is none"):
+    with pytest.raises(PaddleError, match="simulated board, which loop:// is not"):
         hl.connect("loop://", paddle=hl.SimulatedPaddle(m=1, b=1, T=1e-3))
 
 
@@ -107,15 +107,15 @@ def test_a_simulated_handle_that_starts_elsewhere_is_where_it_is():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: hl.connect("sim://hapkit", T="a"), "T = 'a'; a paddle needs T > 0, as a number in s"),
+        (lambda: hl.connect("sim://hapkit", T="a"), "T = 'a'; a paddle needs T > 0. Give a number in s"),
         (lambda: hl.connect("sim://hapkit", T=0), "T = 0 s; a paddle needs T > 0"),
-        (lambda: hl.connect("sim://hapkit", T=1), "T = 1 s; this board does 5e-05 to 0.03 s: take T=0.03"),
+        (lambda: hl.connect("sim://hapkit", T=1), "T = 1 s; this board needs 5e-05 to 0.03 s. Use T=0.03"),
         (lambda: hl.connect("sim://hapkit", paddle=5), "paddle = 5; needs a SimulatedPaddle"),
-        (lambda: hl.connect("sim://hapkit?pce=real"), r"pce is no option of a simulated board.*pace=real"),
-        (lambda: hl.connect("sim://hapkit/x"), "x is no option"),
+        (lambda: hl.connect("sim://hapkit?pce=real"), r"pce is not an option of a simulated board..*pace=real"),
+        (lambda: hl.connect("sim://hapkit/x"), "x is not an option of a simulated board."),
         (
             lambda: hl.connect("sim://hapkit", T=1e-3, paddle=hl.SimulatedPaddle(m=1, b=1, T=2e-3)),
-            "T = 0.001 s, and the paddle has T = 0.002 s; give one of them",
+            "T = 0.001 s, but the paddle has T = 0.002 s. Give only one of them.",
         ),
     ],
 )

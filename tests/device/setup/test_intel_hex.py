@@ -40,10 +40,10 @@ def test_bases_are_added():
     ("text", "words"),
     [
         (f"{record(0, b'ab')[:-1]}0\n{END}", "line 1 has a wrong checksum"),
-        (f"{record(0, b'ab')[:-2]}\n{END}", "line 1 has another length"),
-        (f"{record(0, b'ab')}\n:00\n{END}", "line 2 has another length"),
+        (f"{record(0, b'ab')[:-2]}\n{END}", "line 1 does not have the length"),
+        (f"{record(0, b'ab')}\n:00\n{END}", "line 2 does not have the length"),
         (f"{record(0, b'ab')[:-1]}\n{END}", "half a byte"),
-        (f":0G{record(0, b'ab')[3:]}\n{END}", "no hexadecimal digit"),
+        (f":0G{record(0, b'ab')[3:]}\n{END}", "not a hexadecimal digit"),
         (f"{record(0, b'ab')[1:]}\n{END}", "does not begin with a colon"),
         (record(0, b"ab"), "no end record"),
         (f"{END}\n{record(0, b'ab')}", "line 2 comes after the end"),
@@ -51,7 +51,7 @@ def test_bases_are_added():
         (f"{record(0, b'ab', 6)}\n{END}", "kind 6"),
         (END, "holds no data"),
         ("", "no end record"),
-        (f"{record(0, bytes.fromhex('0810'), 4)}\n{record(0, b'a')}\n{END}", "another chip"),
+        (f"{record(0, bytes.fromhex('0810'), 4)}\n{record(0, b'a')}\n{END}", "a different chip"),
     ],
 )
 def test_a_damaged_file_is_refused(text, words):

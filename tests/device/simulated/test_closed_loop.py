@@ -183,5 +183,5 @@ def test_inputs_no_paddle_has_are_refused():
     tick = builder.block([cast(builder.leaf("input", 0, "f64"), "f64")])
     channel = (Channel("gaze", "rad", "f64"),)
     program = Program("odd", channel, (), (), (Channel("F", "N", "f64"),), Block(), tick, 1e-3)
-    with pytest.raises(PaddleError, match=r"odd wants the input gaze; a paddle gives x \[m\] and v \[m/s\] only"):
+    with pytest.raises(PaddleError, match=r"odd needs the input gaze; a paddle gives x \[m\] and v \[m/s\] only."):
         link(program, SimulatedPaddle(m=1, b=0, T=1e-3))

@@ -23,12 +23,12 @@ NAN = float("nan")
         ({"m": 0}, r"m = 0 kg; a paddle needs m > 0"),
         ({"m": -1}, r"m = -1 kg"),
         ({"m": NAN}, r"m = nan kg; a paddle needs m > 0 and finite"),
-        ({"b": -0.1}, r"b = -0.1 N s/m; a paddle needs b >= 0\. A negative damper feeds energy"),
+        ({"b": -0.1}, r"b = -0.1 N s/m; a paddle needs b >= 0\. A negative damper supplies energy to the user."),
         ({"T": 0}, r"T = 0 s; a paddle needs T > 0"),
         ({"T": -1e-3}, r"T = -0.001 s"),
         ({"T": float("inf")}, r"T = inf s"),
         ({"delay": -1e-4}, r"delay = -0.0001 s; a paddle needs delay >= 0"),
-        ({"delay": 5}, r"delay = 5 s is 5000 samples; a simulated paddle keeps 1000 forces"),
+        ({"delay": 5}, r"delay = 5 s is 5000 samples; a simulated paddle stores at most 1000 delayed forces:"),
         ({"counts_per_metre": 0}, r"counts_per_metre = 0 1/m; a paddle needs counts_per_metre > 0"),
         ({"counts_per_metre": NAN}, r"counts_per_metre = nan"),
         ({"rounding": "up"}, r"rounding = 'up'; an encoder needs 'floor' or 'nearest'"),
@@ -109,7 +109,7 @@ def test_the_hands_noise_is_a_seeded_force_held_over_each_sample(spring):
 def test_a_force_that_is_no_number_switches_the_motor_off(breaks_at, delay, bad):
     paddle = SimulatedPaddle(m=0.05, b=0.0, T=1e-3, delay=delay)
     log = paddle.run(breaks_at(100, bad), duration=0.2)
-    assert log.fault == "tick 100 (t = 0.1 s): the force F of breaks was not finite; the motor is off from there on"
+    assert log.fault == "tick 100 (t = 0.1 s): the force F of breaks was not finite; the motor is off from then on"
     felt = getattr(log, "F_applied", log.F)
     assert not felt[100:].any() and felt[10:100].all()
     assert not log.F[100:].any()
@@ -197,7 +197,7 @@ def test_what_a_paddle_cannot_run_is_refused(spring):
     paddle = SimulatedPaddle(**PLAIN)
     with pytest.raises(PaddleError, match=r"spring was compiled for T = 0.002 s; this paddle samples every 0.001 s"):
         paddle.run(spring(1.0, T=2e-3), duration=1)
-    with pytest.raises(PaddleError, match="method: a program is compiled already"):
+    with pytest.raises(PaddleError, match="method: a program is already compiled;"):
         paddle.run(spring(1.0), duration=1, method="rk4")
     with pytest.raises(PaddleError, match=r"x = nan m; a start needs a finite x"):
         paddle.run(spring(1.0), duration=1, x=NAN)
@@ -207,7 +207,7 @@ def test_a_measured_velocity_is_not_promised_by_an_encoder():
     B = parameters("B", units="N*s/m")
     damper = Scene(force=B * v(n), name="damper")(B=2)
     program = compile(damper, T=1e-3, velocity="measured")
-    with pytest.raises(PaddleError, match="damper wants a measured v; this paddle has only its backward difference"):
+    with pytest.raises(PaddleError, match="damper needs a measured v; this paddle has only its backward difference."):
         SimulatedPaddle(**PLAIN, counts_per_metre=1e4).run(program, duration=0.1)
     assert SimulatedPaddle(**PLAIN, counts_per_metre=1e4).run(damper, duration=0.1, v=1).F[1] > 1
     assert SimulatedPaddle(**PLAIN).run(program, duration=0.1, v=1).F[0] == 2
@@ -215,7 +215,7 @@ def test_a_measured_velocity_is_not_promised_by_an_encoder():
 
 def test_what_belongs_to_the_paddle_or_to_no_run_is_refused(spring):
     paddle = SimulatedPaddle(**PLAIN)
-    with pytest.raises(PaddleError, match="T is the paddle's own, 0.001"):
+    with pytest.raises(PaddleError, match="T is that of the paddle, 0.001 s."):
         paddle.run(Scene(force=parameters("k", units="N/m", values=1.0) * x(n)), duration=1, T=5e-4)
     with pytest.raises(PaddleError, match=r"is 1e\+11 samples; a run keeps at most 10000000 .*hl.sweep"):
         paddle.run(spring(1.0), duration=1e8)
@@ -223,7 +223,7 @@ def test_what_belongs_to_the_paddle_or_to_no_run_is_refused(spring):
         paddle.run(spring(1.0), duration=1, engine="vm")
     with pytest.raises(PaddleError, match=r"is 1e\+303 samples; a run"):
         paddle.run(spring(1.0), duration=1e300)
-    with pytest.raises(PaddleError, match=r"duration = 1e\+308 s is more samples than"):
+    with pytest.raises(PaddleError, match=r"duration = 1e\+308 s has too many samples"):
         paddle.run(spring(1.0), duration=1e308)
 
 

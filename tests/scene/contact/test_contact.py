@@ -22,7 +22,7 @@ FLOOR = Contact(Q, impulse(e=0.5), name="floor")
 
 
 @pytest.mark.parametrize("made, message", [
-    (lambda: impulse(e=1.3), r"e = 1.3; restitution lies in 0..1: above 1 every bounce would feed energy to the user"),
+    (lambda: impulse(e=1.3), r"e = 1.3; restitution lies in 0..1: above 1 every bounce would supply energy to the user"),
     (lambda: impulse(e=-0.1), r"e = -0.1; restitution lies in 0..1: below 0 the bodies would pass"),
     (lambda: impulse(e=MU), r"e = mu, declared within -inf..inf.*hl.parameters\('mu', units='1', ranges=\(0, 1\)\)"),
     (lambda: impulse(e=E, impacts="both"), r"impacts = 'both'; needs 'sequential' .* or 'simultaneous'"),
@@ -30,25 +30,32 @@ FLOOR = Contact(Q, impulse(e=0.5), name="floor")
     (lambda: impulse(e=E, mu=-0.2), r"mu = -0.2; a contact needs a friction coefficient mu >= 0: friction opposes the slip"),
     (lambda: penalty(k=-50), r"k = -50; a contact needs a stiffness k >= 0: a negative one is not passive"),
     (lambda: hunt_crossley(k=KH, c=C, exponent=0.5), r"exponent = 0.5; needs a fraction n >= 1, such as 3/2"),
-    (lambda: micro_impulse(e=E, envelope="0 mm"), r"envelope = 0; needs the distance at which bodies count as in contact"),
-    (lambda: Contact(K * Q, rigid()), r"contact: gap: a gap is a distance in m, or an angle in rad; k\*q\(t\) is neither"),
-    (lambda: Contact(sp.Integer(1) * K / K, rigid()), r"gap = 1 holds no coordinate and not x\(t\), so nothing can close it"),
-    (lambda: Contact(Q.diff(t), rigid(), "stop"), r"stop: gap = .* holds a velocity; a gap is a distance"),
+    (lambda: micro_impulse(e=E, envelope="0 mm"), r"envelope = 0; needs the distance at which bodies are regarded as in contact"),
+    (lambda: Contact(K * Q, rigid()), r"contact: gap: k\*q\(t\) is neither a length nor an angle; a gap is a distance in m "
+                                      r"or an angle in rad"),
+    (lambda: Contact(sp.Integer(1) * K / K, rigid()), r"gap = 1 contains neither a coordinate nor x\(t\), so nothing can "
+                                                      r"close the gap."),
+    (lambda: Contact(Q.diff(t), rigid(), "stop"), r"stop: gap = .* contains a velocity; a gap is a distance"),
     (lambda: Contact(Q, 3), r"law = 3; needs penalty, hunt_crossley, impulse, micro_impulse or rigid"),
-    (lambda: Contact(-x(t), impulse(e=E), "wall"), r"wall: gap = -x\(t\) holds the handle alone, .* hl.laws.proxy_wall"),
+    (lambda: Contact(-x(t), impulse(e=E), "wall"), r"wall: gap = -x\(t\) contains only the handle, whose velocity no "
+                                                   r"impulse can reverse.* hl.laws.proxy_wall"),
     (lambda: Contact(Q, impulse(e=E, mu=MU)), r"friction mu = mu needs a direction; give slip="),
     (lambda: Contact(Q, penalty(k=K), slip=v(t)), r"a penalty has no friction of its own; add hl.contact.friction\(slip=..."),
-    (lambda: Contact(Q >= 0, rigid()), r"gap = q\(t\) >= 0 is a condition; a contact takes the distance itself, .*apart: q\(t\)"),
-    (lambda: Contact(Q <= 0, rigid()), r"a contact takes the distance itself, .*apart: -q\(t\)"),
+    (lambda: Contact(Q >= 0, rigid()), r"gap = q\(t\) >= 0 is a condition; a contact needs the distance itself, .*apart. "
+                                       r"Write q\(t\)"),
+    (lambda: Contact(Q <= 0, rigid()), r"a contact needs the distance itself, .*apart. Write -q\(t\)"),
     (lambda: penalty(k="-50 N/m"), r"k = -50; a contact needs a stiffness k >= 0"),
-    (lambda: friction(slip=v(t), coulomb="2 N", breakaway="1 N"), r"breakaway = \(1 N\) < coulomb = \(2 N\); breaking away"),
+    (lambda: friction(slip=v(t), coulomb="2 N", breakaway="1 N"), r"breakaway = \(1 N\) < coulomb = \(2 N\); a breakaway "
+                                                                  r"force is at least as"),
     (lambda: hl.Scene(FLOOR), r"force is the contact or friction floor itself; its force is floor.force"),
     (lambda: K * Q + FLOOR, r"floor is a Contact, not a force; its force is an expression, floor.force"),
     (lambda: friction(slip=v(t), coulomb=F_C) - K * Q, r"friction is a friction, not a force; .*friction.force"),
-    (lambda: hl.Scene(0, [FLOOR]), r"eom holds floor, which is no equation; .*hl.mechanics.lagrange\(L, contacts=\[...\]\)"),
+    (lambda: hl.Scene(0, [FLOOR]), r"eom contains floor, which is not an equation.*hl.mechanics.lagrange\(L, contacts=\[...\]\)"),
     (lambda: friction(slip=Q.diff(t) ** 2, coulomb=F_C), r"slip = .* is not linear in the velocities"),
-    (lambda: friction(slip=Q, coulomb=F_C), r"slip = q\(t\) holds no velocity; needs a relative velocity"),
-    (lambda: friction(slip=v(t), coulomb=F_C, breakaway=F_C, stick_speed=1), r"stick_speed replaces sticking.*leave one out"),
+    (lambda: friction(slip=Q, coulomb=F_C), r"slip = q\(t\) contains no velocity; needs a relative velocity such as "
+                                            r"q.diff\(t\) - v\(t\)"),
+    (lambda: friction(slip=v(t), coulomb=F_C, breakaway=F_C, stick_speed=1), r"stick_speed replaces sticking.*only one of "
+                                                                             r"the two"),
 ])  # fmt: skip
 def test_what_cannot_be_a_contact_is_refused_in_words(made, message):
     with pytest.raises(SceneError, match=message):
@@ -74,7 +81,9 @@ def test_units_are_checked_against_the_gap(made, message):
 
 
 def test_a_sample_is_no_gap():
-    with pytest.raises(SignalError, match=r"gap holds the sample x\(n\); a contact sees the handle between samples too: x\(t\)"):
+    with pytest.raises(
+        SignalError, match=r"gap contains the sample x\(n\), but a contact also acts between samples. Write x\(t\)"
+    ):
         Contact(Q - x(n), rigid())
 
 

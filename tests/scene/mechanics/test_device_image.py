@@ -29,7 +29,7 @@ def test_an_equation_is_taken_as_the_constraints_of_a_model_are():
 
 
 def test_a_constraint_without_the_handle_is_no_image():
-    with pytest.raises(SceneError, match=r"grip: q\(t\) = 0 does not hold x\(t\).*write q - x\(t\)"):
+    with pytest.raises(SceneError, match=r"grip: q\(t\) = 0 does not contain x\(t\),.*Write q - x\(t\)"):
         hl.mechanics.device_image(q, name="grip")
     with pytest.raises(SceneError, match="cannot name a device image"):
         hl.mechanics.device_image(q - x(t), name="x")

@@ -213,7 +213,7 @@ def test_what_cannot_be_projected_is_said_and_small():
     starts = [0.0, 0.0, -0.3, 0.5, 0.0]
     values = {l: 0.3, m: 0.2, g: 9.81}
     mech = taken(kane, values, starts)
-    assert mech.notes[-1].startswith("constraints of speeds are kept by their rate alone")
+    assert mech.notes[-1].startswith("constraints on speeds are enforced by their rate alone")
     rod = sum(mech[p] ** 2 for p in q[:2]) - 0.09
     watch = {f"s{k}": mech[s] for k, s in enumerate([*kane.q, *kane.u])} | {"rod": rod}
     drift = check(mech, watch, lambda at: motion(kane, values, starts, at), 0.02, 0.2, 1e-5)

@@ -182,7 +182,7 @@ def test_loops_without_a_closed_form_say_where(lengths, word):
 def test_a_start_off_the_constraint_names_the_value_to_take():
     start = slider_crank()
     wanted = start[phi]
-    with pytest.raises(SceneError, match="off the constraint.*the left side is") as caught:
+    with pytest.raises(SceneError, match="does not satisfy the constraint.*its left side is") as caught:
         embed(SLIDER_CRANK, [phi, s, theta], {**start, phi: 0.2})
     assert f"Start with phi = {wanted:.12f}"[:28] in str(caught.value)
     embed(SLIDER_CRANK, [phi, s, theta], {**start, phi: round(wanted, 9)})

@@ -59,7 +59,7 @@ def test_a_constant_and_a_coordinate_of_one_name():
 
 
 def test_a_name_of_two_symbols_is_no_key():
-    with pytest.raises(SceneError, match="values has 'm', which two symbols of the model are called; give the symbol itself"):
+    with pytest.raises(SceneError, match="values has 'm', the name of two symbols of the model. Give the symbol itself"):
         hl.mechanics.from_mechanics(sprung(k=sp.Symbol("m", positive=True)), values={"m": 1})
     mech = hl.mechanics.from_mechanics(sprung(k=sp.Symbol("m", positive=True)), values={m: 1, sp.Symbol("m", positive=True): 2})
     assert {p.name: p.value for p in (mech[m], mech[sp.Symbol("m", positive=True)])} == {"m": 1.0, "m_1": 2.0}
@@ -169,16 +169,16 @@ def test_driven_motions_are_differentiated():
     mech = hl.mechanics.from_mechanics(LagrangesMethod(L, [q]), replace={s: sp.sin(2 * sp.pi * f * t)})
     assert mech.lagrangian.has(Rate)
     assert mech.equations[0].rhs.has(sp.sin)
-    with pytest.raises(SceneError, match="asks for an acceleration of"):
+    with pytest.raises(SceneError, match="needs an acceleration of"):
         hl.mechanics.from_mechanics(LagrangesMethod(L, [q]), replace={s: q.diff(t)})
 
 
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"units": {"w": "m"}}, r"units has w, which is nothing that these equations hold; they hold q, k, m"),
-        ({"values": {q: 1}}, r"values has q\(t\), which moves; where it starts is initial"),
-        ({"values": {m: 1}, "replace": {m: 2}}, r"m is replaced by 2, which has its unit and its value"),
+        ({"units": {"w": "m"}}, r"units has w, which is not in these equations. They contain q, k, m"),
+        ({"values": {q: 1}}, r"values has q\(t\), which moves. Give its start in initial=\{q\(t\):"),
+        ({"values": {m: 1}, "replace": {m: 2}}, r"m is replaced by 2, which has a unit and a value of its own."),
         ({"replace": {k: 3 * q}}, r"k is a constant where the equations were formed, and 3\*q\(t\) changes"),
         ({"replace": {k: v(t)}}, r"k is a constant where the equations were formed"),
         ({"initial": {m: 1}}, r"initial has m, which does not move"),
@@ -192,22 +192,22 @@ def test_what_is_refused(given, words):
 
 
 def test_speeds_follow_coordinates():
-    with pytest.raises(SceneError, match=r"replace has u\(t\), the rate of q\(t\); replace that"):
+    with pytest.raises(SceneError, match=r"replace has u\(t\), the rate of q\(t\). Replace q\(t\) instead"):
         hl.mechanics.from_mechanics(by_kane(), replace={"u": x(t)})
     with pytest.raises(SceneError, match=r"initial has both Derivative\(q\(t\), t\) and u\(t\), which are one"):
         hl.mechanics.from_mechanics(by_kane(), initial={"u": 1, q.diff(t): 1})
 
 
 def test_another_time_is_refused():
-    with pytest.raises(SceneError, match="t is another symbol than the time of SymPy's dynamicsymbols"):
+    with pytest.raises(SceneError, match="t is not the time of SymPy's dynamicsymbols."):
         hl.mechanics.from_mechanics(sprung(m=sp.Symbol("t", positive=True)))
-    with pytest.raises(SceneError, match=r"h\(q\(t\)\) is no function of time alone"):
+    with pytest.raises(SceneError, match=r"h\(q\(t\)\) is not a function of time alone"):
         hl.mechanics.from_mechanics(sprung(m=sp.Function("h")(q)))
 
 
 def test_a_coordinate_of_nothing():
     y = dynamicsymbols("y")
-    with pytest.raises(MassError, match=r"no energy, load or constraint holds y\(t\)"):
+    with pytest.raises(MassError, match=r"no energy, load or constraint contains y\(t\),"):
         hl.mechanics.from_mechanics(LagrangesMethod(m * q.diff(t) ** 2, [q, y]))
 
 
@@ -228,7 +228,7 @@ def test_kane_before_its_equations():
 def test_another_sympy_is_refused(method, name):
     model = method()
     delattr(model, name)
-    with pytest.raises(SceneError, match=f"SymPy .* keeps no {name} in a .*; install sympy 1.14"):
+    with pytest.raises(SceneError, match=f"SymPy .* stores no {name} in a .*; install sympy 1.14"):
         hl.mechanics.from_mechanics(model)
 
 
@@ -242,5 +242,5 @@ def test_a_model_of_kane_is_shown_as_equations():
     (equation,) = mech.equations
     mass, stiffness, z = mech[m], mech[k], mech[q]
     assert equation == sp.Eq(mass * z.diff(t, 2), -stiffness * z)
-    assert r"m \ddot{q} = - k q" in mech._repr_latex_()
+    assert r"\frac{d^{2}}{d t^{2}} q" in mech._repr_latex_()
     assert str(mech) == "M a = f of 1 coordinates"

@@ -14,11 +14,11 @@ k = hl.parameters("k", units="N/m")
 @pytest.mark.parametrize(
     ("force", "words"),
     [
-        (lambda: k * 0.01, "Neither x\\(n\\) nor v\\(n\\) is in it: was x or v given another value"),
-        (lambda: k * sp.Symbol("x"), "x is another symbol of that name; from hapticlab import x"),
-        (lambda: k * sp.Function("x")(t), "x\\(t\\) is another function of that name; from hapticlab import x"),
-        (lambda: k * x(sp.Symbol("n")), "n is another symbol of that name; from hapticlab import n"),
-        (lambda: k * x(np.linspace(0, 1, 3)), "was n or t given another value"),
+        (lambda: k * 0.01, "neither x\\(n\\) nor v\\(n\\). Was x or v given another value\\? Write from hapticlab import x,"),
+        (lambda: k * sp.Symbol("x"), "x is a different symbol with this name. Write from hapticlab import x"),
+        (lambda: k * sp.Function("x")(t), "x\\(t\\) is a different function with this name. Write from hapticlab import x"),
+        (lambda: k * x(sp.Symbol("n")), "n is a different symbol with this name. Write from hapticlab import n"),
+        (lambda: k * x(np.linspace(0, 1, 3)), r"Was n or t given another value\? Write from hapticlab import n,"),
         (lambda: k * x(5), "x\\(5\\) is not a sample"),
         (lambda: k * x, "x is a function of time; write x\\(n\\)"),
     ],
@@ -31,7 +31,9 @@ def test_a_shadowed_name_is_told(force, words):
 @pytest.mark.parametrize("name", ["x", "v", "n", "t", "T"])
 @pytest.mark.parametrize("declare", [hl.coordinate, hl.signal, lambda name, unit: hl.parameters(name, units=unit)])
 def test_no_declaration_shadows_them(declare, name):
-    with pytest.raises(HapticlabError, match=f"'{name}' cannot name .*: a scene or its record has its own {name}; take {name}_1"):
+    with pytest.raises(
+        HapticlabError, match=f"'{name}' cannot name .*, because a scene or its record already uses the name {name}. Use {name}_1"
+    ):
         declare(name, unit="m")
 
 

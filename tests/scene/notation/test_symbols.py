@@ -56,7 +56,7 @@ def test_a_value_that_is_not_physical_is_refused_by_name(name, unit, value, word
 def test_a_declared_range_replaces_the_default_and_is_kept():
     k = hl.parameters("k", units="N/m", ranges=(-200, 200))
     assert k.check(-150) == -150
-    with pytest.raises(ParameterError, match="k = 250 N/m; it was declared to lie within -200 and 200"):
+    with pytest.raises(ParameterError, match="k = 250 N/m; it was declared to lie between -200 and 200"):
         k.check(250)
     with pytest.raises(ParameterError, match="is empty"):
         hl.parameters("k", units="N/m", ranges=(2, 1))

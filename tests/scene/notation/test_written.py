@@ -46,7 +46,7 @@ def test_a_name_that_is_taken_or_no_word_is_refused_everywhere(name):
 
 def test_what_is_watched_without_a_name_is_called_as_written_unless_that_is_taken():
     assert list(hl.Scene(force=k * x(n), watch=[z, x(n - 1), k]).watch) == ["z", "x(n - 1)", "k"]
-    with pytest.raises(SceneError, match="a record has its own T; name the channel"):
+    with pytest.raises(SceneError, match="a record has a column T of its own. Give the channel another name,"):
         hl.Scene(force=k * x(n), watch=[hl.T])
 
 
@@ -62,13 +62,13 @@ def scenes():
         ({"force": F_0 * sp.I}, "not a real number"),
         ({"force": F_0 * sp.nan}, "not a real number"),
         ({"force": x(n) > 0}, "a condition is not a number"),
-        ({"force": sp.Eq(z, x_o)}, r"force = Eq\(z\(t\), x_o\) is an equation; an expression alone"),
+        ({"force": sp.Eq(z, x_o)}, r"force = Eq\(z\(t\), x_o\) is an equation; needs an expression,"),
         ({"watch": [None]}, "needs a number"),
         ({"watch": {"q": [1]}}, r"watch q = \[1\]"),
         ({"watch": 5}, "watch = 5; needs a list"),
         ({"watch": None}, "watch = None; needs a list"),
-        ({"eom": None}, "eom holds None; needs equations"),
-        ({"eom": 5}, "eom holds 5"),
+        ({"eom": None}, "eom contains None; needs equations,"),
+        ({"eom": 5}, "eom contains 5;"),
         ({"values": 5}, "values = 5; needs a dict"),
         ({"force": k * x(sp.Symbol("n"))}, "from hapticlab import n"),
         ({"force": k * x_o * sp.Symbol("t", real=True)}, "from hapticlab import t"),
@@ -108,7 +108,7 @@ def test_a_unit_that_is_none_is_refused(unit):
 def test_a_declaration_that_is_no_declaration_is_refused(options, words):
     with pytest.raises(ParameterError, match=words):
         hl.parameters("q r", units="m m", **options)
-    with pytest.raises(ParameterError, match="names = .*one text with spaces"):
+    with pytest.raises(ParameterError, match="names = .*one text, with spaces between names,"):
         hl.parameters(["q"], units="m")
 
 
@@ -154,7 +154,7 @@ def test_an_equation_that_does_not_define_a_signal_once_is_refused(equations, wo
 
 def test_a_rate_that_a_first_order_equation_would_lose_is_refused():
     s = hl.coordinate("s", unit="m", rate=hl.parameters("r", units="m/s"))
-    with pytest.raises(SceneError, match="s has an equation of first order.*rate=r would be lost"):
+    with pytest.raises(SceneError, match="s has an equation of first order.*rate=r would have no effect."):
         hl.Scene(force=k * s, eom=[sp.Eq(b * s.diff(t), k * (x(t) - s))]).explicit()
 
 
@@ -184,7 +184,7 @@ def test_a_condition_that_is_none_is_refused(condition, words):
         (b * hl.when(x(n) >= x_o, x(n)).diff(t), "has no derivative"),
         (m * x(t).diff(t, 2), r"acceleration of the handle.*write \(v\(n\) - v\(n-1\)\)/T"),
         (m * v(t).diff(t), "acceleration of the handle"),
-        (b * sp.Derivative(x(t), t), r"write v\(t\)"),
+        (b * sp.Derivative(x(t), t), r"Write v\(t\),"),
     ],
 )
 def test_a_rate_nobody_measures_is_refused_and_not_taken_for_zero(rate, words):

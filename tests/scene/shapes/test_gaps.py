@@ -297,8 +297,8 @@ def test_corners_above_a_half_plane_each_have_a_gap():
     ("make", "word"),
     [
         (lambda: gap(ground(), HalfPlane().at(y=A[0])), "two half-planes"),
-        (lambda: gap(Circle(1), ground()), "no shape in its place"),
-        (lambda: gap(ground(), 3), "no shape in its place"),
+        (lambda: gap(Circle(1), ground()), "not a shape with a position"),
+        (lambda: gap(ground(), 3), "not a shape with a position"),
     ],
 )
 def test_refused(make, word):
